@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstdint>
+
+/// Units everywhere inside Stylet: mm, N, s, rad, MPa (= N/mm²).
+/// Frame everywhere inside Stylet: patient coordinates, DICOM LPS (+x left, +y posterior, +z superior).
+namespace stylet {
+
+using Index = std::int32_t;  ///< node, element, slot numbers; -1 means "none"
+
+using Vec3 = Eigen::Vector3d;
+using Vec4 = Eigen::Vector4d;
+using Mat3 = Eigen::Matrix3d;
+using VecX = Eigen::VectorXd;
+using MatX = Eigen::MatrixXd;
+
+/// A rigid placement: x_world = rotation * x_local + origin.
+struct Pose {
+  Vec3 origin = Vec3::Zero();                                   ///< [mm] LPS
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< local to LPS; local z is the needle's axis
+};
+
+}  // namespace stylet

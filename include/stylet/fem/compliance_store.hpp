@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/fem/tissue.hpp"
+
+#include <span>
+
+namespace stylet {
+
+/// Blocks of K⁻¹ between the nodes near the needle. Rows are computed from the factor on demand, before the loop needs
+/// them, and kept; reading neither allocates nor solves.
+class ComplianceStore {
+ public:
+  explicit ComplianceStore(std::shared_ptr<const Tissue> tissue);
+
+  /// Makes all blocks among `nodes` and those stored before available. Solves in batches. Not for the step.
+  void add_nodes(std::span<const Index> nodes, const Progress& progress = {});
+
+  /// True when the node's blocks are stored. Fixed nodes always count as stored: their compliance is zero.
+  [[nodiscard]] bool has(Index node) const;
+
+  /// K⁻¹ block between nodes a and b [mm/N] (3×3): displacement of a per force on b. Both must be stored.
+  [[nodiscard]] Mat3 block(Index a, Index b) const;
+
+  [[nodiscard]] Index stored_nodes() const { return static_cast<Index>(nodes_.size()); }
+  [[nodiscard]] double megabytes() const { return static_cast<double>(blocks_.size()) * 8.0 / 1048576.0; }
+  [[nodiscard]] const Tissue& tissue() const { return *tissue_; }
+  [[nodiscard]] const std::shared_ptr<const Tissue>& shared_tissue() const { return tissue_; }
+
+ private:
+  std::shared_ptr<const Tissue> tissue_;
+  std::vector<Index> slot_;   ///< (n) slot of a node, -1 not stored
+  std::vector<Index> nodes_;  ///< node of each slot
+  MatX blocks_;               ///< (3 slots × 3 slots) [mm/N], symmetric
+};
+
+}  // namespace stylet

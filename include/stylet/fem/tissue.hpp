@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/geom/tet_mesh.hpp"
+
+#include <Eigen/SparseCore>
+
+#include <memory>
+
+namespace stylet {
+
+/// Isotropic linear elasticity.
+struct Material {
+  double young_MPa = 0.0;  ///< Young's modulus, > 0
+  double poisson = 0.0;    ///< Poisson ratio, in (-1, 0.5)
+
+  [[nodiscard]] double lambda() const { return young_MPa * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  ///< [MPa]
+  [[nodiscard]] double mu() const { return young_MPa / (2 * (1 + poisson)); }                                ///< [MPa]
+};
+
+/// Linear elastic, quasi-static tissue on linear tetrahedra, held at the nodes of its fundamental displacement
+/// constraints: K u = f with K symmetric positive definite on the free degrees of freedom, factorised once.
+/// Immutable after build; safe to share between threads for reading (each caller brings its own Workspace).
+class Tissue {
+ public:
+  /// @param mesh checked mesh (kept by value)
+  /// @param materials one per region of the mesh
+  /// @param fixed node numbers held at zero displacement; enough to exclude rigid motion, else an error says so
+  static Result<Tissue> build(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
+                              const Progress& progress = {});
+
+  Tissue(Tissue&&) noexcept;
+  Tissue& operator=(Tissue&&) noexcept;
+  ~Tissue();
+
+  [[nodiscard]] const TetMesh& mesh() const;
+  [[nodiscard]] const Material& material(int region) const;
+  [[nodiscard]] const std::vector<Material>& materials() const;
+  [[nodiscard]] bool is_fixed(Index node) const;
+  [[nodiscard]] const std::vector<Index>& fixed_nodes() const;  ///< sorted
+
+  /// Free degrees of freedom: 3 × (nodes − fixed nodes). Node a's first one, or -1 where it is fixed.
+  [[nodiscard]] Index free_dofs() const;
+  [[nodiscard]] Index first_dof(Index node) const;
+
+  /// Stiffness on the free degrees of freedom, both triangles stored [N/mm] (free × free).
+  [[nodiscard]] const Eigen::SparseMatrix<double>& stiffness() const;
+
+  /// u = K⁻¹ f for one or many right-hand sides. Allocates; never called by a step.
+  /// @param f [N] (3n × k) over all nodes, rows of fixed nodes are ignored
+  /// @return [mm] (3n × k), zero at fixed nodes
+  [[nodiscard]] MatX solve(const MatX& f) const;
+
+  /// Forces the supports exert on the tissue [N] (3n), non-zero at fixed nodes only: K_full u on their rows.
+  [[nodiscard]] VecX support_forces(const VecX& u) const;
+
+  /// Cauchy stress of every element, constant in it: xx yy zz xy yz zx [MPa] (6 × tets).
+  [[nodiscard]] MatX stress(const VecX& u) const;
+
+  /// Numbers for reports.
+  struct Statistics {
+    double factor_seconds = 0;
+    double factor_mb = 0;
+    Index factor_entries = 0;
+  };
+  [[nodiscard]] const Statistics& statistics() const;
+
+ private:
+  struct Parts;
+  explicit Tissue(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Stiffness block of element t between local nodes a and b: V [λ g_a g_bᵀ + μ g_b g_aᵀ + μ (g_a·g_b) I] [N/mm] (3×3).
+/// @param gradients barycentric gradients [1/mm] (3×4)
+Mat3 element_block(const Eigen::Matrix<double, 3, 4>& gradients, double volume, const Material& material, int a, int b);
+
+}  // namespace stylet

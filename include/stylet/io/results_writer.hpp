@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/core/result.hpp"
+#include "stylet/geom/tet_mesh.hpp"
+#include "stylet/sim/recording.hpp"
+
+#include <filesystem>
+#include <memory>
+
+namespace stylet {
+
+/// Writes the result folder of one insertion: run.h5 grows while the run goes on (SWMR, flushed at least every 0.5 s);
+/// summary.json, forces.csv, tissue.pvd with its .vtu, needle.vtp and report.html appear whole when it has finished.
+class ResultsWriter {
+ public:
+  /// @param stress_of [MPa] (6 × tets) of a displacement (3n), for the VTU files; may be empty
+  static Result<std::unique_ptr<ResultsWriter>> open(const std::filesystem::path& folder, const RunInfo& info,
+                                                     const TetMesh& mesh,
+                                                     std::function<MatX(const VecX&)> stress_of = {});
+  ~ResultsWriter();
+
+  Result<> add_step(const StepRecord& step);
+  Result<> add_frame(const Frame& frame);
+  /// Writes all files. Progress covers the pictures.
+  Result<> finish(const Summary& summary, const Progress& progress = {});
+
+ private:
+  struct Parts;
+  explicit ResultsWriter(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stylet

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+#include "stylet/core/types.hpp"
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace stylet {
+
+/// A force on the needle's centreline.
+struct PointLoad {
+  double s = 0.0;              ///< [mm] arc length from the base, 0…length
+  Vec3 force = Vec3::Zero();   ///< [N] LPS, does not turn with the needle
+};
+
+/// A flexible needle clamped at its base. Knows nothing of tissue. One equilibrium is found by repeating
+///   linearise(loads)  →  the caller picks new loads with `compliance`  →  advance(new loads)
+/// until residual() and the changes are small. No call after construction allocates, as long as the number of loads
+/// stays below the capacity given at construction.
+class Needle {
+ public:
+  virtual ~Needle() = default;
+
+  [[nodiscard]] virtual double length() const = 0;  ///< [mm]
+  [[nodiscard]] virtual std::string model() const = 0;
+
+  /// Places the base: local z is the axis the needle leaves the base along. The shape relative to the base is kept.
+  virtual void set_base(const Pose& base) = 0;
+  [[nodiscard]] virtual const Pose& base() const = 0;
+
+  /// Centreline point [mm] LPS and unit tangent (towards the tip) at arc length s, current shape.
+  [[nodiscard]] virtual Vec3 point(double s) const = 0;
+  [[nodiscard]] virtual Vec3 tangent(double s) const = 0;
+
+  /// Tangent problem at the current shape. For loads f (not necessarily in equilibrium with the shape) a Newton step to
+  /// equilibrium moves load point c by free(c) + Σ_d compliance(c,d) Δf_d where Δf_d changes the given loads.
+  /// @param loads (w) point loads
+  /// @param compliance [mm/N] (3w × 3w), symmetric positive semidefinite, written
+  /// @param free [mm] (3w), written: motion of the load points by the Newton step with unchanged loads
+  virtual void linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) = 0;
+
+  /// Takes the Newton step of the last linearise() with these loads in place of those given there (same s, same order).
+  virtual void advance(std::span<const PointLoad> loads) = 0;
+
+  /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium.
+  [[nodiscard]] virtual double residual(std::span<const PointLoad> loads) const = 0;
+
+  /// Straightens the needle (stress-free shape), base kept.
+  virtual void straighten() = 0;
+
+  /// Elastic energy stored in the shape [N mm].
+  [[nodiscard]] virtual double energy() const = 0;
+
+  /// State to save and restore (a step that must be repeated), (dofs).
+  [[nodiscard]] virtual Eigen::Ref<const VecX> state() const = 0;
+  virtual void set_state(const Eigen::Ref<const VecX>& state) = 0;
+};
+
+/// Solves for the equilibrium of a needle under fixed loads, the stand-alone use.
+/// @return iterations used, or an error when there is no convergence
+Result<int> find_equilibrium(Needle& needle, std::span<const PointLoad> loads, double tolerance_Nmm = 1e-10,
+                             int max_iterations = 100);
+
+}  // namespace stylet
