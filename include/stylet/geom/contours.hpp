@@ -4,7 +4,6 @@
 #include "stylet/core/types.hpp"
 
 #include <array>
-#include <array>
 #include <string>
 #include <vector>
 
