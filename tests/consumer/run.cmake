@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs the library to a fresh folder, builds the project beside this file against it, runs it.
+# Takes: BUILD (the library's build folder), SOURCE (this folder), WORK (a folder to use), GENERATOR, CXX.
+file(REMOVE_RECURSE ${WORK})
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "exit status ${status}: ${command}")
+  endif()
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/consumer)
+
+foreach(private io mesher phantom)
+  if(EXISTS ${WORK}/prefix/include/stylet/${private})
+    message(FATAL_ERROR "headers of ${private} are installed, but not its library")
+  endif()
+endforeach()
+if(NOT EXISTS ${WORK}/prefix/bin/stylet)
+  message(FATAL_ERROR "the stylet program is not installed")
+endif()

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/check_module_order sees an include against the direction of the modules, however it is written."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "check_module_order"
+
+
+class ModuleOrder(unittest.TestCase):
+    def check(self, files):
+        """Exit status and messages of the script on a tree with these files (path: text)."""
+        with tempfile.TemporaryDirectory() as folder:
+            for path, text in files.items():
+                file = Path(folder) / path
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text, encoding="utf-8")
+            done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
+            return done.returncode, done.stderr
+
+    def test_includes_to_the_left_pass(self):
+        status, text = self.check({"src/sim/a.cpp": '#include "stylet/fem/tissue.hpp"\n#include <vector>\n',
+                                   "src/io/b.cpp": '#include "stylet/sim/model.hpp"\n#include <vtkCell.h>\n',
+                                   "src/mesher/c.cpp": "#include <CGAL/Mesh_3/config.h>\n"})
+        self.assertEqual((status, text), (0, ""))
+
+    def test_public_header_to_the_right_is_refused_with_its_line(self):
+        status, text = self.check({"include/stylet/geom/a.hpp": '#pragma once\n#include "stylet/fem/tissue.hpp"\n'})
+        self.assertEqual(status, 1)
+        self.assertIn("include/stylet/geom/a.hpp:2: geom must not include fem", text)
+
+    def test_fem_and_needle_do_not_know_each_other(self):
+        for one, other in (("fem", "needle"), ("needle", "fem")):
+            status, text = self.check({f"src/{one}/a.cpp": f'#include <stylet/{other}/{other}.hpp>\n'})
+            self.assertEqual(status, 1)
+            self.assertIn(f"{one} must not include {other}", text)
+
+    def test_relative_path_into_another_module_is_seen(self):
+        status, text = self.check({"src/core/a.cpp": '#include "../io/inside.hpp"\n', "src/io/inside.hpp": ""})
+        self.assertEqual(status, 1)
+        self.assertIn("core must not include io", text)
+
+    def test_mesher_knows_no_simulation_and_no_files(self):
+        status, text = self.check({"src/mesher/a.cpp": '#include "stylet/sim/model.hpp"\n#include "stylet/io/input.hpp"\n'})
+        self.assertEqual(status, 1)
+        self.assertIn("mesher must not include sim", text)
+        self.assertIn("mesher must not include io", text)
+
+    def test_formats_and_sockets_stay_out_of_the_engine(self):
+        for header in ("vtkCell.h", "CGAL/Mesh_3/config.h", "dcmtk/dcmrt/drtstrct.h", "nlohmann/json.hpp",
+                       "toml++/toml.h", "hdf5.h", "gmsh.h", "boost/beast/core.hpp", "sys/socket.h", "fstream"):
+            status, text = self.check({"src/sim/a.cpp": f"#include <{header}>\n"})
+            self.assertEqual(status, 1, header)
+            self.assertIn(header, text)
+
+    def test_unknown_module_is_refused(self):
+        status, text = self.check({"src/magic/a.cpp": ""})
+        self.assertEqual(status, 1)
+        self.assertIn("unknown module 'magic'", text)
+
+
+if __name__ == "__main__":
+    unittest.main()
