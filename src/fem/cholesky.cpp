@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cholesky.hpp"
+
+#include "blas_threads.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <new>
+#include <vector>
+
+namespace stylet::detail {
+namespace {
+
+// A pivot is what is left of a diagonal entry after elimination: a rigid motion leaves rounding, some 1e-16 … 1e-14 of
+// it; a bar a thousand times longer than thick still leaves 1e-10.
+constexpr double kTinyPivot = 1e-13;
+
+// Right-hand sides taken through the factor together: enough for matrix products to pay, few enough to stay in memory.
+constexpr Eigen::Index kBatch = 128;
+
+cholmod_sparse view(const Eigen::SparseMatrix<double>& A, int xtype) {
+  assert(A.isCompressed());
+  cholmod_sparse out{};
+  out.nrow = static_cast<size_t>(A.rows());
+  out.ncol = static_cast<size_t>(A.cols());
+  out.nzmax = static_cast<size_t>(A.nonZeros());
+  out.p = const_cast<int*>(A.outerIndexPtr());  // CHOLMOD's interface knows no const; it only reads
+  out.i = const_cast<int*>(A.innerIndexPtr());
+  out.x = xtype == CHOLMOD_PATTERN ? nullptr : const_cast<double*>(A.valuePtr());
+  out.stype = -1;  // symmetric, read the lower triangle
+  out.itype = CHOLMOD_INT;
+  out.xtype = xtype;
+  out.dtype = CHOLMOD_DOUBLE;
+  out.sorted = 1;
+  out.packed = 1;
+  return out;
+}
+
+void quiet(cholmod_common& common) {
+  cholmod_start(&common);
+  common.print = 0;
+  common.error_handler = nullptr;
+}
+
+// First column, in K's numbering, whose pivot is tiny against K's diagonal, or -1.
+Index tiny_pivot(const Eigen::SparseMatrix<double>& K, const cholmod_factor& L) {
+  const auto* super = static_cast<const int*>(L.super);
+  const auto* begin_rows = static_cast<const int*>(L.pi);
+  const auto* begin_values = static_cast<const int*>(L.px);
+  const auto* values = static_cast<const double*>(L.x);
+  const auto* permutation = static_cast<const int*>(L.Perm);
+  const VecX diagonal = K.diagonal();
+  for (size_t s = 0; s < L.nsuper; ++s) {
+    const std::ptrdiff_t rows = begin_rows[s + 1] - begin_rows[s];
+    for (int column = super[s]; column < super[s + 1]; ++column) {
+      const std::ptrdiff_t j = column - super[s];
+      const double pivot = values[begin_values[s] + j * rows + j];
+      const Index original = permutation[column];
+      if (!(pivot * pivot > kTinyPivot * diagonal[original])) return original;
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+Cholesky::Cholesky() {
+  quiet(common_);
+  common_.supernodal = CHOLMOD_SUPERNODAL;
+  common_.final_ll = 1;
+  common_.nmethods = 1;
+  common_.method[0].ordering = CHOLMOD_GIVEN;
+  common_.postorder = 1;
+}
+
+Cholesky::~Cholesky() {
+  cholmod_free_factor(&factor_, &common_);
+  cholmod_finish(&common_);
+}
+
+Cholesky::Failure Cholesky::factorise(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& nodes,
+                                      const Progress& progress) {
+  const OneBlasThread one_thread;
+  const auto failure = [this] {
+    if (common_.status == CHOLMOD_TOO_LARGE) return Failure::too_large;
+    return Failure::out_of_memory;
+  };
+
+  report(progress, "ordering", 0.0);
+  std::vector<int> node_order(static_cast<size_t>(nodes.cols()));
+  cholmod_sparse pattern = view(nodes, CHOLMOD_PATTERN);
+  if (!cholmod_metis(&pattern, nullptr, 0, 1, node_order.data(), &common_)) return failure();
+  std::vector<int> order(3 * node_order.size());
+  for (size_t i = 0; i < node_order.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) order[3 * i + axis] = 3 * node_order[i] + axis;
+  }
+
+  cholmod_sparse matrix = view(K, CHOLMOD_REAL);
+  factor_ = cholmod_analyze_p(&matrix, order.data(), nullptr, 0, &common_);
+  if (factor_ == nullptr) return failure();
+
+  report(progress, "factorising", 0.0);
+  if (!cholmod_factorize(&matrix, factor_, &common_)) return failure();
+  if (common_.status == CHOLMOD_NOT_POSDEF || factor_->minor < factor_->n) {
+    failed_column_ = static_cast<const int*>(factor_->Perm)[factor_->minor];
+    return Failure::not_positive_definite;
+  }
+  failed_column_ = tiny_pivot(K, *factor_);
+  if (failed_column_ >= 0) return Failure::not_positive_definite;
+  report(progress, "factorising", 1.0);
+  return Failure::none;
+}
+
+MatX Cholesky::solve(const MatX& b) const {
+  const OneBlasThread one_thread;
+  // Each call brings its own workspace: the factor is only read.
+  struct Workspace {
+    cholmod_common common;
+    cholmod_dense* X = nullptr;
+    cholmod_dense* Y = nullptr;
+    cholmod_dense* E = nullptr;
+    Workspace() { quiet(common); }
+    ~Workspace() {
+      cholmod_free_dense(&X, &common);
+      cholmod_free_dense(&Y, &common);
+      cholmod_free_dense(&E, &common);
+      cholmod_finish(&common);
+    }
+  } work;
+
+  MatX x(b.rows(), b.cols());
+  for (Eigen::Index first = 0; first < b.cols(); first += kBatch) {
+    const Eigen::Index count = std::min(kBatch, b.cols() - first);
+    cholmod_dense B{};
+    B.nrow = static_cast<size_t>(b.rows());
+    B.ncol = static_cast<size_t>(count);
+    B.d = B.nrow;
+    B.nzmax = B.nrow * B.ncol;
+    B.x = const_cast<double*>(b.data() + first * b.rows());
+    B.xtype = CHOLMOD_REAL;
+    B.dtype = CHOLMOD_DOUBLE;
+    if (!cholmod_solve2(CHOLMOD_A, factor_, &B, nullptr, &work.X, nullptr, &work.Y, &work.E, &work.common)) {
+      throw std::bad_alloc();
+    }
+    x.middleCols(first, count) = Eigen::Map<const MatX>(static_cast<const double*>(work.X->x), b.rows(), count);
+  }
+  return x;
+}
+
+double Cholesky::megabytes() const {
+  if (factor_ == nullptr) return 0.0;
+  const double bytes = 8.0 * static_cast<double>(factor_->xsize) + 4.0 * static_cast<double>(factor_->ssize) +
+                       4.0 * static_cast<double>(3 * factor_->nsuper + 2 * factor_->n);
+  return bytes / 1048576.0;
+}
+
+Index Cholesky::entries() const { return factor_ == nullptr ? 0 : static_cast<Index>(factor_->xsize); }
+
+}  // namespace stylet::detail

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/geom/locator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace stylet {
+namespace {
+
+// All tolerances are on barycentric weights, so they scale with the element.
+constexpr double kTie = 1e-10;  // a weight this close to 0 lies on the face: rounding of x is far below, 1 nm far above
+constexpr double kRounding = 1e-12;  // returned weights are no lower than minus this
+constexpr Index kLeafSize = 6;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// Weights clamped to the element when they were below it by a tie's width; their sum stays 1.
+Vec4 inside(Vec4 w) {
+  if (w.minCoeff() >= -kRounding) return w;
+  w = w.cwiseMax(0.0);
+  return w / w.sum();
+}
+
+// Rates of the four weights of tetrahedron t along d.
+Vec4 rates(const TetMesh& mesh, Index t, const Vec3& d) { return barycentric_gradients(mesh, t).transpose() * d; }
+
+// How far the path from a point with weights w, rates dw, is from leaving the element at once: the smallest rate among
+// the weights that are zero, 0 where the path stays in a face. Below zero the element lies beside or behind the path.
+double headroom(const Vec4& w, const Vec4& dw) {
+  const double scale = dw.cwiseAbs().maxCoeff();
+  double least = kNever;
+  for (int i = 0; i < 4; ++i) {
+    if (w[i] <= kTie) least = std::min(least, std::abs(dw[i]) <= 1e-9 * scale ? 0.0 : dw[i] / scale);
+  }
+  return least;
+}
+
+struct Candidate {
+  Index tet = -1;
+  Vec4 weights = Vec4::Zero();
+  double headroom = -kNever;
+};
+
+// Among the tetrahedra around `node` that contain x, the one that x + 0·d lies in, or else comes closest to.
+// `preferred` wins between equals, then the lowest number.
+Candidate best_around(const Locator& locator, Index node, const Vec3& x, const Vec3& d, Index preferred) {
+  Candidate best;
+  for (const Index t : locator.topology().node_tets[node]) {
+    const Vec4 w = locator.weights(t, x);
+    if (w.minCoeff() < -kTie) continue;
+    const double room = headroom(w, rates(locator.mesh(), t, d));
+    if (best.tet < 0 || room > best.headroom || (room == best.headroom && t == preferred)) best = {t, w, room};
+  }
+  return best;
+}
+
+// Node with the greatest weight: every tetrahedron that contains the point has it.
+Index nearest_node(const TetMesh& mesh, Index t, const Vec4& w) {
+  int local = 0;
+  w.maxCoeff(&local);
+  return mesh.tets[t][local];
+}
+
+int ties(const Vec4& w) { return static_cast<int>((w.array() <= kTie).count()); }
+
+// Does the segment a + t d, 0 ≤ t ≤ 1, meet the box?
+bool meets(const Eigen::AlignedBox3d& box, const Vec3& a, const Vec3& d) {
+  double enter = 0.0;
+  double leave = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (d[axis] == 0.0) {
+      if (a[axis] < box.min()[axis] || a[axis] > box.max()[axis]) return false;
+      continue;
+    }
+    const double t0 = (box.min()[axis] - a[axis]) / d[axis];
+    const double t1 = (box.max()[axis] - a[axis]) / d[axis];
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  return enter <= leave;
+}
+
+// Halving at the median keeps the tree's depth under 32 for any mesh an Index can count.
+using Stack = std::array<Index, 64>;
+
+}  // namespace
+
+Locator::Locator(const TetMesh& mesh, const Topology& topology) : mesh_(&mesh), topology_(&topology) {
+  const Index m = mesh.tet_count();
+  order_.resize(static_cast<std::size_t>(m));
+  std::iota(order_.begin(), order_.end(), 0);
+  std::vector<Vec3> centroid(static_cast<std::size_t>(m));
+  for (Index t = 0; t < m; ++t) {
+    centroid[t].setZero();
+    for (const Index a : mesh.tets[t]) centroid[t] += 0.25 * mesh.nodes[a];
+  }
+
+  const auto box_of = [&](Index first, Index count) {
+    Eigen::AlignedBox3d box;
+    for (Index i = first; i < first + count; ++i) {
+      for (const Index a : mesh.tets[order_[i]]) box.extend(mesh.nodes[a]);
+    }
+    const Vec3 margin = Vec3::Constant(1e-8 * (box.isEmpty() ? 0.0 : box.diagonal().norm()));
+    return Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
+  };
+  tree_.push_back({box_of(0, m), 0, m});
+  for (std::size_t i = 0; i < tree_.size(); ++i) {
+    const Index first = tree_[i].first;
+    const Index count = tree_[i].count;
+    if (count <= kLeafSize) continue;
+    int axis = 0;
+    tree_[i].box.sizes().maxCoeff(&axis);
+    const Index half = count / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count,
+                     [&](Index p, Index q) {
+                       return centroid[p][axis] != centroid[q][axis] ? centroid[p][axis] < centroid[q][axis] : p < q;
+                     });
+    tree_[i].first = static_cast<Index>(tree_.size());
+    tree_[i].count = -1;
+    tree_.push_back({box_of(first, half), first, half});
+    tree_.push_back({box_of(first + half, count - half), first + half, count - half});
+  }
+}
+
+Vec4 Locator::weights(Index t, const Vec3& x) const {
+  const auto& tet = mesh_->tets[t];
+  const Vec3& origin = mesh_->nodes[tet[0]];
+  const Vec3 a = mesh_->nodes[tet[1]] - origin;
+  const Vec3 b = mesh_->nodes[tet[2]] - origin;
+  const Vec3 c = mesh_->nodes[tet[3]] - origin;
+  const Vec3 d = x - origin;
+  const Vec3 a_b = a.cross(b);
+  const double six_volumes = a_b.dot(c);
+  const double w1 = b.cross(c).dot(d) / six_volumes;
+  const double w2 = c.cross(a).dot(d) / six_volumes;
+  const double w3 = a_b.dot(d) / six_volumes;
+  return {1.0 - (w1 + w2 + w3), w1, w2, w3};
+}
+
+Vec3 Locator::face_normal(Index t, int local) const {
+  const auto& tet = mesh_->tets[t];
+  const auto& corner = kFaceVertices[local];
+  const Vec3& origin = mesh_->nodes[tet[corner[0]]];
+  return (mesh_->nodes[tet[corner[1]]] - origin).cross(mesh_->nodes[tet[corner[2]]] - origin).normalized();
+}
+
+std::optional<MaterialPoint> Locator::find(const Vec3& x, Index hint, const Vec3& travel) const {
+  if (!x.allFinite() || mesh_->tets.empty()) return std::nullopt;
+  Index found = -1;
+  Vec4 w;
+
+  // Walk through the face that x lies farthest beyond. The walk may run in circles or leave a concave mesh; then, and
+  // without a hint, the tree answers.
+  Index t = hint;
+  for (int step = 0; step < 100 && t >= 0 && t < mesh_->tet_count(); ++step) {
+    w = weights(t, x);
+    int face = 0;
+    if (w.minCoeff(&face) >= -kTie) {
+      found = t;
+      break;
+    }
+    t = topology_->neighbour[t][face];
+  }
+
+  if (found < 0) {
+    // The tetrahedron that contains x best, so that rounding at a face decides nothing.
+    double best = -kTie;
+    Stack stack;
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const Box& node = tree_[stack[--top]];
+      if (!node.box.contains(x)) continue;
+      if (node.count < 0) {
+        stack[top++] = node.first + 1;
+        stack[top++] = node.first;
+        continue;
+      }
+      for (Index i = node.first; i < node.first + node.count; ++i) {
+        const Vec4 candidate = weights(order_[i], x);
+        const double least = candidate.minCoeff();
+        if (least > best || (least == best && (found < 0 || order_[i] < found))) {
+          best = least;
+          found = order_[i];
+          w = candidate;
+        }
+      }
+      if (best > kTie) break;
+    }
+  }
+  if (found < 0) return std::nullopt;
+
+  if (travel != Vec3::Zero() && ties(w) > 0) {
+    const Candidate ahead = best_around(*this, nearest_node(*mesh_, found, w), x, travel, found);
+    if (ahead.tet >= 0) return MaterialPoint{ahead.tet, inside(ahead.weights)};
+  }
+  return MaterialPoint{found, inside(w)};
+}
+
+std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, const Vec3& to,
+                                                MaterialPoint& end) const {
+  const Vec3 d = to - from;
+  const int region = mesh_->tet_region[start];
+  Index t = start;
+  double s = 0.0;   // path parameter where the path entered t
+  int stalled = 0;  // steps without progress
+
+  // The face by which the path leaves the region at parameter `at`, where it meets an edge or a node of t: of the
+  // region's faces there, the one met most head-on.
+  const auto leaving_face = [&](Index around, double at, int fallback) {
+    const Vec3 x = from + at * d;
+    Crossing crossing{at, around, fallback};
+    double steepest = 0.0;
+    for (const Index c : topology_->node_tets[nearest_node(*mesh_, around, weights(around, x))]) {
+      if (mesh_->tet_region[c] != region) continue;
+      const Vec4 w = weights(c, x);
+      if (w.minCoeff() < -kTie) continue;
+      for (int i = 0; i < 4; ++i) {
+        if (w[i] > kTie) continue;
+        const Index other = topology_->neighbour[c][i];
+        if (other >= 0 && mesh_->tet_region[other] == region) continue;
+        const double slope = face_normal(c, i).dot(d);
+        if (slope > steepest) {
+          steepest = slope;
+          crossing.tet = c;
+          crossing.local = i;
+        }
+      }
+    }
+    return crossing;
+  };
+
+  // Every step advances s, or is a tie at an edge or node that ends in a tetrahedron the path truly runs through, so
+  // the number of tetrahedra bounds the walk; what rounding may add on top is cut off by the nudge below.
+  for (std::int64_t step = 0; step < 2 * static_cast<std::int64_t>(mesh_->tet_count()) + 64; ++step) {
+    const Vec4 w = weights(t, from);
+    const Vec4 dw = rates(*mesh_, t, d);
+    const double scale = dw.cwiseAbs().maxCoeff();
+    double leave = kNever;
+    int face = -1;
+    for (int i = 0; i < 4; ++i) {
+      if (dw[i] >= 0.0 || -dw[i] <= 1e-12 * scale) continue;
+      const double at = -w[i] / dw[i];
+      if (at < leave) {
+        leave = at;
+        face = i;
+      }
+    }
+    if (face < 0 || leave >= 1.0 || w[face] + dw[face] >= -kRounding) {
+      end = {t, inside(w + dw)};
+      return std::nullopt;
+    }
+    leave = std::max(leave, s);
+    stalled = leave > s ? 0 : stalled + 1;
+    s = leave;
+
+    if (stalled > 16) {
+      // Rounding has the walk circling around an edge: step ahead by a millionth of the element and ask the tree.
+      s = std::min(1.0, s + 1e-6 / scale);
+      stalled = 0;
+      const auto ahead = find(from + s * d, -1, d);
+      if (!ahead || mesh_->tet_region[ahead->tet] != region) return leaving_face(t, leave, face);
+      t = ahead->tet;
+      continue;
+    }
+
+    const Vec4 at_exit = w + s * dw;
+    if (ties(at_exit) > 1) {
+      const Vec3 x = from + s * d;
+      const Candidate ahead = best_around(*this, nearest_node(*mesh_, t, at_exit), x, d, t);
+      if (ahead.tet < 0 || ahead.headroom < 0.0 || mesh_->tet_region[ahead.tet] != region) {
+        return leaving_face(t, s, face);
+      }
+      t = ahead.tet;
+      continue;
+    }
+    const Index next = topology_->neighbour[t][face];
+    if (next < 0 || mesh_->tet_region[next] != region) return Crossing{s, t, face};
+    t = next;
+  }
+  end = find(to, t).value_or(MaterialPoint{t, inside(weights(t, to))});
+  return std::nullopt;
+}
+
+std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) const {
+  const Vec3 d = to - from;
+  if (mesh_->tets.empty() || d == Vec3::Zero() || !d.allFinite()) return std::nullopt;
+  std::optional<Crossing> first;
+  double steepest = 0.0;  // slope of the face found, decides between faces met at one edge
+
+  Stack stack;
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const Box& node = tree_[stack[--top]];
+    if (!meets(node.box, from, d)) continue;
+    if (node.count < 0) {
+      stack[top++] = node.first + 1;
+      stack[top++] = node.first;
+      continue;
+    }
+    for (Index i = node.first; i < node.first + node.count; ++i) {
+      const Index t = order_[i];
+      const auto& neighbour = topology_->neighbour[t];
+      if (neighbour[0] >= 0 && neighbour[1] >= 0 && neighbour[2] >= 0 && neighbour[3] >= 0) continue;
+      const Vec4 w = weights(t, from);
+      const Vec4 dw = rates(*mesh_, t, d);
+      const double scale = dw.cwiseAbs().maxCoeff();
+      for (int face = 0; face < 4; ++face) {
+        if (neighbour[face] >= 0 || dw[face] <= 1e-12 * scale) continue;  // an inner face, or met from inside
+        double at = -w[face] / dw[face];
+        if (at < 0.0 && w[face] <= kTie) at = 0.0;  // `from` lies on the face
+        if (at > 1.0 && w[face] + dw[face] >= -kTie) at = 1.0;
+        if (at < 0.0 || at > 1.0) continue;
+        const Vec4 hit = w + at * dw;
+        if (hit.minCoeff() < -kTie) continue;
+        const double slope = -face_normal(t, face).dot(d);
+        const double width = kTie / scale;  // parameters closer than this are the same point
+        if (first && (at > first->t + width ||
+                      (at > first->t - width && (slope < steepest || (slope == steepest && t >= first->tet))))) {
+          continue;
+        }
+        if (ties(hit) > 1) {
+          // At an edge or node the path may only touch the body: it enters if the mesh goes on behind the point.
+          const Vec3 x = from + at * d;
+          const Candidate behind = best_around(*this, nearest_node(*mesh_, t, hit), x, d, t);
+          if (behind.tet < 0 || behind.headroom < 0.0) continue;
+        }
+        first = Crossing{at, t, face};
+        steepest = slope;
+      }
+    }
+  }
+  return first;
+}
+
+}  // namespace stylet
