@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contours/self_crossing.hpp"
+#include "stylet/io/contours_io.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+
+constexpr double plane_tolerance_mm = 0.1;      // points of one slice; files round to 0.01 mm
+constexpr double same_slice_mm = 0.05;          // contours nearer than this lie on one slice
+constexpr double max_tilt_deg = 1.0;            // between planes
+constexpr double crossing_tolerance_mm = 0.05;  // smaller overlaps of edges come from rounding
+constexpr double min_area_mm2 = 1e-3;
+
+/// Vector area of a closed polygon: its length is the area, its direction the normal (Newell).
+Vec3 vector_area(const Contour& contour) {
+  Vec3 area = Vec3::Zero();
+  const auto& p = contour.points;
+  for (std::size_t i = 0; i < p.size(); ++i) area += (p[i] - p[0]).cross(p[(i + 1) % p.size()] - p[0]);
+  return 0.5 * area;
+}
+
+/// Unit normal of the plane that fits the points best.
+Vec3 fitted_normal(const Contour& contour) {
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : contour.points) centre += p;
+  centre /= static_cast<double>(contour.points.size());
+  Mat3 scatter = Mat3::Zero();
+  for (const Vec3& p : contour.points) scatter += (p - centre) * (p - centre).transpose();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors().col(0);
+}
+
+/// Extent of the points along a unit direction.
+double thickness(const Contour& contour, const Vec3& normal) {
+  const auto [low, high] =
+      std::minmax_element(contour.points.begin(), contour.points.end(),
+                          [&](const Vec3& a, const Vec3& b) { return normal.dot(a) < normal.dot(b); });
+  return normal.dot(*high - *low);
+}
+
+class RoiCheck {
+ public:
+  RoiCheck(const Roi& roi, const std::string& where)
+      : roi_(roi), where_(fmt::format("{}, ROI '{}'", where, roi.name)) {}
+
+  Result<> run() {
+    if (roi_.contours.empty())
+      return input_error(where_, "the structure is empty", "Contour it, or choose another structure.");
+    for (std::size_t i = 0; i < roi_.contours.size(); ++i) {
+      if (Result<> r = check_points(i); !r) return r;
+    }
+    if (Result<> r = check_extent(); !r) return r;
+    const auto biggest = std::max_element(
+        roi_.contours.begin(), roi_.contours.end(),
+        [](const Contour& a, const Contour& b) { return vector_area(a).norm() < vector_area(b).norm(); });
+    normal_ = fitted_normal(*biggest);
+    for (std::size_t i = 0; i < roi_.contours.size(); ++i) {
+      if (Result<> r = check_plane(i); !r) return r;
+      if (Result<> r = check_closed(i); !r) return r;
+      if (Result<> r = check_simple(i); !r) return r;
+    }
+    return check_slices();
+  }
+
+ private:
+  [[nodiscard]] std::string place(std::size_t i) const {
+    const Vec3& p = roi_.contours[i].points.front();
+    return fmt::format("{}, contour {} (slice z = {:.2f} mm)", where_, i + 1, p.z());
+  }
+
+  Result<> check_points(std::size_t i) const {
+    const Contour& contour = roi_.contours[i];
+    if (contour.points.size() < 3) {
+      return input_error(fmt::format("{}, contour {}", where_, i + 1),
+                         fmt::format("{} point{}, at least 3 are needed", contour.points.size(),
+                                     contour.points.size() == 1 ? "" : "s"),
+                         "Delete or redraw this contour.");
+    }
+    for (std::size_t k = 0; k < contour.points.size(); ++k) {
+      const Vec3& p = contour.points[k];
+      if (!p.allFinite()) {
+        return input_error(fmt::format("{}, contour {}, point {}", where_, i + 1, k + 1),
+                           fmt::format("the coordinates ({}, {}, {}) are not finite", p.x(), p.y(), p.z()),
+                           "Redraw this contour.");
+      }
+    }
+    return Ok{};
+  }
+
+  Result<> check_extent() const {
+    Eigen::AlignedBox3d box;
+    for (const Contour& contour : roi_.contours) {
+      for (const Vec3& p : contour.points) box.extend(p);
+    }
+    const double extent = box.sizes().maxCoeff();
+    if (extent >= 1.0 && extent <= 2000.0) return Ok{};
+    return input_error(where_, fmt::format("the structure is {:.4g} mm long, 1 mm to 2 m is expected", extent),
+                       extent < 1.0 ? "The coordinates are probably in metres; convert them to mm."
+                                    : "The coordinates are probably in micrometres; convert them to mm.");
+  }
+
+  Result<> check_plane(std::size_t i) const {
+    const Contour& contour = roi_.contours[i];
+    const double area = vector_area(contour).norm();
+    const Vec3 own = fitted_normal(contour);
+    const double off_plane = thickness(contour, area < min_area_mm2 ? normal_ : own);
+    if (off_plane > plane_tolerance_mm) {
+      return input_error(place(i), fmt::format("its points are up to {:.3g} mm off a common plane", off_plane),
+                         "Draw each contour within one slice.");
+    }
+    if (area < min_area_mm2 && thickness(contour, own.cross(normal_).normalized()) < 1e-9) {
+      return input_error(place(i), "its points coincide or lie on a line; it encloses nothing",
+                         "Delete or redraw this contour.");
+    }
+    if (thickness(contour, normal_) > plane_tolerance_mm) {
+      const double tilt = std::acos(std::min(1.0, std::abs(own.dot(normal_)))) * 180.0 / M_PI;
+      if (tilt > max_tilt_deg) {
+        return input_error(place(i), fmt::format("its plane is tilted by {:.1f}° against the others", tilt),
+                           "Draw all contours of a structure on parallel slices.");
+      }
+    }
+    return Ok{};
+  }
+
+  /// The closing edge is not in the file. When it is far longer than every other edge, the curve was left open.
+  Result<> check_closed(std::size_t i) const {
+    const auto& p = roi_.contours[i].points;
+    if (p.size() < 8) return Ok{};  // a coarse polygon says nothing about its own spacing
+    double longest = 0.0;
+    for (std::size_t k = 0; k + 1 < p.size(); ++k) longest = std::max(longest, (p[k + 1] - p[k]).norm());
+    const double gap = (p.front() - p.back()).norm();
+    if (gap <= std::max(5.0, 8.0 * longest)) return Ok{};
+    return input_error(
+        place(i),
+        fmt::format("the curve is open: its ends are {:.1f} mm apart, its other points at most {:.1f} mm", gap,
+                    longest),
+        "Close it in the contouring program; if a straight side is meant, add points along it.");
+  }
+
+  Result<> check_simple(std::size_t i) const {
+    const Contour& contour = roi_.contours[i];
+    const Vec3 u = normal_.unitOrthogonal();
+    const Vec3 v = normal_.cross(u);
+    std::vector<Eigen::Vector2d> points;
+    points.reserve(contour.points.size());
+    for (const Vec3& p : contour.points) points.emplace_back(u.dot(p), v.dot(p));
+    const auto crossing = detail::find_self_crossing(points, crossing_tolerance_mm);
+    if (!crossing) return Ok{};
+    const Vec3 at = crossing->point.x() * u + crossing->point.y() * v + normal_.dot(contour.points.front()) * normal_;
+    return input_error(place(i),
+                       fmt::format("it crosses itself at ({:.2f}, {:.2f}, {:.2f}) mm, after its points {} and {}",
+                                   at.x(), at.y(), at.z(), crossing->first_edge + 1, crossing->second_edge + 1),
+                       "Redraw this contour without the loop.");
+  }
+
+  Result<> check_slices() const {
+    const double first = normal_.dot(roi_.contours.front().points.front());
+    for (const Contour& contour : roi_.contours) {
+      if (std::abs(normal_.dot(contour.points.front()) - first) > same_slice_mm) return Ok{};
+    }
+    return input_error(
+        where_,
+        fmt::format("the structure has contours on one slice only (z = {:.2f} mm), at least 2 are needed",
+                    roi_.contours.front().points.front().z()),
+        "Contour it on every slice it reaches, or choose another structure.");
+  }
+
+  const Roi& roi_;
+  std::string where_;
+  Vec3 normal_ = Vec3::UnitZ();
+};
+
+}  // namespace
+
+Result<> check_roi(const Roi& roi, const std::string& where) { return RoiCheck(roi, where).run(); }
+
+}  // namespace stylet

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DICOM RT Structure Set, reading (DICOM PS3.3 A.19, C.8.8.5, C.8.8.6, C.8.8.8).
+#include "detail/parsers.hpp"
+#include "detail/text.hpp"
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/oflog/oflog.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace stylet::detail {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(DcmItem& item, const DcmTagKey& tag) {
+  OFString value;
+  if (item.findAndGetOFStringArray(tag, value).bad()) return {};
+  return trimmed({value.data(), value.size()});
+}
+
+std::optional<int> integer_of(DcmItem& item, const DcmTagKey& tag) {
+  const auto number = to_number(text_of(item, tag));
+  if (!number || std::abs(*number) > 2e9 || *number != std::floor(*number)) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+/// The items of a sequence, none when it is absent.
+std::vector<DcmItem*> items_of(DcmItem& parent, const DcmTagKey& tag) {
+  std::vector<DcmItem*> items;
+  DcmSequenceOfItems* sequence = nullptr;
+  if (parent.findAndGetSequence(tag, sequence).bad() || sequence == nullptr) return items;
+  for (unsigned long i = 0; i < sequence->card(); ++i) {
+    if (DcmItem* item = sequence->getItem(i)) items.push_back(item);
+  }
+  return items;
+}
+
+/// Modality and SOP class without the contours: quick even for a folder of a thousand slices.
+bool is_rtstruct(const fs::path& path) {
+  DcmFileFormat file;
+  if (file.loadFileUntilTag(path.c_str(), EXS_Unknown, EGL_noChange, 4096, ERM_autoDetect, DCM_Manufacturer).bad()) {
+    return false;
+  }
+  return text_of(*file.getDataset(), DCM_Modality) == "RTSTRUCT" ||
+         text_of(*file.getDataset(), DCM_SOPClassUID) == UID_RTStructureSetStorage;
+}
+
+Result<fs::path> only_rtstruct_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file() && is_rtstruct(entry.path())) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  if (found.empty()) {
+    return input_error(folder.string(), "the folder holds no DICOM RT Structure Set",
+                       "Name the file itself, or the folder in which the RTSTRUCT file lies.");
+  }
+  if (found.size() > 1) {
+    std::string names;
+    for (const fs::path& path : found) names += (names.empty() ? "" : ", ") + path.filename().string();
+    return input_error(folder.string(),
+                       fmt::format("the folder holds {} RT Structure Sets, one is expected: {}", found.size(), names),
+                       "Name one of these files instead of the folder.");
+  }
+  return found.front();
+}
+
+/// Points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
+Result<Contour> parse_points(DcmItem& item, const std::string& where) {
+  const char* data = nullptr;  // the whole value at once: fetching it number by number takes quadratic time
+  if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
+    return input_error(where, "the contour has no points (ContourData is missing or empty)",
+                       "Export the structure set again.");
+  }
+  const auto values = split(data, '\\');
+  if (values.size() % 3 != 0) {
+    return input_error(where, fmt::format("ContourData has {} numbers, which is no multiple of three", values.size()),
+                       "Export the structure set again; the file is damaged.");
+  }
+  Contour contour;
+  contour.points.reserve(values.size() / 3);
+  for (std::size_t i = 0; i < values.size(); i += 3) {
+    Vec3 point;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto value = to_number(values[i + axis]);
+      if (!value || !std::isfinite(*value)) {
+        return input_error(fmt::format("{}, point {}", where, i / 3 + 1),
+                           fmt::format("the coordinate '{}' is not a finite number", trimmed(values[i + axis])),
+                           "Export the structure set again; the file is damaged.");
+      }
+      point[axis] = *value;
+    }
+    contour.points.push_back(point);
+  }
+  const auto stated = integer_of(item, DCM_NumberOfContourPoints);
+  if (stated && *stated != static_cast<int>(contour.points.size())) {
+    return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
+                       "Export the structure set again; the file is damaged.");
+  }
+  // Some programs repeat the first point at the end.
+  while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
+    contour.points.pop_back();
+  }
+  return contour;
+}
+
+struct RoiHeader {
+  std::string name;
+  std::string frame_of_reference;
+};
+
+/// Reads the closed contours of one ROIContourSequence item into `roi`; says in `notes` what was passed over.
+Result<> read_contours(DcmItem& item, const std::string& source, Roi& roi, std::vector<std::string>& notes) {
+  std::map<std::string, int> passed_over;
+  int number = 0;
+  for (DcmItem* contour_item : items_of(item, DCM_ContourSequence)) {
+    ++number;
+    const std::string where = fmt::format("{}, ROI '{}', contour {}", source, roi.name, number);
+    const std::string type = text_of(*contour_item, DCM_ContourGeometricType);
+    if (type != "CLOSED_PLANAR" && type != "CLOSEDPLANAR_XOR") {
+      ++passed_over[type.empty() ? "(no type)" : type];
+      continue;
+    }
+    Result<Contour> contour = parse_points(*contour_item, where);
+    if (!contour) return contour.error();
+    roi.contours.push_back(std::move(*contour));
+  }
+  for (const auto& [type, count] : passed_over) {
+    notes.push_back(fmt::format("ROI '{}': {} {} curve{} passed over (only closed planar contours bound a region)",
+                                roi.name, count, type, count == 1 ? "" : "s"));
+  }
+  if (roi.contours.empty() && passed_over.empty()) notes.push_back(fmt::format("ROI '{}' is empty", roi.name));
+  return Ok{};
+}
+
+Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
+  const std::string sop_class = text_of(data, DCM_SOPClassUID);
+  const std::string modality = text_of(data, DCM_Modality);
+  if (modality == "RTSTRUCT" || sop_class == UID_RTStructureSetStorage) return Ok{};
+  if (modality.empty() && sop_class.empty()) {
+    return input_error(source, "this is not a DICOM file, or a damaged one (neither modality nor SOP class is stated)",
+                       "Name a DICOM RT Structure Set (modality RTSTRUCT).");
+  }
+  return input_error(source, fmt::format("this DICOM file has modality '{}', RTSTRUCT is expected", modality),
+                     "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours.");
+}
+
+}  // namespace
+
+Result<ContourSet> parse_rtstruct(const fs::path& given) {
+  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+  fs::path path = given;
+  if (fs::is_directory(given)) {
+    Result<fs::path> found = only_rtstruct_in(given);
+    if (!found) return found.error();
+    path = *found;
+  }
+  const std::string source = path.string();
+
+  DcmFileFormat file;
+  OFCondition status = file.loadFile(path.c_str());
+  if (status.good()) status = file.loadAllDataIntoMemory();
+  DcmDataset& data = *file.getDataset();
+  // What the file is matters more than where it breaks off.
+  if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
+    Result<> right_kind = check_is_structure_set(data, source);
+    if (!right_kind) return right_kind.error();
+  }
+  if (status.bad()) {
+    return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
+                       "Copy or export it again; it is truncated or damaged.");
+  }
+  data.convertToUTF8();  // a failure leaves the bytes as they are
+
+  ContourSet set;
+  set.source = source;
+  set.label = text_of(data, DCM_StructureSetLabel);
+
+  std::map<int, RoiHeader> headers;
+  for (DcmItem* item : items_of(data, DCM_StructureSetROISequence)) {
+    const auto number = integer_of(*item, DCM_ROINumber);
+    if (!number) {
+      return input_error(source, "a structure has no ROI number",
+                         "Export the structure set again; the file is damaged.");
+    }
+    RoiHeader header{text_of(*item, DCM_ROIName), text_of(*item, DCM_ReferencedFrameOfReferenceUID)};
+    if (header.name.empty()) header.name = fmt::format("ROI {}", *number);
+    if (!headers.emplace(*number, header).second) {
+      return input_error(source, fmt::format("two structures have ROI number {}", *number),
+                         "Export the structure set again; ROI numbers are unique.");
+    }
+  }
+  if (headers.empty()) {
+    return input_error(source, "the structure set has no structures", "Export it again with its contours.");
+  }
+
+  std::map<int, std::string> types;
+  for (DcmItem* item : items_of(data, DCM_RTROIObservationsSequence)) {
+    if (const auto number = integer_of(*item, DCM_ReferencedROINumber)) {
+      types[*number] = text_of(*item, DCM_RTROIInterpretedType);
+    }
+  }
+
+  std::map<int, bool> has_contour_item;
+  for (DcmItem* item : items_of(data, DCM_ROIContourSequence)) {
+    const auto number = integer_of(*item, DCM_ReferencedROINumber);
+    if (!number || !headers.contains(*number)) {
+      return input_error(source, "contours refer to a structure that is not in the file",
+                         "Export the structure set again; the file is damaged.");
+    }
+    const RoiHeader& header = headers.at(*number);
+    has_contour_item[*number] = true;
+    Roi roi;
+    roi.name = header.name;
+    roi.number = *number;
+    roi.type = types[*number];
+    const std::string colour_text = text_of(*item, DCM_ROIDisplayColor);
+    const auto colour = split(colour_text, '\\');
+    for (std::size_t i = 0; colour.size() == 3 && i < 3; ++i) {
+      roi.colour[i] = static_cast<int>(std::clamp(to_number(colour[i]).value_or(255.0), 0.0, 255.0));
+    }
+    Result<> contours = read_contours(*item, source, roi, set.notes);
+    if (!contours) return contours.error();
+    if (roi.contours.empty()) continue;
+    if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
+    if (!header.frame_of_reference.empty() && header.frame_of_reference != set.frame_of_reference) {
+      return input_error(fmt::format("{}, ROI '{}'", source, roi.name),
+                         "its frame of reference differs from that of the structures before it",
+                         "Export structures of one registration only; Stylet does not register images.");
+    }
+    set.rois.push_back(std::move(roi));
+  }
+  for (const auto& [number, header] : headers) {
+    if (!has_contour_item.contains(number)) set.notes.push_back(fmt::format("ROI '{}' is empty", header.name));
+  }
+  if (set.frame_of_reference.empty()) {
+    const auto frames = items_of(data, DCM_ReferencedFrameOfReferenceSequence);
+    if (!frames.empty()) set.frame_of_reference = text_of(*frames.front(), DCM_FrameOfReferenceUID);
+    if (set.frame_of_reference.empty()) set.frame_of_reference = text_of(data, DCM_FrameOfReferenceUID);
+  }
+  if (set.rois.empty()) {
+    return input_error(source, fmt::format("none of its {} structures has a closed planar contour", headers.size()),
+                       "Contour the structures before exporting.");
+  }
+  return set;
+}
+
+}  // namespace stylet::detail

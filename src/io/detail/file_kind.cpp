@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail/file_kind.hpp"
+
+#include "detail/text.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+namespace stylet::detail {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first bytes, unpacked when the file is gzip; shorter at the file's end or when the packing is damaged.
+std::string first_bytes(const fs::path& path) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (!file) return {};
+  std::string bytes(4096, '\0');
+  const int got = gzread(file.get(), bytes.data(), static_cast<unsigned>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max(got, 0)));
+  return bytes;
+}
+
+bool at(const std::string& bytes, std::size_t position, std::string_view mark) {
+  return bytes.size() >= position + mark.size() && std::string_view(bytes).substr(position, mark.size()) == mark;
+}
+
+bool is_dicom(const std::string& bytes) {
+  using namespace std::string_view_literals;
+  // With the 128-byte preamble, or a bare data set that begins with group 0002 or 0008 in little endian.
+  return at(bytes, 128, "DICM") || at(bytes, 0, "\x08\0\x05\0"sv) || at(bytes, 0, "\x08\0\x08\0"sv) ||
+         at(bytes, 0, "\x08\0\x16\0"sv) || at(bytes, 0, "\x02\0\0\0"sv);
+}
+
+bool is_nifti(const std::string& bytes) {
+  return at(bytes, 344, "n+1") || at(bytes, 344, "ni1") || at(bytes, 4, "n+2") || at(bytes, 4, "ni2");
+}
+
+bool is_binary_stl(const std::string& bytes, std::uintmax_t size) {
+  if (bytes.size() < 84) return false;
+  std::uint32_t triangles = 0;
+  std::memcpy(&triangles, bytes.data() + 80, 4);
+  return size == 84 + 50 * static_cast<std::uintmax_t>(triangles);
+}
+
+/// Text that starts here, after blanks, a byte order mark and '#' comment lines.
+std::string_view after_comments(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  for (;;) {
+    const auto start = text.find_first_not_of(" \t\r\n");
+    if (start == std::string_view::npos) return {};
+    text.remove_prefix(start);
+    if (text.front() != '#') return text;
+    const auto end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end);
+  }
+}
+
+bool is_metaimage(std::string_view text) {
+  for (const auto line : split(text.substr(0, 1024), '\n')) {
+    const std::string key = trimmed(line.substr(0, line.find('=')));
+    if (key == "ObjectType" || key == "NDims" || key == "DimSize") return line.find('=') != std::string_view::npos;
+    if (key.empty() || line.find('=') == std::string_view::npos) return false;
+  }
+  return false;
+}
+
+FileKind kind_of_xml(std::string_view text) {
+  if (text.find("<VTKFile") == std::string_view::npos) return FileKind::unknown;
+  if (text.find("\"UnstructuredGrid\"") != std::string_view::npos) return FileKind::vtu;
+  if (text.find("\"PolyData\"") != std::string_view::npos) return FileKind::vtp;
+  return FileKind::unknown;
+}
+
+FileKind kind_of(const std::string& bytes, std::uintmax_t size, const std::string& extension) {
+  const std::string_view text = after_comments(bytes);
+  if (is_dicom(bytes)) return FileKind::dicom;
+  if (is_nifti(bytes)) return FileKind::nifti;
+  if (at(bytes, 0, "NRRD0")) return FileKind::nrrd;
+  if (at(bytes, 0, "glTF")) return FileKind::glb;
+  if (lower(bytes.substr(0, 15)).starts_with("# vtk datafile")) return FileKind::vtk_legacy;
+  if (text.starts_with('<')) return kind_of_xml(text);
+  if (text.starts_with("MeshVersionFormatted")) return FileKind::medit;
+  if (text.starts_with('$')) return FileKind::gmsh;
+  if (at(bytes, 0, "ply\n") || at(bytes, 0, "ply\r\n")) return FileKind::ply;
+  if (is_binary_stl(bytes, size)) return FileKind::stl;
+  if (lower(text.substr(0, 6)).starts_with("solid ") || text.starts_with("solid\n")) return FileKind::stl;
+  if (text.starts_with('{')) return FileKind::contour_json;
+  if (is_metaimage(text)) return FileKind::metaimage;
+  // Formats without a mark of their own.
+  const std::string ending = lower(extension);
+  if (ending == ".obj") return FileKind::obj;
+  if (ending == ".node" || ending == ".ele") return FileKind::tetgen;
+  if (ending == ".dcm") return FileKind::dicom;
+  if (ending == ".stl") return FileKind::stl;
+  return FileKind::unknown;
+}
+
+}  // namespace
+
+std::string name_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::dicom:
+      return "a DICOM file";
+    case FileKind::contour_json:
+      return "a JSON file";
+    case FileKind::nifti:
+      return "a NIfTI image";
+    case FileKind::nrrd:
+      return "an NRRD image";
+    case FileKind::metaimage:
+      return "a MetaImage";
+    case FileKind::vtu:
+      return "a VTU mesh";
+    case FileKind::vtk_legacy:
+      return "a legacy VTK file";
+    case FileKind::gmsh:
+      return "a gmsh mesh";
+    case FileKind::medit:
+      return "a MEDIT mesh";
+    case FileKind::tetgen:
+      return "a TetGen mesh";
+    case FileKind::stl:
+      return "an STL surface";
+    case FileKind::ply:
+      return "a PLY surface";
+    case FileKind::obj:
+      return "an OBJ surface";
+    case FileKind::vtp:
+      return "a VTP surface";
+    case FileKind::glb:
+      return "a GLB scene";
+    case FileKind::unknown:
+      break;
+  }
+  return "a file of unknown format";
+}
+
+std::string readable_formats() {
+  return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage; tetrahedra in VTU, "
+         "legacy "
+         "VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB.";
+}
+
+Result<FileKind> identify(const fs::path& path) {
+  const std::string where = path.string();
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (!fs::exists(status)) {
+    return input_error(where,
+                       code && code != std::errc::no_such_file_or_directory ? code.message() : "there is no such file",
+                       "Check the name and the folder.");
+  }
+  if (fs::is_directory(status)) return input_error(where, "this is a folder, a file is expected", "Name a file in it.");
+  if (!fs::is_regular_file(status)) {
+    return input_error(where, "this is not a regular file", "Copy the data to a file first. " + readable_formats());
+  }
+  if (!std::ifstream(path, std::ios::binary)) {
+    return input_error(where, fmt::format("the file cannot be opened ({})", std::strerror(errno)),
+                       "Check its permissions.");
+  }
+  const std::uintmax_t size = fs::file_size(path, code);
+  if (size == 0) return input_error(where, "the file is empty", "Export it again. " + readable_formats());
+  return kind_of(first_bytes(path), size, path.extension().string());
+}
+
+}  // namespace stylet::detail

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// NIfTI-1 and NIfTI-2, by VTK. World coordinates of the file are RAS; ours are LPS.
+#include "detail/parsers.hpp"
+#include "detail/vtk_messages.hpp"
+#include "image/voxels.hpp"
+
+#include <fmt/format.h>
+#include <vtkImageData.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNIFTIImageHeader.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNew.h>
+
+#include <cmath>
+
+namespace stylet::detail {
+
+namespace {
+
+Result<VoxelType> voxel_type(vtkImageData& image, const std::string& source) {
+  if (image.GetNumberOfScalarComponents() != 1) {
+    return input_error(source,
+                       fmt::format("a voxel has {} components, 1 is expected", image.GetNumberOfScalarComponents()),
+                       "Export a label mask, not a colour or vector image.");
+  }
+  switch (image.GetScalarType()) {
+    case VTK_CHAR:
+    case VTK_SIGNED_CHAR:
+      return VoxelType::int8;
+    case VTK_UNSIGNED_CHAR:
+      return VoxelType::uint8;
+    case VTK_SHORT:
+      return VoxelType::int16;
+    case VTK_UNSIGNED_SHORT:
+      return VoxelType::uint16;
+    case VTK_INT:
+      return VoxelType::int32;
+    case VTK_UNSIGNED_INT:
+      return VoxelType::uint32;
+    case VTK_LONG:
+    case VTK_LONG_LONG:
+      return VoxelType::int64;
+    case VTK_UNSIGNED_LONG:
+    case VTK_UNSIGNED_LONG_LONG:
+      return VoxelType::uint64;
+    case VTK_FLOAT:
+      return VoxelType::float32;
+    case VTK_DOUBLE:
+      return VoxelType::float64;
+    default:
+      return input_error(source, "the voxel type is not supported", "Export the mask as 8- or 16-bit whole numbers.");
+  }
+}
+
+/// [mm] per unit of the header's length; 0 when the code is none of the standard's.
+double unit_mm(int code) {
+  switch (code & 0x07) {
+    case 0:  // not stated: mm by universal use
+    case 2:
+      return 1.0;
+    case 1:
+      return 1000.0;
+    case 3:
+      return 0.001;
+    default:
+      return 0.0;
+  }
+}
+
+}  // namespace
+
+Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
+  const std::string source = path.string();
+  const auto messages = VtkMessages::install();
+  const auto damaged = [&] {
+    return input_error(source, fmt::format("the NIfTI file cannot be read ({})", messages->first_error()),
+                       "Copy or export it again; it is truncated or damaged.");
+  };
+  vtkNew<vtkNIFTIImageReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  if (messages->failed()) return damaged();
+  vtkNIFTIImageHeader& header = *reader->GetNIFTIHeader();
+
+  std::vector<std::size_t> sizes;
+  const int dimensions = static_cast<int>(std::clamp<vtkTypeInt64>(header.GetDim(0), 0, 7));
+  for (int d = 1; d <= dimensions; ++d)
+    sizes.push_back(static_cast<std::size_t>(std::max<vtkTypeInt64>(header.GetDim(d), 0)));
+  Result<> three = check_dimensions(sizes, source);
+  if (!three) return three.error();
+
+  // The standard's method 3 (sform) comes before method 2 (qform). VTK's matrices act on index × spacing.
+  vtkMatrix4x4* form = header.GetSFormCode() > 0 ? reader->GetSFormMatrix() : nullptr;
+  if (form == nullptr && header.GetQFormCode() > 0) form = reader->GetQFormMatrix();
+  if (form == nullptr) {
+    return input_error(
+        source, "the file does not say how the image lies in the patient (neither sform nor qform)",
+        "Save it again with its orientation, e.g. from 3D Slicer; without it left and right are unknown.");
+  }
+  const double unit = unit_mm(header.GetXYZTUnits());
+  if (unit == 0.0) {
+    return input_error(source, fmt::format("the unit of length (code {}) is unknown", header.GetXYZTUnits() & 0x07),
+                       "Set xyzt_units to 2 (mm).");
+  }
+
+  reader->Update();
+  vtkImageData& image = *reader->GetOutput();
+  if (messages->failed() || reader->GetErrorCode() != 0 || image.GetScalarPointer() == nullptr) return damaged();
+
+  Voxels voxels;
+  voxels.source = source;
+  Result<VoxelType> type = voxel_type(image, source);
+  if (!type) return type.error();
+  voxels.type = *type;
+  voxels.data = image.GetScalarPointer();
+  if (reader->GetRescaleSlope() != 0.0 && std::isfinite(reader->GetRescaleSlope())) {  // 0 means "do not scale"
+    voxels.slope = reader->GetRescaleSlope();
+    voxels.intercept = reader->GetRescaleIntercept();
+  }
+  const Vec3 lps(-unit, -unit, unit);
+  for (int a = 0; a < 3; ++a) {
+    voxels.size[a] = static_cast<std::size_t>(image.GetDimensions()[a]);
+    const double spacing = std::abs(image.GetSpacing()[a]);
+    for (int row = 0; row < 3; ++row) voxels.axes(row, a) = lps[row] * form->GetElement(row, a) * spacing;
+    voxels.origin[a] = lps[a] * form->GetElement(a, 3);
+  }
+  return to_label_image(voxels);
+}
+
+}  // namespace stylet::detail

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/io/input.hpp"
+
+#include "detail/file_kind.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet {
+
+namespace fs = std::filesystem;
+using detail::FileKind;
+
+namespace {
+
+template <class T>
+Result<PatientInput> as_input(Result<T> read) {
+  if (!read) return read.error();
+  return PatientInput(std::move(*read));
+}
+
+}  // namespace
+
+Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mesh_options) {
+  std::error_code code;
+  if (fs::is_directory(path, code)) return as_input(read_rtstruct(path));
+  Result<FileKind> kind = detail::identify(path);
+  if (!kind) return kind.error();
+  switch (*kind) {
+    case FileKind::dicom:
+      return as_input(read_rtstruct(path));
+    case FileKind::contour_json:
+      return as_input(read_contour_json(path));
+    case FileKind::nifti:
+    case FileKind::nrrd:
+    case FileKind::metaimage:
+      return as_input(read_label_image(path));
+    case FileKind::vtu:
+    case FileKind::vtk_legacy:
+    case FileKind::gmsh:
+    case FileKind::medit:
+    case FileKind::tetgen:
+      return as_input(read_tet_mesh(path, mesh_options));
+    case FileKind::stl:
+    case FileKind::ply:
+    case FileKind::obj:
+    case FileKind::vtp:
+    case FileKind::glb:
+      return as_input(read_surfaces(path));
+    case FileKind::unknown:
+      break;
+  }
+  return input_error(path.string(), "the format is not recognised", detail::readable_formats());
+}
+
+}  // namespace stylet
