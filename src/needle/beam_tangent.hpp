@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "needle/beam_shape.hpp"
+#include "stylet/needle/needle.hpp"
+
+#include <span>
+#include <vector>
+
+namespace stylet::beam {
+
+/// Largest out-of-balance moment of any element, max_e |diag(EI, EI, GJ) κ_e - (1/l) Σ_c (∂r_c/∂κ_e)ᵀ f_c| [N mm].
+/// @param base_rotation base axes to LPS
+[[nodiscard]] double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation,
+                                       std::span<const PointLoad> loads);
+
+/// Gradient, Hessian and their factor for a shape under dead loads, in scaled unknowns y: κ_e = scale ∘ y, so that the
+/// elastic part of the Hessian is the unit matrix. Unknowns run from the tip to the base: then a load touches only the
+/// end of its column of Jᵀ, and forward substitution keeps the zeros before it.
+class BeamTangent {
+ public:
+  BeamTangent(const BeamShape& shape, int load_capacity);
+
+  /// Gradient, Hessian, factor, and L⁻¹Jᵀ for these loads. @param base_rotation base axes to LPS
+  void assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
+
+  /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
+  void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
+
+  /// Adds the Newton step for these loads to the curvature.
+  void step(std::span<const PointLoad> loads, BeamShape& shape);
+
+  /// Gradient ∂Π/∂κ [N mm²] and Hessian ∂²Π/∂κ² [N mm³] in the order of BeamShape::curvature; for checks, allocates.
+  [[nodiscard]] VecX gradient() const;
+  [[nodiscard]] MatX hessian() const;
+  /// Multiple of the elastic Hessian that was added to make it positive definite, 0 below the buckling load.
+  [[nodiscard]] double elastic_shift() const { return elastic_shift_; }
+
+ private:
+  void reserve(Eigen::Index loads);
+  void locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
+  void assemble_energy(const BeamShape& shape);
+  void factorise_shifted();
+  void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation);
+  [[nodiscard]] Eigen::Index row(int e) const { return 3 * (elements_ - 1 - e); }
+  [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
+
+  int elements_;
+  Vec3 scale_;                      ///< κ_e = scale ∘ y_e, scale = (l diag(EI, EI, GJ))^-1/2
+  std::vector<LocatedLoad> loads_;  ///< base axes
+  VecX force_;                      ///< [N] (3w) LPS
+  MatX H_, L_;                      ///< (3n × 3n) lower triangles
+  VecX g_, z_, step_;               ///< (3n) gradient, L⁻¹ g, work
+  MatX spin_, shift_;               ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
+  std::vector<Mat3> lever_;         ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
+  MatX Y_;                          ///< (3n × 3 capacity) L⁻¹ Jᵀ
+  double elastic_shift_ = 0.0;
+};
+
+}  // namespace stylet::beam

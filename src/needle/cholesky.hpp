@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+
+/// Dense Cholesky in place, cut into tiles so small that Eigen's products keep their work space on the stack at any
+/// size: nothing here allocates. Only the lower triangle is read or written.
+namespace stylet::beam {
+
+inline constexpr Eigen::Index kTile = 24;
+
+/// A = L Lᵀ, L over A. @return false if A is not positive definite (A is then spoilt)
+[[nodiscard]] bool factorise(Eigen::Ref<MatX> A);
+
+/// Y ← L⁻¹ Y for a block of columns whose rows before `start` are zero (they are left alone).
+void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y);
+
+/// y ← L⁻ᵀ y
+void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<VecX> y);
+
+}  // namespace stylet::beam

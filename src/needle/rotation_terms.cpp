@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "needle/rotation_terms.hpp"
+
+#include <cmath>
+
+namespace stylet::beam {
+
+std::array<double, 8> stumpff(double x) {
+  static constexpr std::array<double, 6> inverse_factorial = {1.0, 1.0, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120};
+  std::array<double, 8> c{};
+  // x c_{k+2} = 1/k! - c_k, downwards from the series where x is small, upwards from the circular functions where it is
+  // large: each direction divides or multiplies errors the right way round.
+  if (x < 4.0) {
+    for (int k = 6; k <= 7; ++k) {
+      double sum = 1.0;
+      for (int j = 12; j >= 1; --j) sum = 1.0 - x * sum / ((2.0 * j + k) * (2.0 * j + k - 1.0));
+      c[k] = sum / (k == 6 ? 720.0 : 5040.0);
+    }
+    for (int k = 5; k >= 0; --k) c[k] = inverse_factorial[k] - x * c[k + 2];
+  } else {
+    const double theta = std::sqrt(x);
+    c[0] = std::cos(theta);
+    c[1] = std::sin(theta) / theta;
+    for (int k = 2; k <= 7; ++k) c[k] = (inverse_factorial[k - 2] - c[k - 2]) / x;
+  }
+  return c;
+}
+
+Mat3 RotationTerms::series(int k) const {
+  const double a = c_[k];
+  const double b = c_[k + 1];
+  Mat3 m = b * phi_ * phi_.transpose() + a * cross(phi_);
+  m.diagonal().array() += 1.0 - b * x_;
+  return m;
+}
+
+Vec3 RotationTerms::chord() const {
+  const double b = c_[2];
+  const double c = c_[3];
+  return {b * phi_.y() + c * phi_.z() * phi_.x(), -b * phi_.x() + c * phi_.z() * phi_.y(),
+          1.0 - c * (phi_.x() * phi_.x() + phi_.y() * phi_.y())};
+}
+
+Mat3 RotationTerms::chord_derivative() const {
+  const Vec3 z = Vec3::UnitZ();
+  const Vec3 turned = phi_.cross(z);
+  const Vec3 twice = phi_ * phi_.z() - x_ * z;
+  Mat3 m = (2.0 * (first(2) * turned + first(3) * twice) - 2.0 * c_[3] * z) * phi_.transpose();
+  m.col(2) += c_[3] * phi_;
+  m.diagonal().array() += c_[3] * phi_.z();
+  return m - c_[2] * cross(z);
+}
+
+Mat3 RotationTerms::hessian(int k, const Mat3& E) const {
+  // E : (I + a [φ]× + b [φ]×²) = tr E + a(x) v·φ + b(x) φᵀSφ,  S = sym E - tr E I.
+  const Vec3 v(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
+  Mat3 S = 0.5 * (E + E.transpose());
+  S.diagonal().array() -= E.trace();
+  const Vec3 Sphi = S * phi_;
+  const double p = v.dot(phi_);
+  const double q = phi_.dot(Sphi);
+  const Vec3 mixed = 2.0 * first(k) * v + 4.0 * first(k + 1) * Sphi;
+  const double along = 4.0 * (second(k) * p + second(k + 1) * q);
+  Mat3 h = 2.0 * c_[k + 1] * S + (mixed + along * phi_) * phi_.transpose() + phi_ * mixed.transpose();
+  h.diagonal().array() += 2.0 * (first(k) * p + first(k + 1) * q);
+  return h;
+}
+
+}  // namespace stylet::beam

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/needle/beam.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stylet::test {
+
+inline std::unique_ptr<BeamNeedle> beam(int elements = 24, const NeedleSection& section = {}, int capacity = 64) {
+  auto built = BeamNeedle::build(section, elements, capacity);
+  EXPECT_TRUE(built.ok()) << (built.ok() ? "" : built.error().message());
+  return std::move(built).value();
+}
+
+/// Brings the needle to equilibrium from its present shape.
+inline int settle(Needle& needle, std::span<const PointLoad> loads, double tolerance_Nmm = 1e-9) {
+  const auto iterations = find_equilibrium(needle, loads, tolerance_Nmm);
+  EXPECT_TRUE(iterations.ok()) << (iterations.ok() ? "" : iterations.error().message());
+  return iterations.ok() ? *iterations : -1;
+}
+
+/// Tangent compliance [mm/N] at the present shape.
+inline MatX compliance_of(Needle& needle, std::span<const PointLoad> loads) {
+  const auto size = 3 * static_cast<Eigen::Index>(loads.size());
+  MatX compliance(size, size);
+  VecX free(size);
+  needle.linearise(loads, compliance, free);
+  return compliance;
+}
+
+}  // namespace stylet::test

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/count_allocations.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define STYLET_SANITIZED_HEAP 1
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define STYLET_SANITIZED_HEAP 1
+#endif
+#if defined(__GLIBC__) && !defined(STYLET_SANITIZED_HEAP)
+#define STYLET_COUNT_ALLOCATIONS 1
+#endif
+
+namespace {
+
+// Constant-initialised and in the executable, so that reading it from malloc itself never allocates.
+thread_local long allocations = 0;
+
+}  // namespace
+
+namespace stylet::test {
+
+AllocationCount::AllocationCount() : before_(allocations) {}
+long AllocationCount::count() const { return allocations - before_; }
+
+bool AllocationCount::available() {
+#ifdef STYLET_COUNT_ALLOCATIONS
+  return true;
+#else
+  return false;
+#endif
+}
+
+}  // namespace stylet::test
+
+#ifdef STYLET_COUNT_ALLOCATIONS
+extern "C" {
+
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* block, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+
+void* realloc(void* block, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(block, size);
+}
+
+void* memalign(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+  ++allocations;
+  void* found = __libc_memalign(alignment, size);
+  if (found == nullptr) return ENOMEM;
+  *block = found;
+  return 0;
+}
+
+}  // extern "C"
+#endif
