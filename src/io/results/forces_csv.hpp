@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/recording.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace stylet::results {
+
+/// First line of forces.csv, without line end. Columns and units: docs/results.md.
+std::string_view forces_csv_header();
+
+/// forces.csv: the header and one line per step. Fixed number formats independent of the locale; the same steps give
+/// the same bytes. A value that is not finite prints as "nan" or "inf".
+std::string forces_csv(std::span<const StepRecord> steps);
+
+}  // namespace stylet::results

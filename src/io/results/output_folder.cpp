@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "output_folder.hpp"
+
+#include "detail/whole_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+
+namespace stylet::results {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The reason of a failed stream operation, taken before anything else can change errno.
+std::string system_reason() { return std::strerror(errno); }
+
+}  // namespace
+
+Error write_error(const fs::path& path, const std::string& reason) {
+  return failure(path.string(), "cannot be written: " + reason,
+                 "Check the free space and the permissions of the result folder.");
+}
+
+Result<> write_file(const fs::path& path, std::string_view content) {
+  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
+    std::FILE* stream = std::fopen(temporary.c_str(), "wb");
+    if (stream == nullptr) return write_error(path, system_reason());
+    if (std::fwrite(content.data(), 1, content.size(), stream) != content.size()) {
+      const std::string reason = system_reason();
+      std::fclose(stream);
+      return write_error(path, reason);
+    }
+    if (std::fclose(stream) != 0) return write_error(path, system_reason());
+    return Ok{};
+  });
+}
+
+Result<> prepare_folder(const fs::path& folder) {
+  const auto refuse = [&](const std::string& reason) {
+    return input_error("result folder " + folder.string(), reason,
+                       "Choose another folder with -o, or change its permissions.");
+  };
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code) return refuse("cannot be created: " + code.message());
+  if (!fs::is_directory(folder, code)) return refuse("exists and is not a folder");
+  std::string probe = (folder / ".stylet-XXXXXX").string();
+  const int descriptor = mkstemp(probe.data());
+  if (descriptor < 0) return refuse("cannot be written to: " + system_reason());
+  std::FILE* stream = fdopen(descriptor, "wb");
+  if (stream != nullptr) std::fclose(stream);
+  fs::remove(probe, code);
+  return Ok{};
+}
+
+std::string series_name(std::string_view stem, std::size_t number, std::string_view extension) {
+  return fmt::format("{}_{:04}{}", stem, number, extension);
+}
+
+void remove_series_from(const fs::path& folder, std::string_view stem, std::string_view extension, std::size_t first) {
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= stem.size() + 1 + extension.size() || !name.starts_with(stem) || !name.ends_with(extension) ||
+        name[stem.size()] != '_') {
+      continue;
+    }
+    const char* begin = name.data() + stem.size() + 1;
+    const char* end = name.data() + name.size() - extension.size();
+    std::size_t number = 0;
+    const auto parsed = std::from_chars(begin, end, number);
+    if (parsed.ec == std::errc{} && parsed.ptr == end && number >= first &&
+        name == series_name(stem, number, extension)) {
+      std::error_code ignored;
+      fs::remove(entry.path(), ignored);
+    }
+  }
+}
+
+}  // namespace stylet::results

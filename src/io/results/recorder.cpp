@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace stylet::results {
+
+namespace {
+constexpr std::chrono::milliseconds kPeriod{200};  // between flushes; half a second is the promise
+}
+
+Recorder::Recorder(RunFileWriter writer)
+    : writer_(std::move(writer)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Recorder::~Recorder() {
+  // A run that ends without finish() still leaves everything it recorded.
+  if (!closed_) (void)close(nullptr);
+}
+
+Result<> Recorder::add_step(const StepRecord& step) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return *error_;
+  steps_.push_back(step);
+  return Ok{};
+}
+
+Result<> Recorder::add_frame(StoredFrame frame) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return *error_;
+  frames_.push_back(std::move(frame));
+  return Ok{};
+}
+
+Result<> Recorder::write_pending() {
+  std::vector<StepRecord> steps;
+  std::vector<StoredFrame> frames;
+  {
+    const std::lock_guard lock(mutex_);
+    steps.swap(steps_);
+    frames.swap(frames_);
+  }
+  if (steps.empty() && frames.empty()) return Ok{};
+  if (auto done = writer_.append_steps(steps); !done) return done;
+  for (const StoredFrame& frame : frames) {
+    if (auto done = writer_.append_frame(frame); !done) return done;
+  }
+  return writer_.flush();
+}
+
+void Recorder::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, stop, kPeriod, [] { return false; });
+    }
+    if (auto done = write_pending(); !done) {
+      const std::lock_guard lock(mutex_);
+      error_ = done.error();
+      return;
+    }
+  }
+}
+
+Result<> Recorder::close(const Summary* summary) {
+  thread_.request_stop();
+  thread_.join();
+  closed_ = true;
+  Result<> done = error_ ? Result<>(*error_) : write_pending();
+  if (done.ok() && summary != nullptr) done = writer_.append_summary(*summary);
+  Result<> closed = writer_.close();
+  return done.ok() ? closed : done;
+}
+
+}  // namespace stylet::results

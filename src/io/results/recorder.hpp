@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "run_file_writer.hpp"
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace stylet::results {
+
+/// Takes steps and frames from the run and brings them to run.h5 from a thread of its own, so that the run never waits
+/// for the disk and whatever was added is in the file after at most two periods, also while the run itself is busy.
+class Recorder {
+ public:
+  explicit Recorder(RunFileWriter writer);
+  ~Recorder();
+
+  /// Both return the thread's first error, if there was one.
+  Result<> add_step(const StepRecord& step);
+  Result<> add_frame(StoredFrame frame);
+
+  /// Writes what is left, the summary if given, and closes the file. Nothing can be added afterwards.
+  Result<> close(const Summary* summary);
+
+ private:
+  void run(const std::stop_token& stop);
+  Result<> write_pending();
+
+  RunFileWriter writer_;  ///< touched by the thread only, until it has ended
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::vector<StepRecord> steps_;    ///< not yet written
+  std::vector<StoredFrame> frames_;  ///< not yet written
+  std::optional<Error> error_;       ///< first failure of the thread
+  bool closed_ = false;
+  std::jthread thread_;  ///< last member: starts when the others exist
+};
+
+}  // namespace stylet::results

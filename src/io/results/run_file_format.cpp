@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_file_format.hpp"
+
+#include <cstddef>
+
+namespace stylet::results {
+namespace {
+
+h5::Handle compound(std::size_t bytes) { return {h5::check(H5Tcreate(H5T_COMPOUND, bytes), "create type"), H5Tclose}; }
+void insert(hid_t type, const char* name, std::size_t offset, hid_t member) {
+  h5::check(H5Tinsert(type, name, offset, member), name);
+}
+
+/// An 8-bit enumeration whose names are to_string() of the values 0 … last.
+template <class Enum>
+h5::Handle enum_type(Enum last) {
+  h5::Handle type(h5::check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
+  for (std::int8_t value = 0; value <= static_cast<std::int8_t>(last); ++value) {
+    h5::check(H5Tenum_insert(type, to_string(static_cast<Enum>(value)), &value), "create type");
+  }
+  return type;
+}
+
+/// The enumeration that h5py shows as bool.
+h5::Handle bool_type() {
+  h5::Handle type(h5::check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
+  const std::int8_t no = 0, yes = 1;
+  h5::check(H5Tenum_insert(type, "FALSE", &no), "create type");
+  h5::check(H5Tenum_insert(type, "TRUE", &yes), "create type");
+  return type;
+}
+
+}  // namespace
+
+StepRow to_row(const StepRecord& s) {
+  StepRow row;
+  row.time_s = s.time_s;
+  row.base_depth_mm = s.base_depth_mm;
+  row.force_axial_N = s.force_axial_N;
+  row.force_sagittal_N = s.force_sagittal_N;
+  row.force_lateral_N = s.force_lateral_N;
+  row.torque_x_Nmm = s.torque_Nmm.x();
+  row.torque_y_Nmm = s.torque_Nmm.y();
+  row.torque_z_Nmm = s.torque_Nmm.z();
+  row.tip_x_mm = s.tip_mm.x();
+  row.tip_y_mm = s.tip_mm.y();
+  row.tip_z_mm = s.tip_mm.z();
+  row.tip_state = static_cast<std::int8_t>(s.tip_state);
+  row.contacts = s.contacts;
+  row.sticking = s.sticking;
+  row.iterations = s.iterations;
+  row.step_us = s.step_us;
+  return row;
+}
+
+StepRecord from_row(const StepRow& row) {
+  StepRecord s;
+  s.time_s = row.time_s;
+  s.base_depth_mm = row.base_depth_mm;
+  s.force_axial_N = row.force_axial_N;
+  s.force_sagittal_N = row.force_sagittal_N;
+  s.force_lateral_N = row.force_lateral_N;
+  s.torque_Nmm = {row.torque_x_Nmm, row.torque_y_Nmm, row.torque_z_Nmm};
+  s.tip_mm = {row.tip_x_mm, row.tip_y_mm, row.tip_z_mm};
+  s.tip_state = static_cast<TipState>(row.tip_state);
+  s.contacts = row.contacts;
+  s.sticking = row.sticking;
+  s.iterations = row.iterations;
+  s.step_us = row.step_us;
+  return s;
+}
+
+h5::Handle step_row_type() {
+  h5::Handle type = compound(sizeof(StepRow));
+  insert(type, "time_s", offsetof(StepRow, time_s), H5T_NATIVE_DOUBLE);
+  insert(type, "base_depth_mm", offsetof(StepRow, base_depth_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "force_axial_N", offsetof(StepRow, force_axial_N), H5T_NATIVE_DOUBLE);
+  insert(type, "force_sagittal_N", offsetof(StepRow, force_sagittal_N), H5T_NATIVE_DOUBLE);
+  insert(type, "force_lateral_N", offsetof(StepRow, force_lateral_N), H5T_NATIVE_DOUBLE);
+  insert(type, "torque_x_Nmm", offsetof(StepRow, torque_x_Nmm), H5T_NATIVE_DOUBLE);
+  insert(type, "torque_y_Nmm", offsetof(StepRow, torque_y_Nmm), H5T_NATIVE_DOUBLE);
+  insert(type, "torque_z_Nmm", offsetof(StepRow, torque_z_Nmm), H5T_NATIVE_DOUBLE);
+  insert(type, "tip_x_mm", offsetof(StepRow, tip_x_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "tip_y_mm", offsetof(StepRow, tip_y_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "tip_z_mm", offsetof(StepRow, tip_z_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "tip_state", offsetof(StepRow, tip_state), enum_type(TipState::exited));
+  insert(type, "contacts", offsetof(StepRow, contacts), H5T_NATIVE_INT32);
+  insert(type, "sticking", offsetof(StepRow, sticking), H5T_NATIVE_INT32);
+  insert(type, "iterations", offsetof(StepRow, iterations), H5T_NATIVE_INT32);
+  insert(type, "step_us", offsetof(StepRow, step_us), H5T_NATIVE_DOUBLE);
+  return type;
+}
+
+h5::Handle frame_row_type() {
+  h5::Handle type = compound(sizeof(FrameRow));
+  insert(type, "time_s", offsetof(FrameRow, time_s), H5T_NATIVE_DOUBLE);
+  insert(type, "base_depth_mm", offsetof(FrameRow, base_depth_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "label", offsetof(FrameRow, label), h5::string_type(sizeof(FrameRow::label)));
+  insert(type, "needle_first", offsetof(FrameRow, needle_first), H5T_NATIVE_INT64);
+  insert(type, "needle_count", offsetof(FrameRow, needle_count), H5T_NATIVE_INT64);
+  insert(type, "contact_first", offsetof(FrameRow, contact_first), H5T_NATIVE_INT64);
+  insert(type, "contact_count", offsetof(FrameRow, contact_count), H5T_NATIVE_INT64);
+  return type;
+}
+
+ContactRow to_row(const ContactView& c) {
+  ContactRow row;
+  for (std::size_t k = 0; k < 3; ++k) {
+    row.position_mm[k] = c.position[static_cast<Eigen::Index>(k)];
+    row.force_N[k] = c.force[static_cast<Eigen::Index>(k)];
+  }
+  row.arc_length_mm = c.s;
+  row.sticking = c.sticking ? 1 : 0;
+  row.tip = c.tip ? 1 : 0;
+  return row;
+}
+
+ContactView from_row(const ContactRow& row) {
+  ContactView c;
+  c.position = {row.position_mm[0], row.position_mm[1], row.position_mm[2]};
+  c.force = {row.force_N[0], row.force_N[1], row.force_N[2]};
+  c.s = row.arc_length_mm;
+  c.sticking = row.sticking != 0;
+  c.tip = row.tip != 0;
+  return c;
+}
+
+h5::Handle contact_row_type() {
+  h5::Handle type = compound(sizeof(ContactRow));
+  const h5::Handle vector = h5::array_type(H5T_NATIVE_DOUBLE, 3);
+  insert(type, "position_mm", offsetof(ContactRow, position_mm), vector);
+  insert(type, "force_N", offsetof(ContactRow, force_N), vector);
+  insert(type, "arc_length_mm", offsetof(ContactRow, arc_length_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "sticking", offsetof(ContactRow, sticking), bool_type());
+  insert(type, "tip", offsetof(ContactRow, tip), bool_type());
+  return type;
+}
+
+EventRow to_row(const Event& event) {
+  EventRow row;
+  row.kind = static_cast<std::int8_t>(event.kind);
+  row.time_s = event.time_s;
+  row.depth_mm = event.depth_mm;
+  row.force_N = event.force_N;
+  put_text(row.region, event.region);
+  return row;
+}
+
+h5::Handle event_row_type() {
+  h5::Handle type = compound(sizeof(EventRow));
+  insert(type, "kind", offsetof(EventRow, kind), enum_type(EventKind::grazed));
+  insert(type, "time_s", offsetof(EventRow, time_s), H5T_NATIVE_DOUBLE);
+  insert(type, "depth_mm", offsetof(EventRow, depth_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "force_N", offsetof(EventRow, force_N), H5T_NATIVE_DOUBLE);
+  insert(type, "region", offsetof(EventRow, region), h5::string_type(sizeof(EventRow::region)));
+  return type;
+}
+
+h5::Handle parameter_row_type() {
+  h5::Handle type = compound(sizeof(ParameterText));
+  const h5::Handle text = h5::text_type();
+  insert(type, "name", offsetof(ParameterText, name), text);
+  insert(type, "value", offsetof(ParameterText, value), text);
+  insert(type, "unit", offsetof(ParameterText, unit), text);
+  insert(type, "source", offsetof(ParameterText, source), text);
+  return type;
+}
+
+}  // namespace stylet::results

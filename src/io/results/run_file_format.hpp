@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "h5.hpp"
+#include "stylet/sim/recording.hpp"
+
+#include <array>
+#include <limits>
+
+/// What run.h5 looks like inside (docs/results.md): row types shared by its writer and its reader.
+namespace stylet::results {
+
+inline constexpr int kRunFileVersion = 1;
+inline constexpr const char* kRunFileFormat = "stylet-run";
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  ///< fill value of rows not yet on disk
+
+/// A row of /steps; the columns of forces.csv.
+struct StepRow {
+  double time_s = kMissing, base_depth_mm = kMissing;
+  double force_axial_N = kMissing, force_sagittal_N = kMissing, force_lateral_N = kMissing;
+  double torque_x_Nmm = kMissing, torque_y_Nmm = kMissing, torque_z_Nmm = kMissing;
+  double tip_x_mm = kMissing, tip_y_mm = kMissing, tip_z_mm = kMissing;
+  std::int8_t tip_state = 0;
+  std::int32_t contacts = 0, sticking = 0, iterations = 0;
+  double step_us = kMissing;
+};
+StepRow to_row(const StepRecord& step);
+StepRecord from_row(const StepRow& row);
+h5::Handle step_row_type();
+
+/// A row of /frames/table. The frame's needle points and contacts are runs of rows in their own datasets.
+struct FrameRow {
+  double time_s = kMissing, base_depth_mm = kMissing;
+  std::array<char, 64> label{};
+  std::int64_t needle_first = 0, needle_count = 0;
+  std::int64_t contact_first = 0, contact_count = 0;
+};
+h5::Handle frame_row_type();
+
+/// A row of /frames/contacts.
+struct ContactRow {
+  std::array<double, 3> position_mm{kMissing, kMissing, kMissing};
+  std::array<double, 3> force_N{kMissing, kMissing, kMissing};
+  double arc_length_mm = kMissing;
+  std::int8_t sticking = 0, tip = 0;
+};
+ContactRow to_row(const ContactView& contact);
+ContactView from_row(const ContactRow& row);
+h5::Handle contact_row_type();
+
+/// A row of /events.
+struct EventRow {
+  std::int8_t kind = 0;
+  double time_s = kMissing, depth_mm = kMissing, force_N = kMissing;
+  std::array<char, 128> region{};
+};
+EventRow to_row(const Event& event);
+h5::Handle event_row_type();
+
+/// A row of /parameters.
+struct ParameterText {
+  const char* name = nullptr;
+  const char* value = nullptr;
+  const char* unit = nullptr;
+  const char* source = nullptr;
+};
+h5::Handle parameter_row_type();
+
+/// Copies text into a fixed field; text that is too long is cut between two UTF-8 characters.
+template <std::size_t N>
+void put_text(std::array<char, N>& field, const std::string& text) {
+  std::size_t length = text.size();
+  if (length > N) {
+    length = N;
+    while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U) --length;
+  }
+  field.fill('\0');
+  for (std::size_t k = 0; k < length; ++k) field[k] = text[k];
+}
+template <std::size_t N>
+std::string get_text(const std::array<char, N>& field) {
+  std::size_t length = 0;
+  while (length < N && field[length] != '\0') ++length;
+  return {field.data(), length};
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_file_writer.hpp"
+
+#include "output_folder.hpp"
+#include "run_file_format.hpp"
+#include "summary_json.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+namespace stylet::results {
+namespace fs = std::filesystem;
+
+namespace {
+
+// Rows per chunk: some 100 kB for steps; one frame per chunk for displacements, so that a frame is read with one
+// access.
+constexpr hsize_t kStepChunk = 1024, kTableChunk = 64, kPointChunk = 2048, kTextChunk = 4096;
+
+void write_mesh(hid_t file, const TetMesh& mesh) {
+  const h5::Handle group = h5::group(file, "mesh");
+  const std::array<hsize_t, 2> nodes{mesh.nodes.size(), 3}, tets{mesh.tets.size(), 4};
+  h5::write_array(group, "nodes_mm", H5T_NATIVE_DOUBLE, nodes, mesh.nodes.data());
+  h5::write_array(group, "tets", H5T_NATIVE_INT32, tets, mesh.tets.data());
+  h5::write_array(group, "tet_region", H5T_NATIVE_INT, {tets.data(), 1}, mesh.tet_region.data());
+  h5::write_texts(group, "regions", mesh.regions);
+}
+
+void write_info(hid_t file, const RunInfo& info) {
+  h5::write_attribute(file, "format", std::string(kRunFileFormat));
+  h5::write_attribute(file, "format_version", std::array{kRunFileVersion});
+  h5::write_attribute(file, "version", info.version);
+  h5::write_attribute(file, "scenario_name", info.scenario_name);
+  h5::write_attribute(file, "method", info.method);
+  h5::write_attribute(file, "units", std::string("mm, N, s"));
+  h5::write_attribute(file, "frame", std::string("LPS"));
+  h5::write_attribute(file, "needle_diameter_mm", std::array{info.needle_diameter_mm});
+  h5::write_attribute(file, "needle_length_mm", std::array{info.needle_length_mm});
+  h5::write_attribute(file, "entry_mm", std::span<const double>(info.entry_mm.data(), 3));
+  h5::write_attribute(file, "direction", std::span<const double>(info.direction.data(), 3));
+  h5::write_attribute(file, "target_regions", std::span<const int>(info.target_regions));
+  h5::write_text(file, "scenario", info.scenario_text);
+  h5::write_texts(file, "supports", info.supports);
+  h5::write_texts(file, "warnings", info.warnings);
+  std::vector<ParameterText> rows;
+  for (const ParameterRow& p : info.parameters) {
+    rows.push_back({p.name.c_str(), p.value.c_str(), p.unit.c_str(), p.source.c_str()});
+  }
+  const hsize_t count = rows.size();
+  h5::write_array(file, "parameters", h5::Handle(parameter_row_type()), {&count, 1}, rows.data());
+}
+
+}  // namespace
+
+template <class Action>
+Result<> RunFileWriter::guarded(Action action) const {
+  const h5::QuietErrors quiet;
+  try {
+    action();
+    return Ok{};
+  } catch (const h5::Failure& e) {
+    return write_error(path_, e.what());
+  }
+}
+
+Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh) {
+  // Whoever still reads an earlier file keeps it; truncating it in place would pull it away under the reader.
+  std::error_code code;
+  fs::remove(path, code);
+  RunFileWriter w(path);
+  const Result<> done = w.guarded([&] {
+    const h5::Handle access(h5::check(H5Pcreate(H5P_FILE_ACCESS), "create file"), H5Pclose);
+    h5::check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "create file");
+    w.file_ = {h5::check(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access), "create file"), H5Fclose};
+    write_mesh(w.file_, mesh);
+    write_info(w.file_, info);
+
+    w.step_type_ = step_row_type();
+    w.frame_type_ = frame_row_type();
+    w.contact_type_ = contact_row_type();
+    w.event_type_ = event_row_type();
+    const StepRow no_step;
+    const FrameRow no_frame;
+    const ContactRow no_contact;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::array<hsize_t, 2> per_node{mesh.nodes.size(), 3};
+    const std::array<hsize_t, 1> point{3};
+    const h5::Handle frames = h5::group(w.file_, "frames");
+    w.steps_ = h5::growing_dataset(w.file_, "steps", w.step_type_, {}, kStepChunk, &no_step);
+    w.frame_table_ = h5::growing_dataset(frames, "table", w.frame_type_, {}, kTableChunk, &no_frame);
+    w.displacement_ = h5::growing_dataset(frames, "displacement_mm", H5T_NATIVE_FLOAT, per_node, 1, &nan);
+    w.needle_ = h5::growing_dataset(frames, "needle_mm", H5T_NATIVE_DOUBLE, point, kPointChunk, &kMissing);
+    w.contacts_ = h5::growing_dataset(frames, "contacts", w.contact_type_, {}, kPointChunk, &no_contact);
+    w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, nullptr);
+    w.summary_ = h5::growing_dataset(w.file_, "summary_json", H5T_NATIVE_UINT8, {}, kTextChunk, nullptr);
+    h5::check(H5Fstart_swmr_write(w.file_), "start recording");
+  });
+  if (!done) {
+    w.file_.reset();
+    fs::remove(path, code);
+    return done.error();
+  }
+  return w;
+}
+
+Result<> RunFileWriter::append_steps(std::span<const StepRecord> steps) {
+  std::vector<StepRow> rows;
+  rows.reserve(steps.size());
+  std::transform(steps.begin(), steps.end(), std::back_inserter(rows), [](const StepRecord& s) { return to_row(s); });
+  return guarded([&] { h5::append_rows(steps_, step_type_, rows.size(), rows.data()); });
+}
+
+Result<> RunFileWriter::append_frame(const StoredFrame& stored) {
+  const Frame& frame = stored.frame;
+  std::vector<ContactRow> contacts;
+  for (const ContactView& c : frame.contacts) contacts.push_back(to_row(c));
+  FrameRow row;
+  row.time_s = frame.time_s;
+  row.base_depth_mm = frame.base_depth_mm;
+  put_text(row.label, frame.label);
+  row.needle_first = needle_points_;
+  row.needle_count = static_cast<std::int64_t>(frame.needle.size());
+  row.contact_first = contact_count_;
+  row.contact_count = static_cast<std::int64_t>(contacts.size());
+  return guarded([&] {
+    h5::append_rows(displacement_, H5T_NATIVE_FLOAT, 1, stored.displacement.data());
+    h5::append_rows(needle_, H5T_NATIVE_DOUBLE, frame.needle.size(), frame.needle.data());
+    h5::append_rows(contacts_, contact_type_, contacts.size(), contacts.data());
+    h5::append_rows(frame_table_, frame_type_, 1, &row);
+    needle_points_ += row.needle_count;
+    contact_count_ += row.contact_count;
+  });
+}
+
+Result<> RunFileWriter::append_summary(const Summary& summary) {
+  std::vector<EventRow> events;
+  for (const Event& e : summary.events) events.push_back(to_row(e));
+  const std::string text = summary_json(summary);
+  return guarded([&] {
+    h5::append_rows(events_, event_type_, events.size(), events.data());
+    h5::append_rows(summary_, H5T_NATIVE_UINT8, text.size(), text.data());
+  });
+}
+
+Result<> RunFileWriter::flush() {
+  return guarded([&] { h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush"); });
+}
+
+Result<> RunFileWriter::close() {
+  return guarded([&] {
+    bool good = true;
+    for (h5::Handle* data : {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &summary_}) {
+      good = data->reset() && good;
+    }
+    for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_}) type->reset();
+    if (!file_.reset() || !good) h5::fail("close");
+  });
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "summary_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+#include <optional>
+
+namespace stylet::results {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr EventKind kLastEventKind = EventKind::grazed;
+
+std::optional<EventKind> event_kind(const std::string& name) {
+  for (int k = 0; k <= static_cast<int>(kLastEventKind); ++k) {
+    if (name == to_string(static_cast<EventKind>(k))) return static_cast<EventKind>(k);
+  }
+  return std::nullopt;
+}
+
+double number(const Json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+}  // namespace
+
+std::string summary_json(const Summary& s) {
+  Json events = Json::array();
+  for (const Event& e : s.events) {
+    events.push_back({{"kind", to_string(e.kind)},
+                      {"time_s", e.time_s},
+                      {"depth_mm", e.depth_mm},
+                      {"force_N", e.force_N},
+                      {"region", e.region}});
+  }
+  const Vec3& shift = s.target_shift_centroid_mm;
+  const Json json = {
+      {"version", s.version},
+      {"scenario", s.scenario},
+      {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}}},
+      {"steps", s.steps},
+      {"peak_force_N", {{"axial", s.peak_axial_N}, {"sagittal", s.peak_sagittal_N}, {"lateral", s.peak_lateral_N}}},
+      {"events", events},
+      {"tip_deflection_mm", s.tip_deflection_mm},
+      {"target_shift_mm", {{"centroid", {shift.x(), shift.y(), shift.z()}}, {"max", s.target_shift_max_mm}}},
+      {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
+      {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
+      {"contacts_max", s.contacts_max},
+      {"warnings", s.warnings},
+  };
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<Summary> parse_summary_json(std::string_view text, const std::string& where) {
+  const auto refuse = [&](const std::string& reason) {
+    return input_error(where, "not a summary of a run: " + reason, "Give a file that this version of stylet wrote.");
+  };
+  try {
+    const Json json = Json::parse(text);
+    Summary s;
+    s.version = json.at("version").get<std::string>();
+    s.scenario = json.at("scenario").get<std::string>();
+    s.nodes = json.at("mesh").at("nodes").get<Index>();
+    s.tets = json.at("mesh").at("tets").get<Index>();
+    s.steps = json.at("steps").get<Index>();
+    const Json& peak = json.at("peak_force_N");
+    s.peak_axial_N = number(peak.at("axial"));
+    s.peak_sagittal_N = number(peak.at("sagittal"));
+    s.peak_lateral_N = number(peak.at("lateral"));
+    for (const Json& e : json.at("events")) {
+      const auto kind = event_kind(e.at("kind").get<std::string>());
+      if (!kind) return refuse("event kind '" + e.at("kind").get<std::string>() + "' is unknown");
+      s.events.push_back({*kind, number(e.at("time_s")), number(e.at("depth_mm")), number(e.at("force_N")),
+                          e.at("region").get<std::string>()});
+    }
+    s.tip_deflection_mm = number(json.at("tip_deflection_mm"));
+    const Json& shift = json.at("target_shift_mm");
+    for (int k = 0; k < 3; ++k) s.target_shift_centroid_mm[k] = number(shift.at("centroid").at(static_cast<size_t>(k)));
+    s.target_shift_max_mm = number(shift.at("max"));
+    s.residual_force_balance = number(json.at("residual").at("force_balance"));
+    s.residual_torque_balance = number(json.at("residual").at("torque_balance"));
+    const Json& step = json.at("step_us");
+    s.step_us_p50 = number(step.at("p50"));
+    s.step_us_p99 = number(step.at("p99"));
+    s.step_us_p999 = number(step.at("p999"));
+    s.step_us_max = number(step.at("max"));
+    s.contacts_max = json.at("contacts_max").get<int>();
+    s.warnings = json.at("warnings").get<std::vector<std::string>>();
+    return s;
+  } catch (const Json::exception& e) {
+    return refuse(e.what());
+  }
+}
+
+}  // namespace stylet::results

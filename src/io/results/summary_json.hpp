@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+#include "stylet/sim/recording.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace stylet::results {
+
+/// Text of summary.json. Keys and units: docs/results.md. A value that is not finite becomes null.
+std::string summary_json(const Summary& summary);
+
+/// Reads back what summary_json() wrote.
+/// @param where what to call the text in the message
+Result<Summary> parse_summary_json(std::string_view text, const std::string& where);
+
+}  // namespace stylet::results

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic_run.hpp"
+
+#include "stylet/geom/box_mesh.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+namespace stylet::testing {
+namespace fs = std::filesystem;
+
+namespace {
+
+// ---- anatomy: ellipsoids in a box, feet at z = 0 -------------------------------------------------------------------
+
+struct Ellipsoid {
+  const char* name;
+  Vec3 centre, radii;
+  /// About the distance to the surface [mm], negative inside.
+  [[nodiscard]] double level(const Vec3& x) const {
+    return ((x - centre).cwiseQuotient(radii).norm() - 1) * radii.minCoeff();
+  }
+};
+
+const Vec3 kLow(-60, -50, 0), kHigh(60, 50, 120);
+
+/// First match wins; what no ellipsoid holds is body.
+const std::array<Ellipsoid, 5>& organs() {
+  static const std::array<Ellipsoid, 5> all{{{"prostate", {0, 0, 62}, {25, 18, 20}},
+                                             {"bladder", {0, -9, 100}, {30, 23, 19}},
+                                             {"rectum", {0, 33, 75}, {15, 13, 40}},
+                                             {"pubic_arch", {0, -40, 60}, {34, 9, 13}},
+                                             {"seminal_vesicles", {0, 20, 92}, {19, 7, 8}}}};
+  return all;
+}
+
+int organ_at(const Vec3& x) {
+  for (std::size_t k = 0; k < organs().size(); ++k) {
+    if (organs()[k].level(x) < 0) return static_cast<int>(k) + 1;
+  }
+  return 0;
+}
+
+/// Moves nodes that are close to an organ's surface onto it, as far as no tetrahedron becomes flat.
+void fit_to_organs(TetMesh& mesh, double reach) {
+  const std::vector<Vec3> grid = mesh.nodes;
+  for (std::size_t n = 0; n < grid.size(); ++n) {
+    const Vec3& x = grid[n];
+    if ((x - kLow).minCoeff() < 1e-9 || (kHigh - x).minCoeff() < 1e-9) continue;
+    const auto nearest = std::min_element(organs().begin(), organs().end(), [&](const auto& a, const auto& b) {
+      return std::abs(a.level(x)) < std::abs(b.level(x));
+    });
+    const double scaled = (x - nearest->centre).cwiseQuotient(nearest->radii).norm();
+    const Vec3 target = nearest->centre + (x - nearest->centre) / scaled;
+    if ((target - x).norm() < reach) mesh.nodes[n] = target;
+  }
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (Index t = 0; t < mesh.tet_count(); ++t) {
+      if (tet_volume(mesh, t) > 0.1 * std::pow(reach, 3)) continue;
+      for (const Index node : mesh.tets[static_cast<std::size_t>(t)]) {
+        const auto n = static_cast<std::size_t>(node);
+        moved = moved || mesh.nodes[n] != grid[n];
+        mesh.nodes[n] = grid[n];
+      }
+    }
+  }
+}
+
+TetMesh anatomy(const std::array<int, 3>& cells) {
+  TetMesh mesh = box_mesh(kLow, kHigh, cells);
+  fit_to_organs(mesh, 0.4 * (kHigh.z() - kLow.z()) / cells[2]);
+  std::vector<std::string> names{"body"};
+  for (const Ellipsoid& organ : organs()) names.emplace_back(organ.name);
+  assign_regions(mesh, names, organ_at);
+  return mesh;
+}
+
+// ---- motion, forces and deformation --------------------------------------------------------------------------------
+
+constexpr double kSpeed = 20, kStart = -6, kDeepest = 76, kHold = 0.4;   // mm/s, mm, mm, s
+constexpr double kSkin = 0, kPuncture = 7, kGland = 41, kGlandCut = 46;  // depths [mm]
+constexpr double kStick = 4;                                             // mm of retraction before slip
+constexpr double kInsertion = (kDeepest - kStart) / kSpeed;
+constexpr double kRetractionStart = kInsertion + kHold;
+constexpr double kEnd = kRetractionStart + kInsertion;
+constexpr double kLength = 200;
+const Vec3 kEntry(9, 6, 0);
+
+double depth_at(double time) {
+  if (time < kInsertion) return kStart + kSpeed * time;
+  if (time < kRetractionStart) return kDeepest;
+  return std::max(kStart, kDeepest - kSpeed * (time - kRetractionStart));
+}
+
+double inserting_force(double depth) {
+  if (depth < kSkin) return 0;
+  if (depth < kPuncture) return 1.1 * std::pow(depth / kPuncture, 1.6);
+  double force = 0.30 + 0.013 * (depth - kPuncture);
+  if (depth > kGland && depth < kGlandCut) force += 0.65 * std::pow((depth - kGland) / (kGlandCut - kGland), 1.4);
+  if (depth >= kGlandCut) force += 0.22 + 0.008 * (depth - kGlandCut);
+  return force;
+}
+
+double axial_force(double time) {
+  const double depth = depth_at(time);
+  if (time < kRetractionStart) return inserting_force(depth);
+  const double back = kDeepest - depth, top = inserting_force(kDeepest);
+  const double slipping = -0.0125 * std::max(0.0, depth);
+  if (back > kStick) return slipping;
+  const double turn = back / kStick;
+  return top + (-0.0125 * (kDeepest - kStick) - top) * turn;
+}
+
+/// How far the tissue is dragged along [mm], at its most.
+double drag_at(double time) { return 4.2 * axial_force(time) / inserting_force(kDeepest); }
+
+VecX displacement_at(const TetMesh& mesh, double time) {
+  const double depth = depth_at(time), drag = drag_at(time);
+  VecX u = VecX::Zero(3 * mesh.node_count());
+  if (depth <= 0) return u;
+  for (Index n = 0; n < mesh.node_count(); ++n) {
+    const Vec3& x = mesh.nodes[static_cast<std::size_t>(n)];
+    const double aside = (x - kEntry).head<2>().norm();
+    const double wall = std::clamp(std::min({60 - std::abs(x.x()), 50 - std::abs(x.y()), 120 - x.z()}) / 25, 0.0, 1.0);
+    const double along = std::exp(-std::pow(std::max(0.0, x.z() - depth) / 22, 2)) * std::min(1.0, (15 + x.z()) / 30);
+    const double share = std::exp(-std::pow(aside / 26, 2)) * wall * along;
+    u.segment<3>(3 * n) = share * drag * Vec3(0.08, -0.18, 1.0);
+  }
+  return u;
+}
+
+/// The needle's centreline bends away from its straight line by a cubic in the inserted part.
+Vec3 needle_point(double depth, double s) {
+  const double z = depth - kLength + s;
+  const double inside = std::max(0.0, z) / kDeepest;
+  return kEntry + Vec3(2.4 * inside * inside * inside, -1.1 * inside * inside, z);
+}
+
+TipState tip_state(double time, double depth) {
+  if (depth <= 0) return TipState::air;
+  if (time >= kRetractionStart) return TipState::in_track;
+  if (depth < kPuncture || (depth > kGland && depth < kGlandCut)) return TipState::pressing;
+  return time < kInsertion ? TipState::cutting : TipState::pressing;
+}
+
+StepRecord step_at(double time, int number) {
+  StepRecord s;
+  s.time_s = time;
+  s.base_depth_mm = depth_at(time);
+  s.force_axial_N = axial_force(time);
+  const double inside = std::clamp(s.base_depth_mm / kDeepest, 0.0, 1.0);
+  s.force_sagittal_N = 0.16 * inside * inside * std::cos(3 * time);
+  s.force_lateral_N = -0.11 * inside * inside + 0.02 * std::sin(5 * time) * inside;
+  s.torque_Nmm = Vec3(s.force_sagittal_N, -s.force_lateral_N, 0) * kLength;
+  s.tip_mm = needle_point(s.base_depth_mm, kLength);
+  s.tip_state = tip_state(time, s.base_depth_mm);
+  s.contacts = s.base_depth_mm <= 0 ? 0 : 1 + static_cast<int>(s.base_depth_mm / 5);
+  const bool stuck = time >= kInsertion && kDeepest - s.base_depth_mm < kStick;
+  s.sticking = stuck ? s.contacts : 0;
+  s.iterations = 2 + number % 3;
+  s.step_us = 180 + 2.5 * s.contacts + 12 * std::abs(std::sin(0.7 * number)) + (number % 97 == 13 ? 210 : 0);
+  return s;
+}
+
+Frame frame_at(const TetMesh& mesh, double time, std::string label) {
+  Frame f;
+  f.time_s = time;
+  f.base_depth_mm = depth_at(time);
+  f.label = std::move(label);
+  f.displacement = displacement_at(mesh, time);
+  for (int k = 0; k <= 80; ++k) f.needle.push_back(needle_point(f.base_depth_mm, kLength * k / 80));
+  const bool stuck = time >= kInsertion && kDeepest - f.base_depth_mm < kStick;
+  for (double z = f.base_depth_mm; z > 0; z -= 5) {
+    ContactView c;
+    c.s = kLength - (f.base_depth_mm - z);
+    c.position = needle_point(f.base_depth_mm, c.s);
+    c.force = Vec3(0, 0, axial_force(time) / (1 + f.base_depth_mm / 5));
+    c.sticking = stuck || z < 20;
+    c.tip = z == f.base_depth_mm;
+    f.contacts.push_back(c);
+  }
+  return f;
+}
+
+std::vector<Event> events() {
+  const auto inward = [](double depth) { return (depth - kStart) / kSpeed; };
+  const double slip = kRetractionStart + kStick / kSpeed;
+  const double out = kRetractionStart + kDeepest / kSpeed;
+  const auto at = [](EventKind kind, double time, const char* region) {
+    return Event{kind, time, depth_at(time), axial_force(time), region};
+  };
+  return {at(EventKind::skin_contact, inward(kSkin), "skin"),
+          at(EventKind::puncture, inward(kPuncture) - 1e-6, "skin"),
+          at(EventKind::region_entered, inward(kPuncture), "body"),
+          at(EventKind::puncture, inward(kGlandCut) - 1e-6, "prostate"),
+          at(EventKind::region_entered, inward(kGlandCut), "prostate"),
+          at(EventKind::retraction_start, kRetractionStart, ""),
+          at(EventKind::slip_start, slip, ""),
+          at(EventKind::withdrawn, out, "")};
+}
+
+RunInfo run_info() {
+  RunInfo info;
+  info.version = "0.1.0";
+  info.scenario_name = "synthetic patient, hole D4";
+  info.scenario_text = "# made-up run for the tests\n[needle]\nlength_mm = 200.0\n";
+  info.parameters = {
+      {"tissue.prostate.young_kPa", "40", "kPa", "default: Krouskop et al. 1998"},
+      {"tissue.prostate.poisson", "0.45", "1", "scenario"},
+      {"tissue.body.young_kPa", "15", "kPa", "default: Gefen & Haberman 2007"},
+      {"tissue.body.friction_coulomb_N_per_m", "11", "N/m", "default: Okamura et al. 2004"},
+      {"needle.outer_diameter_mm", "1.27", "mm", "scenario"},
+      {"insertion.speed_mm_per_s", "20", "mm/s", "scenario"},
+  };
+  info.supports = {"412 nodes of the pubic arch are held.",
+                   "The outer faces of the body are held, except the perineal face."};
+  info.warnings = {"Strain near the tip exceeds 20 %: beyond the validity of linear elasticity."};
+  info.method = "node addition, rule interior, coupled solver";
+  info.needle_diameter_mm = 1.27;
+  info.needle_length_mm = kLength;
+  info.target_regions = {1};
+  info.entry_mm = kEntry;
+  info.direction = Vec3::UnitZ();
+  return info;
+}
+
+Summary summarise(const SyntheticRun& run) {
+  Summary s;
+  s.version = run.info.version;
+  s.scenario = run.info.scenario_name;
+  s.nodes = run.mesh.node_count();
+  s.tets = run.mesh.tet_count();
+  s.steps = static_cast<Index>(run.steps.size());
+  for (const StepRecord& step : run.steps) {
+    s.peak_axial_N = std::max(s.peak_axial_N, std::abs(step.force_axial_N));
+    s.peak_sagittal_N = std::max(s.peak_sagittal_N, std::abs(step.force_sagittal_N));
+    s.peak_lateral_N = std::max(s.peak_lateral_N, std::abs(step.force_lateral_N));
+    s.step_us_max = std::max(s.step_us_max, step.step_us);
+    s.contacts_max = std::max(s.contacts_max, step.contacts);
+  }
+  s.events = events();
+  s.tip_deflection_mm = 2.64;
+  s.target_shift_centroid_mm = {0.21, -0.48, 2.66};
+  s.target_shift_max_mm = 3.94;
+  s.residual_force_balance = 3.1e-13;
+  s.residual_torque_balance = 4.7e-13;
+  s.step_us_p50 = 214;
+  s.step_us_p99 = 431;
+  s.step_us_p999 = 440;
+  s.warnings = run.info.warnings;
+  return s;
+}
+
+}  // namespace
+
+SyntheticRun synthetic_run(const SyntheticOptions& options) {
+  SyntheticRun run;
+  run.info = run_info();
+  run.mesh = anatomy(options.cells);
+  const int steps = static_cast<int>(std::ceil(kEnd / options.step_s));
+  for (int k = 0; k <= steps; ++k) run.steps.push_back(step_at(k * options.step_s, k));
+  std::vector<std::pair<double, std::string>> moments{{0, "before"}, {kInsertion, "deepest"}, {kEnd, "after"}};
+  for (const Event& e : events()) moments.emplace_back(e.time_s, to_string(e.kind));
+  for (int k = 1; k <= options.frames; ++k) moments.emplace_back(kEnd * k / (options.frames + 1), "");
+  std::sort(moments.begin(), moments.end());
+  for (const auto& [time, label] : moments) run.frames.push_back(frame_at(run.mesh, time, label));
+  run.summary = summarise(run);
+  return run;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "stylet-results-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) std::abort();
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::string file_text(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace stylet::testing

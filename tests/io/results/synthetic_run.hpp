@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/geom/tet_mesh.hpp"
+#include "stylet/sim/recording.hpp"
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+namespace stylet::testing {
+
+/// What ResultsWriter is given in the course of a run.
+struct SyntheticRun {
+  RunInfo info;
+  TetMesh mesh;
+  std::vector<StepRecord> steps;
+  std::vector<Frame> frames;
+  Summary summary;
+};
+
+struct SyntheticOptions {
+  std::array<int, 3> cells{8, 7, 9};  ///< of the box that holds the anatomy
+  double step_s = 0.01;
+  int frames = 8;  ///< regular frames, beside those with a label
+};
+
+/// A made-up insertion into ellipsoids in a box, by formulas and without a simulation: an approach, skin contact,
+/// puncture, entry into the gland, the deepest point, a hold, a retraction that sticks and then slips, and withdrawal.
+SyntheticRun synthetic_run(const SyntheticOptions& options = {});
+
+/// A folder below the test's temporary folder, empty at first, removed with everything in it at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The whole file as text; empty when it cannot be read.
+std::string file_text(const std::filesystem::path& path);
+
+/// Names of all files and folders directly in `folder`, sorted.
+std::vector<std::string> names_in(const std::filesystem::path& folder);
+
+}  // namespace stylet::testing

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// run.h5: what is written is read back, also when the writer is still at work or was killed.
+#include "results/recorder.hpp"
+#include "stylet/io/recording_io.hpp"
+#include "synthetic_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <random>
+#include <thread>
+
+using namespace stylet;
+using namespace stylet::results;
+using stylet::testing::synthetic_run;
+using stylet::testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+namespace {
+
+StoredFrame stored(const Frame& frame) {
+  const Eigen::VectorXf single = frame.displacement.cast<float>();
+  return {frame, {single.data(), single.data() + single.size()}};
+}
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+void expect_same_step(const StepRecord& a, const StepRecord& b) {
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.base_depth_mm, b.base_depth_mm);
+  EXPECT_EQ(a.force_axial_N, b.force_axial_N);
+  EXPECT_EQ(a.force_sagittal_N, b.force_sagittal_N);
+  EXPECT_EQ(a.force_lateral_N, b.force_lateral_N);
+  EXPECT_EQ(a.torque_Nmm, b.torque_Nmm);
+  EXPECT_EQ(a.tip_mm, b.tip_mm);
+  EXPECT_EQ(a.tip_state, b.tip_state);
+  EXPECT_EQ(a.contacts, b.contacts);
+  EXPECT_EQ(a.sticking, b.sticking);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.step_us, b.step_us);
+}
+
+void expect_same_frame(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.base_depth_mm, b.base_depth_mm);
+  EXPECT_EQ(a.label, b.label);
+  ASSERT_EQ(a.displacement.size(), b.displacement.size());
+  EXPECT_EQ(VecX(a.displacement.cast<float>().cast<double>()), b.displacement);  // stored with single precision
+  EXPECT_EQ(a.needle, b.needle);
+  ASSERT_EQ(a.contacts.size(), b.contacts.size());
+  for (std::size_t c = 0; c < a.contacts.size(); ++c) {
+    EXPECT_EQ(a.contacts[c].position, b.contacts[c].position);
+    EXPECT_EQ(a.contacts[c].force, b.contacts[c].force);
+    EXPECT_EQ(a.contacts[c].s, b.contacts[c].s);
+    EXPECT_EQ(a.contacts[c].sticking, b.contacts[c].sticking);
+    EXPECT_EQ(a.contacts[c].tip, b.contacts[c].tip);
+  }
+}
+
+}  // namespace
+
+TEST(RunFile, holds_everything_that_was_written) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  {
+    auto writer = RunFileWriter::create(path, run.info, run.mesh);
+    ASSERT_TRUE(writer.ok()) << writer.error().message();
+    Recorder recorder(std::move(*writer));
+    for (const auto& step : run.steps) ASSERT_TRUE(recorder.add_step(step).ok());
+    for (const auto& frame : run.frames) ASSERT_TRUE(recorder.add_frame(stored(frame)).ok());
+    const auto closed = recorder.close(&run.summary);
+    ASSERT_TRUE(closed.ok()) << closed.error().message();
+  }
+  const auto back = read_recording(path);
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_EQ(back->mesh.nodes, run.mesh.nodes);
+  EXPECT_EQ(back->mesh.tets, run.mesh.tets);
+  EXPECT_EQ(back->mesh.tet_region, run.mesh.tet_region);
+  EXPECT_EQ(back->mesh.regions, run.mesh.regions);
+
+  EXPECT_EQ(back->info.version, run.info.version);
+  EXPECT_EQ(back->info.scenario_name, run.info.scenario_name);
+  EXPECT_EQ(back->info.scenario_text, run.info.scenario_text);
+  EXPECT_EQ(back->info.method, run.info.method);
+  EXPECT_EQ(back->info.supports, run.info.supports);
+  EXPECT_EQ(back->info.warnings, run.info.warnings);
+  EXPECT_EQ(back->info.needle_diameter_mm, run.info.needle_diameter_mm);
+  EXPECT_EQ(back->info.needle_length_mm, run.info.needle_length_mm);
+  EXPECT_EQ(back->info.target_regions, run.info.target_regions);
+  EXPECT_EQ(back->info.entry_mm, run.info.entry_mm);
+  EXPECT_EQ(back->info.direction, run.info.direction);
+  ASSERT_EQ(back->info.parameters.size(), run.info.parameters.size());
+  for (std::size_t k = 0; k < run.info.parameters.size(); ++k) {
+    EXPECT_EQ(back->info.parameters[k].name, run.info.parameters[k].name);
+    EXPECT_EQ(back->info.parameters[k].value, run.info.parameters[k].value);
+    EXPECT_EQ(back->info.parameters[k].unit, run.info.parameters[k].unit);
+    EXPECT_EQ(back->info.parameters[k].source, run.info.parameters[k].source);
+  }
+
+  ASSERT_EQ(back->steps.size(), run.steps.size());
+  for (std::size_t k = 0; k < run.steps.size(); ++k) expect_same_step(run.steps[k], back->steps[k]);
+  ASSERT_EQ(back->frames.size(), run.frames.size());
+  for (std::size_t k = 0; k < run.frames.size(); ++k) expect_same_frame(run.frames[k], back->frames[k]);
+
+  ASSERT_TRUE(back->summary.has_value());
+  EXPECT_EQ(back->summary->peak_axial_N, run.summary.peak_axial_N);
+  EXPECT_EQ(back->summary->events.size(), run.summary.events.size());
+}
+
+TEST(RunFile, an_empty_run_without_parameters_is_readable) {
+  auto run = synthetic_run();
+  run.info.parameters.clear();
+  run.info.supports.clear();
+  run.info.warnings.clear();
+  run.info.target_regions.clear();
+  const TemporaryFolder folder;
+  {
+    auto writer = RunFileWriter::create(folder.path() / "run.h5", run.info, run.mesh);
+    ASSERT_TRUE(writer.ok()) << writer.error().message();
+    const Recorder recorder(std::move(*writer));
+  }
+  const auto back = read_recording(folder.path() / "run.h5");
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_TRUE(back->steps.empty());
+  EXPECT_TRUE(back->frames.empty());
+  EXPECT_TRUE(back->info.parameters.empty());
+  EXPECT_FALSE(back->summary.has_value());
+}
+
+TEST(RunFile, is_readable_half_a_second_behind_while_the_run_goes_on) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  auto writer = RunFileWriter::create(path, run.info, run.mesh);
+  ASSERT_TRUE(writer.ok()) << writer.error().message();
+  Recorder recorder(std::move(*writer));
+  for (const auto& step : run.steps) ASSERT_TRUE(recorder.add_step(step).ok());
+  ASSERT_TRUE(recorder.add_frame(stored(run.frames.front())).ok());
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the run is busy elsewhere and adds nothing more
+
+  int status = 0;
+  const pid_t reader = fork();  // another process, as a viewer would be
+  if (reader == 0) {
+    const auto back = read_recording(path);
+    _exit(back.ok() && back->steps.size() == run.steps.size() && back->frames.size() == 1 && !back->summary ? 0 : 1);
+  }
+  ASSERT_EQ(waitpid(reader, &status, 0), reader);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(recorder.close(nullptr).ok());
+}
+
+TEST(RunFile, a_killed_run_stays_readable_and_loses_at_most_a_second) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  struct Victim {
+    pid_t pid;
+    fs::path path;
+    double kill_at;
+    double killed_at;
+  };
+  std::vector<Victim> victims;
+  std::mt19937 random(20051026);
+  std::uniform_real_distribution<double> moment(0.05, 2.0);
+  for (int k = 0; k < 20; ++k) {
+    const fs::path path = folder.path() / ("run" + std::to_string(k) + ".h5");
+    const pid_t pid = fork();
+    if (pid == 0) {
+      auto writer = RunFileWriter::create(path, run.info, run.mesh);
+      if (!writer) _exit(1);
+      Recorder recorder(std::move(*writer));
+      StepRecord step = run.steps.front();
+      for (std::size_t n = 0;; ++n) {
+        step.time_s = now_s();  // the same clock in parent and child
+        if (!recorder.add_step(step)) _exit(2);
+        if (n % 20 == 0 && !recorder.add_frame(stored(run.frames[(n / 20) % run.frames.size()]))) _exit(3);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
+    }
+    victims.push_back({pid, path, 0, 0});
+  }
+  for (const Victim& victim : victims) {  // a run can be killed from the moment on that its file exists
+    for (int wait = 0; wait < 1000 && !read_recording(victim.path).ok(); ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  const double start = now_s();
+  for (Victim& victim : victims) victim.kill_at = start + moment(random);
+  std::sort(victims.begin(), victims.end(), [](const auto& a, const auto& b) { return a.kill_at < b.kill_at; });
+  for (Victim& victim : victims) {
+    if (const double left = victim.kill_at - now_s(); left > 0) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(left));
+    }
+    kill(victim.pid, SIGKILL);
+    victim.killed_at = now_s();
+    int status = 0;
+    waitpid(victim.pid, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "the writer ended by itself with status " << WEXITSTATUS(status);
+  }
+  for (const Victim& victim : victims) {
+    const auto back = read_recording(victim.path);
+    ASSERT_TRUE(back.ok()) << back.error().message();
+    ASSERT_FALSE(back->steps.empty());
+    ASSERT_FALSE(back->frames.empty());
+    EXPECT_LT(victim.killed_at - back->steps.back().time_s, 1.0);
+    for (std::size_t k = 1; k < back->steps.size(); ++k) ASSERT_LT(back->steps[k - 1].time_s, back->steps[k].time_s);
+    for (std::size_t f = 0; f < back->frames.size(); ++f) {
+      expect_same_frame(run.frames[f % run.frames.size()], back->frames[f]);
+    }
+  }
+}
+
+TEST(RunFile, replaces_an_earlier_file_without_pulling_it_away_from_a_reader) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  std::ofstream(path) << "an earlier run";
+  std::ifstream reader(path);
+  auto writer = RunFileWriter::create(path, run.info, run.mesh);
+  ASSERT_TRUE(writer.ok()) << writer.error().message();
+  std::string text;
+  std::getline(reader, text);
+  EXPECT_EQ(text, "an earlier run");
+  ASSERT_TRUE(writer->close().ok());
+  EXPECT_TRUE(read_recording(path).ok());
+}
+
+TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_recording(folder.path() / "none.h5").error().what, "no such file");
+  const fs::path text = folder.path() / "text.h5";
+  std::ofstream(text) << "not HDF5";
+  ASSERT_FALSE(read_recording(text).ok());
+  EXPECT_EQ(read_recording(text).error().kind, ErrorKind::input);
+
+  const fs::path other = folder.path() / "other.h5";
+  H5Fclose(H5Fcreate(other.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  ASSERT_FALSE(read_recording(other).ok());
+
+  const fs::path whole = folder.path() / "whole.h5", half = folder.path() / "half.h5";
+  auto writer = RunFileWriter::create(whole, run.info, run.mesh);
+  ASSERT_TRUE(writer.ok() && writer->append_steps(run.steps).ok() && writer->close().ok());
+  const std::string bytes = stylet::testing::file_text(whole);
+  std::ofstream(half, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  ASSERT_FALSE(read_recording(half).ok());
+}

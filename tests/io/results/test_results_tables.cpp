@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// forces.csv and summary.json as text.
+#include "results/forces_csv.hpp"
+#include "results/summary_json.hpp"
+#include "synthetic_run.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+using namespace stylet;
+using namespace stylet::results;
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> keys_of(const nlohmann::ordered_json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+}  // namespace
+
+TEST(ForcesCsv, has_exactly_the_documented_columns) {
+  EXPECT_EQ(
+      forces_csv({}),
+      "time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,"
+      "tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us\n");
+}
+
+TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
+  StepRecord step;
+  step.time_s = 1.0005;
+  step.base_depth_mm = -2.5;
+  step.force_axial_N = 1.0 / 3;
+  step.force_sagittal_N = -1e-12;  // rounds to zero: no sign
+  step.force_lateral_N = -0.25;
+  step.torque_Nmm = {1, -2, 3.5};
+  step.tip_mm = {10, 20.125, -30};
+  step.tip_state = TipState::in_track;
+  step.contacts = 7;
+  step.sticking = 3;
+  step.iterations = 2;
+  step.step_us = 412.34;
+  const auto lines = lines_of(forces_csv({&step, 1}));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[1],
+            "1.000500,-2.500000,0.333333333,0.000000000,-0.250000000,1.000000000,-2.000000000,3.500000000,"
+            "10.000000,20.125000,-30.000000,in_track,7,3,2,412.3");
+}
+
+TEST(ForcesCsv, the_same_run_gives_the_same_bytes_apart_from_step_us) {
+  auto one = stylet::testing::synthetic_run(), other = stylet::testing::synthetic_run();
+  EXPECT_EQ(forces_csv(one.steps), forces_csv(other.steps));
+  for (auto& step : other.steps) step.step_us += 17;
+  const auto a = lines_of(forces_csv(one.steps)), b = lines_of(forces_csv(other.steps));
+  ASSERT_EQ(a.size(), one.steps.size() + 1);
+  for (std::size_t k = 1; k < a.size(); ++k) {
+    EXPECT_NE(a[k], b[k]);
+    EXPECT_EQ(a[k].substr(0, a[k].rfind(',')), b[k].substr(0, b[k].rfind(',')));
+  }
+}
+
+TEST(SummaryJson, has_the_documented_keys_in_order) {
+  const auto run = stylet::testing::synthetic_run();
+  const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
+  using Keys = std::vector<std::string>;
+  EXPECT_EQ(keys_of(json), (Keys{"version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
+                                 "target_shift_mm", "residual", "step_us", "contacts_max", "warnings"}));
+  EXPECT_EQ(keys_of(json["mesh"]), (Keys{"nodes", "tets"}));
+  EXPECT_EQ(keys_of(json["peak_force_N"]), (Keys{"axial", "sagittal", "lateral"}));
+  EXPECT_EQ(keys_of(json["target_shift_mm"]), (Keys{"centroid", "max"}));
+  EXPECT_EQ(keys_of(json["residual"]), (Keys{"force_balance", "torque_balance"}));
+  EXPECT_EQ(keys_of(json["step_us"]), (Keys{"p50", "p99", "p999", "max"}));
+  ASSERT_EQ(json["events"].size(), run.summary.events.size());
+  EXPECT_EQ(keys_of(json["events"][0]), (Keys{"kind", "time_s", "depth_mm", "force_N", "region"}));
+  EXPECT_EQ(json["events"][0]["kind"], "skin_contact");
+  EXPECT_EQ(json["target_shift_mm"]["centroid"].size(), 3U);
+  EXPECT_EQ(json["peak_force_N"]["axial"].get<double>(), run.summary.peak_axial_N);
+}
+
+TEST(SummaryJson, every_kind_of_event_survives_the_round_trip) {
+  Summary summary;
+  for (const EventKind kind : {EventKind::skin_contact, EventKind::puncture, EventKind::region_entered,
+                               EventKind::retraction_start, EventKind::slip_start, EventKind::withdrawn,
+                               EventKind::bone_contact, EventKind::exited, EventKind::re_entered, EventKind::grazed}) {
+    summary.events.push_back({kind, 0.1, 2.0, -3.0, "Prostata (männlich)"});
+  }
+  const auto back = parse_summary_json(summary_json(summary), "test");
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  ASSERT_EQ(back->events.size(), summary.events.size());
+  for (std::size_t k = 0; k < summary.events.size(); ++k) {
+    EXPECT_EQ(back->events[k].kind, summary.events[k].kind);
+    EXPECT_EQ(back->events[k].region, summary.events[k].region);
+  }
+}
+
+TEST(SummaryJson, a_value_that_is_not_finite_becomes_null) {
+  Summary summary;
+  summary.target_shift_max_mm = std::numeric_limits<double>::quiet_NaN();
+  const auto json = nlohmann::json::parse(summary_json(summary));
+  EXPECT_TRUE(json["target_shift_mm"]["max"].is_null());
+  const auto back = parse_summary_json(summary_json(summary), "test");
+  ASSERT_TRUE(back.ok());
+  EXPECT_TRUE(std::isnan(back->target_shift_max_mm));
+}
+
+TEST(SummaryJson, foreign_json_is_refused_with_its_place) {
+  const auto bad = parse_summary_json("{\"version\": \"1\"}", "run.h5");
+  ASSERT_FALSE(bad.ok());
+  EXPECT_EQ(bad.error().where, "run.h5");
+}
