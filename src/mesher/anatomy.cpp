@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "anatomy.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace stylet::meshing {
+
+int priority(std::string_view c) {
+  constexpr std::array<std::string_view, 17> order{"urethra",
+                                                   "anterior_stroma",
+                                                   "central_zone",
+                                                   "transition_zone",
+                                                   "peripheral_zone",
+                                                   "prostate",
+                                                   "ctv",
+                                                   "gtv",
+                                                   "ptv",
+                                                   "seminal_vesicles",
+                                                   "bladder",
+                                                   "rectum",
+                                                   "pubic_arch",
+                                                   "femur_left",
+                                                   "femur_right",
+                                                   "",
+                                                   "band"};
+  if (c == "body") return static_cast<int>(order.size());
+  const auto it = std::find(order.begin(), order.end(), c);
+  // Structures the user named himself come after the known organs.
+  return static_cast<int>((it == order.end() ? std::find(order.begin(), order.end(), "") : it) - order.begin());
+}
+
+void Anatomy::add(Structure structure) {
+  Layer layer;
+  layer.solid = structure.shape;
+  layer.members = {static_cast<int>(structures.size())};
+  layer.box = structure.shape->box();
+  layer.box.min().array() -= 3.0;  // room for offsets
+  layer.box.max().array() += 3.0;
+  structures.push_back(std::move(structure));
+  layers.push_back(std::move(layer));
+}
+
+int Anatomy::member(const Layer& layer, const Vec3& p) const {
+  if (layer.members.size() == 1) return layer.members[0];
+  int best = layer.members[0];
+  double deepest = HUGE_VAL;
+  for (const int m : layer.members) {
+    const double d = structures[m].shape->distance(p) - structures[m].offset;
+    if (d < deepest) {
+      deepest = d;
+      best = m;
+    }
+  }
+  return best;
+}
+
+int Anatomy::label(const Vec3& p) const {
+  for (const Layer& layer : layers) {
+    if (!layer.box.contains(p) || layer.solid->distance(p) >= layer.offset) continue;
+    if (layer.clipped && layers.back().solid->distance(p) >= layers.back().offset) continue;
+    return 1 + member(layer, p);
+  }
+  return 0;
+}
+
+Eigen::AlignedBox3d Anatomy::box() const {
+  Eigen::AlignedBox3d all;
+  for (const Layer& layer : layers) all.extend(layer.box);
+  return all;
+}
+
+double Anatomy::target_distance(const Vec3& p) const {
+  double d = HUGE_VAL;
+  for (const Structure& s : structures) {
+    if (s.target) d = std::min(d, s.shape->distance(p) - s.offset);
+  }
+  return d;
+}
+
+Eigen::AlignedBox3d Anatomy::target_box() const {
+  Eigen::AlignedBox3d box;
+  for (const Structure& s : structures) {
+    if (s.target) box.extend(s.shape->box());
+  }
+  return box;
+}
+
+const Structure* Anatomy::find(std::string_view name) const {
+  for (const Structure& s : structures) {
+    if (s.name == name) return &s;
+  }
+  return nullptr;
+}
+
+namespace {
+
+/// Offset at which the shape's volume is `volume` [mm³], by bisection within ± 3 mm.
+double offset_for_volume(const Shape& shape, double volume) {
+  double low = -std::min(3.0, 0.9 * shape.inner_radius());
+  double high = 3.0;
+  if (shape.volume(low) > volume || shape.volume(high) < volume) return 0;
+  for (int i = 0; i < 24; ++i) {
+    const double middle = 0.5 * (low + high);
+    (shape.volume(middle) < volume ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+void settle_overlaps(Anatomy& a) {
+  for (Layer& layer : a.layers) {
+    double volume = 0;
+    for (const int m : layer.members) volume += a.structures[m].input_volume;
+    if (!(volume > 0)) continue;
+    layer.offset = offset_for_volume(*layer.solid, volume);
+    if (layer.members.size() == 1) a.structures[layer.members[0]].offset = layer.offset;
+  }
+  // Share of each solid that structures of higher priority take, counted on its own grid.
+  for (std::size_t l = 0; l < a.layers.size(); ++l) {
+    const Layer& layer = a.layers[l];
+    const auto* grid = dynamic_cast<const GridShape*>(layer.solid.get());
+    if (grid == nullptr) continue;
+    std::vector<double> own(a.structures.size(), 0), all(a.structures.size(), 0);
+    std::vector<double> taken(a.structures.size(), 0);
+    const double width = grid->spacing.mean();
+    for (int k = 0; k < grid->size[2]; ++k) {
+      for (int j = 0; j < grid->size[1]; ++j) {
+        for (int i = 0; i < grid->size[0]; ++i) {
+          const double d = grid->values[grid->at(i, j, k)] - layer.offset;
+          const double inside = std::clamp(0.5 - d / width, 0.0, 1.0);
+          if (inside == 0) continue;
+          const Vec3 p = grid->node(i, j, k);
+          const int m = a.member(layer, p);
+          all[m] += inside;
+          double lost = 0;
+          int by = -1;
+          for (std::size_t h = 0; h < l; ++h) {
+            const Layer& higher = a.layers[h];
+            if (!higher.box.contains(p)) continue;
+            const double part = std::clamp(0.5 - (higher.solid->distance(p) - higher.offset) / width, 0.0, 1.0);
+            if (part > lost) {
+              lost = part;
+              by = a.member(higher, p);
+            }
+          }
+          lost = std::min(lost, inside);
+          own[m] += inside - lost;
+          if (by >= 0) taken[by] += lost;
+        }
+      }
+    }
+    for (const int m : layer.members) {
+      Structure& s = a.structures[m];
+      if (all[m] > 0) s.input_volume *= own[m] / all[m];
+    }
+    const std::string& name = a.structures[layer.members[0]].name;
+    for (std::size_t h = 0; h < a.structures.size(); ++h) {
+      const double cc = taken[h] * grid->spacing.prod() / 1000;
+      const double smaller = std::min(a.structures[h].input_volume, layer.solid->volume(layer.offset)) / 1000;
+      if (name == "body" || !(cc > 0.01 * smaller) || cc < 0.005) continue;
+      a.notes.push_back(fmt::format("'{}' and '{}' overlap by {:.2f} cc; it is meshed as '{}'", a.structures[h].name,
+                                    name, cc, a.structures[h].name));
+    }
+  }
+}
+
+}  // namespace stylet::meshing

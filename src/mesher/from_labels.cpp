@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "anatomy.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace stylet::meshing {
+namespace {
+
+/// The image with its slice axis last: axis order, sizes and frame.
+struct Slices {
+  std::array<int, 3> axis{0, 1, 2};  ///< image axes used as u, v, n
+  std::array<int, 3> low{};          ///< first voxel of the part that is not background, with margin
+  std::array<int, 3> size{};         ///< voxels of that part
+  SliceFrame frame;
+  Vec3 spacing;
+};
+
+Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
+  const std::size_t voxels = static_cast<std::size_t>(image.size[0]) * image.size[1] * image.size[2];
+  if (voxels == 0 || image.labels.size() != voxels) {
+    return input_error(where, fmt::format("{} labels for {} voxels", image.labels.size(), voxels), "export it again");
+  }
+  if (!(image.spacing.minCoeff() > 0) || !image.spacing.allFinite() || !image.origin.allFinite() ||
+      !((image.direction.transpose() * image.direction - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-3)) {
+    return input_error(where, "the image frame is not orthogonal with positive spacing", "resample the mask");
+  }
+  Slices s;
+  // The slices lie across the axis of widest spacing; the last one when spacings are equal.
+  int n = 2;
+  for (const int a : {0, 1}) {
+    if (image.spacing[a] > 1.2 * image.spacing[n]) n = a;
+  }
+  s.axis = {n == 0 ? 1 : 0, n == 2 ? 1 : 2, n};
+  std::array<int, 3> low{image.size[0], image.size[1], image.size[2]};
+  std::array<int, 3> high{-1, -1, -1};
+  std::size_t v = 0;
+  for (int k = 0; k < image.size[2]; ++k) {
+    for (int j = 0; j < image.size[1]; ++j) {
+      for (int i = 0; i < image.size[0]; ++i, ++v) {
+        if (image.labels[v] == 0) continue;
+        const std::array<int, 3> c{i, j, k};
+        for (int a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], c[a]);
+          high[a] = std::max(high[a], c[a]);
+        }
+      }
+    }
+  }
+  if (high[0] < 0) return input_error(where, "every voxel is background", "choose a mask with a labelled structure");
+  if (high[n] == low[n]) {
+    return input_error(where, "the labels lie in one slice; a solid needs at least two", "segment more slices");
+  }
+  for (int a = 0; a < 3; ++a) {
+    const int image_axis = s.axis[a];
+    const int margin = a < 2 ? 2 + static_cast<int>(std::ceil(3.0 / image.spacing[image_axis])) : 0;
+    s.low[a] = low[image_axis] - margin;
+    s.size[a] = high[image_axis] - low[image_axis] + 1 + 2 * margin;
+    s.frame.axes.col(a) = image.direction.col(image_axis);
+    s.spacing[a] = image.spacing[image_axis];
+  }
+  s.frame.origin = image.origin;
+  return s;
+}
+
+/// In-plane distance fields of all voxels for which `inside` holds.
+template <class Inside>
+SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside) {
+  SliceFields f;
+  f.frame = s.frame;
+  f.low = Eigen::Vector2d(s.low[0] * s.spacing[0], s.low[1] * s.spacing[1]);
+  f.spacing = s.spacing.head<2>();
+  f.size = {s.size[0], s.size[1]};
+  f.gap = s.spacing[2];
+  std::vector<bool> mask(static_cast<std::size_t>(s.size[0]) * s.size[1]);
+  for (int k = 0; k < s.size[2]; ++k) {
+    for (int j = 0; j < s.size[1]; ++j) {
+      for (int i = 0; i < s.size[0]; ++i) {
+        std::array<int, 3> c{};
+        c[s.axis[0]] = s.low[0] + i;
+        c[s.axis[1]] = s.low[1] + j;
+        c[s.axis[2]] = s.low[2] + k;
+        bool in = true;
+        for (int a = 0; a < 3; ++a) in = in && c[a] >= 0 && c[a] < image.size[a];
+        if (in) {
+          in = inside(image.labels[(static_cast<std::size_t>(c[2]) * image.size[1] + c[1]) * image.size[0] + c[0]]);
+        }
+        mask[static_cast<std::size_t>(j) * s.size[0] + i] = in;
+      }
+    }
+    f.heights.push_back((s.low[2] + k) * s.spacing[2]);
+    f.fields.push_back(mask_distance(mask, s.size[0], s.size[1], s.spacing[0], s.spacing[1]));
+  }
+  return f;
+}
+
+/// Where the smoothed surface cuts the pixel rows and columns of the slices.
+std::vector<Vec3> boundary_points(const GridShape& g, double offset, const SliceFields& f) {
+  std::vector<Vec3> points;
+  for (std::size_t s = 0; s < f.heights.size(); ++s) {
+    if (f.fields[s].empty()) continue;
+    const auto at = [&](int i, int j) {
+      return f.frame.lps(Vec3(f.low.x() + i * f.spacing.x(), f.low.y() + j * f.spacing.y(), f.heights[s]));
+    };
+    for (int j = 0; j + 1 < f.size[1]; ++j) {
+      for (int i = 0; i + 1 < f.size[0]; ++i) {
+        const Vec3 p = at(i, j);
+        const double v = g.distance(p) - offset;
+        for (const Vec3& q : {at(i + 1, j), at(i, j + 1)}) {
+          const double w = g.distance(q) - offset;
+          if ((v < 0) != (w < 0)) points.push_back(p + v / (v - w) * (q - p));
+        }
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, const Progress& progress) {
+  Anatomy anatomy;
+  anatomy.source = image.source.empty() ? "label mask" : image.source;
+  auto slices = slices_of(image, anatomy.source);
+  if (!slices) return slices.error();
+  const Slices& s = *slices;
+
+  std::map<int, std::size_t> voxels;
+  for (const auto l : image.labels) {
+    if (l != 0) ++voxels[l];
+  }
+  std::map<int, std::string> region;  // label → canonical name
+  bool named = false;
+  if (!options.regions.empty()) {
+    for (const auto& [text, name] : options.regions) {
+      const auto it = std::find_if(voxels.begin(), voxels.end(), [&](const auto& v) {
+        const auto n = image.names.find(v.first);
+        return std::to_string(v.first) == text || (n != image.names.end() && n->second == text);
+      });
+      if (it == voxels.end()) {
+        std::vector<int> labels;
+        for (const auto& v : voxels) labels.push_back(v.first);
+        return input_error(anatomy.source, fmt::format("there is no label '{}'; the mask has {}", text, labels),
+                           "name one of these");
+      }
+      const std::string canonical = canonical_region(name);
+      region[it->first] = canonical.empty() ? name : canonical;
+      named = named || is_target_region(canonical);
+    }
+  } else {
+    for (const auto& [label, count] : voxels) {
+      const auto n = image.names.find(label);
+      const std::string canonical = n == image.names.end() ? "" : canonical_region(n->second);
+      named = named || is_target_region(canonical);
+      region[label] = !canonical.empty()       ? canonical
+                      : n != image.names.end() ? n->second
+                                               : fmt::format("label_{}", label);
+    }
+  }
+  if (!named) {
+    if (!options.regions.empty()) {
+      return input_error(anatomy.source,
+                         "none of the regions named is a target (prostate, a prostate zone, CTV, PTV, GTV)",
+                         "name the label of the gland 'prostate', its zones 'peripheral_zone' and 'transition_zone'");
+    }
+    anatomy.notes.push_back("no label is named as prostate or prostate zone: all labels together count as the target");
+  }
+  if (options.preset == MeshPreset::paper) {
+    for (auto& [label, name] : region) {
+      if (!named || is_target_region(name)) name = "prostate";
+    }
+    std::erase_if(region, [](const auto& r) { return r.second != "prostate"; });
+  }
+
+  std::map<std::string, std::set<int>> labels;  // region → labels
+  std::set<int> used;
+  for (const auto& [label, name] : region) {
+    labels[name].insert(label);
+    used.insert(label);
+  }
+  const double step = std::max(0.8 * std::min(s.spacing[0], s.spacing[1]), std::min(s.spacing[2], 1.0));
+  const double sigma = 0.9 * std::max(s.spacing[0], s.spacing[1]);
+  Layer layer;
+  std::size_t done = 0;
+  const SliceFields all = fields_of(image, s, [&](int l) { return used.contains(l); });
+  layer.solid = interpolate_fields(all, step, sigma, 0);
+  for (const auto& [name, set] : labels) {
+    report(progress, "interpolating slices", static_cast<double>(done++) / static_cast<double>(labels.size()));
+    const SliceFields own = fields_of(image, s, [&](int l) { return set.contains(l); });
+    auto shape = interpolate_fields(own, step, sigma, 0);
+    Structure structure;
+    structure.name = name;
+    structure.target = !named || is_target_region(name);
+    for (const int l : set) structure.input_volume += static_cast<double>(voxels[l]) * image.spacing.prod();
+    structure.boundary = boundary_points(*shape, 0, own);
+    structure.shape = std::move(shape);
+    layer.members.push_back(static_cast<int>(anatomy.structures.size()));
+    anatomy.structures.push_back(std::move(structure));
+  }
+  layer.box = layer.solid->box();
+  layer.box.min().array() -= 3.0;
+  layer.box.max().array() += 3.0;
+  anatomy.layers.push_back(std::move(layer));
+  return anatomy;
+}
+
+}  // namespace stylet::meshing

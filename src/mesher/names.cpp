@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/mesher/mesher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace stylet {
+namespace {
+
+/// Letters and digits only, lower case: "Femoral Head_Lt" → "femoralheadlt". Umlauts and the like are kept as they are.
+std::string plain(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    if (std::isalnum(u) != 0 || u >= 0x80) out += static_cast<char>(std::tolower(u));
+  }
+  return out;
+}
+
+struct Synonym {
+  std::string_view plain;
+  std::string_view canonical;
+};
+
+// Whole names only: "optBladder", "Prostate+5mm" or "Rectum_in_PTV" are planning helpers, not anatomy. Names after AAPM
+// TG-263 (Mayo et al. 2018), of the common planning systems, and in German, French, Italian and Spanish.
+constexpr std::array kSynonyms{Synonym{"prostate", "prostate"},
+                               Synonym{"pros", "prostate"},
+                               Synonym{"prost", "prostate"},
+                               Synonym{"prostata", "prostate"},
+                               Synonym{"próstata", "prostate"},
+                               Synonym{"prostategland", "prostate"},
+                               Synonym{"glandprostate", "prostate"},
+                               Synonym{"gland", "prostate"},
+                               Synonym{"wholegland", "prostate"},
+                               Synonym{"prostatewhole", "prostate"},
+                               Synonym{"wholeprostate", "prostate"},
+                               Synonym{"wg", "prostate"},
+                               Synonym{"prostatecapsule", "prostate"},
+                               Synonym{"prostatemr", "prostate"},
+                               Synonym{"prostatemri", "prostate"},
+                               Synonym{"prostatect", "prostate"},
+                               Synonym{"prostateus", "prostate"},
+                               Synonym{"prostatetrus", "prostate"},
+                               Synonym{"peripheralzone", "peripheral_zone"},
+                               Synonym{"pz", "peripheral_zone"},
+                               Synonym{"prostatepz", "peripheral_zone"},
+                               Synonym{"pzprostate", "peripheral_zone"},
+                               Synonym{"prostateperipheralzone", "peripheral_zone"},
+                               Synonym{"periperalzone", "peripheral_zone"},
+                               Synonym{"transitionzone", "transition_zone"},
+                               Synonym{"transitionalzone", "transition_zone"},
+                               Synonym{"transitionzoneprostate", "transition_zone"},
+                               Synonym{"tz", "transition_zone"},
+                               Synonym{"prostatetz", "transition_zone"},
+                               Synonym{"prostatetransitionzone", "transition_zone"},
+                               Synonym{"centralgland", "transition_zone"},
+                               Synonym{"cg", "transition_zone"},
+                               Synonym{"centralzone", "central_zone"},
+                               Synonym{"cz", "central_zone"},
+                               Synonym{"prostatecz", "central_zone"},
+                               Synonym{"prostatecentralzone", "central_zone"},
+                               Synonym{"afs", "anterior_stroma"},
+                               Synonym{"afms", "anterior_stroma"},
+                               Synonym{"anteriorstroma", "anterior_stroma"},
+                               Synonym{"anteriorfibromuscularstroma", "anterior_stroma"},
+                               Synonym{"prostateafs", "anterior_stroma"},
+                               Synonym{"urethra", "urethra"},
+                               Synonym{"urethraprostatic", "urethra"},
+                               Synonym{"prostaticurethra", "urethra"},
+                               Synonym{"urethraprostate", "urethra"},
+                               Synonym{"uretra", "urethra"},
+                               Synonym{"urethre", "urethra"},
+                               Synonym{"urètre", "urethra"},
+                               Synonym{"harnröhre", "urethra"},
+                               Synonym{"harnroehre", "urethra"},
+                               Synonym{"bladder", "bladder"},
+                               Synonym{"urinarybladder", "bladder"},
+                               Synonym{"bladderwall", "bladder"},
+                               Synonym{"wallbladder", "bladder"},
+                               Synonym{"blase", "bladder"},
+                               Synonym{"harnblase", "bladder"},
+                               Synonym{"vessie", "bladder"},
+                               Synonym{"vescica", "bladder"},
+                               Synonym{"vejiga", "bladder"},
+                               Synonym{"blad", "bladder"},
+                               Synonym{"rectum", "rectum"},
+                               Synonym{"rectalwall", "rectum"},
+                               Synonym{"rectumwall", "rectum"},
+                               Synonym{"wallrectum", "rectum"},
+                               Synonym{"rektum", "rectum"},
+                               Synonym{"recto", "rectum"},
+                               Synonym{"retto", "rectum"},
+                               Synonym{"enddarm", "rectum"},
+                               Synonym{"anorectum", "rectum"},
+                               Synonym{"rect", "rectum"},
+                               Synonym{"pubicarch", "pubic_arch"},
+                               Synonym{"pubis", "pubic_arch"},
+                               Synonym{"pubicbone", "pubic_arch"},
+                               Synonym{"pubicbones", "pubic_arch"},
+                               Synonym{"bonepubic", "pubic_arch"},
+                               Synonym{"bonepelvicpubis", "pubic_arch"},
+                               Synonym{"symphysis", "pubic_arch"},
+                               Synonym{"pubicsymphysis", "pubic_arch"},
+                               Synonym{"symphysispubis", "pubic_arch"},
+                               Synonym{"symphysispubica", "pubic_arch"},
+                               Synonym{"pubicsymphys", "pubic_arch"},
+                               Synonym{"arch", "pubic_arch"},
+                               Synonym{"pubicsymphysisbone", "pubic_arch"},
+                               Synonym{"symphyse", "pubic_arch"},
+                               Synonym{"schambein", "pubic_arch"},
+                               Synonym{"band", "band"},
+                               Synonym{"stiffband", "band"},
+                               Synonym{"puboprostaticligament", "band"},
+                               Synonym{"puboprostaticligaments", "band"},
+                               Synonym{"body", "body"},
+                               Synonym{"external", "body"},
+                               Synonym{"skin", "body"},
+                               Synonym{"patient", "body"},
+                               Synonym{"outline", "body"},
+                               Synonym{"patientoutline", "body"},
+                               Synonym{"outercontour", "body"},
+                               Synonym{"bodycontour", "body"},
+                               Synonym{"externalcontour", "body"},
+                               Synonym{"haut", "body"},
+                               Synonym{"körper", "body"},
+                               Synonym{"koerper", "body"},
+                               Synonym{"aussenkontur", "body"},
+                               Synonym{"außenkontur", "body"},
+                               Synonym{"corps", "body"},
+                               Synonym{"corpo", "body"},
+                               Synonym{"cuerpo", "body"},
+                               Synonym{"piel", "body"},
+                               Synonym{"contourexterne", "body"},
+                               Synonym{"perinealskin", "body"},
+                               Synonym{"surroundings", "body"},
+                               Synonym{"seminalvesicles", "seminal_vesicles"},
+                               Synonym{"seminalvesicle", "seminal_vesicles"},
+                               Synonym{"seminalves", "seminal_vesicles"},
+                               Synonym{"semvesicles", "seminal_vesicles"},
+                               Synonym{"vesiculaeseminales", "seminal_vesicles"},
+                               Synonym{"samenblasen", "seminal_vesicles"},
+                               Synonym{"sv", "seminal_vesicles"},
+                               Synonym{"svs", "seminal_vesicles"},
+                               Synonym{"semves", "seminal_vesicles"}};
+
+/// "l", "lt", "left" before or after one of the names of the femoral head.
+std::string femur(const std::string& p) {
+  constexpr std::array<std::string_view, 15> bones{"femur",       "femoralhead", "femoralheads",   "femhead",
+                                                   "femurhead",   "headfemur",   "femheadneck",    "femurheadneck",
+                                                   "femoralneck", "fh",          "femheadandneck", "hip",
+                                                   "femurkopf",   "hueftkopf",   "caput"};
+  struct Side {
+    std::string_view word, canonical;
+  };
+  constexpr std::array<Side, 8> sides{{{"left", "femur_left"},
+                                       {"lt", "femur_left"},
+                                       {"l", "femur_left"},
+                                       {"li", "femur_left"},
+                                       {"right", "femur_right"},
+                                       {"rt", "femur_right"},
+                                       {"r", "femur_right"},
+                                       {"re", "femur_right"}}};
+  for (const std::string_view bone : bones) {
+    for (const Side& side : sides) {
+      if (p == std::string(bone) + std::string(side.word) || p == std::string(side.word) + std::string(bone)) {
+        return std::string(side.canonical);
+      }
+    }
+  }
+  return {};
+}
+
+/// "PTV", "PTV1", "PTV_7800", "CTV 78 Gy", "CTVprostate".
+std::string planning_volume(std::string p) {
+  if (p.size() < 3) return {};
+  const std::string head = p.substr(0, 3);
+  if (head != "ptv" && head != "ctv" && head != "gtv") return {};
+  std::string rest = p.substr(3);
+  if (rest.starts_with("prostate")) rest.erase(0, 8);
+  if (rest.ends_with("gy")) rest.erase(rest.size() - 2);
+  const bool number = std::all_of(rest.begin(), rest.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return number ? head : std::string{};
+}
+
+}  // namespace
+
+std::string canonical_region(std::string_view name) {
+  const std::string p = plain(name);
+  for (const Synonym& s : kSynonyms) {
+    // A canonical name is its own synonym.
+    if (p == s.plain || name == s.canonical) return std::string(s.canonical);
+  }
+  if (std::string f = femur(p); !f.empty()) return f;
+  return planning_volume(p);
+}
+
+bool is_target_region(std::string_view c) {
+  return c == "prostate" || c == "peripheral_zone" || c == "transition_zone" || c == "central_zone" ||
+         c == "anterior_stroma" || c == "ptv" || c == "ctv" || c == "gtv";
+}
+
+}  // namespace stylet

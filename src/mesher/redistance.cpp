@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::meshing {
+namespace {
+
+constexpr float kFar = 1e6F;
+
+/// Distance of every node next to the zero surface, from where the surface cuts the grid lines through the node: the
+/// cuts along the three axes span a plane, whose distance d has 1/d² = Σ 1/cut². Others get kFar.
+std::vector<float> distance_beside_surface(const GridShape& g) {
+  std::vector<float> d(g.values.size(), kFar);
+  const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(g.size[0]),
+                                          static_cast<std::size_t>(g.size[0]) * g.size[1]};
+  for (int k = 0; k < g.size[2]; ++k) {
+    for (int j = 0; j < g.size[1]; ++j) {
+      for (int i = 0; i < g.size[0]; ++i) {
+        const std::array<int, 3> c{i, j, k};
+        const std::size_t n = g.at(i, j, k);
+        const double v = g.values[n];
+        double inverse2 = 0;
+        for (int a = 0; a < 3; ++a) {
+          double cut = HUGE_VAL;
+          for (const int step : {-1, 1}) {
+            if (c[a] + step < 0 || c[a] + step >= g.size[a]) continue;
+            const double w = g.values[step > 0 ? n + stride[a] : n - stride[a]];
+            if ((v < 0) == (w < 0)) continue;
+            cut = std::min(cut, v / (v - w) * g.spacing[a]);
+          }
+          if (cut < HUGE_VAL) inverse2 += 1 / std::max(cut * cut, 1e-12);
+        }
+        if (inverse2 > 0) d[n] = static_cast<float>(1 / std::sqrt(inverse2));
+      }
+    }
+  }
+  return d;
+}
+
+/// Solution t of Σ max(0, (t − a_i)/h_i)² = 1 for the smallest neighbour distances a_i along each axis (upwind
+/// Eikonal).
+double eikonal(std::array<double, 3> a, std::array<double, 3> h) {
+  for (int x = 0; x < 2; ++x) {
+    for (int y = 0; y < 2 - x; ++y) {
+      if (a[y] > a[y + 1]) {
+        std::swap(a[y], a[y + 1]);
+        std::swap(h[y], h[y + 1]);
+      }
+    }
+  }
+  double t = a[0] + h[0];
+  for (int n = 2; n <= 3 && t > a[n - 1]; ++n) {
+    double p = 0, q = 0, r = -1;  // p t² − 2 q t + r = 0
+    for (int i = 0; i < n; ++i) {
+      const double w = 1 / (h[i] * h[i]);
+      p += w;
+      q += w * a[i];
+      r += w * a[i] * a[i];
+    }
+    const double root = q * q - p * r;
+    if (root < 0) break;
+    t = (q + std::sqrt(root)) / p;
+  }
+  return t;
+}
+
+}  // namespace
+
+void redistance(GridShape& g) {
+  std::vector<float> d = distance_beside_surface(g);
+  const std::vector<float> fixed = d;
+  const std::array<double, 3> h{g.spacing[0], g.spacing[1], g.spacing[2]};
+  const auto near = [&](std::size_t n, std::size_t stride, int c, int last) {
+    return static_cast<double>(std::min(c > 0 ? d[n - stride] : kFar, c < last ? d[n + stride] : kFar));
+  };
+  const std::size_t dj = g.size[0];
+  const std::size_t dk = dj * g.size[1];
+  for (int sweep = 0; sweep < 8; ++sweep) {  // all eight sweep directions, once: enough for straight characteristics
+    const bool ri = (sweep & 1) != 0, rj = (sweep & 2) != 0, rk = (sweep & 4) != 0;
+    for (int kk = 0; kk < g.size[2]; ++kk) {
+      const int k = rk ? g.size[2] - 1 - kk : kk;
+      for (int jj = 0; jj < g.size[1]; ++jj) {
+        const int j = rj ? g.size[1] - 1 - jj : jj;
+        for (int ii = 0; ii < g.size[0]; ++ii) {
+          const int i = ri ? g.size[0] - 1 - ii : ii;
+          const std::size_t n = g.at(i, j, k);
+          if (fixed[n] < kFar) continue;
+          const std::array<double, 3> a{near(n, 1, i, g.size[0] - 1), near(n, dj, j, g.size[1] - 1),
+                                        near(n, dk, k, g.size[2] - 1)};
+          if (std::min({a[0], a[1], a[2]}) >= d[n]) continue;
+          d[n] = std::min(d[n], static_cast<float>(eikonal(a, h)));
+        }
+      }
+    }
+  }
+  for (std::size_t n = 0; n < d.size(); ++n) g.values[n] = g.values[n] < 0 ? -d[n] : d[n];
+}
+
+void smooth(GridShape& g, double sigma) {
+  if (!(sigma > 0)) return;
+  for (int a = 0; a < 3; ++a) {
+    const double s = sigma / g.spacing[a];
+    const int reach = static_cast<int>(std::ceil(3 * s));
+    if (s < 0.2) continue;
+    std::vector<double> w(reach + 1);
+    double sum = 0;
+    for (int i = 0; i <= reach; ++i) {
+      w[i] = std::exp(-0.5 * i * i / (s * s));
+      sum += i == 0 ? w[i] : 2 * w[i];
+    }
+    for (double& x : w) x /= sum;
+    const std::size_t stride = a == 0 ? 1 : a == 1 ? g.size[0] : static_cast<std::size_t>(g.size[0]) * g.size[1];
+    const int n = g.size[a];
+    std::vector<float> line(n);
+    const std::size_t lines = g.values.size() / n;
+    for (std::size_t l = 0; l < lines; ++l) {
+      const std::size_t start = l / stride * stride * n + l % stride;
+      for (int i = 0; i < n; ++i) line[i] = g.values[start + i * stride];
+      for (int i = 0; i < n; ++i) {
+        double v = w[0] * line[i];
+        for (int r = 1; r <= reach; ++r) v += w[r] * (line[std::max(0, i - r)] + line[std::min(n - 1, i + r)]);
+        g.values[start + i * stride] = static_cast<float>(v);
+      }
+    }
+  }
+}
+
+void round_edges(GridShape& g, double radius) {
+  if (!(radius > 0)) return;
+  for (float& v : g.values) v += static_cast<float>(radius);
+  redistance(g);
+  for (float& v : g.values) v -= static_cast<float>(radius);
+  redistance(g);
+}
+
+}  // namespace stylet::meshing

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "slice_frame.hpp"
+
+#include <memory>
+
+namespace stylet::meshing {
+
+/// A solid given by its signed distance: negative inside, positive outside.
+class Shape {
+ public:
+  virtual ~Shape() = default;
+  /// [mm], exact near the surface, an estimate of the right sign far away. @param p [mm] LPS
+  [[nodiscard]] virtual double distance(const Vec3& p) const = 0;
+  /// Box [mm] LPS that holds the solid.
+  [[nodiscard]] virtual Eigen::AlignedBox3d box() const = 0;
+  /// Volume of {distance < offset} [mm³].
+  [[nodiscard]] virtual double volume(double offset) const = 0;
+  /// Largest distance of an inner point from the surface [mm]: half the thickness of the solid's thickest part.
+  [[nodiscard]] virtual double inner_radius() const = 0;
+};
+
+using ShapePtr = std::shared_ptr<const Shape>;
+
+/// A grid of signed distances in a slice frame, interpolated trilinearly; beyond the grid the value at its rim plus the
+/// distance from it.
+class GridShape : public Shape {
+ public:
+  SliceFrame frame;
+  Vec3 low = Vec3::Zero();           ///< [mm] local coordinates of node (0,0,0)
+  Vec3 spacing = Vec3::Ones();       ///< [mm]
+  std::array<int, 3> size{0, 0, 0};  ///< nodes along u, v, n
+  std::vector<float> values;         ///< [mm], u fastest
+
+  [[nodiscard]] double distance(const Vec3& p) const override;
+  [[nodiscard]] Eigen::AlignedBox3d box() const override;
+  [[nodiscard]] double volume(double offset) const override;
+  [[nodiscard]] double inner_radius() const override;
+
+  [[nodiscard]] std::size_t at(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
+  }
+  [[nodiscard]] Vec3 node(int i, int j, int k) const { return frame.lps(low + spacing.cwiseProduct(Vec3(i, j, k))); }
+};
+
+/// Makes the values true distances again without moving their zero surface (fast sweeping, Zhao 2005).
+void redistance(GridShape& grid);
+
+/// Gaussian smoothing. @param sigma [mm]
+void smooth(GridShape& grid, double sigma);
+
+/// Rounds convex edges to the given radius [mm] by an opening (erosion, then dilation). Values must be distances, and
+/// are distances afterwards.
+void round_edges(GridShape& grid, double radius);
+
+/// A rod with round ends.
+class Capsule : public Shape {
+ public:
+  Capsule(const Vec3& from, const Vec3& to, double radius) : from_(from), to_(to), radius_(radius) {}
+  [[nodiscard]] double distance(const Vec3& p) const override;
+  [[nodiscard]] Eigen::AlignedBox3d box() const override;
+  [[nodiscard]] double volume(double offset) const override;
+  [[nodiscard]] double inner_radius() const override { return radius_; }
+
+ private:
+  Vec3 from_, to_;
+  double radius_;
+};
+
+/// |x/a|^p + |y/b|^p + |z/c|^p < 1: between an ellipsoid (p = 2) and a box (p → ∞), without edges.
+class Superquadric : public Shape {
+ public:
+  Superquadric(const Vec3& centre, const Vec3& half_axes, double power)
+      : centre_(centre), half_axes_(half_axes), power_(power) {}
+  [[nodiscard]] double distance(const Vec3& p) const override;
+  [[nodiscard]] Eigen::AlignedBox3d box() const override;
+  [[nodiscard]] double volume(double offset) const override;
+  [[nodiscard]] double inner_radius() const override { return half_axes_.minCoeff(); }
+
+ private:
+  Vec3 centre_, half_axes_;
+  double power_;
+};
+
+/// Signed distance of the solid between parallel slices: each slice's own signed distance field, interpolated along the
+/// slice normal (shape-based interpolation, Raya & Udupa 1990), closed by rounded caps half a slice beyond the last
+/// contours, smoothed and made a true distance.
+/// @param voxel wanted grid spacing [mm]
+/// @param sigma smoothing [mm]
+/// @param rounding radius of the convex edges [mm], 0 = as they are
+std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, const SliceFrame& frame, double voxel,
+                                              double sigma, double rounding);
+
+/// A stack of in-plane signed distance fields on one grid.
+struct SliceFields {
+  SliceFrame frame;
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();      ///< [mm] local position of pixel (0, 0)
+  Eigen::Vector2d spacing = Eigen::Vector2d::Ones();  ///< [mm]
+  std::array<int, 2> size{0, 0};
+  std::vector<double> heights;             ///< [mm] ascending (slices)
+  std::vector<std::vector<float>> fields;  ///< [mm] per slice (size[0]*size[1]), empty where the slice holds nothing
+  double gap = 0;                          ///< [mm] usual slice distance
+};
+
+/// The same from in-plane fields.
+/// @param step grid spacing along the normal [mm]
+std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma, double rounding);
+
+/// In-plane signed distance of a pixel mask to the middle line between its inner and outer pixels [mm] (nx*ny); empty
+/// when no pixel is set. Exact Euclidean distance between pixel centres (Felzenszwalb & Huttenlocher 2012).
+std::vector<float> mask_distance(const std::vector<bool>& mask, int nx, int ny, double dx, double dy);
+
+}  // namespace stylet::meshing
