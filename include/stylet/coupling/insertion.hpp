@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/laws.hpp"
+#include "stylet/coupling/track.hpp"
+#include "stylet/coupling/track_compliance.hpp"
+#include "stylet/needle/needle.hpp"
+
+#include <memory>
+#include <span>
+
+namespace stylet {
+
+/// What the tip does.
+enum class TipPhase {
+  air,       ///< outside the tissue
+  pressing,  ///< touches tissue it does not cut (yet)
+  cutting,   ///< moves the end of the track forward
+  in_track,  ///< behind the end of the track
+  bone,      ///< against a rigid region
+  exited     ///< through the far side
+};
+
+/// Things that happen to the needle in a step.
+enum class InsertionEventKind {
+  skin_contact,
+  puncture,
+  region_entered,
+  bone_contact,
+  exited,
+  re_entered,
+  withdrawn,
+  grazed
+};
+struct InsertionEvent {
+  InsertionEventKind kind{};
+  int region = -1;
+};
+
+/// What a step came to. Flags tell what to do: nothing is repaired in silence.
+struct StepReport {
+  enum Flag : unsigned {
+    not_converged = 1u << 0,       ///< the last iterate was kept; use a smaller time step
+    contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step
+    compliance_missing = 1u << 2,  ///< the tip was held: call prepare() between steps
+    out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
+    too_fast = 1u << 4             ///< the base moved further in one step than the sub-steps can follow
+  };
+  unsigned flags = 0;
+  int iterations = 0;  ///< Newton iterations, summed over sub-steps
+  int pivots = 0;      ///< changes of contact state
+  int contacts = 0;    ///< tip included when it touches
+  int sticking = 0;
+  double sliding_share = 0.0;  ///< share of the inserted length that slides
+  TipPhase tip = TipPhase::air;
+  Vec3 tip_position = Vec3::Zero();  ///< [mm] LPS
+  Vec3 hand_force = Vec3::Zero();    ///< [N] LPS, exerted by the hand on the base
+  Vec3 hand_torque = Vec3::Zero();   ///< [N mm] LPS, about the base
+  double inserted_mm = 0.0;          ///< length of shaft in tissue
+  int events = 0;
+  std::array<InsertionEvent, 16> event{};
+};
+
+/// Contact as seen from outside.
+struct ContactState {
+  Vec3 position = Vec3::Zero();  ///< [mm] LPS, of the tissue point, deformed
+  Vec3 force = Vec3::Zero();     ///< [N] on the tissue
+  double s = 0.0;                ///< [mm] arc length on the needle
+  double length = 0.0;           ///< [mm] tributary length
+  bool sticking = false;
+  bool tip = false;
+};
+
+/// What the tissue contributes; everything outlives the Insertion.
+struct InsertionTissue {
+  std::shared_ptr<ComplianceStore> store;
+  const Locator* locator = nullptr;
+  std::vector<RegionLaws> laws;  ///< one per region of the mesh
+};
+
+/// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
+/// and keeps the track. Quasi-static; time enters through viscous friction only. step() does not allocate, throw, lock
+/// or log. docs/theory/coupling.md has the model.
+class Insertion {
+ public:
+  Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings);
+  ~Insertion();
+  Insertion(Insertion&&) noexcept;
+  Insertion& operator=(Insertion&&) noexcept;
+
+  /// Places the needle without touching tissue; the first call before any step.
+  void place(const Pose& base);
+
+  /// Moves the base from where it is to `base` in dt seconds.
+  StepReport step(const Pose& base, double dt);
+
+  /// Makes the compliance of all elements within `radius` of the tip available. Call between steps; returns at once
+  /// when the tip has not moved far. Allocates and solves.
+  void prepare(double radius_mm);
+
+  [[nodiscard]] const Needle& needle() const;
+  [[nodiscard]] const TrackCompliance& compliance() const;
+  [[nodiscard]] const CouplingSettings& settings() const;
+
+  /// Contacts now, the tip first when it touches. Allocates.
+  [[nodiscard]] std::vector<ContactState> contacts() const;
+
+  /// Displacement of the mesh's nodes [mm] (3n): one solve with the factor. Allocates; for pictures, never in the loop.
+  [[nodiscard]] VecX displacement() const;
+
+  /// Nodal forces equivalent to the contact forces [N] (3n).
+  [[nodiscard]] VecX nodal_forces() const;
+
+  /// ½ fᵀ A f, elastic energy in the tissue [N mm].
+  [[nodiscard]] double tissue_energy() const;
+
+  /// The current track, and those of earlier insertions.
+  [[nodiscard]] const Track& track() const;
+  [[nodiscard]] std::span<const Track> old_tracks() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stylet

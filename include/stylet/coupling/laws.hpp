@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace stylet {
+
+/// Friction between shaft and tissue per unit of inserted length. Static limit D; sliding C + b |v|, C ≤ D.
+/// @cite Okamura2004
+struct FrictionLaw {
+  double static_N_per_mm = 0.0;     ///< D
+  double coulomb_N_per_mm = 0.0;    ///< C
+  double viscous_Ns_per_mm2 = 0.0;  ///< b
+};
+
+/// What a region does to the needle.
+struct RegionLaws {
+  double cutting_N = 0.0;   ///< axial force at which the tip cuts
+  double puncture_N = 0.0;  ///< force that breaks the region's surface, 0 = no membrane
+  FrictionLaw friction;
+  bool rigid = false;        ///< bone: all its nodes are fixed, the tip cannot cut it
+  bool surrounding = false;  ///< fills the space between organs; its membrane is the outer surface only
+};
+
+/// Force that breaks the surface between two regions when the tip goes from `from` into `to`. The surface belongs to
+/// the organ, not to the tissue that surrounds it; between two organs the stronger membrane counts.
+/// @param from region number, -1 outside the patient
+inline double membrane_force(const std::vector<RegionLaws>& laws, int from, int to) {
+  const RegionLaws& into = laws[static_cast<std::size_t>(to)];
+  if (into.rigid) return std::numeric_limits<double>::infinity();
+  if (from < 0) return into.puncture_N;
+  const RegionLaws& out_of = laws[static_cast<std::size_t>(from)];
+  if (into.surrounding) return out_of.surrounding ? 0.0 : out_of.puncture_N;
+  if (out_of.surrounding) return into.puncture_N;
+  return into.puncture_N > out_of.puncture_N ? into.puncture_N : out_of.puncture_N;
+}
+
+/// Settings of the contact between needle and tissue.
+struct CouplingSettings {
+  enum class Method { node_addition, embedded };
+  enum class Rule { interior, paper };
+  Method method = Method::node_addition;
+  Rule rule = Rule::interior;
+  double spacing_mm = 4.0;     ///< between contacts along the track
+  double merge_mm = 1.27;      ///< contacts are never closer than this: twice the needle's radius
+  double independence = 0.05;  ///< a contact must keep this share of its own compliance when its neighbours are held
+  double tip_viscosity_Ns_per_mm =
+      2e-3;  ///< cutting force grows by this times the speed of cutting; makes a puncture's drop a motion
+  double zero_band_mm_per_s = 0.005;  ///< Karnopp: slower sliding than this is sticking
+  double grazing_cos = 0.17;  ///< the tip slides off where |axis · surface normal| is smaller (80° from the normal)
+  double max_advance_mm = 0.25;             ///< of the base in one sub-step
+  double axial_compliance_mm_per_N = 2e-3;  ///< of the steel shaft, L / (E A)
+  double join_mm = 1.27;  ///< a new entry this near to an old track joins it: twice the needle's radius
+  int capacity = 96;      ///< largest number of contacts
+};
+
+}  // namespace stylet

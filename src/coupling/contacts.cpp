@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "insertion_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// Laying, waking and dropping of shaft contacts. A contact young enough to lie within one spacing of the tip yields:
+/// softness c₀(1/ρ − 1) with ρ = distance to the tip / spacing, and its share of the friction grows with ρ. It is born
+/// and dies with zero force, so neither moves the base force.
+namespace stylet {
+
+namespace {
+constexpr int kTriesPerContact = 8;  ///< places looked at, a sixteenth of the spacing apart
+constexpr double kYoungest = 1e-6;   ///< smallest ρ
+}  // namespace
+
+bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& at, Placement placement,
+                                const Vec3& travel, StepReport& report) {
+  if (track.marks.size() == track.marks.capacity()) {
+    report.flags |= StepReport::out_of_contacts;
+    return true;  // counts as laid: no other place would be better
+  }
+  const TrackCompliance::Added added = compliance.add(at, x, placement, travel);
+  if (added.refusal == TrackCompliance::Refusal::geometry) return false;
+  if (added.refusal == TrackCompliance::Refusal::missing) report.flags |= StepReport::compliance_missing;
+  if (added.refusal == TrackCompliance::Refusal::capacity) report.flags |= StepReport::out_of_contacts;
+  if (added.point < 0) return true;
+
+  if (placement == Placement::embedded) {
+    // Interpolated contacts in one element follow from each other as soon as there are more than the element can tell
+    // apart: such a contact is not laid, and its neighbours share its length.
+    std::array<int, TrackCompliance::kNeighbours> neighbours{};
+    int count = 0;
+    for (auto mark = track.marks.rbegin(); mark != track.marks.rend() && count < TrackCompliance::kNeighbours; ++mark) {
+      if (mark->point >= 0) neighbours[static_cast<std::size_t>(count++)] = mark->point;
+    }
+    if (compliance.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)}) <
+        settings.independence) {
+      compliance.remove_last_embedded();
+      return true;
+    }
+  }
+  track.marks.push_back({xi, x, at, region_of(at.tet), added.point});
+  return true;
+}
+
+/// Contacts along the piece of track just cut, from `from` at from_xi to track.end.
+void Insertion::Parts::lay_marks(const Vec3& from, double from_xi, const MaterialPoint& from_at, StepReport& report) {
+  if (settings.method == CouplingSettings::Method::node_addition && settings.rule == CouplingSettings::Rule::paper) {
+    lay_node_addition_on_faces(from, from_xi, from_at.tet, report);
+    return;
+  }
+  const Vec3 direction = (track.end - from).normalized();
+  const bool nodes = settings.method == CouplingSettings::Method::node_addition;
+  while (candidate_xi <= track.end_xi) {
+    const Vec3 x = from + std::max(0.0, candidate_xi - from_xi) * direction;
+    const auto at = tissue.locator->find(x, tip.at.tet, -direction);
+    bool laid = !at.has_value();
+    if (at) {
+      laid = lay_mark(candidate_xi, x, *at, nodes ? Placement::interior : Placement::embedded, direction, report);
+      // A track that runs along a face or an edge leaves no room for a node: interpolate there.
+      if (!laid && candidate_tries + 1 >= kTriesPerContact)
+        laid = lay_mark(candidate_xi, x, *at, Placement::embedded, direction, report);
+    }
+    if (laid) {
+      candidate_tries = 0;
+      candidate_xi += settings.spacing_mm;
+    } else {
+      ++candidate_tries;
+      candidate_xi += settings.spacing_mm / 16.0;
+    }
+  }
+}
+
+/// The paper's rule: a node wherever the tip passes from one element into the next (Goksel et al. 2005).
+void Insertion::Parts::lay_node_addition_on_faces(const Vec3& from, double from_xi, Index tet, StepReport& report) {
+  const Locator& locator = *tissue.locator;
+  const Vec3 to = track.end;
+  const double piece = (to - from).norm();
+  if (piece <= 0.0) return;
+  const Vec3 direction = (to - from) / piece;
+  if (from_xi == 0.0 && track.marks.empty()) {  // the skin: a face with one element
+    lay_mark(0.0, from, {tet, locator.weights(tet, from)}, Placement::face, direction, report);
+  }
+  double done = 0.0;
+  for (int steps = 0; steps < 64 && tet != tip.at.tet; ++steps) {
+    const Vec4 here = locator.weights(tet, from);
+    const Vec4 there = locator.weights(tet, to);
+    double first = 2.0;
+    int local = -1;
+    for (int i = 0; i < 4; ++i) {
+      if (there[i] >= 0.0 || there[i] >= here[i]) continue;
+      const double t = here[i] / (here[i] - there[i]);
+      if (t >= done - 1e-9 && t < first) {
+        first = t;
+        local = i;
+      }
+    }
+    if (local < 0 || first > 1.0) break;
+    const Vec3 x = from + first * (to - from);
+    const double xi = from_xi + first * piece;
+    const double last_xi = track.marks.empty() ? -1e9 : track.marks.back().xi;
+    if (xi - last_xi >= settings.merge_mm) {
+      lay_mark(xi, x, {tet, locator.weights(tet, x)}, Placement::face, direction, report);
+    }
+    done = first;
+    tet = locator.topology().neighbour[static_cast<std::size_t>(tet)][static_cast<std::size_t>(local)];
+    if (tet < 0) break;
+  }
+}
+
+/// Contacts the tip has passed come alive; contacts that slid off the tip are dropped. Grips are always the first
+/// marks.
+void Insertion::Parts::wake_and_drop(StepReport& report) {
+  while (!grips.empty() && grips.back().s >= length()) grips.pop_back();
+
+  const Vec3 tip_now = needle->point(length());
+  const Vec3 t = needle->tangent(length());
+  while (grips.size() < track.marks.size()) {
+    Track::Mark& mark = track.marks[grips.size()];
+    if (mark.point < 0) {  // on an old track: the tissue model has forgotten it since
+      if (t.dot(mark.x - tip_now) > settings.spacing_mm) break;
+      const bool nodes = settings.method == CouplingSettings::Method::node_addition;
+      const bool paper = settings.rule == CouplingSettings::Rule::paper;
+      auto added = compliance.add(mark.at, mark.x,
+                                  !nodes  ? Placement::embedded
+                                  : paper ? Placement::face
+                                          : Placement::interior,
+                                  t);
+      if (added.refusal == TrackCompliance::Refusal::geometry)
+        added = compliance.add(mark.at, mark.x, Placement::embedded);
+      if (added.point < 0) {
+        report.flags |= added.refusal == TrackCompliance::Refusal::missing ? StepReport::compliance_missing
+                                                                           : StepReport::out_of_contacts;
+        break;
+      }
+      mark.point = added.point;
+    }
+    const double ahead = t.dot(mark.x + tissue_displacement(mark.point) - tip_now);
+    if (ahead >= 0.0) break;
+    Grip grip;
+    grip.point = mark.point;
+    grip.xi = mark.xi;
+    grip.x = mark.x;
+    grip.s = length() + ahead;
+    grip.law = tissue.laws[static_cast<std::size_t>(mark.region)].friction;
+    grip.state = Grip::State::forward;
+    grips.push_back(grip);
+  }
+  share_length();
+}
+
+/// Tributary lengths, softness of young contacts, and the hand-over of the tip's lateral hold to the shaft.
+void Insertion::Parts::share_length() {
+  const double end = length();
+  for (Grip& grip : grips) {
+    const double rho = std::clamp((end - grip.s) / settings.spacing_mm, kYoungest, 1.0);
+    const double own = compliance(grip.point, grip.point).trace() / 3.0;
+    grip.softness = own * (1.0 / rho - 1.0);
+    grip.length = 0.0;
+  }
+  for (std::size_t k = 0; k < grips.size(); ++k) {
+    Grip& grip = grips[k];
+    const double rho = std::clamp((end - grip.s) / settings.spacing_mm, 0.0, 1.0);
+    const double before = k == 0 ? grip.xi : grip.xi - grips[k - 1].xi;
+    if (k == 0) {
+      grip.length += before * rho;
+    } else {
+      grip.length += 0.5 * before * rho;
+      grips[k - 1].length += before * (1.0 - 0.5 * rho);
+    }
+    if (k + 1 == grips.size()) {
+      double after = std::max(0.0, end - grip.s);
+      if (track.open) after = std::min(after, std::max(0.0, track.air_from_xi - grip.xi));
+      grip.length += after;
+    }
+  }
+
+  if (grips.empty()) {
+    tip.lateral_softness = 0.0;
+    return;
+  }
+  const double rho = std::clamp((end - grips.front().s) / settings.spacing_mm, 0.0, 1.0);
+  const double own = compliance(TrackCompliance::kTip, TrackCompliance::kTip).trace() / 3.0;
+  tip.lateral_softness = rho >= 1.0 - kYoungest ? std::numeric_limits<double>::infinity() : own * rho / (1.0 - rho);
+}
+
+}  // namespace stylet

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "insertion_parts.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+/// The tip: where it cuts, what surfaces it meets, when it punctures them.
+namespace stylet {
+
+namespace {
+/// How far ahead a sub-step may ever cut [mm]; the next surface is looked for within this.
+constexpr double kReach_mm = 4.0;
+/// The cut returns to the needle's axis over about this many needle radii, never more steeply than kSteepest.
+constexpr double kSteepest = 0.5;
+}  // namespace
+
+int Insertion::Parts::region_of(Index tet) const {
+  return tet < 0 ? -1 : tissue.locator->mesh().tet_region[static_cast<std::size_t>(tet)];
+}
+
+bool Insertion::Parts::available(Index tet) const {
+  const auto& nodes = tissue.locator->mesh().tets[static_cast<std::size_t>(tet)];
+  return std::all_of(nodes.begin(), nodes.end(), [this](Index node) { return tissue.store->has(node); });
+}
+
+/// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; tissue
+/// turned by the deformation gradient F = I + ∇u is cut along F⁻¹ t. Where the track's end has drifted off the axis
+/// (the base moved sideways while the tip did not cut) the cut leads back to the axis.
+void Insertion::Parts::aim_tip() {
+  gather_forces();
+  const Vec3 t = needle->tangent(length());
+  const Mat3 F = Mat3::Identity() + compliance.gradient_at_tip(forces.leftCols(compliance.points()));
+  Vec3 along = t;
+  if (!std::isfinite(tip.lateral_softness)) {
+    const Vec3 gap = tip.x + tissue_displacement(TrackCompliance::kTip) - needle->point(length());
+    Vec3 back = -(gap - t * t.dot(gap)) / settings.merge_mm;
+    if (back.norm() > kSteepest) back *= kSteepest / back.norm();
+    along += back;
+  }
+  Vec3 d = F.determinant() > 0.2 ? Vec3(F.inverse() * along) : along;
+  // Strains beyond the linear model must not turn the cut around.
+  if (d.dot(t) < 0.5 * d.norm()) d = along;
+  tip.direction = d.normalized();
+}
+
+/// Puts the end of the track `advance` beyond where it was at the start of the sub-step, or on the first surface
+/// before.
+void Insertion::Parts::march(double advance) {
+  advance = std::min(advance, kReach_mm);
+  const Vec3 target = tip.x_start + advance * tip.direction;
+  MaterialPoint end;
+  tip.blocked = false;
+  if (const auto crossing = tissue.locator->first_crossing(tip.x_start, tip.at_start.tet, target, end)) {
+    tip.blocked = true;
+    tip.crossing = *crossing;
+    tip.x = tip.x_start + crossing->t * (target - tip.x_start);
+    end.tet = crossing->tet;
+    end.weights = tissue.locator->weights(end.tet, tip.x);
+  } else {
+    tip.x = target;
+  }
+  if (!available(end.tet)) {  // the row of that element is not there: hold the tip where it was
+    tip.x = tip.x_start;
+    end = tip.at_start;
+    tip.blocked = false;
+  }
+  tip.at = end;
+  tip.advance = (tip.x - tip.x_start).norm();
+  compliance.move_tip(tip.at, tip.x);
+}
+
+/// The force on the tip has reached its limit: a membrane breaks, or the cut simply goes on.
+void Insertion::Parts::start_cut(StepReport& report) {
+  tip.state = Tip::State::cut;
+  if (!tip.at_membrane) return;
+  const int region = region_of(tip.next_tet);
+  add_event(report, InsertionEventKind::puncture, region);
+  cross_surface(report);
+}
+
+/// Goes over to the element behind the surface that x lies on.
+void Insertion::Parts::cross_surface(StepReport& report) {
+  const int before = region_of(tip.at.tet);
+  const int region = region_of(tip.next_tet);
+  tip.at_membrane = false;
+  if (tip.next_tet < 0) {
+    phase = TipPhase::exited;
+    track.open = true;
+    track.air_from_xi = track.end_xi;
+    tip.touching = false;
+    tip.state = Tip::State::open;
+    tip.force.setZero();
+    air_tip = tip.x;
+    add_event(report, InsertionEventKind::exited, before);
+    return;
+  }
+  if (tip.next_tet != tip.at.tet) {
+    tip.at.tet = tip.next_tet;
+    tip.at.weights = tissue.locator->weights(tip.at.tet, tip.x);
+    compliance.move_tip(tip.at, tip.x);
+  }
+  tip.at_start = tip.at;
+  tip.x_start = tip.x;
+  tip.advance = 0.0;
+  tip.cutting = tissue.laws[static_cast<std::size_t>(region)].cutting_N;
+  tip.limit = tip.cutting;
+  add_event(report, InsertionEventKind::region_entered, region);
+}
+
+/// After the sub-step's balance: the track grows by what was cut; a surface met becomes a membrane, a bone, or the way
+/// out.
+void Insertion::Parts::commit_tip(StepReport& report) {
+  if (tip.touching && tip.advance > 0.0) {
+    const double from_xi = track.end_xi;
+    const Vec3 from = tip.x_start;
+    track.end = tip.x;
+    track.end_at = tip.at;
+    track.end_xi += tip.advance;
+    lay_marks(from, from_xi, tip.at_start, report);
+  }
+  if (tip.touching && tip.blocked) {
+    tip.blocked = false;
+    const auto face = static_cast<std::size_t>(tip.crossing.local);
+    tip.next_tet = tissue.locator->topology().neighbour[static_cast<std::size_t>(tip.at.tet)][face];
+    const int from = region_of(tip.at.tet);
+    const int to = region_of(tip.next_tet);
+    if (to < 0) {
+      cross_surface(report);
+    } else {
+      const double membrane = membrane_force(tissue.laws, from, to);
+      if (membrane <= tissue.laws[static_cast<std::size_t>(to)].cutting_N) {
+        cross_surface(report);  // no membrane, or none stronger than the tissue behind it
+        tip.state = Tip::State::cut;
+      } else {
+        tip.at_membrane = true;
+        tip.limit = membrane;
+        if (std::isinf(membrane)) add_event(report, InsertionEventKind::bone_contact, to);
+      }
+    }
+  }
+  if (!tip.touching) return;
+  switch (tip.state) {
+    case Tip::State::open:
+      phase = TipPhase::in_track;
+      break;
+    case Tip::State::cut:
+      phase = TipPhase::cutting;
+      break;
+    case Tip::State::stick:
+      phase = std::isinf(tip.limit) ? TipPhase::bone : TipPhase::pressing;
+      break;
+  }
+}
+
+/// The tip is in the air and moved from `from` to `to`: does it meet the outer surface?
+void Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& report) {
+  const auto crossing = tissue.locator->first_entry(from, to);
+  if (!crossing) return;
+  const Vec3 x = from + crossing->t * (to - from);
+  const Vec3 inwards = -tissue.locator->face_normal(crossing->tet, crossing->local);
+  const int region = region_of(crossing->tet);
+  if (inwards.dot(needle->tangent(length())) < settings.grazing_cos) {
+    add_event(report, InsertionEventKind::grazed, region);
+    return;
+  }
+  if (!available(crossing->tet)) {
+    report.flags |= StepReport::compliance_missing;
+    return;
+  }
+  touch_surface(*crossing, x, report,
+                phase == TipPhase::exited ? InsertionEventKind::re_entered : InsertionEventKind::skin_contact);
+}
+
+/// Starts a track at a surface point, or joins an old one that begins there.
+void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report,
+                                     InsertionEventKind kind) {
+  const int region = region_of(crossing.tet);
+  const Vec3 t = needle->tangent(length());
+  add_event(report, kind, region);
+  tip = Tip{};
+  tip.touching = true;
+  tip.x = x;
+  tip.at = {crossing.tet, tissue.locator->weights(crossing.tet, x)};
+
+  if (kind == InsertionEventKind::skin_contact) {
+    joined = -1;
+    for (std::size_t k = 0; k < old_tracks.size(); ++k) {
+      const Track& old = old_tracks[k];
+      if ((old.entry - x).norm() < settings.join_mm && old.entry_direction.dot(t) > 0.98) joined = static_cast<int>(k);
+    }
+    if (joined >= 0) {
+      track = old_tracks[static_cast<std::size_t>(joined)];
+      for (Track::Mark& mark : track.marks) mark.point = -1;
+      tip.touching = !track.open;
+      tip.x = track.end;
+      tip.at = track.end_at;
+      tip.state = Tip::State::open;
+      phase = TipPhase::in_track;
+    } else {
+      track.entry = x;
+      track.entry_direction = t;
+      track.marks.clear();
+      track.end_xi = 0.0;
+      track.open = false;
+    }
+    candidate_xi = track.end_xi + (joined >= 0 ? 1.0 : 0.5) * settings.spacing_mm;
+    candidate_tries = 0;
+  } else {
+    track.end_xi += (x - track.end).norm();  // the needle crossed a gap outside the tissue
+    track.open = false;
+    candidate_xi = track.end_xi + 0.5 * settings.spacing_mm;
+    candidate_tries = 0;
+  }
+  if (joined < 0 || kind != InsertionEventKind::skin_contact) {
+    const double membrane = membrane_force(tissue.laws, -1, region);
+    tip.next_tet = crossing.tet;
+    tip.at_membrane = true;
+    tip.cutting = tissue.laws[static_cast<std::size_t>(region)].cutting_N;
+    tip.limit = std::max(membrane, tip.cutting);
+    tip.state = Tip::State::stick;
+    phase = std::isinf(membrane) ? TipPhase::bone : TipPhase::pressing;
+    if (std::isinf(membrane)) add_event(report, InsertionEventKind::bone_contact, region);
+    track.end = x;
+    track.end_at = tip.at;
+  } else {
+    const int inside = region_of(tip.at.tet);
+    tip.cutting = tissue.laws[static_cast<std::size_t>(inside)].cutting_N;
+    tip.limit = tip.cutting;
+  }
+  tip.x_start = tip.x;
+  tip.at_start = tip.at;
+  if (!compliance.move_tip(tip.at, tip.x)) report.flags |= StepReport::compliance_missing;
+}
+
+}  // namespace stylet

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "insertion_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+constexpr int kMaxSubSteps = 64;
+constexpr std::size_t kOldTracks = 64;
+}  // namespace
+
+Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_)
+    : tissue(std::move(tissue_)),
+      needle(std::move(needle_)),
+      settings(settings_),
+      compliance(tissue.store, *tissue.locator, settings_.capacity) {
+  const auto capacity = static_cast<std::size_t>(settings.capacity);
+  const Eigen::Index size = 3 * (settings.capacity + 1);
+  track.marks.reserve(capacity);
+  old_tracks.reserve(kOldTracks);
+  grips.reserve(capacity);
+  loads.reserve(capacity + 1);
+  frames.resize(capacity + 1);
+  rows.reserve(static_cast<std::size_t>(size));
+  N = MatX::Zero(size, size);
+  M = MatX::Zero(size, size);
+  reduced = MatX::Zero(size, size);
+  free = rhs = lambda = solution = diagonal = softening = VecX::Zero(size);
+  forces = MatX::Zero(3, settings.capacity + 1);
+}
+
+void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, int region) {
+  if (report.events < static_cast<int>(report.event.size()))
+    report.event[static_cast<std::size_t>(report.events++)] = {kind, region};
+}
+
+/// The needle is out: the tissue model is what it was before the first contact. The tracks stay known.
+void Insertion::Parts::finish_insertion(StepReport& report) {
+  if (track.end_xi > 0.0) {
+    if (joined >= 0) {
+      std::swap(old_tracks[static_cast<std::size_t>(joined)], track);
+    } else {
+      if (old_tracks.size() == kOldTracks) {
+        std::rotate(old_tracks.begin(), old_tracks.begin() + 1, old_tracks.end());
+        std::swap(old_tracks.back(), track);
+      } else {
+        old_tracks.emplace_back();
+        old_tracks.back().marks.reserve(static_cast<std::size_t>(settings.capacity));
+        std::swap(old_tracks.back(), track);
+      }
+    }
+  }
+  track.marks.clear();
+  track.end_xi = 0.0;
+  track.open = false;
+  joined = -1;
+  grips.clear();
+  tip = Tip{};
+  compliance.reset();
+  needle->straighten();
+  phase = TipPhase::air;
+  air_tip = needle->point(length());
+  add_event(report, InsertionEventKind::withdrawn, -1);
+}
+
+void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) {
+  needle->set_base(pose);
+  if (phase == TipPhase::air) {
+    const Vec3 now = needle->point(length());
+    enter(air_tip, now, report);
+    if (phase == TipPhase::air) {
+      air_tip = now;
+      return;
+    }
+    share_length();
+  }
+  solve_equilibrium(h, report);
+  for (Grip& grip : grips) {
+    const double speed = std::abs(grip.s - grip.s_start) / h;
+    if (grip.state != Grip::State::stick && speed < settings.zero_band_mm_per_s) grip.state = Grip::State::stick;
+  }
+  commit_tip(report);
+  wake_and_drop(report);
+
+  const Vec3 tip_now = needle->point(length());
+  const Vec3 t = needle->tangent(length());
+  if (track.open) {
+    // The end of an open track is a hole in the far surface: behind it the tip is in the track, beyond it in the air.
+    const Vec3 shift = tissue_displacement(TrackCompliance::kTip);
+    const double ahead = t.dot(track.end + shift - tip_now);
+    const Vec3 now = tip_now - shift;
+    if (ahead > 0.0 && phase == TipPhase::exited) {
+      phase = TipPhase::in_track;
+      add_event(report, InsertionEventKind::re_entered, region_of(track.end_at.tet));
+    } else if (ahead <= 0.0 && phase == TipPhase::in_track) {
+      phase = TipPhase::exited;
+      add_event(report, InsertionEventKind::exited, region_of(track.end_at.tet));
+    } else if (phase == TipPhase::exited) {
+      enter(air_tip, now, report);
+    }
+    air_tip = now;
+  }
+  if (grips.empty() && (!tip.touching || tip.state == Tip::State::open) && t.dot(track.entry - tip_now) > 0.0) {
+    finish_insertion(report);
+  }
+}
+
+void Insertion::Parts::summarise(StepReport& report) const {
+  report.tip = phase;
+  report.tip_position = needle->point(length());
+  const bool tip_holds = tip.touching && tip.state != Tip::State::open;
+  report.contacts = static_cast<int>(grips.size()) + (tip_holds ? 1 : 0);
+  report.hand_force = tip.force;
+  report.hand_torque = (needle->point(length()) - base.origin).cross(tip.force);
+  double sliding = 0.0;
+  for (const Grip& grip : grips) {
+    report.hand_force += grip.force;
+    report.hand_torque += (needle->point(std::clamp(grip.s, 0.0, length())) - base.origin).cross(grip.force);
+    report.inserted_mm += grip.length;
+    if (grip.state == Grip::State::stick) {
+      ++report.sticking;
+    } else {
+      sliding += grip.length;
+    }
+  }
+  if (tip_holds && tip.state == Tip::State::stick) ++report.sticking;
+  report.sliding_share = report.inserted_mm > 0.0 ? sliding / report.inserted_mm : 0.0;
+}
+
+Insertion::Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings)
+    : parts_(std::make_unique<Parts>(std::move(tissue), std::move(needle), settings)) {}
+Insertion::~Insertion() = default;
+Insertion::Insertion(Insertion&&) noexcept = default;
+Insertion& Insertion::operator=(Insertion&&) noexcept = default;
+
+void Insertion::place(const Pose& base) {
+  parts_->base = base;
+  parts_->needle->set_base(base);
+  parts_->air_tip = parts_->needle->point(parts_->length());
+}
+
+StepReport Insertion::step(const Pose& base, double dt) {
+  Parts& p = *parts_;
+  StepReport report;
+  const Pose from = p.base;
+  const double turn = 2.0 * std::acos(std::min(1.0, std::abs(from.rotation.dot(base.rotation))));
+  const double way = (base.origin - from.origin).norm() + turn * p.length();
+  int count = std::max(1, static_cast<int>(std::ceil(way / p.settings.max_advance_mm)));
+  if (count > kMaxSubSteps) {
+    count = kMaxSubSteps;
+    report.flags |= StepReport::too_fast;
+  }
+  for (int k = 1; k <= count; ++k) {
+    const double fraction = static_cast<double>(k) / count;
+    Pose pose = base;
+    if (k < count) {
+      pose.origin = from.origin + fraction * (base.origin - from.origin);
+      pose.rotation = from.rotation.slerp(fraction, base.rotation);
+    }
+    p.base = pose;
+    p.sub_step(pose, dt / count, report);
+  }
+  p.summarise(report);
+  return report;
+}
+
+void Insertion::prepare(double radius_mm) {
+  Parts& p = *parts_;
+  const Locator& locator = *p.tissue.locator;
+  const Vec3 tip = p.needle->point(p.length());
+  if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
+  p.prepared_at = tip;
+  Index start = p.tip.at.tet;
+  Vec3 centre = p.tip.x;
+  if (p.phase == TipPhase::air || p.phase == TipPhase::exited) {
+    const Vec3 ahead = p.air_tip + radius_mm * p.needle->tangent(p.length());
+    const auto entry = locator.first_entry(p.air_tip, ahead);
+    if (!entry) return;
+    start = entry->tet;
+    centre = p.air_tip + entry->t * (ahead - p.air_tip);
+  }
+  if (start < 0) return;
+  // Elements that touch the ball around the tip, by flooding from the tip's own.
+  std::vector<Index> queue{start};
+  std::vector<char> seen(static_cast<std::size_t>(locator.mesh().tet_count()), 0);
+  seen[static_cast<std::size_t>(start)] = 1;
+  std::vector<Index> nodes;
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const auto tet = static_cast<std::size_t>(queue[head]);
+    for (const Index node : locator.mesh().tets[tet]) nodes.push_back(node);
+    for (const Index next : locator.topology().neighbour[tet]) {
+      if (next < 0 || seen[static_cast<std::size_t>(next)]) continue;
+      bool near = false;
+      for (const Index node : locator.mesh().tets[static_cast<std::size_t>(next)]) {
+        near = near || (locator.mesh().nodes[static_cast<std::size_t>(node)] - centre).norm() < radius_mm;
+      }
+      if (!near) continue;
+      seen[static_cast<std::size_t>(next)] = 1;
+      queue.push_back(next);
+    }
+  }
+  p.tissue.store->add_nodes(nodes);
+}
+
+const Needle& Insertion::needle() const { return *parts_->needle; }
+const TrackCompliance& Insertion::compliance() const { return parts_->compliance; }
+const CouplingSettings& Insertion::settings() const { return parts_->settings; }
+const Track& Insertion::track() const { return parts_->track; }
+std::span<const Track> Insertion::old_tracks() const { return parts_->old_tracks; }
+
+std::vector<ContactState> Insertion::contacts() const {
+  const Parts& p = *parts_;
+  std::vector<ContactState> result;
+  if (p.tip.touching && p.tip.state != Tip::State::open) {
+    result.push_back({p.tip.x + p.tissue_displacement(TrackCompliance::kTip), p.tip.force, p.length(), 0.0,
+                      p.tip.state == Tip::State::stick, true});
+  }
+  for (const Grip& grip : p.grips) {
+    result.push_back({grip.x + p.tissue_displacement(grip.point), grip.force, grip.s, grip.length,
+                      grip.state == Grip::State::stick, false});
+  }
+  return result;
+}
+
+VecX Insertion::nodal_forces() const {
+  parts_->gather_forces();
+  return parts_->compliance.base_load(parts_->forces.leftCols(parts_->compliance.points()));
+}
+
+VecX Insertion::displacement() const { return parts_->tissue.store->tissue().solve(nodal_forces()); }
+
+double Insertion::tissue_energy() const {
+  const Parts& p = *parts_;
+  double energy = 0.5 * p.tip.force.dot(p.tissue_displacement(TrackCompliance::kTip));
+  for (const Grip& grip : p.grips) energy += 0.5 * grip.force.dot(p.tissue_displacement(grip.point));
+  return energy;
+}
+
+}  // namespace stylet

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/insertion.hpp"
+
+#include <deque>
+
+namespace stylet {
+
+/// A place where shaft and tissue hold each other.
+struct Grip {
+  enum class State {
+    stick,
+    forward,
+    backward
+  };  ///< forward: the needle slides into the tissue, friction pushes it along
+
+  int point = -1;         ///< in TrackCompliance
+  double xi = 0.0;        ///< [mm] along the track
+  Vec3 x = Vec3::Zero();  ///< [mm] tissue point, undeformed
+  double s = 0.0;         ///< [mm] where on the needle it is now
+  double s_start = 0.0;   ///< … at the start of the sub-step
+  double softness = 0.0;  ///< [mm/N] a young contact yields this much: it comes alive and dies without a jump
+  double length = 0.0;    ///< [mm] tributary length
+  FrictionLaw law;
+  State state = State::stick;
+  int toggles = 0;            ///< changes of state in this sub-step
+  Vec3 force = Vec3::Zero();  ///< [N] on the tissue
+};
+
+/// The tip against the end of its track.
+struct Tip {
+  enum class State { open, stick, cut };
+
+  State state = State::open;
+  bool touching = false;  ///< there is an end of a track to push against
+  Vec3 x = Vec3::Zero();  ///< [mm] end of the track, undeformed
+  MaterialPoint at;
+  Vec3 x_start = Vec3::Zero();  ///< … at the start of the sub-step
+  MaterialPoint at_start;
+  Vec3 direction = Vec3::UnitZ();  ///< in which cutting moves x (unit, undeformed)
+  double advance = 0.0;            ///< [mm] cut in this sub-step
+  bool blocked = false;            ///< the cut met a surface in this sub-step
+  Crossing crossing;               ///< that surface
+  bool at_membrane = false;        ///< x lies on a surface that has not been broken
+  Index next_tet = -1;             ///< element behind that surface, -1 = outside the patient
+  double limit = 0.0;              ///< [N] force that starts the cut
+  double cutting = 0.0;            ///< [N] force that keeps it going
+  double lateral_softness = 0.0;   ///< [mm/N]; infinite: the tip is not held sideways
+  int toggles = 0;
+  Vec3 force = Vec3::Zero();  ///< [N] on the tissue
+};
+
+struct Insertion::Parts {
+  Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_);
+
+  InsertionTissue tissue;
+  std::unique_ptr<Needle> needle;
+  CouplingSettings settings;
+  TrackCompliance compliance;
+  Pose base;
+  TipPhase phase = TipPhase::air;
+  Vec3 air_tip = Vec3::Zero();  ///< where the tip was, in undeformed coordinates, while it is in the air
+  Track track;
+  std::vector<Track> old_tracks;
+  int joined = -1;          ///< old track this insertion runs in
+  std::vector<Grip> grips;  ///< grip k sits on mark k of the track
+  Tip tip;
+  double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
+  int candidate_tries = 0;
+  Vec3 prepared_at = Vec3::Constant(1e30);
+
+  // Scratch of the equilibrium, sized once.
+  std::vector<PointLoad> loads;  ///< tip first, then the grips: the needle's side, −force
+  std::vector<Mat3> frames;      ///< columns n1, n2, t at each load
+  std::vector<int> rows;         ///< active rows
+  MatX N, M, reduced;
+  VecX free, rhs, lambda, solution, diagonal, softening;
+  MatX forces;  ///< (3 × points) on the tissue
+
+  // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
+  void solve_equilibrium(double h, StepReport& report);
+  [[nodiscard]] Vec3 tissue_displacement(int point) const;
+  void gather_forces();
+  [[nodiscard]] double length() const { return needle->length(); }
+  [[nodiscard]] int load_count() const { return 1 + static_cast<int>(grips.size()); }
+  [[nodiscard]] int point_of(int load) const {
+    return load == 0 ? TrackCompliance::kTip : grips[static_cast<std::size_t>(load - 1)].point;
+  }
+  [[nodiscard]] Vec3& force_of(int load) {
+    return load == 0 ? tip.force : grips[static_cast<std::size_t>(load - 1)].force;
+  }
+  [[nodiscard]] const Vec3& material_of(int load) const {
+    return load == 0 ? tip.x : grips[static_cast<std::size_t>(load - 1)].x;
+  }
+  [[nodiscard]] double arc_of(int load) const;
+  void set_frames();
+  void fill_loads();
+  void soften_rows(double h);
+  void assemble();
+  bool pivot(double h, StepReport& report);
+  [[nodiscard]] double contradiction(int load) const;
+  void change_state(int load, StepReport& report);
+  void slide(Grip& grip, const Mat3& frame, double axial, double h);
+  void select_rows();
+  [[nodiscard]] double equation_error() const;
+
+  // cutting.cpp: the tip, its track and surfaces.
+  void aim_tip();
+  void march(double advance);
+  void start_cut(StepReport& report);
+  void commit_tip(StepReport& report);
+  void cross_surface(StepReport& report);
+  void enter(const Vec3& from, const Vec3& to, StepReport& report);
+  void touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report, InsertionEventKind kind);
+  [[nodiscard]] int region_of(Index tet) const;
+  [[nodiscard]] bool available(Index tet) const;
+
+  // contacts.cpp: laying, waking and dropping of shaft contacts.
+  void lay_marks(const Vec3& from, double from_xi, const MaterialPoint& from_at, StepReport& report);
+  void lay_node_addition_on_faces(const Vec3& from, double from_xi, Index tet, StepReport& report);
+  bool lay_mark(double xi, const Vec3& x, const MaterialPoint& at, Placement placement, const Vec3& travel,
+                StepReport& report);
+  void wake_and_drop(StepReport& report);
+  void share_length();
+  void finish_insertion(StepReport& report);
+
+  void sub_step(const Pose& pose, double h, StepReport& report);
+  void summarise(StepReport& report) const;
+  static void add_event(StepReport& report, InsertionEventKind kind, int region);
+};
+
+}  // namespace stylet

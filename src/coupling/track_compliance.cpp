@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/coupling/track_compliance.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+/// Vertices a split may have: two elements that share a face.
+constexpr int kObservablesPerPoint = 6;
+}  // namespace
+
+TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity)
+    : store_(std::move(store)), mesh_(locator, capacity), capacity_(capacity) {
+  const auto observables = static_cast<std::size_t>(capacity * kObservablesPerPoint + kFirstFree);
+  observables_.reserve(observables);
+  vertex_of_.reserve(observables);
+  splits_.reserve(static_cast<std::size_t>(capacity));
+  node_point_.reserve(static_cast<std::size_t>(capacity));
+  point_observable_.reserve(static_cast<std::size_t>(capacity) + 1);
+  z_.resize(observables * static_cast<std::size_t>(capacity));
+  hat_.assign(observables * static_cast<std::size_t>(capacity), 0.0);
+  A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
+  reset();
+}
+
+void TrackCompliance::reset() {
+  mesh_.reset();
+  observables_.assign(static_cast<std::size_t>(kFirstFree), Observable{});
+  vertex_of_.assign(static_cast<std::size_t>(kFirstFree), -1);
+  splits_.clear();
+  node_point_.clear();
+  point_observable_.assign(1, 0);
+  points_ = 1;
+  tip_ = {};
+  A_.setZero();
+}
+
+bool TrackCompliance::stored(Index base_tet) const {
+  const auto& nodes = mesh_.locator().mesh().tets[static_cast<std::size_t>(base_tet)];
+  return std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return store_->has(node); });
+}
+
+Material TrackCompliance::material_of(Index base_tet) const {
+  const Tissue& tissue = store_->tissue();
+  return tissue.material(tissue.mesh().tet_region[static_cast<std::size_t>(base_tet)]);
+}
+
+Mat3 TrackCompliance::base_block(const Observable& a, const Observable& b) const {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (a.weight[i] == 0.0) continue;
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (b.weight[j] == 0.0) continue;
+      sum += (a.weight[i] * b.weight[j]) * store_->block(a.node[i], b.node[j]);
+    }
+  }
+  return sum;
+}
+
+Mat3 TrackCompliance::compliance(int a, int b, int splits) const {
+  Mat3 sum = base_block(observables_[static_cast<std::size_t>(a)], observables_[static_cast<std::size_t>(b)]);
+  for (int p = 0; p < splits; ++p) {
+    const Split& split = splits_[static_cast<std::size_t>(p)];
+    if (split.vertices == 0) {  // inside an element z_p = b_p I
+      const double product = hat(a, p) * hat(b, p);
+      if (product != 0.0) sum += product * split.flexibility;
+    } else {
+      sum.noalias() += z(a, p) * split.flexibility * z(b, p).transpose();
+    }
+  }
+  return sum;
+}
+
+void TrackCompliance::extend(int observable, int splits) {
+  Observable& o = observables_[static_cast<std::size_t>(observable)];
+  for (int p = o.known; p < splits; ++p) {
+    const Split& split = splits_[static_cast<std::size_t>(p)];
+    Mat3 value = hat(observable, p) * Mat3::Identity();
+    for (int j = 0; j < split.vertices; ++j) {
+      const auto k = static_cast<std::size_t>(j);
+      value.noalias() -= compliance(observable, split.vertex[k], p) * split.border[k];
+    }
+    z(observable, p) = value;
+  }
+  o.known = std::max(o.known, splits);
+}
+
+int TrackCompliance::new_observable(Index base_tet, const Vec4& weights) {
+  const int number = static_cast<int>(observables_.size());
+  Observable o;
+  o.node = mesh_.locator().mesh().tets[static_cast<std::size_t>(base_tet)];
+  for (std::size_t i = 0; i < 4; ++i) o.weight[i] = weights[static_cast<Eigen::Index>(i)];
+  observables_.push_back(o);
+  vertex_of_.push_back(-1);
+  for (int p = 0; p < capacity_; ++p) hat(number, p) = 0.0;
+  return number;
+}
+
+int TrackCompliance::vertex_observable(Index vertex) {
+  if (mesh_.is_added(vertex)) {
+    const int point = node_point_[static_cast<std::size_t>(mesh_.added(vertex))];
+    return point_observable_[static_cast<std::size_t>(point)];
+  }
+  const auto found = std::find(vertex_of_.begin() + kFirstFree, vertex_of_.end(), vertex);
+  if (found != vertex_of_.end()) return static_cast<int>(found - vertex_of_.begin());
+  const int number = static_cast<int>(observables_.size());
+  Observable o;
+  o.node[0] = vertex;
+  o.weight[0] = 1.0;
+  observables_.push_back(o);
+  vertex_of_.push_back(vertex);
+  for (int p = 0; p < capacity_; ++p) hat(number, p) = 0.0;
+  return number;
+}
+
+void TrackCompliance::interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) {
+  for (int v = 0; v < 4; ++v) {
+    const Index vertex = leaf.vertices[static_cast<std::size_t>(v)];
+    if (!mesh_.is_added(vertex)) continue;
+    const int of_vertex = vertex_observable(vertex);
+    for (std::size_t p = 0; p < splits_.size(); ++p) {
+      hat(observable, static_cast<int>(p)) += leaf_weights[v] * hat(of_vertex, static_cast<int>(p));
+    }
+  }
+}
+
+void TrackCompliance::add_hat_stiffness(Mat3& stiffness, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) const {
+  // The child that replaces vertex q has volume V l_q and hat gradient g_q / l_q.
+  const Material material = material_of(leaf.base_tet);
+  const auto g = mesh_.gradients(leaf);
+  const double volume = mesh_.volume(leaf);
+  for (int q = 0; q < 4; ++q) {
+    if (leaf_weights[q] == 0.0) continue;
+    const Vec3 gq = g.col(q);
+    stiffness += (volume / leaf_weights[q]) * ((material.lambda() + material.mu()) * gq * gq.transpose() +
+                                               material.mu() * gq.squaredNorm() * Mat3::Identity());
+  }
+}
+
+void TrackCompliance::add_border(Split& split, const SplitMesh::Leaf& leaf, int opposite) {
+  // Σ over the children of volume × hat gradient = V Σ_{q ≠ o} g_q = −V g_o, so the border is −K_jo of the whole
+  // element.
+  const Material material = material_of(leaf.base_tet);
+  const auto g = mesh_.gradients(leaf);
+  const double volume = mesh_.volume(leaf);
+  for (int j = 0; j < 4; ++j) {
+    const int observable = vertex_observable(leaf.vertices[static_cast<std::size_t>(j)]);
+    const Mat3 block = -element_block(g, volume, material, j, opposite);
+    const auto end = split.vertex.begin() + split.vertices;
+    const auto found = std::find(split.vertex.begin(), end, observable);
+    if (found == end) {
+      split.vertex[static_cast<std::size_t>(split.vertices)] = observable;
+      split.border[static_cast<std::size_t>(split.vertices)] = block;
+      ++split.vertices;
+    } else {
+      split.border[static_cast<std::size_t>(found - split.vertex.begin())] += block;
+    }
+  }
+}
+
+TrackCompliance::Added TrackCompliance::place_inside(const MaterialPoint& at, const Vec3& x) {
+  const SplitMesh::Leaf leaf = mesh_.leaf_at(at.tet, x);
+  const Vec4 weights = mesh_.weights(leaf, x);
+  if (weights.minCoeff() < kSmallestWeight) return {-1, Refusal::geometry};
+  Split split;
+  Mat3 stiffness = Mat3::Zero();
+  add_hat_stiffness(stiffness, leaf, weights);
+  split.flexibility = stiffness.inverse();
+  const int observable = new_observable(at.tet, at.weights);
+  interpolate_hats(observable, leaf, weights);
+  hat(observable, static_cast<int>(splits_.size())) = 1.0;
+  mesh_.split_inside(leaf, x);
+  splits_.push_back(split);
+  node_point_.push_back(points_);
+  return {finish_point(observable), Refusal::none};
+}
+
+TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, const Vec3& x, const Vec3& travel) {
+  const Locator& locator = mesh_.locator();
+  const double nudge = 1e-6 * std::cbrt(std::abs(tet_volume(locator.mesh(), at.tet)));
+  const Vec3 ahead = x + nudge * travel.normalized();
+  const Vec3 behind = x - nudge * travel.normalized();
+  const auto first = locator.find(behind, at.tet);
+  const auto second = locator.find(ahead, at.tet);
+  if (!first && !second) return {-1, Refusal::geometry};
+  // At the outer surface only one element exists; call it the first.
+  const Index one_tet = first ? first->tet : second->tet;
+  const SplitMesh::Leaf one = mesh_.leaf_at(one_tet, first ? behind : ahead);
+  SplitMesh::Leaf two;
+  if (first && second) {
+    two = mesh_.leaf_at(second->tet, ahead);
+    if (!stored(second->tet)) return {-1, Refusal::missing};
+  }
+  if (!stored(one_tet)) return {-1, Refusal::missing};
+
+  Vec4 weights_one = mesh_.weights(one, x);
+  int local_one = 0;
+  weights_one.cwiseAbs().minCoeff(&local_one);
+  if (std::abs(weights_one[local_one]) > 1e-4) return {-1, Refusal::geometry};  // x is not on a face
+  weights_one[local_one] = 0.0;
+  for (int q = 0; q < 4; ++q) {
+    if (q != local_one && weights_one[q] < kSmallestFaceWeight) return {-1, Refusal::geometry};
+  }
+  Vec4 weights_two = Vec4::Zero();
+  int local_two = -1;
+  if (two.base_tet >= 0) {
+    weights_two = mesh_.weights(two, x);
+    weights_two.cwiseAbs().minCoeff(&local_two);
+    weights_two[local_two] = 0.0;
+    for (int q = 0; q < 4; ++q) {  // both leaves must have the same three vertices on the face
+      if (q == local_two) continue;
+      const Index vertex = two.vertices[static_cast<std::size_t>(q)];
+      const auto found = std::find(one.vertices.begin(), one.vertices.end(), vertex);
+      if (found == one.vertices.end() || found - one.vertices.begin() == local_one) return {-1, Refusal::geometry};
+    }
+  }
+
+  Split split;
+  Mat3 stiffness = Mat3::Zero();
+  add_hat_stiffness(stiffness, one, weights_one);
+  add_border(split, one, local_one);
+  if (two.base_tet >= 0) {
+    add_hat_stiffness(stiffness, two, weights_two);
+    add_border(split, two, local_two);
+  }
+  const int p = static_cast<int>(splits_.size());
+  Mat3 reduced = stiffness;
+  for (int i = 0; i < split.vertices; ++i) extend(split.vertex[static_cast<std::size_t>(i)], p);
+  for (int i = 0; i < split.vertices; ++i) {
+    for (int j = 0; j < split.vertices; ++j) {
+      const auto a = static_cast<std::size_t>(i);
+      const auto b = static_cast<std::size_t>(j);
+      reduced.noalias() -=
+          split.border[a].transpose() * compliance(split.vertex[a], split.vertex[b], p) * split.border[b];
+    }
+  }
+  split.flexibility = reduced.inverse();
+  split.flexibility = 0.5 * (split.flexibility + split.flexibility.transpose()).eval();
+
+  const Vec4 base_weights = locator.weights(one_tet, x);
+  const int observable = new_observable(one_tet, base_weights);
+  interpolate_hats(observable, one, weights_one);
+  hat(observable, p) = 1.0;
+  mesh_.split_face(one, local_one, two, local_two, x);
+  splits_.push_back(split);
+  node_point_.push_back(points_);
+
+  // The new hat lets the old points move more: A += z s⁻¹ zᵀ.
+  for (int c = 0; c < points_; ++c) extend(point_observable_[static_cast<std::size_t>(c)], p + 1);
+  for (int i = 0; i < 4; ++i) {
+    if (tip_.tet >= 0) extend(kTipNodes + i, p + 1);
+  }
+  for (int c = 0; c < points_; ++c) {
+    const Mat3 left = z(point_observable_[static_cast<std::size_t>(c)], p) * splits_.back().flexibility;
+    for (int d = 0; d < points_; ++d) {
+      A_.block<3, 3>(3 * c, 3 * d).noalias() += left * z(point_observable_[static_cast<std::size_t>(d)], p).transpose();
+    }
+  }
+  return {finish_point(observable), Refusal::none};
+}
+
+int TrackCompliance::finish_point(int observable) {
+  extend(observable, static_cast<int>(splits_.size()));
+  point_observable_.push_back(observable);
+  ++points_;
+  write_row(points_ - 1);
+  return points_ - 1;
+}
+
+void TrackCompliance::write_row(int point) {
+  const int splits = static_cast<int>(splits_.size());
+  const int observable = point_observable_[static_cast<std::size_t>(point)];
+  for (int d = 0; d < points_; ++d) {
+    const Mat3 block = compliance(observable, point_observable_[static_cast<std::size_t>(d)], splits);
+    A_.block<3, 3>(3 * point, 3 * d) = block;
+    A_.block<3, 3>(3 * d, 3 * point) = block.transpose();
+  }
+  // Rounding must not make the diagonal block unsymmetric.
+  const Mat3 own = A_.block<3, 3>(3 * point, 3 * point);
+  A_.block<3, 3>(3 * point, 3 * point) = 0.5 * (own + own.transpose());
+}
+
+TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3& x, Placement placement,
+                                            const Vec3& travel) {
+  if (points_ > capacity_ || static_cast<int>(splits_.size()) == capacity_) return {-1, Refusal::capacity};
+  if (placement == Placement::face) return place_on_face(at, x, travel);
+  if (!stored(at.tet)) return {-1, Refusal::missing};
+  if (placement == Placement::interior) return place_inside(at, x);
+  return {finish_point(new_observable(at.tet, at.weights)), Refusal::none};
+}
+
+bool TrackCompliance::move_tip(const MaterialPoint& at, const Vec3& /*x*/) {
+  if (!stored(at.tet)) return false;
+  const auto& nodes = mesh_.locator().mesh().tets[static_cast<std::size_t>(at.tet)];
+  const int splits = static_cast<int>(splits_.size());
+  if (at.tet != tip_.tet) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      Observable& corner = observables_[static_cast<std::size_t>(kTipNodes) + i];
+      corner = {};
+      corner.node[0] = nodes[i];
+      corner.weight[0] = 1.0;
+      extend(kTipNodes + static_cast<int>(i), splits);
+    }
+  }
+  tip_ = at;
+  Observable& tip = observables_[0];
+  tip.node = nodes;
+  for (std::size_t i = 0; i < 4; ++i) tip.weight[i] = at.weights[static_cast<Eigen::Index>(i)];
+  tip.known = 0;
+  extend(0, splits);
+  write_row(kTip);
+  return true;
+}
+
+void TrackCompliance::remove_last_embedded() {
+  observables_.pop_back();
+  vertex_of_.pop_back();
+  point_observable_.pop_back();
+  --points_;
+}
+
+Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) const {
+  if (tip_.tet < 0) return Mat3::Zero();
+  const int splits = static_cast<int>(splits_.size());
+  const auto g = barycentric_gradients(mesh_.locator().mesh(), tip_.tet);
+  Mat3 gradient = Mat3::Zero();
+  for (int i = 0; i < 4; ++i) {
+    Vec3 u = Vec3::Zero();
+    for (int c = 0; c < points_; ++c) {
+      if (forces.col(c).isZero(0.0)) continue;
+      u.noalias() += compliance(kTipNodes + i, point_observable_[static_cast<std::size_t>(c)], splits) * forces.col(c);
+    }
+    gradient.noalias() += u * g.col(i).transpose();
+  }
+  return gradient;
+}
+
+VecX TrackCompliance::base_load(const Eigen::Ref<const MatX>& forces) const {
+  MatX load = MatX::Zero(3, static_cast<Eigen::Index>(observables_.size()));
+  for (int c = 0; c < points_; ++c) load.col(point_observable_[static_cast<std::size_t>(c)]) += forces.col(c);
+  // Condense the hats, last first: a hat's amplitude w loads the vertices of its border by −k_jp w.
+  for (int p = static_cast<int>(splits_.size()) - 1; p >= 0; --p) {
+    const Split& split = splits_[static_cast<std::size_t>(p)];
+    if (split.vertices == 0) continue;
+    Vec3 work = Vec3::Zero();
+    for (std::size_t o = 0; o < observables_.size(); ++o) {
+      if (load.col(static_cast<Eigen::Index>(o)).isZero(0.0)) continue;
+      work.noalias() += z(static_cast<int>(o), p).transpose() * load.col(static_cast<Eigen::Index>(o));
+    }
+    const Vec3 amplitude = split.flexibility * work;
+    for (int j = 0; j < split.vertices; ++j) {
+      load.col(split.vertex[static_cast<std::size_t>(j)]).noalias() -=
+          split.border[static_cast<std::size_t>(j)] * amplitude;
+    }
+  }
+  VecX result = VecX::Zero(3 * mesh_.locator().mesh().node_count());
+  for (std::size_t o = 0; o < observables_.size(); ++o) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (observables_[o].weight[i] == 0.0) continue;
+      result.segment<3>(3 * observables_[o].node[i]) +=
+          observables_[o].weight[i] * load.col(static_cast<Eigen::Index>(o));
+    }
+  }
+  return result;
+}
+
+double TrackCompliance::independence(int c, std::span<const int> others) const {
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kNeighbours, 3 * kNeighbours>;
+  using Tall = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3 * kNeighbours, 3>;
+  const int count = std::min<int>(static_cast<int>(others.size()), kNeighbours);
+  Mat3 own = (*this)(c, c);
+  const double scale = own.trace() / 3.0;
+  if (scale <= 0.0) return 0.0;
+  if (count > 0) {
+    Small held(3 * count, 3 * count);
+    Tall across(3 * count, 3);
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        held.block<3, 3>(3 * i, 3 * j) =
+            (*this)(others[static_cast<std::size_t>(i)], others[static_cast<std::size_t>(j)]);
+      }
+      across.block<3, 3>(3 * i, 0) = (*this)(others[static_cast<std::size_t>(i)], c);
+    }
+    held.diagonal().array() += 1e-12 * scale;
+    const Eigen::LLT<Small> llt(held);
+    if (llt.info() != Eigen::Success) return 0.0;
+    const Tall solved = llt.solve(across);
+    own.noalias() -= across.transpose() * solved;
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(own, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] / scale;
+}
+
+}  // namespace stylet
