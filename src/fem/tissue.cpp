@@ -111,7 +111,8 @@ Eigen::SparseMatrix<double> assemble(const TetMesh& mesh, const std::vector<Mate
   const auto free_nodes = static_cast<Index>(pattern.cols());
 
   Eigen::SparseMatrix<double> K(3 * free_nodes, 3 * free_nodes);
-  K.resizeNonZeros(9 * pattern.nonZeros());
+  const Eigen::Index entries = 9 * pattern.nonZeros();
+  K.resizeNonZeros(entries);
   for (Index column = 0; column < free_nodes; ++column) {
     const Index count = begin[column + 1] - begin[column];
     for (int axis = 0; axis < 3; ++axis) {
@@ -122,8 +123,8 @@ Eigen::SparseMatrix<double> assemble(const TetMesh& mesh, const std::vector<Mate
       }
     }
   }
-  K.outerIndexPtr()[3 * free_nodes] = static_cast<int>(K.nonZeros());
-  std::fill_n(K.valuePtr(), K.nonZeros(), 0.0);
+  K.outerIndexPtr()[3 * free_nodes] = static_cast<int>(entries);
+  std::fill_n(K.valuePtr(), entries, 0.0);
 
   const auto add = [&](Index row, Index column, const Mat3& block) {
     const Index count = begin[column + 1] - begin[column];
@@ -176,7 +177,11 @@ Mat3 element_block(const Eigen::Matrix<double, 3, 4>& gradients, double volume, 
   const Vec3 gb = gradients.col(b);
   const double lambda = volume * material.lambda();
   const double mu = volume * material.mu();
-  Mat3 block = lambda * (ga * gb.transpose()) + mu * (gb * ga.transpose());
+  // Products of gradients first: then exchanging a and b transposes the block to the last bit.
+  Mat3 block;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) block(i, j) = lambda * (ga[i] * gb[j]) + mu * (gb[i] * ga[j]);
+  }
   block.diagonal().array() += mu * ga.dot(gb);
   return block;
 }
