@@ -30,7 +30,6 @@ Error not_positive(const char* name, const char* unit, double value) {
                      std::string("Give the needle's ") + name + " in " + unit);
 }
 
-/// A positive finite number. The cure names the key.
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
 Result<> check(const NeedleSection& section, int elements, int load_capacity) {

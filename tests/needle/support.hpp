@@ -3,8 +3,8 @@
 
 #include "stylet/needle/beam.hpp"
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <Eigen/Dense>
 
 #include <memory>
 #include <span>

@@ -8,7 +8,7 @@ namespace stylet {
 /// Parameters of a steel needle.
 struct NeedleSection {
   double length_mm = 200.0;
-  double outer_diameter_mm = 1.27;      ///< 18 gauge
+  double outer_diameter_mm = 1.27;        ///< 18 gauge
   double bending_stiffness_Nmm2 = 15700;  ///< E I; 12,700…25,500 for an 18 gauge cannula without…with stylet
   double torsion_stiffness_Nmm2 = 12100;  ///< G J
 };
@@ -16,6 +16,9 @@ struct NeedleSection {
 /// Inextensible, unshearable, geometrically exact rod with piecewise constant curvature: element e turns the frame by
 /// the rotation vector l κ_e, so the centreline is a chain of circular helices with a continuous tangent.
 /// Unknowns: κ (3 per element, body frame; x, y bending, z twist). Energy ½ Σ l κᵀ diag(EI, EI, GJ) κ − Σ f·r.
+/// state() is κ [1/mm], from the base; residual() is the largest over the elements of |diag(EI, EI, GJ) κ − m|, m the
+/// loads' moment averaged over the element as virtual work sees it. Loads at s ≤ 0 act on the clamp, s past the tip
+/// counts as the tip. Beyond the buckling load a multiple of the elastic part keeps the tangent positive definite.
 /// @cite Bertails2006
 class BeamNeedle final : public Needle {
  public:

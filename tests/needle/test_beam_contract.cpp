@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the rest of the program relies on, whatever the model inside.
+#include "support.hpp"
+#include "support/count_allocations.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+namespace stylet {
+namespace {
+
+constexpr double kLength = 200.0;
+
+std::vector<PointLoad> spread_loads(int count) {
+  std::vector<PointLoad> loads;
+  for (int c = 0; c < count; ++c) {
+    const double phase = 0.7 * c;
+    loads.push_back(
+        {kLength * (c + 0.5) / count, Vec3(0.4 * std::cos(phase), 0.4 * std::sin(phase) + 0.2, -0.1) / count});
+  }
+  return loads;
+}
+
+Pose somewhere() {
+  return {Vec3(310.0, -95.0, 720.0), Eigen::Quaterniond(Eigen::AngleAxisd(2.1, Vec3(0.2, 0.9, -0.4).normalized()))};
+}
+
+TEST(BeamContract, MovingBaseAndLoadsTogetherMovesTheSolutionRigidly) {
+  const auto fixed = test::beam();
+  const auto moved = test::beam();
+  const Pose pose = somewhere();
+  const auto loads = spread_loads(11);
+  auto turned = loads;
+  for (PointLoad& load : turned) load.force = pose.rotation * load.force;
+  test::settle(*fixed, loads);
+  moved->set_base(pose);
+  test::settle(*moved, turned);
+  for (double s = -10.0; s <= kLength; s += 7.0) {
+    EXPECT_LT((moved->point(s) - (pose.rotation * fixed->point(s) + pose.origin)).norm(), 1e-10 * kLength) << s;
+    EXPECT_LT((moved->tangent(s) - pose.rotation * fixed->tangent(s)).norm(), 1e-10) << s;
+  }
+  EXPECT_NEAR(moved->energy(), fixed->energy(), 1e-10 * fixed->energy());
+  const MatX here = test::compliance_of(*fixed, loads);
+  const MatX there = test::compliance_of(*moved, turned);
+  const Mat3 R = pose.rotation.toRotationMatrix();
+  EXPECT_LT((there.block<3, 3>(6, 27) - R * here.block<3, 3>(6, 27) * R.transpose()).norm(), 1e-10 * here.norm());
+}
+
+TEST(BeamContract, SettingTheBaseKeepsTheShape) {
+  const auto needle = test::beam();
+  test::settle(*needle, spread_loads(5));
+  const Vec3 tip = needle->point(kLength);
+  const VecX state = needle->state();
+  needle->set_base(somewhere());
+  EXPECT_EQ(state, VecX(needle->state()));
+  EXPECT_LT((needle->point(kLength) - (somewhere().rotation * tip + somewhere().origin)).norm(), 1e-12 * 1000);
+  EXPECT_EQ(needle->base().origin, somewhere().origin);
+}
+
+TEST(BeamContract, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
+  const auto needle = test::beam();
+  needle->set_base(somewhere());
+  const auto loads = spread_loads(6);
+  test::settle(*needle, loads);
+  const MatX compliance = test::compliance_of(*needle, loads);
+  constexpr double h = 1e-4;
+  for (Eigen::Index column = 0; column < compliance.cols(); ++column) {
+    VecX difference = VecX::Zero(compliance.rows());
+    for (const double sign : {1.0, -1.0}) {
+      auto changed = loads;
+      changed[static_cast<std::size_t>(column / 3)].force[column % 3] += sign * h;
+      test::settle(*needle, changed);
+      for (std::size_t c = 0; c < loads.size(); ++c) {
+        difference.segment<3>(3 * static_cast<Eigen::Index>(c)) += sign * needle->point(loads[c].s) / (2 * h);
+      }
+    }
+    EXPECT_LT((difference - compliance.col(column)).norm(), 2e-6 * compliance.norm()) << column;
+  }
+}
+
+TEST(BeamContract, FreeMotionAndComplianceForetellTheStepToFirstOrder) {
+  const auto needle = test::beam();
+  auto loads = spread_loads(4);
+  test::settle(*needle, loads);
+  MatX compliance(12, 12);
+  VecX free(12);
+  auto changed = loads;
+  double previous = 0.0;
+  const VecX state = needle->state();
+  for (const double size : {1e-2, 1e-3}) {
+    needle->set_state(state);
+    auto off = loads;
+    for (PointLoad& load : off) load.force *= 1.0 + size;
+    needle->linearise(off, compliance, free);
+    VecX before(12);
+    VecX df(12);
+    for (int c = 0; c < 4; ++c) {
+      before.segment<3>(3 * c) = needle->point(loads[c].s);
+      df.segment<3>(3 * c) = size * Vec3(0.1, -0.2 * c, 0.05);
+      changed[c].force = off[c].force + df.segment<3>(3 * c);
+    }
+    const VecX foretold = free + compliance * df;
+    needle->advance(changed);
+    VecX moved(12);
+    for (int c = 0; c < 4; ++c) moved.segment<3>(3 * c) = needle->point(loads[c].s) - before.segment<3>(3 * c);
+    const double error = (moved - foretold).norm() / foretold.norm();
+    EXPECT_LT(error, 2.0 * size);
+    if (previous > 0.0) {
+      EXPECT_NEAR(previous / error, 10.0, 2.0);
+    }
+    previous = error;
+  }
+}
+
+TEST(BeamContract, NewtonConvergesQuadratically) {
+  const auto needle = test::beam();
+  const auto loads = spread_loads(9);
+  MatX compliance(27, 27);
+  VecX free(27);
+  std::vector<double> residuals;
+  for (int i = 0; i < 12 && (residuals.empty() || residuals.back() > 1e-9); ++i) {
+    needle->linearise(loads, compliance, free);
+    needle->advance(loads);
+    residuals.push_back(needle->residual(loads));
+  }
+  ASSERT_LE(residuals.back(), 1e-9);
+  // Near the solution one step at least squares the size of the residual (moments here are tens of N mm).
+  bool near = false;
+  for (std::size_t i = 1; i < residuals.size(); ++i) {
+    if (residuals[i - 1] < 0.1 && residuals[i] > 1e-10) {
+      near = true;
+      EXPECT_LT(residuals[i], residuals[i - 1] * residuals[i - 1]) << i;
+    }
+  }
+  EXPECT_TRUE(near || residuals.size() <= 6);
+}
+
+TEST(BeamContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
+  const auto needle = test::beam();
+  const auto full = spread_loads(7);
+  // Simpson's rule on W = ∫ f(t)·du with f = t f₁, integrated by parts: W = f₁·u₁ - ∫ f₁·u dt.
+  constexpr int intervals = 64;
+  double integral = 0.0;
+  double last = 0.0;
+  for (int i = 0; i <= intervals; ++i) {
+    auto loads = full;
+    for (PointLoad& load : loads) load.force *= static_cast<double>(i) / intervals;
+    test::settle(*needle, loads);
+    double virtual_work = 0.0;
+    for (const PointLoad& load : full) virtual_work += load.force.dot(needle->point(load.s) - Vec3(0, 0, load.s));
+    const double weight = i == 0 || i == intervals ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
+    integral += weight * virtual_work / (3.0 * intervals);
+    last = virtual_work;
+  }
+  EXPECT_GT(needle->energy(), 0.1);
+  EXPECT_NEAR(last - integral, needle->energy(), 1e-7 * needle->energy());
+}
+
+TEST(BeamContract, TangentIsContinuousUnitLengthAndTheDerivativeOfThePoint) {
+  const auto needle = test::beam(9);
+  test::settle(*needle, std::vector<PointLoad>{{kLength, {0.9, 0.5, 0.2}}, {70.0, {-2.0, 0.4, 0.0}}});
+  for (int e = 0; e <= 9; ++e) {
+    const double s = kLength * e / 9;
+    EXPECT_LT((needle->tangent(s + 1e-9) - needle->tangent(s - 1e-9)).norm(), 1e-9) << s;
+    EXPECT_LT((needle->point(s + 1e-9) - needle->point(s - 1e-9)).norm(), 4e-9) << s;
+  }
+  for (double s = 1.0; s < kLength - 1.0; s += 3.7) {
+    const Vec3 slope = (needle->point(s + 1e-4) - needle->point(s - 1e-4)) / 2e-4;
+    EXPECT_LT((slope - needle->tangent(s)).norm(), 1e-8) << s;
+    EXPECT_NEAR(needle->tangent(s).norm(), 1.0, 1e-13);
+  }
+}
+
+TEST(BeamContract, LoadsAtAndBeforeTheClampDoNothing) {
+  const auto with = test::beam();
+  const auto without = test::beam();
+  const std::vector<PointLoad> tip = {{kLength, {0.3, 0.1, -0.2}}};
+  std::vector<PointLoad> all = tip;
+  all.push_back({0.0, {5.0, -9.0, 3.0}});
+  all.push_back({-12.0, {50.0, 20.0, 1.0}});
+  test::settle(*without, tip);
+  test::settle(*with, all);
+  EXPECT_EQ(VecX(with->state()), VecX(without->state()));
+  EXPECT_EQ(with->residual(all), with->residual(tip));
+  const MatX compliance = test::compliance_of(*with, all);
+  EXPECT_EQ(compliance.bottomRows(6).norm(), 0.0);
+  EXPECT_EQ(compliance.rightCols(6).norm(), 0.0);
+  EXPECT_EQ(with->point(-12.0), Vec3(0, 0, -12.0));
+}
+
+TEST(BeamContract, NoLoadsAtAllLeavesAStraightNeedleStraight) {
+  const auto needle = test::beam();
+  EXPECT_EQ(test::settle(*needle, {}), 0);
+  needle->set_state(VecX::Constant(72, 1e-3));
+  test::settle(*needle, {});
+  EXPECT_LT((needle->point(kLength) - Vec3(0, 0, kLength)).norm(), 1e-9);
+}
+
+TEST(BeamContract, StateAndStraightenRestoreTheShapeExactly) {
+  const auto needle = test::beam();
+  test::settle(*needle, spread_loads(3));
+  const VecX saved = needle->state();
+  const Vec3 tip = needle->point(kLength);
+  needle->straighten();
+  EXPECT_EQ(needle->energy(), 0.0);
+  EXPECT_LT((needle->point(kLength) - Vec3(0, 0, kLength)).norm(), 1e-12 * kLength);
+  needle->set_state(saved);
+  EXPECT_EQ(needle->point(kLength), tip);
+}
+
+TEST(BeamContract, NoCallAfterBuildAllocates) {
+  if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
+  for (const int elements : {4, 24, 120}) {
+    for (const int count : {1, 7, 40}) {
+      const auto needle = test::beam(elements, {}, 40);
+      auto loads = spread_loads(count);
+      MatX compliance(3 * count, 3 * count);
+      VecX free(3 * count);
+      VecX state = needle->state();
+      const Pose pose = somewhere();
+      double sink = 0.0;
+      const test::AllocationCount allocations;
+      needle->set_base(pose);
+      for (int i = 0; i < 3; ++i) {
+        needle->linearise(loads, compliance, free);
+        for (PointLoad& load : loads) load.force *= 1.1;
+        needle->advance(loads);
+        sink += needle->residual(loads) + needle->energy() + needle->point(33.0).x() + needle->tangent(44.0).x();
+      }
+      // Beyond buckling too.
+      loads.back().force = pose.rotation * Vec3(0.1, 0.0, -50.0);
+      needle->linearise(loads, compliance, free);
+      needle->advance(loads);
+      state = needle->state();
+      needle->set_state(state);
+      needle->straighten();
+      EXPECT_EQ(allocations.count(), 0) << elements << " elements, " << count << " loads";
+      EXPECT_TRUE(std::isfinite(sink));
+    }
+  }
+}
+
+TEST(AllocationCount, SeesMallocNewAndEigen) {
+  if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
+  // Through volatile pointers, so that the compiler cannot leave the pairs out.
+  void* (*volatile allocate)(std::size_t) = std::malloc;
+  void (*volatile release)(void*) = std::free;
+  void* (*volatile make)(std::size_t) = ::operator new;
+  void (*volatile destroy)(void*) = ::operator delete;
+  const test::AllocationCount allocations;
+  release(allocate(8));
+  EXPECT_EQ(allocations.count(), 1);
+  destroy(make(8));
+  EXPECT_EQ(allocations.count(), 2);
+  const volatile Eigen::Index size = 10;
+  const MatX matrix = MatX::Zero(size, size);
+  EXPECT_EQ(allocations.count(), 3);
+  EXPECT_EQ(matrix.sum(), 0.0);
+}
+
+TEST(FindEquilibrium, SaysWhatIsLeftAndWhatToDoWhenItCannotConverge) {
+  const auto needle = test::beam();
+  const auto result = find_equilibrium(*needle, std::vector<PointLoad>{{kLength, {5.0, 0, 0}}}, 1e-9, 1);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().kind, ErrorKind::failed);
+  EXPECT_NE(result.error().message().find("N mm"), std::string::npos);
+  EXPECT_FALSE(result.error().cure.empty());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(find_equilibrium(*needle, std::vector<PointLoad>{{kLength, {nan, 0, 0}}}).ok());
+}
+
+TEST(FindEquilibrium, ReachesStrongLoadsFromTheStraightNeedleAndStartsWarm) {
+  const auto needle = test::beam();
+  std::vector<PointLoad> loads = {{kLength, {20.0, 3.0, -8.0}}, {90.0, {-11.0, 6.0, 2.0}}};
+  test::settle(*needle, loads, 1e-8);
+  EXPECT_EQ(test::settle(*needle, loads, 1e-8), 0);
+  loads[0].force.y() += 1e-3;
+  EXPECT_LE(test::settle(*needle, loads, 1e-8), 4);
+}
+
+struct Refused {
+  const char* name;
+  NeedleSection section;
+  int elements;
+  int capacity;
+  const char* says;
+};
+
+class BeamBuild : public testing::TestWithParam<Refused> {};
+
+TEST_P(BeamBuild, RefusesNonsenseSayingWhatWasExpected) {
+  const Refused& bad = GetParam();
+  const auto result = BeamNeedle::build(bad.section, bad.elements, bad.capacity);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().kind, ErrorKind::input);
+  EXPECT_NE(result.error().message().find(bad.says), std::string::npos) << result.error().message();
+  EXPECT_FALSE(result.error().cure.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BeamBuild,
+    testing::Values(Refused{"length", {.length_mm = 0.0}, 24, 10, "length"},
+                    Refused{"diameter", {.outer_diameter_mm = -1.27}, 24, 10, "diameter"},
+                    Refused{"bending", {.bending_stiffness_Nmm2 = 0.0}, 24, 10, "bending stiffness"},
+                    Refused{"nan", {.bending_stiffness_Nmm2 = std::numeric_limits<double>::quiet_NaN()}, 24, 10, "nan"},
+                    Refused{"torsion", {.torsion_stiffness_Nmm2 = -1.0}, 24, 10, "torsion stiffness"},
+                    Refused{"stiffer_than_solid", {.bending_stiffness_Nmm2 = 30000.0}, 24, 10, "26817 N mm²"},
+                    Refused{"elements", {}, 3, 10, "4…500"}, Refused{"capacity", {}, 24, 0, "at least 1"}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(BeamSection, AcceptsTheStiffestSolidNeedle) {
+  EXPECT_TRUE(BeamNeedle::build({.bending_stiffness_Nmm2 = 26800.0}, 24, 10).ok());
+}
+
+}  // namespace
+}  // namespace stylet

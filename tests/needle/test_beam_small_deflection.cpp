@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cantilever formulae of Euler–Bernoulli theory, loads small enough that geometry stays linear to 1e-6.
+#include "support.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace stylet {
+namespace {
+
+constexpr double kLength = 200.0;
+constexpr double kEI = 15700.0;
+constexpr double kForce = 1e-5;
+
+/// Deflection at s of a cantilever under a lateral force F at a.
+double deflection(double F, double a, double s) {
+  const double near = std::min(s, a);
+  const double far = std::max(s, a);
+  return F * near * near * (3.0 * far - near) / (6.0 * kEI);
+}
+
+double error_of_tip(int elements, const std::vector<PointLoad>& loads, double expected) {
+  const auto needle = test::beam(elements);
+  test::settle(*needle, loads, 1e-12);
+  return needle->point(kLength).x() / expected - 1.0;
+}
+
+TEST(BeamSmallDeflection, EndLoadWithinHalfAPercentAndSecondOrder) {
+  const double expected = kForce * std::pow(kLength, 3) / (3.0 * kEI);
+  const std::vector<PointLoad> loads = {{kLength, {kForce, 0, 0}}};
+  const double at_12 = error_of_tip(12, loads, expected);
+  const double at_24 = error_of_tip(24, loads, expected);
+  EXPECT_LT(std::abs(at_24), 0.005);
+  EXPECT_NEAR(std::log2(at_12 / at_24), 2.0, 0.05);
+}
+
+TEST(BeamSmallDeflection, LoadInsideAnElementBendsTheWholeShaftWithinHalfAPercent) {
+  const auto needle = test::beam();
+  for (const double a : {73.0, 100.0, 131.7}) {
+    needle->straighten();
+    test::settle(*needle, std::vector<PointLoad>{{a, {0, kForce, 0}}}, 1e-12);
+    const double tip = deflection(kForce, a, kLength);
+    for (const double s : {a / 2, a, kLength}) {
+      EXPECT_NEAR(needle->point(s).y(), deflection(kForce, a, s), 0.005 * tip) << "load at " << a << ", point at " << s;
+    }
+  }
+}
+
+TEST(BeamSmallDeflection, DistributedLoadWithinHalfAPercentAndSecondOrder) {
+  // Midpoint rule over 50 strips; its own error against q L⁴/(8 EI) is taken out by summing the exact point
+  // deflections.
+  std::vector<PointLoad> loads;
+  double expected = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const double s = kLength * (i + 0.5) / 50;
+    loads.push_back({s, {kForce / 50, 0, 0}});
+    expected += deflection(kForce / 50, s, kLength);
+  }
+  EXPECT_NEAR(expected, kForce * std::pow(kLength, 3) / (8.0 * kEI), 5e-4 * expected);
+  const double at_12 = error_of_tip(12, loads, expected);
+  const double at_24 = error_of_tip(24, loads, expected);
+  EXPECT_LT(std::abs(at_24), 0.005);
+  EXPECT_NEAR(std::log2(at_12 / at_24), 2.0, 0.15);
+}
+
+TEST(BeamSmallDeflection, MomentOfAForceCoupleBendsIntoACircle) {
+  // Two opposite forces d apart at the tip: constant moment F d over the rest of the shaft.
+  constexpr double d = 2.0;
+  const auto needle = test::beam();
+  const std::vector<PointLoad> loads = {{kLength - d, {-0.001, 0, 0}}, {kLength, {0.001, 0, 0}}};
+  test::settle(*needle, loads, 1e-12);
+  const double curvature = 0.001 * d / kEI;
+  for (const double s : {50.0, 100.0, 180.0}) {
+    EXPECT_NEAR(needle->point(s).x(), curvature * s * s / 2.0, 0.005 * curvature * s * s / 2.0) << s;
+    EXPECT_NEAR(needle->tangent(s).x(), curvature * s, 0.005 * curvature * s) << s;
+  }
+}
+
+TEST(BeamSmallDeflection, AxialLoadChangesNothingBelowBuckling) {
+  const auto needle = test::beam();
+  test::settle(*needle, std::vector<PointLoad>{{kLength, {0, 0, -0.5}}});
+  EXPECT_LT((needle->point(kLength) - Vec3(0, 0, kLength)).norm(), 1e-12);
+}
+
+TEST(BeamSmallDeflection, LateralStiffnessIsTheSameInEveryDirection) {
+  const auto needle = test::beam();
+  double first = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / 12 + 0.1;
+    const Vec3 direction(std::cos(angle), std::sin(angle), 0.0);
+    needle->straighten();
+    test::settle(*needle, std::vector<PointLoad>{{kLength, 0.3 * direction}, {88.0, 0.1 * direction}});
+    const Vec3 tip = needle->point(kLength);
+    if (k == 0) first = tip.dot(direction);
+    EXPECT_GT(first, 0.2 * kLength);
+    EXPECT_NEAR(tip.dot(direction), first, 1e-10 * first);
+    EXPECT_NEAR(tip.dot(Vec3::UnitZ().cross(direction)), 0.0, 1e-10 * first);
+  }
+}
+
+}  // namespace
+}  // namespace stylet
