@@ -1,2 +1,85 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-int main() { return 0; }
+// The stylet program: reads the command line, runs one command, turns its outcome into an exit status.
+#include "command.hpp"
+#include "threads.hpp"
+#include "usage.hpp"
+
+#include "stylet/core/version.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <exception>
+#include <new>
+
+namespace {
+
+using namespace stylet;
+using namespace stylet::cli;
+
+// Exit statuses, part of the command line's contract.
+constexpr int kOk = 0;
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+void add_common_options(CLI::App& app, CommonOptions& common) {
+  const std::string group = "Options of every command";
+  app.add_option("--json", common.json, "Write the result as JSON to this file; '-' for standard output")
+      ->type_name("FILE")
+      ->group(group);
+  app.add_flag("--quiet", common.quiet, "Print warnings and errors only")->group(group);
+  app.add_flag("--verbose", common.verbose, "Print more about what is done")->group(group);
+  app.add_option("--threads", common.threads, "Use at most N threads (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->group(group);
+}
+
+int report(Console& console, const Error& error) {
+  console.error(error.message());
+  return error.kind == ErrorKind::input ? kBadInput : kFailed;
+}
+
+int run(int argc, char** argv, Console& console) {
+  CLI::App program("Real-time simulation of a flexible needle in soft tissue. Not a medical device.", "stylet");
+  program.set_version_flag("--version", std::string("stylet ") + version());
+  program.require_subcommand(1);
+  program.footer("Exit status: 0 done, 1 the run failed, 2 the input or the command line was wrong.");
+
+  CommonOptions common;
+  const std::array commands{add_phantom_command(program), add_mesh_command(program), add_info_command(program)};
+  for (const Command& command : commands) add_common_options(*command.app, common);
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    console.error(explain(error, program));
+    return kBadInput;
+  }
+
+  if (common.threads > 0) limit_threads(common.threads);
+  if (const Result<> configured = console.configure(common); !configured) return report(console, configured.error());
+  for (const Command& command : commands) {
+    if (!command.app->parsed()) continue;
+    const Result<> done = command.run(console);
+    return done ? kOk : report(console, done.error());
+  }
+  return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Console console;
+  try {
+    return run(argc, argv, console);
+  } catch (const std::bad_alloc&) {
+    console.error("out of memory. Use a coarser mesh (--nodes) or a machine with more memory");
+  } catch (const std::exception& unexpected) {
+    console.error(
+        fmt::format("unexpected failure: {}. Please report it with the command line and the input", unexpected.what()));
+  }
+  return kFailed;
+}

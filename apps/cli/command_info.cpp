@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "describe.hpp"
+
+#include "stylet/io/input.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::cli {
+
+namespace {
+
+struct InfoArguments {
+  std::string file;
+  double scale = 0;
+};
+
+Result<> run_info(const InfoArguments& arguments, Console& console) {
+  const Result<PatientInput> input = read_input(arguments.file, {.scale = arguments.scale});
+  if (!input) return input.error();
+  Description description = std::visit([](const auto& content) { return describe(content); }, *input);
+
+  Json json = {{"file", arguments.file}};
+  json.update(description.json);
+  console.say(arguments.file + '\n' + description.text);
+  return console.write_json(json);
+}
+
+}  // namespace
+
+Command add_info_command(CLI::App& program) {
+  auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* app = program.add_subcommand("info", "Say what is in a contour set, mask, mesh, surface or recording");
+  app->add_option("FILE", arguments->file, "File, or folder with one DICOM RTSTRUCT in it")->required();
+  app->add_option("--scale", arguments->scale,
+                  "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  return {app, [arguments](Console& console) { return run_info(*arguments, console); }};
+}
+
+}  // namespace stylet::cli

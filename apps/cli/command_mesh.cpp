@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "describe.hpp"
+#include "mesh_report.hpp"
+#include "output_path.hpp"
+
+#include "stylet/core/nearest_name.hpp"
+#include "stylet/io/input.hpp"
+#include "stylet/mesher/mesher.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace stylet::cli {
+
+namespace {
+
+constexpr Index kFewestNodes = 100;
+constexpr Index kMostNodes = 1'000'000;
+
+struct MeshArguments {
+  std::string input;
+  std::string output;
+  Index nodes = 0;  ///< 0 = not given
+  MeshPreset preset = MeshPreset::standard;
+  bool preset_given = false;
+  double scale = 0;  ///< 0 = not given
+  std::vector<std::string> regions;
+  double cull_mm = -1;  ///< < 0 = not given
+  bool no_band = false;
+};
+
+/// "NAME=CANONICAL" arguments as a map.
+Result<std::map<std::string, std::string>> parse_regions(const std::vector<std::string>& arguments) {
+  std::map<std::string, std::string> regions;
+  for (const std::string& argument : arguments) {
+    const std::size_t split = argument.rfind('=');
+    if (split == std::string::npos || split == 0 || split + 1 == argument.size()) {
+      return input_error(fmt::format("--region {}", argument), "NAME=CANONICAL is expected",
+                         "Write e.g. --region 'PTV 1=prostate'");
+    }
+    if (!regions.emplace(argument.substr(0, split), argument.substr(split + 1)).second) {
+      return input_error(fmt::format("--region {}", argument), "the name is given twice", "Give each name once");
+    }
+  }
+  return regions;
+}
+
+/// An option that means nothing for this kind of input.
+Error pointless(const MeshArguments& arguments, const char* option, const char* kind) {
+  return input_error(arguments.input, fmt::format("{} has no meaning for {}", option, kind),
+                     fmt::format("Leave {} out", option));
+}
+
+/// Options of the mesher from the command line.
+Result<MeshOptions> mesher_options(const MeshArguments& arguments) {
+  const auto regions = parse_regions(arguments.regions);
+  if (!regions) return regions.error();
+  if (arguments.scale > 0) return pointless(arguments, "--scale", "contours and masks, which are in mm");
+  MeshOptions options;
+  options.preset = arguments.preset;
+  options.nodes = arguments.nodes;
+  options.regions = *regions;
+  options.stiff_band = !arguments.no_band;
+  if (arguments.cull_mm >= 0) options.cull_tolerance_mm = arguments.cull_mm;
+  return options;
+}
+
+Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, Console& console) {
+  const Result<MeshOptions> options = mesher_options(arguments);
+  if (!options) return options.error();
+  return mesh_contours(contours, *options, console.progress());
+}
+
+Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arguments, Console& console) {
+  if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", "a mask, which has no contour points");
+  const Result<MeshOptions> options = mesher_options(arguments);
+  if (!options) return options.error();
+  return mesh_labels(image, *options, console.progress());
+}
+
+/// A third-party mesh is taken as it is; its regions may get new names.
+Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, Console&) {
+  constexpr const char* kind = "a tetrahedral mesh, which is taken as it is";
+  if (arguments.nodes > 0) return pointless(arguments, "--nodes", kind);
+  if (arguments.preset_given) return pointless(arguments, "--preset", kind);
+  if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", kind);
+  if (arguments.no_band) return pointless(arguments, "--no-band", kind);
+  const auto renamed = parse_regions(arguments.regions);
+  if (!renamed) return renamed.error();
+
+  MeshedAnatomy out{.mesh = mesh, .report = {}};
+  for (const auto& [name, canonical] : *renamed) {
+    const int region = mesh.region_index(name);
+    if (region < 0) {
+      const std::string nearest = nearest_name(name, mesh.regions);
+      return input_error(arguments.input,
+                         fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(mesh.regions, ", ")),
+                         nearest.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", nearest));
+    }
+    out.mesh.regions[region] = canonical;
+  }
+  for (std::size_t region = 0; region < out.mesh.regions.size(); ++region) {
+    const auto twin =
+        std::find(out.mesh.regions.begin(), out.mesh.regions.begin() + static_cast<std::ptrdiff_t>(region),
+                  out.mesh.regions[region]);
+    if (twin != out.mesh.regions.begin() + static_cast<std::ptrdiff_t>(region)) {
+      return input_error(arguments.input, fmt::format("two regions would be called '{}'", *twin),
+                         "Give every region a name of its own with --region");
+    }
+  }
+  out.report = report_as_is(out.mesh);
+  return out;
+}
+
+Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshArguments& arguments, Console&) {
+  return input_error(arguments.input,
+                     fmt::format("{} triangulated surface{}; surfaces are not meshed", surfaces.size(),
+                                 surfaces.size() == 1 ? "" : "s"),
+                     "Give contours (DICOM RTSTRUCT, contour JSON), a label mask (NIfTI, NRRD, MetaImage) or a "
+                     "tetrahedral mesh");
+}
+
+Result<> run_mesh(const MeshArguments& arguments, Console& console) {
+  const std::filesystem::path output = arguments.output;
+  if (output.extension() != ".vtu") {
+    return input_error(arguments.output, "the model is written as VTU", "Give a name that ends in .vtu");
+  }
+  if (Result<> writable = check_output_file(output); !writable) return writable;
+
+  const auto start = std::chrono::steady_clock::now();
+  const Result<PatientInput> input = read_input(arguments.input, {.scale = arguments.scale});
+  if (!input) return input.error();
+  Result<MeshedAnatomy> model =
+      std::visit([&](const auto& content) { return model_of(content, arguments, console); }, *input);
+  if (!model) return model.error();
+  model->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
+  if (Result<> written = write_vtu(model->mesh, output); !written) return written;
+
+  console.say(fmt::format("{} → {}", arguments.input, arguments.output));
+  console.say(report_text(model->report));
+  Json json = {{"input", arguments.input}, {"output", arguments.output}};
+  json.update(report_json(model->report));
+  return console.write_json(json);
+}
+
+}  // namespace
+
+Command add_mesh_command(CLI::App& program) {
+  auto arguments = std::make_shared<MeshArguments>();
+  CLI::App* app = program.add_subcommand(
+      "mesh", "Turn contours or a label mask into tetrahedra; or check and convert a tetrahedral mesh");
+  app->add_option(
+         "INPUT", arguments->input,
+         "Contours (DICOM RTSTRUCT or a folder with one, contour JSON), label mask (NIfTI, NRRD, MetaImage) or "
+         "tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
+      ->required();
+  app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.vtu")->required();
+  app->add_option("--nodes", arguments->nodes, "Number of nodes, hit within 3 % (default: the preset's)")
+      ->type_name("N")
+      ->check(CLI::Range(kFewestNodes, kMostNodes));
+  const std::map<std::string, MeshPreset> presets{{"standard", MeshPreset::standard}, {"paper", MeshPreset::paper}};
+  CLI::Option* preset =
+      app->add_option("--preset", arguments->preset,
+                      "standard: all anatomy, about 3,000 nodes; paper: prostate and surroundings only, 570 nodes")
+          ->type_name("standard|paper")
+          ->transform(CLI::CheckedTransformer(presets).description(""));
+  app->add_option("--scale", arguments->scale,
+                  "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  app->add_option("--region", arguments->regions,
+                  "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
+                  "repeated; for contours and masks those not named are then left out")
+      ->type_name("NAME=CANONICAL")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_option("--cull", arguments->cull_mm,
+                  "Drop contour points closer than this to the contour without them [mm] (default: 0.3)")
+      ->type_name("MM")
+      ->check(CLI::Range(0.0, 5.0));
+  app->add_flag("--no-band", arguments->no_band,
+                "Without a pubic arch in the input: do not add the stiff band that holds the gland");
+  return {app, [arguments, preset](Console& console) {
+            arguments->preset_given = preset->count() > 0;
+            return run_mesh(*arguments, console);
+          }};
+}
+
+}  // namespace stylet::cli

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "console.hpp"
+
+#include "output_path.hpp"
+#include "progress_display.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+namespace stylet::cli {
+
+namespace {
+
+/// Writes all of it to a file descriptor; false with errno set when that fails.
+bool write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno != EINTR) return false;
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+bool stderr_is_terminal() {
+  const char* term = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
+}
+
+}  // namespace
+
+struct Console::Parts {
+  CommonOptions options;
+  ProgressDisplay display{stderr_is_terminal()};
+  int json_descriptor = -1;  ///< the real standard output while --json - keeps everyone else off it
+  std::mutex mutex;          ///< progress may be reported by any thread
+
+  void line(std::FILE* stream, std::string_view prefix, std::string_view text) {
+    const std::scoped_lock lock(mutex);
+    display.clear();
+    fmt::print(stream, "{}{}\n", prefix, text);
+    std::fflush(stream);
+  }
+};
+
+Console::Console() : parts_(std::make_unique<Parts>()) {}
+
+Console::~Console() {
+  if (parts_->json_descriptor >= 0) ::close(parts_->json_descriptor);
+}
+
+Result<> Console::configure(const CommonOptions& options) {
+  parts_->options = options;
+  if (options.json.empty()) return Ok{};
+  if (options.json != "-") return check_output_file(options.json);
+  // From here on what this program or a library prints to standard output lands on standard error.
+  std::fflush(stdout);
+  parts_->json_descriptor = ::dup(STDOUT_FILENO);
+  if (parts_->json_descriptor < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {
+    return failure("--json -", "standard output is closed", "Give a file name instead of '-'");
+  }
+  return Ok{};
+}
+
+void Console::say(std::string_view text) {
+  if (!parts_->options.quiet) parts_->line(stdout, "", text);
+}
+
+void Console::detail(std::string_view text) {
+  if (parts_->options.verbose) parts_->line(stderr, "stylet: ", text);
+}
+
+void Console::warn(std::string_view text) { parts_->line(stderr, "stylet: warning: ", text); }
+
+void Console::error(std::string_view text) { parts_->line(stderr, "stylet: error: ", text); }
+
+Progress Console::progress() {
+  if (parts_->options.quiet) return {};
+  return [parts = parts_.get()](std::string_view stage, double fraction) {
+    const std::scoped_lock lock(parts->mutex);
+    parts->display.update(stage, fraction);
+  };
+}
+
+Result<> Console::write_json(const Json& json) {
+  const std::string& target = parts_->options.json;
+  if (target.empty()) return Ok{};
+  // Names from files may be in any encoding; JSON is UTF-8.
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  if (target != "-") return write_text_file(target, text);
+  if (!write_all(parts_->json_descriptor, text)) {
+    return failure("--json -", std::string("standard output takes no more: ") + std::strerror(errno),
+                   "Check where it is sent to");
+  }
+  return Ok{};
+}
+
+}  // namespace stylet::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contour_measures.hpp"
+#include "describe.hpp"
+#include "table.hpp"
+
+#include "stylet/mesher/mesher.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::cli {
+
+Description describe(const ContourSet& contours) {
+  Description out;
+  out.json = {{"kind", "contours"},
+              {"label", contours.label},
+              {"frame_of_reference", contours.frame_of_reference},
+              {"structures", Json::array()},
+              {"notes", contours.notes}};
+  Table table(
+      {"structure", "taken as", "type", "slices", "contours", "points", "spacing mm", "extent mm", "volume cc"});
+  for (const Roi& roi : contours.rois) {
+    const RoiMeasures size = measure(roi);
+    const std::string canonical = canonical_region(roi.name);
+    out.json["structures"].push_back({{"name", roi.name},
+                                      {"number", roi.number},
+                                      {"type", roi.type},
+                                      {"taken_as", canonical},
+                                      {"slices", size.slices},
+                                      {"contours", roi.contours.size()},
+                                      {"points", size.points},
+                                      {"slice_spacing_mm", size.slice_spacing_mm},
+                                      {"extent_mm", extent_json(size.box)},
+                                      {"volume_cc", size.volume_cc}});
+    table.row({roi.name, canonical.empty() ? "(not recognised)" : canonical, roi.type, fmt::to_string(size.slices),
+               fmt::to_string(roi.contours.size()), fmt::to_string(size.points),
+               fmt::format("{:.2f}", size.slice_spacing_mm), extent_text(size.box),
+               fmt::format("{:.1f}", size.volume_cc)});
+  }
+  Facts facts;
+  facts.add("kind", fmt::format("contours of {} structures", contours.rois.size()));
+  if (!contours.label.empty()) facts.add("label", contours.label);
+  if (!contours.frame_of_reference.empty()) facts.add("frame of reference", contours.frame_of_reference);
+  out.text = facts.text() + "\n\n" + table.text();
+  for (const std::string& note : contours.notes) out.text += "\n  note: " + note;
+  return out;
+}
+
+}  // namespace stylet::cli

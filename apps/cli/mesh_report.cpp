@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_report.hpp"
+
+#include "describe.hpp"
+#include "table.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::cli {
+
+MeshReport report_as_is(const TetMesh& mesh) {
+  MeshReport report;
+  report.quality = mesh_quality(mesh);
+  for (std::size_t region = 0; region < mesh.regions.size(); ++region) {
+    report.regions.push_back({.name = mesh.regions[region],
+                              .tets = report.quality.region_tets[region],
+                              .volume_cc = report.quality.region_volume_cc[region],
+                              .input_volume_cc = report.quality.region_volume_cc[region]});
+  }
+  report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
+  return report;
+}
+
+std::string report_text(const MeshReport& report) {
+  const MeshQuality& quality = report.quality;
+  Facts facts;
+  facts.add("nodes", fmt::to_string(quality.nodes));
+  facts.add("tetrahedra", fmt::to_string(quality.tets));
+  facts.add("dihedral angles",
+            fmt::format("{:.1f}° … {:.1f}°, {:.2f} % of the elements below 12°", quality.dihedral_deg.min,
+                        quality.dihedral_deg.max, 100 * quality.fraction_below_12_deg));
+  facts.add("edges", fmt::format("{:.2f} … {:.2f} mm", quality.edge_mm.min, quality.edge_mm.max));
+  facts.add("radius ratio", fmt::format("≥ {:.3f} (1: regular)", quality.radius_ratio_min));
+  facts.add("surface distance",
+            fmt::format("mean {:.2f} mm, largest {:.2f} mm", report.surface_mean_mm, report.surface_max_mm));
+  if (report.contour_points > 0) {
+    facts.add("contour points",
+              fmt::format("{}, {} left after culling", report.contour_points, report.contour_points_kept));
+  }
+  facts.add("time", fmt::format("{:.2f} s", report.seconds));
+
+  Table table({"region", "tetrahedra", "volume cc", "input cc", "off %", "distance mean mm", "largest mm"});
+  for (const RegionReport& region : report.regions) {
+    const bool made_here = region.input_volume_cc <= 0;
+    const double off = made_here ? 0 : 100 * (region.volume_cc / region.input_volume_cc - 1);
+    table.row({region.name, fmt::to_string(region.tets), fmt::format("{:.2f}", region.volume_cc),
+               made_here ? "" : fmt::format("{:.2f}", region.input_volume_cc),
+               made_here ? "" : fmt::format("{:+.1f}", off),
+               made_here ? "" : fmt::format("{:.2f}", region.surface_mean_mm),
+               made_here ? "" : fmt::format("{:.2f}", region.surface_max_mm)});
+  }
+  std::string text = facts.text() + "\n\n" + table.text();
+  for (const std::string& note : report.notes) text += "\n  note: " + note;
+  return text;
+}
+
+Json report_json(const MeshReport& report) {
+  Json json = quality_json(report.quality);
+  json["surface_distance_mm"] = {{"mean", report.surface_mean_mm}, {"max", report.surface_max_mm}};
+  json["regions"] = Json::object();
+  for (const RegionReport& region : report.regions) {
+    json["regions"][region.name] = {
+        {"tets", region.tets},
+        {"volume_cc", region.volume_cc},
+        {"input_volume_cc", region.input_volume_cc},
+        {"surface_distance_mm", {{"mean", region.surface_mean_mm}, {"max", region.surface_max_mm}}}};
+  }
+  json["contour_points"] = {{"read", report.contour_points}, {"kept", report.contour_points_kept}};
+  json["notes"] = report.notes;
+  json["seconds"] = report.seconds;
+  return json;
+}
+
+}  // namespace stylet::cli

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "output_path.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace stylet::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The folder a relative file name without folder lies in is the current one.
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+constexpr const char* kCure = "Choose another place with -o or --json";
+
+}  // namespace
+
+Result<> check_output_folder(const fs::path& path) {
+  if (path.empty()) return input_error("output folder", "the name is empty", kCure);
+  // The first part of the path that is there decides whether the rest can be made.
+  fs::path existing = fs::absolute(path).lexically_normal();
+  std::error_code code;
+  while (!fs::exists(fs::status(existing, code)) && existing.has_relative_path()) existing = existing.parent_path();
+  if (!fs::is_directory(existing, code)) {
+    return input_error(path.string(), fmt::format("'{}' is not a folder", existing.string()), kCure);
+  }
+  if (::access(existing.c_str(), W_OK | X_OK) != 0) {
+    return input_error(path.string(), fmt::format("the folder '{}' is not writable", existing.string()), kCure);
+  }
+  return Ok{};
+}
+
+Result<> check_output_file(const fs::path& path) {
+  if (path.empty()) return input_error("output file", "the name is empty", kCure);
+  std::error_code code;
+  if (!path.has_filename() || fs::is_directory(path, code)) {
+    return input_error(path.string(), "this is a folder, the name of a file is expected", kCure);
+  }
+  const Result<> folder = check_output_folder(folder_of(path));
+  if (!folder) return input_error(path.string(), folder.error().what, folder.error().cure);
+  return Ok{};
+}
+
+Result<> make_folder(const fs::path& path) {
+  std::error_code code;
+  fs::create_directories(path, code);
+  if (!fs::is_directory(path)) {
+    return input_error(path.string(), fmt::format("the folder cannot be made: {}", code.message()), kCure);
+  }
+  return Ok{};
+}
+
+Result<> write_text_file(const fs::path& path, std::string_view text) {
+  if (Result<> made = make_folder(folder_of(path)); !made) return made;
+  std::error_code code;
+  if (fs::exists(path, code) && !fs::is_regular_file(path, code)) {  // a pipe or a device stays what it is
+    std::ofstream stream(path, std::ios::binary);
+    stream << text << std::flush;
+    if (!stream) return failure(path.string(), "writing failed", kCure);
+    return Ok{};
+  }
+  const fs::path temporary = folder_of(path) / fmt::format(".{}.{}.part", path.filename().string(), ::getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text << std::flush;
+    if (!file) {
+      file.close();
+      fs::remove(temporary, code);
+      return failure(path.string(), "writing failed", "Check the space and the permissions of its folder");
+    }
+  }
+  fs::rename(temporary, path, code);
+  if (code) {
+    const std::string reason = code.message();
+    fs::remove(temporary, code);
+    return failure(path.string(), "the file cannot be put in place: " + reason, kCure);
+  }
+  return Ok{};
+}
+
+}  // namespace stylet::cli
