@@ -6,7 +6,7 @@
 namespace stylet::beam {
 
 BeamShape::BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness)
-    : curvature(VecX::Zero(3 * elements)),
+    : curvature(VecX::Zero(dof(elements))),
       elements_(elements),
       element_length_(length / elements),
       stiffness_(bending_stiffness, bending_stiffness, torsion_stiffness),

@@ -8,6 +8,9 @@
 
 namespace stylet::beam {
 
+/// First of the three curvature components of an element; elements · 3 in all.
+[[nodiscard]] constexpr Eigen::Index dof(Eigen::Index element) { return 3 * element; }
+
 /// Where an arc length lies: element and distance from the element's start [mm]. Before the base, element is -1 and
 /// local is negative.
 struct Station {
@@ -36,7 +39,7 @@ class BeamShape {
   [[nodiscard]] double length() const { return elements_ * element_length_; }
   [[nodiscard]] double element_length() const { return element_length_; }
   [[nodiscard]] Vec3 stiffness() const { return stiffness_; }  ///< [N mm²] EI, EI, GJ
-  [[nodiscard]] Vec3 kappa(int e) const { return curvature.segment<3>(3 * e); }
+  [[nodiscard]] Vec3 kappa(int e) const { return curvature.segment<3>(dof(e)); }
 
   /// Arc lengths past the tip count as the tip.
   [[nodiscard]] Station locate(double s) const;

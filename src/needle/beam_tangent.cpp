@@ -58,20 +58,20 @@ double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation, std:
 BeamTangent::BeamTangent(const BeamShape& shape, int load_capacity)
     : elements_(shape.elements()),
       scale_((shape.element_length() * shape.stiffness()).cwiseSqrt().cwiseInverse()),
-      H_(MatX::Zero(3 * elements_, 3 * elements_)),
-      L_(MatX::Identity(3 * elements_, 3 * elements_)),
-      g_(VecX::Zero(3 * elements_)),
-      z_(VecX::Zero(3 * elements_)),
-      step_(VecX::Zero(3 * elements_)),
-      spin_(MatX::Zero(3 * elements_, 3)),
-      shift_(MatX::Zero(3 * elements_, 3)),
+      H_(MatX::Zero(dof(elements_), dof(elements_))),
+      L_(MatX::Identity(dof(elements_), dof(elements_))),
+      g_(VecX::Zero(dof(elements_))),
+      z_(VecX::Zero(dof(elements_))),
+      step_(VecX::Zero(dof(elements_))),
+      spin_(MatX::Zero(dof(elements_), 3)),
+      shift_(MatX::Zero(dof(elements_), 3)),
       lever_(static_cast<std::size_t>(elements_), Mat3::Zero()) {
   reserve(load_capacity);
 }
 
 void BeamTangent::reserve(Eigen::Index loads) {
   if (3 * loads <= Y_.cols()) return;
-  Y_.setZero(3 * elements_, 3 * loads);
+  Y_.setZero(dof(elements_), 3 * loads);
   force_.setZero(3 * loads);
   loads_.reserve(static_cast<std::size_t>(loads));
 }
@@ -227,12 +227,12 @@ void BeamTangent::step(std::span<const PointLoad> loads, BeamShape& shape) {
   }
   solve_upper(L_, step_);
   for (int e = 0; e < elements_; ++e)
-    shape.curvature.segment<3>(3 * e) += scale_.cwiseProduct(step_.segment<3>(row(e)));
+    shape.curvature.segment<3>(dof(e)) += scale_.cwiseProduct(step_.segment<3>(row(e)));
 }
 
 VecX BeamTangent::gradient() const {
   VecX gradient(g_.size());
-  for (int e = 0; e < elements_; ++e) gradient.segment<3>(3 * e) = g_.segment<3>(row(e)).cwiseQuotient(scale_);
+  for (int e = 0; e < elements_; ++e) gradient.segment<3>(dof(e)) = g_.segment<3>(row(e)).cwiseQuotient(scale_);
   return gradient;
 }
 
@@ -242,7 +242,7 @@ MatX BeamTangent::hessian() const {
   const Vec3 inverse = scale_.cwiseInverse();
   for (int a = 0; a < elements_; ++a) {
     for (int b = 0; b < elements_; ++b) {
-      hessian.block<3, 3>(3 * a, 3 * b) =
+      hessian.block<3, 3>(dof(a), dof(b)) =
           inverse.asDiagonal() * full.block<3, 3>(row(a), row(b)) * inverse.asDiagonal();
     }
   }

@@ -42,7 +42,7 @@ class BeamTangent {
   void assemble_energy(const BeamShape& shape);
   void factorise_shifted();
   void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation);
-  [[nodiscard]] Eigen::Index row(int e) const { return 3 * (elements_ - 1 - e); }
+  [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
 
   int elements_;

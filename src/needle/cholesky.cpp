@@ -36,6 +36,7 @@ void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref
   }
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): y is written through the view
 void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<VecX> y) {
   L.triangularView<Eigen::Lower>().transpose().solveInPlace(y);
 }
