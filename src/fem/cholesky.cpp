@@ -82,8 +82,14 @@ Cholesky::Failure Cholesky::factorise(const Eigen::SparseMatrix<double>& K, cons
                                       const Progress& progress) {
   const OneBlasThread one_thread;
   const auto failure = [this] {
-    if (common_.status == CHOLMOD_TOO_LARGE) return Failure::too_large;
-    return Failure::out_of_memory;
+    switch (common_.status) {
+      case CHOLMOD_TOO_LARGE:
+        return Failure::too_large;
+      case CHOLMOD_OUT_OF_MEMORY:
+        return Failure::out_of_memory;
+      default:
+        return Failure::refused;
+    }
   };
 
   report(progress, "ordering", 0.0);

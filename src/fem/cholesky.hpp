@@ -17,7 +17,7 @@ namespace stylet::detail {
 class Cholesky {
  public:
   /// Why there is no factor.
-  enum class Failure { none, not_positive_definite, out_of_memory, too_large };
+  enum class Failure { none, not_positive_definite, out_of_memory, too_large, refused };
 
   Cholesky();
   ~Cholesky();
@@ -30,6 +30,9 @@ class Cholesky {
   ///   costs a ninth
   Failure factorise(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& nodes,
                     const Progress& progress);
+
+  /// CHOLMOD's own status number, for messages.
+  [[nodiscard]] int status() const { return common_.status; }
 
   /// Column of K at which it was found not to be positive definite (Failure::not_positive_definite).
   [[nodiscard]] Index failed_column() const { return failed_column_; }

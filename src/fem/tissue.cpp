@@ -241,6 +241,9 @@ Result<Tissue> Tissue::build(TetMesh mesh, std::vector<Material> materials, std:
           "stiffness matrix",
           "the factor of " + std::to_string(parts->free_dofs) + " degrees of freedom has more than 2³¹ entries",
           "Use a coarser mesh.");
+    case detail::Cholesky::Failure::refused:
+      return failure("stiffness matrix", "CHOLMOD refused it with status " + std::to_string(parts->factor.status()),
+                     "This is a fault of the program: please report it with the mesh.");
   }
   parts->statistics.factor_mb = parts->factor.megabytes();
   parts->statistics.factor_entries = parts->factor.entries();

@@ -13,6 +13,7 @@ namespace {
 // All tolerances are on barycentric weights, so they scale with the element.
 constexpr double kTie = 1e-10;  // a weight this close to 0 lies on the face: rounding of x is far below, 1 nm far above
 constexpr double kRounding = 1e-12;  // returned weights are no lower than minus this
+constexpr double kTangent = 1e-9;    // slope, against the steepest of the element, below which a path runs along a face
 constexpr Index kLeafSize = 6;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -32,7 +33,7 @@ double headroom(const Vec4& w, const Vec4& dw) {
   const double scale = dw.cwiseAbs().maxCoeff();
   double least = kNever;
   for (int i = 0; i < 4; ++i) {
-    if (w[i] <= kTie) least = std::min(least, std::abs(dw[i]) <= 1e-9 * scale ? 0.0 : dw[i] / scale);
+    if (w[i] <= kTie) least = std::min(least, std::abs(dw[i]) <= kTangent * scale ? 0.0 : dw[i] / scale);
   }
   return least;
 }
@@ -43,15 +44,24 @@ struct Candidate {
   double headroom = -kNever;
 };
 
-// Among the tetrahedra around `node` that contain x, the one that x + 0·d lies in, or else comes closest to.
-// `preferred` wins between equals, then the lowest number.
-Candidate best_around(const Locator& locator, Index node, const Vec3& x, const Vec3& d, Index preferred) {
+// Among the tetrahedra around `node` that contain x, the one that x + 0·d lies in, or else comes closest to. Between
+// equals, and between all that x + 0·d lies in when a region is given, that region wins; then `preferred`, then the
+// lowest number.
+Candidate best_around(const Locator& locator, Index node, const Vec3& x, const Vec3& d, Index preferred,
+                      int region = -1) {
   Candidate best;
+  bool best_at_home = false;
   for (const Index t : locator.topology().node_tets[node]) {
     const Vec4 w = locator.weights(t, x);
     if (w.minCoeff() < -kTie) continue;
     const double room = headroom(w, rates(locator.mesh(), t, d));
-    if (best.tet < 0 || room > best.headroom || (room == best.headroom && t == preferred)) best = {t, w, room};
+    const bool at_home = room >= 0.0 && locator.mesh().tet_region[t] == region;
+    const bool better =
+        at_home != best_at_home ? at_home : room > best.headroom || (room == best.headroom && t == preferred);
+    if (best.tet < 0 || better) {
+      best = {t, w, room};
+      best_at_home = at_home;
+    }
   }
   return best;
 }
@@ -194,7 +204,8 @@ std::optional<MaterialPoint> Locator::find(const Vec3& x, Index hint, const Vec3
 
   if (travel != Vec3::Zero() && ties(w) > 0) {
     const Candidate ahead = best_around(*this, nearest_node(*mesh_, found, w), x, travel, found);
-    if (ahead.tet >= 0) return MaterialPoint{ahead.tet, inside(ahead.weights)};
+    // Where travel leads out of the mesh every element ends; then the one at hand is as good as any.
+    if (ahead.headroom >= 0.0) return MaterialPoint{ahead.tet, inside(ahead.weights)};
   }
   return MaterialPoint{found, inside(w)};
 }
@@ -207,26 +218,30 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
   double s = 0.0;   // path parameter where the path entered t
   int stalled = 0;  // steps without progress
 
-  // The face by which the path leaves the region at parameter `at`, where it meets an edge or a node of t: of the
-  // region's faces there, the one met most head-on.
-  const auto leaving_face = [&](Index around, double at, int fallback) {
+  // The face by which the path leaves the region at parameter `at`, where it meets an edge or a node of `around`. Of
+  // the faces there that fit it is the one met most head-on: faces of the region towards the mesh outside (`mesh_ends`)
+  // or towards another region; failing that, any outer face, the other regions having no length on the path; failing
+  // that, any face that leaves the region.
+  const auto leaving_face = [&](Index around, double at, int fallback, bool mesh_ends) {
     const Vec3 x = from + at * d;
     Crossing crossing{at, around, fallback};
+    int best_rank = 0;
     double steepest = 0.0;
     for (const Index c : topology_->node_tets[nearest_node(*mesh_, around, weights(around, x))]) {
-      if (mesh_->tet_region[c] != region) continue;
       const Vec4 w = weights(c, x);
       if (w.minCoeff() < -kTie) continue;
+      const bool home = mesh_->tet_region[c] == region;
       for (int i = 0; i < 4; ++i) {
-        if (w[i] > kTie) continue;
         const Index other = topology_->neighbour[c][i];
-        if (other >= 0 && mesh_->tet_region[other] == region) continue;
+        if (w[i] > kTie || (other >= 0 && mesh_->tet_region[other] == region)) continue;
+        const bool outer = other < 0;
+        const int rank = home && outer == mesh_ends ? 3 : outer && mesh_ends ? 2 : home ? 1 : 0;
         const double slope = face_normal(c, i).dot(d);
-        if (slope > steepest) {
-          steepest = slope;
-          crossing.tet = c;
-          crossing.local = i;
-        }
+        if (rank == 0 || slope <= 0.0 || rank < best_rank || (rank == best_rank && slope <= steepest)) continue;
+        best_rank = rank;
+        steepest = slope;
+        crossing.tet = c;
+        crossing.local = i;
       }
     }
     return crossing;
@@ -241,7 +256,9 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
     double leave = kNever;
     int face = -1;
     for (int i = 0; i < 4; ++i) {
-      if (dw[i] >= 0.0 || -dw[i] <= 1e-12 * scale) continue;
+      if (dw[i] >= 0.0) continue;
+      // A path within a face does not leave through it, whatever the sign of the rounding.
+      if (-dw[i] <= kTangent * scale && std::abs(w[i] + s * dw[i]) <= kTie) continue;
       const double at = -w[i] / dw[i];
       if (at < leave) {
         leave = at;
@@ -261,7 +278,9 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
       s = std::min(1.0, s + 1e-6 / scale);
       stalled = 0;
       const auto ahead = find(from + s * d, -1, d);
-      if (!ahead || mesh_->tet_region[ahead->tet] != region) return leaving_face(t, leave, face);
+      if (!ahead || mesh_->tet_region[ahead->tet] != region) {
+        return leaving_face(t, leave, face, !ahead);
+      }
       t = ahead->tet;
       continue;
     }
@@ -269,10 +288,9 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
     const Vec4 at_exit = w + s * dw;
     if (ties(at_exit) > 1) {
       const Vec3 x = from + s * d;
-      const Candidate ahead = best_around(*this, nearest_node(*mesh_, t, at_exit), x, d, t);
-      if (ahead.tet < 0 || ahead.headroom < 0.0 || mesh_->tet_region[ahead.tet] != region) {
-        return leaving_face(t, s, face);
-      }
+      const Candidate ahead = best_around(*this, nearest_node(*mesh_, t, at_exit), x, d, t, region);
+      const bool mesh_ends = ahead.tet < 0 || ahead.headroom < 0.0;
+      if (mesh_ends || mesh_->tet_region[ahead.tet] != region) return leaving_face(t, s, face, mesh_ends);
       t = ahead.tet;
       continue;
     }

@@ -235,6 +235,82 @@ TEST(Locator, APathThatStartsOnAnInterfaceFollowsItsDirection) {
   EXPECT_EQ(body.mesh.tet_region[crossing->tet], 0);
 }
 
+// Follows the path through all regions as a needle would, checks each piece, and returns how many there are.
+int follow(const Body& body, const Vec3& from, const Vec3& to) {
+  const Vec3 d = to - from;
+  const auto entry = body.locator.first_entry(from, to);
+  if (!entry) return 0;
+  double t = entry->t;
+  Index tet = body.locator.find(from + t * d, entry->tet, d).value().tet;
+  int pieces = 0;
+  while (true) {
+    ++pieces;
+    if (pieces > 10000) {
+      ADD_FAILURE() << "no end in sight from " << from.transpose() << " to " << to.transpose();
+      return pieces;
+    }
+    const int region = body.mesh.tet_region[tet];
+    const Vec3 start = from + t * d;
+    MaterialPoint end;
+    const auto crossing = body.locator.first_crossing(start, tet, to, end);
+    const double next = crossing ? t + crossing->t * (1.0 - t) : 1.0;
+    // Everywhere between two crossings the path is in a tetrahedron of the region.
+    for (const double share : {0.1, 0.5, 0.77}) {
+      const Vec3 x = from + (t + share * (next - t)) * d;
+      bool seen = false;
+      const auto found = body.locator.find(x, tet);
+      EXPECT_TRUE(found);
+      for (int i = 0; found && i < 4 && !seen; ++i) {
+        for (const Index c : body.topology.node_tets[body.mesh.tets[found->tet][i]]) {
+          seen = seen || (body.mesh.tet_region[c] == region && body.locator.weights(c, x).minCoeff() > -1e-8);
+        }
+      }
+      EXPECT_TRUE(seen) << "piece " << pieces << " from " << from.transpose() << " to " << to.transpose();
+    }
+    if (!crossing) {
+      EXPECT_EQ(body.mesh.tet_region[end.tet], region);
+      EXPECT_LT((place(body, end) - to).norm(), 1e-8);
+      return pieces;
+    }
+    const Index other = body.topology.neighbour[crossing->tet][crossing->local];
+    // Out of the mesh through an edge, the outer face may be that of another region at that edge.
+    EXPECT_TRUE(other < 0 || body.mesh.tet_region[crossing->tet] == region);
+    t = next;
+    const auto ahead = body.locator.find(from + t * d, other, d);
+    EXPECT_TRUE(ahead);
+    if (!ahead) return pieces;
+    if (other < 0) {
+      // Out of a convex mesh: nothing is left of it on the way.
+      EXPECT_FALSE(body.locator.find(from + std::min(1.0, t + 1e-6) * d));
+      return pieces;
+    }
+    EXPECT_NE(body.mesh.tet_region[ahead->tet], region);
+    tet = ahead->tet;
+  }
+}
+
+TEST(Locator, PathsThroughAMosaicOfRegionsAreFollowedPieceByPiece) {
+  // Every tetrahedron draws one of three regions: all faces, edges and nodes are interfaces.
+  Random random;
+  const auto mosaic = [&random](double jitter) {
+    TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8}, jitter);
+    assign_regions(mesh, {"a", "b", "c"}, [&](const Vec3&) { return static_cast<int>(random.below(3)); });
+    return mesh;
+  };
+  const Body rough(mosaic(0.15));
+  const Body regular(mosaic(0.0));
+  int pieces = 0;
+  for (int i = 0; i < 2000; ++i) pieces += follow(rough, random.point(-30, 70), random.point(-5, 45));
+  EXPECT_GT(pieces, 10000);
+  // Between grid points: along edges, in faces, through nodes.
+  pieces = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const auto grid = [&](int lo, int hi) { return 5.0 * (lo + random.below(hi - lo + 1)); };
+    pieces += follow(regular, {grid(0, 8), grid(-3, 11), grid(9, 12)}, {grid(1, 7), grid(1, 7), grid(-3, 8)});
+  }
+  EXPECT_GT(pieces, 10000);
+}
+
 TEST(Locator, FirstEntryAgreesWithBruteForceOnAConcaveBody) {
   const Body body(bracket());
   Random random;

@@ -37,6 +37,8 @@ class Locator {
 
   /// Walks from `from`, which lies in tetrahedron `start`, towards `to`; stops at the first face across which the
   /// region changes or the mesh ends. Empty when `to` is reached first; `end` is then (and only then) where `to` lies.
+  /// A region touched at a point or an edge only is passed over, and a path within an interface stays in the region
+  /// it is in. Where the mesh ends at an edge or node, the face may be an outer face of another region's element there.
   [[nodiscard]] std::optional<Crossing> first_crossing(const Vec3& from, Index start, const Vec3& to, MaterialPoint& end) const;
 
   /// First outer face that the segment from `from` (outside the mesh) to `to` enters; Crossing::tet is the tetrahedron

@@ -31,8 +31,9 @@ double tet_volume(const TetMesh& mesh, Index t);
 Eigen::Matrix<double, 3, 4> barycentric_gradients(const TetMesh& mesh, Index t);
 
 /// Refuses a mesh that no simulation may use: empty, NaN or infinite coordinates, node numbers out of range, inverted or
-/// flat tetrahedra, duplicate tetrahedra, a face shared by more than two tetrahedra, unreferenced nodes, bad region
-/// numbers, coordinates whose extent (< 5 mm or > 2 m) betrays wrong units.
+/// flat tetrahedra, duplicate tetrahedra, a face shared by more than two tetrahedra or by two on the same side of it, a
+/// node named twice by a tetrahedron, unreferenced nodes, bad region numbers, coordinates whose extent (< 5 mm or > 2 m)
+/// betrays wrong units.
 /// @param where what to call the mesh in the message (a file name)
 Result<> check_mesh(const TetMesh& mesh, const std::string& where);
 
