@@ -21,6 +21,7 @@ struct RegionLaws {
   FrictionLaw friction;
   bool rigid = false;        ///< bone: all its nodes are fixed, the tip cannot cut it
   bool surrounding = false;  ///< fills the space between organs; its membrane is the outer surface only
+  int organ = -1;  ///< regions of one organ (the gland's zones) have no membrane between them; -1 = on its own
 };
 
 /// Force that breaks the surface between two regions when the tip goes from `from` into `to`. The surface belongs to
@@ -31,6 +32,7 @@ inline double membrane_force(const std::vector<RegionLaws>& laws, int from, int 
   if (into.rigid) return std::numeric_limits<double>::infinity();
   if (from < 0) return into.puncture_N;
   const RegionLaws& out_of = laws[static_cast<std::size_t>(from)];
+  if (into.organ >= 0 && into.organ == out_of.organ) return 0.0;
   if (into.surrounding) return out_of.surrounding ? 0.0 : out_of.puncture_N;
   if (out_of.surrounding) return into.puncture_N;
   return into.puncture_N > out_of.puncture_N ? into.puncture_N : out_of.puncture_N;

@@ -23,7 +23,7 @@ const char* to_string(TipState state);
 /// needle going superior). Torque about the base point, in patient axes.
 struct StepRecord {
   double time_s = 0;
-  double base_depth_mm = 0;   ///< how far a rigid straight needle's tip would be beyond the entry point
+  double base_depth_mm = 0;  ///< how far a rigid straight needle's tip would be beyond the entry point
   double force_axial_N = 0;
   double force_sagittal_N = 0;
   double force_lateral_N = 0;
@@ -33,20 +33,29 @@ struct StepRecord {
   int contacts = 0;
   int sticking = 0;
   int iterations = 0;
-  double step_us = 0;          ///< thread CPU time of the step [µs]; the only number that differs between two runs
+  double step_us = 0;  ///< thread CPU time of the step [µs]; the only number that differs between two runs
 };
 
 enum class EventKind {
-  skin_contact, puncture, region_entered, retraction_start, slip_start, withdrawn, bone_contact, exited, re_entered, grazed
+  skin_contact,
+  puncture,
+  region_entered,
+  retraction_start,
+  slip_start,
+  withdrawn,
+  bone_contact,
+  exited,
+  re_entered,
+  grazed
 };
 const char* to_string(EventKind kind);
 
 struct Event {
   EventKind kind{};
   double time_s = 0;
-  double depth_mm = 0;    ///< base depth
-  double force_N = 0;     ///< axial force of the hand at that moment
-  std::string region;     ///< region touched, punctured or entered; empty where it has no meaning
+  double depth_mm = 0;  ///< base depth
+  double force_N = 0;   ///< axial force of the hand at that moment
+  std::string region;   ///< region touched, punctured or entered; empty where it has no meaning
 };
 
 /// A contact as shown to people.
@@ -62,33 +71,33 @@ struct ContactView {
 struct Frame {
   double time_s = 0;
   double base_depth_mm = 0;
-  std::string label;              ///< "before", "skin_contact", "deepest", … or empty for a frame of the regular series
-  VecX displacement;              ///< [mm] (3n) of the mesh's nodes
-  std::vector<Vec3> needle;       ///< [mm] LPS centreline from base to tip, evenly sampled
+  std::string label;         ///< "before", "skin_contact", "deepest", … or empty for a frame of the regular series
+  VecX displacement;         ///< [mm] (3n) of the mesh's nodes
+  std::vector<Vec3> needle;  ///< [mm] LPS centreline from base to tip, evenly sampled
   std::vector<ContactView> contacts;
 };
 
 /// A parameter as the run used it, for the report.
 struct ParameterRow {
-  std::string name;     ///< key in the scenario, e.g. "tissue.prostate.young_kPa"
+  std::string name;  ///< key in the scenario, e.g. "tissue.prostate.young_kPa"
   std::string value;
   std::string unit;
-  std::string source;   ///< "scenario", or where the default comes from (citation)
+  std::string source;  ///< "scenario", or where the default comes from (citation)
 };
 
 /// What a run is about, known before its first step.
 struct RunInfo {
   std::string version;
   std::string scenario_name;
-  std::string scenario_text;               ///< the scenario as resolved, TOML
+  std::string scenario_text;  ///< the scenario as resolved, TOML
   std::vector<ParameterRow> parameters;
-  std::vector<std::string> supports;       ///< how the tissue is held, in words
+  std::vector<std::string> supports;  ///< how the tissue is held, in words
   std::vector<std::string> warnings;
-  std::string method;                      ///< coupling method and rule
+  std::string method;  ///< coupling method and rule
   double needle_diameter_mm = 0;
   double needle_length_mm = 0;
-  std::vector<int> target_regions;         ///< indices of the regions that form the target
-  Vec3 entry_mm = Vec3::Zero();            ///< LPS
+  std::vector<int> target_regions;  ///< indices of the regions that form the target
+  Vec3 entry_mm = Vec3::Zero();     ///< LPS
   Vec3 direction = Vec3::UnitZ();
 };
 
@@ -101,10 +110,10 @@ struct Summary {
   Index steps = 0;
   double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
   std::vector<Event> events;
-  double tip_deflection_mm = 0;             ///< largest distance of the tip from the straight line of insertion
+  double tip_deflection_mm = 0;                  ///< largest distance of the tip from the straight line of insertion
   Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< LPS, of the target's volume at the deepest point of insertion
-  double target_shift_max_mm = 0;           ///< of any target node, at the deepest point
-  double residual_force_balance = 0;        ///< |base force − sum of contact forces| / peak force, largest of the run
+  double target_shift_max_mm = 0;                ///< of any target node, at the deepest point
+  double residual_force_balance = 0;  ///< |base force − sum of contact forces| / peak force, largest of the run
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;

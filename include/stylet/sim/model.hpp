@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/coupling/insertion.hpp"
+#include "stylet/sim/motion.hpp"
+#include "stylet/sim/recording.hpp"
+#include "stylet/sim/scenario.hpp"
+#include "stylet/sim/supports.hpp"
+
+#include <memory>
+
+namespace stylet {
+
+/// An insertion with every open choice made.
+struct PlannedInsertion {
+  std::string name;                ///< template hole, or "needle 1", …
+  Vec3 entry = Vec3::Zero();       ///< [mm] LPS skin point on the needle's line
+  Vec3 direction = Vec3::UnitZ();  ///< unit, LPS
+  double depth_mm = 0.0;           ///< of the base beyond skin contact
+  BaseMotion motion;
+};
+
+/// A scenario compiled: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable but for
+/// the compliance store, which grows between steps where a needle leaves the planned corridor.
+class Model {
+ public:
+  /// @param mesh the patient's tetrahedra, regions by canonical names
+  /// @param motions recorded base motions, one per insertion, empty where the plan is to be followed
+  /// @param where what to call the scenario in messages
+  static Result<std::shared_ptr<const Model>> compile(const Scenario& scenario, TetMesh mesh, const std::string& where,
+                                                      const std::vector<std::vector<MotionSample>>& motions = {},
+                                                      const Progress& progress = {});
+
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] const TetMesh& mesh() const { return tissue_->mesh(); }
+  [[nodiscard]] const Tissue& tissue() const { return *tissue_; }
+  [[nodiscard]] const Topology& topology() const { return *topology_; }
+  [[nodiscard]] const Locator& locator() const { return *locator_; }
+  [[nodiscard]] const std::shared_ptr<ComplianceStore>& store() const { return store_; }
+  [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
+  [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
+  [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
+  [[nodiscard]] const std::vector<int>& target_regions() const { return target_; }
+  [[nodiscard]] const Supports& supports() const { return supports_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// A needle of this model, straight.
+  [[nodiscard]] std::unique_ptr<Needle> make_needle() const;
+
+  /// What a report says about this model.
+  /// @param insertion the one the entry and direction are of
+  [[nodiscard]] RunInfo info(std::size_t insertion = 0) const;
+
+ private:
+  Model() = default;
+  Scenario scenario_;
+  std::shared_ptr<const Tissue> tissue_;
+  std::unique_ptr<Topology> topology_;
+  std::unique_ptr<Locator> locator_;
+  std::shared_ptr<ComplianceStore> store_;
+  std::vector<RegionLaws> laws_;
+  std::vector<TissueParameters> tissue_parameters_;  ///< by region
+  CouplingSettings coupling_;
+  std::vector<PlannedInsertion> insertions_;
+  std::vector<int> target_;
+  Supports supports_;
+  std::vector<std::string> warnings_;
+};
+
+/// Depth [mm] by which tissue of these parameters tents before a flat punch of the needle's radius reaches `force_N`:
+/// F (1 − ν²) / (2 R E).
+double tenting_mm(const TissueParameters& tissue, double force_N, double needle_diameter_mm);
+
+/// What is wrong with a set of parameters before anything is simulated: tenting outside 5 … 20 mm, a cutting lag over
+/// 5 mm. One sentence each.
+std::vector<std::string> tenting_warnings(const std::string& region, const TissueParameters& tissue,
+                                          double needle_diameter_mm);
+
+}  // namespace stylet

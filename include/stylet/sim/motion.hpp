@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+
+#include <vector>
+
+namespace stylet {
+
+/// Base pose at a moment.
+struct MotionSample {
+  double time_s = 0.0;
+  Pose base;
+};
+
+/// Where the needle's base is over time: straight pieces between samples, at rest before the first and after the last.
+class BaseMotion {
+ public:
+  BaseMotion() = default;
+  explicit BaseMotion(std::vector<MotionSample> samples);  ///< times strictly increasing, at least one sample
+
+  /// In along `direction`, a pause, and out again. The tip starts `approach` before `entry` and, as far as the base is
+  /// concerned, ends `depth` beyond it.
+  /// @param entry [mm] LPS, skin point; @param direction unit vector, LPS
+  static BaseMotion straight(const Vec3& entry, const Vec3& direction, double needle_length_mm, double approach_mm,
+                             double depth_mm, double speed_mm_per_s, double dwell_s, bool retract,
+                             double retract_speed_mm_per_s);
+
+  [[nodiscard]] Pose at(double time_s) const;
+  [[nodiscard]] double duration_s() const { return samples_.empty() ? 0.0 : samples_.back().time_s; }
+  [[nodiscard]] const std::vector<MotionSample>& samples() const { return samples_; }
+
+ private:
+  std::vector<MotionSample> samples_;
+};
+
+/// A pose whose local z points along `direction` and whose local x stays as near to patient left as it can.
+Pose pose_along(const Vec3& origin, const Vec3& direction);
+
+}  // namespace stylet

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/model.hpp"
+
+namespace stylet {
+
+/// One needle in one patient, moving: the preallocated state of a Model. step() is the only call of the loop; it does
+/// not allocate once the compliance around the tip is there (prepare()).
+class Simulation {
+ public:
+  explicit Simulation(std::shared_ptr<const Model> model);
+
+  /// Starts an insertion: the needle, straight, at its base pose outside the patient. Time goes on from where it was.
+  void place(const Pose& base, const Vec3& entry, const Vec3& direction);
+
+  /// Moves the base to `base` in dt seconds.
+  /// @return the record of this step; step_us is left at 0 (the caller owns the clock)
+  const StepRecord& step(const Pose& base, double dt);
+
+  /// Makes the compliance near the tip available; call between steps. Allocates when the tip has left the corridor.
+  void prepare();
+
+  [[nodiscard]] const StepRecord& record() const { return record_; }
+  [[nodiscard]] const StepReport& report() const { return report_; }
+  [[nodiscard]] std::span<const Event> new_events() const {
+    return {events_.data(), static_cast<std::size_t>(event_count_)};
+  }
+
+  /// Everything visible now. Solves for the whole displacement: not in the loop.
+  [[nodiscard]] Frame frame(const std::string& label = {}) const;
+
+  /// Action against reaction, both by the same displacement field (not in the loop): forces of the supports plus
+  /// contact forces, over `scale_N`; and their moments about the entry, over scale_N × 100 mm.
+  struct Balance {
+    double force = 0.0;
+    double torque = 0.0;
+  };
+  [[nodiscard]] Balance balance(double scale_N) const;
+
+  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] const Insertion& insertion() const { return insertion_; }
+  [[nodiscard]] double time_s() const { return record_.time_s; }
+
+ private:
+  void add_event(EventKind kind, double force_N, int region);
+
+  std::shared_ptr<const Model> model_;
+  Insertion insertion_;
+  Vec3 entry_ = Vec3::Zero();
+  Vec3 direction_ = Vec3::UnitZ();
+  Pose base_;
+  StepRecord record_;
+  StepReport report_;
+  std::array<Event, 24> events_;
+  int event_count_ = 0;
+  bool retracting_ = false;  ///< the base last moved outwards
+  bool slipping_ = true;     ///< since the last reversal more than half of the shaft has begun to slide
+};
+
+}  // namespace stylet

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/scenario.hpp"
+
+#include <string_view>
+
+namespace stylet {
+
+namespace {
+
+struct Row {
+  std::string_view region;
+  double young_kPa, poisson, cutting_N, puncture_N;
+  std::string_view source;
+};
+
+// Moduli and forces are chosen together so that the skin and the capsule tent by 5 to 20 mm before they break
+// (F (1−ν²) / 2RE for a flat punch of the needle's radius); see docs/parameters.md.
+constexpr std::string_view kGland =
+    "E 30.8 kPa benign, 64.1 kPa cancer in vivo (Shoji 2018); capsule and cutting force of the order of 1 N (van "
+    "Gerwen 2012)";
+constexpr Row kRows[] = {
+    {"body", 60, 0.45, 0.35, 1.0,
+     "perineal muscle at rest, 50-100 kPa; puncture 1.22 N and cutting 0.95 N are the medians of 99 studies (van "
+     "Gerwen 2012)"},
+    {"prostate", 40, 0.45, 0.25, 0.6, kGland},
+    {"peripheral_zone", 40, 0.45, 0.25, 0.6, kGland},
+    {"transition_zone", 40, 0.45, 0.25, 0.6, kGland},
+    {"central_zone", 40, 0.45, 0.25, 0.6, kGland},
+    {"urethra", 30, 0.45, 0.25, 0.0, "stated, no measurement known: softer than the gland, no capsule"},
+    {"bladder", 20, 0.45, 0.25, 0.5, "stated: wall and filling as one, 10-100 kPa"},
+    {"rectum", 20, 0.45, 0.25, 0.5, "stated: wall and filling as one, 10-100 kPa"},
+    {"seminal_vesicles", 20, 0.45, 0.25, 0.0, "stated, no measurement known"},
+    {"band", 300, 0.45, 0.6, 0.0,
+     "stated: ligament, several times stiffer than the gland (Goksel 2005 names it, without a value)"},
+    {"pubic_arch", 1e5, 0.3, 10.0, 0.0, "bone; held, so its modulus has no effect"},
+    {"femur_left", 1e5, 0.3, 10.0, 0.0, "bone; held, so its modulus has no effect"},
+    {"femur_right", 1e5, 0.3, 10.0, 0.0, "bone; held, so its modulus has no effect"},
+};
+
+}  // namespace
+
+TissueParameters default_tissue(const std::string& region) {
+  const Row* row = &kRows[0];
+  for (const Row& candidate : kRows) {
+    if (candidate.region == region) row = &candidate;
+  }
+  // Planning volumes and unnamed labels of a mask stand for the gland.
+  if (region == "ptv" || region == "ctv" || region == "gtv" || region.rfind("label_", 0) == 0) row = &kRows[1];
+  TissueParameters p;
+  p.young_kPa = row->young_kPa;
+  p.poisson = row->poisson;
+  p.cutting_N = row->cutting_N;
+  p.puncture_N = row->puncture_N;
+  p.friction_static_N_per_m = 18.0;
+  p.friction_coulomb_N_per_m = 11.0;
+  p.friction_viscous_Ns_per_m2 = 250.0;
+  p.source = std::string(row->source) + "; friction of bovine liver (Okamura 2004: D 18, C 11 N/m, b 212-293 N s/m2)";
+  return p;
+}
+
+}  // namespace stylet

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/model.hpp"
+
+#include "planning.hpp"
+#include "stylet/core/version.hpp"
+#include "stylet/needle/beam.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+
+constexpr double kTentingMin_mm = 5.0;
+constexpr double kTentingMax_mm = 20.0;
+constexpr double kLagMax_mm = 5.0;
+constexpr double kSteelYoung_MPa = 200e3;
+/// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
+constexpr double kBeyond_mm = 15.0;
+
+bool is_gland(const std::string& region) {
+  return region == "prostate" || region == "peripheral_zone" || region == "transition_zone" ||
+         region == "central_zone" || region == "anterior_fibromuscular_stroma";
+}
+
+/// The regions that make the target: the gland, else a planning volume, else unnamed labels.
+std::vector<int> find_target(const TetMesh& mesh) {
+  const auto pick = [&](auto&& wanted) {
+    std::vector<int> found;
+    for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+      if (wanted(mesh.regions[r])) found.push_back(static_cast<int>(r));
+    }
+    return found;
+  };
+  auto target = pick(is_gland);
+  for (const char* volume : {"ctv", "ptv", "gtv"}) {
+    if (target.empty()) target = pick([&](const std::string& r) { return r == volume; });
+  }
+  if (target.empty()) target = pick([](const std::string& r) { return r.rfind("label_", 0) == 0; });
+  return target;
+}
+
+CouplingSettings coupling_settings(const Scenario& s) {
+  CouplingSettings c;
+  c.method =
+      s.coupling.method == "embedded" ? CouplingSettings::Method::embedded : CouplingSettings::Method::node_addition;
+  c.rule = s.coupling.rule == "paper" ? CouplingSettings::Rule::paper : CouplingSettings::Rule::interior;
+  c.spacing_mm = s.coupling.spacing_mm;
+  c.merge_mm = s.needle.diameter_mm;
+  c.join_mm = s.needle.diameter_mm;
+  c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
+  c.grazing_cos = std::cos(s.coupling.grazing_deg * EIGEN_PI / 180.0);
+  c.capacity = s.coupling.contacts;
+  const double area = 0.25 * EIGEN_PI * s.needle.diameter_mm * s.needle.diameter_mm * 0.4;  // cannula and stylet, about
+  c.axial_compliance_mm_per_N = s.needle.length_mm / (kSteelYoung_MPa * area);
+  return c;
+}
+
+}  // namespace
+
+double tenting_mm(const TissueParameters& t, double force_N, double needle_diameter_mm) {
+  return force_N * (1.0 - t.poisson * t.poisson) / (needle_diameter_mm * t.young_kPa * 1e-3);
+}
+
+std::vector<std::string> tenting_warnings(const std::string& region, const TissueParameters& t,
+                                          double needle_diameter_mm) {
+  std::vector<std::string> warnings;
+  const double tenting = tenting_mm(t, t.puncture_N, needle_diameter_mm);
+  if (t.puncture_N > 0.0 && (tenting < kTentingMin_mm || tenting > kTentingMax_mm)) {
+    warnings.push_back(
+        fmt::format("tissue.{}: puncture_N = {:g} with young_kPa = {:g} means {:.1f} mm of tenting before the surface "
+                    "breaks; {:g} to {:g} mm is "
+                    "plausible. Change the two together.",
+                    region, t.puncture_N, t.young_kPa, tenting, kTentingMin_mm, kTentingMax_mm));
+  }
+  const double lag = tenting_mm(t, t.cutting_N, needle_diameter_mm);
+  if (lag > kLagMax_mm) {
+    warnings.push_back(
+        fmt::format("tissue.{}: cutting_N = {:g} with young_kPa = {:g} means that the tip cuts {:.1f} mm behind where "
+                    "it pushes; at most {:g} mm "
+                    "is plausible. Change the two together.",
+                    region, t.cutting_N, t.young_kPa, lag, kLagMax_mm));
+  }
+  return warnings;
+}
+
+Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, TetMesh mesh, const std::string& where,
+                                                    const std::vector<std::vector<MotionSample>>& motions,
+                                                    const Progress& progress) {
+  if (auto checked = check_scenario(scenario, where); !checked) return checked.error();
+  if (auto checked = check_mesh(mesh, scenario.patient.source); !checked) return checked.error();
+  for (const auto& [name, parameters] : scenario.tissue) {
+    if (mesh.region_index(name) < 0) {
+      std::string known;
+      for (const auto& region : mesh.regions) known += (known.empty() ? "" : ", ") + region;
+      return input_error(where + ", [tissue." + name + "]",
+                         "the patient has no region '" + name + "' (there are: " + known + ")",
+                         "Name one of these; patient.regions gives structures and labels their names");
+    }
+  }
+
+  std::shared_ptr<Model> model(new Model);
+  model->scenario_ = scenario;
+  model->coupling_ = coupling_settings(scenario);
+  model->target_ = find_target(mesh);
+
+  std::vector<Material> materials;
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    const std::string& name = mesh.regions[r];
+    const auto given = scenario.tissue.find(name);
+    const TissueParameters p = given != scenario.tissue.end() ? given->second : default_tissue(name);
+    model->tissue_parameters_.push_back(p);
+    materials.push_back({p.young_kPa * 1e-3, p.poisson});
+    RegionLaws laws;
+    laws.cutting_N = p.cutting_N;
+    laws.puncture_N = p.puncture_N;
+    laws.friction = {p.friction_static_N_per_m * 1e-3, p.friction_coulomb_N_per_m * 1e-3,
+                     p.friction_viscous_Ns_per_m2 * 1e-6};
+    laws.surrounding = name == "body";
+    const bool in_target =
+        std::find(model->target_.begin(), model->target_.end(), static_cast<int>(r)) != model->target_.end();
+    laws.organ = in_target ? 0 : -1;
+    model->laws_.push_back(laws);
+    if (!laws.rigid) {
+      for (auto& warning : tenting_warnings(name, p, scenario.needle.diameter_mm)) {
+        const bool bone = name == "pubic_arch" || name.rfind("femur", 0) == 0;
+        if (!bone) model->warnings_.push_back(std::move(warning));
+      }
+    }
+  }
+
+  // Where the needles go decides what must stay free, so plan first.
+  Topology topology(mesh);
+  std::vector<PlannedInsertion> insertions;
+  std::vector<Vec3> entries;
+  std::vector<Vec3> directions;
+  {
+    const Locator locator(mesh, topology);
+    for (std::size_t i = 0; i < scenario.insertions.size(); ++i) {
+      if (i < motions.size() && !motions[i].empty()) {
+        PlannedInsertion recorded;
+        recorded.name = fmt::format("recorded motion {}", i + 1);
+        recorded.motion = BaseMotion(motions[i]);
+        const Pose& first = motions[i].front().base;
+        recorded.direction = first.rotation * Vec3::UnitZ();
+        const Vec3 tip = first.origin + scenario.needle.length_mm * recorded.direction;
+        if (locator.find(tip)) {
+          return input_error(fmt::format("{}, insertion[{}]", where, i),
+                             "the recorded motion starts with the tip inside the patient",
+                             "Start the recording with the needle outside");
+        }
+        const auto entry = locator.first_entry(tip, tip + 1000.0 * recorded.direction);
+        recorded.entry = entry ? Vec3(tip + entry->t * 1000.0 * recorded.direction) : tip;
+        for (const MotionSample& sample : motions[i]) {
+          const Vec3 reached = sample.base.origin + scenario.needle.length_mm * (sample.base.rotation * Vec3::UnitZ());
+          recorded.depth_mm = std::max(recorded.depth_mm, (reached - recorded.entry).dot(recorded.direction));
+        }
+        insertions.push_back(std::move(recorded));
+      } else {
+        auto planned = plan_insertion(scenario.insertions[i], i, scenario, locator, model->target_, where);
+        if (!planned) return planned.error();
+        insertions.push_back(std::move(*planned));
+      }
+      entries.push_back(insertions.back().entry);
+      directions.push_back(insertions.back().direction);
+    }
+  }
+  auto supports = find_supports(mesh, topology, scenario.fixed, model->target_, entries, directions);
+  if (!supports) return supports.error();
+  model->supports_ = std::move(*supports);
+  for (const int region : model->supports_.rigid_regions) model->laws_[static_cast<std::size_t>(region)].rigid = true;
+
+  report(progress, "factorising the tissue", 0.0);
+  auto tissue = Tissue::build(std::move(mesh), std::move(materials), model->supports_.nodes, progress);
+  if (!tissue) return tissue.error();
+  model->tissue_ = std::make_shared<const Tissue>(std::move(*tissue));
+  model->topology_ = std::make_unique<Topology>(model->tissue_->mesh());
+  model->locator_ = std::make_unique<Locator>(model->tissue_->mesh(), *model->topology_);
+  model->store_ = std::make_shared<ComplianceStore>(model->tissue_);
+  model->insertions_ = std::move(insertions);
+  for (const PlannedInsertion& insertion : model->insertions_) {
+    const Vec3 end = insertion.entry + (insertion.depth_mm + kBeyond_mm) * insertion.direction;
+    model->store_->add_nodes(corridor_nodes(model->mesh(), insertion.entry, end, scenario.coupling.corridor_mm),
+                             progress);
+  }
+  if (!model->make_needle()) {
+    const auto needle =
+        BeamNeedle::build({scenario.needle.length_mm, scenario.needle.diameter_mm,
+                           scenario.needle.bending_stiffness_Nmm2, scenario.needle.torsion_stiffness_Nmm2},
+                          scenario.needle.elements, model->coupling_.capacity + 1);
+    return input_error(where + ", [needle]", needle.error().what, needle.error().cure);
+  }
+  return std::shared_ptr<const Model>(std::move(model));
+}
+
+std::unique_ptr<Needle> Model::make_needle() const {
+  const auto& n = scenario_.needle;
+  auto needle = BeamNeedle::build({n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2},
+                                  n.elements, coupling_.capacity + 1);
+  if (!needle) return nullptr;
+  return std::move(*needle);
+}
+
+RunInfo Model::info(std::size_t insertion) const {
+  RunInfo info;
+  info.version = version();
+  info.scenario_name = scenario_.name;
+  info.method = scenario_.coupling.method +
+                (scenario_.coupling.method == "node-addition" ? ", " + scenario_.coupling.rule + " rule" : "");
+  info.needle_diameter_mm = scenario_.needle.diameter_mm;
+  info.needle_length_mm = scenario_.needle.length_mm;
+  info.target_regions = target_;
+  info.supports = supports_.description;
+  info.warnings = warnings_;
+  if (insertion < insertions_.size()) {
+    info.entry_mm = insertions_[insertion].entry;
+    info.direction = insertions_[insertion].direction;
+  }
+  const auto row = [&](std::string name, double value, std::string unit, std::string source) {
+    info.parameters.push_back({std::move(name), fmt::format("{:g}", value), std::move(unit), std::move(source)});
+  };
+  for (std::size_t r = 0; r < mesh().regions.size(); ++r) {
+    const std::string& region = mesh().regions[r];
+    const TissueParameters& p = tissue_parameters_[r];
+    const TissueParameters standard = default_tissue(region);
+    const auto tissue_row = [&](const char* key, double value, double default_value, const char* unit) {
+      row("tissue." + region + "." + key, value, unit, value == default_value ? standard.source : "scenario");
+    };
+    if (laws_[r].rigid) {
+      info.parameters.push_back({"tissue." + region, "held", "", "bone"});
+      continue;
+    }
+    tissue_row("young_kPa", p.young_kPa, standard.young_kPa, "kPa");
+    tissue_row("poisson", p.poisson, standard.poisson, "");
+    tissue_row("cutting_N", p.cutting_N, standard.cutting_N, "N");
+    tissue_row("puncture_N", p.puncture_N, standard.puncture_N, "N");
+    tissue_row("friction_static_N_per_m", p.friction_static_N_per_m, standard.friction_static_N_per_m, "N/m");
+    tissue_row("friction_coulomb_N_per_m", p.friction_coulomb_N_per_m, standard.friction_coulomb_N_per_m, "N/m");
+    tissue_row("friction_viscous_Ns_per_m2", p.friction_viscous_Ns_per_m2, standard.friction_viscous_Ns_per_m2,
+               "N s/m²");
+  }
+  row("needle.length_mm", scenario_.needle.length_mm, "mm", "usual brachytherapy needle, 150-200 mm");
+  row("needle.diameter_mm", scenario_.needle.diameter_mm, "mm", "18 gauge");
+  row("needle.bending_stiffness_Nmm2", scenario_.needle.bending_stiffness_Nmm2, "N mm²",
+      "steel, 1.27 mm outer and 1.0 mm inner diameter");
+  row("coupling.spacing_mm", scenario_.coupling.spacing_mm, "mm", "scenario or default");
+  row("run.dt_ms", scenario_.run.dt_ms, "ms", "scenario or default");
+  return info;
+}
+
+}  // namespace stylet

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "planning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+
+bool contains(const std::vector<int>& regions, int region) {
+  return std::find(regions.begin(), regions.end(), region) != regions.end();
+}
+
+std::string point_text(const Vec3& x) { return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", x.x(), x.y(), x.z()); }
+
+Eigen::AlignedBox3d extent(const TetMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : mesh.nodes) box.extend(x);
+  return box;
+}
+
+}  // namespace
+
+Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions) {
+  Vec3 sum = Vec3::Zero();
+  double volume = 0.0;
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    if (!regions.empty() && !contains(regions, mesh.tet_region[static_cast<std::size_t>(t)])) continue;
+    const double v = tet_volume(mesh, t);
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : mesh.tets[static_cast<std::size_t>(t)])
+      centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
+    sum += v * centre;
+    volume += v;
+  }
+  return volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero());
+}
+
+Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t number, const Scenario& scenario,
+                                        const Locator& locator, const std::vector<int>& target,
+                                        const std::string& where) {
+  const TetMesh& mesh = locator.mesh();
+  const std::string place = fmt::format("{}, insertion[{}]", where, number);
+  const Vec3 centre = centroid(mesh, target);
+  const Eigen::AlignedBox3d box = extent(mesh);
+
+  PlannedInsertion result;
+  result.name = plan.hole ? "hole " + *plan.hole : fmt::format("needle {}", number + 1);
+  Vec3 on_line = centre;
+  result.direction = Vec3::UnitZ();
+  if (plan.hole) {
+    const auto offset = scenario.grid.offset_mm(*plan.hole);
+    if (!offset) return offset.error();
+    const double x = scenario.grid.centre_mm ? (*scenario.grid.centre_mm)[0] : centre.x();
+    const double y = scenario.grid.centre_mm ? (*scenario.grid.centre_mm)[1] : centre.y();
+    on_line = {x + (*offset)[0], y - (*offset)[1], centre.z()};
+  } else {
+    on_line = Vec3(plan.entry_mm->data());
+    if (plan.target_mm) {
+      const Vec3 way = Vec3(plan.target_mm->data()) - on_line;
+      if (way.norm() < 1e-6) return input_error(place, "entry_mm and target_mm are the same point", "Give two points");
+      result.direction = way.normalized();
+    } else if (plan.direction) {
+      result.direction = Vec3(plan.direction->data()).normalized();
+    }
+  }
+
+  // The first surface on the line, coming from far outside.
+  const double far = (box.center() - on_line).norm() + box.diagonal().norm();
+  const Vec3 from = on_line - far * result.direction;
+  const Vec3 to = on_line + far * result.direction;
+  const auto entry = locator.first_entry(from, to);
+  if (!entry) {
+    return input_error(place,
+                       fmt::format("the needle misses the patient: the line through {} along ({:.3f}, {:.3f}, {:.3f}) "
+                                   "does not meet the tissue, which "
+                                   "extends from {} to {}",
+                                   point_text(on_line), result.direction.x(), result.direction.y(),
+                                   result.direction.z(), point_text(box.min()), point_text(box.max())),
+                       "Choose another hole, entry or direction, or set template.centre_mm");
+  }
+  result.entry = from + entry->t * (to - from);
+
+  result.depth_mm = plan.depth_mm;
+  if (result.depth_mm <= 0.0) {
+    // To the far end of the target on this line; a line beside the target goes as deep as its centre.
+    double last = -1.0;
+    const double reach = scenario.needle.length_mm - 5.0;
+    Index hint = entry->tet;
+    for (double depth = 0.25; depth < reach; depth += 0.5) {
+      const auto at = locator.find(result.entry + depth * result.direction, hint);
+      if (!at) continue;
+      hint = at->tet;
+      if (contains(target, mesh.tet_region[static_cast<std::size_t>(at->tet)])) last = depth;
+    }
+    if (last < 0.0) last = (centre - result.entry).dot(result.direction);
+    result.depth_mm = std::max(5.0, last - 2.0);
+    if (result.depth_mm > reach) {
+      return input_error(place,
+                         fmt::format("the target lies {:.0f} mm deep, the needle is {:.0f} mm long", result.depth_mm,
+                                     scenario.needle.length_mm),
+                         "Use a longer needle (needle.length_mm)");
+    }
+  }
+  result.motion =
+      BaseMotion::straight(result.entry, result.direction, scenario.needle.length_mm, plan.approach_mm, result.depth_mm,
+                           plan.speed_mm_per_s, plan.dwell_s, plan.retract, plan.retract_speed_mm_per_s);
+  return result;
+}
+
+std::vector<Index> corridor_nodes(const TetMesh& mesh, const Vec3& from, const Vec3& to, double radius_mm) {
+  const Vec3 way = to - from;
+  const double length2 = std::max(way.squaredNorm(), 1e-12);
+  std::vector<char> wanted(mesh.nodes.size(), 0);
+  for (const auto& tet : mesh.tets) {
+    // An element counts when its bounding ball meets the corridor.
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : tet) centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
+    double ball = 0.0;
+    for (const Index node : tet) ball = std::max(ball, (mesh.nodes[static_cast<std::size_t>(node)] - centre).norm());
+    const double f = std::clamp((centre - from).dot(way) / length2, 0.0, 1.0);
+    if ((centre - from - f * way).norm() > radius_mm + ball) continue;
+    for (const Index node : tet) wanted[static_cast<std::size_t>(node)] = 1;
+  }
+  std::vector<Index> nodes;
+  for (std::size_t node = 0; node < wanted.size(); ++node) {
+    if (wanted[node]) nodes.push_back(static_cast<Index>(node));
+  }
+  return nodes;
+}
+
+}  // namespace stylet

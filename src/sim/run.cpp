@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/run.hpp"
+
+#include "stylet/core/version.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <set>
+
+namespace stylet {
+
+namespace {
+
+double thread_cpu_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+double quantile(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) return 0.0;
+  const auto at = static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5);
+  return sorted[std::min(at, sorted.size() - 1)];
+}
+
+/// Mean displacement of a set of regions by volume, and the largest of any of their nodes [mm].
+std::pair<Vec3, double> target_shift(const TetMesh& mesh, const std::vector<int>& regions, const VecX& u) {
+  Vec3 sum = Vec3::Zero();
+  double volume = 0.0;
+  double largest = 0.0;
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const int region = mesh.tet_region[static_cast<std::size_t>(t)];
+    if (std::find(regions.begin(), regions.end(), region) == regions.end()) continue;
+    const double v = tet_volume(mesh, t);
+    for (const Index node : mesh.tets[static_cast<std::size_t>(t)]) {
+      const Vec3 un = u.segment<3>(3 * node);
+      sum += 0.25 * v * un;
+      largest = std::max(largest, un.norm());
+    }
+    volume += v;
+  }
+  return {volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero()), largest};
+}
+
+class Runner {
+ public:
+  Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress)
+      : model_(model),
+        simulation_(model),
+        observer_(observer),
+        progress_(progress),
+        dt_(model->scenario().run.dt_ms * 1e-3) {
+    for (const PlannedInsertion& insertion : model->insertions()) total_s_ += insertion.motion.duration_s();
+    const auto& output = model->scenario().output;
+    const double by_count = total_s_ / std::max(1, output.max_frames);
+    frame_every_s_ = output.frames_per_s > 0.0 ? std::max(1.0 / output.frames_per_s, by_count) : 1e30;
+    summary_.version = version();
+    summary_.scenario = model->scenario().name;
+    summary_.nodes = model->mesh().node_count();
+    summary_.tets = model->mesh().tet_count();
+    summary_.warnings = model->warnings();
+  }
+
+  Result<Summary> all() {
+    for (std::size_t i = 0; i < model_->insertions().size(); ++i) {
+      if (auto done = one(model_->insertions()[i]); !done) return done.error();
+    }
+    std::sort(step_us_.begin(), step_us_.end());
+    summary_.step_us_p50 = quantile(step_us_, 0.5);
+    summary_.step_us_p99 = quantile(step_us_, 0.99);
+    summary_.step_us_p999 = quantile(step_us_, 0.999);
+    summary_.step_us_max = step_us_.empty() ? 0.0 : step_us_.back();
+    note_flags();
+    return summary_;
+  }
+
+ private:
+  Result<> one(const PlannedInsertion& insertion) {
+    const double start = simulation_.time_s();
+    const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / dt_ - 1e-9));
+    simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
+    if (auto r = take_frame("before"); !r) return r;
+    bool deepest_taken = false;
+    double next_frame = start;
+    for (long k = 1; k <= steps; ++k) {
+      const Pose base = insertion.motion.at(static_cast<double>(k) * dt_);
+      simulation_.prepare();
+      const double before = thread_cpu_us();
+      simulation_.step(base, dt_);
+      StepRecord record = simulation_.record();
+      record.step_us = thread_cpu_us() - before;
+      if (auto r = account(record, insertion); !r) return r;
+      // The deepest point is where the base stops going in: just before it goes out, or at the end.
+      const bool turns = !deepest_taken && (k == steps || depth_at(insertion, k + 1) < record.base_depth_mm - 1e-9);
+      std::string label;
+      for (const Event& event : simulation_.new_events()) {
+        summary_.events.push_back(event);
+        if (event.kind != EventKind::region_entered && event.kind != EventKind::retraction_start)
+          label = to_string(event.kind);
+      }
+      if (turns) {
+        deepest_taken = true;
+        label = "deepest";
+      }
+      if (!label.empty() && label != "withdrawn") {
+        if (auto r = take_frame(label); !r) return r;
+      } else if (record.time_s >= next_frame) {
+        next_frame += frame_every_s_ * std::max(1.0, std::ceil((record.time_s - next_frame) / frame_every_s_ + 1e-9));
+        if (auto r = take_frame({}); !r) return r;
+      }
+      if (k % 64 == 0) report(progress_, "inserting " + insertion.name, record.time_s / total_s_);
+    }
+    return take_frame("after");
+  }
+
+  [[nodiscard]] double depth_at(const PlannedInsertion& insertion, long k) const {
+    const Pose base = insertion.motion.at(static_cast<double>(k) * dt_);
+    const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
+    return (tip - insertion.entry).dot(insertion.direction);
+  }
+
+  Result<> account(const StepRecord& record, const PlannedInsertion& insertion) {
+    ++summary_.steps;
+    summary_.peak_axial_N = std::max(summary_.peak_axial_N, std::abs(record.force_axial_N));
+    summary_.peak_sagittal_N = std::max(summary_.peak_sagittal_N, std::abs(record.force_sagittal_N));
+    summary_.peak_lateral_N = std::max(summary_.peak_lateral_N, std::abs(record.force_lateral_N));
+    summary_.contacts_max = std::max(summary_.contacts_max, record.contacts);
+    const Vec3 off = record.tip_mm - insertion.entry;
+    summary_.tip_deflection_mm =
+        std::max(summary_.tip_deflection_mm, (off - insertion.direction * insertion.direction.dot(off)).norm());
+    step_us_.push_back(record.step_us);
+    const unsigned flags = simulation_.report().flags;
+    for (int bit = 0; bit < 5; ++bit) {
+      if (flags & (1u << bit)) ++flag_counts_[static_cast<std::size_t>(bit)];
+    }
+    return observer_.on_step(record);
+  }
+
+  Result<> take_frame(const std::string& label) {
+    const Frame frame = simulation_.frame(label);
+    const double scale = std::max(summary_.peak_axial_N, 1e-6);
+    if (summary_.peak_axial_N > 0.0) {
+      const Simulation::Balance balance = simulation_.balance(scale);
+      summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
+      summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
+    }
+    if (label == "deepest") {
+      const auto [mean, largest] = target_shift(model_->mesh(), model_->target_regions(), frame.displacement);
+      if (largest >= summary_.target_shift_max_mm) {
+        summary_.target_shift_centroid_mm = mean;
+        summary_.target_shift_max_mm = largest;
+      }
+    }
+    return observer_.on_frame(frame);
+  }
+
+  void note_flags() {
+    static const std::array<const char*, 5> texts{
+        "did not converge to the full tolerance; a smaller run.dt_ms helps",
+        "a stick/slip state was frozen for one sub-step",
+        "the needle left the prepared corridor and the tip was held; raise coupling.corridor_mm",
+        "there was no room for another contact; raise coupling.contacts",
+        "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps"};
+    for (std::size_t bit = 0; bit < texts.size(); ++bit) {
+      if (flag_counts_[bit] > 0)
+        summary_.warnings.push_back(
+            fmt::format("In {} of {} steps: {}.", flag_counts_[bit], summary_.steps, texts[bit]));
+    }
+  }
+
+  std::shared_ptr<const Model> model_;
+  Simulation simulation_;
+  RunObserver& observer_;
+  const Progress& progress_;
+  double dt_;
+  double total_s_ = 0.0;
+  double frame_every_s_ = 0.0;
+  std::vector<double> step_us_;
+  std::array<long, 5> flag_counts_{};
+  Summary summary_;
+};
+
+}  // namespace
+
+Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress) {
+  return Runner(model, observer, progress).all();
+}
+
+}  // namespace stylet

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/simulation.hpp"
+
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+
+constexpr double kPrepare_mm = 6.0;
+constexpr int kNeedleSamples = 81;
+
+TipState tip_state(TipPhase phase) {
+  switch (phase) {
+    case TipPhase::air:
+      return TipState::air;
+    case TipPhase::pressing:
+      return TipState::pressing;
+    case TipPhase::cutting:
+      return TipState::cutting;
+    case TipPhase::in_track:
+      return TipState::in_track;
+    case TipPhase::bone:
+      return TipState::bone;
+    case TipPhase::exited:
+      return TipState::exited;
+  }
+  return TipState::air;
+}
+
+EventKind event_kind(InsertionEventKind kind) {
+  switch (kind) {
+    case InsertionEventKind::skin_contact:
+      return EventKind::skin_contact;
+    case InsertionEventKind::puncture:
+      return EventKind::puncture;
+    case InsertionEventKind::region_entered:
+      return EventKind::region_entered;
+    case InsertionEventKind::bone_contact:
+      return EventKind::bone_contact;
+    case InsertionEventKind::exited:
+      return EventKind::exited;
+    case InsertionEventKind::re_entered:
+      return EventKind::re_entered;
+    case InsertionEventKind::withdrawn:
+      return EventKind::withdrawn;
+    case InsertionEventKind::grazed:
+      return EventKind::grazed;
+  }
+  return EventKind::skin_contact;
+}
+
+InsertionTissue tissue_of(const Model& model) { return {model.store(), &model.locator(), model.laws()}; }
+
+}  // namespace
+
+Simulation::Simulation(std::shared_ptr<const Model> model)
+    : model_(std::move(model)), insertion_(tissue_of(*model_), model_->make_needle(), model_->coupling()) {
+  // Event regions are short names; room for them is taken now so that a step need not.
+  for (Event& event : events_) event.region.reserve(64);
+}
+
+void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& direction) {
+  entry_ = entry;
+  direction_ = direction.normalized();
+  base_ = base;
+  retracting_ = false;
+  slipping_ = true;
+  insertion_.place(base);
+}
+
+void Simulation::prepare() { insertion_.prepare(kPrepare_mm); }
+
+void Simulation::add_event(EventKind kind, double force_N, int region) {
+  if (event_count_ == static_cast<int>(events_.size())) return;
+  Event& event = events_[static_cast<std::size_t>(event_count_++)];
+  event.kind = kind;
+  event.time_s = record_.time_s;
+  event.depth_mm = record_.base_depth_mm;
+  event.force_N = force_N;
+  event.region.clear();
+  if (region >= 0) event.region.assign(model_->mesh().regions[static_cast<std::size_t>(region)]);
+}
+
+const StepRecord& Simulation::step(const Pose& base, double dt) {
+  const double force_before = record_.force_axial_N;
+  const Vec3 axis = base.rotation * Vec3::UnitZ();
+  const double advance = (base.origin - base_.origin).dot(axis);
+  report_ = insertion_.step(base, dt);
+  base_ = base;
+  event_count_ = 0;
+
+  record_.time_s += dt;
+  const Vec3 rigid_tip = base.origin + insertion_.needle().length() * axis;
+  record_.base_depth_mm = (rigid_tip - entry_).dot(direction_);
+  // Axial, lateral towards patient left, sagittal = axial × lateral.
+  Vec3 lateral = Vec3::UnitX() - axis.x() * axis;
+  if (lateral.norm() < 1e-3) lateral = Vec3::UnitY() - axis.y() * axis;
+  lateral.normalize();
+  record_.force_axial_N = report_.hand_force.dot(axis);
+  record_.force_lateral_N = report_.hand_force.dot(lateral);
+  record_.force_sagittal_N = report_.hand_force.dot(axis.cross(lateral));
+  record_.torque_Nmm = report_.hand_torque;
+  record_.tip_mm = report_.tip_position;
+  record_.tip_state = tip_state(report_.tip);
+  record_.contacts = report_.contacts;
+  record_.sticking = report_.sticking;
+  record_.iterations = report_.iterations;
+  record_.step_us = 0.0;
+
+  const bool in_tissue = report_.contacts > 0 || report_.tip == TipPhase::in_track;
+  constexpr double kStill_mm = 1e-9;
+  if (std::abs(advance) > kStill_mm && (advance < 0.0) != retracting_) {
+    retracting_ = advance < 0.0;
+    slipping_ = false;
+    if (retracting_ && in_tissue) add_event(EventKind::retraction_start, force_before, -1);
+  }
+  for (int e = 0; e < report_.events; ++e) {
+    const InsertionEvent& event = report_.event[static_cast<std::size_t>(e)];
+    // A puncture's force is the one that broke the surface, not what is left of it after the step.
+    const double force = event.kind == InsertionEventKind::puncture ? std::max(force_before, record_.force_axial_N)
+                                                                    : record_.force_axial_N;
+    add_event(event_kind(event.kind), force, event.region);
+  }
+  if (!slipping_ && retracting_ && report_.inserted_mm > 0.0 && report_.sliding_share > 0.5) {
+    slipping_ = true;
+    add_event(EventKind::slip_start,
+              std::abs(force_before) > std::abs(record_.force_axial_N) ? force_before : record_.force_axial_N, -1);
+  }
+  return record_;
+}
+
+Frame Simulation::frame(const std::string& label) const {
+  Frame frame;
+  frame.time_s = record_.time_s;
+  frame.base_depth_mm = record_.base_depth_mm;
+  frame.label = label;
+  frame.displacement = insertion_.displacement();
+  const Needle& needle = insertion_.needle();
+  for (int i = 0; i < kNeedleSamples; ++i)
+    frame.needle.push_back(needle.point(needle.length() * i / (kNeedleSamples - 1)));
+  for (const ContactState& contact : insertion_.contacts()) {
+    frame.contacts.push_back({contact.position, contact.force, contact.s, contact.sticking, contact.tip});
+  }
+  return frame;
+}
+
+Simulation::Balance Simulation::balance(double scale_N) const {
+  const Tissue& tissue = model_->tissue();
+  const VecX load = insertion_.nodal_forces();
+  const VecX u = tissue.solve(load);
+  const VecX support = tissue.support_forces(u);
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  // Contact forces act on the base nodes through the interpolation; what reaches a held node goes straight to the
+  // support.
+  for (Index node = 0; node < tissue.mesh().node_count(); ++node) {
+    const Vec3 x = tissue.mesh().nodes[static_cast<std::size_t>(node)] - entry_;
+    const Vec3 f = support.segment<3>(3 * node);
+    force += f;
+    torque += x.cross(f);
+    if (!tissue.is_fixed(node)) {
+      force += load.segment<3>(3 * node);
+      torque += x.cross(Vec3(load.segment<3>(3 * node)));
+    }
+  }
+  // The hand's force must be what the tissue got, node by node.
+  Vec3 nodal = Vec3::Zero();
+  for (Index node = 0; node < tissue.mesh().node_count(); ++node) nodal += load.segment<3>(3 * node);
+  force += nodal - report_.hand_force;
+  return {force.norm() / scale_N, torque.norm() / (scale_N * 100.0)};
+}
+
+}  // namespace stylet
