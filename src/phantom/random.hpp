@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace stylet::phantom {
+
+/// Random numbers that are the same on every machine: the standard fixes the engine's sequence but not what its
+/// distributions make of it, so the mapping is written out here.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [0, 1).
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+
+  /// Triangular around `centre`, never further away than `reach`.
+  double around(double centre, double reach) {
+    const double a = uniform();
+    const double b = uniform();
+    return centre + reach * (a + b - 1.0);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace stylet::phantom
