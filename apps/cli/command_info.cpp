@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "describe.hpp"
+#include "validators.hpp"
 
 #include "stylet/io/input.hpp"
 
-#include <fmt/format.h>
+#include <array>
+#include <fstream>
+#include <string_view>
 
 namespace stylet::cli {
 
@@ -15,14 +18,31 @@ struct InfoArguments {
   double scale = 0;
 };
 
-Result<> run_info(const InfoArguments& arguments, Console& console) {
+/// Recordings are the only HDF5 files Stylet knows.
+bool is_hdf5(const std::string& file) {
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  std::array<char, signature.size()> begin{};
+  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == signature;
+}
+
+Result<Description> description_of(const InfoArguments& arguments) {
+  if (is_hdf5(arguments.file)) {
+    const Result<RunRecording> run = read_recording(arguments.file);
+    if (!run) return run.error();
+    return describe(*run);
+  }
   const Result<PatientInput> input = read_input(arguments.file, {.scale = arguments.scale});
   if (!input) return input.error();
-  Description description = std::visit([](const auto& content) { return describe(content); }, *input);
+  return std::visit([](const auto& content) { return describe(content); }, *input);
+}
 
+Result<> run_info(const InfoArguments& arguments, Console& console) {
+  const Result<Description> description = description_of(arguments);
+  if (!description) return description.error();
   Json json = {{"file", arguments.file}};
-  json.update(description.json);
-  console.say(arguments.file + '\n' + description.text);
+  json.update(description->json);
+  console.say(arguments.file + '\n' + description->text);
   return console.write_json(json);
 }
 
@@ -35,7 +55,7 @@ Command add_info_command(CLI::App& program) {
   app->add_option("--scale", arguments->scale,
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(number_between(1e-6, 1e6, "mm"));
   return {app, [arguments](Console& console) { return run_info(*arguments, console); }};
 }
 

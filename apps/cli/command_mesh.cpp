@@ -3,6 +3,7 @@
 #include "describe.hpp"
 #include "mesh_report.hpp"
 #include "output_path.hpp"
+#include "validators.hpp"
 
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/io/input.hpp"
@@ -20,21 +21,22 @@ namespace {
 constexpr Index kFewestNodes = 100;
 constexpr Index kMostNodes = 1'000'000;
 
+using RegionNames = std::map<std::string, std::string>;  ///< name in the input → name in the model
+
 struct MeshArguments {
   std::string input;
   std::string output;
-  Index nodes = 0;  ///< 0 = not given
-  MeshPreset preset = MeshPreset::standard;
-  bool preset_given = false;
-  double scale = 0;  ///< 0 = not given
+  Index nodes = 0;     ///< 0 = not given
+  std::string preset;  ///< empty = not given
+  double scale = 0;    ///< 0 = not given
   std::vector<std::string> regions;
   double cull_mm = -1;  ///< < 0 = not given
   bool no_band = false;
 };
 
 /// "NAME=CANONICAL" arguments as a map.
-Result<std::map<std::string, std::string>> parse_regions(const std::vector<std::string>& arguments) {
-  std::map<std::string, std::string> regions;
+Result<RegionNames> parse_regions(const std::vector<std::string>& arguments) {
+  RegionNames regions;
   for (const std::string& argument : arguments) {
     const std::size_t split = argument.rfind('=');
     if (split == std::string::npos || split == 0 || split + 1 == argument.size()) {
@@ -55,44 +57,43 @@ Error pointless(const MeshArguments& arguments, const char* option, const char* 
 }
 
 /// Options of the mesher from the command line.
-Result<MeshOptions> mesher_options(const MeshArguments& arguments) {
-  const auto regions = parse_regions(arguments.regions);
-  if (!regions) return regions.error();
+Result<MeshOptions> mesher_options(const MeshArguments& arguments, const RegionNames& regions) {
   if (arguments.scale > 0) return pointless(arguments, "--scale", "contours and masks, which are in mm");
   MeshOptions options;
-  options.preset = arguments.preset;
+  options.preset = arguments.preset == "paper" ? MeshPreset::paper : MeshPreset::standard;
   options.nodes = arguments.nodes;
-  options.regions = *regions;
+  options.regions = regions;
   options.stiff_band = !arguments.no_band;
   if (arguments.cull_mm >= 0) options.cull_tolerance_mm = arguments.cull_mm;
   return options;
 }
 
-Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, Console& console) {
-  const Result<MeshOptions> options = mesher_options(arguments);
+Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, const RegionNames& regions,
+                               Console& console) {
+  const Result<MeshOptions> options = mesher_options(arguments, regions);
   if (!options) return options.error();
   return mesh_contours(contours, *options, console.progress());
 }
 
-Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arguments, Console& console) {
+Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arguments, const RegionNames& regions,
+                               Console& console) {
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", "a mask, which has no contour points");
-  const Result<MeshOptions> options = mesher_options(arguments);
+  const Result<MeshOptions> options = mesher_options(arguments, regions);
   if (!options) return options.error();
   return mesh_labels(image, *options, console.progress());
 }
 
 /// A third-party mesh is taken as it is; its regions may get new names.
-Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, Console&) {
+Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, const RegionNames& regions,
+                               Console&) {
   constexpr const char* kind = "a tetrahedral mesh, which is taken as it is";
   if (arguments.nodes > 0) return pointless(arguments, "--nodes", kind);
-  if (arguments.preset_given) return pointless(arguments, "--preset", kind);
+  if (!arguments.preset.empty()) return pointless(arguments, "--preset", kind);
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", kind);
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
-  const auto renamed = parse_regions(arguments.regions);
-  if (!renamed) return renamed.error();
 
   MeshedAnatomy out{.mesh = mesh, .report = {}};
-  for (const auto& [name, canonical] : *renamed) {
+  for (const auto& [name, canonical] : regions) {
     const int region = mesh.region_index(name);
     if (region < 0) {
       const std::string nearest = nearest_name(name, mesh.regions);
@@ -115,7 +116,8 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   return out;
 }
 
-Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshArguments& arguments, Console&) {
+Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshArguments& arguments, const RegionNames&,
+                               Console&) {
   return input_error(arguments.input,
                      fmt::format("{} triangulated surface{}; surfaces are not meshed", surfaces.size(),
                                  surfaces.size() == 1 ? "" : "s"),
@@ -130,11 +132,14 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   }
   if (Result<> writable = check_output_file(output); !writable) return writable;
 
+  const Result<RegionNames> regions = parse_regions(arguments.regions);
+  if (!regions) return regions.error();
+
   const auto start = std::chrono::steady_clock::now();
   const Result<PatientInput> input = read_input(arguments.input, {.scale = arguments.scale});
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
-      std::visit([&](const auto& content) { return model_of(content, arguments, console); }, *input);
+      std::visit([&](const auto& content) { return model_of(content, arguments, *regions, console); }, *input);
   if (!model) return model.error();
   model->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -162,17 +167,15 @@ Command add_mesh_command(CLI::App& program) {
   app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.vtu")->required();
   app->add_option("--nodes", arguments->nodes, "Number of nodes, hit within 3 % (default: the preset's)")
       ->type_name("N")
-      ->check(CLI::Range(kFewestNodes, kMostNodes));
-  const std::map<std::string, MeshPreset> presets{{"standard", MeshPreset::standard}, {"paper", MeshPreset::paper}};
-  CLI::Option* preset =
-      app->add_option("--preset", arguments->preset,
-                      "standard: all anatomy, about 3,000 nodes; paper: prostate and surroundings only, 570 nodes")
-          ->type_name("standard|paper")
-          ->transform(CLI::CheckedTransformer(presets).description(""));
+      ->check(whole_number_between(kFewestNodes, kMostNodes));
+  app->add_option("--preset", arguments->preset,
+                  "standard: all anatomy, about 3,000 nodes; paper: prostate and surroundings only, 570 nodes")
+      ->type_name("standard|paper")
+      ->check(one_of({"standard", "paper"}));
   app->add_option("--scale", arguments->scale,
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(number_between(1e-6, 1e6, "mm"));
   app->add_option("--region", arguments->regions,
                   "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
                   "repeated; for contours and masks those not named are then left out")
@@ -182,13 +185,10 @@ Command add_mesh_command(CLI::App& program) {
   app->add_option("--cull", arguments->cull_mm,
                   "Drop contour points closer than this to the contour without them [mm] (default: 0.3)")
       ->type_name("MM")
-      ->check(CLI::Range(0.0, 5.0));
+      ->check(number_between(0, 5, "mm"));
   app->add_flag("--no-band", arguments->no_band,
                 "Without a pubic arch in the input: do not add the stiff band that holds the gland");
-  return {app, [arguments, preset](Console& console) {
-            arguments->preset_given = preset->count() > 0;
-            return run_mesh(*arguments, console);
-          }};
+  return {app, [arguments](Console& console) { return run_mesh(*arguments, console); }};
 }
 
 }  // namespace stylet::cli

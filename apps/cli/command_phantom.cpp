@@ -2,11 +2,14 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "output_path.hpp"
+#include "validators.hpp"
 
 #include "stylet/io/contours_io.hpp"
 #include "stylet/phantom/phantom.hpp"
 
 #include <fmt/format.h>
+
+#include <limits>
 
 namespace stylet::cli {
 
@@ -48,10 +51,11 @@ Command add_phantom_command(CLI::App& program) {
       ->required();
   app->add_option("--seed", arguments->seed, "Vary the anatomy; 0 is the reference patient")
       ->type_name("N")
+      ->check(whole_number_between(0, std::numeric_limits<long long>::max()))
       ->capture_default_str();
   app->add_option("--spacing", arguments->spacing_mm, "Distance between slices [mm], 1 to 10")
       ->type_name("MM")
-      ->check(CLI::Range(1.0, 10.0))
+      ->check(number_between(1, 10, "mm"))
       ->capture_default_str();
   return {app, [arguments](Console& console) { return run_phantom(*arguments, console); }};
 }

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "threads.hpp"
 #include "usage.hpp"
+#include "validators.hpp"
 
 #include "stylet/core/version.hpp"
 
@@ -31,12 +32,14 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_flag("--verbose", common.verbose, "Print more about what is done")->group(group);
   app.add_option("--threads", common.threads, "Use at most N threads (default: one per core)")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_number_between(1, 1024))
       ->group(group);
 }
 
 int report(Console& console, const Error& error) {
-  console.error(error.message());
+  std::string message = error.message();
+  if (!message.empty() && std::string_view(".?!").find(message.back()) == std::string_view::npos) message += '.';
+  console.error(message);
   return error.kind == ErrorKind::input ? kBadInput : kFailed;
 }
 
@@ -48,6 +51,7 @@ int run(int argc, char** argv, Console& console) {
 
   CommonOptions common;
   const std::array commands{add_phantom_command(program), add_mesh_command(program), add_info_command(program)};
+  add_common_options(program, common);  // they may stand before the command and behind it
   for (const Command& command : commands) add_common_options(*command.app, common);
 
   try {

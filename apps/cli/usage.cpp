@@ -58,7 +58,14 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program) {
   const std::string name = &app == &program ? program.get_name() : program.get_name() + ' ' + app.get_name();
   // An unknown word is told before a missing one: the missing one is often the unknown one, mistyped.
   const std::vector<std::string> words = program.remaining(true);
-  std::string what = words.empty() ? error.what() : explain_word(program, app, words);
+  std::string what;
+  if (!words.empty()) {
+    what = explain_word(program, app, words);
+  } else if (&app == &program && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    what = fmt::format("no command given; there are {}", fmt::join(command_names(program), ", "));
+  } else {
+    what = error.what();
+  }
   while (!what.empty() && (what.back() == '\n' || what.back() == '.')) what.pop_back();
   const bool done = !what.empty() && what.back() == '?';
   return fmt::format("{}{} See {} --help", what, done ? "" : ".", name);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "describe.hpp"
+#include "table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::cli {
+
+namespace {
+
+struct Peaks {
+  double axial_N = 0, sagittal_N = 0, lateral_N = 0;
+  double depth_mm = 0;
+};
+
+/// Largest absolute forces and the deepest base position; from the steps, since a killed run has no summary.
+Peaks peaks_of(const std::vector<StepRecord>& steps) {
+  Peaks peaks;
+  for (const StepRecord& step : steps) {
+    peaks.axial_N = std::max(peaks.axial_N, std::abs(step.force_axial_N));
+    peaks.sagittal_N = std::max(peaks.sagittal_N, std::abs(step.force_sagittal_N));
+    peaks.lateral_N = std::max(peaks.lateral_N, std::abs(step.force_lateral_N));
+    peaks.depth_mm = std::max(peaks.depth_mm, step.base_depth_mm);
+  }
+  return peaks;
+}
+
+Json events_json(const std::vector<Event>& events) {
+  Json json = Json::array();
+  for (const Event& event : events) {
+    json.push_back({{"kind", to_string(event.kind)},
+                    {"time_s", event.time_s},
+                    {"depth_mm", event.depth_mm},
+                    {"force_N", event.force_N},
+                    {"region", event.region}});
+  }
+  return json;
+}
+
+std::string events_text(const std::vector<Event>& events) {
+  Table table({"event", "region", "time s", "depth mm", "force N"});
+  for (const Event& event : events) {
+    table.row({to_string(event.kind), event.region, fmt::format("{:.3f}", event.time_s),
+               fmt::format("{:.2f}", event.depth_mm), fmt::format("{:.3f}", event.force_N)});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+Description describe(const RunRecording& run) {
+  const Peaks peaks = peaks_of(run.steps);
+  const double duration_s = run.steps.empty() ? 0 : run.steps.back().time_s;
+  const bool finished = run.summary.has_value();
+
+  Description out;
+  out.json = {
+      {"kind", "recording"},
+      {"version", run.info.version},
+      {"scenario", run.info.scenario_name},
+      {"method", run.info.method},
+      {"finished", finished},
+      {"mesh", {{"nodes", run.mesh.node_count()}, {"tets", run.mesh.tet_count()}}},
+      {"steps", run.steps.size()},
+      {"frames", run.frames.size()},
+      {"duration_s", duration_s},
+      {"depth_max_mm", peaks.depth_mm},
+      {"peak_force_N", {{"axial", peaks.axial_N}, {"sagittal", peaks.sagittal_N}, {"lateral", peaks.lateral_N}}},
+      {"events", finished ? events_json(run.summary->events) : Json::array()},
+      {"warnings", run.info.warnings}};
+
+  Facts facts;
+  facts.add("kind", "recording of an insertion");
+  facts.add("made by", "stylet " + run.info.version);
+  facts.add("scenario", run.info.scenario_name);
+  facts.add("method", run.info.method);
+  facts.add("state", finished ? "finished" : "unfinished: still running, or stopped on the way");
+  facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {} regions", run.mesh.node_count(), run.mesh.tet_count(),
+                                run.mesh.regions.size()));
+  facts.add("steps", fmt::format("{}, {:.2f} s simulated, {} frames", run.steps.size(), duration_s, run.frames.size()));
+  facts.add("deepest", fmt::format("{:.1f} mm", peaks.depth_mm));
+  facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.2f} N, lateral {:.2f} N", peaks.axial_N,
+                                      peaks.sagittal_N, peaks.lateral_N));
+  out.text = facts.text();
+  if (finished) out.text += "\n\n" + events_text(run.summary->events);
+  for (const std::string& warning : run.info.warnings) out.text += "\n  warning: " + warning;
+  return out;
+}
+
+}  // namespace stylet::cli

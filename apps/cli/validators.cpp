@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validators.hpp"
+
+#include "stylet/core/nearest_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace stylet::cli {
+
+namespace {
+
+/// The text as a number when all of it is one.
+template <class Number>
+bool parse(const std::string& text, Number& number) {
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  return error == std::errc() && stop == end;
+}
+
+}  // namespace
+
+// A validator answers with the reason of its refusal, or with nothing.
+
+CLI::Validator number_between(double lo, double hi, const std::string& unit) {
+  return {[=](const std::string& text) {
+            double number = 0;
+            if (parse(text, number) && number >= lo && number <= hi) return std::string();
+            return fmt::format("'{}' is not a number from {} to {}{}{}", text, lo, hi, unit.empty() ? "" : " ", unit);
+          },
+          ""};
+}
+
+CLI::Validator whole_number_between(long long lo, long long hi) {
+  return {[=](const std::string& text) {
+            long long number = 0;
+            if (parse(text, number) && number >= lo && number <= hi) return std::string();
+            return fmt::format("'{}' is not a whole number from {} to {}", text, lo, hi);
+          },
+          ""};
+}
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  return {[words = std::move(words)](const std::string& text) {
+            if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+            const std::string nearest = nearest_name(text, words);
+            return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
+                               nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+          },
+          ""};
+}
+
+}  // namespace stylet::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace stylet::cli {
+
+/// Accepts a number from `lo` to `hi`; the refusal names the value and the range.
+/// @param unit what follows the range in the message, e.g. "mm"; may be empty
+CLI::Validator number_between(double lo, double hi, const std::string& unit = {});
+
+/// Accepts a whole number from `lo` to `hi`.
+CLI::Validator whole_number_between(long long lo, long long hi);
+
+/// Accepts one of these words; the refusal names them all and the nearest.
+CLI::Validator one_of(std::vector<std::string> words);
+
+}  // namespace stylet::cli
