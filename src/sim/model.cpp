@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace stylet {
 
@@ -52,9 +53,9 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.merge_mm = s.needle.diameter_mm;
   c.join_mm = s.needle.diameter_mm;
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
-  c.grazing_cos = std::cos(s.coupling.grazing_deg * EIGEN_PI / 180.0);
+  c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
   c.capacity = s.coupling.contacts;
-  const double area = 0.25 * EIGEN_PI * s.needle.diameter_mm * s.needle.diameter_mm * 0.4;  // cannula and stylet, about
+  const double area = 0.25 * std::numbers::pi * s.needle.diameter_mm * s.needle.diameter_mm * 0.4;  // cannula and stylet, about
   c.axial_compliance_mm_per_N = s.needle.length_mm / (kSteelYoung_MPa * area);
   return c;
 }

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Node addition against the same mesh, refactorised.
+#include "stylet/coupling/track_compliance.hpp"
+#include "stylet/geom/box_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+using namespace stylet;
+
+namespace {
+
+/// A two-region block with one face held, all compliances stored.
+struct Block {
+  explicit Block(int cells = 4) {
+    TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {cells, cells, cells}, 0.12);
+    assign_regions(mesh, {"soft", "stiff"}, [](const Vec3& x) { return x.x() + 0.3 * x.y() < 26 ? 0 : 1; });
+    for (Index node = 0; node < mesh.node_count(); ++node) {
+      if (mesh.nodes[static_cast<std::size_t>(node)].z() > 39.999) fixed.push_back(node);
+    }
+    auto built = Tissue::build(mesh, materials, fixed);
+    EXPECT_TRUE(built.ok());
+    tissue = std::make_shared<const Tissue>(std::move(*built));
+    topology = std::make_unique<Topology>(tissue->mesh());
+    locator = std::make_unique<Locator>(tissue->mesh(), *topology);
+    auto all = std::make_shared<ComplianceStore>(tissue);
+    std::vector<Index> nodes(static_cast<std::size_t>(mesh.node_count()));
+    std::iota(nodes.begin(), nodes.end(), 0);
+    all->add_nodes(nodes);
+    store = all;
+  }
+
+  std::vector<Material> materials{{0.04, 0.45}, {0.12, 0.40}};
+  std::vector<Index> fixed;
+  std::shared_ptr<const Tissue> tissue;
+  std::unique_ptr<Topology> topology;
+  std::unique_ptr<Locator> locator;
+  std::shared_ptr<const ComplianceStore> store;
+};
+
+/// Largest difference, over the largest entry, between the compliances among the added nodes and those of a fresh
+/// factorisation of the split mesh.
+double difference_to_refactorised(const Block& block, const TrackCompliance& track) {
+  const TetMesh split = track.mesh().materialise();
+  EXPECT_TRUE(check_mesh(split, "split mesh").ok());
+  auto fresh = Tissue::build(split, block.materials, block.fixed);
+  EXPECT_TRUE(fresh.ok());
+  const Index base = block.tissue->mesh().node_count();
+  const Index added = split.node_count() - base;
+  MatX load = MatX::Zero(3 * split.node_count(), 3 * added);
+  for (Index k = 0; k < added; ++k) load.block<3, 3>(3 * (base + k), 3 * k) = Mat3::Identity();
+  const MatX reference = fresh->solve(load).bottomRows(3 * added);
+  const MatX ours = track.matrix().block(3, 3, 3 * added, 3 * added);
+  return (ours - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+TEST(NodeAddition, hundred_interior_nodes_by_the_shortcut_equal_a_refactorised_mesh) {
+  const Block block;
+  TrackCompliance track(block.store, *block.locator, 100);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> place(2.0, 38.0);
+  int added = 0;
+  // Half of the nodes in one corner, so that many fall into elements that are split already.
+  while (added < 100) {
+    const double shrink = added % 2 ? 1.0 : 0.25;
+    const Vec3 x = shrink * Vec3(place(random), place(random), place(random)) + Vec3::Constant(1.0);
+    const auto at = block.locator->find(x);
+    ASSERT_TRUE(at.has_value());
+    if (track.add(*at, x, Placement::interior).point >= 0) ++added;
+  }
+  EXPECT_GT(track.mesh().materialise().tet_count(), block.tissue->mesh().tet_count() + 299);
+  EXPECT_LT(difference_to_refactorised(block, track), 1e-8);
+}
+
+TEST(NodeAddition, hundred_face_nodes_by_the_bordered_update_equal_a_refactorised_mesh) {
+  const Block block;
+  TrackCompliance track(block.store, *block.locator, 100);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> weight(0.1, 1.0);
+  std::uniform_int_distribution<Index> pick(0, block.tissue->mesh().tet_count() - 1);
+  int added = 0;
+  int on_surface = 0;
+  while (added < 100) {
+    const Index tet = pick(random);
+    const int local = static_cast<int>(random() % 4);
+    Vec4 w(weight(random), weight(random), weight(random), weight(random));
+    w[local] = 0.0;
+    w /= w.sum();
+    Vec3 x = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) {
+      x += w[i] * block.tissue->mesh().nodes[static_cast<std::size_t>(
+                      block.tissue->mesh().tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(i)])];
+    }
+    const Vec3 out = block.locator->face_normal(tet, local);
+    if (track.add({tet, w}, x, Placement::face, out).point < 0) continue;
+    ++added;
+    on_surface += block.topology->neighbour[static_cast<std::size_t>(tet)][static_cast<std::size_t>(local)] < 0 ? 1 : 0;
+  }
+  EXPECT_GT(on_surface, 5);
+  EXPECT_LT(difference_to_refactorised(block, track), 1e-8);
+}
+
+TEST(NodeAddition, a_needle_track_of_face_nodes_equals_a_refactorised_mesh) {
+  const Block block(6);
+  TrackCompliance track(block.store, *block.locator, 60);
+  const Vec3 direction = Vec3(0.13, 0.08, 1.0).normalized();
+  Vec3 x(17.3, 18.1, 0.0);
+  auto at = block.locator->find(x, -1, direction);
+  ASSERT_TRUE(at.has_value());
+  Index tet = at->tet;
+  int added = 0;
+  for (int step = 0; step < 60; ++step) {
+    // Leave the element through the face the line crosses.
+    const Vec4 here = block.locator->weights(tet, x);
+    const Vec4 there = block.locator->weights(tet, x + 40.0 * direction);
+    int local = -1;
+    double first = 2.0;
+    for (int i = 0; i < 4; ++i) {
+      if (there[i] < -1e-9 && here[i] / (here[i] - there[i]) < first && here[i] > 1e-9) {
+        first = here[i] / (here[i] - there[i]);
+        local = i;
+      }
+    }
+    ASSERT_GE(local, 0);
+    x += first * 40.0 * direction;
+    if (track.add({tet, block.locator->weights(tet, x)}, x, Placement::face, direction).point >= 0) ++added;
+    tet = block.topology->neighbour[static_cast<std::size_t>(tet)][static_cast<std::size_t>(local)];
+    if (tet < 0) break;
+  }
+  EXPECT_GE(added, 8);
+  EXPECT_LT(difference_to_refactorised(block, track), 1e-8);
+}
+
+TEST(NodeAddition, interior_nodes_leave_old_compliances_bit_for_bit_unchanged) {
+  const Block block;
+  TrackCompliance track(block.store, *block.locator, 20);
+  const Vec3 a(11.1, 12.3, 14.2);
+  const Vec3 b(22.0, 21.0, 19.5);
+  const auto place = [&](const Vec3& x, Placement placement) {
+    return track.add(*block.locator->find(x), x, placement).point;
+  };
+  ASSERT_EQ(place(a, Placement::embedded), 1);
+  ASSERT_EQ(place(b, Placement::embedded), 2);
+  const Mat3 before = track(1, 2);
+  int added = 0;
+  for (int i = 0; i < 20 && added < 5; ++i)
+    added += place(a + 0.37 * i * Vec3(1, 0.6, 0.9), Placement::interior) >= 0 ? 1 : 0;
+  ASSERT_GE(added, 3);
+  EXPECT_EQ((track(1, 2) - before).norm(), 0.0);
+}
+
+TEST(NodeAddition, contacts_denser_than_elements_stay_regular_as_nodes_and_follow_from_each_other_embedded) {
+  const Block block(2);  // elements of 20 mm, contacts 2 mm apart
+  for (const Placement placement : {Placement::interior, Placement::embedded}) {
+    TrackCompliance track(block.store, *block.locator, 20);
+    std::vector<int> points;
+    double smallest = 1.0;
+    for (int i = 0; i < 12; ++i) {
+      const Vec3 x(13.0, 11.0, 4.0 + 2.0 * i);
+      const auto added = track.add(*block.locator->find(x), x, placement);
+      if (added.point < 0) continue;
+      if (!points.empty()) smallest = std::min(smallest, track.independence(added.point, points));
+      if (points.size() < TrackCompliance::kNeighbours) points.push_back(added.point);
+    }
+    if (placement == Placement::interior) {
+      EXPECT_GT(smallest, 0.05);
+    } else {
+      EXPECT_LT(smallest, 1e-6);
+    }
+  }
+}
+
+TEST(NodeAddition, reset_restores_the_first_state_exactly) {
+  const Block block;
+  TrackCompliance track(block.store, *block.locator, 10);
+  const Vec3 x(13.0, 11.0, 9.0);
+  const auto at = *block.locator->find(x);
+  ASSERT_TRUE(track.move_tip(at, x));
+  const MatX before = track.matrix();
+  for (int i = 0; i < 60 && track.points() < 6; ++i) {
+    const Vec3 y = x + 0.4 * i * Vec3(0.2, 0.3, 1.0);
+    track.add(*block.locator->find(y), y, Placement::interior);
+  }
+  ASSERT_EQ(track.points(), 6);
+  track.reset();
+  EXPECT_EQ(track.points(), 1);
+  EXPECT_EQ(track.mesh().materialise().tet_count(), block.tissue->mesh().tet_count());
+  ASSERT_TRUE(track.move_tip(at, x));
+  EXPECT_EQ((track.matrix() - before).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(NodeAddition, nodal_load_of_contact_forces_gives_the_displacement_of_the_refactorised_mesh) {
+  const Block block;
+  for (const Placement placement : {Placement::interior, Placement::face}) {
+    TrackCompliance track(block.store, *block.locator, 10);
+    const Vec3 direction(0, 0, 1);
+    Vec3 x(17.3, 18.1, 6.0);
+    for (int i = 0; i < 60 && track.points() < 4; ++i) {
+      x = Vec3(17.3 + 0.2 * i, 18.1 + 0.1 * i, 6.0 + 0.45 * i);
+      auto at = *block.locator->find(x);
+      if (placement == Placement::face) {  // slide to the nearest face along z
+        const Vec4 here = at.weights;
+        const Vec4 there = block.locator->weights(at.tet, x + 40.0 * direction);
+        double first = 2.0;
+        for (int k = 0; k < 4; ++k) {
+          if (there[k] < 0.0) first = std::min(first, here[k] / (here[k] - there[k]));
+        }
+        x += first * 40.0 * direction;
+        at.weights = block.locator->weights(at.tet, x);
+      }
+      track.add(at, x, placement, direction);
+    }
+    ASSERT_GE(track.points(), 3);
+    MatX forces = MatX::Zero(3, track.points());
+    for (int c = 1; c < track.points(); ++c) forces.col(c) = Vec3(0.1 * c, -0.05, 0.2);
+    const VecX u = block.tissue->solve(track.base_load(forces));
+
+    const TetMesh split = track.mesh().materialise();
+    auto fresh = Tissue::build(split, block.materials, block.fixed);
+    ASSERT_TRUE(fresh.ok());
+    const Index base = block.tissue->mesh().node_count();
+    VecX load = VecX::Zero(3 * split.node_count());
+    for (int c = 1; c < track.points(); ++c) load.segment<3>(3 * (base + c - 1)) = forces.col(c);
+    const VecX reference = fresh->solve(load).topRows(3 * base);
+    EXPECT_LT((u - reference).cwiseAbs().maxCoeff(), 1e-9 * reference.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(NodeAddition, refuses_what_it_cannot_do_and_says_why) {
+  const Block block;
+  auto empty = std::make_shared<const ComplianceStore>(block.tissue);
+  TrackCompliance no_store(empty, *block.locator, 4);
+  const Vec3 x(13.0, 11.0, 9.0);
+  const auto at = *block.locator->find(x);
+  EXPECT_EQ(no_store.add(at, x, Placement::interior).refusal, TrackCompliance::Refusal::missing);
+  EXPECT_FALSE(no_store.move_tip(at, x));
+
+  TrackCompliance track(block.store, *block.locator, 1);
+  const Vec3 node =
+      block.tissue->mesh()
+          .nodes[static_cast<std::size_t>(block.tissue->mesh().tets[static_cast<std::size_t>(at.tet)][0])];
+  EXPECT_EQ(track.add({at.tet, Vec4(1, 0, 0, 0)}, node, Placement::interior).refusal,
+            TrackCompliance::Refusal::geometry);
+  ASSERT_GE(track.add(at, x, Placement::embedded).point, 0);
+  EXPECT_EQ(track.add(at, x, Placement::embedded).refusal, TrackCompliance::Refusal::capacity);
+}
