@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DICOM RT Structure Set, writing (DICOM PS3.3 A.19). Implicit VR little endian, because explicit VR limits ContourData
+// (VR DS) to 64 KiB, which a body outline exceeds.
+#include "detail/text.hpp"
+#include "detail/whole_file.hpp"
+#include "stylet/io/contours_io.hpp"
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <fmt/format.h>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <boost/uuid/name_generator_sha1.hpp>
+#include <cmath>
+#include <set>
+
+namespace stylet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double max_coordinate_mm = 1e6;  // DS holds 16 characters: 1e6 with four decimals is safe
+constexpr std::size_t max_name = 64;       // VR LO
+
+/// A number as DS: four decimals, no trailing zeros.
+std::string decimal_string(double value) {
+  std::string text = fmt::format("{:.4f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string contour_data(const Contour& contour) {
+  std::string text;
+  text.reserve(contour.points.size() * 30);
+  for (const Vec3& p : contour.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!text.empty()) text += '\\';
+      text += decimal_string(p[axis]);
+    }
+  }
+  return text;
+}
+
+/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2): the same contours
+/// give the same file, and nothing of this computer gets into it.
+std::string derived_uid(const std::string& content, std::string_view role) {
+  static const boost::uuids::uuid name_space{
+      {0x8f, 0x14, 0xe4, 0x5f, 0xce, 0xea, 0x46, 0x7a, 0x9b, 0x30, 0x51, 0x0c, 0x6a, 0x2d, 0x77, 0x19}};
+  const boost::uuids::uuid id = boost::uuids::name_generator_sha1(name_space)(std::string(role) + '\n' + content);
+  boost::multiprecision::uint128_t number = 0;
+  for (const std::uint8_t byte : id) number = (number << 8) | byte;
+  return "2.25." + number.str();
+}
+
+/// Everything that makes one structure set differ from another.
+std::string fingerprint(const ContourSet& set) {
+  std::string text = set.label + '\n' + set.frame_of_reference + '\n';
+  for (const Roi& roi : set.rois) {
+    text += fmt::format("{}\n{}\n{}\n", roi.name, roi.number, roi.type);
+    for (const Contour& contour : roi.contours) text += contour_data(contour) + '\n';
+  }
+  return text;
+}
+
+Result<> check(const ContourSet& set, const std::string& where) {
+  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one.");
+  for (const Roi& roi : set.rois) {
+    const std::string place = fmt::format("{}, ROI '{}'", where, roi.name);
+    if (roi.name.empty() || roi.name.size() > max_name || roi.name.find('\\') != std::string::npos) {
+      return failure(place, fmt::format("a DICOM name has 1 to {} bytes and no backslash", max_name),
+                     "Rename the structure.");
+    }
+    for (const Contour& contour : roi.contours) {
+      for (const Vec3& p : contour.points) {
+        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > max_coordinate_mm) {
+          return failure(place,
+                         fmt::format("the point ({}, {}, {}) mm is not finite or too far away", p.x(), p.y(), p.z()),
+                         "Correct the contour before writing it.");
+        }
+      }
+    }
+  }
+  return Ok{};
+}
+
+/// ROI numbers of the set, or 1, 2, … when they are not unique.
+std::vector<int> roi_numbers(const ContourSet& set) {
+  std::vector<int> numbers;
+  for (const Roi& roi : set.rois) numbers.push_back(roi.number);
+  const std::set<int> distinct(numbers.begin(), numbers.end());
+  if (distinct.size() != numbers.size() || *distinct.begin() < 0) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<int>(i) + 1;
+  }
+  return numbers;
+}
+
+/// Puts attributes into an item and remembers the first failure.
+class Filler {
+ public:
+  void text(DcmItem& item, const DcmTagKey& tag, const std::string& value) {
+    keep(item.putAndInsertOFStringArray(tag, OFString(value.data(), value.size())));
+  }
+  DcmItem& new_item(DcmItem& parent, const DcmTagKey& sequence) {
+    DcmItem* item = nullptr;
+    keep(parent.findOrCreateSequenceItem(sequence, item, -2));  // -2 appends
+    return item == nullptr ? spare_ : *item;
+  }
+  [[nodiscard]] const OFCondition& status() const { return status_; }
+
+ private:
+  void keep(const OFCondition& condition) {
+    if (status_.good()) status_ = condition;
+  }
+  OFCondition status_ = EC_Normal;
+  DcmItem spare_;
+};
+
+void fill_header(Filler& fill, DcmDataset& data, const ContourSet& set, const std::string& print) {
+  fill.text(data, DCM_SpecificCharacterSet, "ISO_IR 192");
+  fill.text(data, DCM_SOPClassUID, UID_RTStructureSetStorage);
+  fill.text(data, DCM_SOPInstanceUID, derived_uid(print, "instance"));
+  fill.text(data, DCM_StudyInstanceUID, derived_uid(print, "study"));
+  fill.text(data, DCM_SeriesInstanceUID, derived_uid(print, "series"));
+  fill.text(data, DCM_Modality, "RTSTRUCT");
+  fill.text(data, DCM_Manufacturer, "Stylet");
+  fill.text(data, DCM_PatientName, "STYLET^PHANTOM");
+  fill.text(data, DCM_PatientID, "STYLET");
+  for (const DcmTagKey& empty : {DCM_PatientBirthDate, DCM_PatientSex, DCM_StudyDate, DCM_StudyTime,
+                                 DCM_AccessionNumber, DCM_ReferringPhysicianName, DCM_StudyID, DCM_SeriesNumber,
+                                 DCM_OperatorsName, DCM_StructureSetDate, DCM_StructureSetTime}) {
+    fill.text(data, empty, "");
+  }
+  // SH holds 16 characters.
+  fill.text(data, DCM_StructureSetLabel, set.label.empty() ? "Stylet" : set.label.substr(0, 16));
+}
+
+void fill_structures(Filler& fill, DcmDataset& data, const ContourSet& set, const std::string& frame) {
+  fill.text(fill.new_item(data, DCM_ReferencedFrameOfReferenceSequence), DCM_FrameOfReferenceUID, frame);
+  const std::vector<int> numbers = roi_numbers(set);
+  for (std::size_t i = 0; i < set.rois.size(); ++i) {
+    const Roi& roi = set.rois[i];
+    const std::string number = std::to_string(numbers[i]);
+
+    DcmItem& header = fill.new_item(data, DCM_StructureSetROISequence);
+    fill.text(header, DCM_ROINumber, number);
+    fill.text(header, DCM_ReferencedFrameOfReferenceUID, frame);
+    fill.text(header, DCM_ROIName, roi.name);
+    fill.text(header, DCM_ROIGenerationAlgorithm, "");
+
+    DcmItem& drawing = fill.new_item(data, DCM_ROIContourSequence);
+    fill.text(drawing, DCM_ReferencedROINumber, number);
+    fill.text(drawing, DCM_ROIDisplayColor, fmt::format("{}\\{}\\{}", roi.colour[0], roi.colour[1], roi.colour[2]));
+    for (const Contour& contour : roi.contours) {
+      DcmItem& item = fill.new_item(drawing, DCM_ContourSequence);
+      fill.text(item, DCM_ContourGeometricType, "CLOSED_PLANAR");
+      fill.text(item, DCM_NumberOfContourPoints, std::to_string(contour.points.size()));
+      fill.text(item, DCM_ContourData, contour_data(contour));
+    }
+
+    DcmItem& observation = fill.new_item(data, DCM_RTROIObservationsSequence);
+    fill.text(observation, DCM_ObservationNumber, std::to_string(i + 1));
+    fill.text(observation, DCM_ReferencedROINumber, number);
+    fill.text(observation, DCM_RTROIInterpretedType, roi.type.substr(0, 16));
+    fill.text(observation, DCM_ROIInterpreter, "");
+  }
+}
+
+}  // namespace
+
+Result<> write_rtstruct(const ContourSet& contours, const fs::path& path) {
+  if (Result<> sound = check(contours, path.string()); !sound) return sound;
+  const std::string print = fingerprint(contours);
+  DcmFileFormat file;
+  Filler fill;
+  fill_header(fill, *file.getDataset(), contours, print);
+  fill_structures(fill, *file.getDataset(), contours,
+                  contours.frame_of_reference.empty() ? derived_uid(print, "frame") : contours.frame_of_reference);
+  const auto refused = [&](const OFCondition& why) {
+    return failure(path.string(), fmt::format("the RT Structure Set cannot be written ({})", why.text()),
+                   "Check the folder's permissions and space.");
+  };
+  if (fill.status().bad()) return refused(fill.status());
+  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
+    const OFCondition saved = file.saveFile(temporary.c_str(), EXS_LittleEndianImplicit);
+    if (saved.bad()) return refused(saved);
+    return Ok{};
+  });
+}
+
+}  // namespace stylet
