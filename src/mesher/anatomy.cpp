@@ -67,6 +67,47 @@ int Anatomy::label(const Vec3& p) const {
   return 0;
 }
 
+int Anatomy::layer_of(int label) const {
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const auto& m = layers[l].members;
+    if (std::find(m.begin(), m.end(), label - 1) != m.end()) return static_cast<int>(l);
+  }
+  return -1;
+}
+
+double Anatomy::interface_distance(int a, int b, const Vec3& p) const {
+  const auto surface = [&](const Layer& layer) { return layer.solid->distance(p) - layer.offset; };
+  const int la = a > 0 ? layer_of(a) : -1;
+  const int lb = b > 0 ? layer_of(b) : -1;
+  if (la >= 0 && la == lb) {
+    const auto depth = [&](int label) {
+      return structures[label - 1].shape->distance(p) - structures[label - 1].offset;
+    };
+    return 0.5 * (depth(a) - depth(b));
+  }
+  if (la < 0 || lb < 0) {
+    const Layer& own = layers[std::max(la, lb)];
+    return surface(own.clipped ? layers.back() : own);
+  }
+  return surface(layers[std::min(la, lb)]);
+}
+
+Vec3 Anatomy::project(int a, int b, Vec3 p) const {
+  constexpr double kStep = 0.2;  // [mm] for the gradient: below that the grid's own kinks show
+  for (int i = 0; i < 3; ++i) {
+    const double d = interface_distance(a, b, p);
+    if (std::abs(d) < 1e-4) break;
+    Vec3 gradient;
+    for (int c = 0; c < 3; ++c) {
+      const Vec3 e = kStep * Vec3::Unit(c);
+      gradient[c] = (interface_distance(a, b, p + e) - interface_distance(a, b, p - e)) / (2 * kStep);
+    }
+    if (!(gradient.squaredNorm() > 0.01)) break;
+    p -= d / gradient.squaredNorm() * gradient;
+  }
+  return p;
+}
+
 Eigen::AlignedBox3d Anatomy::box() const {
   Eigen::AlignedBox3d all;
   for (const Layer& layer : layers) all.extend(layer.box);

@@ -39,6 +39,13 @@ struct Anatomy {
   void add(Structure structure);
   /// 0 outside, else 1 + index of the structure at p. @param p [mm] LPS
   [[nodiscard]] int label(const Vec3& p) const;
+  /// Signed distance [mm] of p from the surface between two labels (0 = outside), negative on the side of higher
+  /// priority.
+  [[nodiscard]] double interface_distance(int label_a, int label_b, const Vec3& p) const;
+  /// p moved onto that surface.
+  [[nodiscard]] Vec3 project(int label_a, int label_b, Vec3 p) const;
+  /// Index of the layer a label belongs to.
+  [[nodiscard]] int layer_of(int label) const;
   /// Structure index in a layer whose solid holds p.
   [[nodiscard]] int member(const Layer& layer, const Vec3& p) const;
   [[nodiscard]] Eigen::AlignedBox3d box() const;

@@ -2,10 +2,12 @@
 #include "stylet/mesher/mesher.hpp"
 
 #include "anatomy.hpp"
+#include "local_changes.hpp"
 #include "seeds.hpp"
 #include "sizing.hpp"
 #include "surface_distance.hpp"
 #include "tetrahedraliser.hpp"
+#include "volume_fit.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -52,6 +54,7 @@ Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress
   const Index wanted = options.nodes > 0 ? options.nodes : options.preset == MeshPreset::paper ? 570 : 3000;
   const SizeField size(a, options.preset);
   double scale = size.scale_for(wanted);
+  const double c00 = static_cast<double>(clock()) * 1e-6;
   // log(nodes) is nearly linear in log(scale): secant steps.
   std::vector<std::pair<double, double>> tried;
   std::unique_ptr<Tetrahedraliser> best;
@@ -77,9 +80,21 @@ Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress
     scale = std::exp(tried.back().first + (std::log(static_cast<double>(wanted)) - tried.back().second) / slope);
   }
   report(progress, "optimising elements", 0);
+  const double c0 = static_cast<double>(clock()) * 1e-6;
   best->optimise(15);
+  EditableMesh editable(best->mesh());
+  const double c1 = static_cast<double>(clock()) * 1e-6;
+  improve(editable, a, 1.35);
+  const double c2 = static_cast<double>(clock()) * 1e-6;
+  fit_volumes(editable, a);
+  const double c3 = static_cast<double>(clock()) * 1e-6;
+  improve(editable, a, 1.35);
+  const double c4 = static_cast<double>(clock()) * 1e-6;
+  if (getenv("TM"))
+    fprintf(stderr, "prep %.2f search %.2f (%zu) opt %.2f imp %.2f fit %.2f imp %.2f\n", c00, c0 - c00,
+            tried.size() + 1, c1 - c0, c2 - c1, c3 - c2, c4 - c3);
   MeshedAnatomy out;
-  out.mesh = to_mesh(best->mesh(), a);
+  out.mesh = to_mesh(editable.result(), a);
   MeshReport& r = out.report;
   r.notes = a.notes;
   r.contour_points = a.contour_points;
