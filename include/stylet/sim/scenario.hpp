@@ -5,6 +5,7 @@
 #include "stylet/core/types.hpp"
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,6 +23,8 @@ struct TissueParameters {
   double friction_coulomb_N_per_m = 0;
   double friction_viscous_Ns_per_m2 = 0;
   std::string source;  ///< where the values come from
+
+  bool operator==(const TissueParameters&) const = default;
 };
 
 /// Published or, where nothing is published, stated defaults for a region by its canonical name ("prostate", "body",
@@ -39,6 +42,8 @@ struct TemplateGrid {
   /// Offset of a hole from the grid's centre [mm]: (towards the patient's left, towards anterior). Accepts "D4",
   /// "d3.5".
   [[nodiscard]] Result<std::array<double, 2>> offset_mm(const std::string& hole) const;
+
+  bool operator==(const TemplateGrid&) const = default;
 };
 
 /// One needle going in and out.
@@ -54,6 +59,8 @@ struct InsertionPlan {
   double retract_speed_mm_per_s = 20.0;
   bool retract = true;  ///< pull the needle out after the dwell
   std::string motion;   ///< a recorded base motion (CSV) instead of all the above
+
+  bool operator==(const InsertionPlan&) const = default;
 };
 
 /// A simulation, as a person writes it down. Every field is a key of the scenario file with its unit in the name.
@@ -63,18 +70,21 @@ struct Scenario {
     std::string source;                          ///< contours, mask or mesh; relative to the scenario file
     std::map<std::string, std::string> regions;  ///< ROI name or label → region name
     double scale = 0.0;                          ///< [mm] unit of a mesh file; 0 = as the file says
+    bool operator==(const Patient&) const = default;
   } patient;
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
   struct Fixed {
     std::vector<std::string> regions;  ///< regions whose nodes are all held; empty = pubic arch and femurs if there
     std::string outer = "auto";        ///< auto, none, all, sides (all but the perineal face)
     std::optional<std::array<double, 6>> box_mm;  ///< LPS, low and high corner: nodes inside are held as well
+    bool operator==(const Fixed&) const = default;
   } fixed;
   struct Mesh {
     int nodes = 0;  ///< 0 = the preset's default
     std::string preset = "standard";
     double cull_mm = 0.3;
     bool stiff_band = true;
+    bool operator==(const Mesh&) const = default;
   } mesh;
   struct NeedleChoice {
     std::string model = "beam";
@@ -83,6 +93,7 @@ struct Scenario {
     double bending_stiffness_Nmm2 = 15700.0;
     double torsion_stiffness_Nmm2 = 12100.0;
     int elements = 24;
+    bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {
     std::string method = "node-addition";
@@ -94,17 +105,22 @@ struct Scenario {
     double grazing_deg = 80.0;
     double corridor_mm = 8.0;
     int contacts = 96;
+    bool operator==(const Coupling&) const = default;
   } coupling;
   TemplateGrid grid;
   std::vector<InsertionPlan> insertions;
   struct Run {
     double dt_ms = 1.0;
+    bool operator==(const Run&) const = default;
   } run;
   struct Output {
     double frames_per_s = 8.0;
     int max_frames = 80;
     bool pictures = true;
+    bool operator==(const Output&) const = default;
   } output;
+
+  bool operator==(const Scenario&) const = default;
 };
 
 /// A value as it stands in a scenario file.
@@ -113,33 +129,47 @@ struct ScenarioValue {
   Type type = Type::number;
   double number = 0;
   bool boolean = false;
-  std::string text;
-  std::vector<double> numbers;
-  std::vector<std::string> texts;
+  std::string text{};
+  std::vector<double> numbers{};
+  std::vector<std::string> texts{};
 };
+
+/// As the value is written in a scenario file: 60, true, "D4", [0, 0, 1].
+std::string to_string(const ScenarioValue& value);
 
 /// What is known about a key.
 struct ScenarioKey {
-  std::string path;  ///< "tissue.<region>.young_kPa", "insertion[].hole", "mesh.nodes"
-  ScenarioValue::Type type;
-  std::string unit;
-  std::string standard;  ///< default, as text
-  std::string range;     ///< as text
+  std::string path;  ///< "tissue.<region>.young_kPa", "patient.regions.<name>", "insertion[].hole", "mesh.nodes"
+  ScenarioValue::Type type = ScenarioValue::Type::number;
+  std::string unit;      ///< "mm"; empty for a pure number or a word
+  std::string standard;  ///< default: a value as it is written, or words such as "by region"
+  std::string range;     ///< in words: "20 … 1000", "\"sides\", \"all\""
   std::string meaning;
+  std::string example;  ///< a value as it is written; the default where that is one
 };
 
 /// All keys, in the order of documentation.
 const std::vector<ScenarioKey>& scenario_keys();
 
 /// Sets one key. Unknown keys are refused with the nearest known name; values out of range or of the wrong type with
-/// the documented range.
+/// the documented range. What is refused leaves the scenario as it was.
 /// @param path "tissue.prostate.young_kPa", "insertion[0].hole", "mesh.nodes"
 /// @param where file and line for the message
 Result<> set_scenario_key(Scenario& scenario, const std::string& path, const ScenarioValue& value,
                           const std::string& where);
 
-/// What single keys cannot show: at least one insertion, entry given one way, depth within the needle, methods that
-/// exist.
+/// The value of one key; empty where it is not set (a default that depends on the patient) or not a key.
+/// @param path as for set_scenario_key()
+std::optional<ScenarioValue> scenario_value(const Scenario& scenario, const std::string& path);
+
+/// What to call the place of a key in messages, e.g. "demo.toml, line 12"; asked with "insertion[0].hole" or, where no
+/// single key is at fault, "insertion[0]" or "".
+using ScenarioPlace = std::function<std::string(const std::string& path)>;
+
+/// What single keys cannot show: at least one insertion, entry given one way, depth within the needle, corners and
+/// template in order.
+Result<> check_scenario(const Scenario& scenario, const ScenarioPlace& place);
+/// @param where what to call the scenario in messages
 Result<> check_scenario(const Scenario& scenario, const std::string& where);
 
 }  // namespace stylet

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/scenario.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet {
+
+namespace {
+
+constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
+
+Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPlace& place) {
+  const InsertionPlan& p = s.insertions[number];
+  const std::string name = fmt::format("insertion[{}]", number);
+  const bool way_given = p.hole || p.entry_mm || p.direction || p.target_mm;
+  if (!p.motion.empty()) {
+    if (!way_given) return Ok{};
+    return input_error(place(name + ".motion"), name + " has a recorded motion and a hole, entry, direction or target",
+                       "Give the motion alone, or remove it");
+  }
+  if (p.hole && p.entry_mm)
+    return input_error(place(name + ".hole"), name + " has both hole and entry_mm", "Give one of the two");
+  if (!p.hole && !p.entry_mm) {
+    return input_error(place(name), name + " has neither hole nor entry_mm",
+                       "Say where the needle goes in, for example hole = \"D4\" or entry_mm = [10, 5, -80]");
+  }
+  if (p.hole) {
+    if (const auto offset = s.grid.offset_mm(*p.hole); !offset) {
+      return input_error(place(name + ".hole"), fmt::format("{}.hole = \"{}\": {}", name, *p.hole, offset.error().what),
+                         offset.error().cure);
+    }
+    if (p.direction || p.target_mm) {
+      return input_error(place(name + (p.direction ? ".direction" : ".target_mm")),
+                         fmt::format("{} has a hole and a {}; a template holds the needle along +z", name,
+                                     p.direction ? "direction" : "target_mm"),
+                         "Use entry_mm instead of the hole, or let the template guide the needle");
+    }
+  }
+  if (p.direction && p.target_mm) {
+    return input_error(place(name + ".target_mm"), name + " has both direction and target_mm", "Give one of the two");
+  }
+  if (p.direction && Vec3(p.direction->data()).norm() < 1e-9) {
+    return input_error(place(name + ".direction"), name + ".direction = [0, 0, 0] points nowhere",
+                       "Give a direction such as [0, 0, 1]");
+  }
+  if (p.target_mm && (Vec3(p.target_mm->data()) - Vec3(p.entry_mm->data())).norm() < 1e-3) {
+    return input_error(place(name + ".target_mm"), name + ": entry_mm and target_mm are the same point",
+                       "Give two points of the needle's line");
+  }
+  const double reach = s.needle.length_mm - kNeedleOutside_mm;
+  if (p.depth_mm > reach) {
+    return input_error(place(name + ".depth_mm"),
+                       fmt::format("{}.depth_mm = {} is more than the needle's length less {} mm ({})", name,
+                                   p.depth_mm, kNeedleOutside_mm, reach),
+                       "Use a longer needle (needle.length_mm) or a smaller depth");
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
+  if (s.patient.source.empty()) {
+    return input_error(place("patient.source"), "there is no patient: patient.source is missing",
+                       "Name a contour set, a mask or a mesh, or write source = \"phantom\" below [patient]");
+  }
+  for (const auto& [region, t] : s.tissue) {
+    if (t.friction_coulomb_N_per_m > t.friction_static_N_per_m) {
+      const std::string name = "tissue." + region;
+      return input_error(place(name + ".friction_coulomb_N_per_m"),
+                         fmt::format("{}.friction_coulomb_N_per_m = {} N/m exceeds friction_static_N_per_m = {} N/m",
+                                     name, t.friction_coulomb_N_per_m, t.friction_static_N_per_m),
+                         "Sliding friction must not exceed static friction: lower the one or raise the other");
+    }
+  }
+  if (s.fixed.box_mm) {
+    const auto& box = *s.fixed.box_mm;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (box[axis] < box[axis + 3]) continue;
+      return input_error(
+          place("fixed.box_mm"),
+          fmt::format("fixed.box_mm: the low corner's {0} = {1} is not below the high corner's {0} = {2}", "xyz"[axis],
+                      box[axis], box[axis + 3]),
+          "Give the low corner x, y, z and then the high corner x, y, z");
+    }
+  }
+  if (s.coupling.spacing_mm < s.needle.diameter_mm) {
+    return input_error(place("coupling.spacing_mm"),
+                       fmt::format("coupling.spacing_mm = {} is less than needle.diameter_mm = {}",
+                                   s.coupling.spacing_mm, s.needle.diameter_mm),
+                       "Contacts closer than the diameter cannot be told apart: give at least the diameter");
+  }
+  if (s.insertions.empty()) {
+    return input_error(place(""), "there is no needle: no [[insertion]]",
+                       "Add [[insertion]] and below it, for example, hole = \"D4\"");
+  }
+  for (std::size_t i = 0; i < s.insertions.size(); ++i) {
+    if (Result<> checked = check_insertion(s, i, place); !checked) return checked;
+  }
+  return Ok{};
+}
+
+Result<> check_scenario(const Scenario& scenario, const std::string& where) {
+  return check_scenario(scenario, [&](const std::string&) { return where; });
+}
+
+}  // namespace stylet

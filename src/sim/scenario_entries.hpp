@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "scenario_table.hpp"
+
+#include "stylet/core/nearest_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stylet {
+
+/// Values as the table of keys moves them to and from the scenario's fields.
+namespace scenario_field {
+
+using Type = ScenarioValue::Type;
+
+inline std::optional<ScenarioValue> value_of(double x) { return ScenarioValue{.type = Type::number, .number = x}; }
+inline std::optional<ScenarioValue> value_of(int x) {
+  return ScenarioValue{.type = Type::integer, .number = static_cast<double>(x)};
+}
+inline std::optional<ScenarioValue> value_of(bool x) { return ScenarioValue{.type = Type::boolean, .boolean = x}; }
+inline std::optional<ScenarioValue> value_of(const std::string& x) {
+  return ScenarioValue{.type = Type::text, .text = x};
+}
+inline std::optional<ScenarioValue> value_of(const std::vector<std::string>& x) {
+  return ScenarioValue{.type = Type::texts, .texts = x};
+}
+template <std::size_t n>
+std::optional<ScenarioValue> value_of(const std::array<double, n>& x) {
+  return ScenarioValue{.type = Type::numbers, .numbers = {x.begin(), x.end()}};
+}
+template <class T>
+std::optional<ScenarioValue> value_of(const std::optional<T>& x) {
+  return x ? value_of(*x) : std::nullopt;
+}
+
+}  // namespace scenario_field
+
+/// Where the text of a default is not simply the value a new Scenario has.
+struct Documented {
+  const char* standard = nullptr;  ///< in words, e.g. "by region"
+  const char* example = nullptr;   ///< a value as it is written
+};
+
+/// Builds the table of keys. `field` is a generic function that takes a Scenario, const or not, and a slot, and gives a
+/// pointer to the field; so one line serves reading, writing and the default.
+class ScenarioEntries {
+ public:
+  using Type = ScenarioValue::Type;
+
+  /// @param unit of low, high and the value
+  template <class Field>
+  void number(const char* path, const char* unit, double low, double high, const char* meaning, Field field,
+              Documented doc = {}) {
+    add({path, Type::number, unit, "", fmt::format("{} … {}", low, high), meaning, ""}, field, doc,
+        [=](auto& target, const ScenarioValue& v) -> std::string {
+          if (!(v.number >= low && v.number <= high)) return "outside its range";
+          target = v.number;
+          return {};
+        });
+  }
+
+  template <class Field>
+  void integer(const char* path, int low, int high, const char* meaning, Field field, Documented doc = {}) {
+    add({path, Type::integer, "", "", fmt::format("{} … {}", low, high), meaning, ""}, field, doc,
+        [=](auto& target, const ScenarioValue& v) -> std::string {
+          if (v.number != std::floor(v.number)) return "not a whole number";
+          if (!(v.number >= low && v.number <= high)) return "outside its range";
+          target = static_cast<int>(v.number);
+          return {};
+        });
+  }
+
+  template <class Field>
+  void boolean(const char* path, const char* meaning, Field field) {
+    add({path, Type::boolean, "", "", "true, false", meaning, ""}, field, {},
+        [](auto& target, const ScenarioValue& v) -> std::string {
+          target = v.boolean;
+          return {};
+        });
+  }
+
+  template <class Field>
+  void text(const char* path, const char* meaning, Field field, Documented doc = {}) {
+    add({path, Type::text, "", "", "text", meaning, ""}, field, doc,
+        [](auto& target, const ScenarioValue& v) -> std::string {
+          target = v.text;
+          return {};
+        });
+  }
+
+  /// One of several words.
+  /// @param later words that are reserved for what this version does not have
+  template <class Field>
+  void choice(const char* path, const std::vector<std::string>& words, const std::vector<std::string>& later,
+              const char* meaning, Field field) {
+    add({path, Type::text, "", "", fmt::format("\"{}\"", fmt::join(words, "\", \"")), meaning, ""}, field, {},
+        [=](auto& target, const ScenarioValue& v) -> std::string {
+          if (std::find(later.begin(), later.end(), v.text) != later.end()) return "not available in this version";
+          if (std::find(words.begin(), words.end(), v.text) == words.end()) {
+            const std::string near = nearest_name(v.text, words);
+            return "not one of its words" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");
+          }
+          target = v.text;
+          return {};
+        });
+  }
+
+  template <std::size_t n, class Field>
+  void vector(const char* path, const char* unit, double low, double high, const char* meaning, Field field,
+              Documented doc = {}) {
+    add({path, Type::numbers, unit, "", fmt::format("{} numbers, each {} … {}", n, low, high), meaning, ""}, field, doc,
+        [=](auto& target, const ScenarioValue& v) -> std::string {
+          if (v.numbers.size() != n) return fmt::format("{} numbers long, not {}", v.numbers.size(), n);
+          std::array<double, n> numbers{};
+          for (std::size_t i = 0; i < n; ++i) {
+            if (!(v.numbers[i] >= low && v.numbers[i] <= high)) return "outside its range";
+            numbers[i] = v.numbers[i];
+          }
+          target = numbers;
+          return {};
+        });
+  }
+
+  /// A list of different texts, none of them empty.
+  template <class Field>
+  void texts(const char* path, std::size_t least, const char* meaning, Field field, Documented doc = {}) {
+    const std::string range = least == 0 ? "list of texts" : fmt::format("at least {} different texts", least);
+    add({path, Type::texts, "", "", range, meaning, ""}, field, doc,
+        [=](auto& target, const ScenarioValue& v) -> std::string {
+          if (v.texts.size() < least) return fmt::format("too short ({} texts)", v.texts.size());
+          for (auto text = v.texts.begin(); text != v.texts.end(); ++text) {
+            if (text->empty()) return "a list with an empty text in it";
+            if (std::find(v.texts.begin(), text, *text) != text) return "a list with \"" + *text + "\" twice";
+          }
+          target = v.texts;
+          return {};
+        });
+  }
+
+  [[nodiscard]] std::vector<ScenarioEntry> take() && { return std::move(entries_); }
+
+ private:
+  template <class Field, class Store>
+  void add(ScenarioKey key, Field field, Documented doc, Store store) {
+    ScenarioEntry entry;
+    entry.store = [=](Scenario& s, const ScenarioSlot& slot, const ScenarioValue& v) -> std::string {
+      // Into a copy first: what is refused must not leave a new tissue or insertion behind.
+      auto value = field_value(field, slot);
+      std::string refusal = store(value, v);
+      if (refusal.empty()) *field(s, slot) = std::move(value);
+      return refusal;
+    };
+    entry.load = [=](const Scenario& s, const ScenarioSlot& slot) { return scenario_field::value_of(*field(s, slot)); };
+    // The default as a new scenario has it, so that the documentation cannot differ from it.
+    Scenario fresh;
+    const auto standard = scenario_field::value_of(*field(fresh, ScenarioSlot{"prostate", 0}));
+    const bool unset = !standard || (standard->type == Type::text && standard->text.empty());
+    key.standard = doc.standard ? doc.standard : (unset ? "none" : to_string(*standard));
+    key.example = doc.example ? doc.example : (unset ? "" : to_string(*standard));
+    entry.key = std::move(key);
+    entries_.push_back(std::move(entry));
+  }
+
+  /// A value of the field's type.
+  template <class Field>
+  static auto field_value(Field field, const ScenarioSlot& slot) {
+    Scenario fresh;
+    return *field(fresh, ScenarioSlot{slot.name, 0});
+  }
+
+  std::vector<ScenarioEntry> entries_;
+};
+
+}  // namespace stylet

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scenario_table.hpp"
+
+#include "scenario_entries.hpp"
+
+namespace stylet {
+
+namespace {
+
+using Slot = ScenarioSlot;
+
+TissueParameters& tissue(Scenario& s, const Slot& slot) {
+  return s.tissue.try_emplace(slot.name, default_tissue(slot.name)).first->second;
+}
+const TissueParameters& tissue(const Scenario& s, const Slot& slot) { return s.tissue.at(slot.name); }
+
+std::string& region(Scenario& s, const Slot& slot) { return s.patient.regions[slot.name]; }
+const std::string& region(const Scenario& s, const Slot& slot) { return s.patient.regions.at(slot.name); }
+
+InsertionPlan& plan(Scenario& s, const Slot& slot) {
+  if (s.insertions.size() <= slot.index) s.insertions.resize(slot.index + 1);
+  return s.insertions[slot.index];
+}
+const InsertionPlan& plan(const Scenario& s, const Slot& slot) { return s.insertions.at(slot.index); }
+
+void describe_patient(ScenarioEntries& keys) {
+  keys.text(
+      "patient.source",
+      "contours (RTSTRUCT, JSON), label mask or tetrahedral mesh; relative to the scenario file; \"phantom\" is the "
+      "demo patient",
+      [](auto& s, const Slot&) { return &s.patient.source; }, {.standard = "none, required", .example = "\"phantom\""});
+  keys.number("patient.scale", "mm", 0, 1e6, "length of a mesh file's unit; 0 = as the file says, else mm",
+              [](auto& s, const Slot&) { return &s.patient.scale; });
+  keys.text("patient.regions.<name>", "region that a structure (by its name) or a label (by its number) is",
+            [](auto& s, const Slot& slot) { return &region(s, slot); },
+            {.standard = "by name", .example = "\"peripheral_zone\""});
+}
+
+void describe_tissue(ScenarioEntries& keys) {
+  keys.number("tissue.<region>.young_kPa", "kPa", 0.1, 1e8, "Young's modulus",
+              [](auto& s, const Slot& t) { return &tissue(s, t).young_kPa; }, {.standard = "by region"});
+  keys.number("tissue.<region>.poisson", "", 0, 0.4999, "Poisson ratio; linear tetrahedra stiffen towards 0.5",
+              [](auto& s, const Slot& t) { return &tissue(s, t).poisson; }, {.standard = "by region"});
+  keys.number("tissue.<region>.cutting_N", "N", 0, 100, "axial force at which the tip cuts",
+              [](auto& s, const Slot& t) { return &tissue(s, t).cutting_N; }, {.standard = "by region"});
+  keys.number("tissue.<region>.puncture_N", "N", 0, 100,
+              "force that breaks the surface around the region; 0 = no membrane",
+              [](auto& s, const Slot& t) { return &tissue(s, t).puncture_N; }, {.standard = "by region"});
+  keys.number("tissue.<region>.friction_static_N_per_m", "N/m", 0, 1e4,
+              "largest friction per inserted length while sticking",
+              [](auto& s, const Slot& t) { return &tissue(s, t).friction_static_N_per_m; });
+  keys.number("tissue.<region>.friction_coulomb_N_per_m", "N/m", 0, 1e4,
+              "friction per inserted length while sliding slowly",
+              [](auto& s, const Slot& t) { return &tissue(s, t).friction_coulomb_N_per_m; });
+  keys.number("tissue.<region>.friction_viscous_Ns_per_m2", "N s/m²", 0, 1e6, "growth of sliding friction with speed",
+              [](auto& s, const Slot& t) { return &tissue(s, t).friction_viscous_Ns_per_m2; });
+}
+
+void describe_supports(ScenarioEntries& keys) {
+  keys.texts(
+      "fixed.regions", 0, "regions whose nodes are all held", [](auto& s, const Slot&) { return &s.fixed.regions; },
+      {.standard = "the bones: pubic_arch, femur_left, femur_right where present", .example = "[\"pubic_arch\"]"});
+  keys.choice("fixed.outer", {"auto", "none", "sides", "all"}, {},
+              "outer faces held: sides = all but the perineal face and the surroundings of the entry; auto = none with "
+              "a pubic arch, else sides",
+              [](auto& s, const Slot&) { return &s.fixed.outer; });
+  keys.vector<6>("fixed.box_mm", "mm", -1e5, 1e5,
+                 "nodes inside this box are held as well: its low corner x, y, z and its high corner x, y, z, LPS",
+                 [](auto& s, const Slot&) { return &s.fixed.box_mm; }, {.example = "[-40, -60, -30, 40, -30, 30]"});
+}
+
+void describe_mesh(ScenarioEntries& keys) {
+  keys.integer("mesh.nodes", 0, 1000000, "nodes of the mesh; 0 = 3,000 (standard) or 570 (paper)",
+               [](auto& s, const Slot&) { return &s.mesh.nodes; });
+  keys.choice("mesh.preset", {"standard", "paper"}, {},
+              "paper: the target and its surroundings only, as Goksel et al. 2005",
+              [](auto& s, const Slot&) { return &s.mesh.preset; });
+  keys.number("mesh.cull_mm", "mm", 0, 5, "contour points nearer than this to the contour without them are dropped",
+              [](auto& s, const Slot&) { return &s.mesh.cull_mm; });
+  keys.boolean("mesh.stiff_band", "without a pubic arch: add the band that holds the gland's anterior-inferior end",
+               [](auto& s, const Slot&) { return &s.mesh.stiff_band; });
+}
+
+void describe_needle(ScenarioEntries& keys) {
+  keys.choice("needle.model", {"beam"}, {"springs", "tet"}, "needle model; beam = geometrically exact rod",
+              [](auto& s, const Slot&) { return &s.needle.model; });
+  keys.number("needle.length_mm", "mm", 20, 1000, "base to tip",
+              [](auto& s, const Slot&) { return &s.needle.length_mm; });
+  keys.number("needle.diameter_mm", "mm", 0.2, 5, "outer diameter; 18 gauge is 1.27",
+              [](auto& s, const Slot&) { return &s.needle.diameter_mm; });
+  keys.number("needle.bending_stiffness_Nmm2", "N mm²", 1, 1e7,
+              "E I; 12,700 … 25,500 for 18 gauge, by lumen and stylet",
+              [](auto& s, const Slot&) { return &s.needle.bending_stiffness_Nmm2; });
+  keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "G J",
+              [](auto& s, const Slot&) { return &s.needle.torsion_stiffness_Nmm2; });
+  keys.integer("needle.elements", 4, 200, "elements of the needle",
+               [](auto& s, const Slot&) { return &s.needle.elements; });
+}
+
+void describe_coupling(ScenarioEntries& keys) {
+  keys.choice("coupling.method", {"node-addition", "embedded"}, {"near-field", "node-repositioning"},
+              "how the tissue's mesh takes the needle: with nodes of its own, or by interpolation between its nodes",
+              [](auto& s, const Slot&) { return &s.coupling.method; });
+  keys.choice("coupling.rule", {"interior", "paper"}, {},
+              "where nodes are added: inside elements at the contact spacing, or on every face crossed",
+              [](auto& s, const Slot&) { return &s.coupling.rule; });
+  keys.choice("coupling.solver", {"coupled"}, {"staggered"}, "needle and tissue in one solve",
+              [](auto& s, const Slot&) { return &s.coupling.solver; });
+  keys.choice("coupling.engine", {"condensed"}, {"woodbury", "bcs"}, "what is kept of the inverse stiffness",
+              [](auto& s, const Slot&) { return &s.coupling.engine; });
+  keys.number("coupling.spacing_mm", "mm", 1, 50, "between contacts; never closer than the needle's diameter",
+              [](auto& s, const Slot&) { return &s.coupling.spacing_mm; });
+  keys.number("coupling.tip_viscosity_Ns_per_m", "N s/m", 0.01, 1000,
+              "growth of the cutting force with the speed of cutting",
+              [](auto& s, const Slot&) { return &s.coupling.tip_viscosity_Ns_per_m; });
+  keys.number("coupling.grazing_deg", "degree", 30, 89,
+              "a needle flatter to the skin than this (angle to the normal) slides off",
+              [](auto& s, const Slot&) { return &s.coupling.grazing_deg; });
+  keys.number("coupling.corridor_mm", "mm", 1, 50,
+              "around the planned path, where compliance is computed before the start",
+              [](auto& s, const Slot&) { return &s.coupling.corridor_mm; });
+  keys.integer("coupling.contacts", 8, 400, "largest number of contacts",
+               [](auto& s, const Slot&) { return &s.coupling.contacts; });
+}
+
+void describe_template(ScenarioEntries& keys) {
+  keys.number("template.pitch_mm", "mm", 1, 20, "distance of neighbouring holes",
+              [](auto& s, const Slot&) { return &s.grid.pitch_mm; });
+  keys.vector<2>("template.centre_mm", "mm", -1e4, 1e4, "LPS x and y of the middle of the grid, hole D4",
+                 [](auto& s, const Slot&) { return &s.grid.centre_mm; },
+                 {.standard = "the target's centroid", .example = "[0, 0]"});
+  keys.texts("template.columns", 1, "column names from the patient's right to the left",
+             [](auto& s, const Slot&) { return &s.grid.columns; });
+  keys.texts("template.rows", 1, "row names from posterior to anterior",
+             [](auto& s, const Slot&) { return &s.grid.rows; });
+}
+
+void describe_insertion(ScenarioEntries& keys) {
+  keys.text("insertion[].hole", "template hole; the needle goes along +z (superior)",
+            [](auto& s, const Slot& i) { return &plan(s, i).hole; }, {.example = "\"D4\""});
+  keys.vector<3>("insertion[].entry_mm", "mm", -1e4, 1e4, "a point on the needle's line, LPS, instead of a hole",
+                 [](auto& s, const Slot& i) { return &plan(s, i).entry_mm; }, {.example = "[10, 5, -80]"});
+  keys.vector<3>("insertion[].direction", "", -1e4, 1e4, "of the insertion, LPS, any length",
+                 [](auto& s, const Slot& i) { return &plan(s, i).direction; },
+                 {.standard = "[0, 0, 1]", .example = "[0, 0, 1]"});
+  keys.vector<3>("insertion[].target_mm", "mm", -1e4, 1e4, "a point to aim at, LPS, instead of a direction",
+                 [](auto& s, const Slot& i) { return &plan(s, i).target_mm; }, {.example = "[10, 5, 0]"});
+  keys.number("insertion[].approach_mm", "mm", 0.1, 200, "free travel before the skin",
+              [](auto& s, const Slot& i) { return &plan(s, i).approach_mm; });
+  keys.number("insertion[].depth_mm", "mm", 0, 1000,
+              "base travel beyond skin contact; 0 = to the far end of the target",
+              [](auto& s, const Slot& i) { return &plan(s, i).depth_mm; });
+  keys.number("insertion[].speed_mm_per_s", "mm/s", 0.01, 1000, "of the base going in",
+              [](auto& s, const Slot& i) { return &plan(s, i).speed_mm_per_s; });
+  keys.number("insertion[].dwell_s", "s", 0, 3600, "pause at full depth",
+              [](auto& s, const Slot& i) { return &plan(s, i).dwell_s; });
+  keys.number("insertion[].retract_speed_mm_per_s", "mm/s", 0.01, 1000, "of the base going out",
+              [](auto& s, const Slot& i) { return &plan(s, i).retract_speed_mm_per_s; });
+  keys.boolean("insertion[].retract", "pull the needle out after the pause",
+               [](auto& s, const Slot& i) { return &plan(s, i).retract; });
+  keys.text("insertion[].motion",
+            "CSV of a recorded base motion (time_s, x_mm, y_mm, z_mm, qw, qx, qy, qz) instead of all the above; "
+            "relative to the scenario file",
+            [](auto& s, const Slot& i) { return &plan(s, i).motion; }, {.example = "\"base_motion.csv\""});
+}
+
+void describe_run_and_output(ScenarioEntries& keys) {
+  keys.number("run.dt_ms", "ms", 0.01, 20, "time step", [](auto& s, const Slot&) { return &s.run.dt_ms; });
+  keys.number("output.frames_per_s", "1/s", 0, 1000,
+              "frames of simulated time kept for pictures and ParaView; 0 = the events only",
+              [](auto& s, const Slot&) { return &s.output.frames_per_s; });
+  keys.integer("output.max_frames", 2, 5000, "at most this many frames",
+               [](auto& s, const Slot&) { return &s.output.max_frames; });
+  keys.boolean("output.pictures", "still pictures in the report",
+               [](auto& s, const Slot&) { return &s.output.pictures; });
+}
+
+}  // namespace
+
+const std::vector<ScenarioEntry>& scenario_table() {
+  static const std::vector<ScenarioEntry> table = [] {
+    ScenarioEntries keys;
+    keys.text("name", "what the report calls this run", [](auto& s, const Slot&) { return &s.name; });
+    describe_patient(keys);
+    describe_tissue(keys);
+    describe_supports(keys);
+    describe_mesh(keys);
+    describe_needle(keys);
+    describe_coupling(keys);
+    describe_template(keys);
+    describe_insertion(keys);
+    describe_run_and_output(keys);
+    return std::move(keys).take();
+  }();
+  return table;
+}
+
+}  // namespace stylet
