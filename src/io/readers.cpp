@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The public readers: look at what the file is, then let the right parser work on it.
+// The public readers: look at what the file is, then let the right parser work on it in a child process.
 #include "detail/file_kind.hpp"
+#include "detail/guard.hpp"
 #include "detail/parsers.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@ namespace stylet {
 
 namespace fs = std::filesystem;
 using detail::FileKind;
+using detail::guarded;
 
 namespace {
 
@@ -27,14 +29,14 @@ Result<ContourSet> read_rtstruct(const fs::path& path) {
     if (!kind) return kind.error();
     if (*kind != FileKind::dicom) return wrong_kind(path, *kind, "a DICOM RT Structure Set");
   }
-  return detail::parse_rtstruct(path);
+  return guarded<ContourSet>(path, [&] { return detail::parse_rtstruct(path); });
 }
 
 Result<ContourSet> read_contour_json(const fs::path& path) {
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   if (*kind != FileKind::contour_json) return wrong_kind(path, *kind, "a contour JSON file");
-  return detail::parse_contour_json(path);
+  return guarded<ContourSet>(path, [&] { return detail::parse_contour_json(path); });
 }
 
 Result<LabelImage> read_label_image(const fs::path& path) {
@@ -42,11 +44,11 @@ Result<LabelImage> read_label_image(const fs::path& path) {
   if (!kind) return kind.error();
   switch (*kind) {
     case FileKind::nifti:
-      return detail::parse_nifti(path);
+      return guarded<LabelImage>(path, [&] { return detail::parse_nifti(path); });
     case FileKind::nrrd:
-      return detail::parse_nrrd(path);
+      return guarded<LabelImage>(path, [&] { return detail::parse_nrrd(path); });
     case FileKind::metaimage:
-      return detail::parse_metaimage(path);
+      return guarded<LabelImage>(path, [&] { return detail::parse_metaimage(path); });
     default:
       return wrong_kind(path, *kind, "a label mask (NIfTI, NRRD, MetaImage)");
   }

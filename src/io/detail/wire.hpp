@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+#include "stylet/geom/contours.hpp"
+#include "stylet/geom/label_image.hpp"
+#include "stylet/geom/surface.hpp"
+#include "stylet/geom/tet_mesh.hpp"
+
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+/// What readers return, as bytes and back: from a child process to its parent on the same machine.
+namespace stylet::detail {
+
+/// A mesh and what was passed over while reading it.
+struct MeshWithNotes {
+  TetMesh mesh;
+  std::vector<std::string> notes;
+};
+
+// One list of fields per type serves both directions.
+void fields(auto& wire, Error& e) { wire(e.kind, e.where, e.what, e.cure); }
+void fields(auto& wire, Contour& c) { wire(c.points); }
+void fields(auto& wire, Roi& r) { wire(r.name, r.number, r.type, r.colour, r.contours); }
+void fields(auto& wire, ContourSet& s) { wire(s.source, s.label, s.frame_of_reference, s.rois, s.notes); }
+void fields(auto& wire, LabelImage& i) { wire(i.source, i.size, i.origin, i.spacing, i.direction, i.labels, i.names); }
+void fields(auto& wire, TetMesh& m) { wire(m.nodes, m.tets, m.tet_region, m.regions); }
+void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
+void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }
+
+/// Plain numbers without padding, copied as they lie in memory.
+template <class T>
+inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <class T, std::size_t N>
+inline constexpr bool is_plain<std::array<T, N>> = is_plain<T>;
+template <>
+inline constexpr bool is_plain<Vec3> = true;
+template <>
+inline constexpr bool is_plain<Mat3> = true;
+
+class WireWriter {
+ public:
+  template <class... T>
+  void operator()(T&... values) {
+    (put(values), ...);
+  }
+  std::string bytes;
+
+ private:
+  template <class T>
+  void put(T& value) {
+    if constexpr (is_plain<T>) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    } else {
+      fields(*this, value);
+    }
+  }
+  void put_size(std::size_t size) { bytes.append(reinterpret_cast<const char*>(&size), sizeof size); }
+  void put(std::string& text) {
+    put_size(text.size());
+    bytes += text;
+  }
+  template <class T>
+  void put(std::vector<T>& values) {
+    put_size(values.size());
+    if constexpr (is_plain<T>) {
+      bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    } else {
+      for (T& value : values) put(value);
+    }
+  }
+  void put(std::map<int, std::string>& values) {
+    put_size(values.size());
+    for (auto& [key, value] : values) {
+      int number = key;
+      put(number);
+      put(value);
+    }
+  }
+};
+
+/// Throws std::runtime_error when the bytes end too early (the child died while it wrote).
+class WireReader {
+ public:
+  explicit WireReader(std::string_view bytes) : rest_(bytes) {}
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+
+ private:
+  void copy(void* to, std::size_t size) {
+    if (rest_.size() < size) throw std::runtime_error("incomplete result");
+    if (size > 0) std::memcpy(to, rest_.data(), size);
+    rest_.remove_prefix(size);
+  }
+  template <class T>
+  void get(T& value) {
+    if constexpr (is_plain<T>) {
+      copy(static_cast<void*>(&value), sizeof value);
+    } else {
+      fields(*this, value);
+    }
+  }
+  std::size_t get_size(std::size_t element) {
+    std::size_t size = 0;
+    copy(&size, sizeof size);
+    if (size > rest_.size() / element) throw std::runtime_error("incomplete result");
+    return size;
+  }
+  void get(std::string& text) {
+    text.resize(get_size(1));
+    copy(text.data(), text.size());
+  }
+  template <class T>
+  void get(std::vector<T>& values) {
+    if constexpr (is_plain<T>) {
+      values.resize(get_size(sizeof(T)));
+      copy(static_cast<void*>(values.data()), values.size() * sizeof(T));
+    } else {
+      values.resize(get_size(1));
+      for (T& value : values) get(value);
+    }
+  }
+  void get(std::map<int, std::string>& values) {
+    for (std::size_t n = get_size(1); n > 0; --n) {
+      int key = 0;
+      get(key);
+      get(values[key]);
+    }
+  }
+  std::string_view rest_;
+};
+
+template <class T>
+std::string to_bytes(Result<T>& result) {
+  WireWriter wire;
+  char good = result.ok() ? 1 : 0;
+  wire(good);
+  if (result.ok()) {
+    wire(result.value());
+  } else {
+    Error error = result.error();
+    wire(error);
+  }
+  return std::move(wire.bytes);
+}
+
+template <class T>
+Result<T> from_bytes(std::string_view bytes) {
+  WireReader wire(bytes);
+  char good = 0;
+  wire(good);
+  if (good == 1) {
+    T value;
+    wire(value);
+    return value;
+  }
+  Error error;
+  wire(error);
+  return error;
+}
+
+}  // namespace stylet::detail
