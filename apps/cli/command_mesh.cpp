@@ -3,11 +3,10 @@
 #include "describe.hpp"
 #include "mesh_report.hpp"
 #include "output_path.hpp"
+#include "patient_input.hpp"
 #include "validators.hpp"
 
 #include "stylet/core/nearest_name.hpp"
-#include "stylet/io/input.hpp"
-#include "stylet/mesher/mesher.hpp"
 
 #include <fmt/format.h>
 
@@ -57,8 +56,7 @@ Error pointless(const MeshArguments& arguments, const char* option, const char* 
 }
 
 /// Options of the mesher from the command line.
-Result<MeshOptions> mesher_options(const MeshArguments& arguments, const RegionNames& regions) {
-  if (arguments.scale > 0) return pointless(arguments, "--scale", "contours and masks, which are in mm");
+MeshOptions mesher_options(const MeshArguments& arguments, const RegionNames& regions) {
   MeshOptions options;
   options.preset = arguments.preset == "paper" ? MeshPreset::paper : MeshPreset::standard;
   options.nodes = arguments.nodes;
@@ -68,23 +66,21 @@ Result<MeshOptions> mesher_options(const MeshArguments& arguments, const RegionN
   return options;
 }
 
-Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, const RegionNames& regions,
+Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, const MeshOptions& options,
                                Console& console) {
-  const Result<MeshOptions> options = mesher_options(arguments, regions);
-  if (!options) return options.error();
-  return mesh_contours(contours, *options, console.progress());
+  if (arguments.scale > 0) return pointless(arguments, "--scale", "contours, which are in mm");
+  return mesh_contours(contours, options, console.progress());
 }
 
-Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arguments, const RegionNames& regions,
+Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arguments, const MeshOptions& options,
                                Console& console) {
+  if (arguments.scale > 0) return pointless(arguments, "--scale", "a mask, which is in mm");
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", "a mask, which has no contour points");
-  const Result<MeshOptions> options = mesher_options(arguments, regions);
-  if (!options) return options.error();
-  return mesh_labels(image, *options, console.progress());
+  return mesh_labels(image, options, console.progress());
 }
 
 /// A third-party mesh is taken as it is; its regions may get new names.
-Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, const RegionNames& regions,
+Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, const MeshOptions& options,
                                Console&) {
   constexpr const char* kind = "a tetrahedral mesh, which is taken as it is";
   if (arguments.nodes > 0) return pointless(arguments, "--nodes", kind);
@@ -93,7 +89,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
 
   MeshedAnatomy out{.mesh = mesh, .report = {}};
-  for (const auto& [name, canonical] : regions) {
+  for (const auto& [name, canonical] : options.regions) {
     const int region = mesh.region_index(name);
     if (region < 0) {
       const std::string nearest = nearest_name(name, mesh.regions);
@@ -101,7 +97,8 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
                          fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(mesh.regions, ", ")),
                          nearest.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", nearest));
     }
-    out.mesh.regions[region] = canonical;
+    const std::string known = canonical_region(canonical);
+    out.mesh.regions[region] = known.empty() ? canonical : known;
   }
   for (std::size_t region = 0; region < out.mesh.regions.size(); ++region) {
     const auto twin =
@@ -116,7 +113,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   return out;
 }
 
-Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshArguments& arguments, const RegionNames&,
+Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshArguments& arguments, const MeshOptions&,
                                Console&) {
   return input_error(arguments.input,
                      fmt::format("{} triangulated surface{}; surfaces are not meshed", surfaces.size(),
@@ -135,11 +132,13 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   const Result<RegionNames> regions = parse_regions(arguments.regions);
   if (!regions) return regions.error();
 
+  const MeshOptions options = mesher_options(arguments, *regions);
+
   const auto start = std::chrono::steady_clock::now();
-  const Result<PatientInput> input = read_input(arguments.input, {.scale = arguments.scale});
+  const Result<PatientInput> input = read_patient(arguments.input, {.scale = arguments.scale}, options);
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
-      std::visit([&](const auto& content) { return model_of(content, arguments, *regions, console); }, *input);
+      std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, *input);
   if (!model) return model.error();
   model->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

@@ -3,6 +3,7 @@
 #include "describe.hpp"
 #include "table.hpp"
 
+#include "stylet/io/contours_io.hpp"
 #include "stylet/mesher/mesher.hpp"
 
 #include <fmt/format.h>
@@ -14,11 +15,12 @@ Description describe(const ContourSet& contours) {
   out.json = {{"kind", "contours"},
               {"label", contours.label},
               {"frame_of_reference", contours.frame_of_reference},
-              {"structures", Json::array()},
-              {"notes", contours.notes}};
+              {"structures", Json::array()}};
   Table table(
       {"structure", "taken as", "type", "slices", "contours", "points", "spacing mm", "extent mm", "volume cc"});
+  std::vector<std::string> notes = contours.notes;
   for (const Roi& roi : contours.rois) {
+    if (const Result<> sound = check_roi(roi, contours.source); !sound) notes.push_back(sound.error().message());
     const RoiMeasures size = measure(roi);
     const std::string canonical = canonical_region(roi.name);
     out.json["structures"].push_back({{"name", roi.name},
@@ -41,7 +43,8 @@ Description describe(const ContourSet& contours) {
   if (!contours.label.empty()) facts.add("label", contours.label);
   if (!contours.frame_of_reference.empty()) facts.add("frame of reference", contours.frame_of_reference);
   out.text = facts.text() + "\n\n" + table.text();
-  for (const std::string& note : contours.notes) out.text += "\n  note: " + note;
+  for (const std::string& note : notes) out.text += "\n  note: " + note;
+  out.json["notes"] = notes;
   return out;
 }
 

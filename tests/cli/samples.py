@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small input files, written from nothing."""
+import gzip
+import json
+import math
+import struct
+
+
+def ellipse(z, a, b, points=24):
+    """Closed polygon in the plane z [mm] with half axes a and b [mm]."""
+    angles = [2 * math.pi * k / points for k in range(points)]
+    return [[a * math.cos(t), b * math.sin(t), z] for t in angles]
+
+
+def contour_json(path, names=("Prostate",)):
+    """Ellipsoid-like glands of 40 × 30 × 35 mm side by side, one for each name, contours every 5 mm."""
+    structures = []
+    for number, name in enumerate(names, start=1):
+        contours = []
+        for k in range(-3, 4):
+            scale = math.sqrt(1 - (5 * k / 20) ** 2)
+            contour = ellipse(5.0 * k, 20 * scale, 15 * scale)
+            contours.append([[x + 60 * (number - 1), y, z] for x, y, z in contour])
+        structures.append({"name": name, "number": number, "type": "ORGAN", "colour": [255, 0, 0], "contours": contours})
+    path.write_text(json.dumps({"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS",
+                                "label": "sample", "frame_of_reference": "", "structures": structures}))
+
+
+def nifti_mask(path):
+    """Mask of two boxes, labels 1 (10 × 10 × 5 voxels) and 2 (5 × 5 × 5), spacing 1 × 1 × 2 mm, as .nii.gz."""
+    size = (30, 30, 12)
+    voxels = bytearray(size[0] * size[1] * size[2])
+    for label, (lo, hi) in {1: ((5, 5, 3), (15, 15, 8)), 2: ((20, 20, 3), (25, 25, 8))}.items():
+        for k in range(lo[2], hi[2]):
+            for j in range(lo[1], hi[1]):
+                for i in range(lo[0], hi[0]):
+                    voxels[i + size[0] * (j + size[1] * k)] = label
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, *size, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 2, 8)  # unsigned char, 8 bits
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 2, 1, 1, 1, 1)
+    struct.pack_into("<f", header, 108, 352)
+    header[123] = 2  # millimetres
+    struct.pack_into("<2h", header, 252, 0, 1)  # sform only
+    struct.pack_into("<12f", header, 280, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0)
+    header[344:348] = b"n+1\0"
+    path.write_bytes(gzip.compress(bytes(header) + bytes(voxels)))
+
+
+def tet_mesh(path, unit=1.0, last_tet=(1, 2, 3, 4), names=("upper", "lower")):
+    """gmsh MSH 2.2: two tetrahedra on a common face, 10 mm edges in units of `unit` mm, physical groups 1 and 2."""
+    s = 10 / unit
+    nodes = [(0, 0, -s), (0, 0, 0), (s, 0, 0), (0, s, 0), (0, 0, s)]
+    tets = [(1, tuple(last_tet)), (2, (1, 3, 2, 0))]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names))]
+    lines += [f'3 {k} "{name}"' for k, name in enumerate(names, start=1)]
+    lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
+    lines += [f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(nodes, start=1)]
+    lines += ["$EndNodes", "$Elements", str(len(tets))]
+    lines += [f"{k} 4 2 {group} {group} " + " ".join(str(n + 1) for n in tet)
+              for k, (group, tet) in enumerate(tets, start=1)]
+    lines += ["$EndElements", ""]
+    path.write_text("\n".join(lines))
+
+
+def stl_surface(path):
+    """ASCII STL of a tetrahedron with three edges of 10 mm at right angles: closed, 166.7 mm³."""
+    p = [(0, 0, 0), (10, 0, 0), (0, 10, 0), (0, 0, 10)]
+    lines = ["solid corner"]
+    for triangle in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)):
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex {} {} {}".format(*p[k]) for k in triangle]
+        lines += ["endloop", "endfacet"]
+    path.write_text("\n".join(lines + ["endsolid corner", ""]))
