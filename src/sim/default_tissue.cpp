@@ -13,8 +13,8 @@ struct Row {
   std::string_view source;
 };
 
-// Moduli and forces are chosen together so that the skin and the capsule tent by 5 to 20 mm before they break
-// (F (1−ν²) / 2RE for a flat punch of the needle's radius); see docs/parameters.md.
+// Moduli and forces are chosen together so that a surface tents by 5 to 20 mm before it breaks and the cut lags behind
+// the tip by at most 5 mm (F (1−ν²) / 2RE for a flat punch of the needle's radius); see docs/parameters.md.
 constexpr std::string_view kGland =
     "E 30.8 kPa benign, 64.1 kPa cancer in vivo (Shoji 2018); capsule and cutting force of the order of 1 N (van "
     "Gerwen 2012)";
@@ -26,10 +26,11 @@ constexpr Row kRows[] = {
     {"peripheral_zone", 40, 0.45, 0.25, 0.6, kGland},
     {"transition_zone", 40, 0.45, 0.25, 0.6, kGland},
     {"central_zone", 40, 0.45, 0.25, 0.6, kGland},
-    {"urethra", 30, 0.45, 0.25, 0.0, "stated, no measurement known: softer than the gland, no capsule"},
-    {"bladder", 20, 0.45, 0.25, 0.5, "stated: wall and filling as one, 10-100 kPa"},
-    {"rectum", 20, 0.45, 0.25, 0.5, "stated: wall and filling as one, 10-100 kPa"},
-    {"seminal_vesicles", 20, 0.45, 0.25, 0.0, "stated, no measurement known"},
+    {"anterior_stroma", 40, 0.45, 0.25, 0.6, kGland},
+    {"urethra", 30, 0.45, 0.2, 0.0, "stated, no measurement known: softer than the gland, no capsule"},
+    {"bladder", 20, 0.45, 0.15, 0.5, "stated: wall and filling as one, 10-100 kPa"},
+    {"rectum", 20, 0.45, 0.15, 0.5, "stated: wall and filling as one, 10-100 kPa"},
+    {"seminal_vesicles", 20, 0.45, 0.15, 0.0, "stated, no measurement known"},
     {"band", 300, 0.45, 0.6, 0.0,
      "stated: ligament, several times stiffer than the gland (Goksel 2005 names it, without a value)"},
     {"pubic_arch", 1e5, 0.3, 10.0, 0.0, "bone; held, so its modulus has no effect"},

@@ -40,6 +40,9 @@ std::string pattern_of(const std::string& path, ScenarioSlot& slot) {
       slot.index = std::stoul(path.substr(insertion.size(), digits));
       return "insertion[]" + path.substr(close + 1);
     }
+    // Not a number: no key, but near to one.
+    const auto end = path.find(']');
+    return "insertion" + (end == std::string::npos ? "" : path.substr(end + 1));
   }
   return path;
 }
