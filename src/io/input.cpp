@@ -45,7 +45,7 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
     case FileKind::obj:
     case FileKind::vtp:
     case FileKind::glb:
-      return as_input(read_surfaces(path));
+      return as_input(read_surfaces(path, mesh_options));
     case FileKind::unknown:
       break;
   }

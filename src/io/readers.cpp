@@ -3,6 +3,8 @@
 #include "detail/file_kind.hpp"
 #include "detail/guard.hpp"
 #include "detail/parsers.hpp"
+#include "mesh/raw_mesh.hpp"
+#include "mesh/surfaces.hpp"
 
 #include <fmt/format.h>
 
@@ -52,6 +54,67 @@ Result<LabelImage> read_label_image(const fs::path& path) {
     default:
       return wrong_kind(path, *kind, "a label mask (NIfTI, NRRD, MetaImage)");
   }
+}
+
+Result<TetMesh> read_tet_mesh(const fs::path& path, const MeshReadOptions& options) {
+  using detail::MeshWithNotes;
+  using detail::RawMesh;
+  if (Result<> good = detail::check_scale(options.scale); !good) return good.error();
+  Result<FileKind> kind = detail::identify(path);
+  if (!kind) return kind.error();
+  std::function<Result<RawMesh>()> parse;
+  switch (*kind) {
+    case FileKind::vtu:
+      parse = [&] { return detail::parse_vtk_mesh(path, true); };
+      break;
+    case FileKind::vtk_legacy:
+      parse = [&] { return detail::parse_vtk_mesh(path, false); };
+      break;
+    case FileKind::gmsh:
+      parse = [&] { return detail::parse_gmsh_mesh(path, false); };
+      break;
+    case FileKind::medit:
+      parse = [&] { return detail::parse_gmsh_mesh(path, true); };
+      break;
+    case FileKind::tetgen:
+      parse = [&] { return detail::parse_tetgen_mesh(path); };
+      break;
+    default:
+      return wrong_kind(path, *kind, "a tetrahedral mesh (VTU, VTK, gmsh, MEDIT, TetGen)");
+  }
+  Result<MeshWithNotes> read = guarded<MeshWithNotes>(path, [&]() -> Result<MeshWithNotes> {
+    Result<RawMesh> raw = parse();
+    if (!raw) return raw.error();
+    return detail::finish_mesh(std::move(*raw), path.string(), options);
+  });
+  if (!read) return read.error();
+  if (options.notes != nullptr) options.notes->insert(options.notes->end(), read->notes.begin(), read->notes.end());
+  return std::move(read->mesh);
+}
+
+Result<std::vector<Surface>> read_surfaces(const fs::path& path, const MeshReadOptions& options) {
+  using detail::SurfacesWithNotes;
+  if (Result<> good = detail::check_scale(options.scale); !good) return good.error();
+  Result<FileKind> kind = detail::identify(path);
+  if (!kind) return kind.error();
+  std::function<Result<SurfacesWithNotes>()> parse;
+  switch (*kind) {
+    case FileKind::stl:
+    case FileKind::ply:
+    case FileKind::obj:
+    case FileKind::vtp:
+      parse = [&] { return detail::parse_surface(path, *kind, options.scale); };
+      break;
+    case FileKind::glb:
+      parse = [&] { return detail::parse_glb(path, options.scale); };
+      break;
+    default:
+      return wrong_kind(path, *kind, "a triangulated surface (STL, PLY, OBJ, VTP, GLB)");
+  }
+  Result<SurfacesWithNotes> read = guarded<SurfacesWithNotes>(path, parse);
+  if (!read) return read.error();
+  if (options.notes != nullptr) options.notes->insert(options.notes->end(), read->notes.begin(), read->notes.end());
+  return std::move(read->surfaces);
 }
 
 }  // namespace stylet

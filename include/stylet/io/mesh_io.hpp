@@ -12,6 +12,7 @@ namespace stylet {
 
 struct MeshReadOptions {
   double scale = 0.0;  ///< file unit in mm; 0 = the file's own unit if it states one, else 1 (a wrong unit is refused)
+  std::vector<std::string>* notes = nullptr;  ///< receives what was passed over or put right, in words for the user
 };
 
 /// Reads tetrahedra: VTU, legacy VTK, gmsh MSH 1, 2.2 and 4.1 (ASCII, binary), MEDIT .mesh, TetGen .node/.ele. Other
@@ -31,6 +32,6 @@ Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const
                    const std::vector<MeshField>& tet_fields = {});
 
 /// Reads triangulated surfaces: STL, PLY, OBJ, VTP, GLB (metres, y up → LPS mm; one surface per named node).
-Result<std::vector<Surface>> read_surfaces(const std::filesystem::path& path);
+Result<std::vector<Surface>> read_surfaces(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 }  // namespace stylet

@@ -23,6 +23,11 @@ struct MeshWithNotes {
   std::vector<std::string> notes;
 };
 
+struct SurfacesWithNotes {
+  std::vector<Surface> surfaces;
+  std::vector<std::string> notes;
+};
+
 // One list of fields per type serves both directions.
 void fields(auto& wire, Error& e) { wire(e.kind, e.where, e.what, e.cure); }
 void fields(auto& wire, Contour& c) { wire(c.points); }
@@ -32,6 +37,7 @@ void fields(auto& wire, LabelImage& i) { wire(i.source, i.size, i.origin, i.spac
 void fields(auto& wire, TetMesh& m) { wire(m.nodes, m.tets, m.tet_region, m.regions); }
 void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
 void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }
+void fields(auto& wire, SurfacesWithNotes& s) { wire(s.surfaces, s.notes); }
 
 /// Plain numbers without padding, copied as they lie in memory.
 template <class T>

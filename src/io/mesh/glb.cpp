@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF 2.0 binary scenes, by VTK. glTF lengths are metres, +y is up (glTF 2.0 specification, 3.4).
+#include "detail/text.hpp"
+#include "detail/vtk_messages.hpp"
+#include "mesh/surfaces.hpp"
+
+#include <fmt/format.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkGLTFReader.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <nlohmann/json.hpp>
+
+#include <cstring>
+#include <fstream>
+
+namespace stylet::detail {
+
+namespace {
+
+/// A standing patient facing +z, head +y, left side +x, as anatomical atlases place him.
+Vec3 to_lps(const Vec3& x, double scale) { return scale * Vec3(x.x(), -x.z(), x.y()); }
+
+/// Collects all triangles below a block into one surface.
+void collect(vtkDataObject* block, Surface& into) {
+  if (auto* data = vtkPolyData::SafeDownCast(block)) {
+    const Surface part = to_surface(*data, {});
+    const auto offset = static_cast<Index>(into.points.size());
+    into.points.insert(into.points.end(), part.points.begin(), part.points.end());
+    for (const auto& t : part.triangles) into.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+}
+
+/// Names of the scene's nodes, which VTK does not pass on, from the file's JSON part (glTF 2.0, 4.4).
+std::vector<std::string> node_names(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 20> head{};  // magic, version, length; length and type of the first part
+  std::uint32_t size = 0;
+  if (!file.read(head.data(), head.size())) return {};
+  std::memcpy(&size, head.data() + 12, 4);
+  std::error_code code;
+  if (size > std::filesystem::file_size(path, code)) return {};
+  std::string text(size, '\0');
+  if (!file.read(text.data(), size)) return {};
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  std::vector<std::string> names;
+  if (!json.is_object() || !json.contains("nodes") || !json["nodes"].is_array()) return names;
+  for (const auto& node : json["nodes"]) {
+    names.push_back(
+        node.is_object() && node.contains("name") && node["name"].is_string() ? node["name"].get<std::string>() : "");
+  }
+  return names;
+}
+
+/// Number i of a block that VTK calls "Node_i"; -1 for other blocks.
+int node_number(vtkMultiBlockDataSet& parent, unsigned index) {
+  const char* name = parent.HasMetaData(index) ? parent.GetMetaData(index)->Get(vtkCompositeDataSet::NAME()) : nullptr;
+  if (name == nullptr || !std::string_view(name).starts_with("Node_")) return -1;
+  return static_cast<int>(to_number(std::string_view(name).substr(5)).value_or(-1.0));
+}
+
+/// VTK gives a block per node, in it blocks for its mesh (whose primitives are the surfaces) and for its children.
+void walk(vtkMultiBlockDataSet& parent, Surface& own, const std::vector<std::string>& names,
+          std::vector<Surface>& surfaces) {
+  for (unsigned i = 0; i < parent.GetNumberOfBlocks(); ++i) {
+    auto* children = vtkMultiBlockDataSet::SafeDownCast(parent.GetBlock(i));
+    const int number = node_number(parent, i);
+    if (children == nullptr) {
+      collect(parent.GetBlock(i), own);
+    } else if (number < 0) {
+      walk(*children, own, names, surfaces);
+    } else {
+      Surface node;
+      node.name = static_cast<std::size_t>(number) < names.size() ? names[number] : "";
+      if (node.name.empty()) node.name = fmt::format("node {}", number);
+      walk(*children, node, names, surfaces);
+      if (!node.triangles.empty()) surfaces.push_back(std::move(node));
+    }
+  }
+}
+
+}  // namespace
+
+Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double scale) {
+  const std::string source = path.string();
+  const auto messages = VtkMessages::install();
+  vtkNew<vtkGLTFReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->ApplyDeformationsToGeometryOn();
+  reader->Update();
+  auto* scene = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
+  if (messages->failed() || reader->GetErrorCode() != 0 || scene == nullptr) {
+    return input_error(source,
+                       fmt::format("the GLB scene cannot be read ({})",
+                                   messages->failed() ? messages->first_error() : "no reason given"),
+                       "Copy or export it again; it is truncated, damaged or compressed (Draco).");
+  }
+  std::vector<Surface> raw;
+  Surface loose;
+  loose.name = path.stem().string();
+  walk(*scene, loose, node_names(path), raw);
+  if (!loose.triangles.empty()) raw.push_back(std::move(loose));
+  for (Surface& surface : raw) {
+    for (Vec3& x : surface.points) x = to_lps(x, scale > 0.0 ? scale : 1000.0);
+  }
+  return finish_surfaces(std::move(raw), source);
+}
+
+}  // namespace stylet::detail

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// STL, PLY, OBJ, VTP, by VTK.
+#include "detail/vtk_messages.hpp"
+#include "mesh/surfaces.hpp"
+#include "mesh/vtk_hints.hpp"
+
+#include <fmt/format.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkPLYReader.h>
+#include <vtkSTLReader.h>
+#include <vtkStringArray.h>
+#include <vtkXMLPolyDataReader.h>
+
+namespace stylet::detail {
+
+namespace {
+
+/// The file's polygons; `header` receives comments that may name the frame.
+template <class Reader>
+vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string& header, unsigned long& error) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  error = reader->GetErrorCode();
+  if constexpr (std::is_same_v<Reader, vtkSTLReader>) {
+    if (reader->GetHeader() != nullptr) header = reader->GetHeader();
+  } else if constexpr (std::is_same_v<Reader, vtkPLYReader>) {
+    for (vtkIdType i = 0; i < reader->GetComments()->GetNumberOfValues(); ++i)
+      header += reader->GetComments()->GetValue(i) + '\n';
+  } else if constexpr (std::is_same_v<Reader, vtkOBJReader>) {
+    if (reader->GetComment() != nullptr) header = reader->GetComment();
+  }
+  return reader->GetOutput();
+}
+
+}  // namespace
+
+Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileKind kind, double scale) {
+  const std::string source = path.string();
+  const auto messages = VtkMessages::install();
+  std::string header;
+  unsigned long error = 0;
+  vtkSmartPointer<vtkPolyData> data;
+  switch (kind) {
+    case FileKind::stl:
+      data = read<vtkSTLReader>(path, header, error);
+      break;
+    case FileKind::ply:
+      data = read<vtkPLYReader>(path, header, error);
+      break;
+    case FileKind::obj:
+      data = read<vtkOBJReader>(path, header, error);
+      break;
+    default:
+      data = read<vtkXMLPolyDataReader>(path, header, error);
+      break;
+  }
+  if (messages->failed() || error != 0 || data == nullptr) {
+    return input_error(source,
+                       fmt::format("the surface cannot be read ({})",
+                                   messages->failed() ? messages->first_error() : "no reason given"),
+                       "Copy or export it again; it is truncated or damaged.");
+  }
+  const VtkHints hints = vtk_hints(*data, header);
+  const double unit = scale > 0.0 ? scale : hints.unit_mm > 0.0 ? hints.unit_mm : 1.0;
+  Surface surface = to_surface(*data, path.stem().string());
+  for (Vec3& x : surface.points) {
+    x *= unit;
+    if (hints.ras) x.head<2>() *= -1.0;
+  }
+  std::vector<Surface> surfaces;
+  surfaces.push_back(std::move(surface));
+  return finish_surfaces(std::move(surfaces), source);
+}
+
+}  // namespace stylet::detail

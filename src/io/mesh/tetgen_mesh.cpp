@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TetGen .node and .ele (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line per node or
+// tetrahedron; '#' begins a comment; numbers start at 0 or 1.
+#include "detail/text.hpp"
+#include "mesh/raw_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace stylet::detail {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lines of numbers, comments and blank lines left out; every error knows its line.
+class NumberLines {
+ public:
+  explicit NumberLines(const fs::path& path) : file_(path), name_(path.string()) {}
+  [[nodiscard]] bool opened() const { return file_.is_open(); }
+  [[nodiscard]] std::string place() const { return fmt::format("{}, line {}", name_, line_number_); }
+
+  /// The next line's numbers; an error at the end of the file.
+  Result<std::vector<double>> next() {
+    std::string line;
+    while (std::getline(file_, line)) {
+      ++line_number_;
+      const auto comment = line.find('#');
+      if (comment != std::string::npos) line.resize(comment);
+      for (char& c : line) {
+        if (c == '\t' || c == '\r' || c == ',') c = ' ';
+      }
+      std::vector<double> numbers;
+      for (const auto word : split(line, ' ')) {
+        if (word.empty()) continue;
+        const auto number = to_number(word);
+        if (!number || !std::isfinite(*number)) {
+          return input_error(place(), fmt::format("'{}' is not a finite number", word.substr(0, 40)),
+                             "Correct the file at that place.");
+        }
+        numbers.push_back(*number);
+      }
+      if (!numbers.empty()) return numbers;
+    }
+    return input_error(place(), "the file ends here, more lines are announced",
+                       "Export the mesh again; the file is truncated.");
+  }
+
+ private:
+  std::ifstream file_;
+  std::string name_;
+  int line_number_ = 0;
+};
+
+Error wrong_line(const NumberLines& lines, std::string what) {
+  return input_error(lines.place(), std::move(what), "Correct the file at that place.");
+}
+
+/// A whole number 0…2³¹-1, or none.
+std::optional<Index> whole(double value) {
+  if (!(value >= 0.0 && value < 2147483647.0) || value != std::floor(value)) return std::nullopt;
+  return static_cast<Index>(value);
+}
+
+struct Nodes {
+  std::vector<Vec3> points;
+  Index first = 0;  ///< number of the first node, 0 or 1
+};
+
+Result<Nodes> read_nodes(NumberLines& lines) {
+  Result<std::vector<double>> head = lines.next();
+  if (!head) return head.error();
+  const auto count = whole(head->front());
+  if (!count || head->size() < 2 || (*head)[1] != 3.0) {
+    return wrong_line(lines, "the first line of a .node file is: number of points, 3, number of attributes, markers");
+  }
+  Nodes nodes;
+  for (Index a = 0; a < *count; ++a) {
+    Result<std::vector<double>> line = lines.next();
+    if (!line) return line.error();
+    if (line->size() < 4)
+      return wrong_line(lines, fmt::format("{} numbers, at least 4 are expected (number x y z)", line->size()));
+    const auto number = whole(line->front());
+    if (a == 0 && (number == Index{0} || number == Index{1})) nodes.first = *number;
+    if (number != nodes.first + a)
+      return wrong_line(lines,
+                        fmt::format("node number {} is out of order, {} is expected", line->front(), nodes.first + a));
+    nodes.points.emplace_back((*line)[1], (*line)[2], (*line)[3]);
+  }
+  return nodes;
+}
+
+Result<> read_tets(NumberLines& lines, const Nodes& nodes, RawMesh& raw) {
+  Result<std::vector<double>> head = lines.next();
+  if (!head) return head.error();
+  const auto count = whole(head->front());
+  if (!count || head->size() < 2 || ((*head)[1] != 4.0 && (*head)[1] != 10.0)) {
+    return wrong_line(
+        lines, "the first line of an .ele file is: number of tetrahedra, nodes per tetrahedron (4 or 10), attributes");
+  }
+  const std::size_t per_tet = (*head)[1] == 10.0 ? 10 : 4;
+  const bool with_region = head->size() > 2 && (*head)[2] > 0.0;
+  raw.quadratic = per_tet == 10;
+  for (Index t = 0; t < *count; ++t) {
+    Result<std::vector<double>> line = lines.next();
+    if (!line) return line.error();
+    if (line->size() < 1 + per_tet + (with_region ? 1 : 0)) {
+      return wrong_line(lines,
+                        fmt::format("{} numbers, {} are expected", line->size(), 1 + per_tet + (with_region ? 1 : 0)));
+    }
+    std::array<Index, 4> tet{};
+    for (std::size_t i = 0; i < per_tet; ++i) {
+      const auto number = whole((*line)[1 + i]);
+      const Index node = number ? *number - nodes.first : -1;
+      if (node < 0 || node >= static_cast<Index>(nodes.points.size())) {
+        return wrong_line(lines, fmt::format("node number {} is out of range, expected {} to {}", (*line)[1 + i],
+                                             nodes.first, nodes.first + static_cast<Index>(nodes.points.size()) - 1));
+      }
+      if (i < 4) {
+        tet[i] = node;
+      } else {
+        raw.used_elsewhere[node] = true;
+      }
+    }
+    int tag = 0;
+    if (with_region) {
+      const double value = (*line)[1 + per_tet];
+      if (!(std::abs(value) < 1e9) || value != std::floor(value)) {
+        return wrong_line(lines, fmt::format("the region attribute {} is not a whole number", value));
+      }
+      tag = static_cast<int>(value);
+    }
+    raw.tets.push_back(tet);
+    raw.tag.push_back(tag);
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<RawMesh> parse_tetgen_mesh(const fs::path& path) {
+  const fs::path node_path = fs::path(path).replace_extension(".node"),
+                 ele_path = fs::path(path).replace_extension(".ele");
+  for (const fs::path& part : {node_path, ele_path}) {
+    std::error_code code;
+    if (!fs::is_regular_file(part, code)) {
+      return input_error(path.string(), fmt::format("its other half '{}' is not there", part.filename().string()),
+                         "A TetGen mesh needs both, the .node and the .ele file, side by side.");
+    }
+  }
+  NumberLines node_lines(node_path), ele_lines(ele_path);
+  Result<Nodes> nodes = read_nodes(node_lines);
+  if (!nodes) return nodes.error();
+  RawMesh raw;
+  raw.used_elsewhere.assign(nodes->points.size(), false);
+  if (Result<> tets = read_tets(ele_lines, *nodes, raw); !tets) return tets.error();
+  raw.nodes = std::move(nodes->points);
+  return raw;
+}
+
+}  // namespace stylet::detail

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// VTU and legacy VTK unstructured grids, by VTK.
+#include "detail/text.hpp"
+#include "detail/vtk_messages.hpp"
+#include "mesh/raw_mesh.hpp"
+#include "mesh/vtk_hints.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellData.h>
+#include <vtkCellTypes.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <cmath>
+
+namespace stylet::detail {
+
+namespace {
+
+/// Cell arrays that hold region numbers, ours first, then those other programs write.
+constexpr std::array<const char*, 7> region_arrays{"region",    "Region",     "CellEntityIds", "gmsh:physical",
+                                                   "medit:ref", "MaterialID", "label"};
+
+Result<> read_regions(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& tet_cells, const std::string& source,
+                      RawMesh& raw) {
+  raw.tag.assign(tet_cells.size(), 0);
+  vtkDataArray* array = nullptr;
+  for (const char* name : region_arrays) {
+    if (array == nullptr) array = grid.GetCellData()->GetArray(name);
+  }
+  if (array == nullptr) return Ok{};
+  if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != grid.GetNumberOfCells()) {
+    return input_error(source, fmt::format("the cell array '{}' has not one number per cell", array->GetName()),
+                       "Write one region number per cell.");
+  }
+  for (std::size_t t = 0; t < tet_cells.size(); ++t) {
+    const double value = array->GetComponent(tet_cells[t], 0);
+    if (!(std::abs(value) < 1e9) || value != std::floor(value)) {
+      return input_error(fmt::format("{}, cell {}", source, tet_cells[t]),
+                         fmt::format("the region number {} is not a whole number", value), "Write whole numbers.");
+    }
+    raw.tag[t] = static_cast<int>(value);
+  }
+  if (auto* names = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray("region_names"))) {
+    for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i) raw.tag_names[static_cast<int>(i)] = names->GetValue(i);
+  }
+  return Ok{};
+}
+
+Result<RawMesh> to_raw(vtkUnstructuredGrid& grid, const std::string& source) {
+  RawMesh raw;
+  if (grid.GetPoints() == nullptr) return raw;
+  if (grid.GetNumberOfPoints() > std::numeric_limits<Index>::max() ||
+      grid.GetNumberOfCells() > std::numeric_limits<Index>::max()) {
+    return input_error(source, "the mesh has more than 2 billion nodes or cells", "Use a coarser mesh.");
+  }
+  raw.nodes.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
+  for (std::size_t a = 0; a < raw.nodes.size(); ++a) grid.GetPoint(static_cast<vtkIdType>(a), raw.nodes[a].data());
+  raw.used_elsewhere.assign(raw.nodes.size(), false);
+  std::vector<vtkIdType> tet_cells;
+  for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    grid.GetCellPoints(c, count, ids);
+    for (vtkIdType i = 0; i < count; ++i) {
+      if (ids[i] < 0 || ids[i] >= grid.GetNumberOfPoints()) {
+        return input_error(
+            fmt::format("{}, cell {}", source, c),
+            fmt::format("node number {} is out of range, expected 0 to {}", ids[i], grid.GetNumberOfPoints() - 1),
+            "Export the mesh again; the file is damaged.");
+      }
+    }
+    const int type = grid.GetCellType(c);
+    const bool quadratic = type == VTK_QUADRATIC_TETRA && count == 10;
+    if (quadratic || (type == VTK_TETRA && count == 4)) {
+      raw.tets.push_back({static_cast<Index>(ids[0]), static_cast<Index>(ids[1]), static_cast<Index>(ids[2]),
+                          static_cast<Index>(ids[3])});
+      tet_cells.push_back(c);
+      raw.quadratic = raw.quadratic || quadratic;
+      for (vtkIdType i = 4; i < count; ++i) raw.used_elsewhere[ids[i]] = true;
+      continue;
+    }
+    for (vtkIdType i = 0; i < count; ++i) raw.used_elsewhere[ids[i]] = true;
+    const char* kind = vtkCellTypes::GetClassNameFromTypeId(type);
+    ++raw.passed_over[fmt::format("cell(s) of type {}", kind == nullptr ? "unknown" : kind)];
+  }
+  if (Result<> regions = read_regions(grid, tet_cells, source, raw); !regions) return regions.error();
+  return raw;
+}
+
+}  // namespace
+
+Result<RawMesh> parse_vtk_mesh(const std::filesystem::path& path, bool xml) {
+  const std::string source = path.string();
+  const auto messages = VtkMessages::install();
+  vtkSmartPointer<vtkUnstructuredGrid> grid;
+  std::string header;
+  unsigned long error = 0;
+  if (xml) {
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    error = reader->GetErrorCode();
+    grid = reader->GetOutput();
+  } else {
+    vtkNew<vtkUnstructuredGridReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->ReadAllScalarsOn();
+    if (!reader->IsFileUnstructuredGrid() && !messages->failed()) {
+      return input_error(source, "this legacy VTK file holds no unstructured grid",
+                         "Export the volume mesh as UNSTRUCTURED_GRID.");
+    }
+    reader->Update();
+    error = reader->GetErrorCode();
+    grid = reader->GetOutput();
+    if (reader->GetHeader() != nullptr) header = reader->GetHeader();
+  }
+  if (messages->failed() || error != 0 || grid == nullptr) {
+    return input_error(source,
+                       fmt::format("the VTK file cannot be read ({})",
+                                   messages->failed() ? messages->first_error() : "no reason given"),
+                       "Copy or export it again; it is truncated or damaged.");
+  }
+  Result<RawMesh> raw = to_raw(*grid, source);
+  if (!raw) return raw;
+  const VtkHints hints = vtk_hints(*grid, header);
+  raw->ras = hints.ras;
+  raw->unit_mm = hints.unit_mm;
+  return raw;
+}
+
+}  // namespace stylet::detail

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// VTU, by VTK: appended raw data, zlib. Frame and unit travel as field data.
+#include "detail/whole_file.hpp"
+#include "stylet/io/mesh_io.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+namespace stylet {
+
+namespace {
+
+void add_text(vtkFieldData& fields, const char* name, const std::vector<std::string>& values) {
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  for (const std::string& value : values) array->InsertNextValue(value);
+  fields.AddArray(array);
+}
+
+/// @param columns how many values a field must have
+Result<> add_fields(vtkDataSetAttributes& attributes, const std::vector<MeshField>& fields, Index columns,
+                    const std::string& where) {
+  for (const MeshField& field : fields) {
+    const auto components = field.values.rows();
+    if (field.values.cols() != columns || (components != 1 && components != 3 && components != 6)) {
+      return failure(where,
+                     fmt::format("the field '{}' has {} × {} values, 1, 3 or 6 × {} are expected", field.name,
+                                 components, field.values.cols(), columns),
+                     "Give one column per node or tetrahedron.");
+    }
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(field.name.c_str());
+    array->SetNumberOfComponents(static_cast<int>(components));
+    array->SetNumberOfTuples(columns);
+    std::copy(field.values.data(), field.values.data() + field.values.size(), array->GetPointer(0));
+    attributes.AddArray(array);
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const std::vector<MeshField>& node_fields,
+                   const std::vector<MeshField>& tet_fields) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(mesh.node_count());
+  for (Index a = 0; a < mesh.node_count(); ++a) points->SetPoint(a, mesh.nodes[a].data());
+
+  vtkNew<vtkCellArray> cells;
+  cells->AllocateExact(mesh.tet_count(), 4 * static_cast<vtkIdType>(mesh.tet_count()));
+  vtkNew<vtkIntArray> region;
+  region->SetName("region");
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const std::array<vtkIdType, 4> ids{mesh.tets[t][0], mesh.tets[t][1], mesh.tets[t][2], mesh.tets[t][3]};
+    cells->InsertNextCell(4, ids.data());
+    region->InsertNextValue(mesh.tet_region[t]);
+  }
+
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(points);
+  grid->SetCells(VTK_TETRA, cells);
+  grid->GetCellData()->AddArray(region);
+  if (Result<> r = add_fields(*grid->GetPointData(), node_fields, mesh.node_count(), path.string()); !r) return r;
+  if (Result<> r = add_fields(*grid->GetCellData(), tet_fields, mesh.tet_count(), path.string()); !r) return r;
+  add_text(*grid->GetFieldData(), "region_names", mesh.regions);
+  add_text(*grid->GetFieldData(), "SPACE", {"LPS"});
+  add_text(*grid->GetFieldData(), "UNITS", {"mm"});
+
+  return detail::write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
+    vtkNew<vtkXMLUnstructuredGridWriter> writer;
+    writer->SetFileName(temporary.c_str());
+    writer->SetInputData(grid);
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetCompressorTypeToZLib();
+    if (writer->Write() != 1 || writer->GetErrorCode() != 0) {
+      return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space.");
+    }
+    return Ok{};
+  });
+}
+
+}  // namespace stylet
