@@ -77,7 +77,7 @@ class ScenarioEntries {
 
   template <class Field>
   void boolean(const char* path, const char* meaning, Field field) {
-    add({path, Type::boolean, "", "", "true, false", meaning, ""}, field, {},
+    add({path, Type::boolean, "", "", "true or false", meaning, ""}, field, {},
         [](auto& target, const ScenarioValue& v) -> std::string {
           target = v.boolean;
           return {};
@@ -129,7 +129,7 @@ class ScenarioEntries {
   /// A list of different texts, none of them empty.
   template <class Field>
   void texts(const char* path, std::size_t least, const char* meaning, Field field, Documented doc = {}) {
-    const std::string range = least == 0 ? "list of texts" : fmt::format("at least {} different texts", least);
+    const std::string range = least == 0 ? "list of texts" : fmt::format("different texts, at least {}", least);
     add({path, Type::texts, "", "", range, meaning, ""}, field, doc,
         [=](auto& target, const ScenarioValue& v) -> std::string {
           if (v.texts.size() < least) return fmt::format("too short ({} texts)", v.texts.size());

@@ -28,12 +28,12 @@ void describe_patient(ScenarioEntries& keys) {
       "patient.source",
       "contours (RTSTRUCT, JSON), label mask or tetrahedral mesh; relative to the scenario file; \"phantom\" is the "
       "demo patient",
-      [](auto& s, const Slot&) { return &s.patient.source; }, {.standard = "none, required", .example = "\"phantom\""});
+      [](auto& s, const Slot&) { return &s.patient.source; }, {.standard = "required", .example = "\"phantom\""});
   keys.number("patient.scale", "mm", 0, 1e6, "length of a mesh file's unit; 0 = as the file says, else mm",
               [](auto& s, const Slot&) { return &s.patient.scale; });
-  keys.text("patient.regions.<name>", "region that a structure (by its name) or a label (by its number) is",
+  keys.text("patient.regions.<name>", "the region that a structure, by its name, or a label, by its number, stands for",
             [](auto& s, const Slot& slot) { return &region(s, slot); },
-            {.standard = "by name", .example = "\"peripheral_zone\""});
+            {.standard = "by their names", .example = "\"peripheral_zone\""});
 }
 
 void describe_tissue(ScenarioEntries& keys) {
@@ -73,7 +73,8 @@ void describe_mesh(ScenarioEntries& keys) {
   keys.integer("mesh.nodes", 0, 1000000, "nodes of the mesh; 0 = 3,000 (standard) or 570 (paper)",
                [](auto& s, const Slot&) { return &s.mesh.nodes; });
   keys.choice("mesh.preset", {"standard", "paper"}, {},
-              "paper: the target and its surroundings only, as Goksel et al. 2005",
+              "what is meshed: standard = all anatomy there is; paper = the target and its surroundings only, as "
+              "Goksel et al. 2005",
               [](auto& s, const Slot&) { return &s.mesh.preset; });
   keys.number("mesh.cull_mm", "mm", 0, 5, "contour points nearer than this to the contour without them are dropped",
               [](auto& s, const Slot&) { return &s.mesh.cull_mm; });
@@ -84,22 +85,23 @@ void describe_mesh(ScenarioEntries& keys) {
 void describe_needle(ScenarioEntries& keys) {
   keys.choice("needle.model", {"beam"}, {"springs", "tet"}, "needle model; beam = geometrically exact rod",
               [](auto& s, const Slot&) { return &s.needle.model; });
-  keys.number("needle.length_mm", "mm", 20, 1000, "base to tip",
+  keys.number("needle.length_mm", "mm", 20, 1000, "length from base to tip",
               [](auto& s, const Slot&) { return &s.needle.length_mm; });
   keys.number("needle.diameter_mm", "mm", 0.2, 5, "outer diameter; 18 gauge is 1.27",
               [](auto& s, const Slot&) { return &s.needle.diameter_mm; });
   keys.number("needle.bending_stiffness_Nmm2", "N mm²", 1, 1e7,
-              "E I; 12,700 … 25,500 for 18 gauge, by lumen and stylet",
+              "bending stiffness E I; 12,700 … 25,500 for 18 gauge, by lumen and stylet",
               [](auto& s, const Slot&) { return &s.needle.bending_stiffness_Nmm2; });
-  keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "G J",
+  keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "torsion stiffness G J",
               [](auto& s, const Slot&) { return &s.needle.torsion_stiffness_Nmm2; });
-  keys.integer("needle.elements", 4, 200, "elements of the needle",
+  keys.integer("needle.elements", 4, 200, "number of elements of the needle",
                [](auto& s, const Slot&) { return &s.needle.elements; });
 }
 
 void describe_coupling(ScenarioEntries& keys) {
   keys.choice("coupling.method", {"node-addition", "embedded"}, {"near-field", "node-repositioning"},
-              "how the tissue's mesh takes the needle: with nodes of its own, or by interpolation between its nodes",
+              "how the needle acts on the tissue's mesh: through nodes added along it, or by interpolation between the "
+              "nodes there are",
               [](auto& s, const Slot&) { return &s.coupling.method; });
   keys.choice("coupling.rule", {"interior", "paper"}, {},
               "where nodes are added: inside elements at the contact spacing, or on every face crossed",
@@ -108,7 +110,7 @@ void describe_coupling(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.coupling.solver; });
   keys.choice("coupling.engine", {"condensed"}, {"woodbury", "bcs"}, "what is kept of the inverse stiffness",
               [](auto& s, const Slot&) { return &s.coupling.engine; });
-  keys.number("coupling.spacing_mm", "mm", 1, 50, "between contacts; never closer than the needle's diameter",
+  keys.number("coupling.spacing_mm", "mm", 1, 50, "distance between contacts; at least the needle's diameter",
               [](auto& s, const Slot&) { return &s.coupling.spacing_mm; });
   keys.number("coupling.tip_viscosity_Ns_per_m", "N s/m", 0.01, 1000,
               "growth of the cutting force with the speed of cutting",
@@ -117,7 +119,7 @@ void describe_coupling(ScenarioEntries& keys) {
               "a needle flatter to the skin than this (angle to the normal) slides off",
               [](auto& s, const Slot&) { return &s.coupling.grazing_deg; });
   keys.number("coupling.corridor_mm", "mm", 1, 50,
-              "around the planned path, where compliance is computed before the start",
+              "radius around the planned path in which compliance is computed before the start",
               [](auto& s, const Slot&) { return &s.coupling.corridor_mm; });
   keys.integer("coupling.contacts", 8, 400, "largest number of contacts",
                [](auto& s, const Slot&) { return &s.coupling.contacts; });
@@ -140,7 +142,7 @@ void describe_insertion(ScenarioEntries& keys) {
             [](auto& s, const Slot& i) { return &plan(s, i).hole; }, {.example = "\"D4\""});
   keys.vector<3>("insertion[].entry_mm", "mm", -1e4, 1e4, "a point on the needle's line, LPS, instead of a hole",
                  [](auto& s, const Slot& i) { return &plan(s, i).entry_mm; }, {.example = "[10, 5, -80]"});
-  keys.vector<3>("insertion[].direction", "", -1e4, 1e4, "of the insertion, LPS, any length",
+  keys.vector<3>("insertion[].direction", "", -1e4, 1e4, "direction of the insertion, LPS, a vector of any length",
                  [](auto& s, const Slot& i) { return &plan(s, i).direction; },
                  {.standard = "[0, 0, 1]", .example = "[0, 0, 1]"});
   keys.vector<3>("insertion[].target_mm", "mm", -1e4, 1e4, "a point to aim at, LPS, instead of a direction",
@@ -150,11 +152,11 @@ void describe_insertion(ScenarioEntries& keys) {
   keys.number("insertion[].depth_mm", "mm", 0, 1000,
               "base travel beyond skin contact; 0 = to the far end of the target",
               [](auto& s, const Slot& i) { return &plan(s, i).depth_mm; });
-  keys.number("insertion[].speed_mm_per_s", "mm/s", 0.01, 1000, "of the base going in",
+  keys.number("insertion[].speed_mm_per_s", "mm/s", 0.01, 1000, "speed of the base going in",
               [](auto& s, const Slot& i) { return &plan(s, i).speed_mm_per_s; });
   keys.number("insertion[].dwell_s", "s", 0, 3600, "pause at full depth",
               [](auto& s, const Slot& i) { return &plan(s, i).dwell_s; });
-  keys.number("insertion[].retract_speed_mm_per_s", "mm/s", 0.01, 1000, "of the base going out",
+  keys.number("insertion[].retract_speed_mm_per_s", "mm/s", 0.01, 1000, "speed of the base going out",
               [](auto& s, const Slot& i) { return &plan(s, i).retract_speed_mm_per_s; });
   keys.boolean("insertion[].retract", "pull the needle out after the pause",
                [](auto& s, const Slot& i) { return &plan(s, i).retract; });

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "scenario/toml_document.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace stylet::detail {
+
+/// Puts the parts of a scenario together and remembers where each came from.
+class ScenarioReader {
+ public:
+  explicit ScenarioReader(const std::filesystem::path& file);
+
+  /// Everything in the file.
+  Result<> read_file();
+  /// One `--set key=value`.
+  Result<> apply_setting(const std::string& setting);
+  /// The whole, checked.
+  Result<Scenario> finish() &&;
+
+ private:
+  Result<> take(const TomlItem& item, const std::string& where);
+  Result<> take_setting(const std::vector<std::string>& path, const std::string& text, const std::string& where);
+  Result<std::vector<std::string>> setting_path(const std::string& key, const std::string& where) const;
+  void resolve_paths(bool current_folder_first);
+  [[nodiscard]] std::string place(std::string path) const;
+
+  std::filesystem::path file_;
+  Scenario scenario_;
+  std::map<std::string, std::string> places_;  ///< key or table → "demo.toml, line 7" or "--set …"
+};
+
+}  // namespace stylet::detail

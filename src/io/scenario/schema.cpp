@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/io/scenario_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace stylet {
+
+namespace {
+
+constexpr std::size_t kColumns = 110;
+
+struct TableText {
+  std::string_view pattern;  ///< of the keys in it
+  std::string_view header;   ///< with an example in place of a wildcard
+  std::string_view about;
+};
+
+constexpr std::array kTables{
+    TableText{"patient", "[patient]",
+              "Whose anatomy it is. The only table, with [[insertion]], that must be filled in."},
+    TableText{"patient.regions", "[patient.regions]",
+              "Which structures or labels to use, and as what. Without this table structures are recognised by their "
+              "names (prostate, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, "
+              "seminal_vesicles and the zones of the gland, in several spellings), and all labels of a mask are used."},
+    TableText{"tissue.<region>", "[tissue.prostate]",
+              "What a tissue is made of; one table for each region that is to differ from its defaults, which are "
+              "those of the prostate here. docs/parameters.md gives all defaults and their sources."},
+    TableText{"fixed", "[fixed]", "What holds the patient still. Supports decide every force."},
+    TableText{"mesh", "[mesh]", "How contours or a mask become tetrahedra; a tetrahedral mesh is used as it is."},
+    TableText{"needle", "[needle]", "The needle."},
+    TableText{"coupling", "[coupling]", "How needle and tissue act on each other."},
+    TableText{"template", "[template]", "The guide template: a grid of holes in front of the perineum."},
+    TableText{"insertion[]", "[[insertion]]",
+              "One needle going in and out: through a template hole, or through a point in a direction or towards a "
+              "target, or as recorded. Repeat the table for more needles, one after the other."},
+    TableText{"run", "[run]", "The simulation."},
+    TableText{"output", "[output]", "What is kept of it."},
+};
+
+/// Characters as a reader counts them (UTF-8 code points).
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// A comment of as many lines as it takes.
+std::string comment(std::string_view text) {
+  std::string out;
+  std::string line = "#";
+  while (!text.empty()) {
+    const auto blank = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, blank);
+    if (width(line) + 1 + width(word) > kColumns) {
+      out += line + "\n";
+      line = "#";
+    }
+    (line += ' ') += word;
+    text.remove_prefix(std::min(blank + 1, text.size()));
+  }
+  return out + line + "\n";
+}
+
+std::string capitalised(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+/// "Young's modulus. 0.1 … 1000 kPa. Default: by region." and the key with a value, commented out.
+std::string key_text(const ScenarioKey& key, const std::string& name) {
+  std::string about = capitalised(key.meaning);
+  if (key.range.starts_with('"')) {
+    about += (key.range.find(',') != std::string::npos ? ". One of " : ". Only ") + key.range;
+  } else if (key.range != "text") {
+    about += ". " + capitalised(key.range) + (key.unit.empty() ? "" : " " + key.unit);
+  }
+  about += ".";
+  if (key.standard == "required") {
+    about += " Required.";
+  } else if (key.standard != key.example) {
+    about += " Default: " + key.standard + ".";
+  }
+  return comment(about) + fmt::format("#{} = {}\n", name, key.example);
+}
+
+}  // namespace
+
+std::string schema_text() {
+  std::string out =
+      comment(
+          "All keys of a scenario, commented out, each with its meaning, range and unit. The value shown is the "
+          "default unless another default is named. Save this text as my.toml, take the # away before source and "
+          "hole, and run: stylet insert my.toml") +
+      comment("Patient coordinates are DICOM LPS: x to the patient's left, y to posterior, z to superior.");
+  std::string last;
+  for (const ScenarioKey& key : scenario_keys()) {
+    const auto dot = key.path.rfind('.');
+    const std::string pattern = dot == std::string::npos ? "" : key.path.substr(0, dot);
+    std::string name = key.path.substr(dot == std::string::npos ? 0 : dot + 1);
+    if (name == "<name>") name = "\"1\"";
+    const auto table =
+        std::find_if(kTables.begin(), kTables.end(), [&](const auto& t) { return t.pattern == pattern; });
+    if (pattern != last && table != kTables.end()) {
+      out += "\n" + comment(table->about) + fmt::format("{}\n", table->header);
+    }
+    last = pattern;
+    out += "\n" + key_text(key, name);
+  }
+  return out;
+}
+
+}  // namespace stylet

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scenario/toml_document.hpp"
+
+#include "detail/text.hpp"
+
+#include <fmt/format.h>
+#define TOML_EXCEPTIONS 0
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace stylet::detail {
+
+namespace {
+
+using Type = ScenarioValue::Type;
+
+/// A value as the table of keys takes it; where it cannot be one, `what` says what it is instead.
+void convert(const toml::node& node, TomlItem& item) {
+  item.kind = TomlItem::Kind::value;
+  ScenarioValue& v = item.value;
+  const auto unusable = [&](const char* what) {
+    item.kind = TomlItem::Kind::unusable;
+    item.what = what;
+  };
+  switch (node.type()) {
+    case toml::node_type::string:
+      v.type = Type::text;
+      v.text = node.ref<std::string>();
+      return;
+    case toml::node_type::integer:
+      v.type = Type::integer;
+      v.number = static_cast<double>(node.ref<std::int64_t>());
+      return;
+    case toml::node_type::floating_point:
+      v.type = Type::number;
+      v.number = node.ref<double>();
+      return;
+    case toml::node_type::boolean:
+      v.type = Type::boolean;
+      v.boolean = node.ref<bool>();
+      return;
+    case toml::node_type::array:
+      break;
+    default:
+      return unusable("a date or a time");
+  }
+  for (const toml::node& element : *node.as_array()) {
+    if (element.is_string()) {
+      v.texts.push_back(element.ref<std::string>());
+    } else if (element.is_number()) {
+      v.numbers.push_back(*element.value<double>());
+    } else {
+      return unusable("a list of something else than numbers or texts");
+    }
+  }
+  if (!v.texts.empty() && !v.numbers.empty()) return unusable("a list of numbers and texts mixed");
+  v.type = v.texts.empty() ? Type::numbers : Type::texts;
+}
+
+void collect(const toml::node& node, const std::vector<std::string>& path, std::vector<TomlItem>& items) {
+  TomlItem item;
+  item.path = path;
+  item.line = node.source().begin.line;
+  item.column = node.source().begin.column;
+  const auto child = [&](const std::string& name, const toml::node& value) {
+    std::vector<std::string> longer = path;
+    longer.push_back(name);
+    collect(value, longer, items);
+  };
+  if (const toml::table* table = node.as_table()) {
+    item.kind = TomlItem::Kind::table;
+    if (!path.empty()) items.push_back(std::move(item));
+    for (const auto& [key, value] : *table) child(std::string(key.str()), value);
+    return;
+  }
+  if (const toml::array* array = node.as_array(); array && !array->empty() && array->is_homogeneous<toml::table>()) {
+    for (std::size_t i = 0; i < array->size(); ++i) child(fmt::format("[{}]", i), *array->get(i));
+    return;
+  }
+  convert(node, item);
+  items.push_back(std::move(item));
+}
+
+/// What to do about a line that is not TOML; the commonest slips are named.
+std::string cure_for(std::string_view line) {
+  const auto equals = line.find('=');
+  if (equals == std::string_view::npos) {
+    return "Write key = value on a line of its own, below a [table]; comments start with #";
+  }
+  const std::string value = trimmed(line.substr(equals + 1));
+  if (value.empty()) return "Give the key a value, or put a # before the line";
+  if (std::isalpha(static_cast<unsigned char>(value.front())) != 0) {
+    return fmt::format("Put texts in quotes (\"{}\"); true and false are written small, without quotes",
+                       trimmed(std::string_view(value).substr(0, value.find('#'))));
+  }
+  if (value.find(',') != std::string::npos && value.front() != '[' && value.front() != '"' && value.front() != '{') {
+    return "Write decimals with a point (0.5) and lists in brackets ([1, 2, 3])";
+  }
+  if (std::count(value.begin(), value.end(), '"') % 2 != 0) return "Close the text with a second quotation mark";
+  return "Write key = value, texts in quotes (\"D4\"), lists in brackets ([1, 2, 3]), each key once in its table";
+}
+
+/// @param what the parser's words; @param line where it stopped reading
+Error syntax_error(const std::string& where, std::string what, const std::string& line) {
+  if (lower(what).find("utf-8") != std::string::npos) {
+    return input_error(where, "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
+  }
+  if (what.starts_with("Error ")) what.erase(0, 6);
+  // The line itself where a person can read it.
+  const bool readable = !line.empty() && line.size() <= 100 &&
+                        std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  return input_error(where, fmt::format("{}this is not valid TOML ({})", readable ? line + ": " : "", what),
+                     cure_for(line));
+}
+
+}  // namespace
+
+Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source) {
+  const toml::parse_result parsed = toml::parse(text);
+  if (!parsed) {
+    const toml::parse_error& error = parsed.error();
+    const auto [row, column] = error.source().begin;
+    const auto lines = split(text, '\n');
+    return syntax_error(fmt::format("{}, line {}, column {}", source, row, column), trimmed(error.description()),
+                        row >= 1 && row <= lines.size() ? trimmed(lines[row - 1]) : "");
+  }
+  std::vector<TomlItem> items;
+  collect(parsed.table(), {}, items);
+  std::stable_sort(items.begin(), items.end(), [](const TomlItem& a, const TomlItem& b) {
+    return std::tuple(a.line, a.column) < std::tuple(b.line, b.column);
+  });
+  return items;
+}
+
+std::string joined(const std::vector<std::string>& path) {
+  std::string text;
+  for (const std::string& part : path) {
+    const bool entry = part.size() > 2 && part.front() == '[' && part.back() == ']';
+    if (!text.empty() && !entry) text += '.';
+    text += part;
+  }
+  return text;
+}
+
+}  // namespace stylet::detail

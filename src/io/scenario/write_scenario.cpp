@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/core/version.hpp"
+#include "stylet/io/scenario_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+
+/// A key as TOML writes it: bare where that is allowed.
+std::string key_text(const std::string& key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-';
+  });
+  return bare ? key : to_string({.type = ScenarioValue::Type::text, .text = key});
+}
+
+struct Line {
+  std::string text;
+  std::string unit;
+};
+
+/// Lines of a table, units aligned behind the values.
+std::string table_text(const std::string& header, const std::vector<Line>& lines) {
+  std::size_t width = 0;
+  for (const Line& line : lines) {
+    if (!line.unit.empty()) width = std::max(width, line.text.size());
+  }
+  std::string out = header.empty() ? "" : "\n" + header + "\n";
+  for (const Line& line : lines) {
+    out += line.unit.empty() ? line.text + "\n" : fmt::format("{:<{}}  # {}\n", line.text, width, line.unit);
+  }
+  return out;
+}
+
+/// The keys of one table that are set.
+/// @param pattern e.g. "tissue.<region>"; @param path the same with its wildcard filled in, e.g. "tissue.prostate"
+std::vector<Line> lines_of(const Scenario& scenario, const std::string& pattern, const std::string& path) {
+  std::vector<Line> lines;
+  for (const ScenarioKey& key : scenario_keys()) {
+    const auto dot = key.path.rfind('.');
+    if ((dot == std::string::npos ? "" : key.path.substr(0, dot)) != pattern) continue;
+    const std::string name = key.path.substr(dot == std::string::npos ? 0 : dot + 1);
+    const auto value = scenario_value(scenario, path.empty() ? name : path + "." + name);
+    if (!value) continue;
+    const bool left_out = value->type == ScenarioValue::Type::text && value->text.empty() && key.standard == "none";
+    if (!left_out) lines.push_back({name + " = " + to_string(*value), key.unit});
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string to_toml(const Scenario& scenario) {
+  std::string out = fmt::format("# Scenario as Stylet {} understood it, defaults included.\n", version());
+  std::string last = "?";
+  for (const ScenarioKey& key : scenario_keys()) {
+    const auto dot = key.path.rfind('.');
+    const std::string pattern = dot == std::string::npos ? "" : key.path.substr(0, dot);
+    if (pattern == last) continue;
+    last = pattern;
+    if (pattern == "tissue.<region>") {
+      for (const auto& [region, parameters] : scenario.tissue) {
+        out += table_text("[tissue." + key_text(region) + "]", lines_of(scenario, pattern, "tissue." + region));
+      }
+    } else if (pattern == "patient.regions") {
+      std::vector<Line> lines;
+      for (const auto& [name, region] : scenario.patient.regions) {
+        lines.push_back({key_text(name) + " = " + to_string({.type = ScenarioValue::Type::text, .text = region}), ""});
+      }
+      if (!lines.empty()) out += table_text("[patient.regions]", lines);
+    } else if (pattern == "insertion[]") {
+      for (std::size_t i = 0; i < scenario.insertions.size(); ++i) {
+        out += table_text("[[insertion]]", lines_of(scenario, pattern, fmt::format("insertion[{}]", i)));
+      }
+    } else {
+      out += table_text(pattern.empty() ? "" : "[" + pattern + "]", lines_of(scenario, pattern, pattern));
+    }
+  }
+  return out;
+}
+
+}  // namespace stylet
