@@ -16,7 +16,7 @@ namespace {
 constexpr double kTinyPivot = 1e-13;
 
 // Right-hand sides taken through the factor together: enough for matrix products to pay, few enough to stay in memory.
-constexpr Eigen::Index kBatch = 128;
+constexpr Eigen::Index kBatch = 192;
 
 cholmod_sparse view(const Eigen::SparseMatrix<double>& A, int xtype) {
   assert(A.isCompressed());
@@ -121,7 +121,7 @@ MatX Cholesky::solve(const MatX& b) const {
   const OneBlasThread one_thread;
   // Each call brings its own workspace: the factor is only read.
   struct Workspace {
-    cholmod_common common;
+    cholmod_common common{};
     cholmod_dense* X = nullptr;
     cholmod_dense* Y = nullptr;
     cholmod_dense* E = nullptr;

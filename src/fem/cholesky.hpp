@@ -44,7 +44,7 @@ class Cholesky {
   [[nodiscard]] Index entries() const;  ///< stored numbers of L
 
  private:
-  cholmod_common common_;
+  cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;
   Index failed_column_ = -1;
 };

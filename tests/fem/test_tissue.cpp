@@ -230,7 +230,7 @@ TEST(Tissue, SolvesManyLoadsAtOnceAsOneByOneAndIgnoresLoadsOnSupports) {
   MatX f(3 * Eigen::Index{tissue.mesh().node_count()}, 200);
   for (Eigen::Index k = 0; k < f.cols(); ++k) f.col(k) = random_forces(tissue.mesh(), static_cast<unsigned>(k));
   const MatX u = tissue.solve(f);
-  for (const Eigen::Index k : {0, 63, 127, 128, 199})
+  for (const Eigen::Index k : {0, 63, 191, 192, 199})
     EXPECT_LT(relative_error(tissue.solve(f.col(k)), u.col(k)), 1e-12);
   for (const Index a : tissue.fixed_nodes()) {
     EXPECT_EQ(u.middleRows<3>(3 * Eigen::Index{a}).norm(), 0.0);
