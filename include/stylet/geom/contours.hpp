@@ -16,9 +16,9 @@ struct Contour {
 
 /// A structure ("region of interest"): its contours on parallel slices.
 struct Roi {
-  std::string name;      ///< as in the file
-  int number = 0;        ///< ROI number of the file
-  std::string type;      ///< RT ROI interpreted type ("ORGAN", "EXTERNAL", …) or empty
+  std::string name;                          ///< as in the file
+  int number = 0;                            ///< ROI number of the file
+  std::string type;                          ///< RT ROI interpreted type ("ORGAN", "EXTERNAL", …) or empty
   std::array<int, 3> colour{255, 255, 255};  ///< display colour, 0…255
   std::vector<Contour> contours;
 };

@@ -15,13 +15,13 @@ struct MaterialPoint {
 
 /// Where a straight path meets the outer boundary or an inner face.
 struct Crossing {
-  double t = 0.0;     ///< path parameter, point = from + t (to - from), 0…1
-  Index tet = -1;     ///< tetrahedron left (inner crossings, exits) or entered (entries from outside)
-  int local = -1;     ///< face of `tet` that is crossed, opposite this local vertex
+  double t = 0.0;  ///< path parameter, point = from + t (to - from), 0…1
+  Index tet = -1;  ///< tetrahedron left (inner crossings, exits) or entered (entries from outside)
+  int local = -1;  ///< face of `tet` that is crossed, opposite this local vertex
 };
 
-/// Finds tetrahedra by walking from neighbour to neighbour, with a bounding-box tree as the start where no hint is given.
-/// No call allocates. Ties (a point on a face, edge or node) are broken by the direction of travel.
+/// Finds tetrahedra by walking from neighbour to neighbour, with a bounding-box tree as the start where no hint is
+/// given. No call allocates. Ties (a point on a face, edge or node) are broken by the direction of travel.
 class Locator {
  public:
   Locator(const TetMesh& mesh, const Topology& topology);  ///< keeps references: both must outlive the locator
@@ -30,7 +30,8 @@ class Locator {
   /// @param x [mm] LPS
   /// @param hint a tetrahedron nearby, or -1
   /// @param travel direction that breaks ties: the tetrahedron containing x + 0·travel is preferred; zero = any
-  [[nodiscard]] std::optional<MaterialPoint> find(const Vec3& x, Index hint = -1, const Vec3& travel = Vec3::Zero()) const;
+  [[nodiscard]] std::optional<MaterialPoint> find(const Vec3& x, Index hint = -1,
+                                                  const Vec3& travel = Vec3::Zero()) const;
 
   /// Weights of x in tetrahedron t, not checked to lie inside (4).
   [[nodiscard]] Vec4 weights(Index t, const Vec3& x) const;
@@ -39,7 +40,8 @@ class Locator {
   /// region changes or the mesh ends. Empty when `to` is reached first; `end` is then (and only then) where `to` lies.
   /// A region touched at a point or an edge only is passed over, and a path within an interface stays in the region
   /// it is in. Where the mesh ends at an edge or node, the face may be an outer face of another region's element there.
-  [[nodiscard]] std::optional<Crossing> first_crossing(const Vec3& from, Index start, const Vec3& to, MaterialPoint& end) const;
+  [[nodiscard]] std::optional<Crossing> first_crossing(const Vec3& from, Index start, const Vec3& to,
+                                                       MaterialPoint& end) const;
 
   /// First outer face that the segment from `from` (outside the mesh) to `to` enters; Crossing::tet is the tetrahedron
   /// behind that face. Faces met from inside are ignored.
@@ -58,7 +60,7 @@ class Locator {
     Eigen::AlignedBox3d box;
     Index first, count;  ///< leaf: range in order_; inner: count = -1, first = left child (right = first + 1)
   };
-  std::vector<Box> tree_;        ///< boxes over all tetrahedra
+  std::vector<Box> tree_;  ///< boxes over all tetrahedra
   std::vector<Index> order_;
 };
 

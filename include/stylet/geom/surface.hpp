@@ -12,7 +12,7 @@ namespace stylet {
 /// A triangulated surface, normals outward.
 struct Surface {
   std::string name;
-  std::vector<Vec3> points;                       ///< [mm] LPS
+  std::vector<Vec3> points;  ///< [mm] LPS
   std::vector<std::array<Index, 3>> triangles;
 };
 

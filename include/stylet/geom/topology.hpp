@@ -17,10 +17,10 @@ struct Face {
 struct Topology {
   explicit Topology(const TetMesh& mesh);
 
-  std::vector<std::array<Index, 4>> neighbour;      ///< (m) tetrahedron across the face opposite local vertex i, or -1
-  std::vector<Face> boundary;                       ///< outer faces of the mesh
-  std::vector<Face> interfaces;                     ///< faces between two regions, listed once, tet has the lower region
-  std::vector<std::vector<Index>> node_tets;        ///< (n) tetrahedra around each node
+  std::vector<std::array<Index, 4>> neighbour;  ///< (m) tetrahedron across the face opposite local vertex i, or -1
+  std::vector<Face> boundary;                   ///< outer faces of the mesh
+  std::vector<Face> interfaces;                 ///< faces between two regions, listed once, tet has the lower region
+  std::vector<std::vector<Index>> node_tets;    ///< (n) tetrahedra around each node
 };
 
 /// Local vertex numbers of the face opposite local vertex i, outward orientation for a positive tetrahedron.
