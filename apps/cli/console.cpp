@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 
 namespace stylet::cli {
 
@@ -35,15 +34,19 @@ bool stderr_is_terminal() {
 
 struct Console::Parts {
   CommonOptions options;
-  ProgressDisplay display{stderr_is_terminal()};
-  int json_descriptor = -1;  ///< the real standard output while --json - keeps everyone else off it
-  std::mutex mutex;          ///< progress may be reported by any thread
+  int json_descriptor = -1;                ///< the real standard output while --json - keeps everyone else off it
+  std::weak_ptr<ProgressDisplay> display;  ///< lives as long as someone may report progress to it
 
-  void line(std::FILE* stream, std::string_view prefix, std::string_view text) {
-    const std::scoped_lock lock(mutex);
-    display.clear();
-    fmt::print(stream, "{}{}\n", prefix, text);
-    std::fflush(stream);
+  void line(std::FILE* stream, std::string_view prefix, std::string_view text) const {
+    const auto print = [&] {
+      fmt::print(stream, "{}{}\n", prefix, text);
+      std::fflush(stream);
+    };
+    if (const auto shown = display.lock()) {
+      shown->interrupt(print);
+    } else {
+      print();
+    }
   }
 };
 
@@ -80,10 +83,9 @@ void Console::error(std::string_view text) { parts_->line(stderr, "stylet: error
 
 Progress Console::progress() {
   if (parts_->options.quiet) return {};
-  return [parts = parts_.get()](std::string_view stage, double fraction) {
-    const std::scoped_lock lock(parts->mutex);
-    parts->display.update(stage, fraction);
-  };
+  auto display = std::make_shared<ProgressDisplay>(stderr_is_terminal());
+  parts_->display = display;
+  return [display](std::string_view stage, double fraction) { display->update(stage, fraction); };
 }
 
 Result<> Console::write_json(const Json& json) {

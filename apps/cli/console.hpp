@@ -42,7 +42,7 @@ class Console {
   void error(std::string_view text);
 
   /// For long work: a bar when standard error is a terminal, now and then a plain line otherwise; nothing in the first
-  /// second, nothing with --quiet. The console must outlive it.
+  /// second, nothing with --quiet. Shown until the last copy of the returned function is gone.
   [[nodiscard]] Progress progress();
 
   /// Writes the machine-readable result where --json says; does nothing without --json. A file appears whole or not at

@@ -14,9 +14,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kSilence = 1s;        ///< shorter work shows nothing
-constexpr auto kRedrawEvery = 50ms;  ///< bar
-constexpr auto kReportEvery = 10s;   ///< plain lines
+constexpr auto kSilence = 1s;  ///< shorter work shows nothing
+constexpr auto kRedrawEvery = 100ms;
+constexpr auto kLineEvery = 10s;  ///< plain lines within a stage
 constexpr int kStageWidth = 30;
 
 int terminal_width() {
@@ -26,45 +26,69 @@ int terminal_width() {
 
 }  // namespace
 
-void ProgressDisplay::update(std::string_view stage, double fraction) {
-  fraction = std::clamp(fraction, 0.0, 1.0);
-  const auto now = Clock::now();
-  const bool new_stage = stage != stage_;
-  if (new_stage) stage_ = stage;
-  if (now - start_ < kSilence) return;
+ProgressDisplay::ProgressDisplay(bool terminal) : terminal_(terminal), thread_([this] { run(); }) {}
 
-  if (terminal_) {
-    if (!new_stage && fraction < 1.0 && now - last_ < kRedrawEvery) return;
-    draw_bar(fraction);
-  } else {
-    if (stage_ != announced_) {
-      announced_ = stage_;
-      fmt::print(stderr, "{} ...\n", stage_);
-    } else if (now - last_ >= kReportEvery) {
-      fmt::print(stderr, "{}: {:.0f} %\n", stage_, 100 * fraction);
-    } else {
-      return;
-    }
+ProgressDisplay::~ProgressDisplay() {
+  {
+    const std::scoped_lock lock(mutex_);
+    finished_ = true;
+    clear_bar();
   }
-  last_ = now;
+  wake_.notify_one();
+  thread_.join();
 }
 
-void ProgressDisplay::draw_bar(double fraction) {
+void ProgressDisplay::update(std::string_view stage, double fraction) {
+  const std::scoped_lock lock(mutex_);
+  stage_ = stage;
+  fraction_ = std::clamp(fraction, 0.0, 1.0);
+}
+
+void ProgressDisplay::interrupt(const std::function<void()>& print) {
+  const std::scoped_lock lock(mutex_);
+  clear_bar();
+  print();
+}
+
+void ProgressDisplay::run() {
+  std::unique_lock lock(mutex_);
+  auto pause = std::chrono::duration_cast<Clock::duration>(kSilence);
+  while (!wake_.wait_for(lock, pause, [this] { return finished_; })) {
+    pause = kRedrawEvery;
+    show();
+  }
+}
+
+void ProgressDisplay::show() {
+  if (stage_.empty()) return;
+  if (terminal_) {
+    draw_bar();
+  } else if (stage_ != announced_) {
+    fmt::print(stderr, "{} ...\n", stage_);
+    announced_ = stage_;
+    last_line_ = Clock::now();
+  } else if (Clock::now() - last_line_ >= kLineEvery) {
+    fmt::print(stderr, "{}: {:.0f} %\n", stage_, 100 * fraction_);
+    last_line_ = Clock::now();
+  }
+}
+
+void ProgressDisplay::draw_bar() {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  const std::string numbers = fmt::format(" {:3.0f} % {:5.0f} s", 100 * fraction, seconds);
+  const std::string numbers = fmt::format(" {:3.0f} % {:5.0f} s", 100 * fraction_, seconds);
   const int width = std::clamp(terminal_width() - kStageWidth - static_cast<int>(numbers.size()) - 4, 0, 50);
-  const int full = static_cast<int>(fraction * width);
+  const int full = static_cast<int>(fraction_ * width);
   fmt::print(stderr, "\r{:<{}.{}} [{:#<{}}{:.<{}}]{}\x1b[K", stage_, kStageWidth, kStageWidth, "", full, "",
              width - full, numbers);
   std::fflush(stderr);
-  visible_ = true;
+  bar_visible_ = true;
 }
 
-void ProgressDisplay::clear() {
-  if (!visible_) return;
+void ProgressDisplay::clear_bar() {
+  if (!bar_visible_) return;
   fmt::print(stderr, "\r\x1b[K");
   std::fflush(stderr);
-  visible_ = false;
+  bar_visible_ = false;
 }
 
 }  // namespace stylet::cli
