@@ -24,7 +24,13 @@ double tet_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   constexpr double kDegree = 180 / std::numbers::pi;
   const double smallest = kDegree * std::acos(std::clamp(high, -1.0, 1.0));
   const double largest = kDegree * std::acos(std::clamp(low, -1.0, 1.0));
-  return std::min(smallest / kSmallestAngle, (180 - largest) / (180 - kLargestAngle));
+  // Radius ratio 3 r_in / r_circ with r_in = 3V/A and r_circ = |ad² (ab×ac) + ac² (ad×ab) + ab² (ac×ad)| / 12V.
+  const double volume6 = ab.cross(ac).dot(ad);
+  const double area2 = bc.cross(bd).norm() + ad.cross(ac).norm() + ab.cross(ad).norm() + ac.cross(ab).norm();
+  const double circum =
+      (ad.squaredNorm() * ab.cross(ac) + ac.squaredNorm() * ad.cross(ab) + ab.squaredNorm() * ac.cross(ad)).norm();
+  const double ratio = 6 * volume6 * volume6 / (area2 * circum);
+  return std::min({smallest / kSmallestAngle, (180 - largest) / (180 - kLargestAngle), ratio / kSmallestRatio});
 }
 
 EditableMesh::EditableMesh(RawMesh mesh) : nodes(std::move(mesh.nodes)) {

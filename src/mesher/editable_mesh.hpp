@@ -11,7 +11,10 @@ namespace stylet::meshing {
 inline constexpr double kSmallestAngle = 12.0;  // [deg]
 inline constexpr double kLargestAngle = 165.0;  // [deg]
 
-/// How good a tetrahedron is: min(smallest dihedral angle / 12°, (180° − largest) / 15°); ≤ 0 when flat or inverted.
+inline constexpr double kSmallestRatio = 0.15;  // radius ratio
+
+/// How good a tetrahedron is: the least of smallest dihedral angle / 12°, (180° − largest) / 15° and radius ratio /
+/// 0.15 (3 r_in / r_circ, which also tells needles from good elements); 0 when flat or inverted.
 double tet_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// A tetrahedral mesh under local changes: knows the tetrahedra around each node.

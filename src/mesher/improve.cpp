@@ -27,8 +27,8 @@ bool help(EditableMesh& m, LocalChanges& change, Index t) {
 }  // namespace
 
 void improve(EditableMesh& m, const Anatomy& anatomy, double goal) {
-  LocalChanges change(m, anatomy, 0.05);
   for (int round = 0; round < kMostRounds; ++round) {
+    LocalChanges change(m, anatomy, round < 4 ? 0.05 : round < 8 ? 0.1 : 0.15);
     std::vector<std::pair<double, Index>> bad;
     for (std::size_t t = 0; t < m.tets.size(); ++t) {
       if (!m.alive(static_cast<Index>(t))) continue;

@@ -8,9 +8,7 @@
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
-#include <CGAL/exude_mesh_3.h>
 #include <CGAL/lloyd_optimize_mesh_3.h>
-#include <CGAL/perturb_mesh_3.h>
 #include <CGAL/refine_mesh_3.h>
 
 #include <fmt/format.h>
@@ -90,11 +88,9 @@ Result<> Tetrahedraliser::refine() {
   return Ok{};
 }
 
-void Tetrahedraliser::optimise(double sliver_bound_deg) {
-  Parts& p = *parts_;
-  CGAL::lloyd_optimize_mesh_3(p.c3t3, p.domain, params::time_limit = 0, params::max_iteration_number = 60);
-  CGAL::perturb_mesh_3(p.c3t3, p.domain, params::time_limit = 0, params::sliver_bound = sliver_bound_deg);
-  CGAL::exude_mesh_3(p.c3t3, params::time_limit = 0, params::sliver_bound = sliver_bound_deg);
+void Tetrahedraliser::relax(int rounds) {
+  CGAL::lloyd_optimize_mesh_3(parts_->c3t3, parts_->domain, params::time_limit = 0,
+                              params::max_iteration_number = static_cast<std::size_t>(rounds));
 }
 
 RawMesh Tetrahedraliser::mesh() const {

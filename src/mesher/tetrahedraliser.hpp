@@ -44,9 +44,8 @@ class Tetrahedraliser {
 
   /// Refines until all criteria hold. Errors: more than `most_nodes` nodes.
   Result<> refine();
-  /// Moves nodes to their cells' centroids (Lloyd), perturbs and re-weights them against slivers; no time limits.
-  /// @param sliver_bound_deg dihedral angle wanted
-  void optimise(double sliver_bound_deg);
+  /// Moves nodes to the centroids of their Voronoi cells (Lloyd), surface nodes on their surface.
+  void relax(int rounds);
   /// The mesh as it is.
   [[nodiscard]] RawMesh mesh() const;
 
