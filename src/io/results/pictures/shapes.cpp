@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pictures/shapes.hpp"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkTubeFilter.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+
+namespace stylet::results {
+
+vtkSmartPointer<vtkPoints> deformed_points(const TetMesh& mesh, const VecX& displacement) {
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(mesh.node_count());
+  for (Index n = 0; n < mesh.node_count(); ++n) {
+    const Vec3 x = mesh.nodes[static_cast<std::size_t>(n)] + displacement.segment<3>(3 * n);
+    points->SetPoint(n, x.data());
+  }
+  return points;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> deformed_grid(const TetMesh& mesh, const VecX& displacement) {
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(deformed_points(mesh, displacement));
+  grid->Allocate(mesh.tet_count());
+  vtkNew<vtkIntArray> region;
+  region->SetName("region");
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const std::array<vtkIdType, 4> corners{mesh.tets[t][0], mesh.tets[t][1], mesh.tets[t][2], mesh.tets[t][3]};
+    grid->InsertNextCell(VTK_TETRA, 4, corners.data());
+    region->InsertNextValue(mesh.tet_region[t]);
+  }
+  vtkNew<vtkDoubleArray> magnitude;
+  magnitude->SetName("displacement_mm");
+  for (Index n = 0; n < mesh.node_count(); ++n) magnitude->InsertNextValue(displacement.segment<3>(3 * n).norm());
+  grid->GetCellData()->AddArray(region);
+  grid->GetPointData()->AddArray(magnitude);
+  return grid;
+}
+
+vtkSmartPointer<vtkPolyData> region_surface(const RegionView& view, vtkPoints* points) {
+  auto faces = vtkSmartPointer<vtkPolyData>::New();
+  faces->SetPoints(points);
+  vtkNew<vtkCellArray> cells;
+  for (const auto& t : view.triangles) {
+    const std::array<vtkIdType, 3> corners{t[0], t[1], t[2]};
+    cells->InsertNextCell(3, corners.data());
+  }
+  faces->SetPolys(cells);
+  return faces;
+}
+
+vtkSmartPointer<vtkPolyData> with_normals(vtkPolyData* surface) {
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputData(surface);
+  normals->ConsistencyOff();  // the triangles are oriented already
+  normals->AutoOrientNormalsOff();
+  normals->SetFeatureAngle(70);
+  normals->Update();
+  return normals->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> polyline(std::span<const Vec3> points) {
+  auto line = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> places;
+  places->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  cells->InsertNextCell(static_cast<int>(points.size()));
+  for (const Vec3& p : points) cells->InsertCellPoint(places->InsertNextPoint(p.data()));
+  line->SetPoints(places);
+  line->SetLines(cells);
+  return line;
+}
+
+vtkSmartPointer<vtkPolyData> needle_tube(std::span<const Vec3> centreline, double diameter) {
+  // The last diameter of length narrows to a point: cut there and let the radius fall to zero.
+  std::vector<Vec3> points(centreline.begin(), centreline.end());
+  std::vector<double> radii(points.size(), diameter / 2);
+  double left = diameter;
+  while (points.size() > 2 && (points.back() - points[points.size() - 2]).norm() < left) {
+    left -= (points.back() - points[points.size() - 2]).norm();
+    points.pop_back();
+    radii.pop_back();
+  }
+  const Vec3 tip = centreline.back();
+  const Vec3 last = points.back();
+  points.pop_back();
+  radii.pop_back();
+  const double last_length = (points.back() - last).norm();
+  const Vec3 shoulder = last + (points.back() - last).normalized() * std::min(left, 0.9 * last_length);
+  points.insert(points.end(), {shoulder, tip});
+  radii.insert(radii.end(), {diameter / 2, diameter / 200});
+
+  const auto line = polyline(points);
+  vtkNew<vtkDoubleArray> radius;
+  radius->SetName("radius_mm");
+  for (const double r : radii) radius->InsertNextValue(r);
+  line->GetPointData()->SetScalars(radius);
+  vtkNew<vtkTubeFilter> tube;
+  tube->SetInputData(line);
+  tube->SetVaryRadiusToVaryRadiusByAbsoluteScalar();
+  tube->SetNumberOfSides(24);
+  tube->CappingOn();
+  tube->Update();
+  vtkSmartPointer<vtkPolyData> surface = tube->GetOutput();
+  surface->GetPointData()->SetScalars(nullptr);
+  return surface;
+}
+
+}  // namespace stylet::results

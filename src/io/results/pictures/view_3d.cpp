@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pictures/shapes.hpp"
+#include "pictures/views.hpp"
+
+#include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataSilhouette.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+
+namespace stylet::results {
+namespace {
+
+/// Where something happens: the organs, the entry and the deepest tip.
+std::vector<Vec3> places_of_interest(const PictureInput& input) {
+  const bool only_background = input.regions.size() == 1;
+  std::vector<Vec3> places;
+  for (const RegionView& view : input.regions) {
+    if (view.background && !only_background) continue;
+    for (const auto& t : view.triangles) {
+      for (const Index n : t) places.push_back(input.run.mesh.nodes[static_cast<std::size_t>(n)]);
+    }
+  }
+  const Vec3& entry = input.run.info.entry_mm;
+  places.push_back(entry);
+  places.push_back(entry - 12 * input.run.info.direction);
+  if (!input.deepest.needle.empty()) places.push_back(input.deepest.needle.back());
+  return places;
+}
+
+}  // namespace
+
+Viewpoint oblique_viewpoint() {
+  Viewpoint view;
+  view.towards_viewer = Vec3(0.80, -0.56, 0.20).normalized();
+  view.up = (Vec3::UnitZ() - Vec3::UnitZ().dot(view.towards_viewer) * view.towards_viewer).normalized();
+  return view;
+}
+
+Layers view_3d(const PictureInput& input, const Frame& frame) {
+  const Viewpoint viewpoint = oblique_viewpoint();
+  const Area area;
+  const Framing framing = frame_points(places_of_interest(input), viewpoint, area);
+  const auto stage = make_stage(viewpoint, framing, area);
+  stage->UseDepthPeelingOn();
+  stage->SetMaximumNumberOfPeels(16);
+  stage->SetOcclusionRatio(0.0);
+  const auto points = deformed_points(input.run.mesh, frame.displacement);
+  for (const RegionView& view : input.regions) {
+    const auto surface = region_surface(view, points);
+    vtkActor* actor = add_surface(stage, with_normals(surface), view.colour, view.opacity);
+    actor->GetProperty()->BackfaceCullingOn();  // as in the interactive view
+    vtkNew<vtkPolyDataSilhouette> silhouette;
+    silhouette->SetInputData(surface);
+    silhouette->SetCamera(stage->GetActiveCamera());
+    silhouette->SetEnableFeatureAngle(0);
+    silhouette->BorderEdgesOff();
+    silhouette->Update();
+    const Colour ink = view.background ? lighter(view.colour, 0.35) : lighter(view.colour, -0.35);
+    add_lines(stage, silhouette->GetOutput(), ink, view.background ? 1.0 : 1.5);
+  }
+  if (frame.needle.size() >= 2) {
+    vtkActor* needle = add_surface(stage, needle_tube(frame.needle, input.run.info.needle_diameter_mm), kSteel, 1.0);
+    needle->GetProperty()->SetSpecular(0.6);
+  }
+  add_scale_bar(stage, framing, area);
+  return {stage, orientation_cube(viewpoint)};
+}
+
+}  // namespace stylet::results

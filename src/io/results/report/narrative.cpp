@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/narrative.hpp"
+
+#include "report/anatomy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+namespace stylet::results {
+namespace {
+
+/// "a, b and c".
+std::string join(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (k > 0) text += k + 1 == parts.size() ? " and " : ", ";
+    text += parts[k];
+  }
+  return text;
+}
+
+/// A region's name inside a sentence: "pubic arch".
+std::string spoken(const std::string& region) {
+  std::string text = readable_name(region);
+  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string the(const std::string& region) { return region.empty() ? "the tissue" : "the " + spoken(region); }
+
+const Event* find(const std::vector<Event>& events, EventKind kind) {
+  const auto found = std::find_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; });
+  return found == events.end() ? nullptr : &*found;
+}
+
+std::string target_name(const RunRecording& run) {
+  std::vector<std::string> names;
+  for (const int r : run.info.target_regions) names.push_back(spoken(run.mesh.regions[static_cast<std::size_t>(r)]));
+  return names.empty() ? "target" : join(names);
+}
+
+std::string tell_motion(const RunRecording& run, const Frame& deepest) {
+  const Event* out = find(run.summary->events, EventKind::withdrawn);
+  const double end = run.steps.empty() ? run.frames.back().time_s : run.steps.back().time_s;
+  const double last_depth = run.steps.empty() ? run.frames.back().base_depth_mm : run.steps.back().base_depth_mm;
+  std::string text = fmt::format(
+      "A needle of {:.3g} mm diameter was advanced until it reached {:.1f} mm beyond the entry point, after {:.1f} s",
+      run.info.needle_diameter_mm, deepest.base_depth_mm, deepest.time_s);
+  if (out != nullptr) return text + fmt::format("; it was drawn out again completely after {:.1f} s.", out->time_s);
+  if (last_depth < deepest.base_depth_mm - 0.5) {
+    return text + fmt::format("; it was drawn back to {:.1f} mm, where the run ended after {:.1f} s.", last_depth, end);
+  }
+  return text + ".";
+}
+
+/// Events on the way in, in the order they happened.
+std::string tell_events(const std::vector<Event>& events) {
+  std::vector<std::string> clauses;
+  std::string pierced;  // region of the last puncture: its entry need not be told again
+  for (const Event& e : events) {
+    const std::string at = fmt::format(" at {:.1f} mm", e.depth_mm);
+    const std::string force = fmt::format(" under an axial force of {:.2f} N", e.force_N);
+    switch (e.kind) {
+      case EventKind::skin_contact:
+        clauses.push_back("touched the skin" + at);
+        break;
+      case EventKind::puncture:
+        clauses.push_back("pierced " + the(e.region) + at + force);
+        pierced = e.region;
+        break;
+      case EventKind::region_entered:
+        if (e.region != pierced && e.region != "body") clauses.push_back("entered " + the(e.region) + at);
+        break;
+      case EventKind::bone_contact:
+        clauses.push_back("met bone (" + the(e.region) + ")" + at + force);
+        break;
+      case EventKind::exited:
+        clauses.push_back("came out on the far side" + at);
+        break;
+      case EventKind::re_entered:
+        clauses.push_back("entered again" + at);
+        break;
+      case EventKind::grazed:
+        clauses.push_back("slid along the surface" + at + " without piercing it");
+        break;
+      case EventKind::retraction_start:
+      case EventKind::slip_start:
+      case EventKind::withdrawn:
+        break;
+    }
+    constexpr std::size_t kMost = 7;
+    if (clauses.size() == kMost) break;
+  }
+  return clauses.empty() ? std::string() : "The tip " + join(clauses) + ".";
+}
+
+std::string tell_forces(const RunRecording& run) {
+  const Summary& s = *run.summary;
+  const auto peak = std::max_element(run.steps.begin(), run.steps.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.force_axial_N) < std::abs(b.force_axial_N);
+  });
+  std::string where;
+  if (peak != run.steps.end()) {
+    where = fmt::format(", {} at a depth of {:.1f} mm", peak->force_axial_N >= 0 ? "pushing in" : "pulling back",
+                        peak->base_depth_mm);
+  }
+  return fmt::format(
+      "The hand had to exert at most {:.2f} N along the needle{}, and at most {:.2f} N across it in the sagittal and "
+      "{:.2f} N in the lateral direction.",
+      s.peak_axial_N, where, s.peak_sagittal_N, s.peak_lateral_N);
+}
+
+std::string tell_target(const RunRecording& run) {
+  const Summary& s = *run.summary;
+  if (run.info.target_regions.empty()) return {};
+  if (s.target_shift_max_mm < 0.05) {
+    return fmt::format("With the needle at its deepest, the {} lay where it was before.", target_name(run));
+  }
+  return fmt::format(
+      "With the needle at its deepest, the centre of the {} had moved by {:.1f} mm ({}); the point of it that moved "
+      "most, by {:.1f} mm.",
+      target_name(run), s.target_shift_centroid_mm.norm(), describe_shift(s.target_shift_centroid_mm),
+      s.target_shift_max_mm);
+}
+
+std::string tell_retraction(const RunRecording& run, const Frame& after) {
+  const auto& events = run.summary->events;
+  const Event* back = find(events, EventKind::retraction_start);
+  if (back == nullptr) return {};
+  std::string text = fmt::format("The needle was drawn back from {:.1f} s on.", back->time_s);
+  const auto slip = std::find_if(events.begin(), events.end(), [&](const Event& e) {
+    return e.kind == EventKind::slip_start && e.time_s >= back->time_s;
+  });
+  if (slip != events.end()) {
+    text += fmt::format(" For the first {:.1f} mm the tissue stuck to it and was taken along; then it began to slip.",
+                        back->depth_mm - slip->depth_mm);
+  }
+  if (find(events, EventKind::withdrawn) != nullptr) {
+    double left = 0;
+    for (Eigen::Index n = 0; n + 2 < after.displacement.size(); n += 3) {
+      left = std::max(left, after.displacement.segment<3>(n).norm());
+    }
+    text += left < 0.005
+                ? " After the needle had left, the tissue was back in its initial shape."
+                : fmt::format(" After the needle had left, the tissue was still displaced by up to {:.2f} mm.", left);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string describe_shift(const Vec3& shift) {
+  struct Direction {
+    const char* positive;
+    const char* negative;
+  };
+  constexpr std::array<Direction, 3> kWords{{{"to the patient's left", "to the patient's right"},
+                                             {"backwards", "forwards"},
+                                             {"towards the head", "towards the feet"}}};
+  std::array<Eigen::Index, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(),
+            [&](Eigen::Index a, Eigen::Index b) { return std::abs(shift[a]) > std::abs(shift[b]); });
+  std::vector<std::string> parts;
+  for (const Eigen::Index k : order) {
+    if (std::abs(shift[k]) < 0.05) continue;
+    const Direction& words = kWords[static_cast<std::size_t>(k)];
+    parts.push_back(fmt::format("{:.1f} mm {}", std::abs(shift[k]), shift[k] > 0 ? words.positive : words.negative));
+  }
+  return parts.empty() ? "less than 0.05 mm in any direction" : join(parts);
+}
+
+std::string event_label(const Event& e) {
+  const std::string region = readable_name(e.region);
+  const auto with_region = [&](const char* alone, const char* verb) { return region.empty() ? alone : region + verb; };
+  switch (e.kind) {
+    case EventKind::skin_contact:
+      return "Skin contact";
+    case EventKind::puncture:
+      return with_region("Puncture", " punctured");
+    case EventKind::region_entered:
+      return with_region("Region entered", " entered");
+    case EventKind::retraction_start:
+      return "Retraction starts";
+    case EventKind::slip_start:
+      return "Slip starts";
+    case EventKind::withdrawn:
+      return "Withdrawn";
+    case EventKind::bone_contact:
+      return "Bone contact";
+    case EventKind::exited:
+      return "Out on the far side";
+    case EventKind::re_entered:
+      return "Re-entered";
+    case EventKind::grazed:
+      return "Surface grazed";
+  }
+  return readable_name(to_string(e.kind));
+}
+
+std::vector<std::string> tell_what_happened(const RunRecording& run, const Moments& moments) {
+  const Frame& deepest = run.frames[moments.deepest];
+  const Summary& s = *run.summary;
+  std::vector<std::string> paragraphs;
+  const auto add = [&](const std::vector<std::string>& sentences) {
+    std::string paragraph;
+    for (const std::string& sentence : sentences) {
+      if (sentence.empty()) continue;
+      if (!paragraph.empty()) paragraph += ' ';
+      paragraph += sentence;
+    }
+    if (!paragraph.empty()) paragraphs.push_back(paragraph);
+  };
+  add({tell_motion(run, deepest), tell_events(s.events)});
+  add({tell_forces(run), tell_target(run),
+       fmt::format("The tip came to lie at most {:.1f} mm beside the straight line it was aimed along.",
+                   s.tip_deflection_mm)});
+  add({tell_retraction(run, run.frames[moments.after])});
+  return paragraphs;
+}
+
+std::string tell_step_times(const Summary& s) {
+  return fmt::format(
+      "{} steps were computed. Half of them took at most {:.0f} µs of processor time, 99 % at most {:.0f} µs, 99.9 % "
+      "at "
+      "most {:.0f} µs; the slowest took {:.0f} µs. A control loop at 1 kHz leaves 1000 µs for a step.",
+      s.steps, s.step_us_p50, s.step_us_p99, s.step_us_p999, s.step_us_max);
+}
+
+}  // namespace stylet::results

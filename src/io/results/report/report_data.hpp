@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "report/anatomy.hpp"
+#include "report/moments.hpp"
+#include "stylet/io/recording_io.hpp"
+
+#include <span>
+#include <string>
+
+namespace stylet::results {
+
+/// What the report's scripts draw, as JSON; web/report/src/data.ts describes every field. Numbers come as base64 of
+/// little-endian arrays. Only surface nodes are kept, displacements as 16-bit integers with one common scale; steps and
+/// frames are thinned where there are too many for a page of some 15 MB.
+/// @param run has at least one frame and a summary
+std::string report_data(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments);
+
+}  // namespace stylet::results

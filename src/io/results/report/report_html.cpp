@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/report_html.hpp"
+
+#include "report/assets.hpp"
+#include "report/narrative.hpp"
+#include "report/report_data.hpp"
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <vtkVersion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace stylet::results {
+namespace {
+
+using Slots = std::map<std::string, std::string, std::less<>>;
+
+/// Puts the slots' texts in place of {{name}}; a name nobody filled is a fault of the build.
+Result<std::string> fill(std::string_view page, const Slots& slots) {
+  std::string filled;
+  for (;;) {
+    const std::size_t open = page.find("{{");
+    if (open == std::string_view::npos) return filled += page;
+    const std::size_t close = page.find("}}", open);
+    const std::string_view name = page.substr(open + 2, close == std::string_view::npos ? close : close - open - 2);
+    const auto slot = slots.find(name);
+    if (close == std::string_view::npos || slot == slots.end()) {
+      return failure("report.html", fmt::format("its template has an unknown slot '{}'", name),
+                     "The program was built from files that do not belong together: build it again.");
+    }
+    filled += page.substr(0, open);
+    filled += slot->second;
+    page.remove_prefix(close + 2);
+  }
+}
+
+std::string cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
+std::string number_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(text) + "</td>"; }
+std::string item(const std::string& text) { return "<li>" + html_escaped(text) + "</li>"; }
+
+std::string tile(const std::string& value, const std::string& caption) {
+  return "<li><b>" + html_escaped(value) + "</b><span>" + html_escaped(caption) + "</span></li>";
+}
+
+std::string tiles(const RunRecording& run, const Frame& deepest) {
+  const Summary& s = *run.summary;
+  std::string html = tile(fmt::format("{:.1f} mm", deepest.base_depth_mm), "deepest insertion") +
+                     tile(fmt::format("{:.2f} N", s.peak_axial_N), "largest axial force");
+  if (!run.info.target_regions.empty()) {
+    html += tile(fmt::format("{:.1f} mm", s.target_shift_centroid_mm.norm()), "shift of the target’s centre") +
+            tile(fmt::format("{:.1f} mm", s.target_shift_max_mm), "largest motion in the target");
+  }
+  html += tile(fmt::format("{:.1f} mm", s.tip_deflection_mm), "tip beside its straight line") +
+          tile(fmt::format("{:.0f} µs", s.step_us_p99), "99 % of the steps within");
+  return html;
+}
+
+/// Fixed digits, and no sign before a zero.
+std::string fixed(double value, int digits) {
+  const bool zero = std::abs(value) < 0.5 * std::pow(10.0, -digits);
+  return fmt::format("{:.{}f}", zero ? 0.0 : value, digits);
+}
+
+std::string event_rows(const std::vector<Event>& events) {
+  std::string html;
+  for (const Event& e : events) {
+    html += "<tr>" + cell(readable_name(to_string(e.kind))) + cell(readable_name(e.region)) +
+            number_cell(fixed(e.time_s, 3)) + number_cell(fixed(e.depth_mm, 2)) + number_cell(fixed(e.force_N, 3)) +
+            "</tr>";
+  }
+  return html.empty() ? "<tr><td colspan=\"5\">Nothing happened: the needle met no tissue.</td></tr>" : html;
+}
+
+std::string parameter_rows(const std::vector<ParameterRow>& parameters) {
+  std::string html;
+  for (const ParameterRow& p : parameters) {
+    html += "<tr><td><code>" + html_escaped(p.name) + "</code></td>" + number_cell(p.value) + cell(p.unit) +
+            cell(p.source) + "</tr>";
+  }
+  return html;
+}
+
+std::string model_facts(const RunRecording& run) {
+  const auto pair = [](const std::string& name, const std::string& value) {
+    return "<dt>" + html_escaped(name) + "</dt><dd>" + html_escaped(value) + "</dd>";
+  };
+  std::string regions;
+  for (const std::string& name : run.mesh.regions) regions += (regions.empty() ? "" : ", ") + name;
+  return pair("Coupling", run.info.method) +
+         pair("Mesh", fmt::format("{} nodes, {} tetrahedra", run.mesh.nodes.size(), run.mesh.tets.size())) +
+         pair("Regions", regions) +
+         pair("Needle",
+              fmt::format("{:g} mm diameter, {:g} mm long", run.info.needle_diameter_mm, run.info.needle_length_mm)) +
+         pair("Entry point", fmt::format("({:.1f}, {:.1f}, {:.1f}) mm, LPS", run.info.entry_mm.x(),
+                                         run.info.entry_mm.y(), run.info.entry_mm.z())) +
+         pair("Direction", fmt::format("({:.3f}, {:.3f}, {:.3f})", run.info.direction.x(), run.info.direction.y(),
+                                       run.info.direction.z())) +
+         pair("Contacts, at most", fmt::format("{}", run.summary->contacts_max)) +
+         pair("Force balance", fmt::format("{:.1e} of the peak force", run.summary->residual_force_balance)) +
+         pair("Torque balance", fmt::format("{:.1e} relative", run.summary->residual_torque_balance));
+}
+
+std::string warning_box(const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return {};
+  std::string html = "<ul class=\"warnings\">";
+  for (const std::string& w : warnings) html += item(w);
+  return html + "</ul>";
+}
+
+std::string color_key(std::span<const RegionView> regions) {
+  std::string html = "<ul class=\"region-key\">";
+  for (const RegionView& view : regions) {
+    const auto part = [&](std::size_t k) { return std::lround(255 * view.colour[k]); };
+    html += fmt::format("<li><span class=\"swatch\" style=\"background:rgb({},{},{})\"></span>{}{}</li>", part(0),
+                        part(1), part(2), html_escaped(view.label), view.target ? " (target)" : "");
+  }
+  return html + "</ul>";
+}
+
+std::string figure(const Pictures& pictures, const std::string& name, const std::string& caption) {
+  const std::string& png = pictures.png.at(name);
+  return "<figure><img alt=\"" + html_escaped(caption) + "\" src=\"data:image/png;base64," + base64_of<char>(png) +
+         "\"><figcaption>" + html_escaped(caption) + "</figcaption></figure>";
+}
+
+std::string moment_name(const std::string& word, const Frame& frame) {
+  return fmt::format("{} ({:.1f} s, depth {:.1f} mm)", word, frame.time_s, frame.base_depth_mm);
+}
+
+std::string picture_section(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
+                            const Pictures& pictures) {
+  if (!pictures.why_not.empty()) {
+    return "<p class=\"note\">The still pictures could not be drawn on this machine: " +
+           html_escaped(pictures.why_not) + " The interactive view above shows the same scene.</p>";
+  }
+  const std::array<std::pair<const char*, std::string>, 3> columns{
+      {{"before", moment_name("Before", run.frames[moments.before])},
+       {"deepest", moment_name("Deepest", run.frames[moments.deepest])},
+       {"after", moment_name("After", run.frames[moments.after])}}};
+  const std::array<std::pair<const char*, const char*>, 3> rows{
+      {{"view", "anatomy from the left front"},
+       {"sagittal", "sagittal section through the tip, seen from the left, needle projected"},
+       {"transverse", "transverse section through the target, seen from the feet"}}};
+  std::string html = color_key(regions) + "<div class=\"stills\">";
+  for (const auto& [file, what] : rows) {
+    for (const auto& [moment, when] : columns) {
+      html += figure(pictures, fmt::format("{}_{}.png", file, moment), fmt::format("{}: {}", when, what));
+    }
+  }
+  return html +
+         "</div><p>Thin grey outlines in the sections show where the organs lay before the insertion.</p>"
+         "<h3>How far the tissue has moved, needle at its deepest</h3><div class=\"stills two\">" +
+         figure(pictures, "sagittal_displacement.png", "Sagittal section: magnitude of displacement [mm]") +
+         figure(pictures, "transverse_displacement.png", "Transverse section: magnitude of displacement [mm]") +
+         "</div>";
+}
+
+std::string versions(const RunRecording& run) {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return html_escaped(fmt::format("Stylet {} · HDF5 {}.{}.{} · VTK {}", run.info.version, major, minor, release,
+                                  vtkVersion::GetVTKVersion()));
+}
+
+}  // namespace
+
+Result<std::string> report_html(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
+                                const Pictures& pictures) {
+  std::string story, supports;
+  for (const std::string& paragraph : tell_what_happened(run, moments))
+    story += "<p>" + html_escaped(paragraph) + "</p>";
+  for (const std::string& support : run.info.supports) supports += item(support);
+  std::vector<std::string> warnings = run.info.warnings;
+  for (const std::string& w : run.summary->warnings) {
+    if (std::find(warnings.begin(), warnings.end(), w) == warnings.end()) warnings.push_back(w);
+  }
+  const Slots slots{
+      {"version", html_escaped(run.info.version)},
+      {"title", html_escaped(run.info.scenario_name)},
+      {"facts",
+       html_escaped(fmt::format("{}, {} nodes, {} steps", run.info.method, run.mesh.nodes.size(), run.summary->steps))},
+      {"css", std::string(report_css())},
+      {"story", story},
+      {"tiles", tiles(run, run.frames[moments.deepest])},
+      {"warnings", warning_box(warnings)},
+      {"pictures", picture_section(run, regions, moments, pictures)},
+      {"events", event_rows(run.summary->events)},
+      {"step_times", html_escaped(tell_step_times(*run.summary))},
+      {"model", model_facts(run)},
+      {"supports", supports},
+      {"parameters", parameter_rows(run.info.parameters)},
+      {"scenario", html_escaped(run.info.scenario_text)},
+      {"versions", versions(run)},
+      {"data", json_script_safe(report_data(run, regions, moments))},
+      {"js", script_safe(report_js())},
+  };
+  return fill(report_template(), slots);
+}
+
+}  // namespace stylet::results

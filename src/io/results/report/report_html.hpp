@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pictures/pictures.hpp"
+#include "report/anatomy.hpp"
+#include "report/moments.hpp"
+#include "stylet/core/result.hpp"
+#include "stylet/io/recording_io.hpp"
+
+#include <span>
+#include <string>
+
+namespace stylet::results {
+
+/// The whole report.html: text, pictures, data, style and script in one page that loads nothing.
+/// @param run has at least one frame and a summary
+/// @param pictures what draw_pictures() returned
+Result<std::string> report_html(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
+                                const Pictures& pictures);
+
+}  // namespace stylet::results

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/text.hpp"
+
+#include <cctype>
+#include <cstdint>
+
+namespace stylet::results {
+
+std::string html_escaped(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string script_safe(std::string_view javascript) {
+  const auto starts_with = [&](std::size_t at, std::string_view word) {
+    if (javascript.size() - at < word.size()) return false;
+    for (std::size_t k = 0; k < word.size(); ++k) {
+      if (std::tolower(static_cast<unsigned char>(javascript[at + k])) != word[k]) return false;
+    }
+    return true;
+  };
+  std::string safe;
+  safe.reserve(javascript.size());
+  for (std::size_t k = 0; k < javascript.size(); ++k) {
+    safe += javascript[k];
+    if (javascript[k] == '<' && (starts_with(k, "</script") || starts_with(k, "<!--"))) safe += '\\';
+  }
+  return safe;
+}
+
+std::string json_script_safe(std::string_view json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string base64(std::span<const std::byte> bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::size_t left = bytes.size() - k;
+    const auto byte = [&](std::size_t j) { return j < left ? std::to_integer<std::uint32_t>(bytes[k + j]) : 0U; };
+    const std::uint32_t triple = byte(0) << 16U | byte(1) << 8U | byte(2);
+    text += kDigits[triple >> 18U & 63U];
+    text += kDigits[triple >> 12U & 63U];
+    text += left > 1 ? kDigits[triple >> 6U & 63U] : '=';
+    text += left > 2 ? kDigits[triple & 63U] : '=';
+  }
+  return text;
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/io/results_writer.hpp"
+
+#include "forces_csv.hpp"
+#include "output_folder.hpp"
+#include "paraview.hpp"
+#include "pictures/pictures.hpp"
+#include "recorder.hpp"
+#include "report/report_html.hpp"
+#include "stylet/io/recording_io.hpp"
+#include "summary_json.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet {
+namespace fs = std::filesystem;
+using namespace results;
+
+namespace {
+
+/// Puts the pictures into their folder; those of an earlier run that could not be drawn anew are removed.
+Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
+  std::error_code code;
+  if (pictures.png.empty()) {
+    for (const char* name : picture_names()) fs::remove(folder / name, code);
+    return Ok{};
+  }
+  fs::create_directories(folder, code);
+  for (const auto& [name, png] : pictures.png) {
+    if (auto done = write_file(folder / name, png); !done) return done;
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+struct ResultsWriter::Parts {
+  fs::path folder;
+  Index nodes;
+  std::function<MatX(const VecX&)> stress_of;
+  Recorder recorder;
+  Index frames = 0;
+  bool finished = false;
+};
+
+ResultsWriter::ResultsWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+ResultsWriter::~ResultsWriter() = default;
+
+Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folder, const RunInfo& info,
+                                                           const TetMesh& mesh,
+                                                           std::function<MatX(const VecX&)> stress_of) {
+  if (auto ready = prepare_folder(folder); !ready) return ready.error();
+  // summary.json is written last and tells a finished run: that of an earlier run must not stand beside the new run.h5.
+  std::error_code code;
+  fs::remove(folder / "summary.json", code);
+  auto file = RunFileWriter::create(folder / "run.h5", info, mesh);
+  if (!file) return file.error();
+  auto parts =
+      std::unique_ptr<Parts>(new Parts{folder, mesh.node_count(), std::move(stress_of), Recorder(std::move(*file))});
+  return std::unique_ptr<ResultsWriter>(new ResultsWriter(std::move(parts)));
+}
+
+Result<> ResultsWriter::add_step(const StepRecord& step) { return parts_->recorder.add_step(step); }
+
+Result<> ResultsWriter::add_frame(const Frame& frame) {
+  if (frame.displacement.size() != 3 * static_cast<Eigen::Index>(parts_->nodes)) {
+    return failure(
+        "frame",
+        fmt::format("{} displacement components, the mesh has {} nodes", frame.displacement.size(), parts_->nodes),
+        "Give three components per node of the mesh passed to open().");
+  }
+  StoredFrame stored{frame, {}};
+  stored.frame.displacement.resize(0);
+  stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
+  for (const double u : frame.displacement) stored.displacement.push_back(static_cast<float>(u));
+  if (auto added = parts_->recorder.add_frame(std::move(stored)); !added) return added;
+  ++parts_->frames;
+  return Ok{};
+}
+
+Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress) {
+  if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
+  parts_->finished = true;
+  const fs::path& folder = parts_->folder;
+  if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
+  if (parts_->frames == 0) {
+    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish().");
+  }
+  // Everything else is made from run.h5, so that nothing can be in a picture or a table that is not in the recording.
+  auto run = read_recording(folder / "run.h5");
+  if (!run) return run.error();
+  run->summary = summary;
+  const Moments moments = find_moments(run->frames);
+  const auto regions = region_views(run->mesh, run->info.target_regions);
+
+  if (auto done = write_file(folder / "forces.csv", forces_csv(run->steps)); !done) return done;
+  if (auto done = write_tissue(*run, parts_->stress_of, folder, progress); !done) return done;
+  if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
+  const Pictures pictures = draw_pictures(*run, regions, moments, progress);
+  if (auto done = write_pictures(pictures, folder / "pictures"); !done) return done;
+  report(progress, "report", 0.0);
+  auto page = report_html(*run, regions, moments, pictures);
+  if (!page) return page.error();
+  if (auto done = write_file(folder / "report.html", *page); !done) return done;
+  if (auto done = write_file(folder / "summary.json", summary_json(summary)); !done) return done;
+  report(progress, "report", 1.0);
+  return Ok{};
+}
+
+}  // namespace stylet

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Names of events above a plot, in as many lanes as needed so that none covers another, each with a line to its place.
+import type uPlot from 'uplot';
+import type { EventMark } from '../data';
+import { font, fontSize, INK, lineScale, PALE } from './style';
+
+export interface PlacedEvent {
+  event: EventMark;
+  x: number;  // value on the x scale
+  y: number;  // value on the y scale: where the dot goes
+}
+
+interface Label {
+  left: number;  // CSS px, relative to the plotting area
+  lane: number;
+  width: number;
+  placed: PlacedEvent;
+}
+
+const PADDING = 4;
+
+/** Gives every label the lowest lane (nearest to the plot) in which it covers no other. */
+function arrange(events: PlacedEvent[], position: (x: number) => number, width: number, textWidth: (t: string) => number): Label[] {
+  const ends: { from: number; to: number }[][] = [];
+  return events
+    .map((placed) => ({ placed, at: position(placed.x) }))
+    .filter(({ at }) => at >= -1 && at <= width + 1)
+    .sort((a, b) => a.at - b.at)
+    .map(({ placed, at }) => {
+      const labelWidth = textWidth(placed.event.label) + 2 * PADDING;
+      const left = Math.max(0, Math.min(width - labelWidth, at - labelWidth / 2));
+      const span = { from: left - 3, to: left + labelWidth + 3 };
+      let lane = ends.findIndex((taken) => taken.every((t) => span.to <= t.from || span.from >= t.to));
+      if (lane < 0) lane = ends.push([]) - 1;
+      ends[lane].push(span);
+      return { left, lane, width: labelWidth, placed };
+    });
+}
+
+function measure(text: string): number {
+  const context = document.createElement('canvas').getContext('2d');
+  if (!context) return text.length * fontSize() * 0.55;
+  context.font = font();
+  return context.measureText(text).width;
+}
+
+export function laneHeight(): number {
+  return fontSize() * 1.5;
+}
+
+/** Height above the plotting area that the labels need when `width` px show `from` … `to`. */
+export function labelsHeight(events: PlacedEvent[], from: number, to: number, width: number): number {
+  const labels = arrange(events, (x) => ((x - from) / (to - from)) * width, width, measure);
+  const lanes = labels.reduce((most, l) => Math.max(most, l.lane + 1), 0);
+  return lanes * laneHeight() + 8;
+}
+
+/** Draws labels, lines and dots; a hook for uPlot's `draw`. */
+export function drawEvents(plot: uPlot, events: PlacedEvent[]): void {
+  const ratio = devicePixelRatio;
+  const { ctx } = plot;
+  const { left, top, width, height } = plot.bbox;
+  const labels = arrange(events, (x) => plot.valToPos(x, 'x'), width / ratio, measure);
+  const lane = laneHeight() * ratio;
+  const unit = ratio * lineScale();
+  const free = Math.floor((top / ratio - 4) / laneHeight());
+  ctx.save();
+  ctx.font = font().replace(/^[\d.]+/, (size) => String(parseFloat(size) * ratio));
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'middle';
+  for (const label of labels) {
+    const x = plot.valToPos(label.placed.x, 'x', true);
+    const y = plot.valToPos(label.placed.y, 'y', true);
+    const middle = top - 4 * ratio - (label.lane + 0.5) * lane;
+    const dotInside = y >= top && y <= top + height;
+    ctx.strokeStyle = PALE;
+    ctx.lineWidth = unit;
+    ctx.setLineDash([3 * unit, 3 * unit]);
+    ctx.beginPath();
+    ctx.moveTo(x, label.lane < free ? middle + lane / 2 - 2 * ratio : top);
+    ctx.lineTo(x, dotInside ? y : top + height);
+    ctx.stroke();
+    ctx.setLineDash([]);
+    if (dotInside) {
+      ctx.beginPath();
+      ctx.arc(x, y, 3.5 * unit, 0, 2 * Math.PI);
+      ctx.fillStyle = '#fff';
+      ctx.fill();
+      ctx.strokeStyle = INK;
+      ctx.lineWidth = 1.5 * unit;
+      ctx.stroke();
+    }
+  }
+  for (const label of labels) {
+    if (label.lane >= free) continue;
+    const middle = top - 4 * ratio - (label.lane + 0.5) * lane;
+    ctx.fillStyle = '#fff';
+    ctx.fillRect(left + label.left * ratio, middle - lane / 2 + ratio, label.width * ratio, lane - 2 * ratio);
+    ctx.fillStyle = INK;
+    ctx.fillText(label.placed.event.label, left + (label.left + PADDING) * ratio, middle);
+  }
+  ctx.restore();
+}

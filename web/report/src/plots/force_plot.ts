@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Force curves against time or depth. Depth goes forth and back, so the curves are drawn as paths through all steps
+// (uPlot's scatter mode), solid on the way in and dashed on the way out.
+import uPlot from 'uplot';
+import { nearestStep, turningStep, type ReportData, type Steps } from '../data';
+import type { Moment } from '../moment';
+import { drawEvents, labelsHeight, type PlacedEvent } from './event_labels';
+import type { CurveChoice } from './legend';
+import { Readout } from './readout';
+import { axis, CURVES, followWidth, fontSize, INK, lineScale, type CurveKey } from './style';
+
+export interface ForcePlotOptions {
+  box: HTMLElement;
+  abscissa: 'time' | 'depth';
+  label: string;
+}
+
+interface Window {
+  x: [number, number];
+  y: [number, number];
+}
+
+function extent(arrays: Float32Array[], margin: number): [number, number] {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const array of arrays) {
+    for (const value of array) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  if (!(high > low)) return [low - 1 || -1, high + 1 || 1];
+  const room = (high - low) * margin;
+  return [low - room, high + room];
+}
+
+/** Strokes steps from … to of one curve. */
+function stroke(plot: uPlot, xs: Float32Array, ys: Float32Array, from: number, to: number): void {
+  const { ctx } = plot;
+  ctx.beginPath();
+  for (let i = from; i <= to; i++) {
+    const x = plot.valToPos(xs[i], 'x', true);
+    const y = plot.valToPos(ys[i], 'y', true);
+    if (i === from) ctx.moveTo(x, y);
+    else ctx.lineTo(x, y);
+  }
+  ctx.stroke();
+}
+
+function drawCurve(plot: uPlot, steps: Steps, xs: Float32Array, turn: number, key: CurveKey, color: string, width: number): void {
+  const { ctx, bbox } = plot;
+  const unit = devicePixelRatio * lineScale();
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.strokeStyle = color;
+  ctx.lineWidth = width * unit;
+  ctx.lineJoin = 'round';
+  stroke(plot, xs, steps[key], 0, turn);
+  ctx.setLineDash([6 * unit, 3 * unit]);
+  stroke(plot, xs, steps[key], turn, xs.length - 1);
+  ctx.restore();
+}
+
+/** Vertical line (time) or dot on the axial curve (depth) for the frame shown in the 3D view. */
+function drawMoment(plot: uPlot, x: number, y: number, asLine: boolean): void {
+  const { ctx, bbox } = plot;
+  const unit = devicePixelRatio * lineScale();
+  const at = plot.valToPos(x, 'x', true);
+  if (at < bbox.left || at > bbox.left + bbox.width) return;
+  ctx.save();
+  ctx.strokeStyle = INK;
+  ctx.lineWidth = 1.5 * unit;
+  if (asLine) {
+    ctx.beginPath();
+    ctx.moveTo(at, bbox.top);
+    ctx.lineTo(at, bbox.top + bbox.height);
+    ctx.stroke();
+  }
+  ctx.beginPath();
+  ctx.arc(at, plot.valToPos(y, 'y', true), 5 * unit, 0, 2 * Math.PI);
+  ctx.fillStyle = CURVES[0].color;
+  ctx.fill();
+  ctx.stroke();
+  ctx.restore();
+}
+
+export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Moment, options: ForcePlotOptions): void {
+  const { steps } = data;
+  const { box, abscissa } = options;
+  if (steps.time.length < 2) {
+    box.textContent = 'No steps were recorded.';
+    return;
+  }
+  const xs = steps[abscissa];
+  const turn = turningStep(steps);
+  const events: PlacedEvent[] = data.events.map((event) => ({
+    event,
+    x: abscissa === 'time' ? event.time_s : event.depth_mm,
+    y: event.force_N,
+  }));
+  const whole: Window = {
+    x: extent([xs], abscissa === 'time' ? 0 : 0.02),
+    y: extent(CURVES.map((c) => steps[c.key]), 0.06),
+  };
+  const axisSize = fontSize() * 3.2;
+  const top = labelsHeight(events, whole.x[0], whole.x[1], box.clientWidth - 2 * axisSize);
+
+  const plot = new uPlot(
+    {
+      mode: 2,
+      width: box.clientWidth,
+      height: box.clientHeight,
+      padding: [top, fontSize(), 0, 0],
+      legend: { show: false },
+      cursor: { drag: { x: true, y: true, uni: 30 }, points: { show: false }, dataIdx: () => null as unknown as number },
+      scales: {
+        x: { time: false, range: (_u, low, high) => [low ?? whole.x[0], high ?? whole.x[1]] },
+        y: { range: (_u, low, high) => [low ?? whole.y[0], high ?? whole.y[1]] },
+      },
+      axes: [axis(options.label, fontSize() * 2), axis('Force [N]', axisSize)],
+      series: [{}, ...CURVES.map((c) => ({
+        label: c.label,
+        facets: [{ scale: 'x', auto: true }, { scale: 'y', auto: true }],
+        paths: (u: uPlot) => {
+          if (choice.isShown(c.key)) drawCurve(u, steps, xs, turn, c.key, c.color, c.width);
+          return null;
+        },
+      }))],
+      hooks: {
+        draw: [
+          (u: uPlot) => {
+            drawEvents(u, events);
+            const i = nearestStep(steps, moment.frame.time);
+            drawMoment(u, xs[i], steps.axial[i], abscissa === 'time');
+          },
+        ],
+      },
+    } as uPlot.Options,
+    [null, ...CURVES.map((c) => [xs, steps[c.key]])] as unknown as uPlot.AlignedData,
+    box,
+  );
+  const show = (window: Window) => {
+    plot.batch(() => {
+      plot.setScale('x', { min: window.x[0], max: window.x[1] });
+      plot.setScale('y', { min: window.y[0], max: window.y[1] });
+    });
+  };
+  show(whole);
+  followWidth(box, plot);
+  choice.onChange(() => plot.redraw(false));
+  moment.onChange(() => plot.redraw(false));
+
+  const readout = new Readout(plot, steps);
+  const stepAt = (left: number, y: number): number => {
+    if (abscissa === 'time') return nearestStep(steps, plot.posToVal(left, 'x'));
+    let best = 0;
+    let distance = Infinity;
+    for (let i = 0; i < xs.length; i++) {
+      const dx = plot.valToPos(xs[i], 'x') - left;
+      const dy = plot.valToPos(steps.axial[i], 'y') - y;
+      const d = dx * dx + dy * dy;
+      if (d < distance) [best, distance] = [i, d];
+    }
+    return best;
+  };
+  const place = (e: MouseEvent) => {
+    const area = plot.over.getBoundingClientRect();
+    return stepAt(e.clientX - area.left, e.clientY - area.top);
+  };
+  plot.over.addEventListener('mousemove', (e) => {
+    const i = place(e);
+    readout.show(i, xs[i], steps.axial[i]);
+  });
+  plot.over.addEventListener('mouseleave', () => readout.hide());
+  let pressed: [number, number] = [0, 0];
+  plot.over.addEventListener('mousedown', (e) => (pressed = [e.clientX, e.clientY]));
+  plot.over.addEventListener('click', (e) => {
+    if (Math.hypot(e.clientX - pressed[0], e.clientY - pressed[1]) < 4) moment.setTime(steps.time[place(e)]);
+  });
+  plot.over.addEventListener('dblclick', () => show(whole));
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the pointer is at: a dot on the curve and a small box with the numbers of that step.
+import type uPlot from 'uplot';
+import type { Steps } from '../data';
+import { newtons } from './style';
+
+export class Readout {
+  private readonly box = document.createElement('div');
+  private readonly dot = document.createElement('div');
+
+  constructor(private readonly plot: uPlot, private readonly steps: Steps) {
+    this.box.className = 'readout';
+    this.dot.className = 'readout-dot';
+    plot.over.append(this.dot, this.box);
+    this.hide();
+  }
+
+  hide(): void {
+    this.box.hidden = true;
+    this.dot.hidden = true;
+  }
+
+  /** Shows step `i` with its axial force at (x, y) on the plot's scales. */
+  show(i: number, x: number, y: number): void {
+    const { steps, plot } = this;
+    const left = plot.valToPos(x, 'x');
+    const top = plot.valToPos(y, 'y');
+    this.box.innerHTML =
+      `<b>${steps.time[i].toFixed(3)} s</b>, depth ${steps.depth[i].toFixed(1)} mm<br>` +
+      `axial ${newtons(steps.axial[i])}<br>sagittal ${newtons(steps.sagittal[i])}<br>lateral ${newtons(steps.lateral[i])}`;
+    this.box.hidden = false;
+    this.dot.hidden = false;
+    this.dot.style.transform = `translate(${left}px, ${top}px)`;
+    const width = plot.over.clientWidth;
+    const beside = left + 14 + this.box.offsetWidth < width ? left + 14 : left - 14 - this.box.offsetWidth;
+    const below = Math.max(0, Math.min(plot.over.clientHeight - this.box.offsetHeight, top - this.box.offsetHeight / 2));
+    this.box.style.transform = `translate(${beside}px, ${below}px)`;
+  }
+}

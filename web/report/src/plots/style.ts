@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import type uPlot from 'uplot';
+
+// Okabe & Ito: told apart by readers of every colour vision.
+export const INK = '#23262b';
+export const PALE = '#8a9099';
+export const GRID = '#e6e8eb';
+export const CURVES = [
+  { key: 'axial', label: 'Axial', color: '#0072b2', width: 2 },
+  { key: 'sagittal', label: 'Sagittal', color: '#d55e00', width: 1.5 },
+  { key: 'lateral', label: 'Lateral', color: '#009e73', width: 1.5 },
+] as const;
+export type CurveKey = (typeof CURVES)[number]['key'];
+
+/** Size of text in the page [CSS px]; plots follow it, so that they grow with the screen. */
+export function fontSize(): number {
+  return parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.82;
+}
+
+/** Lines and dots grow with the text: 1 on a usual screen. */
+export function lineScale(): number {
+  return Math.max(1, fontSize() / 13);
+}
+
+export function font(): string {
+  return `${fontSize().toFixed(1)}px ${getComputedStyle(document.body).fontFamily}`;
+}
+
+export function axis(label: string, size: number): uPlot.Axis {
+  return {
+    label,
+    labelFont: font(),
+    font: font(),
+    labelSize: fontSize() * 1.7,
+    size,
+    stroke: INK,
+    grid: { stroke: GRID, width: 1 },
+    ticks: { stroke: GRID, width: 1, size: 5 },
+  };
+}
+
+/** Keeps a plot as wide as its box. */
+export function followWidth(box: HTMLElement, plot: uPlot): void {
+  new ResizeObserver(() => {
+    const width = box.clientWidth;
+    const height = box.clientHeight;
+    if (width > 0 && (width !== plot.width || height !== plot.height)) plot.setSize({ width, height });
+  }).observe(box);
+}
+
+/** Number with its unit, digits fit for reading. */
+export function newtons(value: number): string {
+  return `${value.toFixed(Math.abs(value) < 0.1 ? 3 : 2)} N`;
+}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The interactive view: stage, time slider, and what is shown how.
+import type { ReportData } from '../data';
+import type { Moment } from '../moment';
+import { roundDown, viridisGradient } from './colors';
+import { SLIP_COLOR, STICK_COLOR, TIP_COLOR } from './contact_marks';
+import { Stage, VIEWS } from './stage';
+
+function element<K extends keyof HTMLElementTagNameMap>(tag: K, className = '', text = ''): HTMLElementTagNameMap[K] {
+  const e = document.createElement(tag);
+  if (className) e.className = className;
+  if (text) e.textContent = text;
+  return e;
+}
+
+function button(text: string, action: () => void): HTMLButtonElement {
+  const b = element('button', '', text);
+  b.type = 'button';
+  b.addEventListener('click', action);
+  return b;
+}
+
+/** End of the colour scale [mm]: a round number at or above the largest displacement. */
+function scaleEnd(most: number): number {
+  const step = roundDown(Math.max(most, 0.01) / 4);
+  return step * Math.ceil(most / step - 1e-9);
+}
+
+function colorBar(most: number): HTMLElement {
+  const box = element('div', 'colorbar');
+  const strip = element('div', 'strip');
+  strip.style.background = viridisGradient('to right');
+  const ticks = element('div', 'ticks');
+  for (const share of [0, 0.25, 0.5, 0.75, 1]) ticks.append(element('span', '', (share * most).toPrecision(2).replace(/^0\.0$/, '0')));
+  box.append(element('div', 'title', 'moved by [mm]'), strip, ticks);
+  return box;
+}
+
+function regionList(stage: Stage): HTMLElement {
+  const list = element('div', 'regions');
+  for (const mesh of stage.regions) {
+    const row = element('div', 'region');
+    const label = element('label');
+    const box = element('input');
+    box.type = 'checkbox';
+    box.checked = mesh.visible;
+    box.addEventListener('change', () => {
+      mesh.visible = box.checked;
+      mesh.applyLook();
+      stage.draw();
+    });
+    const swatch = element('span', 'swatch');
+    swatch.style.background = mesh.region.color;
+    label.append(box, swatch, mesh.region.label + (mesh.region.target ? ' (target)' : ''));
+    const slider = element('input');
+    slider.type = 'range';
+    slider.min = '0';
+    slider.max = '1';
+    slider.step = '0.01';
+    slider.value = String(mesh.opacity);
+    slider.setAttribute('aria-label', `Opacity of ${mesh.region.label}`);
+    slider.addEventListener('input', () => {
+      mesh.opacity = slider.valueAsNumber;
+      mesh.applyLook();
+      stage.draw();
+    });
+    row.append(label, slider);
+    list.append(row);
+  }
+  return list;
+}
+
+function contactList(stage: Stage): HTMLElement {
+  const row = element('div', 'contacts');
+  const label = element('label');
+  const box = element('input');
+  box.type = 'checkbox';
+  box.checked = true;
+  box.addEventListener('change', () => {
+    stage.contacts.object.visible = box.checked;
+    stage.draw();
+  });
+  label.append(box, 'Contact points');
+  const key = element('div', 'contact-key');
+  for (const [color, shape, text] of [[STICK_COLOR, 'ball', 'sticking'], [SLIP_COLOR, 'ring', 'slipping'], [TIP_COLOR, 'diamond', 'tip']]) {
+    const item = element('span');
+    const mark = element('i', shape);
+    mark.style.setProperty('--mark', color);
+    item.append(mark, text);
+    key.append(item);
+  }
+  row.append(label, key);
+  return row;
+}
+
+function colorChoice(stage: Stage, bar: HTMLElement): HTMLElement {
+  const box = element('div', 'choice');
+  const set = (on: boolean) => {
+    for (const mesh of stage.regions) mesh.colorByDisplacement(on);
+    bar.hidden = !on;
+    stage.draw();
+  };
+  for (const [text, on] of [['Tissue', false], ['Displacement', true]] as const) {
+    const label = element('label');
+    const input = element('input');
+    input.type = 'radio';
+    input.name = 'viewer-color';
+    input.checked = !on;
+    input.addEventListener('change', () => set(on));
+    label.append(input, text);
+    box.append(label);
+  }
+  bar.hidden = true;
+  return box;
+}
+
+function timeControls(moment: Moment): HTMLElement {
+  const row = element('div', 'time');
+  const slider = element('input');
+  slider.type = 'range';
+  slider.min = '0';
+  slider.max = String(moment.count - 1);
+  slider.step = '1';
+  slider.setAttribute('aria-label', 'Moment of the run');
+  slider.addEventListener('input', () => {
+    stop();
+    moment.set(slider.valueAsNumber);
+  });
+  const text = element('output');
+  let timer = 0;
+  const stop = () => {
+    clearInterval(timer);
+    timer = 0;
+    play.textContent = 'Play';
+  };
+  const play = button('Play', () => {
+    if (timer) return stop();
+    if (moment.index === moment.count - 1) moment.set(0);
+    play.textContent = 'Pause';
+    timer = window.setInterval(() => {
+      if (moment.index === moment.count - 1) stop();
+      else moment.set(moment.index + 1);
+    }, 120);
+  });
+  play.className = 'play';
+  const update = () => {
+    slider.value = String(moment.index);
+    const { time, depth, label } = moment.frame;
+    text.textContent = `${time.toFixed(2)} s, depth ${depth.toFixed(1)} mm${label ? ` – ${label}` : ''}`;
+  };
+  moment.onChange(update);
+  update();
+  row.append(play, slider, text);
+  return row;
+}
+
+export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement): void {
+  const picture = element('div', 'picture');
+  const canvas = element('div', 'canvas');
+  const bar = element('div', 'scale-bar');
+  picture.append(canvas, bar);
+  root.append(picture);
+  let stage: Stage;
+  try {
+    stage = new Stage(data, canvas, (mm, px) => {
+      bar.textContent = `${mm} mm`;
+      bar.style.width = `${px}px`;
+    });
+  } catch {
+    root.replaceChildren(element('p', 'note',
+      'This browser offers no WebGL, which the interactive view needs. The pictures below show the same scene before, during and after the insertion.'));
+    return;
+  }
+  const most = scaleEnd(data.displacementMax);
+  const side = element('div', 'side');
+  const views = element('div', 'views');
+  for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
+  const scale = colorBar(most);
+  side.append(element('h3', '', 'Colours'), colorChoice(stage, scale), scale, element('h3', '', 'Shown'), regionList(stage),
+              contactList(stage), element('h3', '', 'View'), views,
+              element('p', 'hint', 'Drag to turn, wheel to zoom, right button to move.'));
+  root.append(side, timeControls(moment));
+  const update = () => stage.show(moment.frame, most);
+  moment.onChange(update);
+  update();
+}

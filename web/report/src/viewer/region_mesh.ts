@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface of one region, moved and coloured frame by frame.
+import * as THREE from 'three';
+import type { Frame, Region, ReportData } from '../data';
+import { toLinear, viridis } from './colors';
+
+/** Makes a translucent surface denser towards its rim, where one looks along it: shapes stay readable through another. */
+function densenRim(material: THREE.MeshStandardMaterial, strength: number): void {
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace(
+      '#include <opaque_fragment>',
+      `float rim = pow(1.0 - abs(dot(normalize(vViewPosition), normal)), 2.5);
+       diffuseColor.a = mix(diffuseColor.a, 1.0, ${strength.toFixed(2)} * rim);
+       #include <opaque_fragment>`);
+  };
+}
+
+export class RegionMesh {
+  readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
+  visible: boolean;
+  opacity: number;
+  private readonly nodes: Uint32Array;  // surface nodes this region uses
+  private readonly position: Float32Array;
+  private readonly color: Float32Array;
+
+  constructor(private readonly data: ReportData, readonly region: Region, order: number) {
+    const local = new Map<number, number>();
+    const index = new Uint32Array(region.triangles.length);
+    region.triangles.forEach((node, i) => {
+      let number = local.get(node);
+      if (number === undefined) local.set(node, (number = local.size));
+      index[i] = number;
+    });
+    this.nodes = Uint32Array.from(local.keys());
+    this.position = new Float32Array(3 * this.nodes.length);
+    this.color = new Float32Array(3 * this.nodes.length);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(new THREE.BufferAttribute(index, 1));
+    geometry.setAttribute('position', new THREE.BufferAttribute(this.position, 3));
+    geometry.setAttribute('color', new THREE.BufferAttribute(this.color, 3));
+    const material = new THREE.MeshStandardMaterial({ color: region.color, roughness: 0.7, metalness: 0 });
+    densenRim(material, region.background ? 0.06 : 0.6);
+    this.object = new THREE.Mesh(geometry, material);
+    this.object.renderOrder = order;
+    this.object.frustumCulled = false;
+    this.visible = true;
+    this.opacity = region.opacity;
+    this.applyLook();
+  }
+
+  applyLook(): void {
+    const { material } = this.object;
+    const opaque = this.opacity > 0.99;
+    if (material.transparent === opaque) material.needsUpdate = true;
+    material.opacity = this.opacity;
+    material.transparent = !opaque;
+    material.depthWrite = opaque;
+    this.object.visible = this.visible && this.opacity > 0.005;
+  }
+
+  colorByDisplacement(on: boolean): void {
+    const { material } = this.object;
+    material.vertexColors = on;
+    material.color.set(on ? '#ffffff' : this.region.color);
+    material.needsUpdate = true;
+  }
+
+  /** Moves the nodes to where they are in a frame. @param most displacement [mm] at the end of the colour scale */
+  show(frame: Frame, most: number): void {
+    const { points, displacementScale: scale } = this.data;
+    this.nodes.forEach((node, i) => {
+      let square = 0;
+      for (let k = 0; k < 3; k++) {
+        const u = frame.displacement[3 * node + k] * scale;
+        this.position[3 * i + k] = points[3 * node + k] + u;
+        square += u * u;
+      }
+      viridis(Math.sqrt(square) / most, this.color, 3 * i);
+      for (let k = 0; k < 3; k++) this.color[3 * i + k] = toLinear(this.color[3 * i + k]);
+    });
+    const { geometry } = this.object;
+    geometry.attributes.position.needsUpdate = true;
+    geometry.attributes.color.needsUpdate = true;
+    geometry.computeVertexNormals();
+  }
+}

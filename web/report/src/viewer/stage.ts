@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scene, camera and light: the anatomy, the needle and its contacts, seen in parallel projection.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Frame, ReportData } from '../data';
+import { roundDown } from './colors';
+import { ContactMarks } from './contact_marks';
+import { NeedleMesh } from './needle_mesh';
+import { OrientationCube } from './orientation_cube';
+import { RegionMesh } from './region_mesh';
+
+export const VIEWS: { name: string; from: [number, number, number] }[] = [
+  { name: 'Oblique', from: [0.8, -0.56, 0.2] },
+  { name: 'From the left', from: [1, 0, 0] },
+  { name: 'From the front', from: [0, -1, 0] },
+  { name: 'From the feet', from: [0, 0, -1] },
+];
+
+export class Stage {
+  readonly regions: RegionMesh[];
+  readonly contacts: ContactMarks;
+  private readonly needle: NeedleMesh;
+  private readonly scene = new THREE.Scene();
+  private readonly camera = new THREE.OrthographicCamera();
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly controls: OrbitControls;
+  private readonly cube = new OrientationCube();
+  private readonly centre = new THREE.Vector3();
+  private halfSize = 1;  // [mm] half height of the view at zoom 1
+  private pending = false;
+
+  /** Throws where the browser has no WebGL. @param scaleBar [mm] and width [CSS px] of a bar that fits the zoom */
+  constructor(private readonly data: ReportData, private readonly box: HTMLElement,
+              private readonly scaleBar: (mm: number, px: number) => void) {
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });  // kept for printing
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setClearColor('#ffffff');
+    box.append(this.renderer.domElement);
+
+    const bySize = [...data.regions].sort((a, b) => a.triangles.length - b.triangles.length);
+    this.regions = data.regions.map((r) => new RegionMesh(data, r, r.background ? 1000 : bySize.indexOf(r)));
+    this.needle = new NeedleMesh(data.needleDiameter);
+    this.contacts = new ContactMarks(data.needleDiameter);
+    this.scene.add(...this.regions.map((r) => r.object), this.needle.object, this.contacts.object);
+    this.scene.add(new THREE.HemisphereLight('#ffffff', '#c8ccd2', 1.7));
+    const lamp = new THREE.DirectionalLight('#ffffff', 1.6);
+    lamp.position.set(-0.4, 0.7, 1);
+    this.camera.add(lamp, lamp.target);
+    this.scene.add(this.camera);
+
+    this.frameOrgans();
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener('change', () => this.draw());
+    this.look(VIEWS[0].from);
+    new ResizeObserver(() => this.resize()).observe(box);
+    this.resize();
+  }
+
+  show(frame: Frame, most: number): void {
+    for (const region of this.regions) region.show(frame, most);
+    this.needle.show(frame);
+    this.contacts.show(frame);
+    this.draw();
+  }
+
+  /** Puts the camera in a standard place. @param from direction from the anatomy to the observer, LPS */
+  look(from: [number, number, number]): void {
+    const direction = new THREE.Vector3(...from).normalize();
+    // OrbitControls cannot look exactly along its up axis: a hair beside it, with the front of the patient upwards.
+    if (Math.abs(direction.z) > 0.99) direction.add(new THREE.Vector3(0, 1e-3 * Math.sign(direction.z) * -1, 0)).normalize();
+    this.controls.target.copy(this.centre);
+    this.camera.position.copy(this.centre).addScaledVector(direction, 12 * this.halfSize);
+    this.camera.zoom = 1;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Draws once before the next repaint, however often it is called until then. */
+  draw(): void {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      const { clientWidth: width, clientHeight: height } = this.box;
+      this.renderer.setViewport(0, 0, width, height);
+      this.renderer.render(this.scene, this.camera);
+      this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
+      this.updateScaleBar(height);
+    });
+  }
+
+  private updateScaleBar(height: number): void {
+    const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
+    const mm = roundDown((0.16 * this.box.clientWidth) / pixelsPerMm);
+    this.scaleBar(mm, mm * pixelsPerMm);
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.box;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    const aspect = width / height;
+    this.camera.left = -this.halfSize * aspect;
+    this.camera.right = this.halfSize * aspect;
+    this.camera.top = this.halfSize;
+    this.camera.bottom = -this.halfSize;
+    this.camera.near = 0;
+    this.camera.far = 40 * this.halfSize;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Centre and size from where something happens: the organs, the entry and the deepest tip. */
+  private frameOrgans(): void {
+    const box = new THREE.Box3();
+    const p = new THREE.Vector3();
+    const foreground = this.data.regions.filter((r) => !r.background);
+    for (const region of foreground.length > 0 ? foreground : this.data.regions) {
+      for (const node of region.triangles) box.expandByPoint(p.fromArray(this.data.points, 3 * node));
+    }
+    const entry = new THREE.Vector3(...this.data.entry);
+    box.expandByPoint(entry);
+    box.expandByPoint(p.copy(entry).addScaledVector(new THREE.Vector3(...this.data.direction), -12));
+    for (const frame of this.data.frames) {
+      if (frame.needle.length >= 3 && frame.depth > 0) box.expandByPoint(p.fromArray(frame.needle, frame.needle.length - 3));
+    }
+    box.getCenter(this.centre);
+    const size = box.getSize(p);
+    this.halfSize = 0.58 * Math.max(size.z, 0.8 * Math.hypot(size.x, size.y));
+  }
+}
