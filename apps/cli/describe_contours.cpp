@@ -39,7 +39,8 @@ Description describe(const ContourSet& contours) {
                fmt::format("{:.1f}", size.volume_cc)});
   }
   Facts facts;
-  facts.add("kind", fmt::format("contours of {} structures", contours.rois.size()));
+  facts.add("kind",
+            fmt::format("contours of {} structure{}", contours.rois.size(), contours.rois.size() == 1 ? "" : "s"));
   if (!contours.label.empty()) facts.add("label", contours.label);
   if (!contours.frame_of_reference.empty()) facts.add("frame of reference", contours.frame_of_reference);
   out.text = facts.text() + "\n\n" + table.text();

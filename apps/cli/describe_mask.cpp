@@ -73,7 +73,8 @@ Description describe(const LabelImage& image) {
   }
 
   Facts facts;
-  facts.add("kind", fmt::format("label mask with {} labels", out.json["labels"].size()));
+  facts.add("kind", fmt::format("label mask with {} label{}", out.json["labels"].size(),
+                                out.json["labels"].size() == 1 ? "" : "s"));
   facts.add("voxels", fmt::format("{} × {} × {}", image.size[0], image.size[1], image.size[2]));
   facts.add("spacing",
             fmt::format("{:.4g} × {:.4g} × {:.4g} mm", image.spacing.x(), image.spacing.y(), image.spacing.z()));

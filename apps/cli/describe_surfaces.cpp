@@ -67,7 +67,7 @@ Description describe(const std::vector<Surface>& surfaces) {
                extent_text(box), fmt::to_string(open), open == 0 ? fmt::format("{:.2f}", volume_cc) : ""});
   }
   Facts facts;
-  facts.add("kind", fmt::format("{} triangulated surfaces", surfaces.size()));
+  facts.add("kind", fmt::format("{} triangulated surface{}", surfaces.size(), surfaces.size() == 1 ? "" : "s"));
   out.text = facts.text() + "\n\n" + table.text();
   return out;
 }
