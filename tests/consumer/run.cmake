@@ -16,12 +16,10 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -D CMAKE_CXX_
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
+run(${WORK}/prefix/bin/stylet --version)
 
 foreach(private io mesher phantom)
   if(EXISTS ${WORK}/prefix/include/stylet/${private})
     message(FATAL_ERROR "headers of ${private} are installed, but not its library")
   endif()
 endforeach()
-if(NOT EXISTS ${WORK}/prefix/bin/stylet)
-  message(FATAL_ERROR "the stylet program is not installed")
-endif()
