@@ -10,13 +10,14 @@
 namespace stylet {
 
 namespace {
-constexpr int kTriesPerContact = 8;  ///< places looked at, a sixteenth of the spacing apart
-constexpr double kYoungest = 1e-6;   ///< smallest ρ
+constexpr double kTriesPerSpacing = 16.0;  ///< where a contact cannot be laid, the next place is tried so soon
+constexpr double kPatience = 1.5;          ///< spacings without a node before an interpolated contact will do
+constexpr double kYoungest = 1e-6;         ///< smallest ρ
 }  // namespace
 
 bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& at, Placement placement,
                                 const Vec3& travel, StepReport& report) {
-  if (track.marks.size() == track.marks.capacity()) {
+  if (track.marks.size() == static_cast<std::size_t>(settings.capacity)) {
     report.flags |= StepReport::out_of_contacts;
     return true;  // counts as laid: no other place would be better
   }
@@ -37,7 +38,7 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
     if (compliance.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)}) <
         settings.independence) {
       compliance.remove_last_embedded();
-      return true;
+      return false;
     }
   }
   track.marks.push_back({xi, x, at, region_of(at.tet), added.point});
@@ -55,20 +56,14 @@ void Insertion::Parts::lay_marks(const Vec3& from, double from_xi, const Materia
   while (candidate_xi <= track.end_xi) {
     const Vec3 x = from + std::max(0.0, candidate_xi - from_xi) * direction;
     const auto at = tissue.locator->find(x, tip.at.tet, -direction);
-    bool laid = !at.has_value();
-    if (at) {
-      laid = lay_mark(candidate_xi, x, *at, nodes ? Placement::interior : Placement::embedded, direction, report);
-      // A track that runs along a face or an edge leaves no room for a node: interpolate there.
-      if (!laid && candidate_tries + 1 >= kTriesPerContact)
-        laid = lay_mark(candidate_xi, x, *at, Placement::embedded, direction, report);
+    bool laid = false;
+    if (at && nodes) laid = lay_mark(candidate_xi, x, *at, Placement::interior, direction, report);
+    // A track that runs along a face or an edge leaves no room for a node: interpolate there.
+    const double last = track.marks.empty() ? 0.0 : track.marks.back().xi;
+    if (at && !laid && (!nodes || candidate_xi - last >= kPatience * settings.spacing_mm)) {
+      laid = lay_mark(candidate_xi, x, *at, Placement::embedded, direction, report);
     }
-    if (laid) {
-      candidate_tries = 0;
-      candidate_xi += settings.spacing_mm;
-    } else {
-      ++candidate_tries;
-      candidate_xi += settings.spacing_mm / 16.0;
-    }
+    candidate_xi += laid ? settings.spacing_mm : settings.spacing_mm / kTriesPerSpacing;
   }
 }
 

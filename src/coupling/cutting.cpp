@@ -65,6 +65,7 @@ void Insertion::Parts::march(double advance) {
     tip.x = tip.x_start;
     end = tip.at_start;
     tip.blocked = false;
+    tip.held = true;
   }
   tip.at = end;
   tip.advance = (tip.x - tip.x_start).norm();
@@ -140,6 +141,10 @@ void Insertion::Parts::commit_tip(StepReport& report) {
       }
     }
   }
+  if (tip.held) {
+    tip.held = false;
+    report.flags |= StepReport::compliance_missing;
+  }
   if (!tip.touching) return;
   switch (tip.state) {
     case Tip::State::open:
@@ -186,7 +191,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
 
   if (kind == InsertionEventKind::skin_contact) {
     joined = -1;
-    for (std::size_t k = 0; k < old_tracks.size(); ++k) {
+    for (std::size_t k = 0; k < old_count; ++k) {
       const Track& old = old_tracks[k];
       if ((old.entry - x).norm() < settings.join_mm && old.entry_direction.dot(t) > 0.98) joined = static_cast<int>(k);
     }
@@ -206,12 +211,10 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
       track.open = false;
     }
     candidate_xi = track.end_xi + (joined >= 0 ? 1.0 : 0.5) * settings.spacing_mm;
-    candidate_tries = 0;
   } else {
     track.end_xi += (x - track.end).norm();  // the needle crossed a gap outside the tissue
     track.open = false;
     candidate_xi = track.end_xi + 0.5 * settings.spacing_mm;
-    candidate_tries = 0;
   }
   if (joined < 0 || kind != InsertionEventKind::skin_contact) {
     const double membrane = membrane_force(tissue.laws, -1, region);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "insertion_parts.hpp"
 
-#include "../needle/cholesky.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -18,8 +16,8 @@ namespace {
 constexpr int kMaxNewton = 30;
 constexpr int kMaxPivots = 60;
 constexpr int kMaxToggles = 6;
-constexpr double kTolerance_N = 1e-9;      ///< error of a row over its diagonal: a force
-constexpr double kNeedleTolerance = 1e-8;  ///< [N mm]
+constexpr double kTolerance = 1e-9;         ///< error of a row over its diagonal: a force, over the largest one or 1 N
+constexpr double kNeedleTolerance = 1e-10;  ///< out-of-balance moment over the largest force or 1 N, times the length
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
 }  // namespace
@@ -62,7 +60,7 @@ void Insertion::Parts::fill_loads() {
 
 /// What each row adds to the diagonal, and to the right-hand side, in its present state.
 void Insertion::Parts::soften_rows(double h) {
-  softening.head(3 * load_count()).setZero();  // right-hand side parts
+  system.shift.head(3 * load_count()).setZero();
   for (int c = 0; c < load_count(); ++c) {
     double lateral = 0.0;
     double axial = 0.0;
@@ -88,32 +86,63 @@ void Insertion::Parts::soften_rows(double h) {
         shift = slip * sign * grip.law.coulomb_N_per_mm * grip.length + grip.s_start - grip.s;
       }
     }
-    diagonal.segment<3>(3 * c) << lateral, lateral, axial;
-    softening[3 * c + 2] = shift;
+    system.D.segment<3>(3 * c) << lateral, lateral, axial;
+    system.shift[3 * c + 2] = shift;
   }
 }
 
-/// Matrix and right-hand side of all rows that may be held, in local frames.
-void Insertion::Parts::assemble() {
+/// The needle's tangent at its present shape and everything else of the linear equations that no change of state
+/// changes.
+void Insertion::Parts::linearise() {
   const int count = load_count();
-  gather_forces();
+  const auto size = static_cast<Eigen::Index>(3 * count);
+  auto compliance_of_needle = N.topLeftCorner(size, size);
+  auto motion = free.head(size);
+  system.spring.head(size).setZero();
+  system.supported = !needle->linearise(loads, compliance_of_needle, motion);
+  if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness at each contact
+    lend_springs();
+    needle->linearise(loads, compliance_of_needle, motion, {springs.data(), static_cast<std::size_t>(count)});
+  }
   for (int c = 0; c < count; ++c) {
     const Mat3& Qc = frames[static_cast<std::size_t>(c)];
-    Vec3 gap = needle->point(arc_of(c)) + free.segment<3>(3 * c) - material_of(c);
+    const Vec3 freely = free.segment<3>(3 * c);
     const double beyond = c == 0 ? 0.0 : grips[static_cast<std::size_t>(c - 1)].s - arc_of(c);
-    gap += beyond * Qc.col(2);
+    const Vec3 gap = needle->point(arc_of(c)) + freely - material_of(c) + beyond * Qc.col(2);
+    system.gap.segment<3>(3 * c).noalias() = Qc.transpose() * gap;
+    system.free.segment<3>(3 * c).noalias() = Qc.transpose() * freely;
+    system.now.segment<3>(3 * c).noalias() = Qc.transpose() * force_of(c);
     for (int d = 0; d < count; ++d) {
-      const Mat3 Ncd = N.block<3, 3>(3 * c, 3 * d);
-      gap.noalias() += Ncd * force_of(d);
-      if (d > c) continue;
-      M.block<3, 3>(3 * c, 3 * d).noalias() =
-          Qc.transpose() * (compliance(point_of(c), point_of(d)) + Ncd) * frames[static_cast<std::size_t>(d)];
+      const Mat3& Qd = frames[static_cast<std::size_t>(d)];
+      system.N.block<3, 3>(3 * c, 3 * d).noalias() = Qc.transpose() * N.block<3, 3>(3 * c, 3 * d) * Qd;
+      if (d <= c)
+        system.A.block<3, 3>(3 * c, 3 * d).noalias() = Qc.transpose() * compliance(point_of(c), point_of(d)) * Qd;
     }
-    rhs.segment<3>(3 * c).noalias() = Qc.transpose() * gap;
+  }
+  system.begin(size);
+}
+
+/// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
+/// the needle on them does not buckle where needle and tissue together do not.
+void Insertion::Parts::lend_springs() {
+  constexpr double hardest_mm_per_N = 1e-3;
+  for (int c = 0; c < load_count(); ++c) {
+    double own = compliance(point_of(c), point_of(c)).trace() / 3.0;
+    bool lend = true;
+    if (c == 0) {
+      lend = grips.empty() && tip.touching && tip.state != Tip::State::open;
+    } else {
+      own += grips[static_cast<std::size_t>(c - 1)].softness;
+    }
+    const double stiffness = lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0;
+    const Mat3& Q = frames[static_cast<std::size_t>(c)];
+    springs[static_cast<std::size_t>(c)] = stiffness * Q.leftCols<2>() * Q.leftCols<2>().transpose();
+    system.spring.segment<2>(3 * c).setConstant(stiffness);
   }
 }
 
 void Insertion::Parts::select_rows() {
+  std::vector<int>& rows = system.rows;
   rows.clear();
   if (tip.touching && tip.state != Tip::State::open) {
     if (std::isfinite(tip.lateral_softness)) {
@@ -127,17 +156,14 @@ void Insertion::Parts::select_rows() {
 
 /// By how much [N] the present solution contradicts the state of a contact; 0 = consistent, or frozen.
 double Insertion::Parts::contradiction(int load) const {
-  const double axial = lambda[3 * load + 2];
+  const double axial = system.lambda[3 * load + 2];
   if (load == 0) {
     if (!tip.touching || tip.toggles > kMaxToggles) return 0.0;
     switch (tip.state) {
-      case Tip::State::open: {
-        double penetration = rhs[2];
-        for (const int r : rows) penetration -= M(r, 2) * lambda[r];  // r ≥ 3: the tip holds nothing while open
-        return penetration / std::max(M(2, 2), kTiny);
-      }
+      case Tip::State::open:
+        return system.opening(2) / std::max(system.yield(2), kTiny);
       case Tip::State::stick:
-        return std::max(-axial, tip.blocked ? 0.0 : axial - tip.limit);
+        return std::max(-axial, tip.blocked || tip.held ? 0.0 : axial - tip.limit);
       case Tip::State::cut:
         return tip.advance > 0.0 ? 0.0 : tip.cutting - axial;
     }
@@ -150,7 +176,7 @@ double Insertion::Parts::contradiction(int load) const {
 }
 
 void Insertion::Parts::change_state(int load, StepReport& report) {
-  const double axial = lambda[3 * load + 2];
+  const double axial = system.lambda[3 * load + 2];
   ++report.pivots;
   if (load == 0) {
     if (++tip.toggles > kMaxToggles) report.flags |= StepReport::contact_cycling;
@@ -171,7 +197,7 @@ void Insertion::Parts::change_state(int load, StepReport& report) {
   }
   grip.state = Grip::State::stick;
   // Back to where it was held; the row's right-hand side must know at once.
-  rhs[3 * load + 2] += grip.s_start - grip.s;
+  system.move_row(3 * load + 2, grip.s_start - grip.s);
   grip.s = grip.s_start;
 }
 
@@ -179,27 +205,12 @@ void Insertion::Parts::change_state(int load, StepReport& report) {
 /// @return true when a state has changed
 bool Insertion::Parts::pivot(double h, StepReport& report) {
   bool changed = false;
-  const auto entry = [this](int i, int j) { return i >= j ? M(i, j) : M(j, i); };
   for (int round = 0; round < kMaxPivots; ++round) {
     soften_rows(h);
     select_rows();
-    const auto size = static_cast<Eigen::Index>(rows.size());
-    lambda.head(3 * load_count()).setZero();
-    if (size > 0) {
-      for (Eigen::Index j = 0; j < size; ++j) {
-        const int rj = rows[static_cast<std::size_t>(j)];
-        for (Eigen::Index i = j; i < size; ++i) reduced(i, j) = entry(rows[static_cast<std::size_t>(i)], rj);
-        reduced(j, j) += diagonal[rj];
-        solution[j] = rhs[rj] + softening[rj];
-      }
-      auto matrix = reduced.topLeftCorner(size, size);
-      if (!beam::factorise(matrix)) {
-        report.flags |= StepReport::not_converged;
-        return changed;
-      }
-      beam::solve_lower(matrix, 0, solution.head(size));
-      beam::solve_upper(matrix, solution.head(size));
-      for (Eigen::Index i = 0; i < size; ++i) lambda[rows[static_cast<std::size_t>(i)]] = solution[i];
+    if (!system.solve()) {
+      report.flags |= StepReport::not_converged;
+      return changed;
     }
 
     // Find the worst contradiction; while there are many, change all of them at once.
@@ -233,21 +244,29 @@ bool Insertion::Parts::pivot(double h, StepReport& report) {
 /// Largest error of a held row at the present shape, as a force: error over the row's diagonal.
 double Insertion::Parts::equation_error() const {
   double error = 0.0;
-  for (const int r : rows) {
+  for (const int r : system.rows) {
     const int c = r / 3;
     const int k = r % 3;
     const Mat3& Q = frames[static_cast<std::size_t>(c)];
     const Vec3& f = c == 0 ? tip.force : grips[static_cast<std::size_t>(c - 1)].force;
     const double beyond = c == 0 ? 0.0 : grips[static_cast<std::size_t>(c - 1)].s - arc_of(c);
     const Vec3 gap = material_of(c) + tissue_displacement(point_of(c)) - needle->point(arc_of(c)) - beyond * Q.col(2);
-    const double value = Q.col(k).dot(gap) + diagonal[r] * Q.col(k).dot(f) - softening[r];
-    error = std::max(error, std::abs(value) / (M(r, r) + diagonal[r]));
+    const double value = Q.col(k).dot(gap) + system.D[r] * Q.col(k).dot(f) - system.shift[r];
+    error = std::max(error, std::abs(value) / system.yield(r));
   }
   // A contact that is not held in a direction must carry nothing there.
   if (tip.touching && tip.state != Tip::State::open && !std::isfinite(tip.lateral_softness)) {
     error = std::max(error, (frames[0].leftCols<2>().transpose() * tip.force).norm());
   }
   return error;
+}
+
+/// True when needle, tissue and laws are in balance to `slack` times the tolerance.
+bool Insertion::Parts::balanced(double slack) const {
+  double largest = 1.0;
+  for (const PointLoad& load : loads) largest = std::max(largest, load.force.norm());
+  return equation_error() < slack * kTolerance * largest &&
+         needle->residual(loads) < slack * kNeedleTolerance * largest * length();
 }
 
 /// Moves a sliding contact along the needle by what its friction law says.
@@ -269,7 +288,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     grip.toggles = 0;
   }
   tip.toggles = 0;
-  tip.blocked = false;
+  tip.blocked = tip.held = false;
   tip.x_start = tip.x;
   tip.at_start = tip.at;
   tip.advance = 0.0;
@@ -281,24 +300,24 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     set_frames();
     if (iteration > 0) {
       soften_rows(h);
-      if (!changed && equation_error() < kTolerance_N && needle->residual(loads) < kNeedleTolerance) return;
+      if (!changed && balanced(1.0)) return;
     }
     ++report.iterations;
-    const auto count = static_cast<Eigen::Index>(3 * load_count());
-    needle->linearise(loads, N.topLeftCorner(count, count), free.head(count));
-    assemble();
+    linearise();
     changed = pivot(h, report);
 
-    for (int c = 0; c < load_count(); ++c)
-      force_of(c).noalias() = frames[static_cast<std::size_t>(c)] * lambda.segment<3>(3 * c);
-    fill_loads();
+    for (int c = 0; c < load_count(); ++c) {
+      const Mat3& Q = frames[static_cast<std::size_t>(c)];
+      loads[static_cast<std::size_t>(c)].force.noalias() = -(Q * system.p.segment<3>(3 * c));
+      force_of(c).noalias() = Q * system.lambda.segment<3>(3 * c);
+    }
     needle->advance(loads);
     for (std::size_t k = 0; k < grips.size(); ++k)
-      slide(grips[k], frames[k + 1], lambda[3 * static_cast<Eigen::Index>(k) + 5], h);
+      slide(grips[k], frames[k + 1], system.lambda[3 * static_cast<Eigen::Index>(k) + 5], h);
     if (tip.touching && tip.state == Tip::State::cut) {
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
-      march(std::max(0.0, slip * (lambda[2] - tip.cutting)));
-      if (tip.blocked) {
+      march(std::max(0.0, slip * (system.lambda[2] - tip.cutting)));
+      if (tip.blocked || tip.held) {
         tip.state = Tip::State::stick;
         changed = true;
       }
@@ -307,9 +326,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   fill_loads();
   set_frames();
   soften_rows(h);
-  if (equation_error() > 1e3 * kTolerance_N || needle->residual(loads) > 1e3 * kNeedleTolerance) {
-    report.flags |= StepReport::not_converged;
-  }
+  if (!balanced(1e3)) report.flags |= StepReport::not_converged;
 }
 
 }  // namespace stylet

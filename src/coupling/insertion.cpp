@@ -15,19 +15,19 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
     : tissue(std::move(tissue_)),
       needle(std::move(needle_)),
       settings(settings_),
-      compliance(tissue.store, *tissue.locator, settings_.capacity) {
+      compliance(tissue.store, *tissue.locator, settings_.capacity),
+      system(settings_.capacity + 1) {
   const auto capacity = static_cast<std::size_t>(settings.capacity);
   const Eigen::Index size = 3 * (settings.capacity + 1);
   track.marks.reserve(capacity);
-  old_tracks.reserve(kOldTracks);
+  old_tracks.resize(kOldTracks);
+  for (Track& old : old_tracks) old.marks.reserve(capacity);
   grips.reserve(capacity);
   loads.reserve(capacity + 1);
   frames.resize(capacity + 1);
-  rows.reserve(static_cast<std::size_t>(size));
+  springs.resize(capacity + 1);
   N = MatX::Zero(size, size);
-  M = MatX::Zero(size, size);
-  reduced = MatX::Zero(size, size);
-  free = rhs = lambda = solution = diagonal = softening = VecX::Zero(size);
+  free = VecX::Zero(size);
   forces = MatX::Zero(3, settings.capacity + 1);
 }
 
@@ -39,18 +39,14 @@ void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, in
 /// The needle is out: the tissue model is what it was before the first contact. The tracks stay known.
 void Insertion::Parts::finish_insertion(StepReport& report) {
   if (track.end_xi > 0.0) {
-    if (joined >= 0) {
-      std::swap(old_tracks[static_cast<std::size_t>(joined)], track);
-    } else {
-      if (old_tracks.size() == kOldTracks) {
+    if (joined < 0) {
+      if (old_count < old_tracks.size()) {
+        ++old_count;
+      } else {  // no room: the oldest is forgotten
         std::rotate(old_tracks.begin(), old_tracks.begin() + 1, old_tracks.end());
-        std::swap(old_tracks.back(), track);
-      } else {
-        old_tracks.emplace_back();
-        old_tracks.back().marks.reserve(static_cast<std::size_t>(settings.capacity));
-        std::swap(old_tracks.back(), track);
       }
     }
+    std::swap(old_tracks[joined >= 0 ? static_cast<std::size_t>(joined) : old_count - 1], track);
   }
   track.marks.clear();
   track.end_xi = 0.0;
@@ -192,11 +188,14 @@ void Insertion::prepare(double radius_mm) {
     for (const Index node : locator.mesh().tets[tet]) nodes.push_back(node);
     for (const Index next : locator.topology().neighbour[tet]) {
       if (next < 0 || seen[static_cast<std::size_t>(next)]) continue;
-      bool near = false;
-      for (const Index node : locator.mesh().tets[static_cast<std::size_t>(next)]) {
-        near = near || (locator.mesh().nodes[static_cast<std::size_t>(node)] - centre).norm() < radius_mm;
-      }
-      if (!near) continue;
+      // An element counts when its bounding ball meets the ball around the tip.
+      const auto& corners = locator.mesh().tets[static_cast<std::size_t>(next)];
+      Vec3 middle = Vec3::Zero();
+      for (const Index node : corners) middle += 0.25 * locator.mesh().nodes[static_cast<std::size_t>(node)];
+      double reach = radius_mm;
+      for (const Index node : corners)
+        reach = std::max(reach, radius_mm + (locator.mesh().nodes[static_cast<std::size_t>(node)] - middle).norm());
+      if ((middle - centre).norm() > reach) continue;
       seen[static_cast<std::size_t>(next)] = 1;
       queue.push_back(next);
     }
@@ -208,7 +207,7 @@ const Needle& Insertion::needle() const { return *parts_->needle; }
 const TrackCompliance& Insertion::compliance() const { return parts_->compliance; }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }
 const Track& Insertion::track() const { return parts_->track; }
-std::span<const Track> Insertion::old_tracks() const { return parts_->old_tracks; }
+std::span<const Track> Insertion::old_tracks() const { return {parts_->old_tracks.data(), parts_->old_count}; }
 
 std::vector<ContactState> Insertion::contacts() const {
   const Parts& p = *parts_;

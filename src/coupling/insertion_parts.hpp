@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "contact_system.hpp"
 #include "stylet/coupling/insertion.hpp"
 
 #include <deque>
@@ -42,6 +43,7 @@ struct Tip {
   double advance = 0.0;            ///< [mm] cut in this sub-step
   bool blocked = false;            ///< the cut met a surface in this sub-step
   Crossing crossing;               ///< that surface
+  bool held = false;               ///< the compliance ahead is missing: no cut in this sub-step
   bool at_membrane = false;        ///< x lies on a surface that has not been broken
   Index next_tet = -1;             ///< element behind that surface, -1 = outside the patient
   double limit = 0.0;              ///< [N] force that starts the cut
@@ -62,20 +64,21 @@ struct Insertion::Parts {
   TipPhase phase = TipPhase::air;
   Vec3 air_tip = Vec3::Zero();  ///< where the tip was, in undeformed coordinates, while it is in the air
   Track track;
-  std::vector<Track> old_tracks;
+  std::vector<Track> old_tracks;  ///< the first old_count are in use, the rest is room
+  std::size_t old_count = 0;
   int joined = -1;          ///< old track this insertion runs in
   std::vector<Grip> grips;  ///< grip k sits on mark k of the track
   Tip tip;
   double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
-  int candidate_tries = 0;
   Vec3 prepared_at = Vec3::Constant(1e30);
 
   // Scratch of the equilibrium, sized once.
   std::vector<PointLoad> loads;  ///< tip first, then the grips: the needle's side, −force
   std::vector<Mat3> frames;      ///< columns n1, n2, t at each load
-  std::vector<int> rows;         ///< active rows
-  MatX N, M, reduced;
-  VecX free, rhs, lambda, solution, diagonal, softening;
+  std::vector<Mat3> springs;     ///< lent to the needle at each load
+  MatX N;                        ///< [mm/N] needle's compliance, LPS
+  VecX free;                     ///< [mm] needle's own Newton step at the loads, LPS
+  ContactSystem system;
   MatX forces;  ///< (3 × points) on the tissue
 
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
@@ -97,13 +100,15 @@ struct Insertion::Parts {
   void set_frames();
   void fill_loads();
   void soften_rows(double h);
-  void assemble();
+  void linearise();
+  void lend_springs();
   bool pivot(double h, StepReport& report);
   [[nodiscard]] double contradiction(int load) const;
   void change_state(int load, StepReport& report);
   void slide(Grip& grip, const Mat3& frame, double axial, double h);
   void select_rows();
   [[nodiscard]] double equation_error() const;
+  [[nodiscard]] bool balanced(double slack) const;
 
   // cutting.cpp: the tip, its track and surfaces.
   void aim_tip();

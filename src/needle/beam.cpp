@@ -102,9 +102,11 @@ Vec3 BeamNeedle::tangent(double s) const {
   return parts_->base_rotation * parts_->shape.tangent(parts_->shape.locate(s));
 }
 
-void BeamNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) {
-  parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads);
+bool BeamNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                           std::span<const Mat3> springs) {
+  parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs);
   parts_->tangent.condense(compliance, free);
+  return parts_->tangent.elastic_shift() == 0.0;
 }
 
 void BeamNeedle::advance(std::span<const PointLoad> loads) {

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle/beam_tangent.hpp"
 
-#include "needle/cholesky.hpp"
+#include "core/dense_cholesky.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 namespace stylet::beam {
+
+using dense::factorise;
+using dense::kTile;
+using dense::solve_lower;
+using dense::solve_upper;
 
 namespace {
 
@@ -76,13 +81,16 @@ void BeamTangent::reserve(Eigen::Index loads) {
   loads_.reserve(static_cast<std::size_t>(loads));
 }
 
-void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
+void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                           std::span<const Mat3> springs) {
   locate(shape, base_rotation, loads);
   assemble_energy(shape);
+  assemble_jacobian(shape, base_rotation);
+  if (!springs.empty()) add_springs(springs);
   factorise_shifted();
   z_ = g_;
   solve_lower(L_, 0, z_);
-  assemble_jacobian(shape, base_rotation);
+  solve_jacobian();
 }
 
 void BeamTangent::locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
@@ -171,6 +179,25 @@ void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rot
     column.bottomRows(below).noalias() = shift_.bottomRows(below).lazyProduct(to_base);
     column.bottomRows(below).noalias() += spin_.bottomRows(below).lazyProduct(turned);
   }
+}
+
+void BeamTangent::add_springs(std::span<const Mat3> springs) {
+  assert(springs.size() == loads_.size());
+  for (std::size_t c = 0; c < loads_.size(); ++c) {
+    const int e = loads_[c].at.element;
+    if (e < 0 || springs[c].isZero(0.0)) continue;
+    const Eigen::Index reach = Y_.rows() - row(e);
+    const auto motion = Y_.middleCols<3>(3 * static_cast<Eigen::Index>(c)).bottomRows(reach);
+    auto corner = H_.bottomRightCorner(reach, reach);
+    // Column by column, the lower triangle only: three multiplications an entry and no work space.
+    for (Eigen::Index j = 0; j < reach; ++j) {
+      const Vec3 pull = springs[c] * motion.row(j).transpose();
+      corner.col(j).tail(reach - j).noalias() += motion.bottomRows(reach - j).lazyProduct(pull);
+    }
+  }
+}
+
+void BeamTangent::solve_jacobian() {
   const auto count = static_cast<Eigen::Index>(loads_.size());
   constexpr Eigen::Index stride = kTile / 3;
   for (Eigen::Index c = 0; c < count; c += stride) {

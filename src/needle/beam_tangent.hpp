@@ -22,7 +22,9 @@ class BeamTangent {
   BeamTangent(const BeamShape& shape, int load_capacity);
 
   /// Gradient, Hessian, factor, and L⁻¹Jᵀ for these loads. @param base_rotation base axes to LPS
-  void assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
+  /// @param springs [N/mm] LPS, one per load or none: added to the Hessian as Jᵀ G J
+  void assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                std::span<const Mat3> springs = {});
 
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
@@ -42,6 +44,8 @@ class BeamTangent {
   void assemble_energy(const BeamShape& shape);
   void factorise_shifted();
   void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation);
+  void add_springs(std::span<const Mat3> springs);
+  void solve_jacobian();
   [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
 

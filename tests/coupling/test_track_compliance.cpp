@@ -182,8 +182,8 @@ TEST(NodeAddition, reset_restores_the_first_state_exactly) {
   const auto at = *block.locator->find(x);
   ASSERT_TRUE(track.move_tip(at, x));
   const MatX before = track.matrix();
-  for (int i = 0; i < 60 && track.points() < 6; ++i) {
-    const Vec3 y = x + 0.4 * i * Vec3(0.2, 0.3, 1.0);
+  for (int i = 0; i < 200 && track.points() < 6; ++i) {
+    const Vec3 y = x + Vec3(0.13 * (i % 17), 0.21 * (i % 13), 0.1 * i);
     track.add(*block.locator->find(y), y, Placement::interior);
   }
   ASSERT_EQ(track.points(), 6);

@@ -33,7 +33,8 @@ class BeamNeedle final : public Needle {
   [[nodiscard]] const Pose& base() const override;
   [[nodiscard]] Vec3 point(double s) const override;
   [[nodiscard]] Vec3 tangent(double s) const override;
-  void linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) override;
+  bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                 std::span<const Mat3> springs = {}) override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
   void straighten() override;

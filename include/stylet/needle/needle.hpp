@@ -12,8 +12,8 @@ namespace stylet {
 
 /// A force on the needle's centreline.
 struct PointLoad {
-  double s = 0.0;              ///< [mm] arc length from the base, 0…length
-  Vec3 force = Vec3::Zero();   ///< [N] LPS, does not turn with the needle
+  double s = 0.0;             ///< [mm] arc length from the base, 0…length
+  Vec3 force = Vec3::Zero();  ///< [N] LPS, does not turn with the needle
 };
 
 /// A flexible needle clamped at its base. Knows nothing of tissue. One equilibrium is found by repeating
@@ -38,9 +38,16 @@ class Needle {
   /// Tangent problem at the current shape. For loads f (not necessarily in equilibrium with the shape) a Newton step to
   /// equilibrium moves load point c by free(c) + Σ_d compliance(c,d) Δf_d where Δf_d changes the given loads.
   /// @param loads (w) point loads
+  /// A needle pressed harder than it can bear on its own (a brachytherapy needle buckles under about 1 N) has no
+  /// positive definite tangent. What holds it is not known here, so the caller may lend springs: they pull each load
+  /// point back to where it is now, and compliance and free are those of the needle on its springs. The caller adds the
+  /// springs' forces to its own balance; with them the Newton step stays exact.
+  /// @param springs [N/mm] (w) stiffness at each load point, LPS, symmetric positive semidefinite; empty = none
   /// @param compliance [mm/N] (3w × 3w), symmetric positive semidefinite, written
   /// @param free [mm] (3w), written: motion of the load points by the Newton step with unchanged loads
-  virtual void linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) = 0;
+  /// @return true when the tangent was positive definite as it is; otherwise it was made so, and the step is not exact
+  virtual bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                         std::span<const Mat3> springs = {}) = 0;
 
   /// Takes the Newton step of the last linearise() with these loads in place of those given there (same s, same order).
   virtual void advance(std::span<const PointLoad> loads) = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "needle/cholesky.hpp"
+#include "core/dense_cholesky.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 
-namespace stylet::beam {
+namespace stylet::dense {
 
 bool factorise(Eigen::Ref<MatX> A) {
   const Eigen::Index n = A.rows();
@@ -41,4 +41,4 @@ void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<VecX> y) {
   L.triangularView<Eigen::Lower>().transpose().solveInPlace(y);
 }
 
-}  // namespace stylet::beam
+}  // namespace stylet::dense

@@ -5,7 +5,7 @@
 
 /// Dense Cholesky in place, cut into tiles so small that Eigen's products keep their work space on the stack at any
 /// size: nothing here allocates. Only the lower triangle is read or written.
-namespace stylet::beam {
+namespace stylet::dense {
 
 inline constexpr Eigen::Index kTile = 24;
 
@@ -18,4 +18,4 @@ void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref
 /// y ← L⁻ᵀ y
 void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<VecX> y);
 
-}  // namespace stylet::beam
+}  // namespace stylet::dense
