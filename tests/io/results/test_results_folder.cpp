@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The result folder as a whole: what is in it after a good run, after a failed one, and when it cannot be written.
+#include "report_page.hpp"
+#include "results/forces_csv.hpp"
+#include "results/output_folder.hpp"
+#include "results/summary_json.hpp"
+#include "stylet/io/mesh_io.hpp"
+#include "stylet/io/recording_io.hpp"
+#include "stylet/io/results_writer.hpp"
+#include "synthetic_run.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+using namespace stylet;
+using namespace stylet::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kStress = 0.002;  // MPa
+
+MatX some_stress(const TetMesh& mesh) {
+  MatX stress = MatX::Zero(6, mesh.tet_count());
+  stress.row(2).setConstant(kStress);
+  return stress;
+}
+
+/// Keeps EGL from finding any driver, as on a machine without one; pictures are then left out, which is fast.
+void take_drivers_away() { setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent/vendor.json", 1); }
+
+Result<> write_run(const fs::path& folder, const SyntheticRun& run) {
+  auto writer = ResultsWriter::open(folder, run.info, run.mesh, [&](const VecX&) { return some_stress(run.mesh); });
+  if (!writer) return writer.error();
+  for (const auto& step : run.steps) {
+    if (auto added = (*writer)->add_step(step); !added) return added;
+  }
+  for (const auto& frame : run.frames) {
+    if (auto added = (*writer)->add_frame(frame); !added) return added;
+  }
+  return (*writer)->finish(run.summary);
+}
+
+/// Runs `work` in a child and returns what it returns; the limits it sets on itself stay there.
+template <class Work>
+int in_child(Work work) {
+  const pid_t child = fork();
+  if (child == 0) _exit(work());
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool is_png(const std::string& bytes) {
+  return bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.find("IEND") != std::string::npos;
+}
+
+}  // namespace
+
+TEST(ResultFolder, holds_every_file_with_the_numbers_of_the_run) {
+  const auto run = synthetic_run();
+  const TemporaryFolder place;
+  const fs::path folder = place.path() / "new" / "OUT";  // parents are made
+  std::vector<std::string> stages;
+  {
+    auto writer = ResultsWriter::open(folder, run.info, run.mesh, [&](const VecX&) { return some_stress(run.mesh); });
+    ASSERT_TRUE(writer.ok()) << writer.error().message();
+    for (const auto& step : run.steps) ASSERT_TRUE((*writer)->add_step(step).ok());
+    for (const auto& frame : run.frames) ASSERT_TRUE((*writer)->add_frame(frame).ok());
+    const auto done = (*writer)->finish(run.summary, [&](std::string_view stage, double share) {
+      EXPECT_TRUE(share >= 0 && share <= 1);
+      if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
+    });
+    ASSERT_TRUE(done.ok()) << done.error().message();
+  }
+  EXPECT_EQ(stages, (std::vector<std::string>{"tissue files", "pictures", "report"}));
+
+  std::vector<std::string> expected{"forces.csv",  "needle.pvd", "needle.vtp",   "pictures",
+                                    "report.html", "run.h5",     "summary.json", "tissue.pvd"};
+  for (std::size_t f = 0; f < run.frames.size(); ++f) {
+    expected.push_back(results::series_name("tissue", f, ".vtu"));
+    expected.push_back(results::series_name("needle", f, ".vtp"));
+  }
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(names_in(folder), expected);
+
+  EXPECT_EQ(file_text(folder / "forces.csv"), results::forces_csv(run.steps));
+  EXPECT_EQ(file_text(folder / "summary.json"), results::summary_json(run.summary));
+  const auto recording = read_recording(folder / "run.h5");
+  ASSERT_TRUE(recording.ok()) << recording.error().message();
+  EXPECT_EQ(recording->steps.size(), run.steps.size());
+
+  EXPECT_EQ(names_in(folder / "pictures"),
+            (std::vector<std::string>{"sagittal_after.png", "sagittal_before.png", "sagittal_deepest.png",
+                                      "sagittal_displacement.png", "transverse_after.png", "transverse_before.png",
+                                      "transverse_deepest.png", "transverse_displacement.png", "view_after.png",
+                                      "view_before.png", "view_deepest.png"}));
+  for (const auto& name : names_in(folder / "pictures"))
+    EXPECT_TRUE(is_png(file_text(folder / "pictures" / name))) << name;
+  const std::string page = file_text(folder / "report.html");
+  EXPECT_EQ(count(page, "<img "), 11U);
+  EXPECT_EQ(page.find("could not be drawn"), std::string::npos);
+}
+
+TEST(ResultFolder, tissue_files_carry_displacement_region_and_stress) {
+  take_drivers_away();
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_run(folder.path(), run).ok());
+  const auto mesh = read_tet_mesh(folder.path() / "tissue_0000.vtu");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message();
+  EXPECT_EQ(mesh->tets, run.mesh.tets);
+  EXPECT_EQ(mesh->nodes, run.mesh.nodes);
+
+  const std::size_t frame = run.frames.size() / 2;
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder.path() / results::series_name("tissue", frame, ".vtu")).c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  vtkDataArray* displacement = grid->GetPointData()->GetArray("displacement_mm");
+  vtkDataArray* region = grid->GetCellData()->GetArray("region");
+  vtkDataArray* stress = grid->GetCellData()->GetArray("stress_kPa");
+  ASSERT_TRUE(displacement != nullptr && region != nullptr && stress != nullptr);
+  ASSERT_EQ(displacement->GetNumberOfTuples(), run.mesh.node_count());
+  ASSERT_EQ(stress->GetNumberOfComponents(), 6);
+  for (Index n = 0; n < run.mesh.node_count(); ++n) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(displacement->GetComponent(n, k), run.frames[frame].displacement[3 * n + k], 1e-6);
+    }
+  }
+  for (Index t = 0; t < run.mesh.tet_count(); ++t) {
+    EXPECT_EQ(static_cast<int>(region->GetTuple1(t)), run.mesh.tet_region[static_cast<std::size_t>(t)]);
+    EXPECT_DOUBLE_EQ(stress->GetComponent(t, 2), 1000 * kStress);
+  }
+  const std::string collection = file_text(folder.path() / "tissue.pvd");
+  EXPECT_EQ(count(collection, "<DataSet "), run.frames.size());
+  EXPECT_NE(collection.find("timestep=\"4.100000\""), std::string::npos);
+}
+
+TEST(ResultFolder, needle_vtp_is_the_needle_at_its_deepest_with_its_contacts) {
+  take_drivers_away();
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_run(folder.path(), run).ok());
+  const auto deepest =
+      std::find_if(run.frames.begin(), run.frames.end(), [](const Frame& f) { return f.label == "deepest"; });
+  ASSERT_NE(deepest, run.frames.end());
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName((folder.path() / "needle.vtp").c_str());
+  reader->Update();
+  vtkPolyData* needle = reader->GetOutput();
+  const auto shaft = static_cast<vtkIdType>(deepest->needle.size());
+  EXPECT_EQ(needle->GetNumberOfLines(), 1);
+  EXPECT_EQ(needle->GetNumberOfVerts(), static_cast<vtkIdType>(deepest->contacts.size()));
+  ASSERT_EQ(needle->GetNumberOfPoints(), shaft + static_cast<vtkIdType>(deepest->contacts.size()));
+  EXPECT_EQ(Vec3(needle->GetPoint(shaft - 1)), deepest->needle.back());
+  vtkPointData* arrays = needle->GetPointData();
+  for (const char* name : {"contact", "arc_length_mm", "radius_mm", "tangent", "force_N"}) {
+    EXPECT_NE(arrays->GetArray(name), nullptr) << name;
+  }
+  EXPECT_NEAR(arrays->GetArray("arc_length_mm")->GetTuple1(shaft - 1), 200, 0.1);
+  EXPECT_EQ(arrays->GetArray("contact")->GetTuple1(shaft), 3);  // the first contact made up is the tip
+  EXPECT_NE(needle->GetFieldData()->GetAbstractArray("SPACE"), nullptr);
+}
+
+TEST(ResultFolder, without_a_graphics_driver_the_report_says_why_it_has_no_pictures) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "pictures");
+  std::ofstream(folder.path() / "pictures" / "view_deepest.png") << "of an earlier run";
+  std::ofstream(folder.path() / "pictures" / "mine.png") << "the user's own";
+  take_drivers_away();
+  const auto done = write_run(folder.path(), run);
+  ASSERT_TRUE(done.ok()) << done.error().message();
+  const std::string page = file_text(folder.path() / "report.html");
+  EXPECT_NE(page.find("could not be drawn on this machine: pictures: EGL"), std::string::npos);
+  EXPECT_EQ(count(page, "<img "), 0U);
+  EXPECT_EQ(names_in(folder.path() / "pictures"), std::vector<std::string>{"mine.png"});
+}
+
+TEST(ResultFolder, a_second_run_replaces_the_first_file_by_file) {
+  take_drivers_away();
+  auto run = synthetic_run();
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "notes.txt") << "the user's own";
+  std::ofstream(folder.path() / "tissue_new.vtu") << "the user's own";
+  ASSERT_TRUE(write_run(folder.path(), run).ok());
+  const auto first = names_in(folder.path());
+  run.frames.erase(run.frames.begin() + 2, run.frames.end() - 2);
+  run.summary.scenario = "second run";
+  ASSERT_TRUE(write_run(folder.path(), run).ok());
+  const auto second = names_in(folder.path());
+  EXPECT_EQ(first.size() - second.size(), 2 * (synthetic_run().frames.size() - run.frames.size()));
+  EXPECT_EQ(file_text(folder.path() / "notes.txt"), "the user's own");
+  EXPECT_EQ(file_text(folder.path() / "tissue_new.vtu"), "the user's own");
+  EXPECT_NE(file_text(folder.path() / "summary.json").find("second run"), std::string::npos);
+  for (const auto& name : second) EXPECT_FALSE(name.starts_with(".")) << name;
+}
+
+TEST(ResultFolder, an_unfinished_run_leaves_only_a_readable_recording) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "summary.json") << "of an earlier run";
+  {
+    auto writer = ResultsWriter::open(folder.path(), run.info, run.mesh);
+    ASSERT_TRUE(writer.ok());
+    for (const auto& step : run.steps) ASSERT_TRUE((*writer)->add_step(step).ok());
+  }
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"run.h5"});
+  const auto back = read_recording(folder.path() / "run.h5");
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back->steps.size(), run.steps.size());
+  EXPECT_FALSE(back->summary.has_value());
+}
+
+TEST(ResultFolder, a_full_disk_fails_the_run_and_leaves_no_half_file) {
+  take_drivers_away();
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const int status = in_child([&] {
+    auto writer = ResultsWriter::open(folder.path(), run.info, run.mesh);
+    if (!writer) return 10;
+    for (const auto& step : run.steps) {
+      if (!(*writer)->add_step(step)) return 11;
+    }
+    for (const auto& frame : run.frames) {
+      if (!(*writer)->add_frame(frame)) return 12;
+    }
+    // Files cannot grow beyond this: enough for everything but the report, whose script alone is larger.
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{600000, 600000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const auto done = (*writer)->finish(run.summary);
+    if (done.ok()) return 13;
+    return done.error().kind == ErrorKind::failed && done.error().where.find("report.html") != std::string::npos ? 0
+                                                                                                                 : 14;
+  });
+  EXPECT_EQ(status, 0);
+  for (const auto& name : names_in(folder.path())) {
+    EXPECT_FALSE(name.starts_with(".")) << name;
+    EXPECT_NE(name, "report.html");
+    EXPECT_NE(name, "summary.json");
+  }
+  EXPECT_EQ(file_text(folder.path() / "forces.csv"), results::forces_csv(run.steps));
+  EXPECT_TRUE(read_recording(folder.path() / "run.h5").ok());
+}
+
+TEST(ResultFolder, a_folder_that_cannot_be_written_is_refused_before_the_run) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "file") << "in the way";
+  for (const fs::path& path : {folder.path() / "file", folder.path() / "file" / "OUT"}) {
+    const auto writer = ResultsWriter::open(path, run.info, run.mesh);
+    ASSERT_FALSE(writer.ok());
+    EXPECT_EQ(writer.error().kind, ErrorKind::input);
+    EXPECT_NE(writer.error().where.find(path.string()), std::string::npos);
+  }
+  fs::create_directory(folder.path() / "locked");
+  fs::permissions(folder.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
+  fs::permissions(folder.path(), fs::perms::all);
+  const int status = in_child([&] {
+    constexpr uid_t kNobody = 65534;  // permissions do not bind root
+    if (geteuid() == 0 && seteuid(kNobody) != 0) return 10;
+    const auto writer = ResultsWriter::open(folder.path() / "locked", run.info, run.mesh);
+    return !writer.ok() && writer.error().kind == ErrorKind::input &&
+                   writer.error().what.find("Permission denied") != std::string::npos
+               ? 0
+               : 11;
+  });
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(names_in(folder.path() / "locked").empty());
+}
+
+TEST(ResultFolder, wrong_use_is_an_error_not_a_crash) {
+  take_drivers_away();
+  auto run = synthetic_run();
+  const TemporaryFolder folder;
+  auto writer = ResultsWriter::open(folder.path(), run.info, run.mesh);
+  ASSERT_TRUE(writer.ok());
+  Frame bad = run.frames.front();
+  bad.displacement.conservativeResize(bad.displacement.size() - 3);
+  EXPECT_FALSE((*writer)->add_frame(bad).ok());
+  EXPECT_FALSE((*writer)->finish(run.summary).ok());  // no frame to show
+  EXPECT_FALSE((*writer)->finish(run.summary).ok());  // twice
+}
+
+TEST(ResultFolder, a_needle_that_never_touches_anything_still_gives_a_report) {
+  take_drivers_away();
+  auto run = synthetic_run();
+  run.steps.resize(3);
+  run.frames.resize(1);
+  run.frames[0].needle.clear();
+  run.summary.events.clear();
+  run.info.target_regions.clear();
+  run.info.parameters.clear();
+  const TemporaryFolder folder;
+  const auto done = write_run(folder.path(), run);
+  ASSERT_TRUE(done.ok()) << done.error().message();
+  EXPECT_NE(file_text(folder.path() / "report.html").find("met no tissue"), std::string::npos);
+}
