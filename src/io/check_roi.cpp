@@ -16,7 +16,7 @@ constexpr double plane_tolerance_mm = 0.1;      // points of one slice; files ro
 constexpr double same_slice_mm = 0.05;          // contours nearer than this lie on one slice
 constexpr double max_tilt_deg = 1.0;            // between planes
 constexpr double crossing_tolerance_mm = 0.05;  // smaller overlaps of edges come from rounding
-constexpr double min_area_mm2 = 1e-3;
+constexpr double min_width_mm = 1e-3;           // of a contour; less is a line
 
 /// Vector area of a closed polygon: its length is the area, its direction the normal (Newell).
 Vec3 vector_area(const Contour& contour) {
@@ -26,14 +26,20 @@ Vec3 vector_area(const Contour& contour) {
   return 0.5 * area;
 }
 
-/// Unit normal of the plane that fits the points best.
-Vec3 fitted_normal(const Contour& contour) {
+/// Principal directions of a contour's points.
+struct Frame {
+  Vec3 normal;  ///< of the plane that fits the points best
+  Vec3 width;   ///< in that plane, across the longest direction
+};
+
+Frame fitted_frame(const Contour& contour) {
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : contour.points) centre += p;
   centre /= static_cast<double>(contour.points.size());
   Mat3 scatter = Mat3::Zero();
   for (const Vec3& p : contour.points) scatter += (p - centre) * (p - centre).transpose();
-  return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors().col(0);
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(scatter);
+  return {principal.eigenvectors().col(0), principal.eigenvectors().col(1)};
 }
 
 /// Extent of the points along a unit direction.
@@ -59,7 +65,7 @@ class RoiCheck {
     const auto biggest = std::max_element(
         roi_.contours.begin(), roi_.contours.end(),
         [](const Contour& a, const Contour& b) { return vector_area(a).norm() < vector_area(b).norm(); });
-    normal_ = fitted_normal(*biggest);
+    normal_ = fitted_frame(*biggest).normal;
     for (std::size_t i = 0; i < roi_.contours.size(); ++i) {
       if (Result<> r = check_plane(i); !r) return r;
       if (Result<> r = check_closed(i); !r) return r;
@@ -107,23 +113,20 @@ class RoiCheck {
 
   Result<> check_plane(std::size_t i) const {
     const Contour& contour = roi_.contours[i];
-    const double area = vector_area(contour).norm();
-    const Vec3 own = fitted_normal(contour);
-    const double off_plane = thickness(contour, area < min_area_mm2 ? normal_ : own);
+    const Frame own = fitted_frame(contour);
+    if (thickness(contour, own.width) < min_width_mm) {
+      return input_error(place(i), "its points coincide or lie on a line; it encloses nothing",
+                         "Delete or redraw this contour.");
+    }
+    const double off_plane = thickness(contour, own.normal);
     if (off_plane > plane_tolerance_mm) {
       return input_error(place(i), fmt::format("its points are up to {:.3g} mm off a common plane", off_plane),
                          "Draw each contour within one slice.");
     }
-    if (area < min_area_mm2 && thickness(contour, own.cross(normal_).normalized()) < 1e-9) {
-      return input_error(place(i), "its points coincide or lie on a line; it encloses nothing",
-                         "Delete or redraw this contour.");
-    }
-    if (thickness(contour, normal_) > plane_tolerance_mm) {
-      const double tilt = std::acos(std::min(1.0, std::abs(own.dot(normal_)))) * 180.0 / M_PI;
-      if (tilt > max_tilt_deg) {
-        return input_error(place(i), fmt::format("its plane is tilted by {:.1f}° against the others", tilt),
-                           "Draw all contours of a structure on parallel slices.");
-      }
+    const double tilt = std::acos(std::min(1.0, std::abs(own.normal.dot(normal_)))) * 180.0 / M_PI;
+    if (thickness(contour, normal_) > plane_tolerance_mm && tilt > max_tilt_deg) {
+      return input_error(place(i), fmt::format("its plane is tilted by {:.1f}° against the others", tilt),
+                         "Draw all contours of a structure on parallel slices.");
     }
     return Ok{};
   }

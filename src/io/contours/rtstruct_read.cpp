@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 namespace stylet::detail {
@@ -39,6 +41,13 @@ std::vector<DcmItem*> items_of(DcmItem& parent, const DcmTagKey& tag) {
     if (DcmItem* item = sequence->getItem(i)) items.push_back(item);
   }
   return items;
+}
+
+/// "DICM" after the preamble of 128 bytes (DICOM PS3.10 7.1).
+bool has_dicom_mark(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 132> head{};
+  return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
 }
 
 /// Modality and SOP class without the contours: quick even for a folder of a thousand slices.
@@ -171,6 +180,9 @@ Result<ContourSet> parse_rtstruct(const fs::path& given) {
   if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
     Result<> right_kind = check_is_structure_set(data, source);
     if (!right_kind) return right_kind.error();
+  }
+  if (status.bad() && !has_dicom_mark(path) && text_of(data, DCM_SOPClassUID).empty()) {
+    return input_error(source, "this is not a DICOM file", "Name a DICOM RT Structure Set (modality RTSTRUCT).");
   }
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),

@@ -22,9 +22,13 @@ namespace fs = std::filesystem;
 std::string first_bytes(const fs::path& path) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) return {};
-  std::string bytes(4096, '\0');
-  const int got = gzread(file.get(), bytes.data(), static_cast<unsigned>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(std::max(got, 0)));
+  std::string bytes;
+  std::array<char, 64> piece{};  // small: of a piece that ends in damage zlib gives nothing
+  while (bytes.size() < 4096) {
+    const int got = gzread(file.get(), piece.data(), piece.size());
+    if (got <= 0) break;
+    bytes.append(piece.data(), static_cast<std::size_t>(got));
+  }
   return bytes;
 }
 
@@ -37,6 +41,13 @@ bool is_dicom(const std::string& bytes) {
   // With the 128-byte preamble, or a bare data set that begins with group 0002 or 0008 in little endian.
   return at(bytes, 128, "DICM") || at(bytes, 0, "\x08\0\x05\0"sv) || at(bytes, 0, "\x08\0\x08\0"sv) ||
          at(bytes, 0, "\x08\0\x16\0"sv) || at(bytes, 0, "\x02\0\0\0"sv);
+}
+
+/// A packed file whose packing is too damaged to look inside.
+bool is_damaged_gzip(const fs::path& path, const std::string& unpacked) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 2> head{};
+  return unpacked.size() < 352 && file.read(head.data(), 2) && head[0] == '\x1f' && head[1] == '\x8b';
 }
 
 bool is_nifti(const std::string& bytes) {
@@ -169,7 +180,12 @@ Result<FileKind> identify(const fs::path& path) {
   }
   const std::uintmax_t size = fs::file_size(path, code);
   if (size == 0) return input_error(where, "the file is empty", "Export it again. " + readable_formats());
-  return kind_of(first_bytes(path), size, path.extension().string());
+  const std::string bytes = first_bytes(path);
+  if (is_damaged_gzip(path, bytes)) {
+    return input_error(where, "this gzip file cannot be unpacked",
+                       "Copy or export it again; it is truncated or damaged.");
+  }
+  return kind_of(bytes, size, path.extension().string());
 }
 
 }  // namespace stylet::detail

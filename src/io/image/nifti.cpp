@@ -10,8 +10,11 @@
 #include <vtkNIFTIImageHeader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
+#include <zlib.h>
 
 #include <cmath>
+#include <memory>
+#include <string_view>
 
 namespace stylet::detail {
 
@@ -67,6 +70,20 @@ double unit_mm(int code) {
   }
 }
 
+/// The file, unpacked, holds at least so many bytes. VTK fills what is missing with zeros and says nothing.
+bool holds_bytes(const std::filesystem::path& path, double wanted) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (!file) return false;
+  std::vector<char> buffer(1 << 20);
+  double found = 0.0;
+  while (found < wanted) {
+    const int got = gzread(file.get(), buffer.data(), static_cast<unsigned>(buffer.size()));
+    if (got <= 0) return false;
+    found += got;
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
@@ -101,6 +118,19 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
   if (unit == 0.0) {
     return input_error(source, fmt::format("the unit of length (code {}) is unknown", header.GetXYZTUnits() & 0x07),
                        "Set xyzt_units to 2 (mm).");
+  }
+
+  if (!std::string_view(header.GetMagic()).starts_with("n+")) {
+    return input_error(source, "this is a NIfTI image in two files (.hdr and .img)",
+                       "Convert it to a single .nii or .nii.gz.");
+  }
+  double bytes = static_cast<double>(header.GetVoxOffset());
+  double voxel = header.GetBitPix() / 8.0;
+  for (const std::size_t n : sizes) voxel *= static_cast<double>(n);
+  bytes += voxel;
+  if (!holds_bytes(path, bytes)) {
+    return input_error(source, fmt::format("the file ends before its {:.0f} bytes of voxels", voxel),
+                       "Copy or export it again; it is truncated or damaged.");
   }
 
   reader->Update();

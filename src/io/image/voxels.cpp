@@ -12,8 +12,8 @@ namespace stylet::detail {
 
 namespace {
 
-constexpr std::size_t max_distinct_labels = 1000;  // more is a grey-value picture
-constexpr double max_shear = 1e-3;                 // |cosine| between two axes; headers are single precision
+constexpr std::size_t max_distinct_labels = 500;  // more is a grey-value picture
+constexpr double max_shear = 1e-3;                // |cosine| between two axes; headers are single precision
 
 const char* const mask_cure = "Name a label mask: 0 outside, one whole number per structure.";
 

@@ -11,7 +11,7 @@ namespace stylet::detail {
 namespace {
 
 // Without a stated unit a mesh must be believable as the tissue around a needle.
-constexpr double smallest_believable_mm = 20.0;
+constexpr double smallest_believable_mm = 10.0;
 constexpr double largest_believable_mm = 2000.0;
 
 /// Refuses a mesh whose size shows that its unit is not mm, unless the unit is known.

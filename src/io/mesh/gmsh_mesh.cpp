@@ -152,6 +152,16 @@ Result<> check_harmless(const fs::path& path, bool medit) {
   return Ok{};
 }
 
+/// How many tetrahedra a MEDIT file announces. gmsh takes a file that ends too early for a smaller mesh.
+std::size_t announced_tetrahedra(const fs::path& path) {
+  std::ifstream file(path);
+  std::size_t announced = 0, count = 0;
+  for (std::string word; file >> word;) {
+    if ((word == "Tetrahedra" || word == "TetrahedraP2") && file >> count) announced += count;
+  }
+  return announced;
+}
+
 }  // namespace
 
 Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
@@ -163,7 +173,14 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
     gmsh::merge(source);
     problem = Gmsh::first_error();
     if (problem.empty()) {
-      return to_raw(source);
+      Result<RawMesh> raw = to_raw(source);
+      const std::size_t announced = medit ? announced_tetrahedra(path) : 0;
+      if (raw && medit && raw->tets.size() != announced) {
+        return input_error(source,
+                           fmt::format("the file announces {} tetrahedra and holds {}", announced, raw->tets.size()),
+                           "Copy or export it again; it is truncated or damaged.");
+      }
+      return raw;
     }
   } catch (const std::exception& error) {
     problem = error.what();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STL, PLY, OBJ, VTP, by VTK.
+#include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/surfaces.hpp"
 #include "mesh/vtk_hints.hpp"
@@ -11,6 +12,10 @@
 #include <vtkSTLReader.h>
 #include <vtkStringArray.h>
 #include <vtkXMLPolyDataReader.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
 
 namespace stylet::detail {
 
@@ -34,6 +39,26 @@ vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string
   return reader->GetOutput();
 }
 
+/// Binary STL states its triangles, text ends with a word; VTK reads what is there.
+Result<> check_stl_is_whole(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  std::uint32_t triangles = 0;
+  if (bytes.size() >= 84) std::memcpy(&triangles, bytes.data() + 80, 4);
+  const std::size_t binary_size = 84 + 50 * static_cast<std::size_t>(triangles);
+  if (bytes.size() == binary_size) return Ok{};
+  const bool text =
+      lower(bytes.substr(0, 512)).find("solid") != std::string::npos && bytes.find("facet") != std::string::npos;
+  if (text && lower(bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 512))).find("endsolid") !=
+                  std::string::npos)
+    return Ok{};
+  if (!text && bytes.size() > binary_size && bytes.size() >= 84) return Ok{};
+  return input_error(path.string(),
+                     text ? "the last line is not 'endsolid'"
+                          : fmt::format("{} bytes cannot hold the {} triangles announced", bytes.size(), triangles),
+                     "Copy or export it again; it is truncated or damaged.");
+}
+
 }  // namespace
 
 Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileKind kind, double scale) {
@@ -42,6 +67,9 @@ Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileK
   std::string header;
   unsigned long error = 0;
   vtkSmartPointer<vtkPolyData> data;
+  if (kind == FileKind::stl) {
+    if (Result<> whole = check_stl_is_whole(path); !whole) return whole.error();
+  }
   switch (kind) {
     case FileKind::stl:
       data = read<vtkSTLReader>(path, header, error);

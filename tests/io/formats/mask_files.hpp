@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace stylet::test {
+
+/// A small mask in a frame of one's choice, to be written in three formats by hand.
+struct Mask {
+  std::array<int, 3> size{12, 10, 8};
+  Mat3 axes = Vec3(2.0, 2.5, 4.0).asDiagonal();  ///< [mm] LPS, columns: voxel steps
+  Vec3 origin{-10.0, 20.0, -30.0};               ///< [mm] LPS
+  std::vector<std::uint8_t> labels;
+
+  Mask();  ///< label 1 in a box of 6 × 4 × 3 voxels from (2,3,2), label 2 in one voxel (9,7,5)
+  [[nodiscard]] Vec3 centre(int label) const;  ///< [mm] LPS mean of the label's voxel centres
+};
+
+/// An oblique right-handed frame, and its mirror image.
+Mat3 oblique_axes();
+Mat3 left_handed_axes();
+
+std::string gzipped(const std::string& bytes);
+
+enum class NiftiForm { sform, qform, none };
+/// NIfTI-1 single file. The qform can hold rotations only: right-handed, or left-handed by qfac.
+std::string nifti(const Mask& mask, NiftiForm form = NiftiForm::sform);
+/// Overwrites a number in the header.
+template <class T>
+void poke(std::string& bytes, std::size_t offset, T value) {
+  bytes.replace(offset, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// NRRD header and data, LPS; `extra` are further header lines.
+std::string nrrd(const Mask& mask, const std::string& encoding = "raw", const std::string& extra = "",
+                 const std::string& space = "left-posterior-superior");
+std::string metaimage(const Mask& mask, bool compressed = false, const std::string& data_file = "LOCAL");
+
+}  // namespace stylet::test

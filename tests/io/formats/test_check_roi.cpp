@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "files.hpp"
+#include "stylet/io/contours_io.hpp"
+
+#include <Eigen/Geometry>
+
+#include <chrono>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+Roi ball() { return two_organs().rois[0]; }
+
+Result<> check(const Roi& roi) { return check_roi(roi, "case.dcm"); }
+
+Contour polygon(double z, std::initializer_list<std::pair<double, double>> points) {
+  Contour c;
+  for (const auto& [x, y] : points) c.points.emplace_back(x, y, z);
+  return c;
+}
+
+/// A structure whose every slice is the same polygon.
+Roi prism(const Contour& base) {
+  Roi roi;
+  roi.name = "Prism";
+  for (int k = 0; k < 3; ++k) {
+    Contour c = base;
+    for (Vec3& p : c.points) p.z() += 5.0 * k;
+    roi.contours.push_back(c);
+  }
+  return roi;
+}
+
+}  // namespace
+
+TEST(CheckRoi, accepts_contours_on_parallel_slices) { EXPECT_TRUE(check(ball()).ok()) << why(check(ball())); }
+
+TEST(CheckRoi, accepts_oblique_parallel_slices) {
+  Roi roi = ball();
+  const Eigen::AngleAxisd turn(0.6, Vec3(1, 2, 3).normalized());
+  for (Contour& c : roi.contours) {
+    for (Vec3& p : c.points) p = turn * p;
+  }
+  EXPECT_TRUE(check(roi).ok()) << why(check(roi));
+}
+
+TEST(CheckRoi, refuses_an_empty_structure) {
+  Roi roi = ball();
+  roi.contours.clear();
+  expect_refused(check(roi), {"case.dcm, ROI 'Prostate'", "empty"});
+}
+
+TEST(CheckRoi, refuses_a_structure_on_one_slice) {
+  Roi roi = ball();
+  roi.contours.resize(1);
+  expect_refused(check(roi), {"'Prostate'", "one slice only", "z = -15.00 mm", "at least 2"});
+  roi.contours.push_back(circle(-15.0, 3.0, 24, Vec3(40, 0, 0)));
+  expect_refused(check(roi), {"one slice only"});
+}
+
+TEST(CheckRoi, refuses_fewer_than_three_points) {
+  Roi roi = ball();
+  roi.contours[4].points.resize(2);
+  expect_refused(check(roi), {"contour 5", "2 points", "at least 3"});
+}
+
+TEST(CheckRoi, refuses_nan) {
+  Roi roi = ball();
+  roi.contours[2].points[5].y() = NAN;
+  expect_refused(check(roi), {"contour 3, point 6", "not finite"});
+}
+
+TEST(CheckRoi, refuses_a_contour_without_area) {
+  Roi roi = ball();
+  roi.contours[2] = polygon(-5.0, {{0, 0}, {1, 1}, {2, 2}, {3, 3}});
+  expect_refused(check(roi), {"contour 3", "on a line"});
+  roi.contours[2] = polygon(-5.0, {{1, 1}, {1, 1}, {1, 1}});
+  expect_refused(check(roi), {"contour 3", "coincide"});
+}
+
+TEST(CheckRoi, refuses_a_contour_that_is_not_planar) {
+  Roi roi = ball();
+  roi.contours[3].points[0].z() += 1.5;
+  expect_refused(check(roi), {"contour 4", "off a common plane"});
+}
+
+TEST(CheckRoi, refuses_contours_that_are_not_parallel) {
+  Roi roi = ball();
+  for (Vec3& p : roi.contours[6].points) p.z() += 0.1 * p.x();
+  expect_refused(check(roi), {"contour 7", "tilted by 5.7°"});
+}
+
+TEST(CheckRoi, refuses_metres_and_micrometres) {
+  Roi roi = ball();
+  for (Contour& c : roi.contours) {
+    for (Vec3& p : c.points) p *= 1e-3;
+  }
+  expect_refused(check(roi), {"0.04 mm long", "1 mm to 2 m", "metres"});
+  for (Contour& c : roi.contours) {
+    for (Vec3& p : c.points) p *= 1e6;
+  }
+  expect_refused(check(roi), {"4e+04 mm long", "micrometres"});
+}
+
+TEST(CheckRoi, refuses_a_self_crossing_contour_and_says_where) {
+  Roi roi = prism(polygon(0, {{0, 0}, {20, 20}, {20, 0}, {0, 20}}));  // bow tie
+  expect_refused(check(roi), {"'Prism', contour 1 (slice z = 0.00 mm)", "crosses itself at (10.00, 10.00, 0.00)"});
+  roi = ball();
+  std::swap(roi.contours[3].points[4], roi.contours[3].points[7]);
+  expect_refused(check(roi), {"contour 4", "crosses itself"});
+}
+
+TEST(CheckRoi, accepts_a_keyhole_that_cuts_out_a_hole) {
+  // Outer square, in along an edge to the hole, round it, and out the same way; and the two passages rounded apart by
+  // 0.02 mm.
+  for (const double apart : {0.0, 0.02, -0.02}) {
+    const Roi roi = prism(polygon(0, {{0, 0},
+                                      {30, 0},
+                                      {30, 30},
+                                      {0, 30},
+                                      {0, 15},
+                                      {10, 15},
+                                      {10, 20},
+                                      {20, 20},
+                                      {20, 10},
+                                      {10, 10},
+                                      {10, 15 - apart},
+                                      {0, 15 - apart}}));
+    EXPECT_TRUE(check(roi).ok()) << apart << ": " << why(check(roi));
+  }
+}
+
+TEST(CheckRoi, accepts_a_polygon_that_touches_itself) {
+  EXPECT_TRUE(check(prism(polygon(0, {{0, 0}, {10, 10}, {20, 0}, {20, 20}, {10, 10}, {0, 20}}))).ok());
+  EXPECT_TRUE(check(prism(polygon(0, {{0, 0}, {20, 0}, {20, 10}, {10, 0}, {0, 10}}))).ok());
+}
+
+TEST(CheckRoi, refuses_an_open_curve) {
+  Roi roi = ball();
+  roi.contours[3].points.clear();
+  for (int i = 0; i <= 60; ++i) {  // three quarters of a circle
+    const double angle = 1.5 * M_PI * i / 60;
+    roi.contours[3].points.emplace_back(20 * std::cos(angle), 20 * std::sin(angle), 0.0);
+  }
+  expect_refused(check(roi), {"contour 4", "open", "28.3 mm apart"});
+}
+
+TEST(CheckRoi, accepts_coarse_polygons_with_sides_of_any_length) {
+  EXPECT_TRUE(check(prism(polygon(0, {{0, 0}, {1, 0}, {1, 60}}))).ok());
+  EXPECT_TRUE(
+      check(prism(polygon(0, {{0, 0}, {10, 0}, {40, 2}, {41, 3}, {40, 20}, {20, 21}, {1, 20}, {0, 18}, {0, 9}}))).ok());
+}
+
+TEST(CheckRoi, judges_half_a_million_points_without_a_noticeable_wait) {
+  Roi roi;
+  roi.name = "Body";
+  for (int k = 0; k < 100; ++k) roi.contours.push_back(circle(2.5 * k, 170.0, 5000));
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_TRUE(check(roi).ok());
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3.0);
+}

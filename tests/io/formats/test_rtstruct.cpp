@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "files.hpp"
+#include "stylet/io/contours_io.hpp"
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/dcmrt/drtstrct.h>
+
+#include <functional>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+/// A structure set of ours, changed with DCMTK as another program might have written it.
+fs::path changed(const Folder& folder, const std::function<void(DcmDataset&)>& change,
+                 E_TransferSyntax syntax = EXS_LittleEndianImplicit, E_FileWriteMode mode = EWM_fileformat) {
+  const fs::path path = folder / "case.dcm";
+  EXPECT_TRUE(write_rtstruct(two_organs(), path).ok());
+  DcmFileFormat file;
+  EXPECT_TRUE(file.loadFile(path.c_str()).good());
+  file.loadAllDataIntoMemory();
+  change(*file.getDataset());
+  EXPECT_TRUE(file.saveFile(path.c_str(), syntax, EET_ExplicitLength, EGL_recalcGL, EPD_noChange, 0, 0, mode).good());
+  return path;
+}
+
+DcmItem& item(DcmItem& parent, const DcmTagKey& sequence, long number) {
+  DcmItem* found = nullptr;
+  EXPECT_TRUE(parent.findOrCreateSequenceItem(sequence, found, number).good());
+  return *found;
+}
+
+/// Contour `number` of structure `roi`.
+DcmItem& contour(DcmDataset& data, long roi, long number) {
+  return item(item(data, DCM_ROIContourSequence, roi), DCM_ContourSequence, number);
+}
+
+void put(DcmItem& where, const DcmTagKey& tag, const char* value) {
+  EXPECT_TRUE(where.putAndInsertString(tag, value).good());
+}
+
+}  // namespace
+
+TEST(Rtstruct, what_is_written_comes_back_to_a_hundredth_of_a_millimetre) {
+  const Folder folder;
+  const ContourSet set = two_organs();
+  ASSERT_TRUE(write_rtstruct(set, folder / "case.dcm").ok());
+  const Result<ContourSet> back = read_rtstruct(folder / "case.dcm");
+  ASSERT_TRUE(back.ok()) << why(back);
+  EXPECT_LT(largest_difference(set, *back), 1e-3);
+  EXPECT_EQ(back->label, set.label);
+  EXPECT_EQ(back->frame_of_reference, "1.2.3.4.5");
+  EXPECT_EQ(back->rois[1].number, 2);
+  EXPECT_EQ(back->rois[1].type, "ORGAN");
+  EXPECT_EQ(back->rois[1].colour, set.rois[1].colour);
+  EXPECT_TRUE(back->notes.empty());
+}
+
+TEST(Rtstruct, a_body_outline_longer_than_64_kB_survives) {
+  const Folder folder;
+  ContourSet set = two_organs();
+  for (Contour& c : set.rois[0].contours) c = circle(c.points[0].z(), 1234.567, 5000);
+  ASSERT_TRUE(write_rtstruct(set, folder / "case.dcm").ok());
+  const Result<ContourSet> back = read_rtstruct(folder / "case.dcm");
+  ASSERT_TRUE(back.ok()) << why(back);
+  EXPECT_LT(largest_difference(set, *back), 1e-3);
+}
+
+TEST(Rtstruct, dcmtk_finds_what_we_write_a_valid_structure_set_without_identity) {
+  const Folder folder;
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "case.dcm").ok());
+  DcmFileFormat file;
+  ASSERT_TRUE(file.loadFile((folder / "case.dcm").c_str()).good());
+  DRTStructureSetIOD structures;
+  EXPECT_TRUE(structures.read(*file.getDataset()).good());
+  EXPECT_TRUE(structures.isValid());
+  OFString value;
+  EXPECT_TRUE(structures.getPatientName(value).good());
+  EXPECT_EQ(value, "STYLET^PHANTOM");
+  EXPECT_TRUE(structures.getPatientBirthDate(value).good());
+  EXPECT_EQ(value, "");
+  EXPECT_TRUE(structures.getSOPInstanceUID(value).good());
+  EXPECT_EQ(value.substr(0, 5), "2.25.");
+  EXPECT_LE(value.size(), 64U);
+  EXPECT_TRUE(file.getDataset()->findAndGetOFString(DCM_StudyDate, value).good());
+  EXPECT_EQ(value, "");
+}
+
+TEST(Rtstruct, the_same_contours_give_the_same_bytes) {
+  const Folder folder;
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "a.dcm").ok());
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "b.dcm").ok());
+  EXPECT_EQ(content_of(folder / "a.dcm"), content_of(folder / "b.dcm"));
+  ContourSet other = two_organs();
+  other.rois[0].contours[0].points[0].x() += 0.01;
+  ASSERT_TRUE(write_rtstruct(other, folder / "c.dcm").ok());
+  EXPECT_NE(content_of(folder / "a.dcm"), content_of(folder / "c.dcm"));
+}
+
+TEST(Rtstruct, every_uncompressed_transfer_syntax_is_read) {
+  for (const E_TransferSyntax syntax :
+       {EXS_LittleEndianImplicit, EXS_LittleEndianExplicit, EXS_BigEndianExplicit, EXS_DeflatedLittleEndianExplicit}) {
+    const Folder folder;
+    const Result<ContourSet> set = read_rtstruct(changed(
+        folder, [](DcmDataset&) {}, syntax));
+    ASSERT_TRUE(set.ok()) << DcmXfer(syntax).getXferName() << ": " << why(set);
+    EXPECT_LT(largest_difference(two_organs(), *set), 1e-3);
+  }
+  const Folder folder;
+  const Result<ContourSet> bare = read_rtstruct(changed(
+      folder, [](DcmDataset&) {}, EXS_LittleEndianImplicit, EWM_dataset));
+  ASSERT_TRUE(bare.ok()) << "without the part 10 header: " << why(bare);
+}
+
+TEST(Rtstruct, empty_structures_and_open_curves_are_passed_over_with_a_note) {
+  const Folder folder;
+  const Result<ContourSet> set = read_rtstruct(changed(folder, [](DcmDataset& data) {
+    put(item(data, DCM_StructureSetROISequence, 2), DCM_ROINumber, "7");
+    put(item(data, DCM_StructureSetROISequence, 2), DCM_ROIName, "CTV");
+    put(item(data, DCM_StructureSetROISequence, 3), DCM_ROINumber, "8");
+    put(item(data, DCM_StructureSetROISequence, 3), DCM_ROIName, "needle A5");
+    put(item(data, DCM_ROIContourSequence, 2), DCM_ReferencedROINumber, "8");
+    DcmItem& needle = contour(data, 2, 0);
+    put(needle, DCM_ContourGeometricType, "OPEN_NONPLANAR");
+    put(needle, DCM_NumberOfContourPoints, "2");
+    put(needle, DCM_ContourData, "0\\0\\0\\1\\2\\50");
+  }));
+  ASSERT_TRUE(set.ok()) << why(set);
+  EXPECT_EQ(set->rois.size(), 2U);
+  ASSERT_EQ(set->notes.size(), 2U);
+  EXPECT_NE(set->notes[0].find("needle A5"), std::string::npos);
+  EXPECT_NE(set->notes[0].find("OPEN_NONPLANAR"), std::string::npos);
+  EXPECT_NE(set->notes[1].find("'CTV' is empty"), std::string::npos);
+}
+
+TEST(Rtstruct, names_are_trimmed_and_turned_into_utf8) {
+  const Folder folder;
+  const Result<ContourSet> set = read_rtstruct(changed(folder, [](DcmDataset& data) {
+    put(data, DCM_SpecificCharacterSet, "ISO_IR 100");
+    put(item(data, DCM_StructureSetROISequence, 0), DCM_ROIName, "  Blase gef\xfcllt ");
+  }));
+  ASSERT_TRUE(set.ok()) << why(set);
+  EXPECT_EQ(set->rois[0].name, "Blase gef\xc3\xbcllt");
+}
+
+TEST(Rtstruct, a_repeated_first_point_is_dropped) {
+  const Folder folder;
+  const Result<ContourSet> set = read_rtstruct(changed(folder, [](DcmDataset& data) {
+    DcmItem& c = contour(data, 0, 0);
+    put(c, DCM_NumberOfContourPoints, "4");
+    put(c, DCM_ContourData, "0\\0\\0\\10\\0\\0\\10\\10\\0\\0\\0\\0");
+  }));
+  ASSERT_TRUE(set.ok()) << why(set);
+  EXPECT_EQ(set->rois[0].contours[0].points.size(), 3U);
+}
+
+TEST(Rtstruct, damaged_contours_are_refused_with_their_place) {
+  const auto data_is = [](const char* value, const char* count = "3") {
+    const Folder folder;
+    return read_rtstruct(changed(folder, [&](DcmDataset& data) {
+      DcmItem& c = contour(data, 1, 2);
+      put(c, DCM_ContourData, value);
+      put(c, DCM_NumberOfContourPoints, count);
+    }));
+  };
+  expect_refused(data_is("0\\0\\0\\10\\0\\0\\10\\10"), {"ROI 'Rectum', contour 3", "8 numbers", "multiple of three"});
+  expect_refused(data_is("0\\0\\0\\10\\x\\0\\10\\10\\0"), {"contour 3, point 2", "'x'"});
+  expect_refused(data_is("0\\0\\0\\10\\nan\\0\\10\\10\\0"), {"contour 3, point 2", "not a finite number"});
+  expect_refused(data_is("0\\0\\0\\10\\1e999\\0\\10\\10\\0"), {"contour 3, point 2", "not a finite number"});
+  expect_refused(data_is(""), {"contour 3", "no points"});
+  expect_refused(data_is("0\\0\\0\\10\\0\\0\\10\\10\\0", "5"), {"announces 5 points and holds 3"});
+}
+
+TEST(Rtstruct, contradicting_structures_are_refused) {
+  const auto with = [](const std::function<void(DcmDataset&)>& change) {
+    const Folder folder;
+    return read_rtstruct(changed(folder, change));
+  };
+  expect_refused(with([](DcmDataset& d) { put(item(d, DCM_StructureSetROISequence, 1), DCM_ROINumber, "1"); }),
+                 {"two structures have ROI number 1"});
+  expect_refused(with([](DcmDataset& d) { put(item(d, DCM_ROIContourSequence, 1), DCM_ReferencedROINumber, "9"); }),
+                 {"not in the file"});
+  expect_refused(with([](DcmDataset& d) {
+                   put(item(d, DCM_StructureSetROISequence, 1), DCM_ReferencedFrameOfReferenceUID, "9.9");
+                 }),
+                 {"ROI 'Rectum'", "frame of reference"});
+  expect_refused(with([](DcmDataset& d) { delete d.remove(DCM_StructureSetROISequence); }), {"no structures"});
+  expect_refused(with([](DcmDataset& d) { delete d.remove(DCM_ROIContourSequence); }), {"none of its 2 structures"});
+}
+
+TEST(Rtstruct, another_modality_is_named) {
+  const Folder folder;
+  expect_refused(read_rtstruct(changed(folder,
+                                       [](DcmDataset& d) {
+                                         put(d, DCM_Modality, "CT");
+                                         put(d, DCM_SOPClassUID, UID_CTImageStorage);
+                                       })),
+                 {"modality 'CT'", "RTSTRUCT is expected"});
+}
+
+TEST(Rtstruct, a_truncated_file_is_refused) {
+  const Folder folder;
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "case.dcm").ok());
+  const std::string whole = content_of(folder / "case.dcm");
+  for (const double share : {0.05, 0.2, 0.5, 0.9, 0.999}) {
+    write_file(folder / "cut.dcm",
+               whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+    expect_refused(read_rtstruct(folder / "cut.dcm"), {"cut.dcm"});
+  }
+}
+
+TEST(Rtstruct, a_folder_must_hold_exactly_one_structure_set) {
+  const Folder folder;
+  write_file(folder / "notes.txt", "not DICOM");
+  expect_refused(read_rtstruct(folder.path()), {"no DICOM RT Structure Set"});
+  changed(folder, [](DcmDataset& d) {
+    put(d, DCM_Modality, "CT");
+    put(d, DCM_SOPClassUID, UID_CTImageStorage);
+  });
+  fs::rename(folder / "case.dcm", folder / "slice.dcm");
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "one.dcm").ok());
+  const Result<ContourSet> set = read_rtstruct(folder.path());
+  ASSERT_TRUE(set.ok()) << why(set);
+  EXPECT_EQ(set->source, (folder / "one.dcm").string());
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "two.dcm").ok());
+  expect_refused(read_rtstruct(folder.path()), {"2 RT Structure Sets", "one.dcm, two.dcm"});
+}
+
+TEST(Rtstruct, what_cannot_be_written_leaves_no_file) {
+  const Folder folder;
+  ContourSet set = two_organs();
+  set.rois[0].contours[0].points[0].y() = INFINITY;
+  EXPECT_FALSE(write_rtstruct(set, folder / "case.dcm").ok());
+  set = two_organs();
+  set.rois[0].name = std::string(65, 'x');
+  EXPECT_FALSE(write_rtstruct(set, folder / "case.dcm").ok());
+  EXPECT_FALSE(write_rtstruct({}, folder / "case.dcm").ok());
+  EXPECT_FALSE(write_rtstruct(two_organs(), folder / "no/such/folder.dcm").ok());
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "files.hpp"
+#include "mesh_files.hpp"
+#include "stylet/io/mesh_io.hpp"
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+Result<TetMesh> read(const std::string& name, const std::string& text) {
+  const Folder folder;
+  return read_tet_mesh(write_file(folder / name, text));
+}
+
+/// The mesh, changed, as legacy VTK.
+Result<TetMesh> changed(const std::function<void(TetMesh&)>& change) {
+  TetMesh mesh = two_region_box();
+  change(mesh);
+  return read("m.vtk", vtk_text(mesh));
+}
+
+}  // namespace
+
+TEST(TetMeshErrors, some_inverted_tetrahedra_are_refused) {
+  expect_refused(changed([](TetMesh& m) { std::swap(m.tets[7][0], m.tets[7][1]); }),
+                 {"m.vtk", "tetrahedron 7", "inverted"});
+}
+
+TEST(TetMeshErrors, duplicate_tetrahedra_are_refused) {
+  expect_refused(changed([](TetMesh& m) {
+                   m.tets.push_back(m.tets[3]);
+                   m.tet_region.push_back(0);
+                 }),
+                 {"m.vtk", "duplicate"});
+}
+
+TEST(TetMeshErrors, unreferenced_nodes_are_refused) {
+  expect_refused(changed([](TetMesh& m) { m.nodes.emplace_back(1, 2, 3); }), {"m.vtk", "node"});
+}
+
+TEST(TetMeshErrors, nan_is_refused) {
+  expect_refused(changed([](TetMesh& m) { m.nodes[4].y() = NAN; }), {"m.vtk"});
+  const auto [nodes, tets] = tetgen_texts(two_region_box());
+  const Folder folder;
+  write_file(folder / "m.node", replaced(nodes, "\n5  ", "\n5  nan "));
+  expect_refused(read_tet_mesh(write_file(folder / "m.ele", tets)), {"m.node, line 7", "'nan' is not a finite number"});
+}
+
+TEST(TetMeshErrors, node_numbers_out_of_range_are_refused) {
+  expect_refused(read("m.vtk", replaced(vtk_text(two_region_box()), "\n4 ", "\n4 9999 1 2 3\n4 ")), {"m.vtk"});
+  expect_refused(read("m.msh", replaced(msh22_text(two_region_box()), "\n1 4 2 1 1 1 ", "\n1 4 2 1 1 9999 ")),
+                 {"m.msh"});
+  const auto [nodes, tets] = tetgen_texts(two_region_box());
+  const Folder folder;
+  write_file(folder / "m.node", nodes);
+  expect_refused(read_tet_mesh(write_file(folder / "m.ele", replaced(tets, "\n2 ", "\n2 999 "))),
+                 {"m.ele, line 3", "999", "out of range"});
+}
+
+TEST(TetMeshErrors, truncated_files_are_refused) {
+  const Folder folder;
+  for (const MeshFile& file : write_all_formats(two_region_box(), folder.path())) {
+    SCOPED_TRACE(file.what);
+    const std::string whole = content_of(file.path);
+    for (const double share : {0.3, 0.8}) {
+      const std::string name = "cut" + file.path.extension().string();
+      write_file(folder / name, whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+      if (file.path.extension() == ".ele")
+        fs::copy_file(folder / "tetgen.node", folder / "cut.node", fs::copy_options::overwrite_existing);
+      if (file.path.extension() == ".node")
+        fs::copy_file(folder / "tetgen.ele", folder / "cut.ele", fs::copy_options::overwrite_existing);
+      expect_refused(read_tet_mesh(folder / name), {"cut"});
+    }
+  }
+}
+
+TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
+  const std::string surface =
+      "# vtk DataFile Version 3.0\ntriangle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n0 0 0 20 0 0 0 20 0\n"
+      "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n";
+  expect_refused(read("s.vtk", surface), {"no tetrahedra", "vtkTriangle", "filled"});
+  expect_refused(read("s.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"),
+                 {"no unstructured grid"});
+}
+
+TEST(TetMeshErrors, half_a_tetgen_mesh_is_refused) {
+  expect_refused(read("m.ele", tetgen_texts(two_region_box()).second), {"'m.node' is not there", "side by side"});
+  expect_refused(read("m.node", tetgen_texts(two_region_box()).first), {"'m.ele' is not there"});
+}
+
+TEST(TetMeshErrors, tetgen_files_in_disorder_are_refused_with_the_line) {
+  const auto [nodes, tets] = tetgen_texts(two_region_box());
+  const auto read_pair = [](const std::string& n, const std::string& t) {
+    const Folder folder;
+    write_file(folder / "m.node", n);
+    return read_tet_mesh(write_file(folder / "m.ele", t));
+  };
+  expect_refused(read_pair(replaced(nodes, " 3 0 0", " 2 0 0"), tets), {"m.node, line 2", "first line"});
+  expect_refused(read_pair(replaced(nodes, "\n7  ", "\n70  "), tets),
+                 {"m.node, line 9", "out of order", "7 is expected"});
+  expect_refused(read_pair(nodes, replaced(tets, " 4 1\n", " 5 1\n")), {"m.ele, line 1", "4 or 10"});
+  expect_refused(read_pair(nodes, replaced(tets, " 1  # tet", " 1.5  # tet")),
+                 {"m.ele, line 2", "1.5", "whole number"});
+  expect_refused(read_pair(nodes, replaced(tets, " 1  # tet", " # tet")),
+                 {"m.ele, line 2", "5 numbers, 6 are expected"});
+}
+
+TEST(TetMeshErrors, scripts_are_never_run) {
+  const Folder folder;
+  const std::string touch = "SystemCall \"touch " + (folder / "harm").string() + "\";\n";
+  const std::string mesh = msh22_text(two_region_box());
+  // gmsh takes what it does not know for a script.
+  for (const auto& [name, text] :
+       {std::pair("a.msh", touch + mesh), std::pair("b.geo", touch), std::pair("c.mesh", touch),
+        std::pair("d.msh", "$Nonsense\n" + touch), std::pair("e.msh", " " + mesh + touch),
+        std::pair("f.msh", std::string("MeshVersionFormatted 2\n") + touch)}) {
+    EXPECT_FALSE(read_tet_mesh(write_file(folder / name, text)).ok()) << name;
+  }
+  write_file(folder / "g.msh.opt", touch);
+  expect_refused(read_tet_mesh(write_file(folder / "g.msh", mesh)), {"script 'g.msh.opt'", "Move"});
+  EXPECT_FALSE(fs::exists(folder / "harm"));
+}
+
+TEST(TetMeshErrors, regions_that_are_no_numbers_are_refused) {
+  std::string text = vtk_text(two_region_box());
+  text = replaced(text, "SCALARS region int 1", "SCALARS region double 1");
+  text = replaced(text, "default\n0\n", "default\n0.5\n");
+  expect_refused(read("m.vtk", text), {"cell 0", "0.5", "whole number"});
+}
+
+TEST(TetMeshErrors, other_files_are_named) {
+  expect_refused(read("m.msh", "solid x\nendsolid x\n"), {"an STL surface", "a tetrahedral mesh"});
+}
