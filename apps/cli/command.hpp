@@ -20,5 +20,6 @@ struct Command {
 Command add_phantom_command(CLI::App& program);
 Command add_mesh_command(CLI::App& program);
 Command add_info_command(CLI::App& program);
+Command add_insert_command(CLI::App& program);
 
 }  // namespace stylet::cli

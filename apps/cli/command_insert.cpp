@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "describe.hpp"
+#include "mesh_report.hpp"
+#include "output_path.hpp"
+#include "patient_model.hpp"
+#include "table.hpp"
+
+#include "stylet/io/results_writer.hpp"
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/sim/run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stylet::cli {
+
+namespace {
+
+struct InsertArguments {
+  std::string scenario;
+  std::string output;
+  std::vector<std::string> settings;
+  bool print_schema = false;
+};
+
+/// Passes what the run produces on to the result files.
+class Recorder final : public RunObserver {
+ public:
+  explicit Recorder(ResultsWriter& writer) : writer_(writer) {}
+  Result<> on_step(const StepRecord& step) override { return writer_.add_step(step); }
+  Result<> on_frame(const Frame& frame) override { return writer_.add_frame(frame); }
+
+ private:
+  ResultsWriter& writer_;
+};
+
+std::string title(EventKind kind, const std::string& region) {
+  std::string text = to_string(kind);
+  for (char& c : text) c = c == '_' ? ' ' : c;
+  std::string name = region;
+  for (char& c : name) c = c == '_' ? ' ' : c;
+  return region.empty() ? text : text + " (" + name + ")";
+}
+
+std::string summary_text(const Summary& summary) {
+  Table events({"event", "time [s]", "base depth [mm]", "axial force [N]"});
+  for (const Event& event : summary.events) {
+    // A force that rounds to nothing has no sign.
+    const double force = std::abs(event.force_N) < 5e-4 ? 0.0 : event.force_N;
+    events.row({title(event.kind, event.region), fmt::format("{:.3f}", event.time_s),
+                fmt::format("{:.2f}", event.depth_mm), fmt::format("{:.3f}", force)});
+  }
+  Facts facts;
+  facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.3f} N, lateral {:.3f} N", summary.peak_axial_N,
+                                      summary.peak_sagittal_N, summary.peak_lateral_N));
+  const Vec3& shift = summary.target_shift_centroid_mm;
+  facts.add("target moved", fmt::format("{:.2f} mm on average (left {:.2f}, posterior {:.2f}, superior {:.2f}), at "
+                                        "most {:.2f} mm, at the deepest point",
+                                        shift.norm(), shift.x(), shift.y(), shift.z(), summary.target_shift_max_mm));
+  facts.add("tip off its line", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));
+  facts.add("balance", fmt::format("force {:.1e}, torque {:.1e} (relative)", summary.residual_force_balance,
+                                   summary.residual_torque_balance));
+  facts.add("step", fmt::format("median {:.0f} µs, 99 % {:.0f} µs, 99.9 % {:.0f} µs, worst {:.0f} µs of CPU time; {} "
+                                "steps, at most {} contacts",
+                                summary.step_us_p50, summary.step_us_p99, summary.step_us_p999, summary.step_us_max,
+                                summary.steps, summary.contacts_max));
+  return events.text() + "\n\n" + facts.text();
+}
+
+Json summary_json(const Summary& s) {
+  Json events = Json::array();
+  for (const Event& event : s.events) {
+    events.push_back({{"kind", to_string(event.kind)},
+                      {"time_s", event.time_s},
+                      {"depth_mm", event.depth_mm},
+                      {"force_N", event.force_N},
+                      {"region", event.region}});
+  }
+  return {
+      {"version", s.version},
+      {"scenario", s.scenario},
+      {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}}},
+      {"steps", s.steps},
+      {"peak_force_N", {{"axial", s.peak_axial_N}, {"sagittal", s.peak_sagittal_N}, {"lateral", s.peak_lateral_N}}},
+      {"events", events},
+      {"tip_deflection_mm", s.tip_deflection_mm},
+      {"target_shift_mm",
+       {{"centroid", {s.target_shift_centroid_mm.x(), s.target_shift_centroid_mm.y(), s.target_shift_centroid_mm.z()}},
+        {"max", s.target_shift_max_mm}}},
+      {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
+      {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
+      {"contacts_max", s.contacts_max},
+      {"warnings", s.warnings}};
+}
+
+Result<> run_insert(const InsertArguments& arguments, Console& console) {
+  if (arguments.print_schema) {
+    console.say(schema_text());
+    return Ok{};
+  }
+  if (arguments.scenario.empty())
+    return input_error("insert", "no scenario is given", "Name a scenario file, for example scenarios/demo.toml");
+  const Result<Scenario> scenario = read_scenario(arguments.scenario, arguments.settings);
+  if (!scenario) return scenario.error();
+  const std::filesystem::path folder =
+      arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
+                               : std::filesystem::path(arguments.output);
+  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+
+  std::vector<std::vector<MotionSample>> motions;
+  for (const InsertionPlan& plan : scenario->insertions) {
+    motions.emplace_back();
+    if (plan.motion.empty()) continue;
+    Result<std::vector<MotionSample>> motion = read_motion_csv(plan.motion);
+    if (!motion) return motion.error();
+    motions.back() = std::move(*motion);
+  }
+
+  const Progress progress = console.progress();
+  Result<MeshedAnatomy> patient = patient_model(*scenario, arguments.scenario, progress);
+  if (!patient) return patient.error();
+  for (const std::string& note : patient->report.notes) console.detail(note);
+
+  const Result<std::shared_ptr<const Model>> model =
+      Model::compile(*scenario, std::move(patient->mesh), arguments.scenario, motions, progress);
+  if (!model) return model.error();
+  for (const std::string& warning : (*model)->warnings()) console.warn(warning);
+
+  RunInfo info = (*model)->info();
+  info.scenario_text = to_toml(*scenario);
+  info.warnings.insert(info.warnings.end(), patient->report.notes.begin(), patient->report.notes.end());
+  const Tissue& tissue = (*model)->tissue();
+  Result<std::unique_ptr<ResultsWriter>> writer =
+      ResultsWriter::open(folder, info, (*model)->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
+  if (!writer) return writer.error();
+  Recorder recorder(**writer);
+  const Result<Summary> summary = run(*model, recorder, progress);
+  if (!summary) return summary.error();
+  if (Result<> finished = (*writer)->finish(*summary, progress); !finished) return finished;
+
+  for (std::size_t i = (*model)->warnings().size(); i < summary->warnings.size(); ++i)
+    console.warn(summary->warnings[i]);
+  console.say(
+      fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario->name, summary->nodes, summary->tets, info.method));
+  console.say(summary_text(*summary));
+  console.say(fmt::format("Report: {}", (folder / "report.html").string()));
+  return console.write_json(summary_json(*summary));
+}
+
+}  // namespace
+
+Command add_insert_command(CLI::App& program) {
+  auto arguments = std::make_shared<InsertArguments>();
+  CLI::App* app =
+      program.add_subcommand("insert", "Insert a needle: run a scenario and write forces, displacements and a report");
+  app->add_option("SCENARIO", arguments->scenario, "Scenario file (TOML); --print-schema lists its keys")
+      ->type_name("SCENARIO.toml");
+  app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenario, e.g. --set mesh.nodes=5000; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_flag("--print-schema", arguments->print_schema,
+                "Print every key of a scenario with unit, default, range and meaning");
+  return {app, [arguments](Console& console) { return run_insert(*arguments, console); }};
+}
+
+}  // namespace stylet::cli
