@@ -4,7 +4,9 @@
 #include "stylet/phantom/phantom.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <functional>
 #include <map>
 
@@ -130,6 +132,33 @@ TEST(Phantom, perineum_is_rounded) {
     ++shrinking;
   }
   EXPECT_GE(shrinking, 5);
+}
+
+TEST(Phantom, written_as_dicom_or_json_it_comes_back_to_a_hundredth_of_a_millimetre) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("stylet-phantom-" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  ASSERT_TRUE(write_rtstruct(reference(), folder / "case.dcm").ok());
+  ASSERT_TRUE(write_contour_json(reference(), folder / "case.json").ok());
+  const Result<ContourSet> dicom = read_rtstruct(folder / "case.dcm"), json = read_contour_json(folder / "case.json");
+  std::filesystem::remove_all(folder);
+  for (const Result<ContourSet>* back : {&dicom, &json}) {
+    ASSERT_TRUE(back->ok()) << back->error().message();
+    ASSERT_EQ((*back)->rois.size(), reference().rois.size());
+    for (std::size_t r = 0; r < reference().rois.size(); ++r) {
+      const Roi &a = reference().rois[r], &b = (*back)->rois[r];
+      EXPECT_EQ(a.name, b.name);
+      EXPECT_EQ(a.type, b.type);
+      EXPECT_EQ(a.colour, b.colour);
+      ASSERT_EQ(a.contours.size(), b.contours.size());
+      for (std::size_t c = 0; c < a.contours.size(); ++c) {
+        ASSERT_EQ(a.contours[c].points.size(), b.contours[c].points.size());
+        for (std::size_t i = 0; i < a.contours[c].points.size(); ++i) {
+          EXPECT_LT((a.contours[c].points[i] - b.contours[c].points[i]).norm(), 0.01);
+        }
+      }
+    }
+  }
 }
 
 TEST(Phantom, same_seed_gives_the_same_patient_and_another_seed_another) {
