@@ -12,8 +12,8 @@ namespace stylet {
 /// Whatever a user may name as a patient.
 using PatientInput = std::variant<ContourSet, LabelImage, TetMesh, std::vector<Surface>>;
 
-/// Finds out what a file (or a directory with one RTSTRUCT in it) is, by content before extension, and reads it. Untrusted files go through a
-/// child process with limits on time and memory, so a parser's crash becomes an error.
+/// Finds out what a file (or a directory with one RTSTRUCT in it) is, by content before extension, and reads it.
+/// Untrusted files go through a child process with limits on time and memory, so a parser's crash becomes an error.
 Result<PatientInput> read_input(const std::filesystem::path& path, const MeshReadOptions& mesh_options = {});
 
 }  // namespace stylet

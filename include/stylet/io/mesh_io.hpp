@@ -28,8 +28,8 @@ struct MeshField {
 
 /// Writes VTU (zlib, appended) with cell array "region", region names as field data, units in the array names.
 /// The file appears whole or not at all.
-Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const std::vector<MeshField>& node_fields = {},
-                   const std::vector<MeshField>& tet_fields = {});
+Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path,
+                   const std::vector<MeshField>& node_fields = {}, const std::vector<MeshField>& tet_fields = {});
 
 /// Reads triangulated surfaces: STL, PLY, OBJ, VTP, GLB (metres, y up → LPS mm; one surface per named node).
 Result<std::vector<Surface>> read_surfaces(const std::filesystem::path& path, const MeshReadOptions& options = {});
