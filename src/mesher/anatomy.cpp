@@ -9,6 +9,12 @@
 
 namespace stylet::meshing {
 
+namespace {
+
+constexpr double kOffsetRoom = 4.0;  // [mm] surfaces may be offset by up to this much
+
+}  // namespace
+
 int priority(std::string_view c) {
   constexpr std::array<std::string_view, 17> order{"urethra",
                                                    "anterior_stroma",
@@ -34,13 +40,20 @@ int priority(std::string_view c) {
 }
 
 void Anatomy::add(Structure structure) {
+  ShapePtr solid = structure.shape;
+  add(std::move(solid), {std::move(structure)});
+}
+
+void Anatomy::add(ShapePtr solid, std::vector<Structure> members) {
   Layer layer;
-  layer.solid = structure.shape;
-  layer.members = {static_cast<int>(structures.size())};
-  layer.box = structure.shape->box();
-  layer.box.min().array() -= 3.0;  // room for offsets
-  layer.box.max().array() += 3.0;
-  structures.push_back(std::move(structure));
+  layer.solid = std::move(solid);
+  layer.box = layer.solid->box();
+  layer.box.min().array() -= kOffsetRoom;
+  layer.box.max().array() += kOffsetRoom;
+  for (Structure& s : members) {
+    layer.members.push_back(static_cast<int>(structures.size()));
+    structures.push_back(std::move(s));
+  }
   layers.push_back(std::move(layer));
 }
 

@@ -37,6 +37,8 @@ struct Anatomy {
 
   /// Appends a structure in a layer of its own.
   void add(Structure structure);
+  /// Appends structures that share one solid.
+  void add(ShapePtr solid, std::vector<Structure> members);
   /// 0 outside, else 1 + index of the structure at p. @param p [mm] LPS
   [[nodiscard]] int label(const Vec3& p) const;
   /// Signed distance [mm] of p from the surface between two labels (0 = outside), negative on the side of higher

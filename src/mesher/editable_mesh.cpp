@@ -75,6 +75,17 @@ std::vector<Index> EditableMesh::around_edge(Index a, Index b) const {
   return both;
 }
 
+bool EditableMesh::on_surface(Index a, Index b) const {
+  for (const Index t : around_edge(a, b)) {
+    for (const Index v : tets[t].nodes) {
+      if (v == a || v == b) continue;
+      const Index other = across(t, {a, b, v});
+      if (other < 0 || tets[other].label != tets[t].label) return true;
+    }
+  }
+  return false;
+}
+
 Index EditableMesh::across(Index tet, const std::array<Index, 3>& face) const {
   for (const Index t : around[face[0]]) {
     if (t == tet) continue;

@@ -43,6 +43,8 @@ class EditableMesh {
   [[nodiscard]] std::vector<int> labels_at(Index node) const;
   /// Living tetrahedra at both nodes.
   [[nodiscard]] std::vector<Index> around_edge(Index a, Index b) const;
+  /// True when an edge of the mesh lies on the surface of a region.
+  [[nodiscard]] bool on_surface(Index a, Index b) const;
   /// The other living tetrahedron at a face, or -1.
   [[nodiscard]] Index across(Index tet, const std::array<Index, 3>& face) const;
 

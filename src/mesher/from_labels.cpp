@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "anatomy.hpp"
+#include "body.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -183,27 +184,42 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   }
   const double step = std::max(0.8 * std::min(s.spacing[0], s.spacing[1]), std::min(s.spacing[2], 1.0));
   const double sigma = 0.9 * std::max(s.spacing[0], s.spacing[1]);
-  Layer layer;
+  const auto volume_of = [&](const std::set<int>& set) {
+    double volume = 0;
+    for (const int l : set) volume += static_cast<double>(voxels[l]) * image.spacing.prod();
+    return volume;
+  };
+  // All structures together are one solid without gaps, divided among them; the body of the input, if any, is a solid
+  // of its own that holds the others.
+  std::vector<Structure> members;
+  std::set<int> organs;
   std::size_t done = 0;
-  const SliceFields all = fields_of(image, s, [&](int l) { return used.contains(l); });
-  layer.solid = interpolate_fields(all, step, sigma, 0);
   for (const auto& [name, set] : labels) {
     report(progress, "interpolating slices", static_cast<double>(done++) / static_cast<double>(labels.size()));
+    if (name == "body") continue;
+    organs.insert(set.begin(), set.end());
     const SliceFields own = fields_of(image, s, [&](int l) { return set.contains(l); });
-    auto shape = interpolate_fields(own, step, sigma, 0);
+    auto shape = interpolate_fields(own, step, sigma);
     Structure structure;
     structure.name = name;
     structure.target = !named || is_target_region(name);
-    for (const int l : set) structure.input_volume += static_cast<double>(voxels[l]) * image.spacing.prod();
+    structure.input_volume = volume_of(set);
     structure.boundary = boundary_points(*shape, 0, own);
     structure.shape = std::move(shape);
-    layer.members.push_back(static_cast<int>(anatomy.structures.size()));
-    anatomy.structures.push_back(std::move(structure));
+    members.push_back(std::move(structure));
   }
-  layer.box = layer.solid->box();
-  layer.box.min().array() -= 3.0;
-  layer.box.max().array() += 3.0;
-  anatomy.layers.push_back(std::move(layer));
+  const auto solid = interpolate_fields(fields_of(image, s, [&](int l) { return organs.contains(l); }), step, sigma);
+  anatomy.add(solid, std::move(members));
+  if (labels.contains("body")) {
+    const SliceFields whole = fields_of(image, s, [&](int l) { return used.contains(l); });
+    auto shape = interpolate_fields(whole, std::max(step, 2.0), sigma);
+    Structure body;
+    body.name = "body";
+    body.boundary = boundary_points(*shape, 0, whole);
+    body.input_volume = volume_of(used) * trim_body(*shape, anatomy);
+    body.shape = std::move(shape);
+    anatomy.add(std::move(body));
+  }
   return anatomy;
 }
 

@@ -28,6 +28,7 @@ bool help(EditableMesh& m, LocalChanges& change, Index t) {
 
 void improve(EditableMesh& m, const Anatomy& anatomy, double goal) {
   for (int round = 0; round < kMostRounds; ++round) {
+    // Surfaces give way a little more to what could not be helped otherwise.
     LocalChanges change(m, anatomy, round < 4 ? 0.05 : round < 8 ? 0.1 : 0.15);
     std::vector<std::pair<double, Index>> bad;
     for (std::size_t t = 0; t < m.tets.size(); ++t) {

@@ -183,17 +183,15 @@ bool LocalChanges::remove_edge(Index a, Index b) {
       }
       sectors.emplace_back(std::move(chain), label[from]);
     }
-    // The surface's diagonal changes from ab to cd: its middle must stay on the surface, and no such face be there yet.
+    // The surface's diagonal changes from ab to cd: it must lie about as near to the surface, and not be in it already.
     const Index c = ring[starts[0]], d = ring[starts[1]];
     std::vector<int> pair{std::min(sectors[0].second, sectors[1].second),
                           std::max(sectors[0].second, sectors[1].second)};
     const double was = off_surface(pair, 0.5 * (mesh_.nodes[a] + mesh_.nodes[b]));
     const double will = off_surface(pair, 0.5 * (mesh_.nodes[c] + mesh_.nodes[d]));
     const double length = (mesh_.nodes[a] - mesh_.nodes[b]).norm();
-    if (will > std::max(was, 1.5 * slack_ * length)) return false;
-    for (const Index t : mesh_.around_edge(c, d)) {
-      if (std::find(dead.begin(), dead.end(), t) == dead.end()) return false;
-    }
+    if (will > was + slack_ * length) return false;
+    if (mesh_.on_surface(c, d)) return false;
   } else {
     return false;
   }

@@ -4,9 +4,13 @@
 #include "surface_distance.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 
 namespace stylet::meshing {
 namespace {
+
+constexpr double kVolumeTolerance = 0.08;
 
 /// Points of the structure's own boundary where it is also the region's: not those inside a structure of higher
 /// priority.
@@ -50,6 +54,11 @@ MeshReport report_on(const TetMesh& mesh, const Anatomy& a) {
       total.sum += d.sum;
       total.count += d.count;
       total.max = std::max(total.max, d.max);
+    }
+    const double error = s.input_volume > 0 ? region.volume_cc / region.input_volume_cc - 1 : 0;
+    if (std::abs(error) > kVolumeTolerance) {
+      r.notes.push_back(fmt::format("region '{}' has {:+.0f} % of its input's volume: too few nodes for it", s.name,
+                                    100 * error));
     }
     r.regions.push_back(std::move(region));
   }

@@ -135,4 +135,30 @@ void round_edges(GridShape& g, double radius) {
   redistance(g);
 }
 
+std::shared_ptr<GridShape> unite(const GridShape& a, const GridShape& b) {
+  auto u = std::make_shared<GridShape>();
+  u->frame = a.frame;
+  const auto top = [](const GridShape& g) {
+    return Vec3(g.low + g.spacing.cwiseProduct(Vec3(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1)));
+  };
+  u->low = a.low.cwiseMin(b.low);
+  const Vec3 extent = top(a).cwiseMax(top(b)) - u->low;
+  for (int c = 0; c < 3; ++c) {
+    u->size[c] = static_cast<int>(std::ceil(extent[c] / std::min(a.spacing[c], b.spacing[c]))) + 1;
+    u->spacing[c] = extent[c] / (u->size[c] - 1);
+  }
+  u->values.resize(static_cast<std::size_t>(u->size[0]) * u->size[1] * u->size[2]);
+  std::size_t n = 0;
+  for (int k = 0; k < u->size[2]; ++k) {
+    for (int j = 0; j < u->size[1]; ++j) {
+      for (int i = 0; i < u->size[0]; ++i) {
+        const Vec3 p = u->node(i, j, k);
+        u->values[n++] = static_cast<float>(std::min(a.distance(p), b.distance(p)));
+      }
+    }
+  }
+  redistance(*u);
+  return u;
+}
+
 }  // namespace stylet::meshing

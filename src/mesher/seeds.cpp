@@ -59,6 +59,7 @@ std::vector<SurfaceSeed> surface_seeds(const Anatomy& a, const SizeField& size, 
   for (const int s : order) {
     const Structure& structure = a.structures[s];
     Eigen::AlignedBox3d box = structure.shape->box();
+    const double widest = 0.4 * box.sizes().maxCoeff();  // a few seeds on every structure, however large the elements
     const double step = std::clamp(0.5 * structure.shape->inner_radius(), 1.0, 8.0);
     box.min().array() -= 1.5 * step;
     box.max().array() += 1.5 * step;
@@ -82,7 +83,7 @@ std::vector<SurfaceSeed> surface_seeds(const Anatomy& a, const SizeField& size, 
             const int there = labels[at(c[0], c[1], c[2])];
             if (here == there || (here != s + 1 && there != s + 1)) continue;
             const SurfaceSeed seed = cut(a, node(i, j, k), here, node(c[0], c[1], c[2]), there);
-            const double distance = spacing * size(seed.position, scale);
+            const double distance = std::min(spacing * size(seed.position, scale), widest);
             if (!free(seed.position, distance)) continue;
             bins[bin(seed.position)].push_back(static_cast<int>(kept.size()));
             kept.push_back(seed);

@@ -88,9 +88,11 @@ class Superquadric : public Shape {
 /// contours, smoothed and made a true distance.
 /// @param voxel wanted grid spacing [mm]
 /// @param sigma smoothing [mm]
-/// @param rounding radius of the convex edges [mm], 0 = as they are
 std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, const SliceFrame& frame, double voxel,
-                                              double sigma, double rounding);
+                                              double sigma);
+
+/// Union of two solids of one slice frame, on a grid that holds both.
+std::shared_ptr<GridShape> unite(const GridShape& a, const GridShape& b);
 
 /// A stack of in-plane signed distance fields on one grid.
 struct SliceFields {
@@ -105,7 +107,7 @@ struct SliceFields {
 
 /// The same from in-plane fields.
 /// @param step grid spacing along the normal [mm]
-std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma, double rounding);
+std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma);
 
 /// In-plane signed distance of a pixel mask to the middle line between its inner and outer pixels [mm] (nx*ny); empty
 /// when no pixel is set. Exact Euclidean distance between pixel centres (Felzenszwalb & Huttenlocher 2012).

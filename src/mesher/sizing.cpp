@@ -10,7 +10,7 @@ namespace {
 constexpr double kDoubling = 14.0;      // [mm] from the target's surface, size has doubled
 constexpr double kLargestGrowth = 7.0;  // times the size in the target
 constexpr double kLimitGrowth = 0.35;   // [mm/mm] how fast the bound of a structure fades outside it
-constexpr double kSoftness = 0.35;      // wanted sizes beyond the bound count to this power
+constexpr double kSoftness = 0.5;       // wanted sizes beyond the bound count to this power
 
 /// Size that resolves a structure of the given half thickness [mm]: 1.15 of it where that is 2.5 mm, 0.7 at 25 mm.
 double resolving_size(double half_thickness) { return 1.4 * std::pow(half_thickness, 0.79); }

@@ -134,7 +134,7 @@ std::vector<float> mask_distance(const std::vector<bool>& mask, int nx, int ny, 
   return d;
 }
 
-std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma, double rounding) {
+std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma) {
   // Runs of slices that hold something, each to be closed by its own caps.
   struct Run {
     int first, last;
@@ -163,7 +163,7 @@ std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double s
   }
   auto g = std::make_shared<GridShape>();
   g->frame = stack.frame;
-  const double margin = cap + 3 * step + 2 * rounding;
+  const double margin = cap + 4 * step;
   const double bottom = stack.heights[runs.front().first] - margin;
   const double top = stack.heights[runs.back().last] + margin;
   const int nk = std::max(4, static_cast<int>(std::ceil((top - bottom) / step)) + 1);
@@ -203,12 +203,11 @@ std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double s
     smooth(*g, sigma);
     redistance(*g);
   }
-  round_edges(*g, rounding);
   return g;
 }
 
 std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, const SliceFrame& frame, double voxel,
-                                              double sigma, double rounding) {
+                                              double sigma) {
   SliceFields stack;
   stack.frame = frame;
   stack.gap = slice_gap(slices);
@@ -218,7 +217,7 @@ std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, 
       for (const auto& q : p) box.extend(q);
     }
   }
-  const double margin = 4 * voxel + rounding;
+  const double margin = 4 * voxel;
   box.min().array() -= margin;
   box.max().array() += margin;
   for (int a = 0; a < 2; ++a) {
@@ -230,7 +229,7 @@ std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, 
     stack.heights.push_back(s.height);
     stack.fields.push_back(polygon_distance(s, stack));
   }
-  return interpolate_fields(stack, std::min(voxel, 0.5 * std::max(stack.gap, voxel)), sigma, rounding);
+  return interpolate_fields(stack, voxel, sigma);
 }
 
 }  // namespace stylet::meshing

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only unit that includes CGAL's mesh generator, which takes long to compile.
+#define CGAL_NO_WARNINGS  // they go to the terminal; what matters comes back as an error code
+
 #include "tetrahedraliser.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

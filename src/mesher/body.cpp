@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "body.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace stylet::meshing {
+namespace {
+
+constexpr double kKept = 100.0;     // [mm] around all other structures
+constexpr double kWorthIt = 50.0;   // [mm] less than this beyond that is kept as well
+constexpr double kRounding = 15.0;  // [mm]
+
+}  // namespace
+
+double trim_body(GridShape& body, Anatomy& anatomy) {
+  const double rounding = std::min(kRounding, 0.2 * body.inner_radius());
+  Eigen::AlignedBox3d keep, all;  // in the slice frame
+  for (const Structure& s : anatomy.structures) {
+    for (const Vec3& p : s.boundary) keep.extend(body.frame.local(p));
+  }
+  for (int k = 0; k < body.size[2]; ++k) {
+    for (int j = 0; j < body.size[1]; ++j) {
+      for (int i = 0; i < body.size[0]; ++i) {
+        if (body.values[body.at(i, j, k)] < 0) all.extend(body.low + body.spacing.cwiseProduct(Vec3(i, j, k)));
+      }
+    }
+  }
+  double fraction = 1;
+  if (!keep.isEmpty()) {
+    keep.min().array() -= kKept;
+    keep.max().array() += kKept;
+    bool crop = false;
+    for (int c = 0; c < 3; ++c) {
+      if (all.min()[c] > keep.min()[c] - kWorthIt) {
+        keep.min()[c] = std::min(keep.min()[c], all.min()[c] - kWorthIt);
+      } else {
+        crop = true;
+      }
+      if (all.max()[c] < keep.max()[c] + kWorthIt) {
+        keep.max()[c] = std::max(keep.max()[c], all.max()[c] + kWorthIt);
+      } else {
+        crop = true;
+      }
+    }
+    if (crop) {
+      const double before = body.volume(0);
+      for (int k = 0; k < body.size[2]; ++k) {
+        for (int j = 0; j < body.size[1]; ++j) {
+          for (int i = 0; i < body.size[0]; ++i) {
+            const Vec3 p = body.low + body.spacing.cwiseProduct(Vec3(i, j, k));
+            float& v = body.values[body.at(i, j, k)];
+            v = std::max(v, static_cast<float>((keep.min() - p).cwiseMax(p - keep.max()).maxCoeff()));
+          }
+        }
+      }
+      redistance(body);
+      fraction = body.volume(0) / before;
+      anatomy.notes.push_back(
+          fmt::format("the body was cropped to {:.0f} mm around the other structures: {:.0f} % of it is "
+                      "meshed",
+                      kKept, 100 * fraction));
+    }
+  }
+  round_edges(body, rounding);
+  return fraction;
+}
+
+}  // namespace stylet::meshing
