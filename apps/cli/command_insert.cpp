@@ -23,6 +23,7 @@ struct InsertArguments {
   std::string output;
   std::vector<std::string> settings;
   bool print_schema = false;
+  bool print_tissues = false;
 };
 
 /// Passes what the run produces on to the result files.
@@ -95,9 +96,30 @@ Json summary_json(const Summary& s) {
       {"warnings", s.warnings}};
 }
 
+/// The default properties of every tissue and what they mean for a needle of the default diameter.
+std::string tissues_text() {
+  const double diameter = Scenario{}.needle.diameter_mm;
+  Table table({"region", "E [kPa]", "nu", "cutting [N]", "puncture [N]", "tenting [mm]", "cutting lag [mm]"});
+  std::string sources;
+  for (const std::string& region : known_tissues()) {
+    const TissueParameters t = default_tissue(region);
+    const bool bone = t.young_kPa > 1e4;
+    table.row({region, bone ? "held" : fmt::format("{:g}", t.young_kPa), bone ? "" : fmt::format("{:g}", t.poisson),
+               bone ? "" : fmt::format("{:g}", t.cutting_N), bone ? "" : fmt::format("{:g}", t.puncture_N),
+               bone || t.puncture_N <= 0.0 ? "" : fmt::format("{:.1f}", tenting_mm(t, t.puncture_N, diameter)),
+               bone ? "" : fmt::format("{:.1f}", tenting_mm(t, t.cutting_N, diameter))});
+    sources += fmt::format("\n  {}: {}", region, t.source);
+  }
+  return table.text() + "\n\nSources" + sources;
+}
+
 Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (arguments.print_schema) {
     console.say(schema_text());
+    return Ok{};
+  }
+  if (arguments.print_tissues) {
+    console.say(tissues_text());
     return Ok{};
   }
   if (arguments.scenario.empty())
@@ -165,6 +187,8 @@ Command add_insert_command(CLI::App& program) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app->add_flag("--print-schema", arguments->print_schema,
                 "Print every key of a scenario with unit, default, range and meaning");
+  app->add_flag("--print-tissues", arguments->print_tissues,
+                "Print the default properties of every tissue with their sources");
   return {app, [arguments](Console& console) { return run_insert(*arguments, console); }};
 }
 

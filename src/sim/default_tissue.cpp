@@ -40,6 +40,12 @@ constexpr Row kRows[] = {
 
 }  // namespace
 
+std::vector<std::string> known_tissues() {
+  std::vector<std::string> names;
+  for (const Row& row : kRows) names.emplace_back(row.region);
+  return names;
+}
+
 TissueParameters default_tissue(const std::string& region) {
   const Row* row = &kRows[0];
   for (const Row& candidate : kRows) {

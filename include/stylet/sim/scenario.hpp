@@ -31,6 +31,9 @@ struct TissueParameters {
 /// "label_2", …). Unknown names get the values of soft tissue around the gland.
 TissueParameters default_tissue(const std::string& region);
 
+/// Regions default_tissue() has values of its own for, in the order of documentation.
+std::vector<std::string> known_tissues();
+
 /// A guide template: a grid of holes in front of the perineum. Columns are lettered A a B b … G from the patient's
 /// right to the left, rows numbered 1, 1.5, … 7 from posterior to anterior.
 struct TemplateGrid {
