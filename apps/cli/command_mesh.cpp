@@ -4,13 +4,11 @@
 #include "mesh_report.hpp"
 #include "output_path.hpp"
 #include "patient_input.hpp"
+#include "patient_model.hpp"
 #include "validators.hpp"
-
-#include "stylet/core/nearest_name.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 
 namespace stylet::cli {
@@ -89,26 +87,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
 
   MeshedAnatomy out{.mesh = mesh, .report = {}};
-  for (const auto& [name, canonical] : options.regions) {
-    const int region = mesh.region_index(name);
-    if (region < 0) {
-      const std::string nearest = nearest_name(name, mesh.regions);
-      return input_error(arguments.input,
-                         fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(mesh.regions, ", ")),
-                         nearest.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", nearest));
-    }
-    const std::string known = canonical_region(canonical);
-    out.mesh.regions[region] = known.empty() ? canonical : known;
-  }
-  for (std::size_t region = 0; region < out.mesh.regions.size(); ++region) {
-    const auto twin =
-        std::find(out.mesh.regions.begin(), out.mesh.regions.begin() + static_cast<std::ptrdiff_t>(region),
-                  out.mesh.regions[region]);
-    if (twin != out.mesh.regions.begin() + static_cast<std::ptrdiff_t>(region)) {
-      return input_error(arguments.input, fmt::format("two regions would be called '{}'", *twin),
-                         "Give every region a name of its own with --region");
-    }
-  }
+  if (Result<> named = rename_regions(out.mesh, options.regions, arguments.input); !named) return named.error();
   out.report = report_as_is(out.mesh);
   return out;
 }
