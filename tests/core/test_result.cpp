@@ -6,7 +6,8 @@
 using namespace stylet;
 
 TEST(Result, error_message_names_place_value_and_cure) {
-  const Error e = input_error("case.dcm, ROI 'Prostate'", "1 slice, at least 2 are needed", "Contour it on more slices");
+  const Error e =
+      input_error("case.dcm, ROI 'Prostate'", "1 slice, at least 2 are needed", "Contour it on more slices");
   EXPECT_EQ(e.message(), "case.dcm, ROI 'Prostate': 1 slice, at least 2 are needed. Contour it on more slices");
 }
 

@@ -11,7 +11,8 @@ namespace stylet {
 /// Who has to act: the user changes the input (exit status 2), or the run itself failed (exit status 1).
 enum class ErrorKind { input, failed };
 
-/// What went wrong, where, and what to do about it. Building and loading return it; nothing throws across a public call.
+/// What went wrong, where, and what to do about it. Building and loading return it; nothing throws across a public
+/// call.
 struct Error {
   ErrorKind kind = ErrorKind::input;
   std::string where;  ///< file and the place in it, e.g. "case.dcm, ROI 'Prostate', slice z = -35 mm"
@@ -41,16 +42,28 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool ok() const { return std::holds_alternative<T>(state_); }
   explicit operator bool() const { return ok(); }
 
-  [[nodiscard]] T& value() & { assert(ok()); return std::get<T>(state_); }
-  [[nodiscard]] const T& value() const& { assert(ok()); return std::get<T>(state_); }
-  [[nodiscard]] T&& value() && { assert(ok()); return std::get<T>(std::move(state_)); }
+  [[nodiscard]] T& value() & {
+    assert(ok());
+    return std::get<T>(state_);
+  }
+  [[nodiscard]] const T& value() const& {
+    assert(ok());
+    return std::get<T>(state_);
+  }
+  [[nodiscard]] T&& value() && {
+    assert(ok());
+    return std::get<T>(std::move(state_));
+  }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   T&& operator*() && { return std::move(*this).value(); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
 
-  [[nodiscard]] const Error& error() const { assert(!ok()); return std::get<Error>(state_); }
+  [[nodiscard]] const Error& error() const {
+    assert(!ok());
+    return std::get<Error>(state_);
+  }
 
  private:
   std::variant<T, Error> state_;

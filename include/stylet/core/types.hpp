@@ -20,7 +20,7 @@ using MatX = Eigen::MatrixXd;
 
 /// A rigid placement: x_world = rotation * x_local + origin.
 struct Pose {
-  Vec3 origin = Vec3::Zero();                                   ///< [mm] LPS
+  Vec3 origin = Vec3::Zero();                                    ///< [mm] LPS
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< local to LPS; local z is the needle's axis
 };
 
