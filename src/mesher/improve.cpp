@@ -7,7 +7,7 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 8;
 
 bool help(EditableMesh& m, LocalChanges& change, Index t) {
   const auto n = m.tets[t].nodes;
@@ -27,21 +27,24 @@ bool help(EditableMesh& m, LocalChanges& change, Index t) {
 }  // namespace
 
 void improve(EditableMesh& m, const Anatomy& anatomy, double goal) {
-  for (int round = 0; round < kMostRounds; ++round) {
-    // Surfaces give way a little more to what could not be helped otherwise.
-    LocalChanges change(m, anatomy, round < 4 ? 0.05 : round < 8 ? 0.1 : 0.15);
-    std::vector<std::pair<double, Index>> bad;
-    for (std::size_t t = 0; t < m.tets.size(); ++t) {
-      if (!m.alive(static_cast<Index>(t))) continue;
-      const double q = m.quality(static_cast<Index>(t));
-      if (q < goal) bad.emplace_back(q, static_cast<Index>(t));
+  // Surfaces give way a little more to what could not be helped otherwise.
+  for (const double slack : {0.05, 0.1, 0.15}) {
+    LocalChanges change(m, anatomy, slack);
+    for (int round = 0; round < kMostRounds; ++round) {
+      std::vector<std::pair<double, Index>> bad;
+      for (std::size_t t = 0; t < m.tets.size(); ++t) {
+        if (!m.alive(static_cast<Index>(t))) continue;
+        const double q = m.quality(static_cast<Index>(t));
+        if (q < goal) bad.emplace_back(q, static_cast<Index>(t));
+      }
+      if (bad.empty()) return;
+      std::sort(bad.begin(), bad.end());
+      bool any = false;
+      for (const auto& [q, t] : bad) {
+        if (m.alive(t) && m.quality(t) < goal) any = help(m, change, t) || any;
+      }
+      if (!any) break;
     }
-    std::sort(bad.begin(), bad.end());
-    bool any = false;
-    for (const auto& [q, t] : bad) {
-      if (m.alive(t) && m.quality(t) < goal) any = help(m, change, t) || any;
-    }
-    if (!any) break;
   }
 }
 
