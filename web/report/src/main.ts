@@ -14,12 +14,25 @@ function box(id: string): HTMLElement {
   return element;
 }
 
+/** Builds one part of the page; when that fails the others still work, and the reader is told. */
+function build(id: string, part: (element: HTMLElement) => void): void {
+  const element = box(id);
+  try {
+    part(element);
+  } catch (error) {
+    const note = document.createElement('p');
+    note.className = 'note';
+    note.textContent = `This part could not be shown: ${error instanceof Error ? error.message : String(error)}`;
+    element.replaceChildren(note);
+  }
+}
+
 document.documentElement.classList.add('with-script');
 const data = decode(box('report-data').textContent ?? '');
 const moment = new Moment(data);
 const choice = new CurveChoice();
-buildLegend(box('force-legend'), choice);
-buildForcePlot(data, choice, moment, { box: box('force-depth'), abscissa: 'depth', label: 'Depth [mm]' });
-buildForcePlot(data, choice, moment, { box: box('force-time'), abscissa: 'time', label: 'Time [s]' });
-buildHistogram(data, box('step-times'));
-buildViewer(data, moment, box('viewer'));
+build('force-legend', (b) => buildLegend(b, choice));
+build('force-depth', (b) => buildForcePlot(data, choice, moment, { box: b, abscissa: 'depth', label: 'Depth [mm]' }));
+build('force-time', (b) => buildForcePlot(data, choice, moment, { box: b, abscissa: 'time', label: 'Time [s]' }));
+build('step-times', (b) => buildHistogram(data, b));
+build('viewer', (b) => buildViewer(data, moment, b));

@@ -59,8 +59,8 @@ Layers view_3d(const PictureInput& input, const Frame& frame) {
     silhouette->SetEnableFeatureAngle(0);
     silhouette->BorderEdgesOff();
     silhouette->Update();
-    const Colour ink = view.background ? lighter(view.colour, 0.35) : lighter(view.colour, -0.35);
-    add_lines(stage, silhouette->GetOutput(), ink, view.background ? 1.0 : 1.5);
+    vtkActor* outline = add_lines(stage, silhouette->GetOutput(), lighter(view.colour, -0.35), 1.5);
+    outline->GetProperty()->SetOpacity(view.background ? 0.25 : 0.5);
   }
   if (frame.needle.size() >= 2) {
     vtkActor* needle = add_surface(stage, needle_tube(frame.needle, input.run.info.needle_diameter_mm), kSteel, 1.0);

@@ -30,6 +30,16 @@ std::string spoken(const std::string& region) {
   return text;
 }
 
+/// What the tip pierces: the surface of the body is the skin.
+std::string surface(const std::string& region) { return region == "body" ? "skin" : region; }
+
+/// "0.42 N"; small forces without false digits.
+std::string newtons(double force) {
+  return std::abs(force) < 0.005 ? "less than 0.01 N" : fmt::format("{:.2f} N", force);
+}
+
+std::string at_most(double force) { return (std::abs(force) < 0.005 ? "" : "at most ") + newtons(force); }
+
 std::string the(const std::string& region) { return region.empty() ? "the tissue" : "the " + spoken(region); }
 
 const Event* find(const std::vector<Event>& events, EventKind kind) {
@@ -63,13 +73,13 @@ std::string tell_events(const std::vector<Event>& events) {
   std::string pierced;  // region of the last puncture: its entry need not be told again
   for (const Event& e : events) {
     const std::string at = fmt::format(" at {:.1f} mm", e.depth_mm);
-    const std::string force = fmt::format(" under an axial force of {:.2f} N", e.force_N);
+    const std::string force = " under an axial force of " + newtons(e.force_N);
     switch (e.kind) {
       case EventKind::skin_contact:
         clauses.push_back("touched the skin" + at);
         break;
       case EventKind::puncture:
-        clauses.push_back("pierced " + the(e.region) + at + force);
+        clauses.push_back("pierced " + the(surface(e.region)) + at + force);
         pierced = e.region;
         break;
       case EventKind::region_entered:
@@ -109,9 +119,8 @@ std::string tell_forces(const RunRecording& run) {
                         peak->base_depth_mm);
   }
   return fmt::format(
-      "The hand had to exert at most {:.2f} N along the needle{}, and at most {:.2f} N across it in the sagittal and "
-      "{:.2f} N in the lateral direction.",
-      s.peak_axial_N, where, s.peak_sagittal_N, s.peak_lateral_N);
+      "The hand had to exert {} along the needle{}; across it, {} in the sagittal and {} in the lateral direction.",
+      at_most(s.peak_axial_N), where, at_most(s.peak_sagittal_N), at_most(s.peak_lateral_N));
 }
 
 std::string tell_target(const RunRecording& run) {
@@ -174,7 +183,7 @@ std::string describe_shift(const Vec3& shift) {
 }
 
 std::string event_label(const Event& e) {
-  const std::string region = readable_name(e.region);
+  const std::string region = readable_name(e.kind == EventKind::puncture ? surface(e.region) : e.region);
   const auto with_region = [&](const char* alone, const char* verb) { return region.empty() ? alone : region + verb; };
   switch (e.kind) {
     case EventKind::skin_contact:

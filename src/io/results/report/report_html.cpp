@@ -3,6 +3,7 @@
 
 #include "report/assets.hpp"
 #include "report/narrative.hpp"
+#include "report/parameter_tables.hpp"
 #include "report/report_data.hpp"
 #include "report/text.hpp"
 
@@ -73,15 +74,6 @@ std::string event_rows(const std::vector<Event>& events) {
             "</tr>";
   }
   return html.empty() ? "<tr><td colspan=\"5\">Nothing happened: the needle met no tissue.</td></tr>" : html;
-}
-
-std::string parameter_rows(const std::vector<ParameterRow>& parameters) {
-  std::string html;
-  for (const ParameterRow& p : parameters) {
-    html += "<tr><td><code>" + html_escaped(p.name) + "</code></td>" + number_cell(p.value) + cell(p.unit) +
-            cell(p.source) + "</tr>";
-  }
-  return html;
 }
 
 std::string model_facts(const RunRecording& run) {
@@ -171,8 +163,7 @@ std::string versions(const RunRecording& run) {
 Result<std::string> report_html(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                                 const Pictures& pictures) {
   std::string story, supports;
-  for (const std::string& paragraph : tell_what_happened(run, moments))
-    story += "<p>" + html_escaped(paragraph) + "</p>";
+  for (const std::string& paragraph : tell_what_happened(run, moments)) story += "<p>" + html_prose(paragraph) + "</p>";
   for (const std::string& support : run.info.supports) supports += item(support);
   std::vector<std::string> warnings = run.info.warnings;
   for (const std::string& w : run.summary->warnings) {
@@ -189,10 +180,10 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"warnings", warning_box(warnings)},
       {"pictures", picture_section(run, regions, moments, pictures)},
       {"events", event_rows(run.summary->events)},
-      {"step_times", html_escaped(tell_step_times(*run.summary))},
+      {"step_times", html_prose(tell_step_times(*run.summary))},
       {"model", model_facts(run)},
       {"supports", supports},
-      {"parameters", parameter_rows(run.info.parameters)},
+      {"parameters", parameter_tables(run.info.parameters)},
       {"scenario", html_escaped(run.info.scenario_text)},
       {"versions", versions(run)},
       {"data", json_script_safe(report_data(run, regions, moments))},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdint>
 
@@ -31,6 +33,24 @@ std::string html_escaped(std::string_view text) {
     }
   }
   return escaped;
+}
+
+std::string html_prose(std::string_view text) {
+  constexpr std::array<std::string_view, 6> kUnits{"mm", "N", "s", "µs", "%", "kHz"};
+  const std::string plain = html_escaped(text);
+  const auto is_letter = [&](std::size_t at) {
+    return at < plain.size() && std::isalnum(static_cast<unsigned char>(plain[at])) != 0;
+  };
+  std::string html;
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    const bool after_digit = k > 0 && std::isdigit(static_cast<unsigned char>(plain[k - 1])) != 0;
+    const auto unit_follows = [&](std::string_view unit) {
+      return plain.compare(k + 1, unit.size(), unit) == 0 && !is_letter(k + 1 + unit.size());
+    };
+    const bool keep = plain[k] == ' ' && after_digit && std::any_of(kUnits.begin(), kUnits.end(), unit_follows);
+    html += keep ? "&nbsp;" : std::string(1, plain[k]);
+  }
+  return html;
 }
 
 std::string script_safe(std::string_view javascript) {

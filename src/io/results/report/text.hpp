@@ -11,6 +11,9 @@ namespace stylet::results {
 /// Text for an element or a quoted attribute: & < > " ' become entities.
 std::string html_escaped(std::string_view text);
 
+/// Escaped text whose numbers stay on one line with their units ("0.42 N").
+std::string html_prose(std::string_view text);
+
 /// Source text for a <script> element. Inside one, "</script" would end it and "<!--" would change how it is read; both
 /// get a backslash, which changes no JavaScript string, template or regular expression.
 std::string script_safe(std::string_view javascript);

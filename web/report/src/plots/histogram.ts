@@ -59,7 +59,11 @@ export function buildHistogram(data: ReportData, box: HTMLElement): void {
     ctx.fillText('1 kHz', x - 6 * ratio, bbox.top + fontSize() * ratio);
     ctx.restore();
   };
-  const labels = (_u: uPlot, values: number[]) => values.map((v) => v.toLocaleString('en'));
+  const marks = (numbers: number[]) => ({
+    splits: () => numbers,
+    filter: (_u: uPlot, splits: number[]) => splits,  // uPlot would drop some on a logarithmic axis
+    values: (_u: uPlot, values: number[]) => values.map((v) => v.toLocaleString('en')),
+  });
   const plot = new uPlot(
     {
       mode: 2,
@@ -73,8 +77,8 @@ export function buildHistogram(data: ReportData, box: HTMLElement): void {
         y: { distr: 3, range: () => [0.7, most * 1.6] },
       },
       axes: [
-        { ...axis('Processor time of a step [µs]', fontSize() * 2), splits: () => roundNumbers(low, high, [1, 2, 5]), values: labels },
-        { ...axis('Steps', fontSize() * 4.2), splits: () => roundNumbers(0.7, most * 1.6, [1]), values: labels },
+        { ...axis('Processor time of a step [µs]', fontSize() * 2), ...marks(roundNumbers(low, high, [1, 2, 5])) },
+        { ...axis('Steps', fontSize() * 4.2), ...marks(roundNumbers(0.7, most * 1.6, [1])) },
       ],
       series: [{}, { facets: [{ scale: 'x', auto: true }, { scale: 'y', auto: true }], paths: bars }],
       hooks: { draw: [limit] },

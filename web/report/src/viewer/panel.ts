@@ -20,18 +20,18 @@ function button(text: string, action: () => void): HTMLButtonElement {
   return b;
 }
 
-/** End of the colour scale [mm]: a round number at or above the largest displacement. */
-function scaleEnd(most: number): number {
+/** Marks of the colour scale [mm], round numbers from 0 to at least the largest displacement. */
+function scaleMarks(most: number): number[] {
   const step = roundDown(Math.max(most, 0.01) / 4);
-  return step * Math.ceil(most / step - 1e-9);
+  return Array.from({ length: Math.ceil(most / step - 1e-9) + 1 }, (_, i) => Number((i * step).toPrecision(6)));
 }
 
-function colorBar(most: number): HTMLElement {
+function colorBar(marks: number[]): HTMLElement {
   const box = element('div', 'colorbar');
   const strip = element('div', 'strip');
   strip.style.background = viridisGradient('to right');
   const ticks = element('div', 'ticks');
-  for (const share of [0, 0.25, 0.5, 0.75, 1]) ticks.append(element('span', '', (share * most).toPrecision(2).replace(/^0\.0$/, '0')));
+  for (const mark of marks) ticks.append(element('span', '', String(mark)));
   box.append(element('div', 'title', 'moved by [mm]'), strip, ticks);
   return box;
 }
@@ -171,11 +171,12 @@ export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement)
       'This browser offers no WebGL, which the interactive view needs. The pictures below show the same scene before, during and after the insertion.'));
     return;
   }
-  const most = scaleEnd(data.displacementMax);
+  const marks = scaleMarks(data.displacementMax);
+  const most = marks[marks.length - 1];
   const side = element('div', 'side');
   const views = element('div', 'views');
   for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
-  const scale = colorBar(most);
+  const scale = colorBar(marks);
   side.append(element('h3', '', 'Colours'), colorChoice(stage, scale), scale, element('h3', '', 'Shown'), regionList(stage),
               contactList(stage), element('h3', '', 'View'), views,
               element('p', 'hint', 'Drag to turn, wheel to zoom, right button to move.'));

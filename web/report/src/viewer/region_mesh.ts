@@ -19,6 +19,7 @@ export class RegionMesh {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
   visible: boolean;
   opacity: number;
+  private byDisplacement = false;
   private readonly nodes: Uint32Array;  // surface nodes this region uses
   private readonly position: Float32Array;
   private readonly color: Float32Array;
@@ -52,7 +53,8 @@ export class RegionMesh {
     const { material } = this.object;
     const opaque = this.opacity > 0.99;
     if (material.transparent === opaque) material.needsUpdate = true;
-    material.opacity = this.opacity;
+    // Colours that stand for numbers must not fade into what lies behind: denser than tissue colours.
+    material.opacity = this.byDisplacement && !this.region.background ? 1 - (1 - this.opacity) ** 2 : this.opacity;
     material.transparent = !opaque;
     material.depthWrite = opaque;
     this.object.visible = this.visible && this.opacity > 0.005;
@@ -60,6 +62,8 @@ export class RegionMesh {
 
   colorByDisplacement(on: boolean): void {
     const { material } = this.object;
+    this.byDisplacement = on;
+    this.applyLook();
     material.vertexColors = on;
     material.color.set(on ? '#ffffff' : this.region.color);
     material.needsUpdate = true;
