@@ -47,13 +47,13 @@ class InFolder(unittest.TestCase):
         return json.loads(self.succeed(*arguments, "--json", "-").stdout)
 
     def refuse(self, *arguments, says):
-        """Runs the program on bad input: exit status 2, one message that holds every text of `says`, nothing on standard
-        output, nothing written."""
+        """Runs the program on bad input: exit status 2, one message (behind lines of progress, if any) that holds every
+        text of `says`, nothing on standard output, nothing written."""
         before = files_under(self.folder)
         done = run(*arguments, cwd=self.folder)
         self.assertEqual(done.returncode, 2, f"{arguments}: {done.stderr}")
         self.assertEqual(done.stdout, "")
-        self.assertRegex(done.stderr, r"\Astylet: error: [^\n]+\n\Z", "one line")
+        self.assertRegex(done.stderr, r"\A([^\n]+( \.\.\.|: \d+ %)\n)*stylet: error: [^\n]+\n\Z")
         for text in says:
             self.assertIn(text, done.stderr)
         self.assertEqual(files_under(self.folder), before)
