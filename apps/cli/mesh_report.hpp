@@ -13,7 +13,7 @@ MeshReport report_as_is(const TetMesh& mesh);
 /// What `stylet mesh` prints for people.
 std::string report_text(const MeshReport& report);
 
-/// What `stylet mesh --json` writes (docs/formats.md).
+/// What `stylet mesh --json` writes (docs/command_line.md).
 Json report_json(const MeshReport& report);
 
 }  // namespace stylet::cli
