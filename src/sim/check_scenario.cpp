@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "planning.hpp"
 #include "stylet/sim/scenario.hpp"
 
 #include <fmt/format.h>
@@ -6,8 +7,6 @@
 namespace stylet {
 
 namespace {
-
-constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
 
 Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPlace& place) {
   const InsertionPlan& p = s.insertions[number];
@@ -46,6 +45,12 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
   if (p.target_mm && (Vec3(p.target_mm->data()) - Vec3(p.entry_mm->data())).norm() < 1e-3) {
     return input_error(place(name + ".target_mm"), name + ": entry_mm and target_mm are the same point",
                        "Give two points of the needle's line");
+  }
+  if (!p.retract && number + 1 < s.insertions.size()) {
+    return input_error(
+        place(name + ".retract"),
+        fmt::format("{}.retract = false leaves the needle in, and insertion[{}] follows", name, number + 1),
+        "Only the last insertion may leave its needle in: there is one needle");
   }
   const double reach = s.needle.length_mm - kNeedleOutside_mm;
   if (p.depth_mm > reach) {

@@ -2,7 +2,7 @@
 #include "stylet/sim/model.hpp"
 
 #include "planning.hpp"
-#include "stylet/core/version.hpp"
+#include "stylet/core/nearest_name.hpp"
 #include "stylet/needle/beam.hpp"
 
 #include <fmt/format.h>
@@ -19,12 +19,14 @@ constexpr double kTentingMin_mm = 5.0;
 constexpr double kTentingMax_mm = 20.0;
 constexpr double kLagMax_mm = 5.0;
 constexpr double kSteelYoung_MPa = 200e3;
+/// Share of the needle's cross-section that is steel: 18 gauge, 1.27 mm outer and 1.0 mm inner diameter.
+constexpr double kSteelShare = 1.0 - (1.0 / 1.27) * (1.0 / 1.27);
 /// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
 constexpr double kBeyond_mm = 15.0;
 
 bool is_gland(const std::string& region) {
   return region == "prostate" || region == "peripheral_zone" || region == "transition_zone" ||
-         region == "central_zone" || region == "anterior_fibromuscular_stroma";
+         region == "central_zone" || region == "anterior_stroma";
 }
 
 /// The regions that make the target: the gland, else a planning volume, else unnamed labels.
@@ -55,9 +57,47 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
   c.capacity = s.coupling.contacts;
-  const double area = 0.25 * std::numbers::pi * s.needle.diameter_mm * s.needle.diameter_mm * 0.4;  // cannula and stylet, about
+  const double area = 0.25 * std::numbers::pi * s.needle.diameter_mm * s.needle.diameter_mm * kSteelShare;
   c.axial_compliance_mm_per_N = s.needle.length_mm / (kSteelYoung_MPa * area);
   return c;
+}
+
+Result<std::unique_ptr<BeamNeedle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
+  return BeamNeedle::build({n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2}, n.elements,
+                           capacity + 1);
+}
+
+/// Follows a recorded motion from outside the patient.
+Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::size_t number, const Scenario& scenario,
+                                const Locator& locator, const std::string& where) {
+  const double length = scenario.needle.length_mm;
+  const auto tip_of = [&](const Pose& base) { return Vec3(base.origin + length * (base.rotation * Vec3::UnitZ())); };
+  PlannedInsertion recorded;
+  recorded.name = fmt::format("recorded motion {}", number + 1);
+  recorded.motion = BaseMotion(motion);
+  const Pose& first = motion.front().base;
+  recorded.direction = first.rotation * Vec3::UnitZ();
+  const Vec3 tip = tip_of(first);
+  if (locator.find(tip)) {
+    return input_error(
+        fmt::format("{}, insertion[{}].motion", where, number),
+        fmt::format("the recorded motion starts with the tip inside the patient, at ({:.1f}, {:.1f}, {:.1f}) mm",
+                    tip.x(), tip.y(), tip.z()),
+        "Start the recording with the needle outside, and check needle.length_mm");
+  }
+  constexpr double look_mm = 1000.0;
+  const auto entry = locator.first_entry(tip, tip + look_mm * recorded.direction);
+  recorded.entry = entry ? Vec3(tip + entry->t * look_mm * recorded.direction) : tip;
+  for (const MotionSample& sample : motion) {
+    recorded.depth_mm = std::max(recorded.depth_mm, (tip_of(sample.base) - recorded.entry).dot(recorded.direction));
+  }
+  return recorded;
+}
+
+/// The same message with the scenario's name in front of its place.
+Error named(Error error, const std::string& where) {
+  error.where = where + ", " + error.where;
+  return error;
 }
 
 }  // namespace
@@ -94,18 +134,20 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   if (auto checked = check_scenario(scenario, where); !checked) return checked.error();
   if (auto checked = check_mesh(mesh, scenario.patient.source); !checked) return checked.error();
   for (const auto& [name, parameters] : scenario.tissue) {
-    if (mesh.region_index(name) < 0) {
-      std::string known;
-      for (const auto& region : mesh.regions) known += (known.empty() ? "" : ", ") + region;
-      return input_error(where + ", [tissue." + name + "]",
-                         "the patient has no region '" + name + "' (there are: " + known + ")",
-                         "Name one of these; patient.regions gives structures and labels their names");
-    }
+    if (mesh.region_index(name) >= 0) continue;
+    const std::string near = nearest_name(name, mesh.regions);
+    return input_error(
+        where + ", [tissue." + name + "]",
+        fmt::format("the patient has no region '{}' (there are: {})", name, fmt::join(mesh.regions, ", ")),
+        (near.empty() ? "Name one of these;" : "Did you mean '" + near + "'?") +
+            std::string(" patient.regions gives structures and labels their names"));
   }
 
   std::shared_ptr<Model> model(new Model);
   model->scenario_ = scenario;
   model->coupling_ = coupling_settings(scenario);
+  if (const auto needle = build_needle(scenario.needle, model->coupling_.capacity); !needle)
+    return named(needle.error(), where);
   model->target_ = find_target(mesh);
 
   std::vector<Material> materials;
@@ -123,14 +165,9 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     laws.surrounding = name == "body";
     const bool in_target =
         std::find(model->target_.begin(), model->target_.end(), static_cast<int>(r)) != model->target_.end();
-    laws.organ = in_target ? 0 : -1;
+    // The urethra runs through the gland and has no capsule of its own.
+    laws.organ = in_target || name == "urethra" ? 0 : -1;
     model->laws_.push_back(laws);
-    if (!laws.rigid) {
-      for (auto& warning : tenting_warnings(name, p, scenario.needle.diameter_mm)) {
-        const bool bone = name == "pubic_arch" || name.rfind("femur", 0) == 0;
-        if (!bone) model->warnings_.push_back(std::move(warning));
-      }
-    }
   }
 
   // Where the needles go decides what must stay free, so plan first.
@@ -141,42 +178,28 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   {
     const Locator locator(mesh, topology);
     for (std::size_t i = 0; i < scenario.insertions.size(); ++i) {
-      if (i < motions.size() && !motions[i].empty()) {
-        PlannedInsertion recorded;
-        recorded.name = fmt::format("recorded motion {}", i + 1);
-        recorded.motion = BaseMotion(motions[i]);
-        const Pose& first = motions[i].front().base;
-        recorded.direction = first.rotation * Vec3::UnitZ();
-        const Vec3 tip = first.origin + scenario.needle.length_mm * recorded.direction;
-        if (locator.find(tip)) {
-          return input_error(fmt::format("{}, insertion[{}]", where, i),
-                             "the recorded motion starts with the tip inside the patient",
-                             "Start the recording with the needle outside");
-        }
-        const auto entry = locator.first_entry(tip, tip + 1000.0 * recorded.direction);
-        recorded.entry = entry ? Vec3(tip + entry->t * 1000.0 * recorded.direction) : tip;
-        for (const MotionSample& sample : motions[i]) {
-          const Vec3 reached = sample.base.origin + scenario.needle.length_mm * (sample.base.rotation * Vec3::UnitZ());
-          recorded.depth_mm = std::max(recorded.depth_mm, (reached - recorded.entry).dot(recorded.direction));
-        }
-        insertions.push_back(std::move(recorded));
-      } else {
-        auto planned = plan_insertion(scenario.insertions[i], i, scenario, locator, model->target_, where);
-        if (!planned) return planned.error();
-        insertions.push_back(std::move(*planned));
-      }
+      const bool is_recorded = i < motions.size() && !motions[i].empty();
+      auto planned = is_recorded ? follow(motions[i], i, scenario, locator, where)
+                                 : plan_insertion(scenario.insertions[i], i, scenario, locator, model->target_, where);
+      if (!planned) return planned.error();
+      insertions.push_back(std::move(*planned));
       entries.push_back(insertions.back().entry);
       directions.push_back(insertions.back().direction);
     }
   }
   auto supports = find_supports(mesh, topology, scenario.fixed, model->target_, entries, directions);
-  if (!supports) return supports.error();
+  if (!supports) return named(supports.error(), where);
   model->supports_ = std::move(*supports);
   for (const int region : model->supports_.rigid_regions) model->laws_[static_cast<std::size_t>(region)].rigid = true;
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    if (model->laws_[r].rigid) continue;  // nothing gives way there
+    for (auto& warning : tenting_warnings(mesh.regions[r], model->tissue_parameters_[r], scenario.needle.diameter_mm))
+      model->warnings_.push_back(std::move(warning));
+  }
 
   report(progress, "factorising the tissue", 0.0);
   auto tissue = Tissue::build(std::move(mesh), std::move(materials), model->supports_.nodes, progress);
-  if (!tissue) return tissue.error();
+  if (!tissue) return named(tissue.error(), where);
   model->tissue_ = std::make_shared<const Tissue>(std::move(*tissue));
   model->topology_ = std::make_unique<Topology>(model->tissue_->mesh());
   model->locator_ = std::make_unique<Locator>(model->tissue_->mesh(), *model->topology_);
@@ -187,69 +210,13 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     model->store_->add_nodes(corridor_nodes(model->mesh(), insertion.entry, end, scenario.coupling.corridor_mm),
                              progress);
   }
-  if (!model->make_needle()) {
-    const auto needle =
-        BeamNeedle::build({scenario.needle.length_mm, scenario.needle.diameter_mm,
-                           scenario.needle.bending_stiffness_Nmm2, scenario.needle.torsion_stiffness_Nmm2},
-                          scenario.needle.elements, model->coupling_.capacity + 1);
-    return input_error(where + ", [needle]", needle.error().what, needle.error().cure);
-  }
   return std::shared_ptr<const Model>(std::move(model));
 }
 
 std::unique_ptr<Needle> Model::make_needle() const {
-  const auto& n = scenario_.needle;
-  auto needle = BeamNeedle::build({n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2},
-                                  n.elements, coupling_.capacity + 1);
+  auto needle = build_needle(scenario_.needle, coupling_.capacity);  // compile() has seen it succeed
   if (!needle) return nullptr;
   return std::move(*needle);
-}
-
-RunInfo Model::info(std::size_t insertion) const {
-  RunInfo info;
-  info.version = version();
-  info.scenario_name = scenario_.name;
-  info.method = scenario_.coupling.method +
-                (scenario_.coupling.method == "node-addition" ? ", " + scenario_.coupling.rule + " rule" : "");
-  info.needle_diameter_mm = scenario_.needle.diameter_mm;
-  info.needle_length_mm = scenario_.needle.length_mm;
-  info.target_regions = target_;
-  info.supports = supports_.description;
-  info.warnings = warnings_;
-  if (insertion < insertions_.size()) {
-    info.entry_mm = insertions_[insertion].entry;
-    info.direction = insertions_[insertion].direction;
-  }
-  const auto row = [&](std::string name, double value, std::string unit, std::string source) {
-    info.parameters.push_back({std::move(name), fmt::format("{:g}", value), std::move(unit), std::move(source)});
-  };
-  for (std::size_t r = 0; r < mesh().regions.size(); ++r) {
-    const std::string& region = mesh().regions[r];
-    const TissueParameters& p = tissue_parameters_[r];
-    const TissueParameters standard = default_tissue(region);
-    const auto tissue_row = [&](const char* key, double value, double default_value, const char* unit) {
-      row("tissue." + region + "." + key, value, unit, value == default_value ? standard.source : "scenario");
-    };
-    if (laws_[r].rigid) {
-      info.parameters.push_back({"tissue." + region, "held", "", "bone"});
-      continue;
-    }
-    tissue_row("young_kPa", p.young_kPa, standard.young_kPa, "kPa");
-    tissue_row("poisson", p.poisson, standard.poisson, "");
-    tissue_row("cutting_N", p.cutting_N, standard.cutting_N, "N");
-    tissue_row("puncture_N", p.puncture_N, standard.puncture_N, "N");
-    tissue_row("friction_static_N_per_m", p.friction_static_N_per_m, standard.friction_static_N_per_m, "N/m");
-    tissue_row("friction_coulomb_N_per_m", p.friction_coulomb_N_per_m, standard.friction_coulomb_N_per_m, "N/m");
-    tissue_row("friction_viscous_Ns_per_m2", p.friction_viscous_Ns_per_m2, standard.friction_viscous_Ns_per_m2,
-               "N s/m²");
-  }
-  row("needle.length_mm", scenario_.needle.length_mm, "mm", "usual brachytherapy needle, 150-200 mm");
-  row("needle.diameter_mm", scenario_.needle.diameter_mm, "mm", "18 gauge");
-  row("needle.bending_stiffness_Nmm2", scenario_.needle.bending_stiffness_Nmm2, "N mm²",
-      "steel, 1.27 mm outer and 1.0 mm inner diameter");
-  row("coupling.spacing_mm", scenario_.coupling.spacing_mm, "mm", "scenario or default");
-  row("run.dt_ms", scenario_.run.dt_ms, "ms", "scenario or default");
-  return info;
 }
 
 }  // namespace stylet

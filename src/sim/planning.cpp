@@ -10,6 +10,9 @@ namespace stylet {
 
 namespace {
 
+constexpr double kBeforeFarEnd_mm = 2.0;  ///< an automatic depth ends so much before the target does
+constexpr double kLeastDepth_mm = 5.0;    ///< of an automatic depth
+
 bool contains(const std::vector<int>& regions, int region) {
   return std::find(regions.begin(), regions.end(), region) != regions.end();
 }
@@ -60,9 +63,7 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   } else {
     on_line = Vec3(plan.entry_mm->data());
     if (plan.target_mm) {
-      const Vec3 way = Vec3(plan.target_mm->data()) - on_line;
-      if (way.norm() < 1e-6) return input_error(place, "entry_mm and target_mm are the same point", "Give two points");
-      result.direction = way.normalized();
+      result.direction = (Vec3(plan.target_mm->data()) - on_line).normalized();
     } else if (plan.direction) {
       result.direction = Vec3(plan.direction->data()).normalized();
     }
@@ -88,21 +89,21 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   if (result.depth_mm <= 0.0) {
     // To the far end of the target on this line; a line beside the target goes as deep as its centre.
     double last = -1.0;
-    const double reach = scenario.needle.length_mm - 5.0;
+    const double reach = scenario.needle.length_mm - kNeedleOutside_mm;
     Index hint = entry->tet;
-    for (double depth = 0.25; depth < reach; depth += 0.5) {
+    for (double depth = 0.25; depth < 2.0 * far; depth += 0.5) {
       const auto at = locator.find(result.entry + depth * result.direction, hint);
       if (!at) continue;
       hint = at->tet;
       if (contains(target, mesh.tet_region[static_cast<std::size_t>(at->tet)])) last = depth;
     }
     if (last < 0.0) last = (centre - result.entry).dot(result.direction);
-    result.depth_mm = std::max(5.0, last - 2.0);
+    result.depth_mm = std::max(kLeastDepth_mm, last - kBeforeFarEnd_mm);
     if (result.depth_mm > reach) {
       return input_error(place,
-                         fmt::format("the target lies {:.0f} mm deep, the needle is {:.0f} mm long", result.depth_mm,
-                                     scenario.needle.length_mm),
-                         "Use a longer needle (needle.length_mm)");
+                         fmt::format("the target's far end lies {:.0f} mm deep, the needle is {:.0f} mm long",
+                                     result.depth_mm, scenario.needle.length_mm),
+                         "Use a longer needle (needle.length_mm), or give a depth (depth_mm)");
     }
   }
   result.motion =

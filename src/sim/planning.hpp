@@ -6,6 +6,8 @@
 
 namespace stylet {
 
+inline constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
+
 /// Centroid of a set of regions by volume [mm] LPS; the whole mesh when the set is empty.
 Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions);
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <set>
+#include <limits>
 
 namespace stylet {
 
@@ -52,7 +52,7 @@ class Runner {
         simulation_(model),
         observer_(observer),
         progress_(progress),
-        dt_(model->scenario().run.dt_ms * 1e-3) {
+        step_ns_(std::max(1L, std::lround(model->scenario().run.dt_ms * 1e6))) {
     for (const PlannedInsertion& insertion : model->insertions()) total_s_ += insertion.motion.duration_s();
     const auto& output = model->scenario().output;
     const double by_count = total_s_ / std::max(1, output.max_frames);
@@ -65,8 +65,18 @@ class Runner {
   }
 
   Result<Summary> all() {
-    for (std::size_t i = 0; i < model_->insertions().size(); ++i) {
-      if (auto done = one(model_->insertions()[i]); !done) return done.error();
+    const auto& insertions = model_->insertions();
+    for (std::size_t i = 0; i < insertions.size(); ++i) {
+      if (auto done = one(insertions[i]); !done) return done.error();
+      if (i + 1 < insertions.size() && simulation_.record().tip_state != TipState::air) {
+        return input_error(fmt::format("insertion[{}]", i),
+                           "the needle is still in the tissue when the next one is to start",
+                           "Pull it out further: a larger approach_mm, or a longer recorded motion");
+      }
+    }
+    if (peak_N_ > 0.0) {
+      summary_.residual_force_balance /= peak_N_;
+      summary_.residual_torque_balance /= peak_N_;
     }
     std::sort(step_us_.begin(), step_us_.end());
     summary_.step_us_p50 = quantile(step_us_, 0.5);
@@ -80,31 +90,26 @@ class Runner {
  private:
   Result<> one(const PlannedInsertion& insertion) {
     const double start = simulation_.time_s();
-    const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / dt_ - 1e-9));
+    const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / seconds(1) - 1e-9));
+    const long deepest = deepest_step(insertion, steps);
     simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
     if (auto r = take_frame("before"); !r) return r;
-    bool deepest_taken = false;
-    double next_frame = start;
+    double next_frame = start + frame_every_s_;  // the first of the series is "before"
     for (long k = 1; k <= steps; ++k) {
-      const Pose base = insertion.motion.at(static_cast<double>(k) * dt_);
+      const Pose base = insertion.motion.at(seconds(k));
       simulation_.prepare();
       const double before = thread_cpu_us();
-      simulation_.step(base, dt_);
+      simulation_.step(base, seconds(1));
       StepRecord record = simulation_.record();
       record.step_us = thread_cpu_us() - before;
       if (auto r = account(record, insertion); !r) return r;
-      // The deepest point is where the base stops going in: just before it goes out, or at the end.
-      const bool turns = !deepest_taken && (k == steps || depth_at(insertion, k + 1) < record.base_depth_mm - 1e-9);
       std::string label;
       for (const Event& event : simulation_.new_events()) {
         summary_.events.push_back(event);
         if (event.kind != EventKind::region_entered && event.kind != EventKind::retraction_start)
           label = to_string(event.kind);
       }
-      if (turns) {
-        deepest_taken = true;
-        label = "deepest";
-      }
+      if (k == deepest) label = "deepest";
       if (!label.empty() && label != "withdrawn") {
         if (auto r = take_frame(label); !r) return r;
       } else if (record.time_s >= next_frame) {
@@ -116,10 +121,22 @@ class Runner {
     return take_frame("after");
   }
 
-  [[nodiscard]] double depth_at(const PlannedInsertion& insertion, long k) const {
-    const Pose base = insertion.motion.at(static_cast<double>(k) * dt_);
-    const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
-    return (tip - insertion.entry).dot(insertion.direction);
+  /// Time of step k since the insertion's start [s].
+  [[nodiscard]] double seconds(long k) const { return static_cast<double>(k * step_ns_) / 1e9; }
+
+  /// The step after which the base is furthest in; of several the last, just before it goes out.
+  [[nodiscard]] long deepest_step(const PlannedInsertion& insertion, long steps) const {
+    long deepest = steps;
+    double most = -std::numeric_limits<double>::infinity();
+    for (long k = 1; k <= steps; ++k) {
+      const Pose base = insertion.motion.at(seconds(k));
+      const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
+      const double depth = (tip - insertion.entry).dot(insertion.direction);
+      if (depth < most - 1e-9) continue;
+      most = std::max(most, depth);
+      deepest = k;
+    }
+    return deepest;
   }
 
   Result<> account(const StepRecord& record, const PlannedInsertion& insertion) {
@@ -127,6 +144,7 @@ class Runner {
     summary_.peak_axial_N = std::max(summary_.peak_axial_N, std::abs(record.force_axial_N));
     summary_.peak_sagittal_N = std::max(summary_.peak_sagittal_N, std::abs(record.force_sagittal_N));
     summary_.peak_lateral_N = std::max(summary_.peak_lateral_N, std::abs(record.force_lateral_N));
+    peak_N_ = std::max(peak_N_, Vec3(record.force_axial_N, record.force_sagittal_N, record.force_lateral_N).norm());
     summary_.contacts_max = std::max(summary_.contacts_max, record.contacts);
     const Vec3 off = record.tip_mm - insertion.entry;
     summary_.tip_deflection_mm =
@@ -141,12 +159,9 @@ class Runner {
 
   Result<> take_frame(const std::string& label) {
     const Frame frame = simulation_.frame(label);
-    const double scale = std::max(summary_.peak_axial_N, 1e-6);
-    if (summary_.peak_axial_N > 0.0) {
-      const Simulation::Balance balance = simulation_.balance(scale);
-      summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
-      summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
-    }
+    const Simulation::Balance balance = simulation_.balance(1.0);  // relative to the peak once that is known
+    summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
+    summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
     if (label == "deepest") {
       const auto [mean, largest] = target_shift(model_->mesh(), model_->target_regions(), frame.displacement);
       if (largest >= summary_.target_shift_max_mm) {
@@ -175,7 +190,8 @@ class Runner {
   Simulation simulation_;
   RunObserver& observer_;
   const Progress& progress_;
-  double dt_;
+  long step_ns_;
+  double peak_N_ = 0.0;  ///< largest force of the hand, all components
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/simulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stylet {
@@ -9,6 +10,8 @@ namespace {
 
 constexpr double kPrepare_mm = 6.0;
 constexpr int kNeedleSamples = 81;
+/// The base has turned back when it is this far from where it was furthest: a hand trembles.
+constexpr double kTurn_mm = 0.05;
 
 TipState tip_state(TipPhase phase) {
   switch (phase) {
@@ -56,17 +59,33 @@ InsertionTissue tissue_of(const Model& model) { return {model.store(), &model.lo
 
 Simulation::Simulation(std::shared_ptr<const Model> model)
     : model_(std::move(model)), insertion_(tissue_of(*model_), model_->make_needle(), model_->coupling()) {
-  // Event regions are short names; room for them is taken now so that a step need not.
-  for (Event& event : events_) event.region.reserve(64);
+  // Room for the names of regions is taken now so that a step need not.
+  std::size_t longest = 0;
+  for (const std::string& region : model_->mesh().regions) longest = std::max(longest, region.size());
+  for (Event& event : events_) event.region.reserve(longest);
+}
+
+double Simulation::base_depth_mm(const Pose& base) const {
+  const Vec3 rigid_tip = base.origin + insertion_.needle().length() * (base.rotation * Vec3::UnitZ());
+  return (rigid_tip - entry_).dot(direction_);
 }
 
 void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& direction) {
   entry_ = entry;
   direction_ = direction.normalized();
   base_ = base;
+  travel_mm_ = 0.0;
+  turn_ = {};
   retracting_ = false;
   slipping_ = true;
+  event_count_ = 0;
   insertion_.place(base);
+  report_ = {};
+  const double now = record_.time_s;
+  record_ = {};
+  record_.time_s = now;
+  record_.base_depth_mm = base_depth_mm(base);
+  record_.tip_mm = insertion_.needle().point(insertion_.needle().length());
 }
 
 void Simulation::prepare() { insertion_.prepare(kPrepare_mm); }
@@ -82,6 +101,27 @@ void Simulation::add_event(EventKind kind, double force_N, int region) {
   if (region >= 0) event.region.assign(model_->mesh().regions[static_cast<std::size_t>(region)]);
 }
 
+/// Notices where the base turns round. The event carries the moment of the turn, not that of its discovery.
+void Simulation::follow_direction(double advance_mm, bool in_tissue) {
+  travel_mm_ += advance_mm;
+  const double back = retracting_ ? travel_mm_ - turn_.travel_mm : turn_.travel_mm - travel_mm_;
+  constexpr double still_mm = 1e-9;
+  if (back <= still_mm) {
+    turn_ = {travel_mm_, record_.time_s, record_.base_depth_mm, record_.force_axial_N, in_tissue};
+    return;
+  }
+  if (back <= kTurn_mm) return;
+  retracting_ = !retracting_;
+  slipping_ = false;
+  if (retracting_ && turn_.in_tissue) {
+    add_event(EventKind::retraction_start, turn_.force_N, -1);
+    Event& event = events_[static_cast<std::size_t>(event_count_ - 1)];
+    event.time_s = turn_.time_s;
+    event.depth_mm = turn_.depth_mm;
+  }
+  turn_ = {travel_mm_, record_.time_s, record_.base_depth_mm, record_.force_axial_N, in_tissue};
+}
+
 const StepRecord& Simulation::step(const Pose& base, double dt) {
   const double force_before = record_.force_axial_N;
   const Vec3 axis = base.rotation * Vec3::UnitZ();
@@ -90,9 +130,9 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   base_ = base;
   event_count_ = 0;
 
-  record_.time_s += dt;
-  const Vec3 rigid_tip = base.origin + insertion_.needle().length() * axis;
-  record_.base_depth_mm = (rigid_tip - entry_).dot(direction_);
+  time_ns_ += std::llround(dt * 1e9);
+  record_.time_s = static_cast<double>(time_ns_) / 1e9;
+  record_.base_depth_mm = base_depth_mm(base);
   // Axial, lateral towards patient left, sagittal = axial × lateral.
   Vec3 lateral = Vec3::UnitX() - axis.x() * axis;
   if (lateral.norm() < 1e-3) lateral = Vec3::UnitY() - axis.y() * axis;
@@ -108,13 +148,7 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   record_.iterations = report_.iterations;
   record_.step_us = 0.0;
 
-  const bool in_tissue = report_.contacts > 0 || report_.tip == TipPhase::in_track;
-  constexpr double kStill_mm = 1e-9;
-  if (std::abs(advance) > kStill_mm && (advance < 0.0) != retracting_) {
-    retracting_ = advance < 0.0;
-    slipping_ = false;
-    if (retracting_ && in_tissue) add_event(EventKind::retraction_start, force_before, -1);
-  }
+  follow_direction(advance, report_.contacts > 0 || report_.tip == TipPhase::in_track);
   for (int e = 0; e < report_.events; ++e) {
     const InsertionEvent& event = report_.event[static_cast<std::size_t>(e)];
     // A puncture's force is the one that broke the surface, not what is left of it after the step.
@@ -148,27 +182,21 @@ Frame Simulation::frame(const std::string& label) const {
 Simulation::Balance Simulation::balance(double scale_N) const {
   const Tissue& tissue = model_->tissue();
   const VecX load = insertion_.nodal_forces();
-  const VecX u = tissue.solve(load);
-  const VecX support = tissue.support_forces(u);
+  const VecX support = tissue.support_forces(tissue.solve(load));
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
-  // Contact forces act on the base nodes through the interpolation; what reaches a held node goes straight to the
-  // support.
+  Vec3 contacts = Vec3::Zero();
   for (Index node = 0; node < tissue.mesh().node_count(); ++node) {
-    const Vec3 x = tissue.mesh().nodes[static_cast<std::size_t>(node)] - entry_;
-    const Vec3 f = support.segment<3>(3 * node);
+    const Vec3 on_node = load.segment<3>(3 * node);
+    contacts += on_node;
+    // What the contacts put on a held node goes straight to the support and deforms nothing.
+    Vec3 f = support.segment<3>(3 * node);
+    if (!tissue.is_fixed(node)) f += on_node;
     force += f;
-    torque += x.cross(f);
-    if (!tissue.is_fixed(node)) {
-      force += load.segment<3>(3 * node);
-      torque += x.cross(Vec3(load.segment<3>(3 * node)));
-    }
+    torque += (tissue.mesh().nodes[static_cast<std::size_t>(node)] - entry_).cross(f);
   }
-  // The hand's force must be what the tissue got, node by node.
-  Vec3 nodal = Vec3::Zero();
-  for (Index node = 0; node < tissue.mesh().node_count(); ++node) nodal += load.segment<3>(3 * node);
-  force += nodal - report_.hand_force;
-  return {force.norm() / scale_N, torque.norm() / (scale_N * 100.0)};
+  const double hand = (contacts - report_.hand_force).norm();
+  return {std::max(force.norm(), hand) / scale_N, torque.norm() / (scale_N * 100.0)};
 }
 
 }  // namespace stylet

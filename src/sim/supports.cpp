@@ -4,7 +4,7 @@
 #include "stylet/core/nearest_name.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <limits>
 #include <set>
 
 namespace stylet {
@@ -80,8 +80,8 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
       if (!perineal && !near_entry) outer.insert(face.nodes.begin(), face.nodes.end());
     }
     supports.description.push_back(
-        "The outer faces of the body are held, the perineal face (facing inferior below the gland) is free: " +
-        count_text(outer.size()) + ".");
+        "The outer faces of the body are held: " + count_text(outer.size()) +
+        ". The perineal face (facing inferior, below the gland) and what lies within 30 mm of an entry are free.");
   } else if (mode == "sides") {
     // No anatomy to go by: hold what lies on the far side of the body as the first needle sees it.
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());

@@ -14,7 +14,8 @@ class Simulation {
   /// Starts an insertion: the needle, straight, at its base pose outside the patient. Time goes on from where it was.
   void place(const Pose& base, const Vec3& entry, const Vec3& direction);
 
-  /// Moves the base to `base` in dt seconds.
+  /// Moves the base to `base`.
+  /// @param dt [s] taken as a whole number of nanoseconds, so that times do not drift
   /// @return the record of this step; step_us is left at 0 (the caller owns the clock)
   const StepRecord& step(const Pose& base, double dt);
 
@@ -30,8 +31,9 @@ class Simulation {
   /// Everything visible now. Solves for the whole displacement: not in the loop.
   [[nodiscard]] Frame frame(const std::string& label = {}) const;
 
-  /// Action against reaction, both by the same displacement field (not in the loop): forces of the supports plus
-  /// contact forces, over `scale_N`; and their moments about the entry, over scale_N × 100 mm.
+  /// Action against reaction (not in the loop). force: what the supports and the contacts exert on the tissue, or what
+  /// the hand and the contacts exert, whichever fails more to cancel, over `scale_N`; torque: the moments of supports
+  /// and contacts about the entry, over scale_N × 100 mm.
   struct Balance {
     double force = 0.0;
     double torque = 0.0;
@@ -43,7 +45,18 @@ class Simulation {
   [[nodiscard]] double time_s() const { return record_.time_s; }
 
  private:
+  /// Where the base was furthest in its present direction: the turning point, should it go back from there.
+  struct Turn {
+    double travel_mm = 0.0;  ///< along the base's own axis
+    double time_s = 0.0;
+    double depth_mm = 0.0;
+    double force_N = 0.0;
+    bool in_tissue = false;
+  };
+
   void add_event(EventKind kind, double force_N, int region);
+  void follow_direction(double advance_mm, bool in_tissue);
+  [[nodiscard]] double base_depth_mm(const Pose& base) const;
 
   std::shared_ptr<const Model> model_;
   Insertion insertion_;
@@ -54,7 +67,10 @@ class Simulation {
   StepReport report_;
   std::array<Event, 24> events_;
   int event_count_ = 0;
-  bool retracting_ = false;  ///< the base last moved outwards
+  std::int64_t time_ns_ = 0;
+  double travel_mm_ = 0.0;   ///< of the base along its own axis
+  Turn turn_;
+  bool retracting_ = false;  ///< the base moves outwards
   bool slipping_ = true;     ///< since the last reversal more than half of the shaft has begun to slide
 };
 

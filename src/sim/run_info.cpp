@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/core/version.hpp"
+#include "stylet/sim/model.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+/// What a report says about a model: every parameter with its value and where the value comes from.
+namespace stylet {
+
+namespace {
+
+constexpr const char* kFromScenario = "scenario";
+
+/// A key whose value a report shows, and why its default is what it is.
+struct Documented {
+  const char* path;
+  const char* source;
+};
+
+constexpr std::array kShown{
+    Documented{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
+    Documented{"needle.diameter_mm", "18 gauge"},
+    Documented{"needle.bending_stiffness_Nmm2", "steel tube (E 200 GPa), 1.27 mm outer and 1.0 mm inner diameter"},
+    Documented{"needle.torsion_stiffness_Nmm2", "the same tube (G 77 GPa)"},
+    Documented{"needle.elements", "numerical: no visible change of the needle's shape with more"},
+    Documented{"coupling.spacing_mm", "numerical: about three needle diameters"},
+    Documented{"coupling.tip_viscosity_Ns_per_m",
+               "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
+    Documented{"coupling.grazing_deg", "stated, no measurement known"},
+    Documented{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
+};
+
+std::string as_shown(const ScenarioValue& value) {
+  return value.type == ScenarioValue::Type::text ? value.text : to_string(value);
+}
+
+std::string unit_of(const std::string& path) {
+  for (const ScenarioKey& key : scenario_keys()) {
+    if (key.path == path) return key.unit;
+  }
+  return {};
+}
+
+/// The seven rows of a region, or one that says that it is held.
+void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, const TissueParameters& used, bool held) {
+  if (held) {
+    rows.push_back({"tissue." + region, "held", "", "bone, or a region the scenario holds"});
+    return;
+  }
+  const TissueParameters standard = default_tissue(region);
+  const auto row = [&](const char* key, double TissueParameters::*field, const char* unit) {
+    rows.push_back({"tissue." + region + "." + key, fmt::format("{:g}", used.*field), unit,
+                    used.*field == standard.*field ? standard.source : kFromScenario});
+  };
+  row("young_kPa", &TissueParameters::young_kPa, "kPa");
+  row("poisson", &TissueParameters::poisson, "");
+  row("cutting_N", &TissueParameters::cutting_N, "N");
+  row("puncture_N", &TissueParameters::puncture_N, "N");
+  row("friction_static_N_per_m", &TissueParameters::friction_static_N_per_m, "N/m");
+  row("friction_coulomb_N_per_m", &TissueParameters::friction_coulomb_N_per_m, "N/m");
+  row("friction_viscous_Ns_per_m2", &TissueParameters::friction_viscous_Ns_per_m2, "N s/m²");
+}
+
+}  // namespace
+
+RunInfo Model::info(std::size_t insertion) const {
+  RunInfo info;
+  info.version = version();
+  info.scenario_name = scenario_.name;
+  info.method = scenario_.coupling.method +
+                (scenario_.coupling.method == "node-addition" ? ", " + scenario_.coupling.rule + " rule" : "");
+  info.needle_diameter_mm = scenario_.needle.diameter_mm;
+  info.needle_length_mm = scenario_.needle.length_mm;
+  info.target_regions = target_;
+  info.supports = supports_.description;
+  info.warnings = warnings_;
+  if (insertion < insertions_.size()) {
+    info.entry_mm = insertions_[insertion].entry;
+    info.direction = insertions_[insertion].direction;
+  }
+  for (std::size_t r = 0; r < mesh().regions.size(); ++r)
+    add_tissue(info.parameters, mesh().regions[r], tissue_parameters_[r], laws_[r].rigid);
+  const Scenario standard;
+  for (const Documented& shown : kShown) {
+    const auto value = scenario_value(scenario_, shown.path);
+    if (!value) continue;
+    const std::string text = as_shown(*value);
+    const bool is_default = text == as_shown(*scenario_value(standard, shown.path));
+    info.parameters.push_back({shown.path, text, unit_of(shown.path), is_default ? shown.source : kFromScenario});
+  }
+  return info;
+}
+
+}  // namespace stylet

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/geom/box_mesh.hpp"
+#include "stylet/sim/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stylet::test {
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+#define EXPECT_SAYS(message, part) EXPECT_TRUE(stylet::test::contains(message, part)) << (message)
+
+/// A patient of 60 mm cubed: skin of the perineum at z = 0, gland in the middle, pubic arch in front (anterior, −y).
+inline TetMesh box_patient(bool with_arch = true) {
+  TetMesh mesh = box_mesh({-30, -30, 0}, {30, 30, 60}, {6, 6, 6});
+  assign_regions(mesh, {"body", "prostate", "pubic_arch"}, [=](const Vec3& x) {
+    if (with_arch && x.y() < -20 && x.z() > 20 && x.z() < 50) return 2;
+    return (x - Vec3(0, 5, 32)).norm() < 17 ? 1 : 0;
+  });
+  if (!with_arch) mesh.regions.pop_back();
+  return mesh;
+}
+
+/// One needle beside the gland's centre; sides held, so that the body is firm; few steps.
+inline Scenario box_scenario() {
+  Scenario s;
+  s.name = "box";
+  s.patient.source = "box";
+  s.fixed.outer = "sides";
+  s.needle.length_mm = 120.0;
+  s.run.dt_ms = 4.0;
+  s.insertions.resize(1);
+  s.insertions[0].entry_mm = {4.0, 7.0, -20.0};
+  s.insertions[0].speed_mm_per_s = 40.0;
+  s.insertions[0].retract_speed_mm_per_s = 40.0;
+  s.insertions[0].dwell_s = 0.1;
+  return s;
+}
+
+/// The compiled model; a test that gets an error fails and stops.
+inline std::shared_ptr<const Model> compiled(const Scenario& scenario, TetMesh mesh = box_patient(),
+                                             const std::vector<std::vector<MotionSample>>& motions = {}) {
+  auto model = Model::compile(scenario, std::move(mesh), "case.toml", motions);
+  if (!model) throw std::runtime_error(model.error().message());
+  return *model;
+}
+
+/// The error a scenario is refused with.
+inline Error refused(const Scenario& scenario, TetMesh mesh = box_patient(),
+                     const std::vector<std::vector<MotionSample>>& motions = {}) {
+  const auto model = Model::compile(scenario, std::move(mesh), "case.toml", motions);
+  EXPECT_FALSE(model.ok()) << "was not refused";
+  if (model) return {};
+  EXPECT_EQ(model.error().kind, ErrorKind::input);
+  EXPECT_FALSE(model.error().cure.empty());
+  return model.error();
+}
+
+/// Keeps everything a run reports.
+struct Kept final : RunObserver {
+  std::vector<StepRecord> steps;
+  std::vector<Frame> frames;
+  Result<> on_step(const StepRecord& step) override {
+    steps.push_back(step);
+    return Ok{};
+  }
+  Result<> on_frame(const Frame& frame) override {
+    frames.push_back(frame);
+    return Ok{};
+  }
+};
+
+/// A finished run.
+struct Finished {
+  std::shared_ptr<const Model> model;
+  Kept kept;
+  Summary summary;
+
+  explicit Finished(std::shared_ptr<const Model> model_) : model(std::move(model_)) {
+    const auto result = run(model, kept);
+    if (!result) throw std::runtime_error(result.error().message());
+    summary = *result;
+  }
+
+  [[nodiscard]] const Event* event(EventKind kind, const std::string& region = {}) const {
+    for (const Event& e : summary.events) {
+      if (e.kind == kind && (region.empty() || e.region == region)) return &e;
+    }
+    return nullptr;
+  }
+  [[nodiscard]] const Frame* frame(const std::string& label) const {
+    for (const Frame& f : kept.frames) {
+      if (f.label == label) return &f;
+    }
+    return nullptr;
+  }
+};
+
+}  // namespace stylet::test
