@@ -57,6 +57,14 @@ double EditableMesh::quality_around(Index node) const {
   return worst;
 }
 
+double EditableMesh::worst_quality() const {
+  double worst = HUGE_VAL;
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    if (alive(static_cast<Index>(t))) worst = std::min(worst, quality(static_cast<Index>(t)));
+  }
+  return worst;
+}
+
 std::vector<int> EditableMesh::labels_at(Index node) const {
   std::vector<int> labels;
   if (on_outside[node]) labels.push_back(0);

@@ -39,6 +39,8 @@ class EditableMesh {
   }
   /// Worst quality around a node.
   [[nodiscard]] double quality_around(Index node) const;
+  /// Worst quality of all.
+  [[nodiscard]] double worst_quality() const;
   /// Regions that meet at a node, ascending; 0 first where it lies on the outer boundary.
   [[nodiscard]] std::vector<int> labels_at(Index node) const;
   /// Living tetrahedra at both nodes.

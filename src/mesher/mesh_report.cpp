@@ -3,9 +3,9 @@
 
 #include "surface_distance.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace stylet::meshing {
 namespace {
@@ -57,8 +57,8 @@ MeshReport report_on(const TetMesh& mesh, const Anatomy& a) {
     }
     const double error = s.input_volume > 0 ? region.volume_cc / region.input_volume_cc - 1 : 0;
     if (std::abs(error) > kVolumeTolerance) {
-      r.notes.push_back(fmt::format("region '{}' has {:+.0f} % of its input's volume: too few nodes for it", s.name,
-                                    100 * error));
+      r.notes.push_back(
+          fmt::format("region '{}' has {:+.0f} % of its input's volume: too few nodes for it", s.name, 100 * error));
     }
     r.regions.push_back(std::move(region));
   }

@@ -25,8 +25,9 @@ constexpr Index kMostNodes = 2000000;  // memory: about 2 kB each while meshing
 constexpr double kGoodNodeError = 0.024;
 constexpr double kLargestNodeError = 0.03;
 constexpr int kMostAttempts = 4;
-constexpr double kSeedSpacing = 2.0;  // wanted edge lengths between the points refinement starts from
-constexpr double kQualityGoal = 1.6;  // dihedral angles 19.2° … 156° wherever they can be had
+constexpr double kNotedVolume = 1000;  // [mm³]
+constexpr double kSeedSpacing = 2.0;   // wanted edge lengths between the points refinement starts from
+constexpr double kQualityGoal = 1.6;   // dihedral angles 19.2° … 156° wherever they can be had
 
 TetrahedraliserInput input_for(const Anatomy& a, const SizeField& size, double scale, Index nodes) {
   TetrahedraliserInput in;
@@ -43,35 +44,65 @@ TetrahedraliserInput input_for(const Anatomy& a, const SizeField& size, double s
 /// Lloyd rounds: many while they are cheap.
 int relaxation_rounds(Index nodes) { return std::clamp(60000 / nodes, 5, 20); }
 
-/// Refined, relaxed and in one piece, with the wanted number of nodes. The last two steps cost a few nodes; where that
-/// is too many, once more with as many more.
-Result<RawMesh> relaxed_mesh(Anatomy& a, const SizeField& size, Index wanted, const Progress& progress) {
+/// One way to a finished mesh.
+struct Attempt {
+  RawMesh mesh;
+  Anatomy anatomy;        ///< with the offsets that met the volumes
+  double node_error = 0;  ///< relative
+  double quality = 0;     ///< of the worst element
+  [[nodiscard]] bool good() const { return node_error <= kGoodNodeError && quality >= 1; }
+};
+
+Result<Attempt> attempt(const Anatomy& a, const SizeField& size, Index wanted, Index aim, const Progress& progress) {
+  Attempt out;
+  out.anatomy = a;
+  auto sized = find_element_size([&](double scale) { return input_for(a, size, scale, wanted); }, aim,
+                                 size.scale_for(aim), progress);
+  if (!sized) return sized.error();
+  report(progress, "optimising elements", 0.0);
+  sized->tetrahedra->relax(relaxation_rounds(wanted));
+  report(progress, "optimising elements", 0.8);
+  RawMesh raw = sized->tetrahedra->mesh();
+  sized->tetrahedra.reset();
   const int body = 1 + static_cast<int>(a.find("body") - a.structures.data());
-  Index aim = wanted;
-  RawMesh best;
-  double best_error = HUGE_VAL;
-  double dropped = 0;
-  for (int attempt = 0; attempt < kMostAttempts && best_error > kGoodNodeError; ++attempt) {
-    auto sized = find_element_size([&](double scale) { return input_for(a, size, scale, wanted); }, aim,
-                                   size.scale_for(aim), progress);
-    if (!sized) return sized.error();
-    report(progress, "optimising elements", 0.0);
-    sized->tetrahedra->relax(relaxation_rounds(wanted));
-    RawMesh raw = sized->tetrahedra->mesh();
-    const double loose = drop_loose_pieces(raw, body);
-    const double nodes = static_cast<double>(raw.nodes.size());
-    if (std::abs(nodes / wanted - 1) < best_error) {
-      best_error = std::abs(nodes / wanted - 1);
-      best = std::move(raw);
-      dropped = loose;
-    }
-    aim = static_cast<Index>(std::lround(aim * wanted / nodes));
+  const double dropped = drop_loose_pieces(raw, body);
+  if (dropped > kNotedVolume) {
+    out.anatomy.notes.push_back(fmt::format("{:.1f} cc of body apart from the rest left out", dropped / 1000));
   }
-  if (best_error > kLargestNodeError) {
-    return failure(a.source, fmt::format("{} nodes wanted, the nearest mesh has {}", wanted, best.nodes.size()),
+  EditableMesh editable(std::move(raw));
+  improve(editable, out.anatomy, kQualityGoal);
+  fit_volumes(editable, out.anatomy);
+  improve(editable, out.anatomy, kQualityGoal);
+  out.quality = editable.worst_quality();
+  out.mesh = editable.result();
+  out.node_error = std::abs(static_cast<double>(out.mesh.nodes.size()) / wanted - 1);
+  return out;
+}
+
+/// The first attempt with the wanted number of nodes and all angles acceptable, or else the best of a few. Relaxation
+/// and loose pieces cost a few nodes: the next attempt aims as much higher; a bad element goes away with another size.
+Result<Attempt> best_attempt(const Anatomy& a, const SizeField& size, Index wanted, const Progress& progress) {
+  Attempt best;
+  best.node_error = HUGE_VAL;
+  Index aim = wanted;
+  for (int i = 0; i < kMostAttempts && !best.good(); ++i) {
+    auto next = attempt(a, size, wanted, aim, progress);
+    if (!next) {
+      if (i == 0) return next.error();
+      break;
+    }
+    const double nodes = static_cast<double>(next->mesh.nodes.size());
+    const bool counts = next->node_error <= kLargestNodeError;
+    const bool better = best.node_error > kLargestNodeError ? counts || next->node_error < best.node_error
+                                                            : counts && next->quality > best.quality;
+    if (better) best = *std::move(next);
+    const double other_size = i % 2 == 0 ? 0.993 : 1.006;
+    aim = static_cast<Index>(std::lround(aim * std::clamp(wanted / nodes, 0.9, 1.1) * other_size));
+  }
+  if (best.node_error > kLargestNodeError) {
+    return failure(a.source, fmt::format("{} nodes wanted, the nearest mesh has {}", wanted, best.mesh.nodes.size()),
                    "ask for a few more or fewer nodes");
   }
-  if (dropped > 1000) a.notes.push_back(fmt::format("{:.1f} cc of body apart from the rest left out", dropped / 1000));
   return best;
 }
 
@@ -111,21 +142,15 @@ Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress
   settle_overlaps(a);
   add_surroundings(a, options);
   const SizeField size(a, options.preset);
-  auto relaxed = relaxed_mesh(a, size, wanted, progress);
-  if (!relaxed) return relaxed.error();
-  RawMesh raw = *std::move(relaxed);
-  EditableMesh editable(std::move(raw));
-  improve(editable, a, kQualityGoal);
-  report(progress, "fitting volumes", 0.8);
-  fit_volumes(editable, a);
-  improve(editable, a, kQualityGoal);
-  report(progress, "measuring the mesh", 0.9);
-  auto done = to_mesh(editable.result(), a);
+  auto best = best_attempt(a, size, wanted, progress);
+  if (!best) return best.error();
+  report(progress, "measuring the mesh", 0.0);
+  auto done = to_mesh(best->mesh, best->anatomy);
   if (!done) return done.error();
   if (auto ok = check_mesh(*done, a.source); !ok) return ok.error();
   MeshedAnatomy out;
   out.mesh = *std::move(done);
-  out.report = report_on(out.mesh, a);
+  out.report = report_on(out.mesh, best->anatomy);
   report(progress, "measuring the mesh", 1.0);
   return out;
 }
