@@ -63,20 +63,20 @@ std::string series_name(std::string_view stem, std::size_t number, std::string_v
 
 void remove_series_from(const fs::path& folder, std::string_view stem, std::string_view extension, std::size_t first) {
   std::error_code code;
-  for (const auto& entry : fs::directory_iterator(folder, code)) {
-    const std::string name = entry.path().filename().string();
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
     if (name.size() <= stem.size() + 1 + extension.size() || !name.starts_with(stem) || !name.ends_with(extension) ||
         name[stem.size()] != '_') {
       continue;
     }
-    const char* begin = name.data() + stem.size() + 1;
-    const char* end = name.data() + name.size() - extension.size();
+    const char* digits = name.data() + stem.size() + 1;
+    const char* behind = name.data() + name.size() - extension.size();
     std::size_t number = 0;
-    const auto parsed = std::from_chars(begin, end, number);
-    if (parsed.ec == std::errc{} && parsed.ptr == end && number >= first &&
+    const auto parsed = std::from_chars(digits, behind, number);
+    if (parsed.ec == std::errc{} && parsed.ptr == behind && number >= first &&
         name == series_name(stem, number, extension)) {
       std::error_code ignored;
-      fs::remove(entry.path(), ignored);
+      fs::remove(entry->path(), ignored);
     }
   }
 }

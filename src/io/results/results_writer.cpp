@@ -12,6 +12,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <exception>
+
 namespace stylet {
 namespace fs = std::filesystem;
 using namespace results;
@@ -32,69 +35,19 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
   return Ok{};
 }
 
-}  // namespace
-
-struct ResultsWriter::Parts {
-  fs::path folder;
-  Index nodes;
-  std::function<MatX(const VecX&)> stress_of;
-  Recorder recorder;
-  Index frames = 0;
-  bool finished = false;
-};
-
-ResultsWriter::ResultsWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-ResultsWriter::~ResultsWriter() = default;
-
-Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folder, const RunInfo& info,
-                                                           const TetMesh& mesh,
-                                                           std::function<MatX(const VecX&)> stress_of) {
-  if (auto ready = prepare_folder(folder); !ready) return ready.error();
-  // summary.json is written last and tells a finished run: that of an earlier run must not stand beside the new run.h5.
-  std::error_code code;
-  fs::remove(folder / "summary.json", code);
-  auto file = RunFileWriter::create(folder / "run.h5", info, mesh);
-  if (!file) return file.error();
-  auto parts =
-      std::unique_ptr<Parts>(new Parts{folder, mesh.node_count(), std::move(stress_of), Recorder(std::move(*file))});
-  return std::unique_ptr<ResultsWriter>(new ResultsWriter(std::move(parts)));
-}
-
-Result<> ResultsWriter::add_step(const StepRecord& step) { return parts_->recorder.add_step(step); }
-
-Result<> ResultsWriter::add_frame(const Frame& frame) {
-  if (frame.displacement.size() != 3 * static_cast<Eigen::Index>(parts_->nodes)) {
-    return failure(
-        "frame",
-        fmt::format("{} displacement components, the mesh has {} nodes", frame.displacement.size(), parts_->nodes),
-        "Give three components per node of the mesh passed to open().");
-  }
-  StoredFrame stored{frame, {}};
-  stored.frame.displacement.resize(0);
-  stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
-  for (const double u : frame.displacement) stored.displacement.push_back(static_cast<float>(u));
-  if (auto added = parts_->recorder.add_frame(std::move(stored)); !added) return added;
-  ++parts_->frames;
-  return Ok{};
-}
-
-Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress) {
-  if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
-  parts_->finished = true;
-  const fs::path& folder = parts_->folder;
-  if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
-  if (parts_->frames == 0) {
-    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish().");
-  }
-  // Everything else is made from run.h5, so that nothing can be in a picture or a table that is not in the recording.
+/// Everything but run.h5, made from it: nothing can be in a picture or a table that is not in the recording.
+Result<> write_from_recording(const fs::path& folder, const Summary& summary,
+                              const std::function<MatX(const VecX&)>& stress_of, const Progress& progress) {
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
+  if (run->frames.empty()) {
+    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish().");
+  }
   run->summary = summary;
   const Moments moments = find_moments(run->frames);
   const auto regions = region_views(run->mesh, run->info.target_regions);
-
   if (auto done = write_file(folder / "forces.csv", forces_csv(run->steps)); !done) return done;
-  if (auto done = write_tissue(*run, parts_->stress_of, folder, progress); !done) return done;
+  if (auto done = write_tissue(*run, stress_of, folder, progress); !done) return done;
   if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
   const Pictures pictures = draw_pictures(*run, regions, moments, progress);
   if (auto done = write_pictures(pictures, folder / "pictures"); !done) return done;
@@ -105,6 +58,90 @@ Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress)
   if (auto done = write_file(folder / "summary.json", summary_json(summary)); !done) return done;
   report(progress, "report", 1.0);
   return Ok{};
+}
+
+/// A record with a number that is not finite cannot be told from one that never reached the disk.
+Error not_finite(const std::string& where, double time_s) {
+  return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
+                 "The simulation has lost its way before: look at the steps before this one.");
+}
+
+bool is_finite(const Frame& frame) {
+  bool finite = std::isfinite(frame.time_s) && frame.displacement.allFinite();
+  for (const Vec3& p : frame.needle) finite = finite && p.allFinite();
+  for (const ContactView& c : frame.contacts) {
+    finite = finite && c.position.allFinite() && c.force.allFinite() && std::isfinite(c.s);
+  }
+  return finite;
+}
+
+/// Public calls do not throw; what libraries throw (memory, threads) becomes an error.
+template <class Work>
+auto guarded(const fs::path& folder, Work work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::exception& e) {
+    return failure(folder.string(), fmt::format("cannot be filled: {}", e.what()),
+                   "Close other programs or use a smaller mesh, then run again.");
+  }
+}
+
+}  // namespace
+
+struct ResultsWriter::Parts {
+  fs::path folder;
+  Index nodes;
+  std::function<MatX(const VecX&)> stress_of;
+  Recorder recorder;
+  bool finished = false;
+};
+
+ResultsWriter::ResultsWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+ResultsWriter::~ResultsWriter() = default;
+
+Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folder, const RunInfo& info,
+                                                           const TetMesh& mesh,
+                                                           std::function<MatX(const VecX&)> stress_of) {
+  return guarded(folder, [&]() -> Result<std::unique_ptr<ResultsWriter>> {
+    if (auto ready = prepare_folder(folder); !ready) return ready.error();
+    // summary.json is written last and tells a finished run: an earlier one must not stand beside the new run.h5.
+    std::error_code code;
+    fs::remove(folder / "summary.json", code);
+    auto file = RunFileWriter::create(folder / "run.h5", info, mesh);
+    if (!file) return file.error();
+    auto parts =
+        std::unique_ptr<Parts>(new Parts{folder, mesh.node_count(), std::move(stress_of), Recorder(std::move(*file))});
+    return std::unique_ptr<ResultsWriter>(new ResultsWriter(std::move(parts)));
+  });
+}
+
+Result<> ResultsWriter::add_step(const StepRecord& step) {
+  if (!std::isfinite(step.time_s)) return not_finite("step", step.time_s);
+  return parts_->recorder.add_step(step);
+}
+
+Result<> ResultsWriter::add_frame(const Frame& frame) {
+  if (frame.displacement.size() != 3 * static_cast<Eigen::Index>(parts_->nodes)) {
+    return failure(
+        "frame",
+        fmt::format("{} displacement components, the mesh has {} nodes", frame.displacement.size(), parts_->nodes),
+        "Give three components per node of the mesh passed to open().");
+  }
+  if (!is_finite(frame)) return not_finite("frame", frame.time_s);
+  StoredFrame stored{frame, {}};
+  stored.frame.displacement.resize(0);
+  stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
+  for (const double u : frame.displacement) stored.displacement.push_back(static_cast<float>(u));
+  return parts_->recorder.add_frame(std::move(stored));
+}
+
+Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress) {
+  if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
+  parts_->finished = true;
+  return guarded(parts_->folder, [&]() -> Result<> {
+    if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
+    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress);
+  });
 }
 
 }  // namespace stylet

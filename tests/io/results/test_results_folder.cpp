@@ -23,6 +23,7 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -295,6 +296,12 @@ TEST(ResultFolder, wrong_use_is_an_error_not_a_crash) {
   Frame bad = run.frames.front();
   bad.displacement.conservativeResize(bad.displacement.size() - 3);
   EXPECT_FALSE((*writer)->add_frame(bad).ok());
+  Frame nan = run.frames.front();
+  nan.displacement[5] = std::nan("");
+  EXPECT_NE((*writer)->add_frame(nan).error().what.find("not finite"), std::string::npos);
+  StepRecord step;
+  step.time_s = std::nan("");
+  EXPECT_FALSE((*writer)->add_step(step).ok());
   EXPECT_FALSE((*writer)->finish(run.summary).ok());  // no frame to show
   EXPECT_FALSE((*writer)->finish(run.summary).ok());  // twice
 }

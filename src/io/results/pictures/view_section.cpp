@@ -107,10 +107,10 @@ Framing framing_of(const PictureInput& input, const Section& section, const Area
   }
   if (std::abs(input.run.info.direction.dot(section.view.towards_viewer)) <= 0.7) {
     places.push_back(input.run.info.entry_mm - 10 * input.run.info.direction);
-    places.push_back(input.deepest.needle.back());
+    if (!input.deepest.needle.empty()) places.push_back(input.deepest.needle.back());
   }
   if (places.empty()) places = input.run.mesh.nodes;
-  Framing framing = frame_points(places, section.view, area);
+  Framing framing = frame_points(places, section.view, area, 0.12);
   framing.centre += (section.origin - framing.centre).dot(section.view.towards_viewer) * section.view.towards_viewer;
   return framing;
 }

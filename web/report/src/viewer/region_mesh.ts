@@ -17,6 +17,7 @@ function densenRim(material: THREE.MeshStandardMaterial, strength: number): void
 
 export class RegionMesh {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
+  readonly centre: THREE.Vector3;  // [mm] LPS
   visible: boolean;
   opacity: number;
   private byDisplacement = false;
@@ -24,7 +25,9 @@ export class RegionMesh {
   private readonly position: Float32Array;
   private readonly color: Float32Array;
 
-  constructor(private readonly data: ReportData, readonly region: Region, order: number) {
+  private readonly box = new THREE.Box3();  // undeformed
+
+  constructor(private readonly data: ReportData, readonly region: Region) {
     const local = new Map<number, number>();
     const index = new Uint32Array(region.triangles.length);
     region.triangles.forEach((node, i) => {
@@ -42,11 +45,18 @@ export class RegionMesh {
     const material = new THREE.MeshStandardMaterial({ color: region.color, roughness: 0.7, metalness: 0 });
     densenRim(material, region.background ? 0.06 : 0.6);
     this.object = new THREE.Mesh(geometry, material);
-    this.object.renderOrder = order;
+    const p = new THREE.Vector3();
+    for (const node of this.nodes) this.box.expandByPoint(p.fromArray(data.points, 3 * node));
+    this.centre = this.box.getCenter(new THREE.Vector3());
     this.object.frustumCulled = false;
     this.visible = true;
     this.opacity = region.opacity;
     this.applyLook();
+  }
+
+  /** Whether the other region lies inside this one, by their boxes. */
+  holds(other: RegionMesh): boolean {
+    return other !== this && this.box.containsBox(other.box);
   }
 
   applyLook(): void {

@@ -37,8 +37,7 @@ export class Stage {
     this.renderer.setClearColor('#ffffff');
     box.append(this.renderer.domElement);
 
-    const bySize = [...data.regions].sort((a, b) => a.triangles.length - b.triangles.length);
-    this.regions = data.regions.map((r) => new RegionMesh(data, r, r.background ? 1000 : bySize.indexOf(r)));
+    this.regions = data.regions.map((r) => new RegionMesh(data, r));
     this.needle = new NeedleMesh(data.needleDiameter);
     this.contacts = new ContactMarks(data.needleDiameter);
     this.scene.add(...this.regions.map((r) => r.object), this.needle.object, this.contacts.object);
@@ -85,10 +84,25 @@ export class Stage {
       this.pending = false;
       const { clientWidth: width, clientHeight: height } = this.box;
       this.renderer.setViewport(0, 0, width, height);
+      this.sortRegions();
       this.renderer.render(this.scene, this.camera);
       this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
       this.updateScaleBar(height);
     });
+  }
+
+  /** Translucent surfaces are drawn from the farthest to the nearest, a region inside another before that one. */
+  private sortRegions(): void {
+    const view = this.camera.getWorldDirection(new THREE.Vector3());
+    const distance = (mesh: RegionMesh): number => {
+      if (mesh.region.background) return -Infinity;
+      const around = this.regions.find((other) => !other.region.background && other.holds(mesh));
+      return around ? distance(around) + 1e-3 : mesh.centre.dot(view);
+    };
+    [...this.regions]
+      .map((mesh) => ({ mesh, distance: distance(mesh) }))
+      .sort((a, b) => b.distance - a.distance)
+      .forEach(({ mesh }, order) => (mesh.object.renderOrder = order));
   }
 
   private updateScaleBar(height: number): void {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the pictures show, staged but not drawn: drawing is part of the tests of the whole folder.
+#include "pictures/stage.hpp"
+#include "pictures/views.hpp"
+#include "report/moments.hpp"
+#include "synthetic_run.hpp"
+
+#include <gtest/gtest.h>
+#include <vtkActor.h>
+#include <vtkActorCollection.h>
+#include <vtkCamera.h>
+#include <vtkRenderer.h>
+
+using namespace stylet;
+using namespace stylet::results;
+using stylet::testing::synthetic_run;
+
+namespace {
+
+RunRecording recording_of(stylet::testing::SyntheticRun run) {
+  return {run.info, run.mesh, run.steps, run.frames, run.summary};
+}
+
+/// Stages every kind of picture of a run; returns the number of actors in all of them.
+int stage_all(const RunRecording& run) {
+  const auto regions = region_views(run.mesh, run.info.target_regions);
+  const Frame& frame = run.frames[find_moments(run.frames).deepest];
+  const PictureInput input{run, regions, frame};
+  int actors = 0;
+  for (const Section& section : {sagittal_section(input), transverse_section(input)}) {
+    for (const Layers& layers : {view_section(input, frame, section), view_displacement(input, frame, section)}) {
+      for (const auto& layer : layers) actors += layer->GetActors()->GetNumberOfItems();
+    }
+  }
+  for (const auto& layer : view_3d(input, frame)) actors += layer->GetActors()->GetNumberOfItems();
+  return actors;
+}
+
+}  // namespace
+
+TEST(PictureViews, sections_are_seen_as_in_radiology) {
+  const auto run = recording_of(synthetic_run());
+  const auto regions = region_views(run.mesh, run.info.target_regions);
+  const PictureInput input{run, regions, run.frames[find_moments(run.frames).deepest]};
+  const Section sagittal = sagittal_section(input), transverse = transverse_section(input);
+  EXPECT_EQ(sagittal.view.right(), Vec3::UnitY());    // posterior at the right, head up
+  EXPECT_EQ(transverse.view.right(), Vec3::UnitX());  // the patient's left at the right, front up
+  EXPECT_EQ(transverse.view.up, -Vec3::UnitY());
+  EXPECT_EQ(sagittal.origin, input.deepest.needle.back());
+  EXPECT_NEAR(transverse.origin.z(), 62 + run.summary->target_shift_centroid_mm.z(), 3);
+}
+
+TEST(PictureViews, a_framing_holds_all_points) {
+  const Viewpoint view{Vec3::UnitX(), Vec3::UnitZ()};
+  const std::vector<Vec3> points{{0, -40, 10}, {5, 60, 30}, {0, 0, -20}};
+  const Area area{0.1, 0.1, 0.9, 0.9};
+  const Framing framing = frame_points(points, view, area, 0.0);
+  const double half_width = framing.half_height * area.width() / area.height();
+  for (const Vec3& p : points) {
+    EXPECT_LE(std::abs((p - framing.centre).dot(view.right())), half_width * (1 + 1e-12));
+    EXPECT_LE(std::abs((p - framing.centre).dot(view.up)), framing.half_height * (1 + 1e-12));
+  }
+  EXPECT_DOUBLE_EQ(half_width, 50);  // no larger than it has to be
+}
+
+TEST(PictureViews, runs_without_needle_target_or_organs_can_be_staged) {
+  auto usual = synthetic_run();
+  EXPECT_GT(stage_all(recording_of(usual)), 20);
+  auto no_needle = usual;
+  for (Frame& frame : no_needle.frames) frame.needle.clear();
+  EXPECT_GT(stage_all(recording_of(no_needle)), 20);
+  auto no_target = usual;
+  no_target.info.target_regions.clear();
+  EXPECT_GT(stage_all(recording_of(no_target)), 20);
+  auto one_region = usual;
+  one_region.mesh.regions = {"tissue"};
+  std::fill(one_region.mesh.tet_region.begin(), one_region.mesh.tet_region.end(), 0);
+  one_region.info.target_regions = {0};
+  EXPECT_GT(stage_all(recording_of(one_region)), 5);
+  auto no_motion = usual;
+  for (Frame& frame : no_motion.frames) frame.displacement.setZero();
+  EXPECT_GT(stage_all(recording_of(no_motion)), 20);
+}
+
+TEST(PictureViews, round_numbers_are_one_two_or_five) {
+  EXPECT_DOUBLE_EQ(round_down(0.37), 0.2);
+  EXPECT_DOUBLE_EQ(round_down(7), 5);
+  EXPECT_DOUBLE_EQ(round_down(19.99), 10);
+  EXPECT_DOUBLE_EQ(round_down(100), 100);
+}
