@@ -111,21 +111,23 @@ Result<> ScenarioReader::take_setting(const std::vector<std::string>& path, cons
 }
 
 Result<> ScenarioReader::apply_setting(const std::string& setting) {
+  // A TOML comment may hold any text but control characters, line ends among them, and broken UTF-8.
+  if (setting.find_first_of("\r\n") != std::string::npos || !parse_toml("# " + setting, "")) {
+    std::string readable = setting;
+    for (char& c : readable) {
+      if (c < 0x20 || c > 0x7e) c = '?';
+    }
+    return input_error("--set " + readable, "the setting has characters that are no printable text (UTF-8)", kForm);
+  }
   const std::string where = "--set " + setting;
   const auto equals = find_unquoted(setting, '=');
-  const std::string key = trimmed(setting.substr(0, equals));
-  if (equals == std::string::npos || key.empty()) {
-    return input_error(where, equals == std::string::npos ? "there is no '=' in it" : "there is no key before the '='",
-                       kForm);
-  }
-  // A TOML comment may hold any text but control characters and broken UTF-8.
-  if (!parse_toml("# " + setting, "")) {
-    return input_error("--set " + key, "the setting has characters that are no printable text (UTF-8)", kForm);
-  }
+  if (equals == std::string::npos) return input_error(where, "there is no '=' in it", kForm);
+  const std::string key = trimmed(std::string_view(setting).substr(0, equals));
+  if (key.empty()) return input_error(where, "there is no key before the '='", kForm);
   const auto path = setting_path(key, where);
   if (!path) return path.error();
-  if (Result<> taken = take_setting(*path, trimmed(std::string_view(setting).substr(equals + 1)), where); !taken)
-    return taken;
+  const std::string value = trimmed(std::string_view(setting).substr(equals + 1));
+  if (Result<> taken = take_setting(*path, value, where); !taken) return taken;
   resolve_paths(true);
   return Ok{};
 }

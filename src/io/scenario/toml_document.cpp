@@ -2,6 +2,7 @@
 #include "scenario/toml_document.hpp"
 
 #include "detail/text.hpp"
+#include "scenario/toml_precheck.hpp"
 
 #include <fmt/format.h>
 #define TOML_EXCEPTIONS 0
@@ -108,16 +109,19 @@ Error syntax_error(const std::string& where, std::string what, const std::string
     return input_error(where, "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
   }
   if (what.starts_with("Error ")) what.erase(0, 6);
+  std::replace_if(
+      what.begin(), what.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   // The line itself where a person can read it.
   const bool readable = !line.empty() && line.size() <= 100 &&
                         std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   return input_error(where, fmt::format("{}this is not valid TOML ({})", readable ? line + ": " : "", what),
-                     cure_for(line));
+                     cure_for(readable ? line : ""));
 }
 
 }  // namespace
 
 Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source) {
+  if (Result<> safe = precheck_toml(text, source); !safe) return safe.error();
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();

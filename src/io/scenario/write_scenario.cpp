@@ -10,12 +10,13 @@ namespace stylet {
 
 namespace {
 
-/// A key as TOML writes it: bare where that is allowed.
+/// A key as TOML writes it: bare where that is allowed and does not look like a number.
 std::string key_text(const std::string& key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-';
   });
-  return bare ? key : to_string({.type = ScenarioValue::Type::text, .text = key});
+  const bool word = key.find_first_not_of("-0123456789") != std::string::npos;
+  return bare && word ? key : to_string({.type = ScenarioValue::Type::text, .text = key});
 }
 
 struct Line {
