@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scenario/toml_precheck.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stylet::detail {
+
+namespace {
+
+bool beyond_ascii(char c) { return static_cast<unsigned char>(c) >= 0x80; }
+bool blank(char c) { return c == ' ' || c == '\t'; }
+bool begins_name(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+         c == '"' || c == '\'';
+}
+
+/// The character whose bytes begin here; empty when they are no UTF-8.
+std::string_view character(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text.front());
+  const std::size_t length = lead < 0x80                   ? 1
+                             : lead >= 0xC2 && lead < 0xE0 ? 2
+                             : (lead & 0xF0) == 0xE0       ? 3
+                             : (lead & 0xF8) == 0xF0       ? 4
+                                                           : 0;
+  if (length == 0 || text.size() < length) return {};
+  const auto follows = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
+  if (!std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length), follows)) return {};
+  return text.substr(0, length);
+}
+
+/// Goes through a document once, knowing no more of TOML than what is inside of quotes and comments.
+class Scan {
+ public:
+  Scan(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+
+  Result<> run() {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+    char previous = '\n';  // the last character that was no blank
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (blank(c)) continue;
+      if (Result<> next = follow(c, previous); !next) return next;
+      previous = c;
+    }
+    return Ok{};
+  }
+
+ private:
+  [[nodiscard]] std::string where() const {
+    const std::string_view before = text_.substr(0, at_);
+    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+    const auto start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+    const auto characters = std::count_if(before.begin() + static_cast<std::ptrdiff_t>(start), before.end(),
+                                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+    return fmt::format("{}, line {}, column {}", source_, line, characters + 1);
+  }
+
+  [[nodiscard]] Error stray_character() const {
+    const std::string_view c = character(text_.substr(at_));
+    if (c.empty())
+      return input_error(where(), "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
+    if (c == "\u00A0")
+      return input_error(where(), "there is a no-break space, which TOML does not know", "Write a plain space");
+    for (const std::string_view quote :
+         {"\u201C", "\u201D", "\u201E", "\u2018", "\u2019", "\u201A", "\u00AB", "\u00BB"}) {
+      if (c == quote)
+        return input_error(where(), fmt::format("{} is no quotation mark of TOML", c),
+                           "Put texts in straight quotation marks: \"D4\"");
+    }
+    return input_error(where(), fmt::format("the character {} stands outside of quotation marks", c),
+                       "Put names and texts with such characters in quotation marks");
+  }
+
+  Result<> follow(char c, char previous) {
+    if (c == '\n') {
+      in_header_ = false;
+      return Ok{};
+    }
+    if (c == '#') {
+      at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+      return Ok{};
+    }
+    if (c == '"' || c == '\'') {
+      if (std::string_view("\n=[{,.").find(previous) != std::string_view::npos) return skip_quoted(c);
+      return input_error(where(), "there is a quotation mark in the middle of a value",
+                         "Put the whole text in quotation marks");
+    }
+    if (beyond_ascii(c)) return stray_character();
+    if (c == '[' && previous == '\n' && open_.empty()) return begin_header();
+    return in_header_ ? Result<>(Ok{}) : follow_bracket(c);
+  }
+
+  /// From the opening quotation mark to the closing one, or to the end of the line where there is none.
+  Result<> skip_quoted(char quote) {
+    const std::string three(3, quote);
+    const bool many_lines = text_.substr(at_).starts_with(three);
+    for (at_ += many_lines ? 3 : 1; at_ < text_.size(); ++at_) {
+      if (many_lines ? text_.substr(at_).starts_with(three) : text_[at_] == quote) {
+        at_ += many_lines ? 2 : 0;
+        return Ok{};
+      }
+      if (!many_lines && text_[at_] == '\n') {
+        --at_;
+        return Ok{};
+      }
+      if (quote == '"' && text_[at_] == '\\') {
+        // In many lines blanks and line ends may follow: the text goes on after them.
+        const auto next = text_.find_first_not_of(many_lines ? " \t\r\n" : "", at_ + 1);
+        if (next != std::string_view::npos && beyond_ascii(text_[next])) {
+          return input_error(where(), "after this \\ there is a character beyond ASCII",
+                             "Write \\\\ for a backslash, and the text on one line");
+        }
+        ++at_;
+      }
+    }
+    return Ok{};
+  }
+
+  /// Brackets and braces of lists and inline tables close in the order in which they open.
+  Result<> follow_bracket(char c) {
+    if (c == '[' || c == '{') open_ += c;
+    if (c != ']' && c != '}') return Ok{};
+    if (open_.empty()) {
+      return input_error(where(), fmt::format("{} closes nothing", c),
+                         "Write lists as [1, 2, 3] and inline tables as { key = value }");
+    }
+    if (const char expected = open_.back() == '[' ? ']' : '}'; c != expected) {
+      return input_error(where(), fmt::format("there is {} where {} is expected", c, expected),
+                         "Write lists as [1, 2, 3] and inline tables as { key = value }");
+    }
+    open_.pop_back();
+    return Ok{};
+  }
+
+  /// "[" or "[[" and then a name.
+  Result<> begin_header() {
+    in_header_ = true;
+    auto name = at_ + 1;
+    if (name < text_.size() && text_[name] == '[') ++name;
+    while (name < text_.size() && blank(text_[name])) ++name;
+    if (name < text_.size() && (begins_name(text_[name]) || beyond_ascii(text_[name]))) return Ok{};
+    return input_error(where(), "a table begins here, but its name does not follow",
+                       "Write a table as [mesh], an insertion as [[insertion]]");
+  }
+
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t at_ = 0;
+  std::string open_;  ///< brackets and braces around this place, the innermost last
+  bool in_header_ = false;
+};
+
+}  // namespace
+
+Result<> precheck_toml(std::string_view text, const std::string& source) { return Scan(text, source).run(); }
+
+}  // namespace stylet::detail
