@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 
 namespace stylet::cli {
 
@@ -70,32 +71,6 @@ std::string summary_text(const Summary& summary) {
   return events.text() + "\n\n" + facts.text();
 }
 
-Json summary_json(const Summary& s) {
-  Json events = Json::array();
-  for (const Event& event : s.events) {
-    events.push_back({{"kind", to_string(event.kind)},
-                      {"time_s", event.time_s},
-                      {"depth_mm", event.depth_mm},
-                      {"force_N", event.force_N},
-                      {"region", event.region}});
-  }
-  return {
-      {"version", s.version},
-      {"scenario", s.scenario},
-      {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}}},
-      {"steps", s.steps},
-      {"peak_force_N", {{"axial", s.peak_axial_N}, {"sagittal", s.peak_sagittal_N}, {"lateral", s.peak_lateral_N}}},
-      {"events", events},
-      {"tip_deflection_mm", s.tip_deflection_mm},
-      {"target_shift_mm",
-       {{"centroid", {s.target_shift_centroid_mm.x(), s.target_shift_centroid_mm.y(), s.target_shift_centroid_mm.z()}},
-        {"max", s.target_shift_max_mm}}},
-      {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
-      {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
-      {"contacts_max", s.contacts_max},
-      {"warnings", s.warnings}};
-}
-
 /// The default properties of every tissue and what they mean for a needle of the default diameter.
 std::string tissues_text() {
   const double diameter = Scenario{}.needle.diameter_mm;
@@ -111,6 +86,15 @@ std::string tissues_text() {
     sources += fmt::format("\n  {}: {}", region, t.source);
   }
   return table.text() + "\n\nSources" + sources;
+}
+
+/// What --json prints: the summary.json of the result folder.
+Result<Json> written_summary(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "summary.json";
+  std::ifstream file(path);
+  Json json = Json::parse(file, nullptr, false);
+  if (json.is_discarded()) return failure(path.string(), "cannot be read back", "Check the result folder");
+  return json;
 }
 
 Result<> run_insert(const InsertArguments& arguments, Console& console) {
@@ -160,7 +144,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   Recorder recorder(**writer);
   const Result<Summary> summary = run(*model, recorder, progress);
   if (!summary) return summary.error();
-  if (Result<> finished = (*writer)->finish(*summary, progress); !finished) return finished;
+  if (Result<> finished = (*writer)->finish(*summary, progress, scenario->output.pictures); !finished) return finished;
 
   for (std::size_t i = (*model)->warnings().size(); i < summary->warnings.size(); ++i)
     console.warn(summary->warnings[i]);
@@ -168,7 +152,8 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
       fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario->name, summary->nodes, summary->tets, info.method));
   console.say(summary_text(*summary));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
-  return console.write_json(summary_json(*summary));
+  const Result<Json> json = written_summary(folder);
+  return json ? console.write_json(*json) : Result<>(json.error());
 }
 
 }  // namespace

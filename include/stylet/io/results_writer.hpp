@@ -24,7 +24,8 @@ class ResultsWriter {
   Result<> add_step(const StepRecord& step);
   Result<> add_frame(const Frame& frame);
   /// Writes all files. Progress covers the pictures.
-  Result<> finish(const Summary& summary, const Progress& progress = {});
+  /// @param pictures still pictures in the report; without them it has its interactive view only
+  Result<> finish(const Summary& summary, const Progress& progress = {}, bool pictures = true);
 
  private:
   struct Parts;

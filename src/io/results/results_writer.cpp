@@ -37,7 +37,8 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
 
 /// Everything but run.h5, made from it: nothing can be in a picture or a table that is not in the recording.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
-                              const std::function<MatX(const VecX&)>& stress_of, const Progress& progress) {
+                              const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
+                              bool with_pictures) {
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
   if (run->frames.empty()) {
@@ -49,7 +50,8 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   if (auto done = write_file(folder / "forces.csv", forces_csv(run->steps)); !done) return done;
   if (auto done = write_tissue(*run, stress_of, folder, progress); !done) return done;
   if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
-  const Pictures pictures = draw_pictures(*run, regions, moments, progress);
+  const Pictures pictures = with_pictures ? draw_pictures(*run, regions, moments, progress)
+                                          : Pictures{.png = {}, .why_not = {}, .wanted = false};
   if (auto done = write_pictures(pictures, folder / "pictures"); !done) return done;
   report(progress, "report", 0.0);
   auto page = report_html(*run, regions, moments, pictures);
@@ -135,12 +137,12 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
   return parts_->recorder.add_frame(std::move(stored));
 }
 
-Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress) {
+Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
   if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
-    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress);
+    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures);
   });
 }
 

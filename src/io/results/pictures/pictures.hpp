@@ -16,6 +16,7 @@ namespace stylet::results {
 struct Pictures {
   std::map<std::string, std::string> png;
   std::string why_not;  ///< empty when all pictures were drawn
+  bool wanted = true;   ///< false: the scenario asks for none
 };
 
 /// For the moments before, deepest and after view_MOMENT.png, sagittal_MOMENT.png and transverse_MOMENT.png;

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scenarios for tests of stylet insert, and what every finished one must have left behind."""
+import csv
+import json
+import math
+from pathlib import Path
+
+# A case small enough to run in a second or two.
+FAST = ("--set", "run.dt_ms=4", "--set", "output.pictures=false", "--set", "output.frames_per_s=2")
+SMALL = ("--set", "mesh.nodes=800", *FAST)
+
+PHANTOM = """\
+[patient]
+source = "phantom"
+[fixed]
+outer = "sides"
+[[insertion]]
+hole = "e3.5"
+speed_mm_per_s = 40
+dwell_s = 0.1
+retract_speed_mm_per_s = 40
+"""
+
+FORCES_HEADER = ["time_s", "base_depth_mm", "force_axial_N", "force_sagittal_N", "force_lateral_N", "torque_x_Nmm",
+                 "torque_y_Nmm", "torque_z_Nmm", "tip_x_mm", "tip_y_mm", "tip_z_mm", "tip_state", "contacts",
+                 "sticking", "iterations", "step_us"]
+TIP_STATES = {"air", "pressing", "cutting", "in_track", "bone", "exited"}
+FULL_INSERTION = ["skin_contact", "puncture", "region_entered", "retraction_start", "slip_start", "withdrawn"]
+
+
+def block_mesh(path, cells=4, size=60.0, names=("tissue", "lump")):
+    """gmsh MSH 2.2 in mm: a cube from (0, 0, 0), six tetrahedra a cell; the second region is its middle."""
+    n = cells + 1
+    step = size / cells
+    nodes = [(i * step, j * step, k * step) for k in range(n) for j in range(n) for i in range(n)]
+    tets = []
+    for k in range(cells):
+        for j in range(cells):
+            for i in range(cells):
+                corner = lambda a: (i + (a & 1)) + n * ((j + (a >> 1 & 1)) + n * (k + (a >> 2 & 1)))
+                group = 2 if all(0 < c < cells - 1 for c in (i, j, k)) else 1
+                for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)):
+                    tets.append((group, (corner(0), corner(a), corner(b), corner(7))))
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names))]
+    lines += [f'3 {k} "{name}"' for k, name in enumerate(names, start=1)]
+    lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
+    lines += [f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(nodes, start=1)]
+    lines += ["$EndNodes", "$Elements", str(len(tets))]
+    lines += [f"{k} 4 2 {group} {group} " + " ".join(str(v + 1) for v in tet)
+              for k, (group, tet) in enumerate(tets, start=1)]
+    path.write_text("\n".join(lines + ["$EndElements", ""]))
+
+
+BLOCK = """\
+[patient]
+source = "block.msh"
+[fixed]
+outer = "sides"
+[needle]
+length_mm = 100
+[[insertion]]
+entry_mm = [31, 32, -10]
+depth_mm = 40
+speed_mm_per_s = 40
+retract_speed_mm_per_s = 40
+"""
+
+
+def forces(folder):
+    """The lines of forces.csv, numbers as numbers."""
+    with open(Path(folder) / "forces.csv", newline="", encoding="utf-8") as file:
+        lines = list(csv.DictReader(file))
+    for line in lines:
+        for key, value in line.items():
+            if key != "tip_state":
+                line[key] = float(value)
+    return lines
+
+
+def without_step_times(folder):
+    """forces.csv as text, its last column left out."""
+    text = (Path(folder) / "forces.csv").read_text(encoding="utf-8")
+    return [line.rsplit(",", 1)[0] for line in text.splitlines()]
+
+
+def kinds(summary):
+    return [event["kind"] for event in summary["events"]]
+
+
+def check_results(test, folder, summary=None, pictures=False):
+    """Every result file of the contract is there and sound. Returns the summary."""
+    folder = Path(folder)
+    for name in ("summary.json", "forces.csv", "tissue.pvd", "needle.vtp", "run.h5", "report.html"):
+        test.assertTrue((folder / name).is_file(), name)
+        test.assertGreater((folder / name).stat().st_size, 100, name)
+    test.assertTrue(list(folder.glob("tissue_*.vtu")))
+    test.assertEqual([p.name for p in folder.iterdir() if p.name.startswith(".") or p.name.endswith(".part")], [])
+    written = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    if summary is not None:
+        test.assertEqual(written, summary)
+    for key in ("version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
+                "target_shift_mm", "residual", "step_us", "contacts_max", "warnings"):
+        test.assertIn(key, written)
+    test.assertEqual(set(written["mesh"]), {"nodes", "tets"})
+    test.assertEqual(set(written["peak_force_N"]), {"axial", "sagittal", "lateral"})
+    test.assertEqual(set(written["step_us"]), {"p50", "p99", "p999", "max"})
+    test.assertLess(written["residual"]["force_balance"], 1e-9)
+    test.assertLess(written["residual"]["torque_balance"], 1e-9)
+    for event in written["events"]:
+        test.assertEqual(set(event), {"kind", "time_s", "depth_mm", "force_N", "region"})
+
+    lines = forces(folder)
+    test.assertEqual(list(lines[0]), FORCES_HEADER)
+    test.assertEqual(len(lines), written["steps"])
+    for line in lines:
+        test.assertIn(line["tip_state"], TIP_STATES)
+        test.assertTrue(all(math.isfinite(v) for k, v in line.items() if k != "tip_state"), line)
+    test.assertAlmostEqual(max(abs(line["force_axial_N"]) for line in lines), written["peak_force_N"]["axial"], places=8)
+    test.assertEqual(max(line["contacts"] for line in lines), written["contacts_max"])
+
+    report = (folder / "report.html").read_text(encoding="utf-8")
+    test.assertIn("<html", report)
+    test.assertNotIn("src=\"http", report, "the report stands alone")
+    if pictures:
+        test.assertIn("data:image/", report)
+    return written

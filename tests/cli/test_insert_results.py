@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet insert: from a scenario to its results."""
+import json
+import unittest
+
+from insert_case import (BLOCK, FAST, FORCES_HEADER, FULL_INSERTION, PHANTOM, SMALL, block_mesh, check_results, forces,
+                         kinds, without_step_times)
+from program import InFolder
+
+
+class Insert(InFolder):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "case.toml").write_text(PHANTOM)
+        (self.folder / "block.toml").write_text(BLOCK)
+        block_mesh(self.folder / "block.msh")
+
+    def test_the_demo_patient_gives_every_file_and_every_event(self):
+        summary = self.json_of("insert", "case.toml", "-o", "out", *SMALL)
+        check_results(self, self.folder / "out", summary)
+        self.assertAlmostEqual(summary["mesh"]["nodes"], 800, delta=0.03 * 800)
+        happened = [(event["kind"], event["region"]) for event in summary["events"]]
+        for earlier, later in zip(FULL_INSERTION, FULL_INSERTION[1:]):
+            self.assertLess(kinds(summary).index(earlier), kinds(summary).index(later))
+        self.assertIn(("puncture", "body"), happened)
+        self.assertIn(("puncture", "prostate"), happened)
+        self.assertIn(("region_entered", "prostate"), happened)
+        self.assertEqual(kinds(summary)[-1], "withdrawn")
+        self.assertGreater(summary["target_shift_mm"]["max"], 0)
+        last = forces(self.folder / "out")[-1]
+        self.assertEqual((last["tip_state"], last["contacts"], last["force_axial_N"]), ("air", 0, 0))
+
+    def test_two_runs_are_byte_identical_but_for_step_times_on_any_number_of_threads(self):
+        self.succeed("insert", "case.toml", "-o", "one", *SMALL)
+        self.succeed("insert", "case.toml", "-o", "two", "--threads", "1", *SMALL)
+        self.assertEqual(without_step_times(self.folder / "one"), without_step_times(self.folder / "two"))
+        header = (self.folder / "one/forces.csv").read_text().splitlines()[0]
+        self.assertEqual(header, ",".join(FORCES_HEADER))
+
+    def test_times_are_written_as_they_are(self):
+        self.succeed("insert", "block.toml", "-o", "out", *FAST)
+        lines = forces(self.folder / "out")
+        self.assertEqual([line["time_s"] for line in lines], [(4 * (k + 1)) / 1000 for k in range(len(lines))])
+
+    def test_a_mesh_of_somebody_else_is_taken_as_it_is(self):
+        done = self.succeed("insert", "block.toml", "-o", "out", *FAST)
+        summary = check_results(self, self.folder / "out")
+        self.assertEqual(summary["mesh"], {"nodes": 125, "tets": 384})
+        self.assertEqual([e["region"] for e in summary["events"] if e["kind"] == "region_entered"], ["tissue", "lump"])
+        self.assertIn("125 nodes, 384 tetrahedra", done.stdout)
+        self.assertIn("Report: out/report.html", done.stdout)
+        self.assertIn("far half, seen along the needle", (self.folder / "out/report.html").read_text(encoding="utf-8"))
+
+    def test_what_is_printed_names_events_peaks_and_steps(self):
+        table = self.succeed("insert", "block.toml", "-o", "out", *FAST).stdout
+        for text in ("skin contact (tissue)", "puncture (tissue)", "region entered (lump)", "retraction start",
+                     "slip start", "withdrawn", "peak force", "target moved", "balance", "step"):
+            self.assertIn(text, table)
+
+    def test_json_alone_is_on_standard_output(self):
+        done = self.succeed("insert", "block.toml", "-o", "out", "--json", "-", *FAST)
+        self.assertTrue(done.stdout.startswith("{"))
+        self.assertEqual(json.loads(done.stdout), json.loads((self.folder / "out/summary.json").read_text()))
+
+    def test_json_goes_to_a_file(self):
+        self.succeed("insert", "block.toml", "-o", "out", "--json", "here/s.json", "--quiet", *FAST)
+        self.assertEqual(json.loads((self.folder / "here/s.json").read_text()),
+                         json.loads((self.folder / "out/summary.json").read_text()))
+
+    def test_quiet_says_nothing(self):
+        done = self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST)
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_results_go_to_a_folder_named_after_the_scenario(self):
+        self.succeed("insert", "block.toml", "--quiet", *FAST)
+        check_results(self, self.folder / "out/block")
+
+    def test_settings_replace_what_the_scenario_says(self):
+        fast = self.json_of("insert", "block.toml", "-o", "fast", *FAST)
+        slow = self.json_of("insert", "block.toml", "-o", "slow", *FAST, "--set", "insertion.speed_mm_per_s=20",
+                            "--set", "insertion[0].depth_mm=30", "--set", "name=slow and shallow")
+        self.assertEqual(slow["scenario"], "slow and shallow")
+        self.assertLess(slow["peak_force_N"]["axial"], fast["peak_force_N"]["axial"])
+        deepest = max(line["base_depth_mm"] for line in forces(self.folder / "slow"))
+        self.assertAlmostEqual(deepest, 30, places=6)
+
+    def test_a_needle_can_be_left_in(self):
+        summary = self.json_of("insert", "block.toml", "-o", "out", *FAST, "--set", "insertion.retract=false")
+        check_results(self, self.folder / "out", summary)
+        self.assertNotIn("withdrawn", kinds(summary))
+        self.assertGreater(forces(self.folder / "out")[-1]["contacts"], 3)
+
+    def test_every_method_and_rule_runs_to_the_end(self):
+        for settings in (("coupling.rule=paper",), ("coupling.method=embedded",)):
+            with self.subTest(settings=settings):
+                options = [word for setting in settings for word in ("--set", setting)]
+                summary = self.json_of("insert", "block.toml", "-o", settings[0], *FAST, *options)
+                check_results(self, self.folder / settings[0], summary)
+                self.assertEqual(kinds(summary)[-1], "withdrawn")
+
+    def test_a_recorded_motion_moves_the_base(self):
+        # In 40 mm along z in one second and out again; the base is one needle's length behind the tip.
+        rows = ["time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz"]
+        rows += [f"{t},31,32,{z - 100},1,0,0,0" for t, z in ((0, -3), (1.075, 40), (1.2, 40), (2.275, -3))]
+        (self.folder / "motion.csv").write_text("\n".join(rows) + "\n")
+        (self.folder / "recorded.toml").write_text(
+            BLOCK.split("[[insertion]]")[0] + '[[insertion]]\nmotion = "motion.csv"\n')
+        summary = self.json_of("insert", "recorded.toml", "-o", "out", *FAST)
+        check_results(self, self.folder / "out", summary)
+        self.assertEqual(kinds(summary)[-1], "withdrawn")
+        planned = self.json_of("insert", "block.toml", "-o", "plan", *FAST, "--set", "insertion.dwell_s=0.125")
+        self.assertAlmostEqual(summary["peak_force_N"]["axial"], planned["peak_force_N"]["axial"], places=6)
+
+    def test_a_finished_folder_is_written_again(self):
+        first = self.json_of("insert", "block.toml", "-o", "out", *FAST, "--set", "output.frames_per_s=20")
+        again = self.json_of("insert", "block.toml", "-o", "out", *FAST)
+        self.assertEqual(kinds(first), kinds(again))
+        check_results(self, self.folder / "out", again)
+
+    def test_the_results_open_again_with_info(self):
+        self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST)
+        info = self.json_of("info", "out/run.h5")
+        self.assertEqual(info["kind"], "recording")
+
+    def test_a_parameter_beyond_what_is_plausible_is_warned_of(self):
+        done = self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST, "--set", "tissue.lump.puncture_N=9")
+        self.assertIn("warning", done.stderr)
+        self.assertIn("tissue.lump: puncture_N = 9", done.stderr)
+        self.assertIn("tenting", done.stderr)
+        summary = check_results(self, self.folder / "out")
+        self.assertTrue(any("tissue.lump" in warning for warning in summary["warnings"]))
+
+    def test_the_schema_lists_every_key_and_is_a_scenario_itself(self):
+        schema = self.succeed("insert", "--print-schema").stdout
+        for key in ("young_kPa", "hole", "spacing_mm", "frames_per_s", "pitch_mm", "box_mm", "dt_ms", "preset"):
+            self.assertIn(key, schema)
+        self.assertLessEqual(max(map(len, schema.splitlines())), 110)
+
+
+if __name__ == "__main__":
+    unittest.main()
