@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What run.sh shows at the end: the demo insertion, with every event and its report."""
+import shutil
+import unittest
+from pathlib import Path
+
+from insert_case import check_results, forces, kinds
+from program import InFolder
+
+SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
+
+
+class Demo(InFolder):
+    def test_the_demo_shows_every_event_of_an_insertion(self):
+        shutil.copy(SCENARIOS / "demo.toml", self.folder / "demo.toml")
+        done = self.succeed("insert", "demo.toml", "-o", "out/demo")
+        summary = check_results(self, self.folder / "out/demo", pictures=True)
+        self.assertEqual([(e["kind"], e["region"]) for e in summary["events"]],
+                         [("skin_contact", "body"), ("puncture", "body"), ("region_entered", "body"),
+                          ("puncture", "prostate"), ("region_entered", "prostate"), ("retraction_start", ""),
+                          ("slip_start", ""), ("withdrawn", "")])
+        self.assertEqual(summary["warnings"], [])
+        force = {(e["kind"], e["region"]): e["force_N"] for e in summary["events"]}
+        self.assertAlmostEqual(force["puncture", "body"], 1.0, delta=0.05)
+        self.assertGreater(force["retraction_start", ""], 0, "still pushing when the retraction starts")
+        self.assertLess(force["slip_start", ""], 0, "pulling the tissue along until it slips")
+
+        # The force grows before each puncture and falls behind it.
+        lines = forces(self.folder / "out/demo")
+        for event in summary["events"]:
+            if event["kind"] == "puncture":
+                after = [l["force_axial_N"] for l in lines if 0.05 < l["time_s"] - event["time_s"] < 0.06]
+                self.assertLess(max(after), event["force_N"])
+        # At the start of the retraction all of the tissue sticks; at the start of the slip most of it slides.
+        start = next(e["time_s"] for e in summary["events"] if e["kind"] == "retraction_start")
+        slip = next(e["time_s"] for e in summary["events"] if e["kind"] == "slip_start")
+        stuck = [l for l in lines if start < l["time_s"] < slip]
+        self.assertTrue(any(l["sticking"] >= 0.8 * l["contacts"] > 3 for l in stuck))
+        for text in ("skin contact (body)", "puncture (prostate)", "withdrawn", "Report: out/demo/report.html"):
+            self.assertIn(text, done.stdout)
+        self.assertGreater(summary["mesh"]["nodes"], 2900)
+        self.assertLess(summary["target_shift_mm"]["max"], 20)
+        self.assertEqual(kinds(summary).count("puncture"), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
