@@ -263,6 +263,16 @@ TEST(RegionViews, a_face_between_two_regions_belongs_to_the_inner_one) {
   }
 }
 
+TEST(RegionViews, names_are_written_for_people_and_bones_look_alike) {
+  EXPECT_EQ(readable_name("pubic_arch"), "Pubic arch");
+  EXPECT_EQ(readable_name("ptv"), "PTV");
+  auto run = synthetic_run();
+  run.mesh.regions = {"body", "ptv", "bladder", "rectum", "femur_left", "femur_right"};
+  const auto views = region_views(run.mesh, std::vector{1});
+  EXPECT_EQ(views[4].colour, views[5].colour);
+  EXPECT_NE(views[1].colour, views[2].colour);
+}
+
 TEST(RegionViews, surfaces_point_outward) {
   const auto run = synthetic_run();
   for (const auto& view : region_views(run.mesh, run.info.target_regions)) {

@@ -82,6 +82,11 @@ struct Contacts {
 }  // namespace
 
 std::string readable_name(const std::string& name) {
+  if (name == "ptv" || name == "ctv" || name == "gtv") {  // planning volumes are known by their initials
+    std::string initials = name;
+    for (char& c : initials) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return initials;
+  }
   std::string text = name;
   std::replace(text.begin(), text.end(), '_', ' ');
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
@@ -117,7 +122,7 @@ std::vector<RegionView> region_views(const TetMesh& mesh, std::span<const int> t
     for (const Custom& custom : kCustoms) {
       const bool first = std::none_of(views.begin(), views.begin() + static_cast<std::ptrdiff_t>(r),
                                       [&](const RegionView& v) { return !v.background && v.colour == custom.colour; });
-      if (lower(view.name).find(custom.part_of_name) != std::string::npos && first) {
+      if (lower(view.name).find(custom.part_of_name) != std::string::npos && (first || custom.colour == kBone)) {
         view.colour = take(custom.colour);
         coloured[r] = true;
         break;

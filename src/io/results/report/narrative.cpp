@@ -26,7 +26,8 @@ std::string join(const std::vector<std::string>& parts) {
 /// A region's name inside a sentence: "pubic arch".
 std::string spoken(const std::string& region) {
   std::string text = readable_name(region);
-  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  const bool initials = text.size() > 1 && std::isupper(static_cast<unsigned char>(text[1])) != 0;
+  if (!text.empty() && !initials) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
   return text;
 }
 
