@@ -68,7 +68,7 @@ class Simulation {
   std::array<Event, 24> events_;
   int event_count_ = 0;
   std::int64_t time_ns_ = 0;
-  double travel_mm_ = 0.0;   ///< of the base along its own axis
+  double travel_mm_ = 0.0;  ///< of the base along its own axis
   Turn turn_;
   bool retracting_ = false;  ///< the base moves outwards
   bool slipping_ = true;     ///< since the last reversal more than half of the shaft has begun to slide
