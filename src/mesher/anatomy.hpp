@@ -14,6 +14,7 @@ struct Structure {
   double input_volume = 0;     ///< [mm³] of the input that no structure of higher priority claims; 0 = generated
   std::vector<Vec3> boundary;  ///< [mm] LPS, points of the input's boundary
   bool target = false;
+  bool generated = false;  ///< made by the mesher, not in the input
 };
 
 /// A solid that its members share without gaps: a point of the solid belongs to the member whose surface it lies

@@ -118,7 +118,7 @@ Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
       if (std::find(raw.label.begin(), raw.label.end(), s + 1) != raw.label.end()) {
         region[s] = static_cast<int>(m.regions.size());
         m.regions.push_back(structure.name);
-      } else if (structure.input_volume > 0) {
+      } else if (!structure.generated) {
         return input_error(fmt::format("{}, region '{}'", a.source, structure.name),
                            fmt::format("it has {:.3f} cc outside other structures and no element at {} nodes",
                                        structure.input_volume / 1000, raw.nodes.size()),

@@ -85,26 +85,22 @@ double Capsule::volume(double offset) const {
 }
 
 double Superquadric::distance(const Vec3& p) const {
-  // f = (Σ|x/a|^p)^(1/p) is homogeneous of degree one, so (f − 1)/|∇f| is the distance to first order.
-  const Vec3 q = p - centre_;
-  const Vec3 scaled = q.cwiseQuotient(half_axes_).cwiseAbs();
-  const double top = scaled.maxCoeff();
-  if (top < 1e-9) return -half_axes_.minCoeff();
-  const Vec3 unit = scaled / top;  // keeps the powers in range
-  double sum = 0;
-  for (int a = 0; a < 3; ++a) sum += std::pow(unit[a], power_);
-  const double f = top * std::pow(sum, 1 / power_);
-  Vec3 gradient;
-  for (int a = 0; a < 3; ++a) gradient[a] = std::pow(scaled[a] / f, power_ - 1) / half_axes_[a];
+  // f = (Σ(x/a)⁴)^¼ is homogeneous of degree one, so (f − 1)/|∇f| is the distance to first order.
+  const Vec3 scaled = (p - centre_).cwiseQuotient(half_axes_);
+  const Vec3 squared = scaled.cwiseProduct(scaled);
+  const double sum = squared.squaredNorm();
+  const double f = std::sqrt(std::sqrt(sum));
+  if (f < 1e-6) return -half_axes_.minCoeff();
+  const Vec3 gradient = scaled.cwiseProduct(squared).cwiseQuotient(half_axes_) * (f / sum);
   return (f - 1) / gradient.norm();
 }
 
 Eigen::AlignedBox3d Superquadric::box() const { return {centre_ - half_axes_, centre_ + half_axes_}; }
 
 double Superquadric::volume(double offset) const {
-  // Volume of {Σ|x/a|^p < 1} = 8abc Γ(1+1/p)³ / Γ(1+3/p) (Dirichlet).
+  // 8abc Γ(1 + 1/4)³ / Γ(1 + 3/4) (Dirichlet).
   const Vec3 a = half_axes_.array() + offset;
-  return 8 * a.prod() * std::pow(std::tgamma(1 + 1 / power_), 3) / std::tgamma(1 + 3 / power_);
+  return 8 * a.prod() * std::pow(std::tgamma(1.25), 3) / std::tgamma(1.75);
 }
 
 }  // namespace stylet::meshing

@@ -68,11 +68,10 @@ class Capsule : public Shape {
   double radius_;
 };
 
-/// |x/a|^p + |y/b|^p + |z/c|^p < 1: between an ellipsoid (p = 2) and a box (p → ∞), without edges.
+/// (x/a)⁴ + (y/b)⁴ + (z/c)⁴ < 1: between an ellipsoid and a box, flat in the middle of its faces, without edges.
 class Superquadric : public Shape {
  public:
-  Superquadric(const Vec3& centre, const Vec3& half_axes, double power)
-      : centre_(centre), half_axes_(half_axes), power_(power) {}
+  Superquadric(const Vec3& centre, const Vec3& half_axes) : centre_(centre), half_axes_(half_axes) {}
   [[nodiscard]] double distance(const Vec3& p) const override;
   [[nodiscard]] Eigen::AlignedBox3d box() const override;
   [[nodiscard]] double volume(double offset) const override;
@@ -80,7 +79,6 @@ class Superquadric : public Shape {
 
  private:
   Vec3 centre_, half_axes_;
-  double power_;
 };
 
 /// Signed distance of the solid between parallel slices: each slice's own signed distance field, interpolated along the

@@ -11,7 +11,6 @@ namespace {
 constexpr double kSkinBelowApex = 27.0;  // [mm] perineal skin to apex, 25–30 mm on transperineal ultrasound and MR
 constexpr double kMargin = 25.0;         // [mm] tissue around the anatomy
 constexpr double kPaperMargin = 14.0;    // [mm] the same where only the gland and its surroundings are wanted
-constexpr double kBodyPower = 4.0;       // between ellipsoid and box: flat where the needle enters, no edge anywhere
 constexpr double kBandRadius = 5.5;      // [mm]
 constexpr double kBandLength = 20.0;     // [mm] between gland and pubic symphysis
 constexpr double kBandReach = 40.0;      // [mm] a boundary this near is where the band is tied to
@@ -37,7 +36,7 @@ void add_body(Anatomy& a, bool small) {
   Vec3 half = 0.5 * box.sizes();
   // Everything has to lie at least 5 mm deep; widen step by step where a corner does not.
   for (int i = 0; i < 40; ++i) {
-    const Superquadric body(centre, half, kBodyPower);
+    const Superquadric body(centre, half);
     double shallow = -HUGE_VAL;
     for (const Structure& s : a.structures) {
       for (const Vec3& p : s.boundary) shallow = std::max(shallow, body.distance(p));
@@ -48,7 +47,8 @@ void add_body(Anatomy& a, bool small) {
   }
   Structure s;
   s.name = "body";
-  s.shape = std::make_shared<Superquadric>(centre, half, kBodyPower);
+  s.generated = true;
+  s.shape = std::make_shared<Superquadric>(centre, half);
   a.add(std::move(s));
   a.notes.push_back(
       fmt::format("no body contour used: a rounded body of {:.0f} x {:.0f} x {:.0f} mm was added, perineal "
@@ -89,6 +89,7 @@ void add_band(Anatomy& a) {
   }
   Structure s;
   s.name = "band";
+  s.generated = true;
   s.shape = std::make_shared<Capsule>(start - 2.0 * direction, start + length * direction, kBandRadius);
   a.notes.push_back(
       fmt::format("no pubic arch contour: a stiff band of radius {:.1f} mm was added from the gland's "

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "made_anatomy.hpp"
+#include "mesh_checks.hpp"
+
+namespace stylet {
+namespace {
+
+MeshOptions zones(Index n) {
+  MeshOptions o;
+  o.nodes = n;
+  o.regions = {{"1", "peripheral_zone"}, {"2", "transition_zone"}};
+  return o;
+}
+
+TEST(MeshLabels, TwoZonesShareTheirBoundaryAndKeepTheirVolumes) {
+  const auto m = mesh_labels(testing::two_zones(), zones(1000));
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  testing::expect_kept(*m, 1000);
+  const Topology topology(m->mesh);
+  const int a = m->mesh.region_index("peripheral_zone"), b = m->mesh.region_index("transition_zone");
+  int between = 0;
+  for (const Face& f : topology.interfaces) {
+    const int r = m->mesh.tet_region[f.tet], s = m->mesh.tet_region[f.neighbour];
+    between += (r == a && s == b) || (r == b && s == a) ? 1 : 0;
+  }
+  EXPECT_GT(between, 50);
+}
+
+TEST(MeshLabels, AnObliqueLeftHandedFrameGivesTheMovedZones) {
+  const Mat3 turn = Eigen::AngleAxisd(0.3, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
+  Mat3 mirrored = turn;
+  mirrored.col(0) *= -1;
+  ASSERT_LT(mirrored.determinant(), 0);
+  const Vec3 origin(100, -50, 25);
+  const LabelImage image = testing::two_zones(mirrored, origin);
+  const auto m = mesh_labels(image, zones(1200));
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  testing::expect_kept(*m, 1200);
+  // The label at each element's centre, looked up in the image, is the element's region (but for a rim of a voxel).
+  int right = 0, all = 0;
+  for (Index t = 0; t < m->mesh.tet_count(); ++t) {
+    Vec3 c = Vec3::Zero();
+    for (const Index n : m->mesh.tets[t]) c += m->mesh.nodes[n] / 4;
+    const Vec3 v = (mirrored.transpose() * (c - origin)).cwiseQuotient(image.spacing);
+    const std::array<long, 3> i{std::lround(v.x()), std::lround(v.y()), std::lround(v.z())};
+    int label = 0;
+    if (i[0] >= 0 && i[1] >= 0 && i[2] >= 0 && i[0] < 64 && i[1] < 56 && i[2] < 14) {
+      label = image.labels[static_cast<std::size_t>((i[2] * 56 + i[1]) * 64 + i[0])];
+    }
+    const std::string& name = m->mesh.regions[m->mesh.tet_region[t]];
+    ++all;
+    right += (label == 1) == (name == "peripheral_zone") && (label == 2) == (name == "transition_zone") ? 1 : 0;
+  }
+  EXPECT_GT(right, 0.97 * all);
+}
+
+TEST(MeshLabels, TheSliceAxisMayBeAnyImageAxis) {
+  const LabelImage image = testing::two_zones();
+  LabelImage turned = image;  // (i, j, k) → (k, i, j)
+  turned.size = {14, 64, 56};
+  turned.spacing = Vec3(3.5, 0.8, 0.8);
+  turned.direction.col(0) = Vec3::UnitZ();
+  turned.direction.col(1) = Vec3::UnitX();
+  turned.direction.col(2) = Vec3::UnitY();
+  for (std::size_t k = 0; k < 14; ++k) {
+    for (std::size_t j = 0; j < 56; ++j) {
+      for (std::size_t i = 0; i < 64; ++i) {
+        turned.labels[(j * 64 + i) * 14 + k] = image.labels[(k * 56 + j) * 64 + i];
+      }
+    }
+  }
+  const auto a = mesh_labels(image, zones(800));
+  const auto b = mesh_labels(turned, zones(800));
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->mesh.nodes, b->mesh.nodes);
+  EXPECT_EQ(a->mesh.tets, b->mesh.tets);
+}
+
+TEST(MeshLabels, UnnamedLabelsAreAllTheTarget) {
+  MeshOptions o;
+  o.nodes = 900;
+  const auto m = mesh_labels(testing::two_zones(), o);
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  EXPECT_TRUE(testing::has_region(*m, "label_1"));
+  EXPECT_TRUE(testing::has_region(*m, "label_2"));
+  EXPECT_TRUE(testing::has_note(*m, "all labels together count as the target"));
+}
+
+TEST(MeshLabels, NamesInTheFileAreUsed) {
+  LabelImage image = testing::two_zones();
+  image.names = {{1, "PZ"}, {2, "Transition Zone"}};
+  MeshOptions o;
+  o.nodes = 900;
+  const auto m = mesh_labels(image, o);
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  EXPECT_TRUE(testing::has_region(*m, "peripheral_zone"));
+  EXPECT_TRUE(testing::has_region(*m, "transition_zone"));
+}
+
+TEST(MeshLabels, ALabelledBodyIsTheOuterBoundary) {
+  LabelImage image = testing::two_zones();
+  image.size = {64, 56, 14};
+  std::size_t n = 0;
+  for (int k = 0; k < 14; ++k) {
+    for (int j = 0; j < 56; ++j) {
+      for (int i = 0; i < 64; ++i, ++n) {
+        if (image.labels[n] == 0 && i > 1 && i < 62 && j > 1 && j < 54) image.labels[n] = 3;
+      }
+    }
+  }
+  image.names = {{1, "PZ"}, {2, "TZ"}, {3, "Body"}};
+  MeshOptions o;
+  o.nodes = 1200;
+  const auto m = mesh_labels(image, o);
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  EXPECT_GT(testing::region(*m, "body").input_volume_cc, 50);
+  testing::expect_kept(*m, 1200);
+}
+
+TEST(MeshLabels, ThePaperPresetJoinsTheZones) {
+  MeshOptions o = zones(0);
+  o.preset = MeshPreset::paper;
+  const auto m = mesh_labels(testing::two_zones(), o);
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  EXPECT_NEAR(m->mesh.node_count(), 570, 15);
+  EXPECT_TRUE(testing::has_region(*m, "prostate"));
+  EXPECT_FALSE(testing::has_region(*m, "peripheral_zone"));
+}
+
+}  // namespace
+}  // namespace stylet

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/mesher/mesher.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stylet {
+namespace {
+
+TEST(CanonicalRegion, UsualNamesAreRecognisedWhateverTheirCaseAndSeparators) {
+  const std::vector<std::pair<std::string, std::string>> names{{"Prostate", "prostate"},
+                                                               {"PROS", "prostate"},
+                                                               {"prostate_gland", "prostate"},
+                                                               {"Prostata", "prostate"},
+                                                               {"PZ", "peripheral_zone"},
+                                                               {"Peripheral Zone", "peripheral_zone"},
+                                                               {"transition-zone", "transition_zone"},
+                                                               {"CZ", "central_zone"},
+                                                               {"AFS", "anterior_stroma"},
+                                                               {"URETHRA", "urethra"},
+                                                               {"Harnröhre", "urethra"},
+                                                               {"Bladder", "bladder"},
+                                                               {"Blase", "bladder"},
+                                                               {"Rectum", "rectum"},
+                                                               {"Rectal wall", "rectum"},
+                                                               {"Pubic arch", "pubic_arch"},
+                                                               {"pubis", "pubic_arch"},
+                                                               {"Symphysis", "pubic_arch"},
+                                                               {"BODY", "body"},
+                                                               {"EXTERNAL", "body"},
+                                                               {"Skin", "body"},
+                                                               {"Seminal vesicles", "seminal_vesicles"},
+                                                               {"Femoral Head Lt", "femur_left"},
+                                                               {"Femoral Head RT", "femur_right"},
+                                                               {"Femur_Head_L", "femur_left"},
+                                                               {"R femur", "femur_right"},
+                                                               {"PTV", "ptv"},
+                                                               {"PTV_7800", "ptv"},
+                                                               {"CTV 78 Gy", "ctv"},
+                                                               {"GTV1", "gtv"}};
+  for (const auto& [name, canonical] : names) EXPECT_EQ(canonical_region(name), canonical) << name;
+}
+
+TEST(CanonicalRegion, ACanonicalNameIsItsOwnSynonym) {
+  for (const std::string name :
+       {"prostate", "peripheral_zone", "transition_zone", "central_zone", "anterior_stroma", "urethra", "bladder",
+        "rectum", "pubic_arch", "femur_left", "femur_right", "band", "body", "seminal_vesicles", "ptv", "ctv", "gtv"}) {
+    EXPECT_EQ(canonical_region(name), name);
+  }
+}
+
+TEST(CanonicalRegion, PlanningHelpersAndChannelsAreNotAnatomy) {
+  for (const std::string name :
+       {"optBladder", "optRectum", "X1", "XApprox", "a5.5", "B4.5", "Prostate+5mm", "PTV-Rectum", "Vessels - left",
+        "ring", "", "  ", "Rectum_in_PTV", "Femoral Head", "PTVboost"}) {
+    EXPECT_EQ(canonical_region(name), "") << name;
+  }
+}
+
+TEST(TargetRegion, GlandAndZonesAndPlanningVolumesAreTargetsAndOrgansAreNot) {
+  for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "ptv", "ctv", "gtv"}) {
+    EXPECT_TRUE(is_target_region(name)) << name;
+  }
+  for (const std::string name : {"bladder", "urethra", "body", "band", ""})
+    EXPECT_FALSE(is_target_region(name)) << name;
+}
+
+}  // namespace
+}  // namespace stylet
