@@ -2,6 +2,7 @@
 // Settings from the command line: --set key=value.
 #include "detail/text.hpp"
 #include "scenario/scenario_reader.hpp"
+#include "scenario/toml_precheck.hpp"
 
 #include <fmt/format.h>
 
@@ -111,8 +112,7 @@ Result<> ScenarioReader::take_setting(const std::vector<std::string>& path, cons
 }
 
 Result<> ScenarioReader::apply_setting(const std::string& setting) {
-  // A TOML comment may hold any text but control characters, line ends among them, and broken UTF-8.
-  if (setting.find_first_of("\r\n") != std::string::npos || !parse_toml("# " + setting, "")) {
+  if (!is_readable(setting)) {
     std::string readable = setting;
     for (char& c : readable) {
       if (c < 0x20 || c > 0x7e) c = '?';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scenario/toml_document.hpp"
 
+#include "detail/guard.hpp"
 #include "detail/text.hpp"
 #include "scenario/toml_precheck.hpp"
 
@@ -112,16 +113,12 @@ Error syntax_error(const std::string& where, std::string what, const std::string
   std::replace_if(
       what.begin(), what.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   // The line itself where a person can read it.
-  const bool readable = !line.empty() && line.size() <= 100 &&
-                        std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  const bool readable = !line.empty() && line.size() <= 100 && is_readable(line);
   return input_error(where, fmt::format("{}this is not valid TOML ({})", readable ? line + ": " : "", what),
                      cure_for(readable ? line : ""));
 }
 
-}  // namespace
-
-Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source) {
-  if (Result<> safe = precheck_toml(text, source); !safe) return safe.error();
+Result<std::vector<TomlItem>> parse_unguarded(std::string_view text, const std::string& source) {
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
@@ -136,6 +133,17 @@ Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::strin
     return std::tuple(a.line, a.column) < std::tuple(b.line, b.column);
   });
   return items;
+}
+
+}  // namespace
+
+// From the child process to its parent (detail/wire.hpp).
+void fields(auto& wire, ScenarioValue& v) { wire(v.type, v.number, v.boolean, v.text, v.numbers, v.texts); }
+void fields(auto& wire, TomlItem& i) { wire(i.kind, i.path, i.value, i.what, i.line, i.column); }
+
+Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source) {
+  if (Result<> safe = precheck_toml(text, source); !safe) return safe.error();
+  return guarded<std::vector<TomlItem>>(source, [&] { return parse_unguarded(text, source); });
 }
 
 std::string joined(const std::vector<std::string>& path) {

@@ -16,18 +16,22 @@ bool begins_name(char c) {
          c == '"' || c == '\'';
 }
 
+/// Number of bytes of the character that begins with this one; 0 when none does.
+std::size_t length_of(char first) {
+  const auto byte = static_cast<unsigned char>(first);
+  if (byte < 0x80) return 1;
+  if (byte >= 0xC2 && byte < 0xE0) return 2;
+  if (byte >= 0xE0 && byte < 0xF0) return 3;
+  return byte >= 0xF0 && byte < 0xF5 ? 4 : 0;
+}
+
 /// The character whose bytes begin here; empty when they are no UTF-8.
 std::string_view character(std::string_view text) {
-  const auto lead = static_cast<unsigned char>(text.front());
-  const std::size_t length = lead < 0x80                   ? 1
-                             : lead >= 0xC2 && lead < 0xE0 ? 2
-                             : (lead & 0xF0) == 0xE0       ? 3
-                             : (lead & 0xF8) == 0xF0       ? 4
-                                                           : 0;
-  if (length == 0 || text.size() < length) return {};
-  const auto follows = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
-  if (!std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length), follows)) return {};
-  return text.substr(0, length);
+  const std::string_view bytes = text.substr(0, length_of(text.front()));
+  const bool whole = bytes.size() == length_of(text.front());
+  const bool follows = std::all_of(bytes.begin() + (bytes.empty() ? 0 : 1), bytes.end(),
+                                   [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; });
+  return whole && follows ? bytes : std::string_view{};
 }
 
 /// Goes through a document once, knowing no more of TOML than what is inside of quotes and comments.
@@ -82,14 +86,20 @@ class Scan {
       at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
       return Ok{};
     }
-    if (c == '"' || c == '\'') {
-      if (std::string_view("\n=[{,.").find(previous) != std::string_view::npos) return skip_quoted(c);
-      return input_error(where(), "there is a quotation mark in the middle of a value",
-                         "Put the whole text in quotation marks");
-    }
+    if ((c == '"' || c == '\'') && begins_value(previous)) return skip_quoted(c);
     if (beyond_ascii(c)) return stray_character();
     if (c == '[' && previous == '\n' && open_.empty()) return begin_header();
-    return in_header_ ? Result<>(Ok{}) : follow_bracket(c);
+    if (in_header_) return Ok{};
+    if (std::string_view("\"'[{").find(c) != std::string_view::npos && !begins_value(previous)) {
+      return input_error(where(), fmt::format("there is {} in the middle of a value", c),
+                         "Put the whole text in quotation marks");
+    }
+    return follow_bracket(c);
+  }
+
+  /// May a text, a list or a key in quotation marks begin after this character?
+  static bool begins_value(char previous) {
+    return std::string_view("\n=[{,.").find(previous) != std::string_view::npos;
   }
 
   /// From the opening quotation mark to the closing one, or to the end of the line where there is none.
@@ -98,7 +108,10 @@ class Scan {
     const bool many_lines = text_.substr(at_).starts_with(three);
     for (at_ += many_lines ? 3 : 1; at_ < text_.size(); ++at_) {
       if (many_lines ? text_.substr(at_).starts_with(three) : text_[at_] == quote) {
-        at_ += many_lines ? 2 : 0;
+        if (!many_lines) return Ok{};
+        // Up to two quotation marks of the text's own may stand before the three that end it.
+        at_ += 2;
+        for (int own = 0; own < 2 && at_ + 1 < text_.size() && text_[at_ + 1] == quote; ++own) ++at_;
         return Ok{};
       }
       if (!many_lines && text_[at_] == '\n') {
@@ -153,6 +166,16 @@ class Scan {
 };
 
 }  // namespace
+
+bool is_readable(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view c = character(text);
+    const auto byte = static_cast<unsigned char>(text.front());
+    if (c.empty() || (byte < 0x20 && byte != '\t') || byte == 0x7f) return false;
+    text.remove_prefix(c.size());
+  }
+  return true;
+}
 
 Result<> precheck_toml(std::string_view text, const std::string& source) { return Scan(text, source).run(); }
 

@@ -171,6 +171,44 @@ TEST(ReadScenario, refuses_bad_toml_with_line_column_and_cure) {
   expect_says(refused("[mesh]\nnodes = 99999999999999999999\n"), {"line 2"});
 }
 
+TEST(ReadScenario, refuses_what_word_processors_make_of_toml) {
+  expect_says(refused("[[insertion]]\nhole = \u201CD4\u201D\n"),
+              {"case.toml, line 2, column 8: \u201C is no quotation mark of TOML", "straight quotation marks"});
+  expect_says(refused("[needle]\nlength_mm\u00A0= 150\n"), {"line 2, column 10: there is a no-break space"});
+  expect_says(refused("[needle]\nl\u00E4nge = 150\n"), {"line 2, column 2: the character \u00E4 stands outside"});
+  expect_says(refused("[needle]\nl\xE4nge = 150\n"), {"line 2, column 2: this is no text in UTF-8"});
+}
+
+TEST(ReadScenario, refuses_what_the_parser_cannot_bear) {
+  for (const char* text : {"[[[1]]]", "[&", "[.a]", "[[", "[", "a = [1,}", "a = 1e\"\u00A7\"", "inf=-00:10.['''1\u00A7",
+                           "s = \"\"\"\\\n\u00A7\"\"\"", "s = \"\\\u00A7\"", "a = ]", "a = }", "a = {b = [1}",
+                           "a =1979-05-27 0  # mm", "a = 1979-05-27 0]", "a\u00A7"}) {
+    refused(text);
+  }
+}
+
+TEST(ReadScenario, takes_toml_with_everything_in_it) {
+  const std::string head = R"(# "quotes' [brackets}
+name = """
+many "lines", a \u00e9, \
+  continued, [brackets}""\""""""
+"patient" . source = '/phan\tom' # ]
+fixed.regions = [ # one "per line"
+  "pubic_arch", # [
+  'b#[]{}', """c""",
+]
+[ tissue . "a.b" ]
+young_kPa = +1_0.5e0
+)";
+  const auto scenario = read(head + "[[ insertion ]] # x\r\nhole = \"D4\"\r\n");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+  EXPECT_EQ(scenario->name, "many \"lines\", a \u00E9, continued, [brackets}\"\"\"\"\"");
+  EXPECT_EQ(scenario->patient.source, "/phan\\tom");
+  EXPECT_EQ(scenario->fixed.regions, (std::vector<std::string>{"pubic_arch", "b#[]{}", "c"}));
+  EXPECT_EQ(scenario->tissue.at("a.b").young_kPa, 10.5);
+  expect_says(refused(head + "[ [insertion] ]\nhole = \"D4\"\n"), {"case.toml, line 12, column 1", "[[insertion]]"});
+}
+
 TEST(ReadScenario, refuses_unknown_keys_with_the_nearest) {
   expect_says(refused_line_4("[needle]", "lenght_mm = 150"),
               {"unknown key needle.lenght_mm", "Did you mean needle.length_mm?"});
