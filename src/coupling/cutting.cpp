@@ -72,12 +72,22 @@ void Insertion::Parts::march(double advance) {
   compliance.move_tip(tip.at, tip.x);
 }
 
+/// Axial force of the hand when the tip's force reaches its limit, the shaft's being those of the trial solution.
+double Insertion::Parts::force_at_break() const {
+  const Vec3 axis = base.rotation * Vec3::UnitZ();
+  double force = tip.limit * frames[0].col(2).dot(axis);
+  for (int c = 1; c < load_count(); ++c) {
+    force += (frames[static_cast<std::size_t>(c)] * system.lambda.segment<3>(3 * c)).dot(axis);
+  }
+  return force;
+}
+
 /// The force on the tip has reached its limit: a membrane breaks, or the cut simply goes on.
 void Insertion::Parts::start_cut(StepReport& report) {
   tip.state = Tip::State::cut;
   if (!tip.at_membrane) return;
   const int region = region_of(tip.next_tet);
-  add_event(report, InsertionEventKind::puncture, region);
+  add_event(report, InsertionEventKind::puncture, region, force_at_break());
   cross_surface(report);
 }
 
@@ -95,6 +105,12 @@ void Insertion::Parts::cross_surface(StepReport& report) {
     tip.force.setZero();
     air_tip = tip.x;
     add_event(report, InsertionEventKind::exited, before);
+    return;
+  }
+  if (tip.next_tet != tip.at.tet && !available(tip.next_tet)) {  // wait at the surface until the rows are there
+    tip.at_membrane = true;
+    tip.held = true;
+    tip.state = Tip::State::stick;
     return;
   }
   if (tip.next_tet != tip.at.tet) {
@@ -191,9 +207,13 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
 
   if (kind == InsertionEventKind::skin_contact) {
     joined = -1;
+    double nearest = settings.join_mm;
     for (std::size_t k = 0; k < old_count; ++k) {
       const Track& old = old_tracks[k];
-      if ((old.entry - x).norm() < settings.join_mm && old.entry_direction.dot(t) > 0.98) joined = static_cast<int>(k);
+      const double distance = (old.entry - x).norm();
+      if (distance >= nearest || old.entry_direction.dot(t) <= 0.98) continue;
+      nearest = distance;
+      joined = static_cast<int>(k);
     }
     if (joined >= 0) {
       track = old_tracks[static_cast<std::size_t>(joined)];

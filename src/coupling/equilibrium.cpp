@@ -326,7 +326,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   fill_loads();
   set_frames();
   soften_rows(h);
-  if (!balanced(1e3)) report.flags |= StepReport::not_converged;
+  if (changed || !balanced(1e3)) report.flags |= StepReport::not_converged;
 }
 
 }  // namespace stylet

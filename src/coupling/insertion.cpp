@@ -31,9 +31,9 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   forces = MatX::Zero(3, settings.capacity + 1);
 }
 
-void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, int region) {
-  if (report.events < static_cast<int>(report.event.size()))
-    report.event[static_cast<std::size_t>(report.events++)] = {kind, region};
+void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, int region, double force_N) {
+  if (report.events == static_cast<int>(report.event.size())) return;
+  report.event[static_cast<std::size_t>(report.events++)] = {kind, region, force_N};
 }
 
 /// The needle is out: the tissue model is what it was before the first contact. The tracks stay known.
@@ -132,6 +132,11 @@ Insertion::Insertion(Insertion&&) noexcept = default;
 Insertion& Insertion::operator=(Insertion&&) noexcept = default;
 
 void Insertion::place(const Pose& base) {
+  if (parts_->phase != TipPhase::air) {
+    StepReport unused;
+    parts_->finish_insertion(unused);
+  }
+  parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->base = base;
   parts_->needle->set_base(base);
   parts_->air_tip = parts_->needle->point(parts_->length());
@@ -140,12 +145,18 @@ void Insertion::place(const Pose& base) {
 StepReport Insertion::step(const Pose& base, double dt) {
   Parts& p = *parts_;
   StepReport report;
+  if (!base.origin.allFinite() || !base.rotation.coeffs().allFinite() || !(dt > 0.0) || !std::isfinite(dt)) {
+    report.flags = StepReport::invalid_input;
+    p.summarise(report);
+    return report;
+  }
   const Pose from = p.base;
   const double turn = 2.0 * std::acos(std::min(1.0, std::abs(from.rotation.dot(base.rotation))));
   const double way = (base.origin - from.origin).norm() + turn * p.length();
-  int count = std::max(1, static_cast<int>(std::ceil(way / p.settings.max_advance_mm)));
-  if (count > kMaxSubSteps) {
-    count = kMaxSubSteps;
+  int count = kMaxSubSteps;
+  if (way <= kMaxSubSteps * p.settings.max_advance_mm) {
+    count = std::max(1, static_cast<int>(std::ceil(way / p.settings.max_advance_mm)));
+  } else {
     report.flags |= StepReport::too_fast;
   }
   for (int k = 1; k <= count; ++k) {
@@ -167,7 +178,6 @@ void Insertion::prepare(double radius_mm) {
   const Locator& locator = *p.tissue.locator;
   const Vec3 tip = p.needle->point(p.length());
   if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
-  p.prepared_at = tip;
   Index start = p.tip.at.tet;
   Vec3 centre = p.tip.x;
   if (p.phase == TipPhase::air || p.phase == TipPhase::exited) {
@@ -178,6 +188,7 @@ void Insertion::prepare(double radius_mm) {
     centre = p.air_tip + entry->t * (ahead - p.air_tip);
   }
   if (start < 0) return;
+  p.prepared_at = tip;
   // Elements that touch the ball around the tip, by flooding from the tip's own.
   std::vector<Index> queue{start};
   std::vector<char> seen(static_cast<std::size_t>(locator.mesh().tet_count()), 0);

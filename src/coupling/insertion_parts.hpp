@@ -132,7 +132,9 @@ struct Insertion::Parts {
 
   void sub_step(const Pose& pose, double h, StepReport& report);
   void summarise(StepReport& report) const;
-  static void add_event(StepReport& report, InsertionEventKind kind, int region);
+  static void add_event(StepReport& report, InsertionEventKind kind, int region,
+                        double force_N = std::numeric_limits<double>::quiet_NaN());
+  [[nodiscard]] double force_at_break() const;
 };
 
 }  // namespace stylet

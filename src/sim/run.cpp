@@ -151,7 +151,7 @@ class Runner {
         std::max(summary_.tip_deflection_mm, (off - insertion.direction * insertion.direction.dot(off)).norm());
     step_us_.push_back(record.step_us);
     const unsigned flags = simulation_.report().flags;
-    for (int bit = 0; bit < 5; ++bit) {
+    for (int bit = 0; bit < 6; ++bit) {
       if (flags & (1u << bit)) ++flag_counts_[static_cast<std::size_t>(bit)];
     }
     return observer_.on_step(record);
@@ -173,12 +173,13 @@ class Runner {
   }
 
   void note_flags() {
-    static const std::array<const char*, 5> texts{
+    static const std::array<const char*, 6> texts{
         "did not converge to the full tolerance; a smaller run.dt_ms helps",
         "a stick/slip state was frozen for one sub-step",
         "the needle left the prepared corridor and the tip was held; raise coupling.corridor_mm",
         "there was no room for another contact; raise coupling.contacts",
-        "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps"};
+        "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
+        "the pose of the base was not finite and the step was not taken"};
     for (std::size_t bit = 0; bit < texts.size(); ++bit) {
       if (flag_counts_[bit] > 0)
         summary_.warnings.push_back(
@@ -195,7 +196,7 @@ class Runner {
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
-  std::array<long, 5> flag_counts_{};
+  std::array<long, 6> flag_counts_{};
   Summary summary_;
 };
 

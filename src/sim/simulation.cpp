@@ -152,8 +152,7 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   for (int e = 0; e < report_.events; ++e) {
     const InsertionEvent& event = report_.event[static_cast<std::size_t>(e)];
     // A puncture's force is the one that broke the surface, not what is left of it after the step.
-    const double force = event.kind == InsertionEventKind::puncture ? std::max(force_before, record_.force_axial_N)
-                                                                    : record_.force_axial_N;
+    const double force = std::isfinite(event.force_N) ? event.force_N : record_.force_axial_N;
     add_event(event_kind(event.kind), force, event.region);
   }
   if (!slipping_ && retracting_ && report_.inserted_mm > 0.0 && report_.sliding_share > 0.5) {

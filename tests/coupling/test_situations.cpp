@@ -303,6 +303,49 @@ TEST(Situation, missing_compliance_holds_the_tip_and_is_flagged) {
   EXPECT_LT(run.insertion->track().end_xi, 49.0);
 }
 
+TEST(Situation, a_pose_that_is_not_finite_is_refused_and_the_last_state_kept) {
+  NeedleInBlock run;
+  run.aim({3, 2, 0});
+  run.go(20);
+  const Vec3 force = run.report.hand_force;
+  Pose bad = run.pose();
+  bad.origin.z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(run.insertion->step(bad, 1e-3).flags, unsigned(StepReport::invalid_input));
+  EXPECT_EQ(run.insertion->step(run.pose(), 0.0).flags, unsigned(StepReport::invalid_input));
+  run.step(1e-3);
+  EXPECT_EQ(run.flags, 0u);
+  EXPECT_NEAR((run.report.hand_force - force).norm(), 0.0, 0.02);
+}
+
+TEST(Situation, a_needle_placed_elsewhere_while_still_in_leaves_the_tissue_unloaded) {
+  NeedleInBlock run;
+  run.aim({3, 2, 0});
+  run.go(30);
+  run.aim({-15, 10, 0});
+  EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);
+  run.go(10);
+  EXPECT_EQ(run.count(Kind::skin_contact), 2);
+  EXPECT_EQ(run.flags, 0u);
+}
+
+TEST(Situation, the_force_of_a_puncture_is_that_of_the_break_at_any_speed) {
+  for (const double dt : {1e-3, 4e-3}) {
+    NeedleInBlock run;
+    run.aim({3, 2, 0});
+    run.depth = -0.5;
+    double force = 0.0;
+    for (int k = 0; k < 400 && force == 0.0; ++k) {
+      run.depth += 40.0 * dt;
+      run.step(dt);
+      for (int e = 0; e < run.report.events; ++e) {
+        const InsertionEvent& event = run.report.event[static_cast<std::size_t>(e)];
+        if (event.kind == Kind::puncture) force = event.force_N;
+      }
+    }
+    EXPECT_NEAR(force, 1.0, 1e-3) << "dt " << dt;
+  }
+}
+
 TEST(Step, does_not_allocate_over_puncture_full_contact_and_retraction) {
   if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
   for (const auto rule : {CouplingSettings::Rule::interior, CouplingSettings::Rule::paper}) {

@@ -6,6 +6,7 @@
 #include "stylet/coupling/track_compliance.hpp"
 #include "stylet/needle/needle.hpp"
 
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -35,6 +36,7 @@ enum class InsertionEventKind {
 struct InsertionEvent {
   InsertionEventKind kind{};
   int region = -1;
+  double force_N = std::numeric_limits<double>::quiet_NaN();  ///< axial force of the hand at a puncture's very moment
 };
 
 /// What a step came to. Flags tell what to do: nothing is repaired in silence.
@@ -44,7 +46,8 @@ struct StepReport {
     contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step
     compliance_missing = 1u << 2,  ///< the tip was held: call prepare() between steps
     out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
-    too_fast = 1u << 4             ///< the base moved further in one step than the sub-steps can follow
+    too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
+    invalid_input = 1u << 5        ///< a pose that is not finite, or dt ≤ 0: the step was not taken
   };
   unsigned flags = 0;
   int iterations = 0;  ///< Newton iterations, summed over sub-steps
@@ -88,7 +91,8 @@ class Insertion {
   Insertion(Insertion&&) noexcept;
   Insertion& operator=(Insertion&&) noexcept;
 
-  /// Places the needle without touching tissue; the first call before any step.
+  /// Places the needle without touching tissue; the first call before any step. A needle that is still in is taken out
+  /// first, as if withdrawn.
   void place(const Pose& base);
 
   /// Moves the base from where it is to `base` in dt seconds.
