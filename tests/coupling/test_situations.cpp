@@ -307,6 +307,7 @@ TEST(Situation, a_pose_that_is_not_finite_is_refused_and_the_last_state_kept) {
   NeedleInBlock run;
   run.aim({3, 2, 0});
   run.go(20);
+  run.wait(0.2);
   const Vec3 force = run.report.hand_force;
   Pose bad = run.pose();
   bad.origin.z() = std::numeric_limits<double>::quiet_NaN();
@@ -314,7 +315,7 @@ TEST(Situation, a_pose_that_is_not_finite_is_refused_and_the_last_state_kept) {
   EXPECT_EQ(run.insertion->step(run.pose(), 0.0).flags, unsigned(StepReport::invalid_input));
   run.step(1e-3);
   EXPECT_EQ(run.flags, 0u);
-  EXPECT_NEAR((run.report.hand_force - force).norm(), 0.0, 0.02);
+  EXPECT_LT((run.report.hand_force - force).norm(), 1e-3);
 }
 
 TEST(Situation, a_needle_placed_elsewhere_while_still_in_leaves_the_tissue_unloaded) {
