@@ -2,7 +2,10 @@
 #include "body.hpp"
 
 #include <fmt/format.h>
+#include "islands.hpp"
+
 #include <algorithm>
+#include <cmath>
 
 namespace stylet::meshing {
 namespace {
@@ -10,6 +13,29 @@ namespace {
 constexpr double kKept = 100.0;     // [mm] around all other structures
 constexpr double kWorthIt = 50.0;   // [mm] less than this beyond that is kept as well
 constexpr double kRounding = 15.0;  // [mm]
+
+/// Keeps the largest piece and those that hold points of other structures.
+double drop_limbs(GridShape& body, Anatomy& anatomy) {
+  const Islands islands = find_islands(body);
+  if (islands.volume.size() < 2) return 1;
+  std::vector<bool> keep(islands.volume.size(), false);
+  keep[std::max_element(islands.volume.begin(), islands.volume.end()) - islands.volume.begin()] = true;
+  for (const Structure& s : anatomy.structures) {
+    for (const Vec3& p : s.boundary) {
+      const Vec3 g = (body.frame.local(p) - body.low).cwiseQuotient(body.spacing);
+      std::array<int, 3> c{};
+      for (int a = 0; a < 3; ++a) c[a] = std::clamp(static_cast<int>(std::lround(g[a])), 0, body.size[a] - 1);
+      const int piece = islands.piece[body.at(c[0], c[1], c[2])];
+      if (piece >= 0) keep[piece] = true;
+    }
+  }
+  const double fraction = keep_islands(body, islands, keep);
+  if (fraction < 1) {
+    anatomy.notes.push_back(fmt::format(
+        "{:.1f} % of the body lies apart from the rest and holds no structure: left out", 100 * (1 - fraction)));
+  }
+  return fraction;
+}
 
 }  // namespace
 
@@ -62,6 +88,7 @@ double trim_body(GridShape& body, Anatomy& anatomy) {
                       kKept, 100 * fraction));
     }
   }
+  fraction *= drop_limbs(body, anatomy);
   round_edges(body, rounding);
   return fraction;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "anatomy.hpp"
 #include "body.hpp"
+#include "islands.hpp"
 #include "roi_choice.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,8 @@
 
 namespace stylet::meshing {
 namespace {
+
+constexpr double kSmallIsland = 0.01;  // of the largest piece
 
 constexpr double kWholeGland = 0.85;  // zones that make up this much of the gland divide all of it
 
@@ -51,7 +54,16 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
     s.input_volume *= trim_body(*grid, anatomy);
     s.shape = grid;
   } else {
-    s.shape = interpolate_slices(slices, frame, std::clamp(radius / 20, 0.5, 3.0), std::min(1.2, 0.08 * radius));
+    const auto grid =
+        interpolate_slices(slices, frame, std::clamp(radius / 20, 0.5, 3.0), std::min(1.2, 0.08 * radius));
+    if (drop_small_islands(*grid, kSmallIsland) > 0) {
+      anatomy.notes.push_back(fmt::format("small pieces of '{}' apart from the rest were left out", roi.name));
+    }
+    s.shape = grid;
+  }
+  if (!(s.shape->inner_radius() > 0)) {
+    return input_error(where, "the contours enclose nothing at the resolution of the mesher (0.5 mm)",
+                       "look at them: are they thinner than that, or do they cancel each other out?");
   }
   return s;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "anatomy.hpp"
 #include "body.hpp"
+#include "islands.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +11,8 @@
 
 namespace stylet::meshing {
 namespace {
+
+constexpr double kSmallIsland = 0.01;  // of the largest piece
 
 /// The image with its slice axis last: axis order, sizes and frame.
 struct Slices {
@@ -120,6 +123,24 @@ std::vector<Vec3> boundary_points(const GridShape& g, double offset, const Slice
   return points;
 }
 
+/// Removes the pieces of the common solid that no member has kept.
+void drop_unclaimed_islands(GridShape& solid, const std::vector<Structure>& members) {
+  const Islands islands = find_islands(solid);
+  std::vector<bool> keep(islands.volume.size(), false);
+  std::size_t n = 0;
+  for (int k = 0; k < solid.size[2]; ++k) {
+    for (int j = 0; j < solid.size[1]; ++j) {
+      for (int i = 0; i < solid.size[0]; ++i, ++n) {
+        if (islands.piece[n] < 0 || keep[islands.piece[n]]) continue;
+        const Vec3 p = solid.node(i, j, k);
+        keep[islands.piece[n]] =
+            std::any_of(members.begin(), members.end(), [&](const Structure& m) { return m.shape->distance(p) < 0; });
+      }
+    }
+  }
+  keep_islands(solid, islands, keep);
+}
+
 }  // namespace
 
 Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, const Progress& progress) {
@@ -197,9 +218,17 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   for (const auto& [name, set] : labels) {
     report(progress, "interpolating slices", static_cast<double>(done++) / static_cast<double>(labels.size()));
     if (name == "body") continue;
-    organs.insert(set.begin(), set.end());
     const SliceFields own = fields_of(image, s, [&](int l) { return set.contains(l); });
     auto shape = interpolate_fields(own, step, sigma);
+    const bool islands = drop_small_islands(*shape, kSmallIsland) > 0;
+    if (!(shape->inner_radius() > 0.5 * step)) {
+      anatomy.notes.push_back(
+          fmt::format("region '{}' has only {:.2f} cc and is nowhere thicker than a voxel: passed over", name,
+                      volume_of(set) / 1000));
+      continue;
+    }
+    if (islands) anatomy.notes.push_back(fmt::format("small pieces of '{}' apart from the rest were left out", name));
+    organs.insert(set.begin(), set.end());
     Structure structure;
     structure.name = name;
     structure.target = !named || is_target_region(name);
@@ -209,6 +238,7 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     members.push_back(std::move(structure));
   }
   const auto solid = interpolate_fields(fields_of(image, s, [&](int l) { return organs.contains(l); }), step, sigma);
+  drop_unclaimed_islands(*solid, members);
   anatomy.add(solid, std::move(members));
   if (labels.contains("body")) {
     const SliceFields whole = fields_of(image, s, [&](int l) { return used.contains(l); });

@@ -42,6 +42,18 @@ bool contains(const Polygon& polygon, const Eigen::Vector2d& p) {
   return inside;
 }
 
+Eigen::Vector2d mean_point(const Polygon& polygon) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const auto& p : polygon) sum += p;
+  return sum / static_cast<double>(polygon.size());
+}
+
+bool same(const Polygon& a, const Polygon& b) {
+  const double area = std::abs(signed_area(a));
+  return a.size() == b.size() && std::abs(area - std::abs(signed_area(b))) <= 1e-6 * area &&
+         (mean_point(a) - mean_point(b)).norm() < 1e-3;
+}
+
 }  // namespace
 
 double Slice::area() const {
@@ -120,7 +132,11 @@ std::vector<Slice> to_slices(const std::vector<Contour>& contours, const SliceFr
   for (auto& [height, polygon] : flat) {
     // Heights within 0.1 mm are one slice written with rounding.
     if (slices.empty() || height - slices.back().height > 0.1) slices.push_back({height, {}});
-    slices.back().polygons.push_back(std::move(polygon));
+    // A contour written twice would cancel itself out.
+    auto& there = slices.back().polygons;
+    if (std::none_of(there.begin(), there.end(), [&](const Polygon& p) { return same(p, polygon); })) {
+      there.push_back(std::move(polygon));
+    }
   }
   return slices;
 }

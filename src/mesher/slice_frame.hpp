@@ -31,8 +31,7 @@ struct Slice {
 /// Errors: contours that are not planar or not parallel, naming the ROI.
 Result<SliceFrame> common_frame(const ContourSet& contours, const std::vector<const Roi*>& rois);
 
-/// The structure's contours sorted into slices by height.
-/// @param culled contours, same order as roi.contours
+/// The structure's contours sorted into slices by height; a contour that is there twice counts once.
 std::vector<Slice> to_slices(const std::vector<Contour>& contours, const SliceFrame& frame);
 
 /// Median distance between neighbouring slices [mm]; 0 for a single slice.

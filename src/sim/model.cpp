@@ -137,10 +137,10 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     if (mesh.region_index(name) >= 0) continue;
     const std::string near = nearest_name(name, mesh.regions);
     return input_error(
-        where + ", [tissue." + name + "]",
+        fmt::format("{}, [tissue.{}]", where, name),
         fmt::format("the patient has no region '{}' (there are: {})", name, fmt::join(mesh.regions, ", ")),
-        (near.empty() ? "Name one of these;" : "Did you mean '" + near + "'?") +
-            std::string(" patient.regions gives structures and labels their names"));
+        fmt::format("{} patient.regions gives structures and labels their names",
+                    near.empty() ? "Name one of these;" : fmt::format("Did you mean '{}'?", near)));
   }
 
   std::shared_ptr<Model> model(new Model);

@@ -22,7 +22,7 @@ double thread_cpu_us() {
 
 double quantile(const std::vector<double>& sorted, double q) {
   if (sorted.empty()) return 0.0;
-  const auto at = static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5);
+  const auto at = static_cast<std::size_t>(std::lround(q * static_cast<double>(sorted.size() - 1)));
   return sorted[std::min(at, sorted.size() - 1)];
 }
 

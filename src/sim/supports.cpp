@@ -3,6 +3,8 @@
 
 #include "stylet/core/nearest_name.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <set>
@@ -37,10 +39,10 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
     const int region = mesh.region_index(name);
     if (region < 0) {
       const std::string near = nearest_name(name, mesh.regions);
-      std::string known;
-      for (const auto& r : mesh.regions) known += (known.empty() ? "" : ", ") + r;
-      return input_error("fixed.regions", "there is no region '" + name + "' in the mesh (there are: " + known + ")",
-                         near.empty() ? "Name one of these" : "Did you mean '" + near + "'?");
+      return input_error(
+          "fixed.regions",
+          fmt::format("there is no region '{}' in the mesh (there are: {})", name, fmt::join(mesh.regions, ", ")),
+          near.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", near));
     }
     std::set<Index> own;
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

@@ -131,6 +131,24 @@ TEST(MeshContours, AVeryLongBodyIsCroppedAroundTheAnatomyAndSaysSo) {
   testing::expect_kept(*m, 900);
 }
 
+TEST(MeshContours, AnArmBesideTheTrunkIsLeftOut) {
+  Roi body = testing::tube("BODY", Vec3(0, 0, -60), 150, 70, 5);
+  for (const Contour& c : testing::tube("", Vec3(150, 0, -60), 150, 20, 5).contours) body.contours.push_back(c);
+  const auto m = mesh_contours(set_of({gland(), body}), nodes(900));
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  EXPECT_TRUE(testing::has_note(*m, "apart from the rest"));
+  for (const Vec3& p : m->mesh.nodes) EXPECT_LT(p.x(), 80);
+  testing::expect_kept(*m, 900);
+}
+
+TEST(MeshContours, AContourWrittenTwiceCountsOnce) {
+  Roi twice = gland();
+  for (const Contour& c : gland().contours) twice.contours.push_back(c);
+  const auto m = mesh_contours(set_of({twice}), nodes(700));
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  EXPECT_EQ(m->mesh.nodes, simple()->mesh.nodes);
+}
+
 TEST(MeshContours, AnOrganWithAHoleKeepsTheHole) {
   Roi ring = testing::tube("Rectum", Vec3(5, 20, -10), 40, 11, 4);
   for (const Contour& c : testing::tube("", Vec3(5, 20, -10), 40, 6, 4).contours) ring.contours.push_back(c);

@@ -117,6 +117,22 @@ TEST(MeshLabels, ALabelledBodyIsTheOuterBoundary) {
   testing::expect_kept(*m, 1200);
 }
 
+TEST(MeshLabels, StrayVoxelsAndLabelsThinnerThanAVoxelAreLeftOutWithANote) {
+  LabelImage image = testing::two_zones();
+  image.labels[(2 * 56 + 3) * 64 + 4] = 2;    // far from the gland
+  image.labels[(7 * 56 + 28) * 64 + 50] = 9;  // in the middle of it, a label of one voxel
+  MeshOptions o;
+  o.nodes = 700;
+  const auto small = mesh_labels(image, o);
+  ASSERT_TRUE(small.ok()) << small.error().message();
+  EXPECT_TRUE(testing::has_note(*small, "'label_9' has only"));
+  EXPECT_FALSE(testing::has_region(*small, "label_9"));
+  Eigen::AlignedBox3d box;
+  for (const Index n : testing::nodes_of(small->mesh, small->mesh.region_index("label_2")))
+    box.extend(small->mesh.nodes[n]);
+  EXPECT_LT(box.sizes().x(), 45);
+}
+
 TEST(MeshLabels, ThePaperPresetJoinsTheZones) {
   MeshOptions o = zones(0);
   o.preset = MeshPreset::paper;

@@ -54,8 +54,8 @@ class SplitMesh {
 
  private:
   struct Cell {
-    std::array<Index, 4> vertices;
-    Index base_tet;
+    std::array<Index, 4> vertices{};
+    Index base_tet = -1;
     Index first_child = -1;
     int children = 0;
   };

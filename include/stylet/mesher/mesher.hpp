@@ -19,12 +19,12 @@ enum class MeshPreset {
 
 struct MeshOptions {
   MeshPreset preset = MeshPreset::standard;
-  Index nodes = 0;                  ///< wanted number of nodes, hit within 3 %; 0 = the preset's default (3,000 / 570)
-  double cull_tolerance_mm = 0.3;   ///< contour points closer than this to the polygon without them are superfluous
+  Index nodes = 0;                 ///< wanted number of nodes, hit within 3 %; 0 = the preset's default (3,000 / 570)
+  double cull_tolerance_mm = 0.3;  ///< contour points closer than this to the polygon without them are superfluous
   /// Which input structures to mesh and under which canonical name: ROI name or "label number as text" → region name.
   /// Empty: every structure whose name is recognised by its synonyms; all labels of a mask.
   std::map<std::string, std::string> regions;
-  bool stiff_band = true;           ///< without a pubic arch in the input: add the band from the gland's anterior-inferior end
+  bool stiff_band = true;  ///< without a pubic arch in the input: add the band from the gland's anterior-inferior end
 };
 
 /// How well a region of the mesh reproduces its input.
@@ -32,8 +32,8 @@ struct RegionReport {
   std::string name;
   Index tets = 0;
   double volume_cc = 0;
-  double input_volume_cc = 0;    ///< 0 where the mesher made the region itself (body, band)
-  double surface_mean_mm = 0;    ///< distance input boundary → mesh boundary
+  double input_volume_cc = 0;  ///< 0 where the mesher made the region itself (body, band)
+  double surface_mean_mm = 0;  ///< distance input boundary → mesh boundary
   double surface_max_mm = 0;
 };
 
@@ -45,26 +45,29 @@ struct MeshReport {
   Index contour_points = 0;       ///< read
   Index contour_points_kept = 0;  ///< left after culling
   double seconds = 0;
-  std::vector<std::string> notes; ///< decisions the user should know (body added, structures passed over, …)
+  std::vector<std::string> notes;  ///< decisions the user should know (body added, structures passed over, …)
 };
 
 struct MeshedAnatomy {
-  TetMesh mesh;       ///< regions carry canonical names, see canonical_region()
+  TetMesh mesh;  ///< regions carry canonical names, see canonical_region()
   MeshReport report;
 };
 
 /// One conforming mesh of parallel contours: element faces on every anatomical boundary, shared nodes, finer in the
 /// target, coarser outside. Deterministic: the same input gives the same mesh.
-Result<MeshedAnatomy> mesh_contours(const ContourSet& contours, const MeshOptions& options, const Progress& progress = {});
+Result<MeshedAnatomy> mesh_contours(const ContourSet& contours, const MeshOptions& options,
+                                    const Progress& progress = {});
 
 /// The same for a label mask.
 Result<MeshedAnatomy> mesh_labels(const LabelImage& image, const MeshOptions& options, const Progress& progress = {});
 
-/// Drops points closer than `tolerance_mm` to the polygon that is left without them (Douglas–Peucker on the closed curve).
+/// Drops points closer than `tolerance_mm` to the polygon that is left without them (Douglas–Peucker on the closed
+/// curve).
 Contour cull(const Contour& contour, double tolerance_mm);
 
-/// Canonical name of a structure by its synonyms, case-insensitive: prostate, peripheral_zone, transition_zone, urethra,
-/// bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles; empty when not recognised.
+/// Canonical name of a structure by its synonyms, case-insensitive: prostate, peripheral_zone, transition_zone,
+/// urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles; empty when not
+/// recognised.
 std::string canonical_region(std::string_view name);
 
 /// Regions whose union is the target (the gland): prostate or its zones, else a planning volume (PTV, CTV, GTV).
