@@ -67,8 +67,8 @@ Contour cull(const Contour& contour, double tolerance_mm);
 
 /// Canonical name of a structure by its synonyms, case-insensitive, separators ignored: prostate, peripheral_zone,
 /// transition_zone, central_zone, anterior_stroma, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band,
-/// body, seminal_vesicles, and the planning volumes ptv, ctv, gtv; empty when not recognised. Whole names only: planning
-/// helpers such as "optBladder" are not anatomy.
+/// body, seminal_vesicles, and the planning volumes ptv, ctv, gtv; empty when not recognised. Whole names only:
+/// planning helpers such as "optBladder" are not anatomy.
 std::string canonical_region(std::string_view name);
 
 /// Regions whose union is the target (the gland): prostate or its zones, else a planning volume (PTV, CTV, GTV).
