@@ -158,7 +158,9 @@ Result<> ScenarioReader::take(const TomlItem& item, const std::string& where) {
   if (item.kind == TomlItem::Kind::table) {
     if (Result<> known = check_table(pattern, path, where); !known) return known;
     // An [[insertion]] counts even with nothing in it.
-    if (pattern == "insertion[]") scenario_.insertions.resize(std::stoul(item.path[1].substr(1)) + 1);
+    if (pattern == "insertion[]" && item.path[1] == fmt::format("[{}]", scenario_.insertions.size())) {
+      scenario_.insertions.emplace_back();
+    }
     places_[path] = where;
     return Ok{};
   }

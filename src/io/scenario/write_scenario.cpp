@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace stylet {
 
@@ -45,7 +46,7 @@ std::vector<Line> lines_of(const Scenario& scenario, const std::string& pattern,
     const auto dot = key.path.rfind('.');
     if ((dot == std::string::npos ? "" : key.path.substr(0, dot)) != pattern) continue;
     const std::string name = key.path.substr(dot == std::string::npos ? 0 : dot + 1);
-    const auto value = scenario_value(scenario, path.empty() ? name : path + "." + name);
+    const auto value = scenario_value(scenario, path.empty() ? name : fmt::format("{}.{}", path, name));
     if (!value) continue;
     const bool left_out = value->type == ScenarioValue::Type::text && value->text.empty() && key.standard == "none";
     if (!left_out) lines.push_back({name + " = " + to_string(*value), key.unit});

@@ -253,6 +253,7 @@ TEST(ReadScenario, refuses_tables_for_values_and_values_for_tables) {
 TEST(ReadScenario, refuses_single_brackets_for_double_ones_and_the_reverse) {
   expect_says(refused(kHead + "[insertion]\nhole = \"D4\"\n"),
               {"line 3", "[insertion] is a single table", "Write [[insertion]]"});
+  expect_says(refused(kHead + "[insertion.\"[99999999999999999999]\"]\nhole = \"D4\"\n"), {"line 3", "[[insertion]]"});
   expect_says(refused("[[mesh]]\nnodes = 3\n"), {"line 1", "[[mesh]] is a list of tables", "Write [mesh]"});
 }
 

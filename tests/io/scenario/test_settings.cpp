@@ -66,6 +66,16 @@ TEST(Settings, can_add_an_insertion_but_leave_no_gap) {
   expect_says(refused("insertion[99999999999999999999999].hole=d4"), {"there is no insertion["});
 }
 
+TEST(Settings, may_be_whole_tables) {
+  const Scenario s = *with(kTwo, {"insertion[0]={ depth_mm = 40, speed_mm_per_s = 5 }"});
+  ASSERT_EQ(s.insertions.size(), 2U);
+  EXPECT_EQ(s.insertions[0].depth_mm, 40);
+  EXPECT_EQ(s.insertions[0].speed_mm_per_s, 5);
+  EXPECT_EQ(s.insertions[0].hole, "D4") << "the rest stays";
+  EXPECT_EQ(with(kOne, {"insertion[1]={ hole = \"d4\" }"})->insertions.size(), 2U);
+  refused("insertion={ \"[99999999999999999999]\" = { hole = \"d4\" } }");
+}
+
 TEST(Settings, reach_regions_and_labels_with_any_name) {
   EXPECT_EQ(one_with({"tissue.prostate.young_kPa=30"}).tissue.at("prostate").young_kPa, 30);
   EXPECT_EQ(one_with({"tissue.\"a=b.c\".young_kPa=30"}).tissue.at("a=b.c").young_kPa, 30);
