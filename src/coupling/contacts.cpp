@@ -21,18 +21,19 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
     report.flags |= StepReport::out_of_contacts;
     return true;  // counts as laid: no other place would be better
   }
-  const TrackCompliance::Added added = compliance.add(at, x, placement, travel);
-  if (added.refusal == TrackCompliance::Refusal::geometry) return false;
-  if (added.refusal == TrackCompliance::Refusal::missing) report.flags |= StepReport::compliance_missing;
-  if (added.refusal == TrackCompliance::Refusal::capacity) report.flags |= StepReport::out_of_contacts;
+  const ContactCompliance::Added added = compliance.add(at, x, placement, travel);
+  if (added.refusal == ContactCompliance::Refusal::geometry) return false;
+  if (added.refusal == ContactCompliance::Refusal::missing) report.flags |= StepReport::compliance_missing;
+  if (added.refusal == ContactCompliance::Refusal::capacity) report.flags |= StepReport::out_of_contacts;
   if (added.point < 0) return true;
 
   if (placement == Placement::embedded) {
     // Interpolated contacts in one element follow from each other as soon as there are more than the element can tell
     // apart: such a contact is not laid, and its neighbours share its length.
-    std::array<int, TrackCompliance::kNeighbours> neighbours{};
+    std::array<int, ContactCompliance::kNeighbours> neighbours{};
     int count = 0;
-    for (auto mark = track.marks.rbegin(); mark != track.marks.rend() && count < TrackCompliance::kNeighbours; ++mark) {
+    for (auto mark = track.marks.rbegin(); mark != track.marks.rend() && count < ContactCompliance::kNeighbours;
+         ++mark) {
       if (mark->point >= 0) neighbours[static_cast<std::size_t>(count++)] = mark->point;
     }
     if (compliance.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)}) <
@@ -122,11 +123,11 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
                                   : paper ? Placement::face
                                           : Placement::interior,
                                   t);
-      if (added.refusal == TrackCompliance::Refusal::geometry)
+      if (added.refusal == ContactCompliance::Refusal::geometry)
         added = compliance.add(mark.at, mark.x, Placement::embedded);
       if (added.point < 0) {
-        report.flags |= added.refusal == TrackCompliance::Refusal::missing ? StepReport::compliance_missing
-                                                                           : StepReport::out_of_contacts;
+        report.flags |= added.refusal == ContactCompliance::Refusal::missing ? StepReport::compliance_missing
+                                                                             : StepReport::out_of_contacts;
         break;
       }
       mark.point = added.point;
@@ -176,7 +177,7 @@ void Insertion::Parts::share_length() {
     return;
   }
   const double rho = std::clamp((end - grips.front().s) / settings.spacing_mm, 0.0, 1.0);
-  const double own = compliance(TrackCompliance::kTip, TrackCompliance::kTip).trace() / 3.0;
+  const double own = compliance(ContactCompliance::kTip, ContactCompliance::kTip).trace() / 3.0;
   tip.lateral_softness = rho >= 1.0 - kYoungest ? std::numeric_limits<double>::infinity() : own * rho / (1.0 - rho);
 }
 

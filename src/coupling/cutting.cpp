@@ -20,10 +20,7 @@ int Insertion::Parts::region_of(Index tet) const {
   return tet < 0 ? -1 : tissue.locator->mesh().tet_region[static_cast<std::size_t>(tet)];
 }
 
-bool Insertion::Parts::available(Index tet) const {
-  const auto& nodes = tissue.locator->mesh().tets[static_cast<std::size_t>(tet)];
-  return std::all_of(nodes.begin(), nodes.end(), [this](Index node) { return tissue.store->has(node); });
-}
+bool Insertion::Parts::available(Index tet) const { return compliance.available(tet); }
 
 /// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; tissue
 /// turned by the deformation gradient F = I + ∇u is cut along F⁻¹ t. Where the track's end has drifted off the axis
@@ -34,7 +31,7 @@ void Insertion::Parts::aim_tip() {
   const Mat3 F = Mat3::Identity() + compliance.gradient_at_tip(forces.leftCols(compliance.points()));
   Vec3 along = t;
   if (!std::isfinite(tip.lateral_softness)) {
-    const Vec3 gap = tip.x + tissue_displacement(TrackCompliance::kTip) - needle->point(length());
+    const Vec3 gap = tip.x + tissue_displacement(ContactCompliance::kTip) - needle->point(length());
     Vec3 back = -(gap - t * t.dot(gap)) / settings.merge_mm;
     if (back.norm() > kSteepest) back *= kSteepest / back.norm();
     along += back;

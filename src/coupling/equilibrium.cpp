@@ -28,7 +28,7 @@ double Insertion::Parts::arc_of(int load) const {
 
 void Insertion::Parts::gather_forces() {
   forces.leftCols(compliance.points()).setZero();
-  forces.col(TrackCompliance::kTip) = tip.force;
+  forces.col(ContactCompliance::kTip) = tip.force;
   for (const Grip& grip : grips) forces.col(grip.point) = grip.force;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "insertion_parts.hpp"
+#include "stylet/coupling/paper/inverse_compliance.hpp"
+#include "stylet/coupling/track_compliance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +11,25 @@ namespace stylet {
 namespace {
 constexpr int kMaxSubSteps = 64;
 constexpr std::size_t kOldTracks = 64;
+
+std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue, const CouplingSettings& settings) {
+  using Engine = CouplingSettings::Engine;
+  if (settings.engine == Engine::condensed)
+    return std::make_unique<TrackCompliance>(tissue.store, *tissue.locator, settings.capacity);
+  const auto engine =
+      settings.engine == Engine::bcs ? paper::DenseInverse::Engine::bcs : paper::DenseInverse::Engine::woodbury;
+  const bool move_nodes = settings.method == CouplingSettings::Method::node_repositioning;
+  return std::make_unique<paper::InverseCompliance>(tissue.store->shared_tissue(), *tissue.locator, tissue.inverse,
+                                                    engine, move_nodes, settings.capacity);
+}
 }  // namespace
 
 Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_)
     : tissue(std::move(tissue_)),
       needle(std::move(needle_)),
       settings(settings_),
-      compliance(tissue.store, *tissue.locator, settings_.capacity),
+      owned_compliance(make_compliance(tissue, settings_)),
+      compliance(*owned_compliance),
       system(settings_.capacity + 1) {
   const auto capacity = static_cast<std::size_t>(settings.capacity);
   const Eigen::Index size = 3 * (settings.capacity + 1);
@@ -72,7 +86,11 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     }
     share_length();
   }
-  solve_equilibrium(h, report);
+  if (settings.solver == CouplingSettings::Solver::staggered) {
+    solve_staggered(h, report);
+  } else {
+    solve_equilibrium(h, report);
+  }
   for (Grip& grip : grips) {
     const double speed = std::abs(grip.s - grip.s_start) / h;
     if (grip.state != Grip::State::stick && speed < settings.zero_band_mm_per_s) grip.state = Grip::State::stick;
@@ -84,7 +102,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
   const Vec3 t = needle->tangent(length());
   if (track.open) {
     // The end of an open track is a hole in the far surface: behind it the tip is in the track, beyond it in the air.
-    const Vec3 shift = tissue_displacement(TrackCompliance::kTip);
+    const Vec3 shift = tissue_displacement(ContactCompliance::kTip);
     const double ahead = t.dot(track.end + shift - tip_now);
     const Vec3 now = tip_now - shift;
     if (ahead > 0.0 && phase == TipPhase::exited) {
@@ -159,6 +177,7 @@ StepReport Insertion::step(const Pose& base, double dt) {
   } else {
     report.flags |= StepReport::too_fast;
   }
+  const std::size_t remeshings = p.compliance.remeshing().size();
   for (int k = 1; k <= count; ++k) {
     const double fraction = static_cast<double>(k) / count;
     Pose pose = base;
@@ -169,12 +188,15 @@ StepReport Insertion::step(const Pose& base, double dt) {
     p.base = pose;
     p.sub_step(pose, dt / count, report);
   }
+  const std::size_t now = p.compliance.remeshing().size();
+  report.remeshings = static_cast<int>(now > remeshings ? now - remeshings : 0);
   p.summarise(report);
   return report;
 }
 
 void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;
+  if (p.settings.engine != CouplingSettings::Engine::condensed) return;  // everything is there
   const Locator& locator = *p.tissue.locator;
   const Vec3 tip = p.needle->point(p.length());
   if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
@@ -215,7 +237,7 @@ void Insertion::prepare(double radius_mm) {
 }
 
 const Needle& Insertion::needle() const { return *parts_->needle; }
-const TrackCompliance& Insertion::compliance() const { return parts_->compliance; }
+const ContactCompliance& Insertion::compliance() const { return parts_->compliance; }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }
 const Track& Insertion::track() const { return parts_->track; }
 std::span<const Track> Insertion::old_tracks() const { return {parts_->old_tracks.data(), parts_->old_count}; }
@@ -224,7 +246,7 @@ std::vector<ContactState> Insertion::contacts() const {
   const Parts& p = *parts_;
   std::vector<ContactState> result;
   if (p.tip.touching && p.tip.state != Tip::State::open) {
-    result.push_back({p.tip.x + p.tissue_displacement(TrackCompliance::kTip), p.tip.force, p.length(), 0.0,
+    result.push_back({p.tip.x + p.tissue_displacement(ContactCompliance::kTip), p.tip.force, p.length(), 0.0,
                       p.tip.state == Tip::State::stick, true});
   }
   for (const Grip& grip : p.grips) {
@@ -234,16 +256,19 @@ std::vector<ContactState> Insertion::contacts() const {
   return result;
 }
 
-VecX Insertion::nodal_forces() const {
+ContactCompliance::Nodes Insertion::nodes() const {
   parts_->gather_forces();
-  return parts_->compliance.base_load(parts_->forces.leftCols(parts_->compliance.points()));
+  return parts_->compliance.nodes(parts_->forces.leftCols(parts_->compliance.points()));
 }
 
-VecX Insertion::displacement() const { return parts_->tissue.store->tissue().solve(nodal_forces()); }
+VecX Insertion::displacement() const {
+  parts_->gather_forces();
+  return parts_->compliance.displacement(parts_->forces.leftCols(parts_->compliance.points()));
+}
 
 double Insertion::tissue_energy() const {
   const Parts& p = *parts_;
-  double energy = 0.5 * p.tip.force.dot(p.tissue_displacement(TrackCompliance::kTip));
+  double energy = 0.5 * p.tip.force.dot(p.tissue_displacement(ContactCompliance::kTip));
   for (const Grip& grip : p.grips) energy += 0.5 * grip.force.dot(p.tissue_displacement(grip.point));
   return energy;
 }

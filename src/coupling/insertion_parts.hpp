@@ -16,7 +16,7 @@ struct Grip {
     backward
   };  ///< forward: the needle slides into the tissue, friction pushes it along
 
-  int point = -1;         ///< in TrackCompliance
+  int point = -1;         ///< in ContactCompliance
   double xi = 0.0;        ///< [mm] along the track
   Vec3 x = Vec3::Zero();  ///< [mm] tissue point, undeformed
   double s = 0.0;         ///< [mm] where on the needle it is now
@@ -59,7 +59,8 @@ struct Insertion::Parts {
   InsertionTissue tissue;
   std::unique_ptr<Needle> needle;
   CouplingSettings settings;
-  TrackCompliance compliance;
+  std::unique_ptr<ContactCompliance> owned_compliance;
+  ContactCompliance& compliance;
   Pose base;
   TipPhase phase = TipPhase::air;
   Vec3 air_tip = Vec3::Zero();  ///< where the tip was, in undeformed coordinates, while it is in the air
@@ -83,12 +84,16 @@ struct Insertion::Parts {
 
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
   void solve_equilibrium(double h, StepReport& report);
+
+  // paper/staggered.cpp: the same balance, needle and tissue in turn.
+  void solve_staggered(double h, StepReport& report);
+
   [[nodiscard]] Vec3 tissue_displacement(int point) const;
   void gather_forces();
   [[nodiscard]] double length() const { return needle->length(); }
   [[nodiscard]] int load_count() const { return 1 + static_cast<int>(grips.size()); }
   [[nodiscard]] int point_of(int load) const {
-    return load == 0 ? TrackCompliance::kTip : grips[static_cast<std::size_t>(load - 1)].point;
+    return load == 0 ? ContactCompliance::kTip : grips[static_cast<std::size_t>(load - 1)].point;
   }
   [[nodiscard]] Vec3& force_of(int load) {
     return load == 0 ? tip.force : grips[static_cast<std::size_t>(load - 1)].force;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/coupling/track_compliance.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 
@@ -23,6 +22,7 @@ TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, c
   point_observable_.reserve(static_cast<std::size_t>(capacity) + 1);
   z_.resize(observables * static_cast<std::size_t>(capacity));
   hat_.assign(observables * static_cast<std::size_t>(capacity), 0.0);
+  changes_.reserve(static_cast<std::size_t>(capacity));
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
   reset();
 }
@@ -35,6 +35,8 @@ void TrackCompliance::reset() {
   node_point_.clear();
   point_observable_.assign(1, 0);
   points_ = 1;
+  ++version_;
+  changes_.clear();
   tip_ = {};
   A_.setZero();
 }
@@ -176,6 +178,11 @@ TrackCompliance::Added TrackCompliance::place_inside(const MaterialPoint& at, co
   mesh_.split_inside(leaf, x);
   splits_.push_back(split);
   node_point_.push_back(points_);
+  changes_.push_back({.kind = RemeshEvent::Kind::added_inside,
+                      .point = points_,
+                      .node = mesh_.locator().mesh().node_count() + static_cast<Index>(splits_.size()) - 1,
+                      .dimension = 15,
+                      .elements = 4});
   return {finish_point(observable), Refusal::none};
 }
 
@@ -249,6 +256,13 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   splits_.push_back(split);
   node_point_.push_back(points_);
 
+  const bool inner = two.base_tet >= 0;
+  changes_.push_back({.kind = RemeshEvent::Kind::added_on_face,
+                      .point = points_,
+                      .node = mesh_.locator().mesh().node_count() + p,
+                      .dimension = inner ? 18 : 15,
+                      .elements = inner ? 6 : 3});
+
   // The new hat lets the old points move more: A += z s⁻¹ zᵀ.
   for (int c = 0; c < points_; ++c) extend(point_observable_[static_cast<std::size_t>(c)], p + 1);
   for (int i = 0; i < 4; ++i) {
@@ -264,6 +278,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
 }
 
 int TrackCompliance::finish_point(int observable) {
+  ++version_;
   extend(observable, static_cast<int>(splits_.size()));
   point_observable_.push_back(observable);
   ++points_;
@@ -321,6 +336,17 @@ void TrackCompliance::remove_last_embedded() {
   vertex_of_.pop_back();
   point_observable_.pop_back();
   --points_;
+  ++version_;
+}
+
+VecX TrackCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
+  return store_->tissue().solve(base_load(forces));
+}
+
+TrackCompliance::Nodes TrackCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {
+  const Tissue& tissue = store_->tissue();
+  const VecX load = base_load(forces);
+  return {tissue.mesh().nodes, load, tissue.support_forces(tissue.solve(load))};
 }
 
 Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) const {
@@ -366,33 +392,6 @@ VecX TrackCompliance::base_load(const Eigen::Ref<const MatX>& forces) const {
     }
   }
   return result;
-}
-
-double TrackCompliance::independence(int c, std::span<const int> others) const {
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kNeighbours, 3 * kNeighbours>;
-  using Tall = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3 * kNeighbours, 3>;
-  const int count = std::min<int>(static_cast<int>(others.size()), kNeighbours);
-  Mat3 own = (*this)(c, c);
-  const double scale = own.trace() / 3.0;
-  if (scale <= 0.0) return 0.0;
-  if (count > 0) {
-    Small held(3 * count, 3 * count);
-    Tall across(3 * count, 3);
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        held.block<3, 3>(3 * i, 3 * j) =
-            (*this)(others[static_cast<std::size_t>(i)], others[static_cast<std::size_t>(j)]);
-      }
-      across.block<3, 3>(3 * i, 0) = (*this)(others[static_cast<std::size_t>(i)], c);
-    }
-    held.diagonal().array() += 1e-12 * scale;
-    const Eigen::LLT<Small> llt(held);
-    if (llt.info() != Eigen::Success) return 0.0;
-    const Tall solved = llt.solve(across);
-    own.noalias() -= across.transpose() * solved;
-  }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(own, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()[0] / scale;
 }
 
 }  // namespace stylet

@@ -179,20 +179,20 @@ Frame Simulation::frame(const std::string& label) const {
 }
 
 Simulation::Balance Simulation::balance(double scale_N) const {
-  const Tissue& tissue = model_->tissue();
-  const VecX load = insertion_.nodal_forces();
-  const VecX support = tissue.support_forces(tissue.solve(load));
+  const ContactCompliance::Nodes nodes = insertion_.nodes();
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
   Vec3 contacts = Vec3::Zero();
-  for (Index node = 0; node < tissue.mesh().node_count(); ++node) {
-    const Vec3 on_node = load.segment<3>(3 * node);
+  for (std::size_t k = 0; k < nodes.position.size(); ++k) {
+    const auto node = static_cast<Index>(k);
+    const Vec3 on_node = nodes.load.segment<3>(3 * node);
     contacts += on_node;
     // What the contacts put on a held node goes straight to the support and deforms nothing.
-    Vec3 f = support.segment<3>(3 * node);
-    if (!tissue.is_fixed(node)) f += on_node;
+    Vec3 f = nodes.support.segment<3>(3 * node);
+    const bool fixed = node < model_->mesh().node_count() && model_->tissue().is_fixed(node);
+    if (!fixed) f += on_node;
     force += f;
-    torque += (tissue.mesh().nodes[static_cast<std::size_t>(node)] - entry_).cross(f);
+    torque += (nodes.position[k] - entry_).cross(f);
   }
   const double hand = (contacts - report_.hand_force).norm();
   return {std::max(force.norm(), hand) / scale_N, torque.norm() / (scale_N * 100.0)};

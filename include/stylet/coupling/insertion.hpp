@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/laws.hpp"
 #include "stylet/coupling/track.hpp"
-#include "stylet/coupling/track_compliance.hpp"
+#include "stylet/fem/compliance_store.hpp"
 #include "stylet/needle/needle.hpp"
 
 #include <limits>
@@ -52,6 +53,7 @@ struct StepReport {
   unsigned flags = 0;
   int iterations = 0;  ///< Newton iterations, summed over sub-steps
   int pivots = 0;      ///< changes of contact state
+  int remeshings = 0;  ///< changes of the mesh: ContactCompliance::remeshing() has them
   int contacts = 0;    ///< tip included when it touches
   int sticking = 0;
   double sliding_share = 0.0;  ///< share of the inserted length that slides
@@ -78,7 +80,8 @@ struct ContactState {
 struct InsertionTissue {
   std::shared_ptr<ComplianceStore> store;
   const Locator* locator = nullptr;
-  std::vector<RegionLaws> laws;  ///< one per region of the mesh
+  std::vector<RegionLaws> laws;           ///< one per region of the mesh
+  std::shared_ptr<const MatX> inverse{};  ///< the full K⁻¹ (paper::full_inverse), for engines that keep it
 };
 
 /// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
@@ -103,17 +106,18 @@ class Insertion {
   void prepare(double radius_mm);
 
   [[nodiscard]] const Needle& needle() const;
-  [[nodiscard]] const TrackCompliance& compliance() const;
+  [[nodiscard]] const ContactCompliance& compliance() const;
   [[nodiscard]] const CouplingSettings& settings() const;
 
   /// Contacts now, the tip first when it touches. Allocates.
   [[nodiscard]] std::vector<ContactState> contacts() const;
 
-  /// Displacement of the mesh's nodes [mm] (3n): one solve with the factor. Allocates; for pictures, never in the loop.
+  /// Displacement of the material at the mesh's nodes [mm] (3n): one solve with the factor. Allocates; for pictures,
+  /// never in the loop.
   [[nodiscard]] VecX displacement() const;
 
-  /// Nodal forces equivalent to the contact forces [N] (3n).
-  [[nodiscard]] VecX nodal_forces() const;
+  /// What contacts and supports exert on the nodes of the mesh as it is now. Allocates.
+  [[nodiscard]] ContactCompliance::Nodes nodes() const;
 
   /// ½ fᵀ A f, elastic energy in the tissue [N mm].
   [[nodiscard]] double tissue_energy() const;

@@ -40,10 +40,28 @@ inline double membrane_force(const std::vector<RegionLaws>& laws, int from, int 
 
 /// Settings of the contact between needle and tissue.
 struct CouplingSettings {
-  enum class Method { node_addition, embedded };
-  enum class Rule { interior, paper };
+  enum class Method {
+    node_addition,       ///< a tissue node is put where the needle needs one
+    node_repositioning,  ///< the nearest tissue node is moved there; one is added where it must not be moved
+    embedded             ///< no node: the element's nodes carry interpolated forces
+  };
+  enum class Rule {
+    interior,  ///< at the contact spacing, inside elements
+    paper      ///< wherever the tip passes from one element into the next
+  };
+  enum class Engine {
+    condensed,  ///< compliance among the points held only; the stiffness of the mesh is never touched
+    bcs,        ///< the full inverse, changed by boundary condition switches
+    woodbury    ///< the full inverse, changed by the matrix inversion lemma
+  };
+  enum class Solver {
+    coupled,   ///< needle, tissue and laws in one system
+    staggered  ///< needle and tissue in turn, damped
+  };
   Method method = Method::node_addition;
   Rule rule = Rule::interior;
+  Engine engine = Engine::condensed;
+  Solver solver = Solver::coupled;
   double spacing_mm = 4.0;     ///< between contacts along the track
   double merge_mm = 1.27;      ///< contacts are never closer than this: twice the needle's radius
   double independence = 0.05;  ///< a contact must keep this share of its own compliance when its neighbours are held

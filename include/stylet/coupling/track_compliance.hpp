@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/split_mesh.hpp"
 #include "stylet/fem/compliance_store.hpp"
 
 #include <memory>
-#include <span>
 
 namespace stylet {
-
-/// How a tissue point that the needle holds is represented in the mesh.
-enum class Placement {
-  embedded,  ///< no node: force and displacement are interpolated from the element's nodes
-  interior,  ///< a node strictly inside an element (every weight ≥ kSmallestWeight)
-  face       ///< a node on the face between two elements (Goksel et al. 2005)
-};
 
 /// Compliance among the tissue points that the needle holds, A(c,d) [mm/N]: displacement of c per force on d.
 ///
@@ -28,58 +21,26 @@ enum class Placement {
 /// elements T, o being the vertex opposite the face. docs/theory/coupling.md derives both.
 ///
 /// Point 0 is the needle's tip: always embedded, moved at will. No call after construction allocates.
-class TrackCompliance {
+class TrackCompliance final : public ContactCompliance {
  public:
-  static constexpr double kSmallestWeight = 0.1;       ///< interior nodes keep this distance from the faces
-  static constexpr double kSmallestFaceWeight = 0.05;  ///< face nodes keep this distance from the edges
-  static constexpr int kTip = 0;
-
   /// @param store compliance of base nodes; must hold every node asked for
   /// @param locator the tissue's mesh
   /// @param capacity largest number of points, the tip not counted
   TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity);
 
-  enum class Refusal {
-    none,
-    missing,   ///< the store lacks a node: call ComplianceStore::add_nodes between steps
-    capacity,  ///< no room for another point
-    geometry   ///< the point lies too near a face (interior) or an edge (face) for a sound split
-  };
-  struct Added {
-    int point = -1;  ///< number of the new point, -1 when refused
-    Refusal refusal = Refusal::none;
-  };
-
-  /// Adds a point at x in base tetrahedron at.tet. For Placement::face, `travel` is the direction from the first
-  /// element into the second; x must lie on a face of at.tet.
-  Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero());
-
-  /// Moves the tip. False, and nothing changed, when the store lacks a node.
-  bool move_tip(const MaterialPoint& at, const Vec3& x);
-
-  [[nodiscard]] int points() const { return points_; }  ///< tip included
-  [[nodiscard]] Mat3 operator()(int c, int d) const { return A_.block<3, 3>(3 * c, 3 * d); }
-  [[nodiscard]] const MatX& matrix() const { return A_; }  ///< leading 3·points() rows and columns are in use
-
-  /// Displacement gradient ∂u/∂X in the base tetrahedron of the tip under forces on the points, hats left out (3×3).
-  /// @param forces [N] (3 × points())
-  [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const;
+  Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
+  bool move_tip(const MaterialPoint& at, const Vec3& x) override;
+  [[nodiscard]] bool available(Index base_tet) const override { return stored(base_tet); }
+  void remove_last_embedded() override;
+  void reset() override;
+  [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return changes_; }
 
   /// Forces on the base nodes that are equivalent to forces on the points, hats condensed: K u_base = load [N] (3n).
   /// Allocates; for pictures and checks, not for the step.
   [[nodiscard]] VecX base_load(const Eigen::Ref<const MatX>& forces) const;
-
-  /// Smallest eigenvalue of what is left of point c's own compliance when the points in `others` are held, over the
-  /// mean of its diagonal: near 0 means that c follows from the others and must not be constrained as well.
-  /// @param others at most kNeighbours points, the nearest ones; further ones are ignored
-  [[nodiscard]] double independence(int c, std::span<const int> others) const;
-  static constexpr int kNeighbours = 8;
-
-  /// Takes back the point added last, which must have been embedded.
-  void remove_last_embedded();
-
-  /// Forgets all points and all added nodes; A is what it was before the first.
-  void reset();
 
   [[nodiscard]] const SplitMesh& mesh() const { return mesh_; }
 
@@ -127,7 +88,6 @@ class TrackCompliance {
   std::shared_ptr<const ComplianceStore> store_;
   SplitMesh mesh_;
   int capacity_;
-  int points_ = 1;
   std::vector<Observable> observables_;
   std::vector<Index> vertex_of_;  ///< base node of each vertex observable, for look-up
   std::vector<Split> splits_;
@@ -135,8 +95,8 @@ class TrackCompliance {
   std::vector<int> node_point_;        ///< (splits) point that sits on an added node
   std::vector<Mat3> z_;
   std::vector<double> hat_;
+  std::vector<RemeshEvent> changes_;
   MaterialPoint tip_;
-  MatX A_;
 };
 
 }  // namespace stylet
