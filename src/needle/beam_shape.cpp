@@ -5,22 +5,25 @@
 
 namespace stylet::beam {
 
-BeamShape::BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness)
+BeamShape::BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness, ElementKind kind)
     : curvature(VecX::Zero(dof(elements))),
+      kind_(kind),
+      clamp_weight_(kind == ElementKind::rod ? 2.0 : 1.0),
       elements_(elements),
       element_length_(length / elements),
       stiffness_(bending_stiffness, bending_stiffness, torsion_stiffness),
       frame_(elements + 1, Mat3::Identity()),
       origin_(elements + 1, Vec3::Zero()),
       spin_(elements, Mat3::Zero()),
-      shift_(elements, Mat3::Zero()) {
+      shift_(elements, Mat3::Zero()),
+      curve_(elements, length / elements) {
   update();
 }
 
 void BeamShape::update() {
   const double l = element_length_;
   for (int e = 0; e < elements_; ++e) {
-    const RotationTerms terms(l * kappa(e));
+    const RotationTerms terms(l * kappa(e), kind_);
     const Mat3& R = frame_[e];
     frame_[e + 1].noalias() = R * terms.rotation();
     origin_[e + 1] = origin_[e] + l * (R * terms.chord());
@@ -35,31 +38,51 @@ Station BeamShape::locate(double s) const {
   return {e, std::clamp(s - e * element_length_, 0.0, element_length_)};
 }
 
-LocatedLoad BeamShape::locate_load(double s, const Vec3& force) const {
-  const Station at = locate(s);
-  return {at, force, point(at)};
+Pulls BeamShape::pulls(double s, const Vec3& force) const {
+  Pulls result;
+  if (kind_ == ElementKind::arc) {
+    const Station at = locate(s);
+    result.pull[0] = {at, 1.0, force, point(at)};
+    result.count = 1;
+    return result;
+  }
+  const AxisCurve::Weights w = curve_.weights(s);
+  for (int i = 0; i < AxisCurve::kReach; ++i) {
+    if (w.value[i] == 0.0) continue;
+    const int node = w.first + i;
+    result.pull[result.count++] = {{node - 1, element_length_}, w.value[i], w.value[i] * force, origin_[node]};
+  }
+  return result;
 }
 
 Vec3 BeamShape::point(const Station& at) const {
   if (at.element < 0) return at.local * Vec3::UnitZ();
-  const RotationTerms terms(at.local * kappa(at.element));
-  return origin_[at.element] + at.local * (frame_[at.element] * terms.chord());
+  return origin_[at.element] + at.local * (frame_[at.element] * terms(at).chord());
 }
 
 Vec3 BeamShape::tangent(const Station& at) const {
   if (at.element < 0) return Vec3::UnitZ();
-  return frame_[at.element] * RotationTerms(at.local * kappa(at.element)).rotation().col(2);
+  return frame_[at.element] * terms(at).rotation().col(2);
+}
+
+Vec3 BeamShape::point(double s) const {
+  if (kind_ == ElementKind::arc) return point(locate(s));
+  return curve_.point(s, [this](int node) { return deviation(node); });
+}
+
+Vec3 BeamShape::tangent(double s) const {
+  if (kind_ == ElementKind::arc) return tangent(locate(s));
+  return curve_.tangent(s, [this](int node) { return deviation(node); });
 }
 
 double BeamShape::energy() const {
   double sum = 0.0;
-  for (int e = 0; e < elements_; ++e) sum += stiffness_.dot(kappa(e).cwiseAbs2());
+  for (int e = 0; e < elements_; ++e) sum += elastic_weight(e) * stiffness_.dot(kappa(e).cwiseAbs2());
   return 0.5 * element_length_ * sum;
 }
 
 Mat3 BeamShape::inner_jacobian(const Station& at) const {
-  const RotationTerms terms(at.local * kappa(at.element));
-  return at.local * at.local * (frame_[at.element] * terms.chord_derivative());
+  return at.local * at.local * (frame_[at.element] * terms(at).chord_derivative());
 }
 
 }  // namespace stylet::beam

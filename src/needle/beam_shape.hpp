@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "needle/axis_curve.hpp"
 #include "needle/rotation_terms.hpp"
 #include "stylet/core/types.hpp"
 
+#include <array>
 #include <vector>
 
 namespace stylet::beam {
@@ -18,18 +20,27 @@ struct Station {
   double local = 0.0;
 };
 
-/// A point load in base axes, located.
-struct LocatedLoad {
+/// A pull on one station of the chain, in base axes.
+struct Pull {
   Station at;
-  Vec3 force = Vec3::Zero();  ///< [N] base axes
+  double weight = 1.0;        ///< share of the load that acts here
+  Vec3 force = Vec3::Zero();  ///< [N] base axes, the share
   Vec3 point = Vec3::Zero();  ///< [mm] base axes, from the base
 };
 
-/// The chain of constant-curvature elements in base axes (base at the origin, leaving along z): frames and their first
-/// derivatives, refreshed by update() whenever the curvature changes.
+/// A point load as the chain feels it: one pull, or for rods one at each joint that shapes the centreline there.
+struct Pulls {
+  std::array<Pull, AxisCurve::kReach> pull;
+  int count = 0;
+};
+
+/// A chain of elements in base axes (base at the origin, leaving along z), each with a rotation vector l κ that turns
+/// the frame: frames and their first derivatives, refreshed by update() whenever the curvature changes. Rods are joined
+/// by angular springs D/l; the one at the clamp stands for half a rod only and is 2D/l.
 class BeamShape {
  public:
-  BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness);
+  BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness,
+            ElementKind kind = ElementKind::arc);
 
   /// [1/mm] (3 elements) body-frame curvature: x, y bending, z twist. Call update() after writing.
   VecX curvature;
@@ -41,13 +52,22 @@ class BeamShape {
   [[nodiscard]] Vec3 stiffness() const { return stiffness_; }  ///< [N mm²] EI, EI, GJ
   [[nodiscard]] Vec3 kappa(int e) const { return curvature.segment<3>(dof(e)); }
 
+  /// Elastic energy of element e is ½ elastic_weight l κᵀ D κ: 2 for the joint of rods at the clamp, else 1.
+  [[nodiscard]] double elastic_weight(int e) const { return e == 0 ? clamp_weight_ : 1.0; }
+  void set_clamp_weight(double weight) { clamp_weight_ = weight; }
+
   /// Arc lengths past the tip count as the tip.
   [[nodiscard]] Station locate(double s) const;
-  [[nodiscard]] LocatedLoad locate_load(double s, const Vec3& force) const;
+  [[nodiscard]] Pulls pulls(double s, const Vec3& force) const;
 
-  /// Centreline point [mm] and unit tangent; the part before the base goes straight on backwards.
+  /// Point [mm] and unit tangent of the chain at a station (of a rod: its end); the part before the base goes straight
+  /// on backwards.
   [[nodiscard]] Vec3 point(const Station& at) const;
   [[nodiscard]] Vec3 tangent(const Station& at) const;
+
+  /// Centreline point [mm] and unit tangent at s [mm]: the chain itself, or for rods a smooth curve through the joints.
+  [[nodiscard]] Vec3 point(double s) const;
+  [[nodiscard]] Vec3 tangent(double s) const;
 
   /// Elastic energy [N mm].
   [[nodiscard]] double energy() const;
@@ -60,10 +80,18 @@ class BeamShape {
   [[nodiscard]] const Mat3& spin(int e) const { return spin_[e]; }    ///< Ω_e [mm]
   [[nodiscard]] const Mat3& shift(int e) const { return shift_[e]; }  ///< D_e [mm²]
 
-  /// ∂r/∂κ_e [mm²] of a point inside element e.
+  /// ∂r/∂κ_e [mm²] of a point inside element e (of a rod: its end).
   [[nodiscard]] Mat3 inner_jacobian(const Station& at) const;
+  /// Of the part of an element up to a station in it (of a rod: its end).
+  [[nodiscard]] RotationTerms terms(const Station& at) const {
+    return RotationTerms(at.local * kappa(at.element), kind_);
+  }
 
  private:
+  [[nodiscard]] Vec3 deviation(int node) const { return origin_[node] - node * element_length_ * Vec3::UnitZ(); }
+
+  ElementKind kind_;
+  double clamp_weight_;
   int elements_;
   double element_length_;
   Vec3 stiffness_;
@@ -71,6 +99,7 @@ class BeamShape {
   std::vector<Vec3> origin_;
   std::vector<Mat3> spin_;
   std::vector<Mat3> shift_;
+  AxisCurve curve_;  ///< of rods
 };
 
 }  // namespace stylet::beam

@@ -2,6 +2,7 @@
 #include "needle/beam_tangent.hpp"
 
 #include "core/dense_cholesky.hpp"
+#include "needle/condense_columns.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -21,9 +22,9 @@ struct Resultant {
   Vec3 force = Vec3::Zero();
   Mat3 tensor = Mat3::Zero();
 
-  void add(const LocatedLoad& load) {
-    force += load.force;
-    tensor.noalias() += load.point * load.force.transpose();
+  void add(const Pull& pull) {
+    force += pull.force;
+    tensor.noalias() += pull.point * pull.force.transpose();
   }
   /// Σ r × f
   [[nodiscard]] Vec3 moment() const {
@@ -48,12 +49,16 @@ double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation, std:
   for (int e = shape.elements() - 1; e >= 0; --e) {
     Vec3 generalised = shape.shift(e).transpose() * beyond.force + shape.spin(e).transpose() * beyond.moment();
     for (const PointLoad& load : loads) {
-      if (shape.locate(load.s).element != e) continue;
-      const LocatedLoad located = shape.locate_load(load.s, base_rotation.transpose() * load.force);
-      generalised.noalias() += shape.inner_jacobian(located.at).transpose() * located.force;
-      beyond.add(located);
+      const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
+      for (int i = 0; i < pulls.count; ++i) {
+        const Pull& pull = pulls.pull[static_cast<std::size_t>(i)];
+        if (pull.at.element != e) continue;
+        generalised.noalias() += shape.inner_jacobian(pull.at).transpose() * pull.force;
+        beyond.add(pull);
+      }
     }
-    const Vec3 moment = shape.stiffness().cwiseProduct(shape.kappa(e)) - generalised / shape.element_length();
+    const Vec3 moment =
+        shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.kappa(e)) - generalised / shape.element_length();
     // Written so that a NaN is not lost.
     if (!(moment.norm() <= largest)) largest = moment.norm();
   }
@@ -62,7 +67,7 @@ double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation, std:
 
 BeamTangent::BeamTangent(const BeamShape& shape, int load_capacity)
     : elements_(shape.elements()),
-      scale_((shape.element_length() * shape.stiffness()).cwiseSqrt().cwiseInverse()),
+      scale_(static_cast<std::size_t>(elements_)),
       H_(MatX::Zero(dof(elements_), dof(elements_))),
       L_(MatX::Identity(dof(elements_), dof(elements_))),
       g_(VecX::Zero(dof(elements_))),
@@ -71,6 +76,9 @@ BeamTangent::BeamTangent(const BeamShape& shape, int load_capacity)
       spin_(MatX::Zero(dof(elements_), 3)),
       shift_(MatX::Zero(dof(elements_), 3)),
       lever_(static_cast<std::size_t>(elements_), Mat3::Zero()) {
+  const Vec3 standard = (shape.element_length() * shape.stiffness()).cwiseSqrt().cwiseInverse();
+  for (int e = 0; e < elements_; ++e)
+    scale_[static_cast<std::size_t>(e)] = standard / std::sqrt(shape.elastic_weight(e));
   reserve(load_capacity);
 }
 
@@ -78,7 +86,9 @@ void BeamTangent::reserve(Eigen::Index loads) {
   if (3 * loads <= Y_.cols()) return;
   Y_.setZero(dof(elements_), 3 * loads);
   force_.setZero(3 * loads);
-  loads_.reserve(static_cast<std::size_t>(loads));
+  pulls_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
+  last_pull_.reserve(static_cast<std::size_t>(loads));
+  last_moved_.reserve(static_cast<std::size_t>(loads));
 }
 
 void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
@@ -95,18 +105,27 @@ void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, st
 
 void BeamTangent::locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
   reserve(static_cast<Eigen::Index>(loads.size()));
-  loads_.clear();
+  pulls_.clear();
+  last_pull_.clear();
+  last_moved_.clear();
   for (const PointLoad& load : loads) {
-    force_.segment<3>(3 * static_cast<Eigen::Index>(loads_.size())) = load.force;
-    loads_.push_back(shape.locate_load(load.s, base_rotation.transpose() * load.force));
+    force_.segment<3>(3 * load_count()) = load.force;
+    const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
+    int last_moved = -1;
+    for (int i = 0; i < pulls.count; ++i) {
+      pulls_.push_back(pulls.pull[static_cast<std::size_t>(i)]);
+      last_moved = std::max(last_moved, pulls_.back().at.element);
+    }
+    last_pull_.push_back(static_cast<int>(pulls_.size()));
+    last_moved_.push_back(last_moved);
   }
 }
 
 void BeamTangent::assemble_energy(const BeamShape& shape) {
   const double l = shape.element_length();
-  const auto scale = scale_.asDiagonal();
   Resultant beyond;
   for (int e = elements_ - 1; e >= 0; --e) {
+    const auto scale = scale_[static_cast<std::size_t>(e)].asDiagonal();
     const Eigen::Index i = row(e);
     const Mat3 Rt = shape.frame(e).transpose();
     const Mat3 spin = shape.spin(e) * scale;
@@ -115,7 +134,7 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
     shift_.middleRows<3>(i) = shift.transpose();
 
     // Loads beyond the element: its end moves by its chord, and all beyond turns with its end frame.
-    const RotationTerms terms(l * shape.kappa(e));
+    const RotationTerms terms = shape.terms({e, l});
     const Vec3 force = Rt * beyond.force;
     const Mat3 turning =
         Rt * (beyond.tensor.transpose() - beyond.force * shape.origin(e + 1).transpose()) * shape.frame(e + 1);
@@ -123,18 +142,18 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
     Vec3 generalised = shift.transpose() * beyond.force + spin.transpose() * beyond.moment();
     Mat3 lever = cross(beyond.force) * shift - beyond.double_cross() * spin;
 
-    for (const LocatedLoad& load : loads_) {
-      if (load.at.element != e) continue;
-      const double s = load.at.local;
-      const RotationTerms inner(s * shape.kappa(e));
+    for (const Pull& pull : pulls_) {
+      if (pull.at.element != e) continue;
+      const double s = pull.at.local;
+      const RotationTerms inner = shape.terms(pull.at);
       const Mat3 jacobian = s * s * (shape.frame(e) * inner.chord_derivative()) * scale;
-      second += s * s * s * inner.chord_hessian(Rt * load.force);
-      generalised.noalias() += jacobian.transpose() * load.force;
-      lever.noalias() += cross(load.force) * jacobian;
-      beyond.add(load);
+      second += s * s * s * inner.chord_hessian(Rt * pull.force);
+      generalised.noalias() += jacobian.transpose() * pull.force;
+      lever.noalias() += cross(pull.force) * jacobian;
+      beyond.add(pull);
     }
 
-    g_.segment<3>(i) = shape.kappa(e).cwiseQuotient(scale_) - generalised;
+    g_.segment<3>(i) = shape.kappa(e).cwiseQuotient(scale_[static_cast<std::size_t>(e)]) - generalised;
     H_.block<3, 3>(i, i) = Mat3::Identity() - scale * second * scale;
     lever_[e] = lever;
   }
@@ -164,27 +183,29 @@ void BeamTangent::factorise_shifted() {
 void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation) {
   const Mat3 to_base = base_rotation.transpose();
   const Eigen::Index rows = Y_.rows();
-  for (std::size_t c = 0; c < loads_.size(); ++c) {
-    const LocatedLoad& load = loads_[c];
-    auto column = Y_.middleCols<3>(3 * static_cast<Eigen::Index>(c));
-    if (load.at.element < 0) {
-      column.setZero();
-      continue;
+  std::size_t p = 0;
+  for (Eigen::Index c = 0; c < load_count(); ++c) {
+    auto column = Y_.middleCols<3>(3 * c);
+    column.setZero();
+    for (; p < static_cast<std::size_t>(last_pull_[static_cast<std::size_t>(c)]); ++p) {
+      const Pull& pull = pulls_[p];
+      if (pull.at.element < 0) continue;
+      const Eigen::Index i = row(pull.at.element);
+      const Eigen::Index below = rows - i - 3;
+      const Mat3 shifted = pull.weight * to_base;
+      const Mat3 turned = pull.weight * cross(pull.point) * to_base;
+      column.middleRows<3>(i).noalias() += scale_[static_cast<std::size_t>(pull.at.element)].asDiagonal() *
+                                           (shape.inner_jacobian(pull.at).transpose() * shifted);
+      column.bottomRows(below).noalias() += shift_.bottomRows(below).lazyProduct(shifted);
+      column.bottomRows(below).noalias() += spin_.bottomRows(below).lazyProduct(turned);
     }
-    const Eigen::Index i = row(load.at.element);
-    const Eigen::Index below = rows - i - 3;
-    const Mat3 turned = cross(load.point) * to_base;
-    column.topRows(i).setZero();
-    column.middleRows<3>(i).noalias() = scale_.asDiagonal() * (shape.inner_jacobian(load.at).transpose() * to_base);
-    column.bottomRows(below).noalias() = shift_.bottomRows(below).lazyProduct(to_base);
-    column.bottomRows(below).noalias() += spin_.bottomRows(below).lazyProduct(turned);
   }
 }
 
 void BeamTangent::add_springs(std::span<const Mat3> springs) {
-  assert(springs.size() == loads_.size());
-  for (std::size_t c = 0; c < loads_.size(); ++c) {
-    const int e = loads_[c].at.element;
+  assert(springs.size() == last_moved_.size());
+  for (std::size_t c = 0; c < last_moved_.size(); ++c) {
+    const int e = last_moved_[c];
     if (e < 0 || springs[c].isZero(0.0)) continue;
     const Eigen::Index reach = Y_.rows() - row(e);
     const auto motion = Y_.middleCols<3>(3 * static_cast<Eigen::Index>(c)).bottomRows(reach);
@@ -198,7 +219,7 @@ void BeamTangent::add_springs(std::span<const Mat3> springs) {
 }
 
 void BeamTangent::solve_jacobian() {
-  const auto count = static_cast<Eigen::Index>(loads_.size());
+  const Eigen::Index count = load_count();
   constexpr Eigen::Index stride = kTile / 3;
   for (Eigen::Index c = 0; c < count; c += stride) {
     const Eigen::Index last = std::min(count, c + stride);
@@ -209,68 +230,49 @@ void BeamTangent::solve_jacobian() {
 Eigen::Index BeamTangent::start(Eigen::Index first_load, Eigen::Index last_load) const {
   Eigen::Index first_row = Y_.rows();
   for (Eigen::Index c = first_load; c < last_load; ++c) {
-    const int e = loads_[static_cast<std::size_t>(c)].at.element;
+    const int e = last_moved_[static_cast<std::size_t>(c)];
     if (e >= 0) first_row = std::min(first_row, row(e));
   }
   return first_row;
 }
 
 void BeamTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const {
-  const auto count = static_cast<Eigen::Index>(loads_.size());
-  assert(compliance.rows() == 3 * count && compliance.cols() == 3 * count && free.size() == 3 * count);
-  constexpr Eigen::Index stride = kTile / 3;
-  for (Eigen::Index a = 0; a < count; a += stride) {
-    const Eigen::Index na = std::min(stride, count - a);
-    const Eigen::Index start_a = start(a, a + na);
-    const auto columns = Y_.middleCols(3 * a, 3 * na);
-    auto motion = free.segment(3 * a, 3 * na);
-    motion.noalias() = columns.transpose() * z_;
-    motion = -motion;
-    for (Eigen::Index b = 0; b <= a; b += stride) {
-      const Eigen::Index nb = std::min(stride, count - b);
-      const Eigen::Index depth = Y_.rows() - std::max(start_a, start(b, b + nb));
-      auto tile = compliance.block(3 * a, 3 * b, 3 * na, 3 * nb);
-      tile.noalias() = columns.bottomRows(depth).transpose() * Y_.middleCols(3 * b, 3 * nb).bottomRows(depth);
-      if (a == b) {
-        tile.triangularView<Eigen::StrictlyUpper>() = tile.transpose();
-      } else {
-        compliance.block(3 * b, 3 * a, 3 * nb, 3 * na) = tile.transpose();
-      }
-    }
-  }
+  condense_columns(
+      Y_, z_, load_count(), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); }, compliance, free);
 }
 
 void BeamTangent::step(std::span<const PointLoad> loads, BeamShape& shape) {
-  assert(loads.size() == loads_.size());
+  assert(loads.size() == last_moved_.size());
   step_ = -z_;
-  const std::size_t count = std::min(loads.size(), loads_.size());
+  const std::size_t count = std::min(loads.size(), last_moved_.size());
   for (std::size_t c = 0; c < count; ++c) {
     const auto i = 3 * static_cast<Eigen::Index>(c);
     const Vec3 change = loads[c].force - force_.segment<3>(i);
-    const int e = loads_[c].at.element;
+    const int e = last_moved_[c];
     if (e < 0) continue;
     const Eigen::Index reach = Y_.rows() - row(e);
     step_.tail(reach).noalias() += Y_.middleCols<3>(i).bottomRows(reach).lazyProduct(change);
   }
   solve_upper(L_, step_);
   for (int e = 0; e < elements_; ++e)
-    shape.curvature.segment<3>(dof(e)) += scale_.cwiseProduct(step_.segment<3>(row(e)));
+    shape.curvature.segment<3>(dof(e)) += scale_[static_cast<std::size_t>(e)].cwiseProduct(step_.segment<3>(row(e)));
 }
 
 VecX BeamTangent::gradient() const {
   VecX gradient(g_.size());
-  for (int e = 0; e < elements_; ++e) gradient.segment<3>(dof(e)) = g_.segment<3>(row(e)).cwiseQuotient(scale_);
+  for (int e = 0; e < elements_; ++e)
+    gradient.segment<3>(dof(e)) = g_.segment<3>(row(e)).cwiseQuotient(scale_[static_cast<std::size_t>(e)]);
   return gradient;
 }
 
 MatX BeamTangent::hessian() const {
   const MatX full = H_.selfadjointView<Eigen::Lower>();
   MatX hessian(full.rows(), full.cols());
-  const Vec3 inverse = scale_.cwiseInverse();
   for (int a = 0; a < elements_; ++a) {
     for (int b = 0; b < elements_; ++b) {
-      hessian.block<3, 3>(dof(a), dof(b)) =
-          inverse.asDiagonal() * full.block<3, 3>(row(a), row(b)) * inverse.asDiagonal();
+      hessian.block<3, 3>(dof(a), dof(b)) = scale_[static_cast<std::size_t>(a)].cwiseInverse().asDiagonal() *
+                                            full.block<3, 3>(row(a), row(b)) *
+                                            scale_[static_cast<std::size_t>(b)].cwiseInverse().asDiagonal();
     }
   }
   return hessian;

@@ -40,6 +40,7 @@ class BeamTangent {
 
  private:
   void reserve(Eigen::Index loads);
+  [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
   void locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
   void assemble_energy(const BeamShape& shape);
   void factorise_shifted();
@@ -50,14 +51,16 @@ class BeamTangent {
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
 
   int elements_;
-  Vec3 scale_;                      ///< κ_e = scale ∘ y_e, scale = (l diag(EI, EI, GJ))^-1/2
-  std::vector<LocatedLoad> loads_;  ///< base axes
-  VecX force_;                      ///< [N] (3w) LPS
-  MatX H_, L_;                      ///< (3n × 3n) lower triangles
-  VecX g_, z_, step_;               ///< (3n) gradient, L⁻¹ g, work
-  MatX spin_, shift_;               ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
-  std::vector<Mat3> lever_;         ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
-  MatX Y_;                          ///< (3n × 3 capacity) L⁻¹ Jᵀ
+  std::vector<Vec3> scale_;      ///< (n) κ_e = scale_e ∘ y_e, scale_e = (weight_e l diag(EI, EI, GJ))^-1/2
+  std::vector<Pull> pulls_;      ///< base axes, load by load
+  std::vector<int> last_pull_;   ///< (w) where in pulls_ each load's pulls end
+  std::vector<int> last_moved_;  ///< (w) element nearest the tip that moves the load point, -1 = none
+  VecX force_;                   ///< [N] (3w) LPS
+  MatX H_, L_;                   ///< (3n × 3n) lower triangles
+  VecX g_, z_, step_;            ///< (3n) gradient, L⁻¹ g, work
+  MatX spin_, shift_;            ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
+  std::vector<Mat3> lever_;      ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
+  MatX Y_;                       ///< (3n × 3 capacity) L⁻¹ Jᵀ
   double elastic_shift_ = 0.0;
 };
 

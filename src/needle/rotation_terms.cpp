@@ -35,8 +35,8 @@ Mat3 RotationTerms::series(int k) const {
 }
 
 Vec3 RotationTerms::chord() const {
-  const double b = c_[2];
-  const double c = c_[3];
+  const double b = c_[chord_];
+  const double c = c_[chord_ + 1];
   return {b * phi_.y() + c * phi_.z() * phi_.x(), -b * phi_.x() + c * phi_.z() * phi_.y(),
           1.0 - c * (phi_.x() * phi_.x() + phi_.y() * phi_.y())};
 }
@@ -45,10 +45,10 @@ Mat3 RotationTerms::chord_derivative() const {
   const Vec3 z = Vec3::UnitZ();
   const Vec3 turned = phi_.cross(z);
   const Vec3 twice = phi_ * phi_.z() - x_ * z;
-  Mat3 m = (2.0 * (first(2) * turned + first(3) * twice) - 2.0 * c_[3] * z) * phi_.transpose();
-  m.col(2) += c_[3] * phi_;
-  m.diagonal().array() += c_[3] * phi_.z();
-  return m - c_[2] * cross(z);
+  Mat3 m = (2.0 * (first(chord_) * turned + first(chord_ + 1) * twice) - 2.0 * c_[chord_ + 1] * z) * phi_.transpose();
+  m.col(2) += c_[chord_ + 1] * phi_;
+  m.diagonal().array() += c_[chord_ + 1] * phi_.z();
+  return m - c_[chord_] * cross(z);
 }
 
 Mat3 RotationTerms::hessian(int k, const Mat3& E) const {

@@ -18,25 +18,33 @@ namespace stylet::beam {
 /// x: no branch loses digits near zero. (Stumpff 1959.)
 [[nodiscard]] std::array<double, 8> stumpff(double x);
 
-/// What a rod element of constant curvature needs from its rotation vector φ = s κ [rad], with derivatives.
+/// How the centreline runs through an element that turns the frame by a rotation vector.
+enum class ElementKind {
+  arc,  ///< the turn is spread evenly: a piece of a circular helix
+  rod,  ///< a joint at the element's start takes all of the turn, and a straight rod follows
+};
+
+/// What an element needs from its rotation vector φ [rad] (s κ for an arc up to s), with derivatives.
 /// exp([φ]×) = I + c_1 [φ]× + c_2 [φ]×²  and  V(φ) = ∫₀¹ exp(σ[φ]×) dσ = I + c_2 [φ]× + c_3 [φ]×²; V is also the left
-/// Jacobian of SO(3): exp([φ + δ]×) = exp([V δ]×) exp([φ]×) + O(δ²).
+/// Jacobian of SO(3): exp([φ + δ]×) = exp([V δ]×) exp([φ]×) + O(δ²). The chord of the element per unit of its length,
+/// in the frame of its start, is C(φ) e_z, with C = V for an arc and C = exp for a rod.
 class RotationTerms {
  public:
-  explicit RotationTerms(const Vec3& phi) : phi_(phi), x_(phi.squaredNorm()), c_(stumpff(x_)) {}
+  explicit RotationTerms(const Vec3& phi, ElementKind kind = ElementKind::arc)
+      : phi_(phi), x_(phi.squaredNorm()), c_(stumpff(x_)), chord_(kind == ElementKind::arc ? 2 : 1) {}
 
   /// exp([φ]×)
   [[nodiscard]] Mat3 rotation() const { return series(1); }
   /// V(φ)
   [[nodiscard]] Mat3 mean_rotation() const { return series(2); }
-  /// V(φ) e_z: the chord of the element per unit of its length, in the frame of its start.
+  /// C(φ) e_z
   [[nodiscard]] Vec3 chord() const;
-  /// ∂(V(φ) e_z)/∂φ
+  /// ∂(C(φ) e_z)/∂φ
   [[nodiscard]] Mat3 chord_derivative() const;
   /// Hessian in φ of E : exp([φ]×)
   [[nodiscard]] Mat3 rotation_hessian(const Mat3& E) const { return hessian(1, E); }
-  /// Hessian in φ of a · V(φ) e_z
-  [[nodiscard]] Mat3 chord_hessian(const Vec3& a) const { return hessian(2, a * Vec3::UnitZ().transpose()); }
+  /// Hessian in φ of a · C(φ) e_z
+  [[nodiscard]] Mat3 chord_hessian(const Vec3& a) const { return hessian(chord_, a * Vec3::UnitZ().transpose()); }
 
  private:
   /// I + c_k [φ]× + c_{k+1} [φ]×²
@@ -52,6 +60,7 @@ class RotationTerms {
   Vec3 phi_;
   double x_;  ///< |φ|²
   std::array<double, 8> c_;
+  int chord_;  ///< C = I + c_k [φ]× + c_{k+1} [φ]×², this is k
 };
 
 }  // namespace stylet::beam

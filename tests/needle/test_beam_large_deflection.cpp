@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "elastica.hpp"
 #include "support.hpp"
 
 #include <cmath>
@@ -13,21 +14,8 @@ constexpr double kEI = 15700.0;
 constexpr double kGJ = 12100.0;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Cantilever under a dead end force P across its undeformed axis, by the slope at its tip. K. E. Bisshopp and
-/// D. C. Drucker, Large deflection of cantilever beams, Q. Appl. Math. 3 (1945) 272–275.
-struct Elastica {
-  double force;       ///< [N]
-  double deflection;  ///< [mm] along the force
-  double reach;       ///< [mm] along the undeformed axis
-
-  explicit Elastica(double tip_slope) {
-    const double k = std::sqrt((1.0 + std::sin(tip_slope)) / 2.0);
-    const double theta = std::asin(1.0 / (k * std::numbers::sqrt2));
-    const double alpha = std::comp_ellint_1(k) - std::ellint_1(k, theta);
-    force = alpha * alpha * kEI / (kLength * kLength);
-    deflection = kLength * (1.0 - 2.0 / alpha * (std::comp_ellint_2(k) - std::ellint_2(k, theta)));
-    reach = kLength * std::numbers::sqrt2 / alpha * std::sqrt(std::sin(tip_slope));
-  }
+struct Elastica : test::Elastica {
+  explicit Elastica(double tip_slope) : test::Elastica(tip_slope, kLength, kEI) {}
 };
 
 double slope(const Needle& needle, double s) { return std::asin(needle.tangent(s).x()); }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/needle/needle.hpp"
+#include "stylet/needle/section.hpp"
+
+namespace stylet {
+
+/// What BeamNeedle and SpringsNeedle share: an inextensible, unshearable chain of elements whose unknowns are κ, three
+/// per element (body frame; x, y bending, z twist), rotation vector over element length.
+/// state() is κ [1/mm], from the base; residual() is the largest over the elements of |D κ − m|, D = diag(EI, EI, GJ),
+/// m the loads' moment averaged over the element as virtual work sees it. Loads at s ≤ 0 act on the clamp, s past the
+/// tip counts as the tip. Beyond the buckling load a multiple of the elastic part keeps the tangent positive definite.
+class RodChain : public Needle {
+ public:
+  ~RodChain() override;
+
+  [[nodiscard]] double length() const final;
+  void set_base(const Pose& base) final;
+  [[nodiscard]] const Pose& base() const final;
+  [[nodiscard]] Vec3 point(double s) const final;
+  [[nodiscard]] Vec3 tangent(double s) const final;
+  bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                 std::span<const Mat3> springs = {}) final;
+  void advance(std::span<const PointLoad> loads) final;
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) const final;
+  void straighten() final;
+  [[nodiscard]] double energy() const final;
+  [[nodiscard]] Eigen::Ref<const VecX> state() const final;
+  void set_state(const Eigen::Ref<const VecX>& state) final;
+
+ protected:
+  struct Parts;
+  explicit RodChain(std::unique_ptr<Parts> parts);
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stylet

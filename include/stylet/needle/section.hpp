@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+
+namespace stylet {
+
+/// Parameters of a steel needle.
+struct NeedleSection {
+  double length_mm = 200.0;
+  double outer_diameter_mm = 1.27;        ///< 18 gauge
+  double bending_stiffness_Nmm2 = 15700;  ///< E I; 12,700…25,500 for an 18 gauge cannula without…with stylet
+  double torsion_stiffness_Nmm2 = 12100;  ///< G J
+};
+
+/// What every needle model asks for: finite positive numbers, a stiffness that steel of this diameter can have, the
+/// number of elements within [4, 500], and room for a load.
+/// @return an input error that names the number, or Ok
+Result<> check_needle(const NeedleSection& section, int elements, int load_capacity);
+
+}  // namespace stylet

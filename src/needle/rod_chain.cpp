@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "needle/rod_chain_parts.hpp"
+
+namespace stylet {
+
+RodChain::RodChain(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+RodChain::~RodChain() = default;
+
+double RodChain::length() const { return parts_->length; }
+
+void RodChain::set_base(const Pose& base) {
+  parts_->base = base;
+  parts_->base.rotation.normalize();
+  parts_->base_rotation = parts_->base.rotation.toRotationMatrix();
+}
+
+const Pose& RodChain::base() const { return parts_->base; }
+
+Vec3 RodChain::point(double s) const { return parts_->base.origin + parts_->base_rotation * parts_->shape.point(s); }
+
+Vec3 RodChain::tangent(double s) const { return parts_->base_rotation * parts_->shape.tangent(s); }
+
+bool RodChain::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                         std::span<const Mat3> springs) {
+  parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs);
+  parts_->tangent.condense(compliance, free);
+  return parts_->tangent.elastic_shift() == 0.0;
+}
+
+void RodChain::advance(std::span<const PointLoad> loads) {
+  parts_->tangent.step(loads, parts_->shape);
+  parts_->shape.update();
+}
+
+double RodChain::residual(std::span<const PointLoad> loads) const {
+  return beam::largest_imbalance(parts_->shape, parts_->base_rotation, loads);
+}
+
+void RodChain::straighten() {
+  parts_->shape.curvature.setZero();
+  parts_->shape.update();
+}
+
+double RodChain::energy() const { return parts_->shape.energy(); }
+
+Eigen::Ref<const VecX> RodChain::state() const { return parts_->shape.curvature; }
+
+void RodChain::set_state(const Eigen::Ref<const VecX>& state) {
+  parts_->shape.curvature = state;
+  parts_->shape.update();
+}
+
+}  // namespace stylet

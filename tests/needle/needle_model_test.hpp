@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/needle/make_needle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+namespace stylet::test {
+
+/// A test over the needle models by name, with the model's own number of elements.
+class NeedleModelTest : public testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] static const std::string& model() { return GetParam(); }
+  [[nodiscard]] static int elements() { return default_needle_elements(model()).value(); }
+  [[nodiscard]] static std::unique_ptr<Needle> make(int elements = 0, int capacity = 64) {
+    auto built = make_needle(model(), {}, elements, capacity);
+    EXPECT_TRUE(built.ok()) << (built.ok() ? "" : built.error().message());
+    return std::move(built).value();
+  }
+};
+
+}  // namespace stylet::test
+
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): GoogleTest's own is one
+#define STYLET_FOR_EVERY_NEEDLE_MODEL(suite)                                                                 \
+  INSTANTIATE_TEST_SUITE_P(Models, suite, testing::ValuesIn(needle_models().begin(), needle_models().end()), \
+                           [](const auto& tested) { return tested.param; })
