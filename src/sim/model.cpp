@@ -3,7 +3,7 @@
 
 #include "planning.hpp"
 #include "stylet/core/nearest_name.hpp"
-#include "stylet/needle/beam.hpp"
+#include "stylet/needle/make_needle.hpp"
 
 #include <fmt/format.h>
 
@@ -62,9 +62,9 @@ CouplingSettings coupling_settings(const Scenario& s) {
   return c;
 }
 
-Result<std::unique_ptr<BeamNeedle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
-  return BeamNeedle::build({n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2}, n.elements,
-                           capacity + 1);
+Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
+  return make_needle(n.model, {n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2},
+                     n.elements, capacity + 1);
 }
 
 /// Follows a recorded motion from outside the patient.

@@ -83,7 +83,8 @@ void describe_mesh(ScenarioEntries& keys) {
 }
 
 void describe_needle(ScenarioEntries& keys) {
-  keys.choice("needle.model", {"beam"}, {"springs", "tet"}, "needle model; beam = geometrically exact rod",
+  keys.choice("needle.model", {"beam", "springs"}, {"tet"},
+              "needle model; beam = geometrically exact rod, springs = rigid rods joined by angular springs",
               [](auto& s, const Slot&) { return &s.needle.model; });
   keys.number("needle.length_mm", "mm", 20, 1000, "length from base to tip",
               [](auto& s, const Slot&) { return &s.needle.length_mm; });
