@@ -17,6 +17,7 @@ void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const St
                       Eigen::Ref<VecX> free) {
   assert(compliance.rows() == 3 * loads && compliance.cols() == 3 * loads && free.size() == 3 * loads);
   constexpr Eigen::Index stride = dense::kTile / 3;
+  constexpr Eigen::Index deepest = 480;
   for (Eigen::Index a = 0; a < loads; a += stride) {
     const Eigen::Index na = std::min(stride, loads - a);
     const Eigen::Index start_a = start(a, a + na);
@@ -28,7 +29,17 @@ void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const St
       const Eigen::Index nb = std::min(stride, loads - b);
       const Eigen::Index depth = Y.rows() - std::max(start_a, start(b, b + nb));
       auto tile = compliance.block(3 * a, 3 * b, 3 * na, 3 * nb);
-      tile.noalias() = columns.bottomRows(depth).transpose() * Y.middleCols(3 * b, 3 * nb).bottomRows(depth);
+      const auto others = Y.middleCols(3 * b, 3 * nb);
+      const auto end = Y.rows();
+      for (Eigen::Index row = end - depth; row < end || row == end - depth; row += deepest) {
+        const Eigen::Index rows = std::min(deepest, end - row);
+        const auto product = columns.middleRows(row, rows).transpose() * others.middleRows(row, rows);
+        if (row == end - depth) {
+          tile.noalias() = product;
+        } else {
+          tile.noalias() += product;
+        }
+      }
       if (a == b) {
         tile.template triangularView<Eigen::StrictlyUpper>() = tile.transpose();
       } else {

@@ -4,6 +4,7 @@
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/needle/beam.hpp"
 #include "stylet/needle/springs.hpp"
+#include "stylet/needle/tet.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,12 +28,12 @@ struct Known {
   int elements;  ///< docs/theory/needle.md, "Which model"
   Build build;
 };
-constexpr std::array kKnown{Known{24, build<BeamNeedle>}, Known{24, build<SpringsNeedle>}};
+constexpr std::array kKnown{Known{24, build<BeamNeedle>}, Known{24, build<SpringsNeedle>}, Known{60, build<TetNeedle>}};
 
 }  // namespace
 
 std::span<const std::string> needle_models() {
-  static const std::array<std::string, kKnown.size()> names{"beam", "springs"};
+  static const std::array<std::string, kKnown.size()> names{"beam", "springs", "tet"};
   return names;
 }
 

@@ -61,7 +61,7 @@ TEST_P(NeedleTheory, LateralStiffnessIsTheSameInEveryDirectionAndNothingGoesSide
     const double angle = 2.0 * std::numbers::pi * k / 12 + 0.1;
     const Vec3 direction(std::cos(angle), std::sin(angle), 0.0);
     needle->straighten();
-    test::settle(*needle, std::vector<PointLoad>{{kLength, 0.3 * direction}, {88.0, 0.1 * direction}});
+    settle(*needle, std::vector<PointLoad>{{kLength, 0.3 * direction}, {88.0, 0.1 * direction}});
     const Vec3 tip = needle->point(kLength);
     if (k == 0) first = tip.dot(direction);
     const double allowed = model() == "tet" ? 0.005 : 1e-10;
@@ -91,7 +91,7 @@ TEST_P(NeedleTheory, BucklesAtEulersLoad) {
   for (const double share : {0.95, 0.98, 1.02, 1.05}) {
     needle->straighten();
     const std::vector<PointLoad> loads = {{kLength, {0, 0, -share * euler}}};
-    test::settle(*needle, loads);
+    settle(*needle, loads);
     EXPECT_EQ(needle->linearise(loads, compliance, free), share < 1.0) << share;
     EXPECT_GE(compliance.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-12);
   }

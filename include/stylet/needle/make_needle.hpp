@@ -9,7 +9,7 @@
 
 namespace stylet {
 
-/// Names of the needle models, the default first: beam, springs.
+/// Names of the needle models, the default first: beam, springs, tet.
 [[nodiscard]] std::span<const std::string> needle_models();
 
 /// Number of elements, rods or segments that brings a 200 mm needle of the model within 0.2 % of theory at the least

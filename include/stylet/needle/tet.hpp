@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/needle/needle.hpp"
+#include "stylet/needle/section.hpp"
+
+namespace stylet {
+
+/// The needle of Goksel et al. 2005: a bar of linear tetrahedra with quadratic (Green–Lagrange) strain and the
+/// St. Venant–Kirchhoff law, total Lagrangian. Its square section is as wide as the needle, Poisson's ratio is that of
+/// steel. Such tetrahedra bend far too stiffly, so Young's modulus is calibrated at build: one linear solve makes the
+/// tip's deflection under a lateral force that of theory, L³/3EI. The torsion stiffness follows from the section and is
+/// not that of NeedleSection (7 % above it with the default numbers); the bar stretches a little (axial_stiffness()).
+/// The centreline is a smooth curve through the nodes on the axis; loads act on these nodes with the curve's weights.
+/// state() is the nodes' displacement [mm] in base axes; residual() is the largest over the cross-sections of the
+/// moment of all out-of-balance forces beyond it about its centre, or over the nodes of out-of-balance force × segment
+/// length. Beyond the buckling load a multiple of the tangent's material part keeps it positive definite.
+/// @cite Goksel2005
+class TetNeedle final : public Needle {
+ public:
+  enum class Segment {
+    symmetric,   ///< 24 tetrahedra around the body's and the faces' centres: the same in both directions and both ways
+    asymmetric,  ///< 12 tetrahedra, every prism cut the same way: deflects sideways; there to show what symmetry is for
+  };
+
+  /// @param segments number of segments along the needle, ≥ 4; stretching softens with its square where they are few
+  /// @param load_capacity largest number of loads in any call
+  static Result<std::unique_ptr<TetNeedle>> build(const NeedleSection& section, int segments, int load_capacity,
+                                                  Segment segment = Segment::symmetric);
+  ~TetNeedle() override;
+
+  /// How many times stiffer than theory the tetrahedra would bend with the modulus of theory, 12 EI / width⁴.
+  [[nodiscard]] double stiffening() const;
+  [[nodiscard]] double young_modulus() const;    ///< [MPa] calibrated: 12 EI / width⁴ / stiffening()
+  [[nodiscard]] double axial_stiffness() const;  ///< [N/mm] of the straight needle, base to tip
+
+  [[nodiscard]] double length() const override;
+  [[nodiscard]] std::string model() const override { return "tet"; }
+  void set_base(const Pose& base) override;
+  [[nodiscard]] const Pose& base() const override;
+  [[nodiscard]] Vec3 point(double s) const override;
+  [[nodiscard]] Vec3 tangent(double s) const override;
+  bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                 std::span<const Mat3> springs = {}) override;
+  void advance(std::span<const PointLoad> loads) override;
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
+  void straighten() override;
+  [[nodiscard]] double energy() const override;
+  [[nodiscard]] Eigen::Ref<const VecX> state() const override;
+  void set_state(const Eigen::Ref<const VecX>& state) override;
+
+ private:
+  struct Parts;
+  explicit TetNeedle(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stylet

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "needle/axis_curve.hpp"
+#include "needle/tet_segment.hpp"
+#include "stylet/needle/needle.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace stylet::tet {
+
+/// Layers (cross-sections) and segments count from the base; layer 0 is clamped and not among the unknowns.
+/// What update() knows of one element: deformation gradient and second Piola–Kirchhoff stress.
+struct ElementState {
+  Mat3 F = Mat3::Identity();
+  Mat3 S = Mat3::Zero();  ///< [MPa]
+};
+
+/// Displacements of all nodes in base axes, with stresses, nodal forces and energy, refreshed by update().
+class TetShape {
+ public:
+  TetShape(SegmentMesh mesh, int segments, double segment_length, double young_modulus, double poisson);
+
+  /// [mm] segment by segment: its middle nodes, then the layer at its end. Call update() after writing.
+  VecX displacement;
+  void update();
+
+  /// Multiplies Young's modulus (and stresses, forces, energy).
+  void scale_modulus(double factor);
+
+  [[nodiscard]] int segments() const { return segments_; }
+  [[nodiscard]] const SegmentMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const AxisCurve& curve() const { return curve_; }
+  [[nodiscard]] double lambda() const { return lambda_; }  ///< [MPa]
+  [[nodiscard]] double mu() const { return mu_; }          ///< [MPa]
+  [[nodiscard]] double energy() const { return energy_; }  ///< [N mm]
+
+  /// First unknown of a node of a segment; negative for the clamped layer.
+  [[nodiscard]] Eigen::Index dof(int segment, int node) const;
+  /// First unknown of the axis node of layer 1…n.
+  [[nodiscard]] Eigen::Index axis_dof(int layer) const { return dof(layer - 1, kLayerNodes + kAxisNode); }
+
+  [[nodiscard]] const ElementState& element(int segment, int e) const {
+    return states_[static_cast<std::size_t>(segment) * mesh_.elements.size() + static_cast<std::size_t>(e)];
+  }
+  /// ∂energy/∂displacement [N]
+  [[nodiscard]] const VecX& force() const { return force_; }
+
+  /// Centreline in base axes.
+  [[nodiscard]] Vec3 point(double s) const;
+  [[nodiscard]] Vec3 tangent(double s) const;
+  [[nodiscard]] Vec3 axis_point(int layer) const;  ///< [mm] layer 0…n
+
+  /// Present place [mm] of a node of a segment.
+  [[nodiscard]] Vec3 place(int segment, int node) const;
+
+ private:
+  [[nodiscard]] Vec3 displacement_of(int segment, int node) const {
+    const Eigen::Index i = dof(segment, node);
+    return i < 0 ? Vec3::Zero() : Vec3(displacement.segment<3>(i));
+  }
+
+  SegmentMesh mesh_;
+  int segments_;
+  AxisCurve curve_;
+  double lambda_;
+  double mu_;
+  double energy_ = 0.0;
+  std::vector<ElementState> states_;
+  VecX force_;
+};
+
+/// Largest moment [N mm], over the layers, of the out-of-balance forces beyond about the layer's centre, or over the
+/// nodes of out-of-balance force × segment length, whichever is larger. Written to (unknowns): the forces themselves.
+/// @param base_rotation base axes to LPS
+[[nodiscard]] double largest_imbalance(const TetShape& shape, const Mat3& base_rotation,
+                                       std::span<const PointLoad> loads, VecX& imbalance);
+
+}  // namespace stylet::tet
