@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/core/version.hpp"
+#include "stylet/needle/make_needle.hpp"
+#include "stylet/needle/tet.hpp"
 #include "stylet/sim/model.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <string_view>
 
 /// What a report says about a model: every parameter with its value and where the value comes from.
 namespace stylet {
@@ -12,6 +15,7 @@ namespace stylet {
 namespace {
 
 constexpr const char* kFromScenario = "scenario";
+constexpr std::string_view kElements = "needle.elements";
 
 /// A key whose value a report shows, and why its default is what it is.
 struct Documented {
@@ -20,11 +24,12 @@ struct Documented {
 };
 
 constexpr std::array kShown{
+    Documented{"needle.model", "most accurate for its cost"},
     Documented{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
     Documented{"needle.diameter_mm", "18 gauge"},
     Documented{"needle.bending_stiffness_Nmm2", "steel tube (E 200 GPa), 1.27 mm outer and 1.0 mm inner diameter"},
     Documented{"needle.torsion_stiffness_Nmm2", "the same tube (G 77 GPa)"},
-    Documented{"needle.elements", "numerical: no visible change of the needle's shape with more"},
+    Documented{kElements.data(), "numerical: no visible change of the needle's shape with more"},
     Documented{"coupling.spacing_mm", "numerical: about three needle diameters"},
     Documented{"coupling.tip_viscosity_Ns_per_m",
                "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
@@ -63,6 +68,17 @@ void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, cons
   row("friction_viscous_Ns_per_m2", &TissueParameters::friction_viscous_Ns_per_m2, "N s/m²");
 }
 
+/// Numbers that a model of the needle finds for itself.
+void add_needle(std::vector<ParameterRow>& rows, const Needle* needle) {
+  const auto* tet = dynamic_cast<const TetNeedle*>(needle);
+  if (tet == nullptr) return;
+  rows.push_back({"needle.tet.calibration", fmt::format("{:.4g}", 1.0 / tet->stiffening()), "",
+                  "factor on Young's modulus that makes the tip deflect as theory says; linear tetrahedra bend too "
+                  "stiffly"});
+  rows.push_back({"needle.tet.axial_stiffness", fmt::format("{:.4g}", tet->axial_stiffness()), "N/mm",
+                  "what the calibrated modulus means along the needle"});
+}
+
 }  // namespace
 
 RunInfo Model::info(std::size_t insertion) const {
@@ -86,10 +102,13 @@ RunInfo Model::info(std::size_t insertion) const {
   for (const Documented& shown : kShown) {
     const auto value = scenario_value(scenario_, shown.path);
     if (!value) continue;
-    const std::string text = as_shown(*value);
+    std::string text = as_shown(*value);
     const bool is_default = text == as_shown(*scenario_value(standard, shown.path));
+    if (shown.path == kElements && scenario_.needle.elements == 0)
+      text = std::to_string(default_needle_elements(scenario_.needle.model).value());
     info.parameters.push_back({shown.path, text, unit_of(shown.path), is_default ? shown.source : kFromScenario});
   }
+  if (scenario_.needle.model == "tet") add_needle(info.parameters, make_needle().get());
   return info;
 }
 

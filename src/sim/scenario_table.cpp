@@ -83,9 +83,11 @@ void describe_mesh(ScenarioEntries& keys) {
 }
 
 void describe_needle(ScenarioEntries& keys) {
-  keys.choice("needle.model", {"beam", "springs"}, {"tet"},
-              "needle model; beam = geometrically exact rod, springs = rigid rods joined by angular springs",
-              [](auto& s, const Slot&) { return &s.needle.model; });
+  keys.choice(
+      "needle.model", {"beam", "springs", "tet"}, {},
+      "needle model; beam = geometrically exact rod, springs = rigid rods joined by angular springs, tet = bar of "
+      "tetrahedra as Goksel et al. 2005",
+      [](auto& s, const Slot&) { return &s.needle.model; });
   keys.number("needle.length_mm", "mm", 20, 1000, "length from base to tip",
               [](auto& s, const Slot&) { return &s.needle.length_mm; });
   keys.number("needle.diameter_mm", "mm", 0.2, 5, "outer diameter; 18 gauge is 1.27",
@@ -95,7 +97,8 @@ void describe_needle(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.needle.bending_stiffness_Nmm2; });
   keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "torsion stiffness G J",
               [](auto& s, const Slot&) { return &s.needle.torsion_stiffness_Nmm2; });
-  keys.integer("needle.elements", 4, 200, "number of elements of the needle",
+  keys.integer("needle.elements", 0, 200,
+               "number of elements of the needle, at least 4; 0 = 24 (beam, springs) or 60 (tet)",
                [](auto& s, const Slot&) { return &s.needle.elements; });
 }
 

@@ -95,7 +95,7 @@ struct Scenario {
     double diameter_mm = 1.27;
     double bending_stiffness_Nmm2 = 15700.0;
     double torsion_stiffness_Nmm2 = 12100.0;
-    int elements = 24;
+    int elements = 0;  ///< 0 = the model's own
     bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {
