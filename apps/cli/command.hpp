@@ -21,5 +21,6 @@ Command add_phantom_command(CLI::App& program);
 Command add_mesh_command(CLI::App& program);
 Command add_info_command(CLI::App& program);
 Command add_insert_command(CLI::App& program);
+Command add_reproduce_command(CLI::App& program);
 
 }  // namespace stylet::cli

@@ -49,6 +49,14 @@ class ModuleOrder(unittest.TestCase):
         self.assertIn("mesher must not include sim", text)
         self.assertIn("mesher must not include io", text)
 
+    def test_reproduce_sees_all_and_is_seen_by_none(self):
+        status, text = self.check({"src/reproduce/a.cpp": '#include "stylet/mesher/mesher.hpp"\n#include "io/inside.hpp"\n',
+                                   "src/io/inside.hpp": ""})
+        self.assertEqual((status, text), (0, ""))
+        status, text = self.check({"src/io/a.cpp": '#include "stylet/reproduce/figure5.hpp"\n'})
+        self.assertEqual(status, 1)
+        self.assertIn("io must not include reproduce", text)
+
     def test_formats_and_sockets_stay_out_of_the_engine(self):
         for header in ("vtkCell.h", "CGAL/Mesh_3/config.h", "dcmtk/dcmrt/drtstrct.h", "nlohmann/json.hpp",
                        "toml++/toml.h", "hdf5.h", "gmsh.h", "boost/beast/core.hpp", "sys/socket.h", "fstream"):

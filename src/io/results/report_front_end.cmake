@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds web/report (npm, Vite) in the build folder and puts the page, its style and its script into the library
-# stylet_report_assets.
+# Builds web/report (npm, Vite) in the build folder and puts its two pages with their styles and scripts into
+# the library stylet_report_assets.
 find_program(NPM npm)
 find_program(NODE NAMES node nodejs)
 if(NOT NPM OR NOT NODE)
@@ -13,6 +13,9 @@ set(REPORT_BUILD ${CMAKE_BINARY_DIR}/web/report)
 set(REPORT_TEMPLATE ${REPORT_SOURCE}/template.html)
 set(REPORT_JS ${REPORT_BUILD}/dist/report.js)
 set(REPORT_CSS ${REPORT_BUILD}/dist/report.css)
+set(REPRODUCE_TEMPLATE ${REPORT_SOURCE}/reproduce.html)
+set(REPRODUCE_JS ${REPORT_BUILD}/dist/reproduce.js)
+set(REPRODUCE_CSS ${REPORT_BUILD}/dist/reproduce.css)
 file(GLOB_RECURSE report_sources CONFIGURE_DEPENDS ${REPORT_SOURCE}/src/*)
 
 add_custom_command(
@@ -24,11 +27,12 @@ add_custom_command(
   COMMENT "Fetching the packages of the report's front end"
   VERBATIM)
 add_custom_command(
-  OUTPUT ${REPORT_JS} ${REPORT_CSS}
+  OUTPUT ${REPORT_JS} ${REPORT_CSS} ${REPRODUCE_JS} ${REPRODUCE_CSS}
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${REPORT_BUILD}/src
   COMMAND ${CMAKE_COMMAND} -E copy_directory ${REPORT_SOURCE}/src ${REPORT_BUILD}/src
   COMMAND ${CMAKE_COMMAND} -E copy ${REPORT_SOURCE}/tsconfig.json ${REPORT_SOURCE}/vite.config.ts ${REPORT_BUILD}
   COMMAND ${NODE} node_modules/vite/bin/vite.js build --logLevel warn
+  COMMAND ${NODE} node_modules/vite/bin/vite.js build --logLevel warn --mode reproduce
   DEPENDS ${REPORT_BUILD}/packages.stamp ${report_sources} ${REPORT_SOURCE}/tsconfig.json ${REPORT_SOURCE}/vite.config.ts
   WORKING_DIRECTORY ${REPORT_BUILD}
   COMMENT "Building the report's front end"
@@ -36,6 +40,7 @@ add_custom_command(
 
 configure_file(report/assets.cpp.in ${REPORT_BUILD}/assets.cpp @ONLY)
 set_source_files_properties(${REPORT_BUILD}/assets.cpp PROPERTIES
-  OBJECT_DEPENDS "${REPORT_JS};${REPORT_CSS};${REPORT_TEMPLATE}")
-add_library(stylet_report_assets STATIC ${REPORT_BUILD}/assets.cpp ${REPORT_JS} ${REPORT_CSS})
+  OBJECT_DEPENDS "${REPORT_JS};${REPORT_CSS};${REPORT_TEMPLATE};${REPRODUCE_JS};${REPRODUCE_CSS};${REPRODUCE_TEMPLATE}")
+add_library(stylet_report_assets STATIC ${REPORT_BUILD}/assets.cpp ${REPORT_JS} ${REPORT_CSS} ${REPRODUCE_JS}
+                                        ${REPRODUCE_CSS})
 target_include_directories(stylet_report_assets PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

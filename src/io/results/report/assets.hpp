@@ -3,11 +3,16 @@
 
 #include <string_view>
 
-/// The report's page, style sheet and script (web/report/), which the build puts into the library.
+/// Pages, style sheets and scripts (web/report/), which the build puts into the library: the report of an insertion and
+/// the page of stylet reproduce.
 namespace stylet::results {
 
 std::string_view report_template();  ///< HTML with {{slots}}
 std::string_view report_css();
 std::string_view report_js();
+
+std::string_view reproduce_template();  ///< HTML with {{slots}}
+std::string_view reproduce_css();
+std::string_view reproduce_js();
 
 }  // namespace stylet::results

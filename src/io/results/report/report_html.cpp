@@ -3,6 +3,7 @@
 
 #include "report/assets.hpp"
 #include "report/narrative.hpp"
+#include "report/page_template.hpp"
 #include "report/parameter_tables.hpp"
 #include "report/report_data.hpp"
 #include "report/text.hpp"
@@ -13,31 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace stylet::results {
 namespace {
-
-using Slots = std::map<std::string, std::string, std::less<>>;
-
-/// Puts the slots' texts in place of {{name}}; a name nobody filled is a fault of the build.
-Result<std::string> fill(std::string_view page, const Slots& slots) {
-  std::string filled;
-  for (;;) {
-    const std::size_t open = page.find("{{");
-    if (open == std::string_view::npos) return filled += page;
-    const std::size_t close = page.find("}}", open);
-    const std::string_view name = page.substr(open + 2, close == std::string_view::npos ? close : close - open - 2);
-    const auto slot = slots.find(name);
-    if (close == std::string_view::npos || slot == slots.end()) {
-      return failure("report.html", fmt::format("its template has an unknown slot '{}'", name),
-                     "The program was built from files that do not belong together: build it again.");
-    }
-    filled += page.substr(0, open);
-    filled += slot->second;
-    page.remove_prefix(close + 2);
-  }
-}
 
 std::string cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
 std::string number_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(text) + "</td>"; }
@@ -190,7 +169,7 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"data", json_script_safe(report_data(run, regions, moments))},
       {"js", script_safe(report_js())},
   };
-  return fill(report_template(), slots);
+  return fill_page(report_template(), slots, "report.html");
 }
 
 }  // namespace stylet::results

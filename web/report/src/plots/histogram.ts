@@ -2,19 +2,8 @@
 // How long steps took: bins of equal ratio, counts on a logarithmic scale so that the rare slow step is seen.
 import uPlot from 'uplot';
 import type { ReportData } from '../data';
+import { marksAt, roundNumbers } from './round_numbers';
 import { axis, CURVES, followWidth, fontSize } from './style';
-
-/** Numbers between low and high whose leading digit is one of `leading`. */
-function roundNumbers(low: number, high: number, leading: number[]): number[] {
-  const numbers: number[] = [];
-  for (let power = Math.floor(Math.log10(low)); Math.pow(10, power) <= high; power++) {
-    for (const digit of leading) {
-      const number = digit * Math.pow(10, power);
-      if (number >= low && number <= high) numbers.push(number);
-    }
-  }
-  return numbers;
-}
 
 export function buildHistogram(data: ReportData, box: HTMLElement): void {
   const { edges_us: edges, counts } = data.histogram;
@@ -59,11 +48,6 @@ export function buildHistogram(data: ReportData, box: HTMLElement): void {
     ctx.fillText('1 kHz', x - 6 * ratio, bbox.top + fontSize() * ratio);
     ctx.restore();
   };
-  const marks = (numbers: number[]) => ({
-    splits: () => numbers,
-    filter: (_u: uPlot, splits: number[]) => splits,  // uPlot would drop some on a logarithmic axis
-    values: (_u: uPlot, values: number[]) => values.map((v) => v.toLocaleString('en')),
-  });
   const plot = new uPlot(
     {
       mode: 2,
@@ -77,8 +61,8 @@ export function buildHistogram(data: ReportData, box: HTMLElement): void {
         y: { distr: 3, range: () => [0.7, most * 1.6] },
       },
       axes: [
-        { ...axis('Processor time of a step [µs]', fontSize() * 2), ...marks(roundNumbers(low, high, [1, 2, 5])) },
-        { ...axis('Steps', fontSize() * 4.2), ...marks(roundNumbers(0.7, most * 1.6, [1])) },
+        { ...axis('Processor time of a step [µs]', fontSize() * 2), ...marksAt(roundNumbers(low, high, [1, 2, 5])) },
+        { ...axis('Steps', fontSize() * 4.2), ...marksAt(roundNumbers(0.7, most * 1.6, [1])) },
       ],
       series: [{}, { facets: [{ scale: 'x', auto: true }, { scale: 'y', auto: true }], paths: bars }],
       hooks: { draw: [limit] },

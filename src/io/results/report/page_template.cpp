@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page_template.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::results {
+
+Result<std::string> fill_page(std::string_view page, const Slots& slots, const std::string& name) {
+  std::string filled;
+  for (;;) {
+    const std::size_t open = page.find("{{");
+    if (open == std::string_view::npos) return filled += page;
+    const std::size_t close = page.find("}}", open);
+    const std::string_view slot_name =
+        page.substr(open + 2, close == std::string_view::npos ? close : close - open - 2);
+    const auto slot = slots.find(slot_name);
+    if (close == std::string_view::npos || slot == slots.end()) {
+      return failure(name, fmt::format("its template has an unknown slot '{}'", slot_name),
+                     "The program was built from files that do not belong together: build it again.");
+    }
+    filled += page.substr(0, open);
+    filled += slot->second;
+    page.remove_prefix(close + 2);
+  }
+}
+
+}  // namespace stylet::results

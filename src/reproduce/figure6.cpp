@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/reproduce/figure6.hpp"
+
+#include "stylet/reproduce/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::reproduce {
+
+namespace {
+
+/// Carries the insertions out step by step, as run() does, but keeps what the figure needs.
+class Recorder {
+ public:
+  Recorder(const std::shared_ptr<const Model>& model, const Figure6Variant& variant, const Progress& progress)
+      : model_(model), simulation_(model), progress_(progress), dt_s_(1e-3 * model->scenario().run.dt_ms) {
+    run_.variant = variant;
+    for (const PlannedInsertion& insertion : model->insertions()) total_s_ += insertion.motion.duration_s();
+  }
+
+  Result<Figure6Run> all() {
+    for (std::size_t i = 0; i < model_->insertions().size(); ++i) {
+      one(i);
+      if (simulation_.record().tip_state != TipState::air) {
+        return failure("figure 6, " + run_.variant.label, "the needle is still in the tissue at the end",
+                       "Run the same scenario with stylet insert to see why");
+      }
+    }
+    return std::move(run_);
+  }
+
+ private:
+  void one(std::size_t number) {
+    const PlannedInsertion& insertion = model_->insertions()[number];
+    const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / dt_s_ - 1e-9));
+    simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
+    std::size_t changes = simulation_.insertion().compliance().remeshing().size();
+    for (long k = 1; k <= steps; ++k) {
+      const Pose base = insertion.motion.at(static_cast<double>(k) * dt_s_);
+      simulation_.prepare();
+      const double seconds = cpu_seconds([&] { simulation_.step(base, dt_s_); });
+      StepRecord record = simulation_.record();
+      record.step_us = 1e6 * seconds;
+      const std::size_t iteration = run_.steps.size();
+      for (const Event& event : simulation_.new_events()) run_.events.push_back({iteration, number, event});
+      const auto remeshing = simulation_.insertion().compliance().remeshing();
+      if (remeshing.size() < changes) changes = 0;  // the needle is out: the mesh is as it was
+      for (std::size_t c = changes; c < remeshing.size(); ++c)
+        run_.remeshes.push_back({iteration, number, remeshing[c]});
+      run_.remeshings.push_back(static_cast<int>(remeshing.size() - changes));
+      changes = remeshing.size();
+      run_.insertion.push_back(number);
+      run_.steps.push_back(record);
+      if (simulation_.report().flags & StepReport::not_converged) ++run_.not_converged;
+      if (k % 64 == 0) report(progress_, "figure 6, " + run_.variant.label, record.time_s / total_s_);
+    }
+  }
+
+  std::shared_ptr<const Model> model_;
+  Simulation simulation_;
+  const Progress& progress_;
+  double dt_s_;
+  double total_s_ = 0.0;
+  Figure6Run run_;
+};
+
+/// Step times [s] of the iterations with, or without, a change of the mesh.
+std::vector<double> chosen(const Figure6Run& run, bool with_remeshing) {
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    if ((run.remeshings[i] > 0) == with_remeshing) seconds.push_back(1e-6 * run.steps[i].step_us);
+  }
+  return seconds;
+}
+
+}  // namespace
+
+double Figure6Run::total_s() const {
+  double sum = 0.0;
+  for (const StepRecord& step : steps) sum += 1e-6 * step.step_us;
+  return sum;
+}
+
+double Figure6Run::worst_s(bool with_remeshing) const {
+  const auto seconds = chosen(*this, with_remeshing);
+  return seconds.empty() ? 0.0 : *std::max_element(seconds.begin(), seconds.end());
+}
+
+double Figure6Run::median_s(bool with_remeshing) const { return median(chosen(*this, with_remeshing)); }
+
+std::vector<Figure6Variant> figure6_variants() {
+  return {{"bcs_repositioning", "switches, node repositioning", "node-repositioning", "paper", "bcs"},
+          {"woodbury_addition", "Woodbury, node addition", "node-addition", "paper", "woodbury"},
+          {"default", "this program’s default", "node-addition", "interior", "condensed"}};
+}
+
+Scenario figure6_scenario(bool quick) {
+  Scenario scenario;
+  scenario.name = "Figure 6";
+  scenario.patient.source = "phantom";
+  scenario.mesh.preset = "paper";
+  scenario.fixed.regions = {"band"};  // the pubic side, as the paper holds it
+  scenario.fixed.outer = "none";
+  scenario.run.dt_ms = quick ? 2.0 : 1.0;
+
+  InsertionPlan straight;
+  straight.hole = "e3.5";
+  straight.speed_mm_per_s = straight.retract_speed_mm_per_s = 30.0;
+  scenario.insertions.push_back(straight);
+  if (quick) {
+    scenario.insertions.back().depth_mm = 40.0;
+    return scenario;
+  }
+  InsertionPlan oblique;
+  oblique.entry_mm = {-16.0, 3.0, -70.0};
+  oblique.target_mm = {-5.0, -3.0, 10.0};
+  oblique.speed_mm_per_s = oblique.retract_speed_mm_per_s = 30.0;
+  scenario.insertions.push_back(oblique);
+  return scenario;
+}
+
+Result<std::shared_ptr<const Model>> figure6_model(const Scenario& scenario, const Figure6Variant& variant,
+                                                   const TetMesh& mesh, const Progress& progress) {
+  Scenario own = scenario;
+  own.coupling.method = variant.method;
+  own.coupling.rule = variant.rule;
+  own.coupling.engine = variant.engine;
+  return Model::compile(own, mesh, "figure 6, " + variant.label, {}, progress);
+}
+
+Result<Figure6Run> run_insertions(const std::shared_ptr<const Model>& model, const Figure6Variant& variant,
+                                  const Progress& progress) {
+  return Recorder(model, variant, progress).all();
+}
+
+}  // namespace stylet::reproduce

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/paper/adapted_mesh.hpp"
+#include "stylet/reproduce/remesh_cost.hpp"
+
+namespace stylet::reproduce {
+
+/// A node that the needle's way adds, with all that the methods need to know.
+struct AddedNode {
+  MaterialPoint at;  ///< in the base mesh
+  Vec3 x = Vec3::Zero();
+  Vec3 travel = Vec3::Zero();
+  paper::AdaptedMesh::Change change;
+  std::vector<Index> dofs;  ///< (k) rows of K that ΔK belongs to; those of the new node are the last three
+};
+
+/// Nodes along the way, each accepted by TrackCompliance: inside elements every `spacing_mm`, or on the faces crossed,
+/// at least `spacing_mm` apart.
+std::vector<AddedNode> nodes_along(const NeedleWay& way, const RemeshCostOptions& options);
+
+/// ΔK [N/mm] (k × k): the elements put in their place, less those taken away. @param dofs as in AddedNode
+MatX stiffness_change(const Tissue& tissue, const AddedNode& node);
+
+/// Stiffness of the hat function of a node at weights l inside a homogeneous element [N/mm]:
+/// V Σ_q (1/l_q) [(λ + μ) g_q g_qᵀ + μ |g_q|² I].
+Mat3 hat_stiffness(const Eigen::Matrix<double, 3, 4>& gradients, double volume, const Material& material,
+                   const Vec4& weights);
+
+}  // namespace stylet::reproduce

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/reproduce/reproduction.hpp"
+
+#include "stylet/core/version.hpp"
+#include "stylet/coupling/paper/dense_inverse.hpp"
+#include "stylet/mesher/mesher.hpp"
+#include "stylet/phantom/phantom.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace stylet::reproduce {
+
+namespace {
+
+std::string in_words(const PlannedInsertion& insertion) {
+  const Vec3& d = insertion.direction;
+  const bool straight = d.z() > 0.9999;
+  return fmt::format("{}: entry at ({:.1f}, {:.1f}, {:.1f}) mm, {}, {:.0f} mm deep", insertion.name,
+                     insertion.entry.x(), insertion.entry.y(), insertion.entry.z(),
+                     straight ? std::string("straight along the template")
+                              : fmt::format("along ({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z()),
+                     insertion.depth_mm);
+}
+
+/// Runs the parts one after the other; each leaves what it found in the reproduction.
+class Experiments {
+ public:
+  Experiments(const ReproduceOptions& options, const Progress& progress) : progress_(progress) {
+    out_.options = options;
+    out_.version = version();
+    out_.machine = this_machine();
+  }
+
+  Result<Reproduction> all() {
+    const auto started = std::chrono::steady_clock::now();
+    if (auto done = patient(); !done) return done.error();
+    if (auto done = figure6(); !done) return done.error();
+    if (auto done = remeshing(); !done) return done.error();
+    auto rows = measure_figure5(figure5_dims(quick()), quick() ? 0.4 : 3.0, progress_);
+    if (!rows) return rows.error();
+    out_.figure5 = std::move(*rows);
+    report(progress_, "counting multiplications", 0.0);
+    out_.table = cost_table({out_.figure6, quality_, out_.on_faces, out_.inside, default_->store()->megabytes(),
+                             out_.on_faces.inverse_mb, inverse_s_});
+    out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] bool quick() const { return out_.options.quick; }
+
+  Result<> patient() {
+    scenario_ = figure6_scenario(quick());
+    const ContourSet contours = demo_patient();
+    MeshOptions options;
+    options.preset = MeshPreset::paper;
+    options.cull_tolerance_mm = scenario_.mesh.cull_mm;
+    auto meshed = mesh_contours(contours, options, progress_);
+    if (!meshed) return meshed.error();
+    mesh_ = std::move(meshed->mesh);
+    quality_ = meshed->report.quality;
+    out_.figure2 = make_figure2(contours, mesh_, options.cull_tolerance_mm);
+    return Ok{};
+  }
+
+  Result<> figure6() {
+    Figure6& figure = out_.figure6;
+    figure.dt_ms = scenario_.run.dt_ms;
+    figure.speed_mm_per_s = scenario_.insertions.front().speed_mm_per_s;
+    for (const Figure6Variant& variant : figure6_variants()) {
+      const auto model = figure6_model(scenario_, variant, mesh_, progress_);
+      if (!model) return model.error();
+      auto run = run_insertions(*model, variant, progress_);
+      if (!run) return run.error();
+      if (run->not_converged > 0) {
+        out_.notes.push_back(fmt::format("{}: {} of {} iterations did not converge to the full tolerance.",
+                                         variant.label, run->not_converged, run->steps.size()));
+      }
+      figure.runs.push_back(std::move(*run));
+      default_ = *model;  // the last one
+    }
+    figure.nodes = default_->mesh().node_count();
+    figure.tets = default_->mesh().tet_count();
+    figure.free_dofs = default_->tissue().free_dofs();
+    for (const PlannedInsertion& insertion : default_->insertions()) figure.insertions.push_back(in_words(insertion));
+    return Ok{};
+  }
+
+  Result<> remeshing() {
+    const PlannedInsertion& insertion = default_->insertions().front();
+    NeedleWay way{.store = default_->store(), .locator = &default_->locator(), .inverse = {}, .from = insertion.entry};
+    way.to = insertion.entry + insertion.depth_mm * insertion.direction;
+    MatX inverse;
+    inverse_s_ = cpu_seconds([&] { inverse = paper::full_inverse(default_->tissue(), progress_); });
+    way.inverse = std::make_shared<const MatX>(std::move(inverse));
+    RemeshCostOptions options{.rounds = quick() ? 5 : 25, .bcs_rounds = quick() ? 1 : 2};
+    for (const Placement placement : {Placement::face, Placement::interior}) {
+      options.placement = placement;
+      options.spacing_mm = placement == Placement::face ? scenario_.needle.diameter_mm : 2.5;
+      auto cost = measure_remeshing(way, options, progress_);
+      if (!cost) return cost.error();
+      (placement == Placement::face ? out_.on_faces : out_.inside) = *cost;
+    }
+    return Ok{};
+  }
+
+  const Progress& progress_;
+  Reproduction out_;
+  Scenario scenario_;
+  TetMesh mesh_;
+  MeshQuality quality_;
+  std::shared_ptr<const Model> default_;  ///< the model of this program's default
+  double inverse_s_ = 0.0;
+};
+
+}  // namespace
+
+Result<Reproduction> reproduce(const ReproduceOptions& options, const Progress& progress) {
+  return Experiments(options, progress).all();
+}
+
+}  // namespace stylet::reproduce

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Marks of logarithmic axes.
+import type uPlot from 'uplot';
+
+/** Numbers between low and high whose leading digit is one of `leading`. */
+export function roundNumbers(low: number, high: number, leading: number[]): number[] {
+  const numbers: number[] = [];
+  for (let power = Math.floor(Math.log10(low)); Math.pow(10, power) <= high; power++) {
+    for (const digit of leading) {
+      const number = digit * Math.pow(10, power);
+      if (number >= low && number <= high) numbers.push(number);
+    }
+  }
+  return numbers;
+}
+
+/** An axis with marks at exactly these numbers: uPlot alone would drop some on a logarithmic axis. */
+export function marksAt(numbers: number[], text: (value: number) => string = (v) => v.toLocaleString('en')): Partial<uPlot.Axis> {
+  return {
+    splits: () => numbers,
+    filter: (_u: uPlot, splits: number[]) => splits,
+    values: (_u: uPlot, values: number[]) => values.map(text),
+  };
+}

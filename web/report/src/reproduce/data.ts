@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the program writes into the page (src/reproduce/reproduction_data.cpp, reproduction_page.cpp).
+
+export interface Figure5Row {
+  dim: number;
+  inverse_s: number;
+  bcs_s: number;
+  woodbury_s: number;
+  woodbury_symmetric_s: number;
+}
+
+export interface RunEvent {
+  kind: string;
+  region: string;
+  label: string;
+  iteration: number;
+  time_s: number;
+  depth_mm: number;
+  force_N: number;
+}
+
+export interface Remeshing {
+  kind: 'added_inside' | 'added_on_face' | 'repositioned';
+  iteration: number;
+  dimension: number;
+}
+
+export interface Curves {
+  cumulative_s: Float32Array;
+  axial_N: Float32Array;
+  sagittal_N: Float32Array;
+  lateral_N: Float32Array;
+}
+
+export interface Run {
+  id: string;
+  label: string;
+  iterations: number;
+  events: RunEvent[];
+  remeshings: Remeshing[];
+  curves: Curves;
+}
+
+export type Point = [number, number, number];  // [mm]
+
+export interface Figure2 {
+  contours: { points_mm: Point[]; kept: boolean[] }[];
+  surface: { points_mm: Point[]; triangles: [number, number, number][] };
+  needle_segment: { points_mm: Point[]; tets: [number, number, number, number][] };
+}
+
+export interface ReproductionData {
+  fig2: Figure2;
+  fig5: Figure5Row[];
+  runs: Run[];
+}
+
+function floats(text: string): Float32Array {
+  const binary = atob(text);
+  const array = new Uint8Array(binary.length);
+  for (let i = 0; i < binary.length; i++) array[i] = binary.charCodeAt(i);
+  return new Float32Array(array.buffer);
+}
+
+type RawRun = Omit<Run, 'curves'> & { curves: Record<keyof Curves, string> };
+
+export function decode(json: string): ReproductionData {
+  const raw = JSON.parse(json) as Omit<ReproductionData, 'runs'> & { runs: RawRun[] };
+  return {
+    ...raw,
+    runs: raw.runs.map((run) => ({
+      ...run,
+      curves: {
+        cumulative_s: floats(run.curves.cumulative_s),
+        axial_N: floats(run.curves.axial_N),
+        sagittal_N: floats(run.curves.sagittal_N),
+        lateral_N: floats(run.curves.lateral_N),
+      },
+    })),
+  };
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import 'uplot/dist/uPlot.min.css';
+import '../style.css';
+import './style.css';
+import { roundNumbers } from '../plots/round_numbers';
+import { BLUE, colorOf, SKY, SOFT, VERMILION } from './colors';
+import { decode, type ReproductionData } from './data';
+import { buildDimensionPlot } from './dimension_plot';
+import { drawContours, drawSegment, drawSurface } from './drawings';
+import { buildForceLegend, buildForcePlot, forceRange } from './force_plot';
+import { buildLinePlot } from './line_plot';
+
+/** A time with the unit that suits it. */
+function duration(seconds: number): string {
+  const size = Math.abs(seconds);
+  const digits = (value: number) => String(Number(value.toPrecision(3)));
+  if (size === 0) return '0';
+  if (size < 1e-3) return `${digits(seconds * 1e6)} µs`;
+  if (size < 1) return `${digits(seconds * 1e3)} ms`;
+  return `${digits(seconds)} s`;
+}
+
+/** Builds one part of the page; when that fails the others still work, and the reader is told. */
+function build(id: string, part: (element: HTMLElement) => void): void {
+  const element = document.getElementById(id);
+  if (!element) return;
+  try {
+    part(element);
+  } catch (error) {
+    const note = document.createElement('p');
+    note.className = 'note';
+    note.textContent = `This part could not be shown: ${error instanceof Error ? error.message : String(error)}`;
+    element.replaceChildren(note);
+  }
+}
+
+function figure5(box: HTMLElement, data: ReproductionData): void {
+  const rows = data.fig5;
+  const first = rows[0].dim;
+  const last = rows[rows.length - 1].dim;
+  buildLinePlot(box, {
+    x: rows.map((r) => r.dim),
+    xLabel: 'Order of K',
+    yLabel: 'Processor time of one change',
+    logX: roundNumbers(first / 1.12, last * 1.12, [1, 2, 5]),
+    logY: true,
+    text: duration,
+    xText: (dim) => `K ${dim} × ${dim}`,
+    lines: [
+      { label: 'inverse from scratch', color: SOFT, values: rows.map((r) => r.inverse_s), marks: true },
+      { label: 'boundary condition switches', color: VERMILION, values: rows.map((r) => r.bcs_s), marks: true },
+      { label: 'Woodbury', color: BLUE, values: rows.map((r) => r.woodbury_s), marks: true },
+      { label: 'Woodbury, one triangle', color: SKY, values: rows.map((r) => r.woodbury_symmetric_s), marks: true, dashed: true },
+    ],
+  });
+}
+
+function cumulative(box: HTMLElement, data: ReproductionData, logarithmic: boolean): void {
+  buildLinePlot(box, {
+    x: Array.from({ length: data.runs[0].iterations }, (_, i) => i),
+    xLabel: 'Iteration',
+    yLabel: 'Processor time since the start',
+    logY: logarithmic,
+    lowest: 1e-3,
+    text: duration,
+    xText: (i) => `iteration ${i}`,
+    lines: data.runs.map((run) => ({ label: run.label, color: colorOf(run.id), values: run.curves.cumulative_s, width: run.id === 'default' ? 2.5 : 2 })),
+  });
+}
+
+document.documentElement.classList.add('with-script');
+const data = decode(document.getElementById('reproduction-data')?.textContent ?? '');
+build('figure5-plot', (b) => figure5(b, data));
+build('cumulative-plot', (b) => cumulative(b, data, false));
+build('cumulative-log-plot', (b) => cumulative(b, data, true));
+build('force-legend', buildForceLegend);
+const range = forceRange(data.runs);
+for (const run of data.runs) build(`forces-${run.id}`, (b) => buildForcePlot(b, run, range));
+build('dimension-plot', (b) => buildDimensionPlot(b, data.runs));
+build('contours', (b) => drawContours(b, data.fig2));
+build('surface', (b) => drawSurface(b, data.fig2));
+build('segment', (b) => drawSegment(b, data.fig2));
+
