@@ -48,12 +48,12 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
 
 /// Contacts along the piece of track just cut, from `from` at from_xi to track.end.
 void Insertion::Parts::lay_marks(const Vec3& from, double from_xi, const MaterialPoint& from_at, StepReport& report) {
-  if (settings.method == CouplingSettings::Method::node_addition && settings.rule == CouplingSettings::Rule::paper) {
+  if (settings.method != CouplingSettings::Method::embedded && settings.rule == CouplingSettings::Rule::paper) {
     lay_node_addition_on_faces(from, from_xi, from_at.tet, report);
     return;
   }
   const Vec3 direction = (track.end - from).normalized();
-  const bool nodes = settings.method == CouplingSettings::Method::node_addition;
+  const bool nodes = settings.method != CouplingSettings::Method::embedded;
   while (candidate_xi <= track.end_xi) {
     const Vec3 x = from + std::max(0.0, candidate_xi - from_xi) * direction;
     const auto at = tissue.locator->find(x, tip.at.tet, -direction);
@@ -116,7 +116,7 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
     Track::Mark& mark = track.marks[grips.size()];
     if (mark.point < 0) {  // on an old track: the tissue model has forgotten it since
       if (t.dot(mark.x - tip_now) > settings.spacing_mm) break;
-      const bool nodes = settings.method == CouplingSettings::Method::node_addition;
+      const bool nodes = settings.method != CouplingSettings::Method::embedded;
       const bool paper = settings.rule == CouplingSettings::Rule::paper;
       auto added = compliance.add(mark.at, mark.x,
                                   !nodes  ? Placement::embedded

@@ -95,6 +95,12 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                                    s.coupling.spacing_mm, s.needle.diameter_mm),
                        "Contacts closer than the diameter cannot be told apart: give at least the diameter");
   }
+  if (s.coupling.method == "node-repositioning" && s.coupling.engine == "condensed") {
+    return input_error(place("coupling.method"),
+                       "coupling.method = \"node-repositioning\" changes the stiffness of all elements around the node "
+                       "that moves, and coupling.engine = \"condensed\" never changes the stiffness of the mesh",
+                       "Choose engine = \"woodbury\" or \"bcs\", or method = \"node-addition\"");
+  }
   if (s.insertions.empty()) {
     return input_error(place(""), "there is no needle: no [[insertion]]",
                        "Add [[insertion]] and below it, for example, hole = \"D4\"");

@@ -3,6 +3,7 @@
 
 #include "planning.hpp"
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/coupling/paper/dense_inverse.hpp"
 #include "stylet/needle/make_needle.hpp"
 
 #include <fmt/format.h>
@@ -48,8 +49,13 @@ std::vector<int> find_target(const TetMesh& mesh) {
 
 CouplingSettings coupling_settings(const Scenario& s) {
   CouplingSettings c;
-  c.method =
-      s.coupling.method == "embedded" ? CouplingSettings::Method::embedded : CouplingSettings::Method::node_addition;
+  c.method = s.coupling.method == "embedded"             ? CouplingSettings::Method::embedded
+             : s.coupling.method == "node-repositioning" ? CouplingSettings::Method::node_repositioning
+                                                         : CouplingSettings::Method::node_addition;
+  c.engine = s.coupling.engine == "bcs"        ? CouplingSettings::Engine::bcs
+             : s.coupling.engine == "woodbury" ? CouplingSettings::Engine::woodbury
+                                               : CouplingSettings::Engine::condensed;
+  c.solver = s.coupling.solver == "staggered" ? CouplingSettings::Solver::staggered : CouplingSettings::Solver::coupled;
   c.rule = s.coupling.rule == "paper" ? CouplingSettings::Rule::paper : CouplingSettings::Rule::interior;
   c.spacing_mm = s.coupling.spacing_mm;
   c.merge_mm = s.needle.diameter_mm;
@@ -66,6 +72,9 @@ Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, in
   return make_needle(n.model, {n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2},
                      n.elements, capacity + 1);
 }
+
+/// Largest full inverse, kept twice, that an engine may ask for.
+constexpr double kLargestInverse_GB = 8.0;
 
 /// Follows a recorded motion from outside the patient.
 Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::size_t number, const Scenario& scenario,
@@ -205,6 +214,19 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->locator_ = std::make_unique<Locator>(model->tissue_->mesh(), *model->topology_);
   model->store_ = std::make_shared<ComplianceStore>(model->tissue_);
   model->insertions_ = std::move(insertions);
+  if (model->coupling_.engine != CouplingSettings::Engine::condensed) {
+    const double dofs = model->tissue_->free_dofs() + 3.0 * model->coupling_.capacity;
+    const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // as it was at first, and as it is
+    if (gigabytes > kLargestInverse_GB) {
+      return input_error(
+          fmt::format("{}, coupling.engine = \"{}\"", where, scenario.coupling.engine),
+          fmt::format("the full inverse of a mesh of {} nodes takes {:.1f} GB, more than {:g} GB",
+                      model->mesh().node_count(), gigabytes, kLargestInverse_GB),
+          "Use engine = \"condensed\", which keeps only what the needle touches, or a coarser mesh (mesh.nodes)");
+    }
+    model->inverse_ = std::make_shared<const MatX>(paper::full_inverse(*model->tissue_, progress));
+    return std::shared_ptr<const Model>(std::move(model));
+  }
   for (const PlannedInsertion& insertion : model->insertions_) {
     const Vec3 end = insertion.entry + (insertion.depth_mm + kBeyond_mm) * insertion.direction;
     model->store_->add_nodes(corridor_nodes(model->mesh(), insertion.entry, end, scenario.coupling.corridor_mm),

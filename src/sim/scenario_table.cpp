@@ -103,17 +103,22 @@ void describe_needle(ScenarioEntries& keys) {
 }
 
 void describe_coupling(ScenarioEntries& keys) {
-  keys.choice("coupling.method", {"node-addition", "embedded"}, {"near-field", "node-repositioning"},
-              "how the needle acts on the tissue's mesh: through nodes added along it, or by interpolation between the "
-              "nodes there are",
-              [](auto& s, const Slot&) { return &s.coupling.method; });
+  keys.choice(
+      "coupling.method", {"node-addition", "node-repositioning", "embedded"}, {"near-field"},
+      "how needle and tissue are coupled: a tissue node is added where the needle needs one; the nearest one is "
+      "moved there (engine woodbury or bcs); none, forces are interpolated",
+      [](auto& s, const Slot&) { return &s.coupling.method; });
   keys.choice("coupling.rule", {"interior", "paper"}, {},
               "where nodes are added: inside elements at the contact spacing, or on every face crossed",
               [](auto& s, const Slot&) { return &s.coupling.rule; });
-  keys.choice("coupling.solver", {"coupled"}, {"staggered"}, "needle and tissue in one solve",
+  keys.choice("coupling.solver", {"coupled", "staggered"}, {},
+              "needle and tissue in one solve, or in turn as in Goksel et al. 2005 (slower, same answer)",
               [](auto& s, const Slot&) { return &s.coupling.solver; });
-  keys.choice("coupling.engine", {"condensed"}, {"woodbury", "bcs"}, "what is kept of the inverse stiffness",
-              [](auto& s, const Slot&) { return &s.coupling.engine; });
+  keys.choice(
+      "coupling.engine", {"condensed", "woodbury", "bcs"}, {},
+      "what is kept of the inverse stiffness: what the needle touches, or all of it, changed in place by the "
+      "matrix inversion lemma or by boundary condition switches (Goksel et al. 2005; up to some thousand nodes)",
+      [](auto& s, const Slot&) { return &s.coupling.engine; });
   keys.number("coupling.spacing_mm", "mm", 1, 50, "distance between contacts; at least the needle's diameter",
               [](auto& s, const Slot&) { return &s.coupling.spacing_mm; });
   keys.number("coupling.tip_viscosity_Ns_per_m", "N s/m", 0.01, 1000,

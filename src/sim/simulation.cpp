@@ -53,7 +53,9 @@ EventKind event_kind(InsertionEventKind kind) {
   return EventKind::skin_contact;
 }
 
-InsertionTissue tissue_of(const Model& model) { return {model.store(), &model.locator(), model.laws()}; }
+InsertionTissue tissue_of(const Model& model) {
+  return {model.store(), &model.locator(), model.laws(), model.inverse()};
+}
 
 }  // namespace
 

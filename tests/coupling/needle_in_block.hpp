@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/coupling/insertion.hpp"
+#include "stylet/coupling/paper/dense_inverse.hpp"
 #include "stylet/geom/box_mesh.hpp"
 #include "stylet/needle/beam.hpp"
 
@@ -69,8 +70,11 @@ class NeedleInBlock {
     store = std::make_shared<ComplianceStore>(tissue);
     auto needle = BeamNeedle::build({options.needle_length, 1.27, 15700, 12100}, 20, options.coupling.capacity + 1);
     EXPECT_TRUE(needle.ok());
-    insertion = std::make_unique<Insertion>(InsertionTissue{store, locator.get(), options.laws}, std::move(*needle),
-                                            options.coupling);
+    std::shared_ptr<const MatX> inverse;
+    if (options.coupling.engine != CouplingSettings::Engine::condensed)
+      inverse = std::make_shared<const MatX>(paper::full_inverse(*tissue));
+    insertion = std::make_unique<Insertion>(InsertionTissue{store, locator.get(), options.laws, inverse},
+                                            std::move(*needle), options.coupling);
     length = options.needle_length;
   }
 

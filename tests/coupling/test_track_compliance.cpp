@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Node addition against the same mesh, refactorised.
 #include "stylet/coupling/track_compliance.hpp"
-#include "stylet/geom/box_mesh.hpp"
+
+#include "two_region_block.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,36 +11,9 @@
 #include <random>
 
 using namespace stylet;
+using stylet::test::Block;
 
 namespace {
-
-/// A two-region block with one face held, all compliances stored.
-struct Block {
-  explicit Block(int cells = 4) {
-    TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {cells, cells, cells}, 0.12);
-    assign_regions(mesh, {"soft", "stiff"}, [](const Vec3& x) { return x.x() + 0.3 * x.y() < 26 ? 0 : 1; });
-    for (Index node = 0; node < mesh.node_count(); ++node) {
-      if (mesh.nodes[static_cast<std::size_t>(node)].z() > 39.999) fixed.push_back(node);
-    }
-    auto built = Tissue::build(mesh, materials, fixed);
-    EXPECT_TRUE(built.ok());
-    tissue = std::make_shared<const Tissue>(std::move(*built));
-    topology = std::make_unique<Topology>(tissue->mesh());
-    locator = std::make_unique<Locator>(tissue->mesh(), *topology);
-    auto all = std::make_shared<ComplianceStore>(tissue);
-    std::vector<Index> nodes(static_cast<std::size_t>(mesh.node_count()));
-    std::iota(nodes.begin(), nodes.end(), 0);
-    all->add_nodes(nodes);
-    store = all;
-  }
-
-  std::vector<Material> materials{{0.04, 0.45}, {0.12, 0.40}};
-  std::vector<Index> fixed;
-  std::shared_ptr<const Tissue> tissue;
-  std::unique_ptr<Topology> topology;
-  std::unique_ptr<Locator> locator;
-  std::shared_ptr<const ComplianceStore> store;
-};
 
 /// Largest difference, over the largest entry, between the compliances among the added nodes and those of a fresh
 /// factorisation of the split mesh.

@@ -215,9 +215,9 @@ TEST(ScenarioKeys, a_word_that_is_not_offered_is_refused_with_those_that_are) {
   const std::string method = refusal("coupling.method", text("nod-addition"));
   EXPECT_SAYS(method, "did you mean \"node-addition\"?");
   EXPECT_SAYS(method, "\"embedded\"");
-  const std::string later = refusal("coupling.solver", text("staggered"));
-  EXPECT_SAYS(later, "coupling.solver = \"staggered\" is not available in this version");
-  EXPECT_SAYS(later, "Give one of \"coupled\"");
+  const std::string later = refusal("coupling.method", text("near-field"));
+  EXPECT_SAYS(later, "coupling.method = \"near-field\" is not available in this version");
+  EXPECT_SAYS(later, "Give one of \"node-addition\"");
 }
 
 TEST(ScenarioKeys, an_unknown_key_is_refused_with_the_nearest_known_one) {

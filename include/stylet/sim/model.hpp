@@ -38,6 +38,8 @@ class Model {
   [[nodiscard]] const Topology& topology() const { return *topology_; }
   [[nodiscard]] const Locator& locator() const { return *locator_; }
   [[nodiscard]] const std::shared_ptr<ComplianceStore>& store() const { return store_; }
+  /// The full K⁻¹, for engines that keep it; else empty.
+  [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
@@ -59,6 +61,7 @@ class Model {
   std::unique_ptr<Topology> topology_;
   std::unique_ptr<Locator> locator_;
   std::shared_ptr<ComplianceStore> store_;
+  std::shared_ptr<const MatX> inverse_;
   std::vector<RegionLaws> laws_;
   std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;
