@@ -32,6 +32,7 @@ void TetShape::scale_modulus(double factor) {
 }
 
 void TetShape::update() {
+  ++revision_;
   energy_ = 0.0;
   force_.setZero();
   auto state = states_.begin();

@@ -26,6 +26,8 @@ class TetShape {
   /// [mm] segment by segment: its middle nodes, then the layer at its end. Call update() after writing.
   VecX displacement;
   void update();
+  /// Counts the calls of update(): what was made for the same number is still valid.
+  [[nodiscard]] long revision() const { return revision_; }
 
   /// Multiplies Young's modulus (and stresses, forces, energy).
   void scale_modulus(double factor);
@@ -68,6 +70,7 @@ class TetShape {
   double lambda_;
   double mu_;
   double energy_ = 0.0;
+  long revision_ = 0;
   std::vector<ElementState> states_;
   VecX force_;
 };

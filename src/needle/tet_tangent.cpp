@@ -11,8 +11,9 @@ namespace stylet::tet {
 
 namespace {
 
-/// The stiffness is made positive definite with at least this share of the material part to spare.
-constexpr double kSmallestShift = 0.05;
+/// The stiffness is made positive definite with this share of the material part, or this much more, and more, …
+constexpr double kSmallestShift = 0.1;
+constexpr double kGrowth = 4.0;
 /// First unknown of the axis node in its layer's block.
 constexpr int kAxis = 3 * kAxisNode;
 
@@ -67,7 +68,10 @@ void TetTangent::reserve(Eigen::Index loads) {
 
 void TetTangent::assemble(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                           std::span<const Mat3> springs) {
-  for (int k = 0; k < segments_; ++k) assemble_segment(shape, k);
+  if (assembled_ != shape.revision()) {  // not so when springs are lent after a first try without
+    for (int k = 0; k < segments_; ++k) assemble_segment(shape, k);
+    assembled_ = shape.revision();
+  }
   assemble_loads(shape, base_rotation, loads);
   factorise_shifted(base_rotation, springs);
   reduce_gradient();
@@ -143,7 +147,7 @@ void TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Ma
   };
   if (attempt(0.0)) return;
   // Beyond buckling. The first shift that works bounds the smallest eigenvalue; twice that shift leaves a margin.
-  for (double shift = kSmallestShift; shift < 1e12; shift *= 2.0) {
+  for (double shift = kSmallestShift; shift < 1e12; shift *= kGrowth) {
     if (attempt(shift) && attempt(2.0 * shift)) return;
   }
   // Only reached when loads or shape are not finite.

@@ -71,6 +71,7 @@ class TetTangent {
   std::vector<AxisCurve::Weights> loads_;  ///< where each load acts
   VecX force_;                             ///< [N] (3w) LPS
   MatX Y_;                                 ///< (15 segments × 3 capacity) L⁻¹ Jᵀ
+  long assembled_ = -1;                    ///< revision of the shape that stiffness_ is of
   double material_shift_ = 0.0;
 };
 
