@@ -22,5 +22,6 @@ Command add_mesh_command(CLI::App& program);
 Command add_info_command(CLI::App& program);
 Command add_insert_command(CLI::App& program);
 Command add_reproduce_command(CLI::App& program);
+Command add_bench_command(CLI::App& program);
 
 }  // namespace stylet::cli

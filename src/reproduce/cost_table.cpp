@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace stylet::reproduce {
 
 namespace {
@@ -33,6 +35,14 @@ double largest_change(const Figure6Run& run) {
   return most;
 }
 
+/// Whether the longest iteration that leaves the mesh alone is the one in which the needle comes out.
+bool longest_is_the_last(const Figure6Run& run) {
+  const double worst_us = 1e6 * run.worst_s(false);
+  return std::any_of(run.events.begin(), run.events.end(), [&](const Figure6Event& e) {
+    return e.event.kind == EventKind::withdrawn && run.steps[e.iteration].step_us >= 0.999999 * worst_us;
+  });
+}
+
 class Table {
  public:
   explicit Table(const TableInput& in)
@@ -53,11 +63,12 @@ class Table {
  private:
   void row(std::string quantity, std::string unit, TableCell paper, TableCell reproduced, TableCell ours,
            std::string note = {}) {
-    rows_.push_back({std::move(quantity), std::move(unit), std::move(paper), std::move(reproduced), std::move(ours),
-                     std::move(note)});
+    rows_.push_back({group_, std::move(quantity), std::move(unit), std::move(paper), std::move(reproduced),
+                     std::move(ours), std::move(note)});
   }
 
   void mesh() {
+    group_ = "Mesh";
     const double nodes = in_.figure6.nodes;
     const double tets = in_.figure6.tets;
     row("nodes", "", double{kPaperNodes}, nodes, nodes, "our own anatomy, the paper’s size");
@@ -68,6 +79,7 @@ class Table {
   }
 
   void iterations() {
+    group_ = "Iterations of figure 6";
     row("worst iteration, switches with node repositioning", "ms", kPaperWorstBcs_ms, 1e3 * bcs_.worst_s(true),
         1e3 * ours_.worst_s(true),
         fmt::format("with a change of the mesh; ΔK up to {:g} rows here", largest_change(bcs_)));
@@ -76,7 +88,8 @@ class Table {
     row("median iteration with a change of the mesh", "ms", {}, 1e3 * woodbury_.median_s(true),
         1e3 * ours_.median_s(true), "Woodbury with node addition");
     row("worst iteration without", "ms", {}, 1e3 * woodbury_.worst_s(false), 1e3 * ours_.worst_s(false),
-        "Woodbury with node addition: the mesh stays as it is");
+        longest_is_the_last(woodbury_) ? "Woodbury: the one that puts K⁻¹ back as it was when the needle comes out"
+                                       : "Woodbury with node addition");
     row("median iteration without", "ms", {}, 1e3 * woodbury_.median_s(false), 1e3 * ours_.median_s(false));
     row("all iterations, switches with node repositioning", "s", {}, bcs_.total_s(), ours_.total_s(),
         fmt::format("{} iterations, {} changes of the mesh", bcs_.steps.size(), bcs_.remeshes.size()));
@@ -86,6 +99,7 @@ class Table {
   }
 
   void remeshing() {
+    group_ = "One change of the mesh, in isolation";
     const RemeshCost& face = in_.on_faces;
     const RemeshCost& inside = in_.inside;
     row("a node on a face, Woodbury", "ms", {}, 1e3 * face.woodbury.median_s, 1e3 * face.ours.median_s,
@@ -112,6 +126,7 @@ class Table {
   }
 
   void operations() {
+    group_ = "Operations";
     const int N = 3 * kPaperNodes;
     const int k = 3 * kPaperNodesInvolved;
     const CountedCost counted = count_operations(N, k);
@@ -129,12 +144,14 @@ class Table {
   }
 
   void memory() {
+    group_ = "Memory and preparation";
     row("memory of the compliance", "MB", {}, in_.inverse_mb, in_.store_mb,
         "K⁻¹ with room for nodes and its initial copy; blocks of K⁻¹ near the planned ways");
     row("inverting the initial stiffness", "s", {}, in_.inverse_s, {}, "before the simulation");
   }
 
   const TableInput& in_;
+  std::string group_;
   const Figure6Run& bcs_;
   const Figure6Run& woodbury_;
   const Figure6Run& ours_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/reproduce/figure2.hpp"
 
+#include "needle/tet_segment.hpp"
 #include "stylet/geom/topology.hpp"
 #include "stylet/mesher/mesher.hpp"
 
@@ -48,6 +49,17 @@ void add_surface(Figure2& figure, const TetMesh& mesh) {
   }
 }
 
+/// Drawn twice as long as wide, whatever the needle has.
+Figure2::Segment segment(TetNeedle::Segment kind) {
+  const double width = NeedleSection{}.outer_diameter_mm;
+  const tet::SegmentMesh mesh = tet::make_segment(kind, width, 2.0 * width);
+  Figure2::Segment segment;
+  segment.points = mesh.nodes;
+  for (const tet::Element& element : mesh.elements)
+    segment.tets.push_back({element.node[0], element.node[1], element.node[2], element.node[3]});
+  return segment;
+}
+
 }  // namespace
 
 std::size_t Figure2::points() const {
@@ -76,6 +88,8 @@ Figure2 make_figure2(const ContourSet& contours, const TetMesh& mesh, double cul
   std::sort(figure.contours.begin(), figure.contours.end(),
             [](const CulledContour& a, const CulledContour& b) { return a.points.front().z() < b.points.front().z(); });
   add_surface(figure, mesh);
+  figure.symmetric = segment(TetNeedle::Segment::symmetric);
+  figure.asymmetric = segment(TetNeedle::Segment::asymmetric);
   return figure;
 }
 

@@ -39,7 +39,7 @@ class Recorder {
     simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
     std::size_t changes = simulation_.insertion().compliance().remeshing().size();
     for (long k = 1; k <= steps; ++k) {
-      const Pose base = insertion.motion.at(static_cast<double>(k) * dt_s_);
+      const Pose base = drifted(insertion, number, insertion.motion.at(static_cast<double>(k) * dt_s_));
       simulation_.prepare();
       const double seconds = cpu_seconds([&] { simulation_.step(base, dt_s_); });
       StepRecord record = simulation_.record();
@@ -57,6 +57,14 @@ class Recorder {
       if (simulation_.report().flags & StepReport::not_converged) ++run_.not_converged;
       if (k % 64 == 0) report(progress_, "figure 6, " + run_.variant.label, record.time_s / total_s_);
     }
+  }
+
+  /// The hand drifts sideways as it goes in, and back as it comes out.
+  [[nodiscard]] Pose drifted(const PlannedInsertion& insertion, std::size_t number, Pose base) const {
+    const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
+    const double depth = (tip - insertion.entry).dot(insertion.direction);
+    base.origin += std::clamp(depth / insertion.depth_mm, 0.0, 1.0) * figure6_drift_mm(number);
+    return base;
   }
 
   std::shared_ptr<const Model> model_;
@@ -121,6 +129,8 @@ Scenario figure6_scenario(bool quick) {
   scenario.insertions.push_back(oblique);
   return scenario;
 }
+
+Vec3 figure6_drift_mm(std::size_t insertion) { return insertion % 2 == 0 ? Vec3(3.0, 1.5, 0.0) : Vec3(-2.0, 3.0, 0.0); }
 
 Result<std::shared_ptr<const Model>> figure6_model(const Scenario& scenario, const Figure6Variant& variant,
                                                    const TetMesh& mesh, const Progress& progress) {

@@ -4,6 +4,8 @@
 #include "stylet/coupling/track_compliance.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 namespace stylet::reproduce {
@@ -45,12 +47,20 @@ class Walk {
   [[nodiscard]] bool full() const { return static_cast<int>(nodes_.size()) >= options_.most_nodes; }
 
   void inside() {
-    Index hint = -1;
-    for (double s = 0.5 * options_.spacing_mm; s < length_ && !full();) {
-      const auto here = locator_.find(at(s), hint, direction_);
-      if (here) hint = here->tet;
-      const bool added = here && try_add(*here, at(s));
-      s += added ? options_.spacing_mm : options_.spacing_mm / 16.0;
+    for (double s = 0.5 * options_.spacing_mm; s < length_ && !full(); s += options_.spacing_mm) try_add_near(at(s));
+  }
+
+  /// Too near a face there is no room for a node: then a little beside the way.
+  void try_add_near(const Vec3& x) {
+    const Vec3 u = direction_.unitOrthogonal();
+    const Vec3 v = direction_.cross(u);
+    for (const double radius : {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0}) {
+      for (int k = 0; k < (radius > 0.0 ? 12 : 1); ++k) {
+        const double angle = k * std::numbers::pi / 6.0;
+        const Vec3 beside = x + radius * (std::cos(angle) * u + std::sin(angle) * v);
+        const auto place = locator_.find(beside, -1, direction_);
+        if (place && try_add(*place, beside)) return;
+      }
     }
   }
 

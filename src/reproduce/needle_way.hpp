@@ -15,8 +15,8 @@ struct AddedNode {
   std::vector<Index> dofs;  ///< (k) rows of K that ΔK belongs to; those of the new node are the last three
 };
 
-/// Nodes along the way, each accepted by TrackCompliance: inside elements every `spacing_mm`, or on the faces crossed,
-/// at least `spacing_mm` apart.
+/// Nodes along the way, each accepted by TrackCompliance: inside elements every `spacing_mm`, up to 3 mm beside the way
+/// where a face is too near, or on the faces crossed, at least `spacing_mm` apart.
 std::vector<AddedNode> nodes_along(const NeedleWay& way, const RemeshCostOptions& options);
 
 /// ΔK [N/mm] (k × k): the elements put in their place, less those taken away. @param dofs as in AddedNode

@@ -3,10 +3,12 @@
 #include "report/page_template.hpp"
 #include "report/text.hpp"
 #include "reproduction_data.hpp"
+#include "stylet/coupling/paper/inverse_updates.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace stylet::reproduce {
@@ -15,6 +17,16 @@ using results::html_escaped;
 using results::html_prose;
 
 namespace {
+
+/// 5·10⁻¹³: a small number by its order.
+std::string order(double value) {
+  if (!(value > 0.0)) return "0";
+  static const std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const int exponent = static_cast<int>(std::floor(std::log10(value)));
+  std::string text = fmt::format("{:.0f}·10⁻", value / std::pow(10.0, exponent));
+  for (const char digit : std::to_string(-exponent)) text += raised[static_cast<std::size_t>(digit - '0')];
+  return text;
+}
 
 /// Three significant digits, without an exponent; thousands in groups.
 std::string digits(double value) {
@@ -25,7 +37,7 @@ std::string digits(double value) {
   if (size >= 9.995) return fmt::format("{:.1f}", value);
   if (size >= 0.9995) return fmt::format("{:.2f}", value);
   if (size >= 1e-4) return fmt::format("{:.{}f}", value, 2 - static_cast<int>(std::floor(std::log10(size))));
-  return fmt::format("{:.1e}", value);
+  return order(value);
 }
 
 /// A time with the unit that suits it.
@@ -110,8 +122,8 @@ std::string figure5_caption(const Reproduction& r) {
              "of "
              "matrices, which goes over K⁻¹ once; the switches go over it once for each degree of freedom.") +
          paragraph(fmt::format("Medians; every result is checked against the inverse from scratch, largest difference "
-                               "{:.0e}.",
-                               worst));
+                               "{}.",
+                               order(worst)));
 }
 
 std::string figure6_intro(const Reproduction& r) {
@@ -128,23 +140,33 @@ std::string figure6_intro(const Reproduction& r) {
          "<ul>" + insertions + "</ul>";
 }
 
+/// Time of all iterations that changed the mesh [s].
+double remeshing_s(const Figure6Run& run) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < run.steps.size(); ++i)
+    if (run.remeshings[i] > 0) sum += 1e-6 * run.steps[i].step_us;
+  return sum;
+}
+
 std::string cumulative_caption(const Reproduction& r) {
   const Figure6Run& bcs = run_of(r.figure6, "bcs_repositioning");
   const Figure6Run& woodbury = run_of(r.figure6, "woodbury_addition");
   const Figure6Run& ours = run_of(r.figure6, "default");
+  const auto told = [](const Figure6Run& run) {
+    return fmt::format("{} of them, {} in the middle, {} at worst, {} together", run.remeshes.size(),
+                       duration(run.median_s(true)), duration(run.worst_s(true)), duration(remeshing_s(run)));
+  };
   return paragraph(
              "In the paper the curve of the switches climbs in big steps, one for each repositioning, and runs flat "
              "during retraction, when the mesh stays as it is; Woodbury with node addition stays far below.") +
-         paragraph(fmt::format(
-             "Here, too: {} changes of the mesh by switches cost {} at worst and {} in the middle, {} in all; {} "
-             "changes "
-             "by Woodbury {} and {}, {} in all. Iterations that leave the mesh alone take {}, {} and {} in the middle "
-             "(switches, Woodbury, default). The default changes the mesh {} times, {} at worst, {} in all.",
-             bcs.remeshes.size(), duration(bcs.worst_s(true)), duration(bcs.median_s(true)), duration(bcs.total_s()),
-             woodbury.remeshes.size(), duration(woodbury.worst_s(true)), duration(woodbury.median_s(true)),
-             duration(woodbury.total_s()), duration(bcs.median_s(false)), duration(woodbury.median_s(false)),
-             duration(ours.median_s(false)), ours.remeshes.size(), duration(ours.worst_s(true)),
-             duration(ours.total_s())));
+         paragraph(fmt::format("The same steps are seen here, and none during retraction. Between them all three "
+                               "variants climb alike: our "
+                               "balance of needle and tissue, the same for all, takes {} an iteration in the middle. "
+                               "The plot on the right "
+                               "leaves these iterations out. Iterations that change the mesh: switches with "
+                               "repositioning, {}; Woodbury with "
+                               "node addition, {}; default, {}. The last includes the balance, which is most of it.",
+                               duration(ours.median_s(false)), told(bcs), told(woodbury), told(ours)));
 }
 
 std::string force_plots(const Reproduction& r) {
@@ -166,20 +188,31 @@ double peak(const Figure6Run& run) {
   return most;
 }
 
+/// Root mean square difference of the axial forces of two runs over the second's peak [%].
+double difference_percent(const Figure6Run& run, const Figure6Run& other) {
+  double sum = 0.0;
+  const std::size_t count = std::min(run.steps.size(), other.steps.size());
+  for (std::size_t i = 0; i < count; ++i) sum += std::pow(run.steps[i].force_axial_N - other.steps[i].force_axial_N, 2);
+  return 100.0 * std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1))) / peak(other);
+}
+
 std::string forces_caption(const Reproduction& r) {
+  const Figure6Run& ours = run_of(r.figure6, "default");
   std::string peaks;
-  for (const Figure6Run& run : r.figure6.runs) {
+  for (const Figure6Run& run : r.figure6.runs)
     peaks += fmt::format("{}{:.2f} N ({})", peaks.empty() ? "" : ", ", peak(run), run.variant.label);
-  }
   return paragraph(
              "The paper’s curves show the contact with the skin, the penetration of the prostate, the reversal of the "
              "force while the tissue still sticks to the needle drawn back, and the start of slip; their axes reach "
              "from "
-             "−0.6 to 0.9 N. The same features are marked here.") +
-         paragraph(fmt::format("Largest axial forces: {}. On a mesh this coarse the force depends on where nodes "
-                               "stand, and so the variants "
-                               "differ a little: moving nodes changes the mesh in another way than adding them.",
-                               peaks));
+             "−0.6 to 0.9 N. The same features are marked here. Force falls at the end of the way in because friction "
+             "has a part that grows with speed, and the needle stops.") +
+         paragraph(
+             fmt::format("Largest axial forces: {}. The axial force of the switches with repositioning differs from "
+                         "the default’s by {:.1f} % of its peak (root mean square), that of Woodbury with node "
+                         "addition by {:.1f} %: each variant has its nodes in other places.",
+                         peaks, difference_percent(run_of(r.figure6, "bcs_repositioning"), ours),
+                         difference_percent(run_of(r.figure6, "woodbury_addition"), ours)));
 }
 
 std::string dimensions_caption(const Reproduction& r) {
@@ -208,13 +241,19 @@ std::string figure2_intro(const Reproduction& r) {
       f.cull_mm, f.points(), f.organ, f.points_kept()));
 }
 
-std::string segment_figure(const Reproduction& r) {
-  if (r.figure2.segment_tets.empty()) return {};
-  return fmt::format(
-      "<figure><figcaption>A segment of the tetrahedral needle</figcaption><div class=\"drawing\" "
-      "id=\"segment\"></div><p>{} tetrahedra around the axis: the same stiffness whatever the direction of bending.</p>"
-      "</figure>",
-      r.figure2.segment_tets.size());
+std::string segment_figures(const Reproduction& r) {
+  const auto one = [](const std::string& title, const std::string& id, const std::string& text) {
+    return "<figure><figcaption>" + html_escaped(title) + "</figcaption><div class=\"drawing\" id=\"" + id +
+           "\"></div>" + paragraph(text) + "</figure>";
+  };
+  return one("Needle segment, symmetric", "segment",
+             fmt::format("The tetrahedral needle is built of these: {} tetrahedra around the axis, alike in every "
+                         "direction it may bend. Drawn twice as long as wide.",
+                         r.figure2.symmetric.tets.size())) +
+         one("Needle segment, asymmetric", "asymmetric",
+             fmt::format("For comparison: {} tetrahedra, every diagonal rising the same way. A needle of these moves "
+                         "sideways under a load that is straight.",
+                         r.figure2.asymmetric.tets.size()));
 }
 
 std::string cell(const TableCell& cell, bool best) {
@@ -226,7 +265,12 @@ std::string cell(const TableCell& cell, bool best) {
 
 std::string table_rows(const std::vector<TableRow>& rows) {
   std::string html;
+  std::string group;
   for (const TableRow& row : rows) {
+    if (row.group != group) {
+      group = row.group;
+      html += "<tr class=\"group\"><th colspan=\"6\">" + html_escaped(group) + "</th></tr>";
+    }
     const auto* theirs = std::get_if<double>(&row.reproduced);
     const auto* ours = std::get_if<double>(&row.ours);
     const bool compared = theirs != nullptr && ours != nullptr && !row.unit.empty() && *ours < *theirs;
@@ -238,14 +282,16 @@ std::string table_rows(const std::vector<TableRow>& rows) {
 }
 
 std::string credibility(const Reproduction& r) {
-  return paragraph(fmt::format(
-      "The paper states iterations of less than 1 ms with Woodbury. On its mesh one update of the whole inverse is 53 "
-      "million multiplications and as many additions; its processor could do at most one of each in a cycle of 3.2 "
-      "GHz. So "
-      "the figure can hold for iterations that leave the mesh alone, or for a part of the inverse, but not for one "
-      "that "
-      "changes all of K⁻¹. Here the same update takes {} on one core, {} using symmetry.",
-      duration(r.on_faces.woodbury_full.median_s), duration(r.on_faces.woodbury_update_s)));
+  return paragraph(
+      fmt::format("The paper states iterations of less than 1 ms with Woodbury. On its mesh one update of the whole "
+                  "inverse is {:.0f} "
+                  "million multiplications and as many additions; its processor could do at most one of each in a "
+                  "cycle of 3.2 GHz. So "
+                  "the figure can hold for iterations that leave the mesh alone, or for a part of the inverse, but not "
+                  "for one that "
+                  "changes all of K⁻¹. Here the same update takes {} on one core, {} using symmetry.",
+                  1e-6 * paper::cost_of_woodbury(3 * 570, 3 * 6), duration(r.on_faces.woodbury_full.median_s),
+                  duration(r.on_faces.woodbury_update_s)));
 }
 
 std::string pair(const std::string& name, const std::string& value) {
@@ -296,7 +342,7 @@ Result<std::string> reproduction_page(const Reproduction& r) {
       {"forces", forces_caption(r)},
       {"dimensions", dimensions_caption(r)},
       {"figure2", figure2_intro(r)},
-      {"segment", segment_figure(r)},
+      {"segments", segment_figures(r)},
       {"table", table_rows(r.table)},
       {"credibility", credibility(r)},
       {"made", how_made(r)},

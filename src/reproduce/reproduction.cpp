@@ -9,19 +9,28 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 
 namespace stylet::reproduce {
 
 namespace {
 
-std::string in_words(const PlannedInsertion& insertion) {
-  const Vec3& d = insertion.direction;
-  const bool straight = d.z() > 0.9999;
-  return fmt::format("{}: entry at ({:.1f}, {:.1f}, {:.1f}) mm, {}, {:.0f} mm deep", insertion.name,
-                     insertion.entry.x(), insertion.entry.y(), insertion.entry.z(),
-                     straight ? std::string("straight along the template")
-                              : fmt::format("along ({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z()),
-                     insertion.depth_mm);
+/// A number whose minus is one.
+std::string signed_text(double value, int digits) {
+  const std::string text = fmt::format("{:.{}f}", std::abs(value), digits);
+  return value < 0.0 && text.find_first_not_of("0.") != std::string::npos ? "−" + text : text;
+}
+
+std::string in_words(const PlannedInsertion& insertion, const Vec3& drift) {
+  const auto list = [](const Vec3& v, int digits) {
+    return fmt::format("({}, {}, {})", signed_text(v.x(), digits), signed_text(v.y(), digits),
+                       signed_text(v.z(), digits));
+  };
+  const bool straight = insertion.direction.z() > 0.9999;
+  return fmt::format("{}: entry at {} mm (LPS), {}, {:.0f} mm deep; the hand drifts {:.1f} mm sideways on the way",
+                     insertion.name, list(insertion.entry, 1),
+                     straight ? std::string("straight along the template") : "along " + list(insertion.direction, 2),
+                     insertion.depth_mm, drift.norm());
 }
 
 /// Runs the parts one after the other; each leaves what it found in the reproduction.
@@ -84,7 +93,8 @@ class Experiments {
     figure.nodes = default_->mesh().node_count();
     figure.tets = default_->mesh().tet_count();
     figure.free_dofs = default_->tissue().free_dofs();
-    for (const PlannedInsertion& insertion : default_->insertions()) figure.insertions.push_back(in_words(insertion));
+    for (std::size_t i = 0; i < default_->insertions().size(); ++i)
+      figure.insertions.push_back(in_words(default_->insertions()[i], figure6_drift_mm(i)));
     return Ok{};
   }
 

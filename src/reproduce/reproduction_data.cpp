@@ -18,6 +18,10 @@ Json points_json(const std::vector<Vec3>& points) {
   return list;
 }
 
+Json segment_json(const Figure2::Segment& segment) {
+  return {{"points_mm", points_json(segment.points)}, {"tets", segment.tets}};
+}
+
 /// null for what does not exist, since JSON knows no NaN.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -128,7 +132,8 @@ Json figure6_json(const Figure6& figure) {
 Json table_json(const std::vector<TableRow>& rows) {
   Json list = Json::array();
   for (const TableRow& row : rows) {
-    list.push_back({{"quantity", row.quantity},
+    list.push_back({{"group", row.group},
+                    {"quantity", row.quantity},
                     {"unit", row.unit},
                     {"paper", cell_json(row.paper)},
                     {"reproduced", cell_json(row.reproduced)},
@@ -185,7 +190,8 @@ Json figure2_json(const Figure2& figure) {
           {"points_kept", figure.points_kept()},
           {"contours", contours},
           {"surface", {{"points_mm", points_json(figure.surface_points)}, {"triangles", figure.surface_triangles}}},
-          {"needle_segment", {{"points_mm", points_json(figure.segment_points)}, {"tets", figure.segment_tets}}}};
+          {"needle_segment",
+           {{"symmetric", segment_json(figure.symmetric)}, {"asymmetric", segment_json(figure.asymmetric)}}}};
 }
 
 Json curves_json(const Figure6Run& run) {

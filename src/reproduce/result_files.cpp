@@ -67,10 +67,10 @@ std::string cell_text(const TableCell& cell) {
 }
 
 std::string table_csv(const std::vector<TableRow>& rows) {
-  std::string csv = "quantity,unit,paper,reproduced,default,note\n";
+  std::string csv = "group,quantity,unit,paper,reproduced,default,note\n";
   for (const TableRow& row : rows) {
-    csv += fmt::format("{},{},{},{},{},{}\n", quoted(row.quantity), quoted(row.unit), cell_text(row.paper),
-                       cell_text(row.reproduced), cell_text(row.ours), quoted(row.note));
+    csv += fmt::format("{},{},{},{},{},{},{}\n", quoted(row.group), quoted(row.quantity), quoted(row.unit),
+                       cell_text(row.paper), cell_text(row.reproduced), cell_text(row.ours), quoted(row.note));
   }
   return csv;
 }

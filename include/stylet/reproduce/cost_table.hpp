@@ -16,6 +16,7 @@ using TableCell = std::variant<std::monostate, double, std::string>;
 
 /// A quantity as the paper states it, as its methods come out here, and as this program does by default.
 struct TableRow {
+  std::string group;  ///< rows of one group follow each other
   std::string quantity;
   std::string unit;
   TableCell paper;

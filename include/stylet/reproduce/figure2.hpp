@@ -25,8 +25,13 @@ struct Figure2 {
   std::vector<Vec3> surface_points;                     ///< [mm] LPS
   std::vector<std::array<Index, 3>> surface_triangles;  ///< outward
 
-  std::vector<Vec3> segment_points;  ///< [mm] one segment of the needle, local z its axis
-  std::vector<std::array<Index, 4>> segment_tets;
+  /// One segment of the tetrahedral needle, local z its axis.
+  struct Segment {
+    std::vector<Vec3> points;  ///< [mm]
+    std::vector<std::array<Index, 4>> tets;
+  };
+  Segment symmetric;   ///< the one that is used, of the kind the paper asks for
+  Segment asymmetric;  ///< the simpler one, which bends to one side
 
   [[nodiscard]] std::size_t points() const;
   [[nodiscard]] std::size_t points_kept() const;

@@ -68,6 +68,10 @@ struct Figure6 {
 /// held; each goes in, waits, and comes out at constant speed. quick: one shorter insertion with a larger time step.
 Scenario figure6_scenario(bool quick);
 
+/// How far the base drifts sideways until it is at its deepest [mm] LPS: no hand is straight, and a straight one would
+/// feel next to nothing across the needle.
+Vec3 figure6_drift_mm(std::size_t insertion);
+
 /// Compiles the patient for a variant.
 /// @param mesh of the scenario's patient
 Result<std::shared_ptr<const Model>> figure6_model(const Scenario& scenario, const Figure6Variant& variant,

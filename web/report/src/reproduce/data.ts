@@ -23,6 +23,7 @@ export interface Remeshing {
   kind: 'added_inside' | 'added_on_face' | 'repositioned';
   iteration: number;
   dimension: number;
+  step_us: number;
 }
 
 export interface Curves {
@@ -43,10 +44,15 @@ export interface Run {
 
 export type Point = [number, number, number];  // [mm]
 
+export interface Segment {
+  points_mm: Point[];
+  tets: [number, number, number, number][];
+}
+
 export interface Figure2 {
   contours: { points_mm: Point[]; kept: boolean[] }[];
   surface: { points_mm: Point[]; triangles: [number, number, number][] };
-  needle_segment: { points_mm: Point[]; tets: [number, number, number, number][] };
+  needle_segment: { symmetric: Segment; asymmetric: Segment };
 }
 
 export interface ReproductionData {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure 2, drawn as SVG: contours slice by slice, the organ's surface and a needle segment that can be turned.
 import { BLUE, VERMILION } from './colors';
-import type { Figure2, Point } from './data';
+import type { Figure2, Point, Segment } from './data';
 
 const SVG = 'http://www.w3.org/2000/svg';
 
@@ -61,7 +61,7 @@ const cross = (a: Point, b: Point): Point => [a[1] * b[2] - a[2] * b[1], a[2] * 
 interface Solid {
   points: Point[];
   triangles: [number, number, number][];  // outward
-  edges: [number, number][];              // drawn through the faces, where these are translucent
+  edges: [number, number][];              // inner ones, drawn through the translucent faces
   color: [number, number, number];
   opacity: number;
   turn: [number, number];  // first azimuth and lift [rad]
@@ -100,7 +100,7 @@ function drawSolid(box: HTMLElement, solid: Solid, label: string): void {
       }, view);
     }
     for (const [a, b] of solid.edges) {
-      svg('line', { x1: seen[a][0], y1: -seen[a][1], x2: seen[b][0], y2: -seen[b][1], stroke: '#23262b', 'stroke-width': radius / 130 }, view);
+      svg('line', { x1: seen[a][0], y1: -seen[a][1], x2: seen[b][0], y2: -seen[b][1], stroke: BLUE, 'stroke-width': radius / 110 }, view);
     }
     if (solid.edges.length > 0) {
       for (const p of seen) svg('circle', { cx: p[0], cy: -p[1], r: radius / 45, fill: BLUE, stroke: '#fff', 'stroke-width': radius / 260 }, view);
@@ -133,9 +133,9 @@ export function drawSurface(box: HTMLElement, figure: Figure2): void {
   }, 'Surface of the organ, from the patient’s left front');
 }
 
-/** Faces and edges of a handful of tetrahedra. */
-export function drawSegment(box: HTMLElement, figure: Figure2): void {
-  const { points_mm: points, tets } = figure.needle_segment;
+/** A handful of tetrahedra: their outer faces, and the edges inside. */
+export function drawSegment(box: HTMLElement, segment: Segment): void {
+  const { points_mm: points, tets } = segment;
   const triangles = new Map<string, [number, number, number]>();
   const edges = new Map<string, [number, number]>();
   for (const [a, b, c, d] of tets) {
@@ -145,6 +145,9 @@ export function drawSegment(box: HTMLElement, figure: Figure2): void {
       else triangles.set(key, face);
     }
     for (const [p, q] of [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]) edges.set([Math.min(p, q), Math.max(p, q)].join(), [p, q]);
+  }
+  for (const [a, b, c] of triangles.values()) {
+    for (const [p, q] of [[a, b], [b, c], [c, a]]) edges.delete([Math.min(p, q), Math.max(p, q)].join());
   }
   drawSolid(box, {
     points, triangles: [...triangles.values()], edges: [...edges.values()],

@@ -131,7 +131,7 @@ export function buildLinePlot(box: HTMLElement, options: LinePlot): void {
       }))],
       hooks: { draw: [(u: uPlot) => drawNames(u, lines)] },
     } as uPlot.Options,
-    [Array.from(x), ...lines.map((l) => Array.from(l.values))] as uPlot.AlignedData,
+    [Array.from(x), ...lines.map((l) => Array.from(l.values, (v) => (options.logY && v <= 0 ? null : v)))] as uPlot.AlignedData,
     box,
   );
   followWidth(box, plot);

@@ -4,7 +4,7 @@ import '../style.css';
 import './style.css';
 import { roundNumbers } from '../plots/round_numbers';
 import { BLUE, colorOf, SKY, SOFT, VERMILION } from './colors';
-import { decode, type ReproductionData } from './data';
+import { decode, type ReproductionData, type Run } from './data';
 import { buildDimensionPlot } from './dimension_plot';
 import { drawContours, drawSegment, drawSurface } from './drawings';
 import { buildForceLegend, buildForcePlot, forceRange } from './force_plot';
@@ -55,16 +55,23 @@ function figure5(box: HTMLElement, data: ReproductionData): void {
   });
 }
 
-function cumulative(box: HTMLElement, data: ReproductionData, logarithmic: boolean): void {
+/** Time summed over the iterations that changed the mesh; nothing before the first. */
+function remeshingOnly(run: Run): number[] {
+  const sums = new Array<number>(run.iterations).fill(0);
+  for (const { iteration, step_us } of run.remeshings) sums[iteration] = step_us * 1e-6;
+  let sum = 0;
+  return sums.map((s) => (sum += s));
+}
+
+function cumulative(box: HTMLElement, data: ReproductionData, only: boolean): void {
   buildLinePlot(box, {
     x: Array.from({ length: data.runs[0].iterations }, (_, i) => i),
     xLabel: 'Iteration',
     yLabel: 'Processor time since the start',
-    logY: logarithmic,
-    lowest: 1e-3,
+    logY: only,
     text: duration,
     xText: (i) => `iteration ${i}`,
-    lines: data.runs.map((run) => ({ label: run.label, color: colorOf(run.id), values: run.curves.cumulative_s, width: run.id === 'default' ? 2.5 : 2 })),
+    lines: data.runs.map((run) => ({ label: run.label, color: colorOf(run.id), values: only ? remeshingOnly(run) : run.curves.cumulative_s, width: run.id === 'default' ? 2.5 : 2 })),
   });
 }
 
@@ -72,12 +79,13 @@ document.documentElement.classList.add('with-script');
 const data = decode(document.getElementById('reproduction-data')?.textContent ?? '');
 build('figure5-plot', (b) => figure5(b, data));
 build('cumulative-plot', (b) => cumulative(b, data, false));
-build('cumulative-log-plot', (b) => cumulative(b, data, true));
+build('remeshing-plot', (b) => cumulative(b, data, true));
 build('force-legend', buildForceLegend);
 const range = forceRange(data.runs);
 for (const run of data.runs) build(`forces-${run.id}`, (b) => buildForcePlot(b, run, range));
 build('dimension-plot', (b) => buildDimensionPlot(b, data.runs));
 build('contours', (b) => drawContours(b, data.fig2));
 build('surface', (b) => drawSurface(b, data.fig2));
-build('segment', (b) => drawSegment(b, data.fig2));
+build('segment', (b) => drawSegment(b, data.fig2.needle_segment.symmetric));
+build('asymmetric', (b) => drawSegment(b, data.fig2.needle_segment.asymmetric));
 
