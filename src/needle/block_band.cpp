@@ -53,41 +53,47 @@ bool factorise_block(Block& A) {
 
 }  // namespace
 
-void BlockBand::clear(int band) {
-  band_ = band;
+BlockBand::BlockBand(int blocks)
+    : blocks_(blocks),
+      first_(static_cast<std::size_t>(blocks)),
+      block_(static_cast<std::size_t>(blocks * (kWidest + 1))) {
+  clear();
+}
+
+void BlockBand::clear() {
   for (Block& block : block_) block.setZero();
+  for (int row = 0; row < blocks_; ++row) first_[static_cast<std::size_t>(row)] = std::max(0, row - 1);
 }
 
 bool BlockBand::factorise() {
   for (int row = 0; row < blocks_; ++row) {
-    const int first = std::max(0, row - band_);
-    for (int column = first; column < row; ++column) {
-      Block& A = (*this)(row, column);
-      for (int k = std::max(first, column - band_); k < column; ++k)
-        subtract_product(A, (*this)(row, k), (*this)(column, k));
-      divide_by_transpose(A, (*this)(column, column));
+    for (int column = first(row); column < row; ++column) {
+      Block& A = block(row, column);
+      for (int k = std::max(first(row), first(column)); k < column; ++k)
+        subtract_product(A, block(row, k), block(column, k));
+      divide_by_transpose(A, block(column, column));
     }
-    Block& diagonal = (*this)(row, row);
-    for (int k = first; k < row; ++k) subtract_product(diagonal, (*this)(row, k), (*this)(row, k));
+    Block& diagonal = block(row, row);
+    for (int k = first(row); k < row; ++k) subtract_product(diagonal, block(row, k), block(row, k));
     if (!factorise_block(diagonal)) return false;
   }
   return true;
 }
 
-void BlockBand::solve_lower(int first, double* y) const {
-  for (int row = first; row < blocks_; ++row) {
+void BlockBand::solve_lower(int start, double* y) const {
+  for (int row = start; row < blocks_; ++row) {
     double x[kBlock];
     double* const here = y + row * kBlock;
     for (int i = 0; i < kBlock; ++i) x[i] = here[i];
-    for (int k = std::max(first, row - band_); k < row; ++k) {
-      const Block& L = (*this)(row, k);
+    for (int k = std::max(start, first(row)); k < row; ++k) {
+      const Block& L = block(row, k);
       const double* const known = y + k * kBlock;
       for (int j = 0; j < kBlock; ++j) {
         const double v = known[j];
         for (int i = 0; i < kBlock; ++i) x[i] -= L(i, j) * v;
       }
     }
-    const Block& L = (*this)(row, row);
+    const Block& L = block(row, row);
     for (int j = 0; j < kBlock; ++j) {
       x[j] /= L(j, j);
       for (int i = j + 1; i < kBlock; ++i) x[i] -= L(i, j) * x[j];
@@ -99,8 +105,9 @@ void BlockBand::solve_lower(int first, double* y) const {
 void BlockBand::solve_upper(double* y) const {
   for (int row = blocks_ - 1; row >= 0; --row) {
     double* const here = y + row * kBlock;
-    for (int k = row + 1; k <= std::min(blocks_ - 1, row + band_); ++k) {
-      const Block& L = (*this)(k, row);
+    for (int k = row + 1; k <= std::min(blocks_ - 1, row + kWidest); ++k) {
+      if (first(k) > row) continue;
+      const Block& L = block(k, row);
       const double* const known = y + k * kBlock;
       for (int j = 0; j < kBlock; ++j) {
         double sum = 0.0;
@@ -108,7 +115,7 @@ void BlockBand::solve_upper(double* y) const {
         here[j] -= sum;
       }
     }
-    const Block& L = (*this)(row, row);
+    const Block& L = block(row, row);
     for (int j = kBlock - 1; j >= 0; --j) {
       double sum = here[j];
       for (int i = j + 1; i < kBlock; ++i) sum -= L(i, j) * here[i];

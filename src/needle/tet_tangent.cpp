@@ -140,8 +140,7 @@ void TetTangent::assemble_loads(const TetShape& shape, const Mat3& base_rotation
 void TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs) {
   const auto attempt = [&](double shift) {
     material_shift_ = shift;
-    // The cubic through four layers ties layers three apart as soon as springs act on it.
-    band_.clear(springs.empty() ? 1 : BlockBand::kWidest);
+    band_.clear();
     if (!springs.empty()) add_springs(base_rotation, springs);
     return factorise(shift);
   };
@@ -151,8 +150,8 @@ void TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Ma
     if (attempt(shift) && attempt(2.0 * shift)) return;
   }
   // Only reached when loads or shape are not finite.
-  band_.clear(1);
-  for (int k = 0; k < segments_; ++k) band_(k, k).setIdentity();
+  band_.clear();
+  for (int k = 0; k < segments_; ++k) band_.at(k, k).setIdentity();
   for (Eliminated& node : eliminated_) {
     node.L.setIdentity();
     for (Mat3& coupling : node.coupling) coupling.setZero();
@@ -195,12 +194,13 @@ bool TetTangent::eliminate_middle(int segment) {
 
 /// The segment's reduced stiffness into the blocks of its two layers; the clamped layer drops out.
 void TetTangent::add_segment(int segment) {
-  band_(segment, segment) += work_.block<kBlock, kBlock>(kBlock, kBlock);
+  band_.at(segment, segment) += work_.block<kBlock, kBlock>(kBlock, kBlock);
   if (segment == 0) return;
-  band_(segment, segment - 1) += work_.block<kBlock, kBlock>(kBlock, 0);
-  band_(segment - 1, segment - 1) += work_.block<kBlock, kBlock>(0, 0);
+  band_.at(segment, segment - 1) += work_.block<kBlock, kBlock>(kBlock, 0);
+  band_.at(segment - 1, segment - 1) += work_.block<kBlock, kBlock>(0, 0);
 }
 
+/// The cubic through four layers ties layers three apart as soon as springs act on it.
 void TetTangent::add_springs(const Mat3& base_rotation, std::span<const Mat3> springs) {
   assert(springs.size() == loads_.size());
   for (std::size_t c = 0; c < std::min(springs.size(), loads_.size()); ++c) {
@@ -209,7 +209,7 @@ void TetTangent::add_springs(const Mat3& base_rotation, std::span<const Mat3> sp
     for (int i = 0; i < AxisCurve::kReach; ++i) {
       for (int j = 0; j <= i; ++j) {
         if (w.value[i] == 0.0 || w.value[j] == 0.0) continue;
-        band_(w.first + i - 1, w.first + j - 1).block<3, 3>(kAxis, kAxis) += w.value[i] * w.value[j] * G;
+        band_.at(w.first + i - 1, w.first + j - 1).block<3, 3>(kAxis, kAxis) += w.value[i] * w.value[j] * G;
       }
     }
   }
