@@ -153,7 +153,7 @@ std::string cumulative_caption(const Reproduction& r) {
   const Figure6Run& woodbury = run_of(r.figure6, "woodbury_addition");
   const Figure6Run& ours = run_of(r.figure6, "default");
   const auto told = [](const Figure6Run& run) {
-    return fmt::format("{} of them, {} in the middle, {} at worst, {} together", run.remeshes.size(),
+    return fmt::format("{} of them, median {}, worst {}, together {}", run.remeshes.size(),
                        duration(run.median_s(true)), duration(run.worst_s(true)), duration(remeshing_s(run)));
   };
   return paragraph(
@@ -161,7 +161,7 @@ std::string cumulative_caption(const Reproduction& r) {
              "during retraction, when the mesh stays as it is; Woodbury with node addition stays far below.") +
          paragraph(fmt::format("The same steps are seen here, and none during retraction. Between them all three "
                                "variants climb alike: our "
-                               "balance of needle and tissue, the same for all, takes {} an iteration in the middle. "
+                               "balance of needle and tissue, the same for all, takes {} an iteration (median). "
                                "The plot on the right "
                                "leaves these iterations out. Iterations that change the mesh: switches with "
                                "repositioning, {}; Woodbury with "
@@ -346,6 +346,8 @@ Result<std::string> reproduction_page(const Reproduction& r) {
       {"table", table_rows(r.table)},
       {"credibility", credibility(r)},
       {"made", how_made(r)},
+      {"repeats", r.options.quick ? "every iteration of figure 6 was run once."
+                                  : "every iteration of figure 6 was run three times, and the median counts."},
       {"curve_files", files},
       {"versions", html_escaped("Stylet " + r.version)},
       {"data", results::json_script_safe(page_data(r))},

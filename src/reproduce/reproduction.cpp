@@ -81,7 +81,7 @@ class Experiments {
     for (const Figure6Variant& variant : figure6_variants()) {
       const auto model = figure6_model(scenario_, variant, mesh_, progress_);
       if (!model) return model.error();
-      auto run = run_insertions(*model, variant, progress_);
+      auto run = run_insertions(*model, variant, quick() ? 1 : 3, progress_);
       if (!run) return run.error();
       if (run->not_converged > 0) {
         out_.notes.push_back(fmt::format("{}: {} of {} iterations did not converge to the full tolerance.",

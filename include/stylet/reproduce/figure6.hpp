@@ -41,7 +41,7 @@ struct Figure6Remesh {
 /// All iterations of one variant, both insertions in a row.
 struct Figure6Run {
   Figure6Variant variant;
-  std::vector<StepRecord> steps;       ///< step_us: processor time of the whole iteration
+  std::vector<StepRecord> steps;       ///< step_us: processor time of the whole iteration, median of all runs
   std::vector<std::size_t> insertion;  ///< (steps) number of the insertion, from 0
   std::vector<int> remeshings;         ///< (steps) changes of the mesh in this iteration
   std::vector<Figure6Event> events;
@@ -78,7 +78,9 @@ Result<std::shared_ptr<const Model>> figure6_model(const Scenario& scenario, con
                                                    const TetMesh& mesh, const Progress& progress = {});
 
 /// Carries all insertions of a model out and keeps every iteration.
-Result<Figure6Run> run_insertions(const std::shared_ptr<const Model>& model, const Figure6Variant& variant,
+/// @param times how often all of it is done: the same each time but for the processor times, of which the median of
+/// each iteration is kept, so that what else the machine did does not show
+Result<Figure6Run> run_insertions(const std::shared_ptr<const Model>& model, const Figure6Variant& variant, int times,
                                   const Progress& progress = {});
 
 }  // namespace stylet::reproduce

@@ -3,6 +3,9 @@
 import uPlot from 'uplot';
 import { marksAt, roundNumbers } from '../plots/round_numbers';
 import { axis, font, fontSize, followWidth, lineScale } from '../plots/style';
+import { SOFT } from './colors';
+
+const BAND = '#f0f1f3';
 
 export interface Line {
   label: string;
@@ -21,6 +24,7 @@ export interface LinePlot {
   logX?: number[];     // marks of a logarithmic x axis
   logY?: boolean;
   lowest?: number;     // of a logarithmic y axis
+  bands?: { from: number; to: number; label: string }[];  // stretches of x, shaded
   text: (value: number) => string;  // a value of y in words
   xText: (value: number) => string;
 }
@@ -55,6 +59,28 @@ function drawNames(plot: uPlot, lines: Line[]): void {
   for (const { line, at } of places) {
     ctx.fillStyle = line.color;
     ctx.fillText(line.label, x + 8 * ratio, at);
+  }
+  ctx.restore();
+}
+
+/** Shades stretches of x behind the curves. */
+function drawBands(plot: uPlot, bands: NonNullable<LinePlot['bands']>): void {
+  const ratio = devicePixelRatio;
+  const { ctx, bbox } = plot;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.font = font().replace(/^[\d.]+/, (size) => String(parseFloat(size) * ratio));
+  ctx.textAlign = 'center';
+  ctx.textBaseline = 'bottom';
+  for (const { from, to, label } of bands) {
+    const left = plot.valToPos(from, 'x', true);
+    const right = plot.valToPos(to, 'x', true);
+    ctx.fillStyle = BAND;
+    ctx.fillRect(left, bbox.top, right - left, bbox.height);
+    ctx.fillStyle = SOFT;
+    if (ctx.measureText(label).width < right - left) ctx.fillText(label, (left + right) / 2, bbox.top + bbox.height - 5 * ratio);
   }
   ctx.restore();
 }
@@ -129,7 +155,7 @@ export function buildLinePlot(box: HTMLElement, options: LinePlot): void {
         dash: line.dashed ? [6 * unit, 4 * unit] : undefined,
         points: line.marks ? { show: true, size: 7 * unit, fill: line.color, stroke: line.color } : { show: false },
       }))],
-      hooks: { draw: [(u: uPlot) => drawNames(u, lines)] },
+      hooks: { drawClear: [(u: uPlot) => drawBands(u, options.bands ?? [])], draw: [(u: uPlot) => drawNames(u, lines)] },
     } as uPlot.Options,
     [Array.from(x), ...lines.map((l) => Array.from(l.values, (v) => (options.logY && v <= 0 ? null : v)))] as uPlot.AlignedData,
     box,

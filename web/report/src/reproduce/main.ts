@@ -63,12 +63,21 @@ function remeshingOnly(run: Run): number[] {
   return sums.map((s) => (sum += s));
 }
 
+/** From the turn of the hand until the needle is out. */
+function retractions(run: Run): { from: number; to: number; label: string }[] {
+  const outs = run.events.filter((e) => e.kind === 'withdrawn');
+  return run.events
+    .filter((e) => e.kind === 'retraction_start')
+    .map((e) => ({ from: e.iteration, to: outs.find((o) => o.iteration > e.iteration)?.iteration ?? run.iterations - 1, label: 'retraction' }));
+}
+
 function cumulative(box: HTMLElement, data: ReproductionData, only: boolean): void {
   buildLinePlot(box, {
     x: Array.from({ length: data.runs[0].iterations }, (_, i) => i),
     xLabel: 'Iteration',
     yLabel: 'Processor time since the start',
     logY: only,
+    bands: retractions(data.runs[data.runs.length - 1]),
     text: duration,
     xText: (i) => `iteration ${i}`,
     lines: data.runs.map((run) => ({ label: run.label, color: colorOf(run.id), values: only ? remeshingOnly(run) : run.curves.cumulative_s, width: run.id === 'default' ? 2.5 : 2 })),

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet reproduce and stylet bench: the paper's figures and numbers, made again."""
+import csv
+import json
+import unittest
+
+from program import InFolder
+
+FILES = ["figure2.json", "figure5.csv", "figure6_bcs_repositioning.csv", "figure6_default.csv",
+         "figure6_woodbury_addition.csv", "report.html", "reproduce.json", "table.csv"]
+EVENTS = ["skin_contact", "puncture", "region_entered", "retraction_start", "slip_start", "withdrawn"]
+
+
+def rows(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Reproduce(InFolder):
+    def test_quick_writes_everything_with_the_papers_features(self):
+        result = self.json_of("reproduce", "-o", "out", "--quick")
+        out = self.folder / "out"
+        self.assertEqual(sorted(p.name for p in out.iterdir()), FILES)
+        self.assertEqual(result, json.loads((out / "reproduce.json").read_text(encoding="utf-8")))
+
+        # Figure 5: inverse, switches, Woodbury from slow to fast on the largest matrix.
+        largest = max(result["fig5"], key=lambda row: row["dim"])
+        self.assertGreater(largest["inverse_s"], largest["bcs_s"])
+        self.assertGreater(largest["bcs_s"], largest["woodbury_s"])
+        self.assertLess(max(row["largest_error"] for row in result["fig5"]), 1e-8)
+
+        # Figure 6: same motion, every event, one row an iteration; nothing changes in the mesh on the way out.
+        self.assertAlmostEqual(result["fig6"]["mesh"]["nodes"], 570, delta=0.03 * 570)
+        runs = {run["id"]: run for run in result["fig6"]["runs"]}
+        self.assertEqual(set(runs), set(result["fig6"]["curves"]))
+        for run in runs.values():
+            kinds = [event["kind"] for event in run["events"]]
+            for kind in EVENTS:
+                self.assertIn(kind, kinds)
+            self.assertIn("prostate", [e["region"] for e in run["events"] if e["kind"] == "puncture"])
+            self.assertEqual(run["not_converged"], 0)
+            lines = rows(out / run["csv"])
+            self.assertEqual(len(lines), run["iterations"])
+            turned = next(e["iteration"] for e in run["events"] if e["kind"] == "retraction_start")
+            self.assertGreater(sum(int(line["remeshings"]) for line in lines[:turned]), 0)
+            self.assertEqual(sum(int(line["remeshings"]) for line in lines[turned:]), 0)
+        self.assertEqual(len({run["iterations"] for run in runs.values()}), 1)
+        added = {r["dimension"] for r in runs["woodbury_addition"]["remeshings"][1:]}
+        self.assertEqual(added, {18}, "a node on a face between two elements")
+        self.assertEqual({r["dimension"] for r in runs["default"]["remeshings"]}, {15})
+        moved = [r["dimension"] for r in runs["bcs_repositioning"]["remeshings"] if r["kind"] == "repositioned"]
+        self.assertGreater(min(moved), 18, "all elements around a node")
+        self.assertGreater(runs["bcs_repositioning"]["worst_ms"]["with_remeshing"],
+                           runs["woodbury_addition"]["worst_ms"]["with_remeshing"])
+
+        # The table. A busy machine blurs ratios: on a quiet one the first is above 100, the second about 1.
+        table = {row["quantity"]: row for row in result["table"]}
+        self.assertGreater(table["Woodbury over the default, same nodes"]["reproduced"], 50)
+        self.assertLess(table["Woodbury over a symmetric rank-k update by BLAS"]["reproduced"], 1.6)
+        self.assertEqual(table["nodes"]["paper"], 570)
+        self.assertEqual([row["quantity"] for row in rows(out / "table.csv")], list(table))
+        for row in result["table"]:
+            self.assertEqual({"quantity", "paper", "reproduced", "default"} - set(row), set())
+            if row["quantity"].startswith("multiplications"):
+                self.assertAlmostEqual(row["paper"], row["reproduced"], delta=0.02 * row["paper"])
+
+    def test_a_folder_is_needed_and_must_be_writable(self):
+        self.refuse("reproduce", says=["--output"])
+        (self.folder / "file").write_text("in the way")
+        self.refuse("reproduce", "--quick", "-o", "file/out", says=["file", "not a folder"])
+
+
+class Bench(InFolder):
+    def test_remesh_gives_every_method_at_every_size(self):
+        result = self.json_of("bench", "remesh", "--nodes", "216")
+        found = {(row["nodes"], row["method"]) for row in result["rows"]}
+        methods = ("shortcut", "bordered", "woodbury", "bcs", "inverse")
+        self.assertEqual(found, {(nodes, method) for nodes in (125, 216) for method in methods})
+        self.assertTrue(all(row["median_us"] > 0 for row in result["rows"]))
+
+    def test_an_unknown_subject_is_refused_with_those_there_are(self):
+        self.refuse("bench", "remsh", says=["remsh", "remesh"])
+
+
+if __name__ == "__main__":
+    unittest.main()
