@@ -13,8 +13,8 @@ namespace stylet {
 /// [mm/N] (3w × 3w) and free = -Yᵀ z [mm] (3w). In tiles so small that Eigen's products take no memory from the heap.
 /// @param start start(a, b): row of Y before which the columns of loads a … b - 1 are zero
 template <class Start>
-void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const Start& start, Eigen::Ref<MatX> compliance,
-                      Eigen::Ref<VecX> free) {
+void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const Start& start,
+                      Eigen::Ref<MatX>& compliance, Eigen::Ref<VecX>& free) {
   assert(compliance.rows() == 3 * loads && compliance.cols() == 3 * loads && free.size() == 3 * loads);
   constexpr Eigen::Index stride = dense::kTile / 3;
   constexpr Eigen::Index deepest = 480;

@@ -18,9 +18,9 @@ inline constexpr int kFirstMiddle = 2 * kLayerNodes;
 
 /// A linear tetrahedron in the straight needle.
 struct Element {
-  std::array<int, 4> node;       ///< of the segment
+  std::array<int, 4> node{};     ///< of the segment
   std::array<Vec3, 4> gradient;  ///< [1/mm] of the nodes' hat functions
-  double volume;                 ///< [mm³]
+  double volume = 0.0;           ///< [mm³]
 };
 
 /// The piece of bar the needle repeats along its axis (z), all alike.

@@ -7,6 +7,7 @@
 #include "support.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace stylet {
@@ -164,6 +165,21 @@ TEST(TetCalibration, LinearTetrahedraBendFarTooStifflyTheMoreSoTheLongerTheSegme
 TEST(TetCalibration, AlongItsAxisTheNeedleStaysFarStifferThanTissue) {
   EXPECT_GT(tets()->axial_stiffness(), 100.0);  // [N/mm]; tissue around a needle: about 1 N/mm
   EXPECT_NEAR(tip_compliance(*tets())(2, 2) * tets()->axial_stiffness(), 1.0, 1e-6);
+}
+
+/// The table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
+TEST(TetCalibration, AWiderSectionStretchesMoreAndNewtonGainsLittle) {
+  double before = 1e300;
+  std::printf("width mm | stiffening | E MPa | axial N/mm | Newton steps to 0.1 N at the tip\n");
+  for (const double width : {1.0, 1.27, 2.0, 3.0, 4.0}) {
+    const auto needle = tets(60, Segment::symmetric, {.outer_diameter_mm = width, .bending_stiffness_Nmm2 = 10000.0});
+    const double axial = needle->axial_stiffness();
+    const int steps = test::settle(*needle, std::vector<PointLoad>{{kLength, {0.1, 0.0, 0.0}}}, 1e-8);
+    std::printf("%8.2f | %10.3f | %5.0f | %10.1f | %d\n", width, needle->stiffening(), needle->young_modulus(), axial,
+                steps);
+    EXPECT_LT(axial, before);
+    before = axial;
+  }
 }
 
 /// Stiffness against a lateral tip force at an angle, and how far the tip leaves the force's direction, both over the
