@@ -45,7 +45,7 @@ Result<> run_remesh(const BenchArguments& arguments, Console& console) {
   json["machine"] = {{"processor", machine.processor},
                      {"cores", machine.cores},
                      {"blas", machine.blas},
-                     {"blas_threads", 1},
+                     {"blas_threads", machine.blas_threads > 0 ? Json(machine.blas_threads) : Json(nullptr)},
                      {"compiler", machine.compiler}};
   console.say("Processor time of one change of the mesh, everything included, median:");
   console.say(table.text());

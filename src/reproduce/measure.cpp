@@ -58,6 +58,7 @@ Machine this_machine() {
   const std::size_t version = name == std::string::npos ? name : config.find(' ', name + 1);
   machine.blas = config.substr(0, version);
   if (!kernel.empty()) machine.blas += ", kernel " + kernel;
+  if (dlsym(RTLD_DEFAULT, "openblas_set_num_threads") != nullptr) machine.blas_threads = 1;  // OneBlasThread
 #if defined(__clang__)
   machine.compiler = std::string("clang ") + __clang_version__;
 #else

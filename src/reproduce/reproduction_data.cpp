@@ -211,7 +211,7 @@ Json reproduction_data(const Reproduction& r) {
            {{"processor", r.machine.processor},
             {"cores", r.machine.cores},
             {"blas", r.machine.blas},
-            {"blas_threads", 1},
+            {"blas_threads", r.machine.blas_threads > 0 ? Json(r.machine.blas_threads) : Json(nullptr)},
             {"compiler", r.machine.compiler}}},
           {"fig2",
            {{"file", "figure2.json"},

@@ -46,6 +46,7 @@ Reproduction made_up() {
   r.options.command = "stylet reproduce -o out <&>";
   r.version = "0";
   r.machine.processor = "a processor";
+  r.machine.blas_threads = 1;
   r.figure2.organ = "prostate";
   r.figure2.contours.push_back({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {true, true, true, false}});
   r.figure2.surface_points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

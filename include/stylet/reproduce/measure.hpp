@@ -25,7 +25,8 @@ double median(std::vector<double> values);
 struct Machine {
   std::string processor;  ///< as the system names it
   int cores = 0;
-  std::string blas;  ///< name, version and kernel as the library tells them; empty where it tells nothing
+  std::string blas;      ///< name, version and kernel as the library tells them; empty where it tells nothing
+  int blas_threads = 0;  ///< while measuring; 0 where it cannot be set: another BLAS than OpenBLAS
   std::string compiler;
 };
 Machine this_machine();

@@ -37,7 +37,7 @@ export function drawContours(box: HTMLElement, figure: Figure2): void {
       if (kept[i]) svg('circle', { cx: p[0], cy: p[1], r: 0.8, fill: BLUE }, view);
     });
     const caption = document.createElement('span');
-    caption.textContent = `z = ${points[0][2].toFixed(0)} mm: ${kept.filter((k) => k).length} of ${points.length}`;
+    caption.textContent = `z = ${points[0][2].toFixed(0).replace('-', '−')} mm: ${kept.filter((k) => k).length} of ${points.length}`;
     panel.append(view, caption);
     grid.append(panel);
   }
