@@ -40,6 +40,7 @@ struct RemeshCost {
   int change = 0;       ///< order of ΔK, held nodes not counted; the largest of all events
   int events = 0;       ///< nodes added along the way
   Times ours;           ///< find the element, split it, new row and column of the compliance among the points held
+  Times ours_cold;      ///< the same right after an update of all of K⁻¹, which leaves nothing of it in the caches
   Times woodbury;       ///< find the element, ΔK, new rows, all of K⁻¹ by the matrix inversion lemma (one triangle)
   Times woodbury_full;  ///< the lemma on the whole matrix, as the paper writes it; K⁻¹ only
   Times bcs;            ///< find the element, ΔK, all of K⁻¹ by boundary condition switches
