@@ -220,8 +220,8 @@ Result<RemeshCost> measure_remeshing(const NeedleWay& way, const RemeshCostOptio
   Trial trial(way, options, std::move(nodes));
   for (int round = 0; round < options.rounds; ++round) {
     report(progress, "timing changes of the mesh", static_cast<double>(round) / options.rounds);
-    trial.round_of_ours_cold();
     trial.round_of_ours();
+    trial.round_of_ours_cold();
     trial.round_of_woodbury();
     trial.round_of_matrices();
     if (round < options.bcs_rounds) trial.round_of_bcs();
