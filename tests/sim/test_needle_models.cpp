@@ -19,13 +19,6 @@ Scenario thin_needle(const std::string& model) {
   return s;
 }
 
-const Finished& finished(const std::string& model) {
-  static const Finished beam(compiled(thin_needle("beam")));
-  static const Finished springs(compiled(thin_needle("springs")));
-  static const Finished tet(compiled(thin_needle("tet")));
-  return model == "beam" ? beam : model == "springs" ? springs : tet;
-}
-
 /// Base force axial, sagittal, lateral [N].
 Vec3 force(const StepRecord& step) { return {step.force_axial_N, step.force_sagittal_N, step.force_lateral_N}; }
 
@@ -37,61 +30,49 @@ const ParameterRow* row(const RunInfo& info, const std::string& name) {
 
 }  // namespace
 
-TEST(NeedleModels, TheSameThingsHappenAtTheSameDepth) {
-  const auto& expected = finished("beam").summary.events;
-  for (const char* model : {"springs", "tet"}) {
-    const auto& events = finished(model).summary.events;
-    ASSERT_EQ(events.size(), expected.size()) << model;
-    for (std::size_t k = 0; k < events.size(); ++k) {
-      EXPECT_EQ(events[k].kind, expected[k].kind) << model << ' ' << k;
-      EXPECT_NEAR(events[k].depth_mm, expected[k].depth_mm, 0.25) << model << ' ' << k;
-    }
-  }
-}
-
-TEST(NeedleModels, BaseForcesAndTipAgree) {
-  const auto& expected = finished("beam").kept.steps;
+TEST(NeedleModels, AnInsertionIsTheSameWithEach) {
+  const Finished beam(compiled(thin_needle("beam")));
   double peak = 0.0;
-  for (const StepRecord& step : expected) peak = std::max(peak, force(step).norm());
+  for (const StepRecord& step : beam.kept.steps) peak = std::max(peak, force(step).norm());
   for (const char* model : {"springs", "tet"}) {
-    const auto& steps = finished(model).kept.steps;
-    ASSERT_EQ(steps.size(), expected.size());
+    SCOPED_TRACE(model);
+    const Finished other(compiled(thin_needle(model)));
+
+    ASSERT_EQ(other.summary.events.size(), beam.summary.events.size());
+    for (std::size_t k = 0; k < other.summary.events.size(); ++k) {
+      EXPECT_EQ(other.summary.events[k].kind, beam.summary.events[k].kind) << k;
+      EXPECT_NEAR(other.summary.events[k].depth_mm, beam.summary.events[k].depth_mm, 0.25) << k;
+    }
+
+    ASSERT_EQ(other.kept.steps.size(), beam.kept.steps.size());
     double squares = 0.0;
     double apart = 0.0;
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-      squares += (force(steps[k]) - force(expected[k])).squaredNorm();
-      apart = std::max(apart, (steps[k].tip_mm - expected[k].tip_mm).norm());
+    double iterations = 0.0;
+    double steps = 0.0;
+    for (std::size_t k = 0; k < beam.kept.steps.size(); ++k) {
+      const StepRecord& step = other.kept.steps[k];
+      squares += (force(step) - force(beam.kept.steps[k])).squaredNorm();
+      apart = std::max(apart, (step.tip_mm - beam.kept.steps[k].tip_mm).norm());
+      iterations += step.iterations;
+      steps += step.iterations > 0 ? 1.0 : 0.0;
     }
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(steps.size())), 0.02 * peak) << model;
-    EXPECT_LT(apart, 0.2) << model;
-    EXPECT_NEAR(finished(model).summary.peak_axial_N, finished("beam").summary.peak_axial_N, 0.02 * peak) << model;
-  }
-}
-
-TEST(NeedleModels, NewtonNeedsAsFewIterationsWithEach) {
-  for (const char* model : {"beam", "springs", "tet"}) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const StepRecord& step : finished(model).kept.steps) {
-      if (step.iterations == 0) continue;
-      sum += step.iterations;
-      ++count;
-    }
-    EXPECT_LT(sum / count, 6.0) << model;
-    EXPECT_LT(finished(model).summary.residual_force_balance, 1e-9) << model;
-    for (const std::string& warning : finished(model).summary.warnings)
-      EXPECT_FALSE(contains(warning, "converge")) << model << ": " << warning;
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(beam.kept.steps.size())), 0.02 * peak);
+    EXPECT_NEAR(other.summary.peak_axial_N, beam.summary.peak_axial_N, 0.02 * peak);
+    EXPECT_LT(apart, 0.2);
+    EXPECT_LT(iterations / steps, 6.0);
+    EXPECT_LT(other.summary.residual_force_balance, 1e-9);
+    for (const std::string& warning : other.summary.warnings) EXPECT_FALSE(contains(warning, "converge")) << warning;
   }
 }
 
 TEST(NeedleModels, AReportShowsTheModelItsElementsAndTheCalibrationOfTetrahedra) {
-  const RunInfo tet = finished("tet").model->info(0);
+  const RunInfo tet = compiled(thin_needle("tet"))->info(0);
   ASSERT_NE(row(tet, "needle.tet.calibration"), nullptr);
   EXPECT_GT(std::stod(row(tet, "needle.tet.calibration")->value), 0.1);
   EXPECT_LT(std::stod(row(tet, "needle.tet.calibration")->value), 1.0);
   EXPECT_EQ(row(tet, "needle.model")->value, "tet");
   EXPECT_EQ(row(tet, "needle.elements")->value, "60");
-  const RunInfo beam = finished("beam").model->info(0);
+  const RunInfo beam = compiled(thin_needle("beam"))->info(0);
   EXPECT_EQ(row(beam, "needle.tet.calibration"), nullptr);
   EXPECT_EQ(row(beam, "needle.elements")->value, "24");
 }
