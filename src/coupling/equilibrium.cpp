@@ -26,6 +26,12 @@ double Insertion::Parts::arc_of(int load) const {
   return load == 0 ? length() : std::clamp(grips[static_cast<std::size_t>(load - 1)].s, 0.0, length());
 }
 
+Vec3 Insertion::Parts::shaft_point(int load) const {
+  const double s = arc_of(load);
+  const double beyond = load == 0 ? 0.0 : grips[static_cast<std::size_t>(load - 1)].s - s;
+  return needle->point(s) + beyond * frames[static_cast<std::size_t>(load)].col(2);
+}
+
 void Insertion::Parts::gather_forces() {
   forces.leftCols(compliance.points()).setZero();
   forces.col(ContactCompliance::kTip) = tip.force;
@@ -154,14 +160,13 @@ void Insertion::Parts::select_rows() {
   for (int r = 3; r < 3 * load_count(); ++r) rows.push_back(r);
 }
 
-/// By how much [N] the present solution contradicts the state of a contact; 0 = consistent, or frozen.
-double Insertion::Parts::contradiction(int load) const {
-  const double axial = system.lambda[3 * load + 2];
+/// By how much [N] a solution contradicts the state of a contact; 0 = consistent, or frozen.
+double Insertion::Parts::contradiction(int load, double axial, double opening) const {
   if (load == 0) {
-    if (!tip.touching || tip.toggles > kMaxToggles) return 0.0;
+    if (!tip.touching || tip.toggles > toggle_limit) return 0.0;
     switch (tip.state) {
       case Tip::State::open:
-        return system.opening(2) / std::max(system.yield(2), kTiny);
+        return opening;
       case Tip::State::stick:
         return std::max(-axial, tip.blocked || tip.held ? 0.0 : axial - tip.limit);
       case Tip::State::cut:
@@ -169,17 +174,16 @@ double Insertion::Parts::contradiction(int load) const {
     }
   }
   const Grip& grip = grips[static_cast<std::size_t>(load - 1)];
-  if (grip.toggles > kMaxToggles || grip.length < kNoLength_mm) return 0.0;
+  if (grip.toggles > toggle_limit || grip.length < kNoLength_mm) return 0.0;
   if (grip.state == Grip::State::stick) return std::abs(axial) - grip.law.static_N_per_mm * grip.length;
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
   return grip.law.coulomb_N_per_mm * grip.length - sign * axial;
 }
 
-void Insertion::Parts::change_state(int load, StepReport& report) {
-  const double axial = system.lambda[3 * load + 2];
+void Insertion::Parts::change_state(int load, double axial, StepReport& report) {
   ++report.pivots;
   if (load == 0) {
-    if (++tip.toggles > kMaxToggles) report.flags |= StepReport::contact_cycling;
+    if (++tip.toggles > toggle_limit) report.flags |= StepReport::contact_cycling;
     if (tip.state != Tip::State::stick) {
       tip.state = Tip::State::stick;
     } else if (axial < 0.0) {
@@ -190,15 +194,27 @@ void Insertion::Parts::change_state(int load, StepReport& report) {
     return;
   }
   Grip& grip = grips[static_cast<std::size_t>(load - 1)];
-  if (++grip.toggles > kMaxToggles) report.flags |= StepReport::contact_cycling;
+  if (++grip.toggles > toggle_limit) report.flags |= StepReport::contact_cycling;
   if (grip.state == Grip::State::stick) {
     grip.state = axial > 0.0 ? Grip::State::forward : Grip::State::backward;
     return;
   }
   grip.state = Grip::State::stick;
-  // Back to where it was held; the row's right-hand side must know at once.
-  system.move_row(3 * load + 2, grip.s_start - grip.s);
-  grip.s = grip.s_start;
+  grip.s = grip.s_start;  // back to where it was held
+}
+
+/// The same on the present solution of the coupled system.
+double Insertion::Parts::contradiction(int load) const {
+  const bool open = load == 0 && tip.state == Tip::State::open;
+  return contradiction(load, system.lambda[3 * load + 2],
+                       open ? system.opening(2) / std::max(system.yield(2), kTiny) : 0.0);
+}
+
+void Insertion::Parts::change_state(int load, StepReport& report) {
+  const double s = load == 0 ? 0.0 : grips[static_cast<std::size_t>(load - 1)].s;
+  change_state(load, system.lambda[3 * load + 2], report);
+  // A contact that is held again went back along the shaft; the row's right-hand side must know at once.
+  if (load > 0) system.move_row(3 * load + 2, grips[static_cast<std::size_t>(load - 1)].s - s);
 }
 
 /// Solves the held rows, then lets every state that contradicts its own law change, until none does.
@@ -282,7 +298,9 @@ void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial, double
   grip.s = grip.s_start + slip * (sign * grip.law.coulomb_N_per_mm * grip.length - axial);
 }
 
-void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
+/// Remembers where everything was, and aims the cut.
+void Insertion::Parts::begin_balance(int most_toggles) {
+  toggle_limit = most_toggles;
   for (Grip& grip : grips) {
     grip.s_start = grip.s;
     grip.toggles = 0;
@@ -293,6 +311,10 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   tip.at_start = tip.at;
   tip.advance = 0.0;
   if (tip.touching) aim_tip();
+}
+
+void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
+  begin_balance(kMaxToggles);
 
   bool changed = true;
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {

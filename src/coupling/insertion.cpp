@@ -43,6 +43,8 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   N = MatX::Zero(size, size);
   free = VecX::Zero(size);
   forces = MatX::Zero(3, settings.capacity + 1);
+  if (settings.solver == CouplingSettings::Solver::staggered)
+    staggered = std::make_unique<paper::Staggered>(settings.capacity + 1);
 }
 
 void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, int region, double force_N) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact_system.hpp"
+#include "paper/staggered.hpp"
 #include "stylet/coupling/insertion.hpp"
 
 #include <deque>
@@ -80,13 +81,23 @@ struct Insertion::Parts {
   MatX N;                        ///< [mm/N] needle's compliance, LPS
   VecX free;                     ///< [mm] needle's own Newton step at the loads, LPS
   ContactSystem system;
-  MatX forces;  ///< (3 × points) on the tissue
+  std::unique_ptr<paper::Staggered> staggered;  ///< where that solver is chosen
+  int toggle_limit = 0;                         ///< a contact that changes its state more often is frozen
+  MatX forces;                                  ///< (3 × points) on the tissue
 
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
   void solve_equilibrium(double h, StepReport& report);
 
   // paper/staggered.cpp: the same balance, needle and tissue in turn.
   void solve_staggered(double h, StepReport& report);
+  void condense_tissue();
+  void impose_needle_on_tissue(double h);
+  void solve_tissue(double h);
+  bool switch_contacts(StepReport& report);
+  void load_needle();
+  [[nodiscard]] double imbalance() const;
+  bool cut(bool nearly);
+  void bend_needle();
 
   [[nodiscard]] Vec3 tissue_displacement(int point) const;
   void gather_forces();
@@ -102,13 +113,18 @@ struct Insertion::Parts {
     return load == 0 ? tip.x : grips[static_cast<std::size_t>(load - 1)].x;
   }
   [[nodiscard]] double arc_of(int load) const;
+  [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
+  void begin_balance(int most_toggles);
   void set_frames();
   void fill_loads();
   void soften_rows(double h);
   void linearise();
   void lend_springs();
   bool pivot(double h, StepReport& report);
+  /// @param axial [N] force on the tissue @param opening [N] what an open tip would take if it were held
+  [[nodiscard]] double contradiction(int load, double axial, double opening) const;
   [[nodiscard]] double contradiction(int load) const;
+  void change_state(int load, double axial, StepReport& report);
   void change_state(int load, StepReport& report);
   void slide(Grip& grip, const Mat3& frame, double axial, double h);
   void select_rows();

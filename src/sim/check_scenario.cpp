@@ -101,6 +101,13 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                        "that moves, and coupling.engine = \"condensed\" never changes the stiffness of the mesh",
                        "Choose engine = \"woodbury\" or \"bcs\", or method = \"node-addition\"");
   }
+  if (s.coupling.projection == "nearest-node" && s.coupling.solver != "staggered") {
+    return input_error(
+        place("coupling.projection"),
+        "coupling.projection = \"nearest-node\" belongs to coupling.solver = \"staggered\", and the solver "
+        "is \"coupled\"",
+        "Set solver = \"staggered\", or leave projection = \"exact\"");
+  }
   if (s.insertions.empty()) {
     return input_error(place(""), "there is no needle: no [[insertion]]",
                        "Add [[insertion]] and below it, for example, hole = \"D4\"");

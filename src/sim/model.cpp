@@ -57,6 +57,11 @@ CouplingSettings coupling_settings(const Scenario& s) {
                                                : CouplingSettings::Engine::condensed;
   c.solver = s.coupling.solver == "staggered" ? CouplingSettings::Solver::staggered : CouplingSettings::Solver::coupled;
   c.rule = s.coupling.rule == "paper" ? CouplingSettings::Rule::paper : CouplingSettings::Rule::interior;
+  c.damping = s.coupling.damping;
+  if (s.coupling.projection == "nearest-node") {
+    const int elements = s.needle.elements > 0 ? s.needle.elements : default_needle_elements(s.needle.model).value();
+    c.needle_node_mm = s.needle.length_mm / elements;
+  }
   c.spacing_mm = s.coupling.spacing_mm;
   c.merge_mm = s.needle.diameter_mm;
   c.join_mm = s.needle.diameter_mm;

@@ -119,6 +119,14 @@ void describe_coupling(ScenarioEntries& keys) {
       "what is kept of the inverse stiffness: what the needle touches, or all of it, changed in place by the "
       "matrix inversion lemma or by boundary condition switches (Goksel et al. 2005; up to some thousand nodes)",
       [](auto& s, const Slot&) { return &s.coupling.engine; });
+  keys.number("coupling.damping", "", 0.6, 100,
+              "staggered solver: springs that damp the needle, over the tissue's own stiffness around each contact",
+              [](auto& s, const Slot&) { return &s.coupling.damping; });
+  keys.choice(
+      "coupling.projection", {"exact", "nearest-node"}, {},
+      "staggered solver: contact forces act on the needle where the contacts are, or at the nearest node of the "
+      "needle as in Goksel et al. 2005",
+      [](auto& s, const Slot&) { return &s.coupling.projection; });
   keys.number("coupling.spacing_mm", "mm", 1, 50, "distance between contacts; at least the needle's diameter",
               [](auto& s, const Slot&) { return &s.coupling.spacing_mm; });
   keys.number("coupling.tip_viscosity_Ns_per_m", "N s/m", 0.01, 1000,

@@ -48,7 +48,8 @@ TEST_P(NeedleContract, MovingBaseAndLoadsTogetherMovesTheSolutionRigidly) {
   const MatX here = test::compliance_of(*fixed, loads);
   const MatX there = test::compliance_of(*moved, turned);
   const Mat3 R = pose.rotation.toRotationMatrix();
-  EXPECT_LT((there.block<3, 3>(6, 27) - R * here.block<3, 3>(6, 27) * R.transpose()).norm(), 1e-9 * here.norm());
+  EXPECT_LT((there.block<3, 3>(6, 27) - R * here.block<3, 3>(6, 27) * R.transpose()).norm(),
+            (model() == "tet" ? 1e-9 : 1e-10) * here.norm());
 }
 
 TEST_P(NeedleContract, SettingTheBaseKeepsTheShape) {
@@ -174,9 +175,9 @@ TEST_P(NeedleContract, TangentIsContinuousUnitLengthAndTheDerivativeOfThePoint) 
     EXPECT_LT((needle->point(s + 1e-9) - needle->point(s - 1e-9)).norm(), 4e-9) << s;
   }
   for (double s = 1.0; s < kLength - 1.0; s += 3.7) {
-    const Vec3 slope = (needle->point(s + 1e-4) - needle->point(s - 1e-4)) / 2e-4;
+    const Vec3 slope = (needle->point(s + 2e-5) - needle->point(s - 2e-5)) / 4e-5;
     EXPECT_NEAR(slope.norm(), 1.0, stretch) << s;
-    EXPECT_LT((slope.normalized() - needle->tangent(s)).norm(), 5e-8) << s;
+    EXPECT_LT((slope.normalized() - needle->tangent(s)).norm(), 1e-8) << s;
     EXPECT_NEAR(needle->tangent(s).norm(), 1.0, 1e-13);
   }
 }

@@ -103,6 +103,8 @@ struct Scenario {
     std::string rule = "interior";
     std::string solver = "coupled";
     std::string engine = "condensed";
+    double damping = 1.0;
+    std::string projection = "exact";
     double spacing_mm = 4.0;
     double tip_viscosity_Ns_per_m = 2.0;
     double grazing_deg = 80.0;

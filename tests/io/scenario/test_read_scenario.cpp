@@ -285,9 +285,8 @@ TEST(ReadScenario, refuses_values_out_of_range) {
 }
 
 TEST(ReadScenario, refuses_what_does_not_go_together_and_names_the_line) {
-  expect_says(
-      refused(kHead + "[coupling]\nmethod = \"node-repositioning\"\n[[insertion]]\nhole = \"D4\"\n"),
-      {"coupling.method = \"node-repositioning\"", "\"condensed\"", "\"woodbury\" or \"bcs\""});
+  expect_says(refused(kHead + "[coupling]\nmethod = \"node-repositioning\"\n[[insertion]]\nhole = \"D4\"\n"),
+              {"coupling.method = \"node-repositioning\"", "\"condensed\"", "\"woodbury\" or \"bcs\""});
   expect_says(refused("[[insertion]]\nhole = \"D4\"\n"), {"case.toml: there is no patient", "source = \"phantom\""});
   expect_says(refused("[patient]\n[[insertion]]\nhole = \"D4\"\n"), {"case.toml, line 1: there is no patient"});
   expect_says(refused(kHead), {"case.toml: there is no needle", "[[insertion]]"});
