@@ -6,6 +6,34 @@
 
 namespace stylet {
 
+const char* to_string(RemeshEvent::Kind kind) {
+  switch (kind) {
+    case RemeshEvent::Kind::added_inside:
+      return "added_inside";
+    case RemeshEvent::Kind::added_on_face:
+      return "added_on_face";
+    case RemeshEvent::Kind::repositioned:
+      return "repositioned";
+  }
+  return "unknown";
+}
+
+const char* to_string(RemeshEvent::Refused refused) {
+  switch (refused) {
+    case RemeshEvent::Refused::no:
+      return "";
+    case RemeshEvent::Refused::boundary:
+      return "boundary";
+    case RemeshEvent::Refused::fixed:
+      return "fixed";
+    case RemeshEvent::Refused::held:
+      return "held";
+    case RemeshEvent::Refused::inverts:
+      return "inverts";
+  }
+  return "unknown";
+}
+
 double ContactCompliance::independence(int c, std::span<const int> others) const {
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kNeighbours, 3 * kNeighbours>;
   using Tall = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3 * kNeighbours, 3>;

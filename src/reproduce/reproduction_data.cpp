@@ -31,32 +31,8 @@ Json cell_json(const TableCell& cell) {
   return nullptr;
 }
 
-const char* name(RemeshEvent::Kind kind) {
-  switch (kind) {
-    case RemeshEvent::Kind::added_inside:
-      return "added_inside";
-    case RemeshEvent::Kind::added_on_face:
-      return "added_on_face";
-    case RemeshEvent::Kind::repositioned:
-      return "repositioned";
-  }
-  return "";
-}
-
 Json refused_json(RemeshEvent::Refused refused) {
-  switch (refused) {
-    case RemeshEvent::Refused::no:
-      return nullptr;
-    case RemeshEvent::Refused::boundary:
-      return "boundary";
-    case RemeshEvent::Refused::fixed:
-      return "fixed";
-    case RemeshEvent::Refused::held:
-      return "held";
-    case RemeshEvent::Refused::inverts:
-      return "inverts";
-  }
-  return nullptr;
+  return refused == RemeshEvent::Refused::no ? Json(nullptr) : Json(to_string(refused));
 }
 
 Json figure5_json(const std::vector<Figure5Row>& rows) {
@@ -88,7 +64,7 @@ Json run_json(const Figure6Run& run) {
   }
   Json remeshings = Json::array();
   for (const Figure6Remesh& r : run.remeshes) {
-    remeshings.push_back({{"kind", name(r.event.kind)},
+    remeshings.push_back({{"kind", to_string(r.event.kind)},
                           {"not_moved_because", refused_json(r.event.refused)},
                           {"insertion", r.insertion + 1},
                           {"iteration", r.iteration},

@@ -150,6 +150,9 @@ class Runner {
     summary_.tip_deflection_mm =
         std::max(summary_.tip_deflection_mm, (off - insertion.direction * insertion.direction.dot(off)).norm());
     step_us_.push_back(record.step_us);
+    const auto changes = simulation_.insertion().compliance().remeshing();
+    for (const RemeshEvent& change : changes.last(static_cast<std::size_t>(simulation_.report().remeshings)))
+      summary_.mesh_changes.push_back({record.time_s, record.base_depth_mm, change});
     const unsigned flags = simulation_.report().flags;
     for (int bit = 0; bit < 6; ++bit) {
       if (flags & (1u << bit)) ++flag_counts_[static_cast<std::size_t>(bit)];

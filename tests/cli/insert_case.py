@@ -99,7 +99,7 @@ def check_results(test, folder, summary=None, pictures=False):
     if summary is not None:
         test.assertEqual(written, summary)
     for key in ("version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                "target_shift_mm", "residual", "step_us", "contacts_max", "warnings"):
+                "target_shift_mm", "residual", "step_us", "contacts_max", "mesh_changes", "warnings"):
         test.assertIn(key, written)
     test.assertEqual(set(written["mesh"]), {"nodes", "tets"})
     test.assertEqual(set(written["peak_force_N"]), {"axial", "sagittal", "lateral"})

@@ -40,6 +40,9 @@ struct RemeshEvent {
   double condition = std::numeric_limits<double>::quiet_NaN();  ///< of the small matrix of Woodbury's formula
 };
 
+const char* to_string(RemeshEvent::Kind kind);
+const char* to_string(RemeshEvent::Refused refused);
+
 /// What the tissue gives the needle: the compliance among the points it holds, A(c,d) [mm/N], displacement of c per
 /// force on d. Point 0 is the needle's tip: always interpolated, moved at will; others come and stay until reset().
 /// Implementations differ in how they keep A right while nodes are added or moved.

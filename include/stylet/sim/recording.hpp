@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/types.hpp"
+#include "stylet/coupling/contact_compliance.hpp"
 
 #include <string>
 #include <vector>
@@ -101,6 +102,13 @@ struct RunInfo {
   Vec3 direction = Vec3::UnitZ();
 };
 
+/// A change of the tissue's mesh during a run.
+struct MeshChange {
+  double time_s = 0;
+  double depth_mm = 0;  ///< base depth
+  RemeshEvent change;
+};
+
 /// What a run comes to.
 struct Summary {
   std::string version;
@@ -117,6 +125,7 @@ struct Summary {
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;
+  std::vector<MeshChange> mesh_changes;
   std::vector<std::string> warnings;
 };
 

@@ -11,11 +11,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr EventKind kLastEventKind = EventKind::grazed;
-
-std::optional<EventKind> event_kind(const std::string& name) {
-  for (int k = 0; k <= static_cast<int>(kLastEventKind); ++k) {
-    if (name == to_string(static_cast<EventKind>(k))) return static_cast<EventKind>(k);
+/// The one of an enumeration's words, the last included, that `name` is.
+template <class Enum>
+std::optional<Enum> word(const std::string& name, Enum last) {
+  for (int k = 0; k <= static_cast<int>(last); ++k) {
+    if (name == to_string(static_cast<Enum>(k))) return static_cast<Enum>(k);
   }
   return std::nullopt;
 }
@@ -35,6 +35,18 @@ std::string summary_json(const Summary& s) {
                       {"force_N", e.force_N},
                       {"region", e.region}});
   }
+  Json changes = Json::array();
+  for (const MeshChange& m : s.mesh_changes) {
+    changes.push_back({{"time_s", m.time_s},
+                       {"depth_mm", m.depth_mm},
+                       {"kind", to_string(m.change.kind)},
+                       {"not_moved_because", to_string(m.change.refused)},
+                       {"node", m.change.node},
+                       {"dimension", m.change.dimension},
+                       {"elements", m.change.elements},
+                       {"moved_mm", m.change.moved_mm},
+                       {"condition", m.change.condition}});
+  }
   const Vec3& shift = s.target_shift_centroid_mm;
   const Json json = {
       {"version", s.version},
@@ -48,6 +60,7 @@ std::string summary_json(const Summary& s) {
       {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
       {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
       {"contacts_max", s.contacts_max},
+      {"mesh_changes", changes},
       {"warnings", s.warnings},
   };
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -70,7 +83,7 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     s.peak_sagittal_N = number(peak.at("sagittal"));
     s.peak_lateral_N = number(peak.at("lateral"));
     for (const Json& e : json.at("events")) {
-      const auto kind = event_kind(e.at("kind").get<std::string>());
+      const auto kind = word(e.at("kind").get<std::string>(), EventKind::grazed);
       if (!kind) return refuse("event kind '" + e.at("kind").get<std::string>() + "' is unknown");
       s.events.push_back({*kind, number(e.at("time_s")), number(e.at("depth_mm")), number(e.at("force_N")),
                           e.at("region").get<std::string>()});
@@ -87,6 +100,20 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     s.step_us_p999 = number(step.at("p999"));
     s.step_us_max = number(step.at("max"));
     s.contacts_max = json.at("contacts_max").get<int>();
+    for (const Json& m : json.value("mesh_changes", Json::array())) {
+      const auto kind = word(m.at("kind").get<std::string>(), RemeshEvent::Kind::repositioned);
+      const auto refused = word(m.at("not_moved_because").get<std::string>(), RemeshEvent::Refused::inverts);
+      if (!kind || !refused) return refuse("a mesh change of unknown kind");
+      s.mesh_changes.push_back({number(m.at("time_s")),
+                                number(m.at("depth_mm")),
+                                {.kind = *kind,
+                                 .refused = *refused,
+                                 .node = m.at("node").get<Index>(),
+                                 .dimension = m.at("dimension").get<int>(),
+                                 .elements = m.at("elements").get<int>(),
+                                 .moved_mm = number(m.at("moved_mm")),
+                                 .condition = number(m.at("condition"))}});
+    }
     s.warnings = json.at("warnings").get<std::vector<std::string>>();
     return s;
   } catch (const Json::exception& e) {

@@ -75,8 +75,9 @@ TEST(SummaryJson, has_the_documented_keys_in_order) {
   const auto run = stylet::testing::synthetic_run();
   const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
   using Keys = std::vector<std::string>;
-  EXPECT_EQ(keys_of(json), (Keys{"version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                                 "target_shift_mm", "residual", "step_us", "contacts_max", "warnings"}));
+  EXPECT_EQ(keys_of(json),
+            (Keys{"version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
+                  "target_shift_mm", "residual", "step_us", "contacts_max", "mesh_changes", "warnings"}));
   EXPECT_EQ(keys_of(json["mesh"]), (Keys{"nodes", "tets"}));
   EXPECT_EQ(keys_of(json["peak_force_N"]), (Keys{"axial", "sagittal", "lateral"}));
   EXPECT_EQ(keys_of(json["target_shift_mm"]), (Keys{"centroid", "max"}));
@@ -103,6 +104,34 @@ TEST(SummaryJson, every_kind_of_event_survives_the_round_trip) {
     EXPECT_EQ(back->events[k].kind, summary.events[k].kind);
     EXPECT_EQ(back->events[k].region, summary.events[k].region);
   }
+}
+
+TEST(SummaryJson, changes_of_the_mesh_survive_the_round_trip) {
+  Summary summary;
+  summary.mesh_changes.push_back({0.5,
+                                  12.0,
+                                  {.kind = RemeshEvent::Kind::repositioned,
+                                   .node = 17,
+                                   .dimension = 45,
+                                   .elements = 22,
+                                   .moved_mm = 2.5,
+                                   .condition = 41.0}});
+  summary.mesh_changes.push_back({0.7,
+                                  14.0,
+                                  {.kind = RemeshEvent::Kind::added_on_face,
+                                   .refused = RemeshEvent::Refused::boundary,
+                                   .node = 600,
+                                   .dimension = 18,
+                                   .elements = 6}});
+  const auto json = nlohmann::ordered_json::parse(summary_json(summary));
+  EXPECT_EQ(json["mesh_changes"][1]["not_moved_because"], "boundary");
+  EXPECT_TRUE(json["mesh_changes"][1]["condition"].is_null());
+  const auto back = parse_summary_json(summary_json(summary), "test");
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  ASSERT_EQ(back->mesh_changes.size(), 2U);
+  EXPECT_EQ(summary_json(*back), summary_json(summary));
+  EXPECT_EQ(back->mesh_changes[0].change.dimension, 45);
+  EXPECT_EQ(back->mesh_changes[1].change.refused, RemeshEvent::Refused::boundary);
 }
 
 TEST(SummaryJson, a_value_that_is_not_finite_becomes_null) {

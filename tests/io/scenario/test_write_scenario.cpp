@@ -66,7 +66,7 @@ TEST(ToToml, reads_back_whatever_is_set) {
   s.fixed.box_mm = {-1e5, -2.5, 1e-9, 1e5, 2.5, 2e-9};
   s.mesh = {1234567 / 2, "paper", 0.0, false};
   s.needle = {"beam", 123.456, 0.889, 1e7, 1.0, 200};
-  s.coupling = {"embedded", "paper", "coupled", "condensed", 49.999999999999, 0.01, 30, 1.5, 8};
+  s.coupling = {"embedded", "paper", "staggered", "bcs", 1.25, "nearest-node", 49.999999999999, 0.01, 30, 1.5, 8};
   s.grid.pitch_mm = 4.2;
   s.grid.centre_mm = {-0.1, 1e4};
   s.grid.columns = {"α", "D"};
