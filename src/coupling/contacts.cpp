@@ -46,14 +46,21 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
   return true;
 }
 
+/// Where nodes for contacts go. A node that is moved may go anywhere, so faces concern added ones only.
+Placement Insertion::Parts::placement_of_contacts() const {
+  if (settings.method == CouplingSettings::Method::embedded) return Placement::embedded;
+  const bool adds = settings.method == CouplingSettings::Method::node_addition;
+  return adds && settings.rule == CouplingSettings::Rule::paper ? Placement::face : Placement::interior;
+}
+
 /// Contacts along the piece of track just cut, from `from` at from_xi to track.end.
 void Insertion::Parts::lay_marks(const Vec3& from, double from_xi, const MaterialPoint& from_at, StepReport& report) {
-  if (settings.method != CouplingSettings::Method::embedded && settings.rule == CouplingSettings::Rule::paper) {
+  if (placement_of_contacts() == Placement::face) {
     lay_node_addition_on_faces(from, from_xi, from_at.tet, report);
     return;
   }
   const Vec3 direction = (track.end - from).normalized();
-  const bool nodes = settings.method != CouplingSettings::Method::embedded;
+  const bool nodes = placement_of_contacts() != Placement::embedded;
   while (candidate_xi <= track.end_xi) {
     const Vec3 x = from + std::max(0.0, candidate_xi - from_xi) * direction;
     const auto at = tissue.locator->find(x, tip.at.tet, -direction);
@@ -116,13 +123,7 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
     Track::Mark& mark = track.marks[grips.size()];
     if (mark.point < 0) {  // on an old track: the tissue model has forgotten it since
       if (t.dot(mark.x - tip_now) > settings.spacing_mm) break;
-      const bool nodes = settings.method != CouplingSettings::Method::embedded;
-      const bool paper = settings.rule == CouplingSettings::Rule::paper;
-      auto added = compliance.add(mark.at, mark.x,
-                                  !nodes  ? Placement::embedded
-                                  : paper ? Placement::face
-                                          : Placement::interior,
-                                  t);
+      auto added = compliance.add(mark.at, mark.x, placement_of_contacts(), t);
       if (added.refusal == ContactCompliance::Refusal::geometry)
         added = compliance.add(mark.at, mark.x, Placement::embedded);
       if (added.point < 0) {

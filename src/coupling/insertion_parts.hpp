@@ -143,6 +143,7 @@ struct Insertion::Parts {
   [[nodiscard]] bool available(Index tet) const;
 
   // contacts.cpp: laying, waking and dropping of shaft contacts.
+  [[nodiscard]] Placement placement_of_contacts() const;
   void lay_marks(const Vec3& from, double from_xi, const MaterialPoint& from_at, StepReport& report);
   void lay_node_addition_on_faces(const Vec3& from, double from_xi, Index tet, StepReport& report);
   bool lay_mark(double xi, const Vec3& x, const MaterialPoint& at, Placement placement, const Vec3& travel,

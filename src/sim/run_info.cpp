@@ -90,7 +90,7 @@ RunInfo Model::info(std::size_t insertion) const {
   info.version = version();
   info.scenario_name = scenario_.name;
   info.method = scenario_.coupling.method +
-                (scenario_.coupling.method == "embedded" ? "" : ", " + scenario_.coupling.rule + " rule") +
+                (scenario_.coupling.method == "node-addition" ? ", " + scenario_.coupling.rule + " rule" : "") +
                 (scenario_.coupling.engine == "condensed" ? "" : ", engine " + scenario_.coupling.engine) +
                 (scenario_.coupling.solver == "coupled" ? "" : ", " + scenario_.coupling.solver);
   info.needle_diameter_mm = scenario_.needle.diameter_mm;

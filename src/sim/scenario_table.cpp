@@ -109,7 +109,7 @@ void describe_coupling(ScenarioEntries& keys) {
       "moved there (engine woodbury or bcs); none, forces are interpolated",
       [](auto& s, const Slot&) { return &s.coupling.method; });
   keys.choice("coupling.rule", {"interior", "paper"}, {},
-              "where nodes are added: inside elements at the contact spacing, or on every face crossed",
+              "where node-addition adds them: inside elements at the contact spacing, or on every face crossed",
               [](auto& s, const Slot&) { return &s.coupling.rule; });
   keys.choice("coupling.solver", {"coupled", "staggered"}, {},
               "needle and tissue in one solve, or in turn as in Goksel et al. 2005 (slower, same answer)",

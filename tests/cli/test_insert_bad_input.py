@@ -93,6 +93,13 @@ class BadScenario(InFolder):
     def test_methods_of_other_versions(self):
         self.refuse_setting("coupling.method=near-field", ["near-field", "not available in this version"])
 
+    def test_what_does_not_go_together(self):
+        self.refuse("insert", "block.toml", "-o", "out", "--method", "node-repositioning",
+                    says=["node-repositioning", "condensed", "woodbury"])
+        self.refuse_setting("coupling.projection=nearest-node", ["nearest-node", "staggered"])
+        self.refuse("insert", "block.toml", "-o", "out", "--engine", "woodbery",
+                    says=["coupling.engine", "did you mean", "woodbury"])
+
     # Settings.
 
     def test_settings_out_of_range(self):

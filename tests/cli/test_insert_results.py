@@ -58,6 +58,26 @@ class Insert(InFolder):
                      "slip start", "withdrawn", "peak force", "target moved", "balance", "step"):
             self.assertIn(text, table)
 
+    def test_the_methods_of_the_2005_paper_are_one_word_away_and_agree_with_ours(self):
+        ours = self.json_of("insert", "case.toml", "-o", "ours", "--rule", "paper", *SMALL)
+        for words in (("--engine", "woodbury"), ("--engine", "bcs"), ("--solver", "staggered")):
+            with self.subTest(words=words):
+                theirs = self.json_of("insert", "case.toml", "-o", "theirs", "--rule", "paper", *words, *SMALL)
+                self.assertAlmostEqual(theirs["peak_force_N"]["axial"] / ours["peak_force_N"]["axial"], 1, delta=1e-6)
+                self.assertEqual([(m["kind"], m["dimension"]) for m in theirs["mesh_changes"]],
+                                 [(m["kind"], m["dimension"]) for m in ours["mesh_changes"]])
+        self.assertTrue({m["dimension"] for m in ours["mesh_changes"]} <= {15, 18})
+
+        done = self.succeed("insert", "case.toml", "-o", "moved", "--engine", "bcs", "--method", "node-repositioning",
+                            *SMALL)
+        self.assertIn("moved (ΔK of order", done.stdout)
+        changes = check_results(self, self.folder / "moved")["mesh_changes"]
+        moved = [m for m in changes if m["kind"] == "repositioned"]
+        self.assertTrue(moved)
+        for change in changes:
+            self.assertEqual(change["not_moved_because"] == "", change["kind"] == "repositioned")
+            self.assertEqual(change["moved_mm"] > 0, change["kind"] == "repositioned")
+
     def test_json_alone_is_on_standard_output(self):
         done = self.succeed("insert", "block.toml", "-o", "out", "--json", "-", *FAST)
         self.assertTrue(done.stdout.startswith("{"))

@@ -26,7 +26,6 @@ void AdaptedMesh::reset() {
     shape(element);
     elements_.push_back(element);
   }
-  moved_ = false;
 }
 
 void AdaptedMesh::shape(Element& element) const {
@@ -92,7 +91,6 @@ std::optional<AdaptedMesh::Change> AdaptedMesh::move_node(Index node, const Vec3
     change.after.push_back(deformed);
   }
   for (std::size_t k = 0; k < star.size(); ++k) elements_[static_cast<std::size_t>(star[k])] = change.after[k];
-  moved_ = true;
   return change;
 }
 

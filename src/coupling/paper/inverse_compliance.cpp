@@ -151,8 +151,7 @@ bool InverseCompliance::move_nearest(const MaterialPoint& at, const Vec3& x, Rem
 ContactCompliance::Refusal InverseCompliance::add_node(const MaterialPoint& at, const Vec3& x, Placement placement,
                                                        const Vec3& travel, RemeshEvent& event) {
   if (!inverse_.has_room()) return Refusal::capacity;
-  // A face of the base mesh need not be one of a mesh whose nodes have moved.
-  if (placement == Placement::face && !mesh_.moved()) {
+  if (placement == Placement::face) {
     const double nudge = 1e-6 * std::cbrt(std::abs(tet_volume(locator_->mesh(), at.tet)));
     const auto element_at = [&](const Vec3& y) {
       const auto place = locator_->find(y, at.tet);

@@ -37,7 +37,6 @@ class AdaptedMesh {
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
   [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }  ///< absent ones too
   [[nodiscard]] const Element& element(Index e) const { return elements_[static_cast<std::size_t>(e)]; }
-  [[nodiscard]] bool moved() const { return moved_; }                          ///< since the last reset()
   [[nodiscard]] const std::vector<Index>& elements_around(Index node) const {  ///< absent ones too
     return around_[static_cast<std::size_t>(node)];
   }
@@ -75,7 +74,6 @@ class AdaptedMesh {
   std::vector<std::vector<Index>> around_;  ///< (nodes) elements
   std::vector<std::vector<Index>> parts_;   ///< (base tets) elements they were split into; empty: not split
   std::vector<bool> on_boundary_;
-  bool moved_ = false;
 };
 
 }  // namespace stylet::paper
