@@ -59,7 +59,8 @@ std::string mesh_changes_text(const Summary& summary) {
   static const std::map<std::string, const char*> reasons{
       {"boundary", "the nearest node shapes an organ's surface"},
       {"fixed", "the nearest node is fixed"},
-      {"held", "the needle holds all nodes there"},
+      {"held", "the needle holds the nearest node already"},
+      {"contacts", "contacts are interpolated around the nearest node"},
       {"inverts", "moving the nearest node would flatten an element"}};
   for (const auto& [reason, count] : refused)
     parts.push_back(fmt::format("{} × added because {}", count, reasons.at(reason)));

@@ -28,6 +28,8 @@ const char* to_string(RemeshEvent::Refused refused) {
       return "fixed";
     case RemeshEvent::Refused::held:
       return "held";
+    case RemeshEvent::Refused::contacts:
+      return "contacts";
     case RemeshEvent::Refused::inverts:
       return "inverts";
   }

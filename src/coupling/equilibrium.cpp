@@ -20,6 +20,9 @@ constexpr double kTolerance = 1e-9;         ///< error of a row over its diagona
 constexpr double kNeedleTolerance = 1e-10;  ///< out-of-balance moment over the largest force or 1 N, times the length
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
+constexpr double kStill_mm = 1e-9;     ///< less is not sliding
+/// Friction without viscosity would leave a sliding contact's place undetermined: at 100 mm/s this adds 1e-7 N/mm.
+constexpr double kLeastViscosity = 1e-9;
 }  // namespace
 
 double Insertion::Parts::arc_of(int load) const {
@@ -64,6 +67,10 @@ void Insertion::Parts::fill_loads() {
   for (int c = 0; c < load_count(); ++c) loads[static_cast<std::size_t>(c)] = {arc_of(c), -force_of(c)};
 }
 
+double Insertion::Parts::slip_of(const Grip& grip, double h) const {
+  return h / std::max(std::max(grip.law.viscous_Ns_per_mm2, kLeastViscosity) * grip.length, kTiny);
+}
+
 /// What each row adds to the diagonal, and to the right-hand side, in its present state.
 void Insertion::Parts::soften_rows(double h) {
   system.shift.head(3 * load_count()).setZero();
@@ -80,16 +87,16 @@ void Insertion::Parts::soften_rows(double h) {
         shift = slip * tip.cutting + tip.advance;
       }
     } else {
-      const Grip& grip = grips[static_cast<std::size_t>(c - 1)];
+      Grip& grip = grips[static_cast<std::size_t>(c - 1)];
+      grip.slip = slip_of(grip, h);
       lateral = grip.softness;
       axial = grip.softness;
       if (grip.state == Grip::State::stick) {
         shift = 0.0;
       } else {
-        const double slip = h / std::max(grip.law.viscous_Ns_per_mm2 * grip.length, kTiny);
         const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-        axial += slip;
-        shift = slip * sign * grip.law.coulomb_N_per_mm * grip.length + grip.s_start - grip.s;
+        axial += grip.slip;
+        shift = grip.slip * sign * grip.law.coulomb_N_per_mm * grip.length + grip.s_start - grip.s;
       }
     }
     system.D.segment<3>(3 * c) << lateral, lateral, axial;
@@ -176,8 +183,11 @@ double Insertion::Parts::contradiction(int load, double axial, double opening) c
   const Grip& grip = grips[static_cast<std::size_t>(load - 1)];
   if (grip.toggles > toggle_limit || grip.length < kNoLength_mm) return 0.0;
   if (grip.state == Grip::State::stick) return std::abs(axial) - grip.law.static_N_per_mm * grip.length;
+  // Sliding the other way than its state says. A length is what tells, since forces hardly differ where friction does
+  // not depend on speed; it counts as the force that pushes the tissue so far.
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-  return grip.law.coulomb_N_per_mm * grip.length - sign * axial;
+  const double back = grip.slip * (grip.law.coulomb_N_per_mm * grip.length - sign * axial);
+  return back > kStill_mm ? 3.0 * back / compliance(grip.point, grip.point).trace() : 0.0;
 }
 
 void Insertion::Parts::change_state(int load, double axial, StepReport& report) {
@@ -294,7 +304,7 @@ void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial, double
     return;
   }
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-  const double slip = h / std::max(grip.law.viscous_Ns_per_mm2 * grip.length, kTiny);
+  const double slip = slip_of(grip, h);
   grip.s = grip.s_start + slip * (sign * grip.law.coulomb_N_per_mm * grip.length - axial);
 }
 

@@ -133,7 +133,8 @@ void Insertion::Parts::summarise(StepReport& report) const {
   double sliding = 0.0;
   for (const Grip& grip : grips) {
     report.hand_force += grip.force;
-    report.hand_torque += (needle->point(std::clamp(grip.s, 0.0, length())) - base.origin).cross(grip.force);
+    report.hand_torque +=
+        (needle->point(loaded_arc(std::clamp(grip.s, 0.0, length()))) - base.origin).cross(grip.force);
     report.inserted_mm += grip.length;
     if (grip.state == Grip::State::stick) {
       ++report.sticking;
@@ -179,7 +180,6 @@ StepReport Insertion::step(const Pose& base, double dt) {
   } else {
     report.flags |= StepReport::too_fast;
   }
-  const std::size_t remeshings = p.compliance.remeshing().size();
   for (int k = 1; k <= count; ++k) {
     const double fraction = static_cast<double>(k) / count;
     Pose pose = base;
@@ -188,10 +188,12 @@ StepReport Insertion::step(const Pose& base, double dt) {
       pose.rotation = from.rotation.slerp(fraction, base.rotation);
     }
     p.base = pose;
+    const std::size_t before = p.compliance.remeshing().size();
     p.sub_step(pose, dt / count, report);
+    // Withdrawal forgets all changes; a sub-step that withdraws lays no contact.
+    const std::size_t after = p.compliance.remeshing().size();
+    report.remeshings = after >= before ? report.remeshings + static_cast<int>(after - before) : 0;
   }
-  const std::size_t now = p.compliance.remeshing().size();
-  report.remeshings = static_cast<int>(now > remeshings ? now - remeshings : 0);
   p.summarise(report);
   return report;
 }

@@ -25,6 +25,7 @@ struct Grip {
   double softness = 0.0;  ///< [mm/N] a young contact yields this much: it comes alive and dies without a jump
   double length = 0.0;    ///< [mm] tributary length
   FrictionLaw law;
+  double slip = 0.0;  ///< [mm/N] by which it slides in this sub-step for each newton beyond Coulomb's friction
   State state = State::stick;
   int toggles = 0;            ///< changes of state in this sub-step
   Vec3 force = Vec3::Zero();  ///< [N] on the tissue
@@ -95,6 +96,7 @@ struct Insertion::Parts {
   void solve_tissue(double h);
   bool switch_contacts(StepReport& report);
   void load_needle();
+  [[nodiscard]] double loaded_arc(double s) const;  ///< [mm] where on the needle a force at s is put
   [[nodiscard]] double imbalance() const;
   bool cut(bool nearly);
   void bend_needle();
@@ -113,6 +115,7 @@ struct Insertion::Parts {
     return load == 0 ? tip.x : grips[static_cast<std::size_t>(load - 1)].x;
   }
   [[nodiscard]] double arc_of(int load) const;
+  [[nodiscard]] double slip_of(const Grip& grip, double h) const;
   [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
   void begin_balance(int most_toggles);
   void set_frames();

@@ -101,6 +101,11 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                        "that moves, and coupling.engine = \"condensed\" never changes the stiffness of the mesh",
                        "Choose engine = \"woodbury\" or \"bcs\", or method = \"node-addition\"");
   }
+  if (s.coupling.damping != Scenario{}.coupling.damping && s.coupling.solver != "staggered") {
+    return input_error(place("coupling.damping"),
+                       "coupling.damping belongs to coupling.solver = \"staggered\", and the solver is \"coupled\"",
+                       "Set solver = \"staggered\", or leave damping out");
+  }
   if (s.coupling.projection == "nearest-node" && s.coupling.solver != "staggered") {
     return input_error(
         place("coupling.projection"),

@@ -119,7 +119,7 @@ void describe_coupling(ScenarioEntries& keys) {
       "what is kept of the inverse stiffness: what the needle touches, or all of it, changed in place by the "
       "matrix inversion lemma or by boundary condition switches (Goksel et al. 2005; up to some thousand nodes)",
       [](auto& s, const Slot&) { return &s.coupling.engine; });
-  keys.number("coupling.damping", "", 0.6, 100,
+  keys.number("coupling.damping", "", 0.6, 2,
               "staggered solver: springs that damp the needle, over the tissue's own stiffness around each contact",
               [](auto& s, const Slot&) { return &s.coupling.damping; });
   keys.choice(

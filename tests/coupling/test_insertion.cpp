@@ -258,3 +258,25 @@ TEST(Insertion, contacts_denser_than_elements_do_not_make_the_system_singular) {
     }
   }
 }
+
+TEST(Insertion, friction_turns_round_with_the_motion_at_any_speed_and_without_viscosity_too) {
+  for (const auto solver : {CouplingSettings::Solver::coupled, CouplingSettings::Solver::staggered}) {
+    for (const double speed : {20.0, 0.2}) {
+      for (const double viscosity : {0.0, 1e-10, 250e-6}) {
+        SCOPED_TRACE(testing::Message() << speed << " mm/s, " << viscosity << " N s/mm²");
+        BlockOptions options;
+        options.coupling.solver = solver;
+        for (RegionLaws& laws : options.laws) laws.friction.viscous_Ns_per_mm2 = viscosity;
+        NeedleInBlock run(options);
+        run.aim({4, 11, 0});
+        run.go(20, 40, 4e-3);
+        EXPECT_GT(run.forces.back(), 0.3);
+        run.go(16, speed, 0.08 / speed);
+        // All of the shaft that is still in slides out: Coulomb friction on some 16 mm of it, and a little more.
+        EXPECT_LT(run.forces.back(), -0.9 * 11e-3 * 16.0);
+        EXPECT_GT(run.forces.back(), -0.4);
+        EXPECT_EQ(run.flags, 0u);
+      }
+    }
+  }
+}

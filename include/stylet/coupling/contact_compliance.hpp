@@ -27,7 +27,8 @@ struct RemeshEvent {
     no,        ///< it was moved, or moving was not asked for
     boundary,  ///< it lies on the surface of an organ or of the patient, whose shape it makes
     fixed,     ///< it is held
-    held,      ///< every node of the element is one the needle holds already
+    held,      ///< the needle holds it already
+    contacts,  ///< contacts are interpolated in the elements around it, and would come to depend on each other
     inverts    ///< an element around it would have become flat or inverted
   };
   Kind kind{};

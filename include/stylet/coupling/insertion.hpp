@@ -51,7 +51,7 @@ struct StepReport {
     invalid_input = 1u << 5        ///< a pose that is not finite, or dt ≤ 0: the step was not taken
   };
   unsigned flags = 0;
-  int iterations = 0;  ///< Newton iterations, summed over sub-steps
+  int iterations = 0;  ///< of the solver, summed over sub-steps
   int pivots = 0;      ///< changes of contact state
   int remeshings = 0;  ///< changes of the mesh: ContactCompliance::remeshing() has them
   int contacts = 0;    ///< tip included when it touches
@@ -86,7 +86,7 @@ struct InsertionTissue {
 
 /// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
 /// and keeps the track. Quasi-static; time enters through viscous friction only. step() does not allocate, throw, lock
-/// or log. docs/theory/coupling.md has the model.
+/// or log (engines that keep the full inverse allocate when the mesh changes). docs/theory/coupling.md has the model.
 class Insertion {
  public:
   Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings);
@@ -112,7 +112,7 @@ class Insertion {
   /// Contacts now, the tip first when it touches. Allocates.
   [[nodiscard]] std::vector<ContactState> contacts() const;
 
-  /// Displacement of the material at the mesh's nodes [mm] (3n): one solve with the factor. Allocates; for pictures,
+  /// Displacement of the material at the mesh's nodes [mm] (3n). Solves for it, allocates; for pictures,
   /// never in the loop.
   [[nodiscard]] VecX displacement() const;
 

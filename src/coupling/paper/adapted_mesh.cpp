@@ -24,6 +24,7 @@ void AdaptedMesh::reset() {
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     Element element{.nodes = mesh.tets[static_cast<std::size_t>(t)], .base_tet = t};
     shape(element);
+    element.first_volume = element.volume;
     elements_.push_back(element);
   }
 }
@@ -79,10 +80,9 @@ std::optional<AdaptedMesh::Change> AdaptedMesh::move_node(Index node, const Vec3
   position = to;
   std::vector<Index> star;
   for (const Index e : elements_around(node)) {
-    if (!element(e).present) continue;
     Element deformed = element(e);
     shape(deformed);
-    if (!(deformed.volume > kSmallestShare * element(e).volume)) {
+    if (!(deformed.volume > kSmallestShare * element(e).first_volume)) {
       position = from;
       return std::nullopt;
     }
@@ -98,6 +98,7 @@ Index AdaptedMesh::put(const std::array<Index, 4>& nodes, Index base_tet) {
   const auto e = static_cast<Index>(elements_.size());
   Element element{.nodes = nodes, .base_tet = base_tet};
   shape(element);
+  element.first_volume = element.volume;
   elements_.push_back(element);
   for (const Index node : nodes) around_[static_cast<std::size_t>(node)].push_back(e);
   parts_[static_cast<std::size_t>(base_tet)].push_back(e);

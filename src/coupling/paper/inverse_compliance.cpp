@@ -80,7 +80,8 @@ InverseCompliance::Point InverseCompliance::interpolate(const MaterialPoint& at,
   return point;
 }
 
-/// ΔK of a change, into the inverse.
+/// ΔK of a change, into the inverse. All elements have positive volumes before and after, so K stays positive definite
+/// and neither the small matrix nor a pivot can be singular.
 void InverseCompliance::apply(const AdaptedMesh::Change& change, RemeshEvent& event) {
   std::vector<Index> nodes;
   for (const auto* elements : {&change.before, &change.after})
@@ -124,14 +125,18 @@ bool InverseCompliance::move_nearest(const MaterialPoint& at, const Vec3& x, Rem
   Index nearest = -1;
   double distance = std::numeric_limits<double>::infinity();
   for (const Index node : mesh_.element(e).nodes) {
-    if (std::find(held_.begin(), held_.end(), node) != held_.end()) continue;
     const double d = (mesh_.position(node) - x).norm();
     if (d >= distance) continue;
     distance = d;
     nearest = node;
   }
-  if (nearest < 0) {
+  const bool interpolating = std::any_of(points_of_.begin() + 1, points_of_.end(), [&](const Point& point) {
+    return point.interpolated && std::find(point.node.begin(), point.node.end(), nearest) != point.node.end();
+  });
+  if (std::find(held_.begin(), held_.end(), nearest) != held_.end()) {
     event.refused = RemeshEvent::Refused::held;
+  } else if (interpolating) {
+    event.refused = RemeshEvent::Refused::contacts;
   } else if (first_dof(nearest) < 0) {
     event.refused = RemeshEvent::Refused::fixed;
   } else if (mesh_.on_boundary(nearest)) {
@@ -208,11 +213,10 @@ ContactCompliance::Added InverseCompliance::add(const MaterialPoint& at, const V
   }
   events_.push_back(event);
   held_.push_back(event.node);
-  if (move_nodes_) {  // elements have changed under the points that are interpolated in them
-    for (Point& point : points_of_)
-      if (point.interpolated && point.base_tet >= 0)
-        point = interpolate({point.base_tet, locator_->weights(point.base_tet, point.x)}, point.x);
-  }
+  // The elements around the tip have changed. Interpolated contacts keep their nodes, which have not moved: read in the
+  // smaller elements they would follow from the nodes added beside them.
+  if (Point& tip = points_of_[kTip]; move_nodes_ && tip.base_tet >= 0)
+    tip = interpolate({tip.base_tet, locator_->weights(tip.base_tet, tip.x)}, tip.x);
   Point point;
   point.node[0] = event.node;
   point.weight[0] = 1.0;

@@ -144,10 +144,9 @@ void Insertion::Parts::solve_tissue(double h) {
       if (grip.length < kNoLength_mm) {  // no friction at all: it follows the tissue
         grip.s += ahead;
       } else {
-        const double slip = h / std::max(grip.law.viscous_Ns_per_mm2 * grip.length, kTiny);
         const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-        grip.s += ahead / (1.0 + own / slip);
-        force = sign * grip.law.coulomb_N_per_mm * grip.length - (grip.s - grip.s_start) / slip;
+        grip.s += ahead / (1.0 + own / grip.slip);
+        force = sign * grip.law.coulomb_N_per_mm * grip.length - (grip.s - grip.s_start) / grip.slip;
       }
     }
     const double change = force - s.y[row];
@@ -181,9 +180,12 @@ bool Insertion::Parts::switch_contacts(StepReport& report) {
 /// Contact forces go to the needle where they act, or to its nearest node as in the paper.
 void Insertion::Parts::load_needle() {
   fill_loads();
-  if (settings.needle_node_mm <= 0.0) return;
-  for (PointLoad& load : loads)
-    load.s = std::min(length(), std::round(load.s / settings.needle_node_mm) * settings.needle_node_mm);
+  for (PointLoad& load : loads) load.s = loaded_arc(load.s);
+}
+
+double Insertion::Parts::loaded_arc(double s) const {
+  const double spacing = settings.needle_node_mm;
+  return spacing > 0.0 ? std::min(length(), std::round(s / spacing) * spacing) : s;
 }
 
 /// One Newton step of the needle under the tissue's forces, damped by springs as hard as the tissue around each contact

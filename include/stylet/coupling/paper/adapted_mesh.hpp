@@ -18,6 +18,7 @@ class AdaptedMesh {
     Index base_tet = -1;  ///< tetrahedron of the base mesh it comes from: region and material
     bool present = true;
     double volume = 0.0;                                                          ///< [mm³]
+    double first_volume = 0.0;                                                    ///< [mm³] when it came to be
     Eigen::Matrix<double, 3, 4> gradients = Eigen::Matrix<double, 3, 4>::Zero();  ///< of the weights [1/mm]
     Vec4 offset = Vec4::Zero();  ///< weights(x) = offset + gradientsᵀ x
     [[nodiscard]] Vec4 weights(const Vec3& x) const { return offset + gradients.transpose() * x; }
@@ -37,7 +38,7 @@ class AdaptedMesh {
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
   [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }  ///< absent ones too
   [[nodiscard]] const Element& element(Index e) const { return elements_[static_cast<std::size_t>(e)]; }
-  [[nodiscard]] const std::vector<Index>& elements_around(Index node) const {  ///< absent ones too
+  [[nodiscard]] const std::vector<Index>& elements_around(Index node) const {
     return around_[static_cast<std::size_t>(node)];
   }
 
@@ -48,8 +49,8 @@ class AdaptedMesh {
   /// True for nodes whose place makes the shape of an organ or of the patient.
   [[nodiscard]] bool on_boundary(Index node) const { return on_boundary_[static_cast<std::size_t>(node)]; }
 
-  /// Moves a node, unless an element around it would keep less than kSmallestShare of its volume.
-  static constexpr double kSmallestShare = 0.05;
+  /// Moves a node, unless an element around it would keep less than kSmallestShare of the volume it had at first.
+  static constexpr double kSmallestShare = 0.1;
   std::optional<Change> move_node(Index node, const Vec3& to);
 
   /// Splits an element into four at an inner point, or the two elements (at the outer surface: one, second = -1) that

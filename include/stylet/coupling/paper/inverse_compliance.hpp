@@ -12,8 +12,10 @@ namespace stylet::paper {
 /// the mesh. Adding points allocates.
 ///
 /// Where nodes may be moved, the nearest node of the element that contains the point goes there, unless it makes the
-/// shape of an organ, is fixed, is held by the needle already, or would flatten an element: then a node is added, and
-/// the event says why. Interpolated points and the tip then live in the mesh as it is; otherwise in the base mesh.
+/// shape of an organ, is fixed, is held by the needle already, has contacts interpolated around it, or would flatten an
+/// element: then a node is added, and the event says why (RemeshEvent::Refused). The tip is then
+/// interpolated in the mesh as it is, a contact in the elements there were when it was laid; otherwise both in the base
+/// mesh.
 class InverseCompliance final : public ContactCompliance {
  public:
   /// @param tissue, locator the base mesh; outlive this
