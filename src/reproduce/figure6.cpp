@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/reproduce/figure6.hpp"
 
+#include "stylet/coupling/paper/inverse_compliance.hpp"
 #include "stylet/reproduce/measure.hpp"
 
 #include <fmt/format.h>
@@ -29,6 +30,8 @@ class Recorder {
                        "Run the same scenario with stylet insert to see why");
       }
     }
+    const auto* full = dynamic_cast<const paper::InverseCompliance*>(&simulation_.insertion().compliance());
+    run_.compliance_mb = full != nullptr ? full->inverse().megabytes() : model_->store()->megabytes();
     return std::move(run_);
   }
 
@@ -37,7 +40,6 @@ class Recorder {
     const PlannedInsertion& insertion = model_->insertions()[number];
     const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / dt_s_ - 1e-9));
     simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
-    std::size_t changes = simulation_.insertion().compliance().remeshing().size();
     for (long k = 1; k <= steps; ++k) {
       const Pose base = drifted(insertion, number, insertion.motion.at(static_cast<double>(k) * dt_s_));
       simulation_.prepare();
@@ -47,11 +49,9 @@ class Recorder {
       const std::size_t iteration = run_.steps.size();
       for (const Event& event : simulation_.new_events()) run_.events.push_back({iteration, number, event});
       const auto remeshing = simulation_.insertion().compliance().remeshing();
-      if (remeshing.size() < changes) changes = 0;  // the needle is out: the mesh is as it was
-      for (std::size_t c = changes; c < remeshing.size(); ++c)
-        run_.remeshes.push_back({iteration, number, remeshing[c]});
-      run_.remeshings.push_back(static_cast<int>(remeshing.size() - changes));
-      changes = remeshing.size();
+      const auto made = std::min(static_cast<std::size_t>(simulation_.report().remeshings), remeshing.size());
+      for (const RemeshEvent& change : remeshing.last(made)) run_.remeshes.push_back({iteration, number, change});
+      run_.remeshings.push_back(static_cast<int>(made));
       run_.insertion.push_back(number);
       run_.steps.push_back(record);
       if (simulation_.report().flags & StepReport::not_converged) ++run_.not_converged;
@@ -99,8 +99,14 @@ double Figure6Run::worst_s(bool with_remeshing) const {
 
 double Figure6Run::median_s(bool with_remeshing) const { return median(chosen(*this, with_remeshing)); }
 
+const Figure6Run& Figure6::run(const std::string& id) const {
+  const auto found =
+      std::find_if(runs.begin(), runs.end(), [&](const Figure6Run& run) { return run.variant.id == id; });
+  return found != runs.end() ? *found : runs.back();
+}
+
 std::vector<Figure6Variant> figure6_variants() {
-  return {{"bcs_repositioning", "switches, node repositioning", "node-repositioning", "paper", "bcs"},
+  return {{"bcs_repositioning", "switches, node repositioning", "node-repositioning", "interior", "bcs"},
           {"woodbury_addition", "Woodbury, node addition", "node-addition", "paper", "woodbury"},
           {"default", "this program’s default", "node-addition", "interior", "condensed"}};
 }

@@ -1,93 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "figure6_text.hpp"
+#include "page_text.hpp"
 #include "report/assets.hpp"
 #include "report/page_template.hpp"
 #include "report/text.hpp"
 #include "reproduction_data.hpp"
-#include "stylet/coupling/paper/inverse_updates.hpp"
+#include "stylet/reproduce/paper_numbers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace stylet::reproduce {
 
 using results::html_escaped;
-using results::html_prose;
 
 namespace {
 
-/// 5·10⁻¹³: a small number by its order.
-std::string order(double value) {
-  if (!(value > 0.0)) return "0";
-  static const std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  const int exponent = static_cast<int>(std::floor(std::log10(value)));
-  std::string text = fmt::format("{:.0f}·10⁻", value / std::pow(10.0, exponent));
-  for (const char digit : std::to_string(-exponent)) text += raised[static_cast<std::size_t>(digit - '0')];
-  return text;
-}
-
-/// Three significant digits, without an exponent; thousands in groups.
-std::string digits(double value) {
-  const double size = std::abs(value);
-  if (!std::isfinite(value)) return "–";
-  if (size == std::floor(size) && size < 1e6) return fmt::format("{:.0f}", value);
-  if (size >= 99.95) return fmt::format("{:.0f}", value);
-  if (size >= 9.995) return fmt::format("{:.1f}", value);
-  if (size >= 0.9995) return fmt::format("{:.2f}", value);
-  if (size >= 1e-4) return fmt::format("{:.{}f}", value, 2 - static_cast<int>(std::floor(std::log10(size))));
-  return order(value);
-}
-
-/// A time with the unit that suits it.
-std::string duration(double seconds) {
-  const double size = std::abs(seconds);
-  if (size < 1e-3) return digits(1e6 * seconds) + " µs";
-  if (size < 1.0) return digits(1e3 * seconds) + " ms";
-  return digits(seconds) + " s";
-}
-
-std::string paragraph(const std::string& text) { return "<p>" + html_prose(text) + "</p>"; }
+namespace stated = paper_numbers;
 
 std::string tile(const std::string& value, const std::string& caption) {
   return "<li><b>" + html_escaped(value) + "</b><span>" + html_escaped(caption) + "</span></li>";
 }
 
-const Figure6Run& run_of(const Figure6& figure, const std::string& id) {
-  for (const Figure6Run& run : figure.runs)
-    if (run.variant.id == id) return run;
-  return figure.runs.back();
-}
-
-/// Smallest and largest order of ΔK among the changes of one kind.
-std::string dimensions(const Figure6Run& run, bool moved) {
-  int least = 0;
-  int most = 0;
-  for (const Figure6Remesh& r : run.remeshes) {
-    if ((r.event.kind == RemeshEvent::Kind::repositioned) != moved) continue;
-    least = least == 0 ? r.event.dimension : std::min(least, r.event.dimension);
-    most = std::max(most, r.event.dimension);
-  }
-  if (most == 0) return "none";
-  return least == most ? fmt::format("{0} × {0}", most) : fmt::format("{0} × {0} to {1} × {1}", least, most);
-}
-
-int count_of(const Figure6Run& run, RemeshEvent::Kind kind) {
-  return static_cast<int>(
-      std::count_if(run.remeshes.begin(), run.remeshes.end(), [&](const auto& r) { return r.event.kind == kind; }));
-}
-
 std::string tiles(const Reproduction& r) {
-  const Figure6Run& bcs = run_of(r.figure6, "bcs_repositioning");
-  const Figure6Run& woodbury = run_of(r.figure6, "woodbury_addition");
-  const Figure6Run& ours = run_of(r.figure6, "default");
+  const Figure6Run& bcs = r.figure6.run("bcs_repositioning");
+  const Figure6Run& woodbury = r.figure6.run("woodbury_addition");
+  const Figure6Run& ours = r.figure6.run("default");
   return tile(fmt::format("{} nodes", r.figure6.nodes),
-              fmt::format("{} tetrahedra; the paper: 570 and 2801", r.figure6.tets)) +
-         tile(duration(bcs.worst_s(true)), "worst iteration by switches; the paper: 2.75 s") +
-         tile(duration(woodbury.worst_s(true)), "worst iteration by Woodbury; the paper: less than 1 ms") +
-         tile(duration(ours.worst_s(true)), "worst iteration of the default that changes the mesh") +
-         tile(duration(r.inside.ours.median_s), "the default’s whole change of the mesh, median") +
+              fmt::format("{} tetrahedra; the paper: {} and {}", r.figure6.tets, stated::kNodes, stated::kTets)) +
+         tile(duration(bcs.worst_s(true)),
+              fmt::format("worst iteration that changes the mesh, by switches; the paper: {}",
+                          duration(stated::kWorstBcs_s))) +
+         tile(duration(woodbury.worst_s(true)),
+              fmt::format("the same by Woodbury; the paper: iterations of less than {:g} ms",
+                          1e3 * stated::kWoodburyBelow_s)) +
+         tile(duration(ours.worst_s(true)), "the same by the default") +
+         tile(duration(r.inside.ours.median_s), "the default’s change of the mesh by itself, median") +
          tile(digits(r.inside.woodbury.median_s / r.inside.ours.median_s) + " ×",
               "as long takes the same change by Woodbury");
 }
@@ -100,99 +49,43 @@ std::string figure5_caption(const Reproduction& r) {
     return row.inverse_s > row.bcs_s && row.bcs_s > row.woodbury_s;
   });
   double worst = 0.0;
-  for (const Figure5Row& row : r.figure5) worst = std::max(worst, row.largest_error);
+  int fewest = first.repeats;
+  for (const Figure5Row& row : r.figure5) {
+    worst = std::max(worst, row.largest_error);
+    fewest = std::min(fewest, row.repeats);
+  }
   return paragraph(fmt::format(
              "A square of tissue in plane strain, linear triangles, one side held. A node is added on an edge in its "
              "middle, two triangles become four, ΔK is {0} × {0}, and K⁻¹ of order {1} to {2} has to follow.",
              last.change, first.dim, last.dim)) +
          paragraph(
-             "The paper shows the full inverse as the slowest way, boundary condition switches below it, and the "
-             "matrix "
-             "inversion lemma (Woodbury) pulling ahead of the switches as the matrix grows.") +
+             "The labels of the paper’s figure suggest this order, from slow to fast: full inverse, boundary condition "
+             "switches, matrix inversion lemma (Woodbury).") +
          paragraph(fmt::format(
              "Here: at order {}, {} from scratch, {} by switches, {} by Woodbury, {} on one triangle of the symmetric "
-             "matrix. Woodbury is {:.1f} times as fast as the switches at order {} and {:.1f} times at order {}. {}",
+             "matrix. The switches take {:.1f} times as long as Woodbury at order {} and {:.1f} times at order {}. {}",
              last.dim, duration(last.inverse_s), duration(last.bcs_s), duration(last.woodbury_s),
              duration(last.woodbury_symmetric_s), first.bcs_s / first.woodbury_s, first.dim,
              last.bcs_s / last.woodbury_s, last.dim,
-             ordered ? "The order is the paper’s at every size."
-                     : "At some sizes the order is another than the paper’s; the points show where.")) +
-         paragraph(
-             "Switches and Woodbury do almost the same number of operations. The lemma gathers them into one product "
-             "of "
-             "matrices, which goes over K⁻¹ once; the switches go over it once for each degree of freedom.") +
-         paragraph(fmt::format("Medians; every result is checked against the inverse from scratch, largest difference "
+             ordered ? "At every size the order is the same."
+                     : "At some sizes the order is another; the points show where.")) +
+         paragraph(fmt::format(
+             "Multiplications, counted: the switches do {:.2f} times as many as Woodbury at order {} and {:.2f} times "
+             "at "
+             "order {}. On top of that the lemma goes over K⁻¹ once, in one product of matrices; the switches go over "
+             "it once for each degree of freedom of ΔK and direction, {} times here, since new ones are only switched "
+             "back.",
+             first.bcs_multiplications / first.woodbury_multiplications, first.dim,
+             last.bcs_multiplications / last.woodbury_multiplications, last.dim, 2 * last.change - last.added)) +
+         paragraph(fmt::format("Medians of at least {} repeats; every result is checked against the inverse from "
+                               "scratch, largest difference "
                                "{}.",
-                               order(worst)));
+                               fewest, order(worst)));
 }
 
-std::string figure6_intro(const Reproduction& r) {
-  std::string insertions;
-  for (const std::string& insertion : r.figure6.insertions) insertions += "<li>" + html_escaped(insertion) + "</li>";
-  return paragraph(fmt::format(
-             "The demo patient’s prostate and its surroundings, meshed with {} nodes and {} tetrahedra, held at its "
-             "pubic side; {} one after the other, in and out at {:g} mm/s, {:g} ms an iteration. Three variants "
-             "follow exactly the same motion: the paper’s first way (boundary condition switches; the nearest node is "
-             "moved to the tip), its second (Woodbury; a node is added wherever the tip enters an element), and this "
-             "program’s default (nodes inside elements, compliance among the points held only).",
-             r.figure6.nodes, r.figure6.tets, r.figure6.insertions.size() == 1 ? "one needle" : "two needles",
-             r.figure6.speed_mm_per_s, r.figure6.dt_ms)) +
-         "<ul>" + insertions + "</ul>";
-}
-
-/// Time of all iterations that changed the mesh [s].
-double remeshing_s(const Figure6Run& run) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < run.steps.size(); ++i)
-    if (run.remeshings[i] > 0) sum += 1e-6 * run.steps[i].step_us;
-  return sum;
-}
-
-/// Changes of the mesh while a needle is drawn back.
-int remeshed_in_retraction(const Figure6Run& run) {
-  int count = 0;
-  bool retracting = false;
-  auto event = run.events.begin();
-  for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    for (; event != run.events.end() && event->iteration == i; ++event) {
-      if (event->event.kind == EventKind::retraction_start) retracting = true;
-      if (event->event.kind == EventKind::withdrawn) retracting = false;
-    }
-    if (retracting) count += run.remeshings[i];
-  }
-  return count;
-}
-
-std::string cumulative_caption(const Reproduction& r) {
-  const Figure6Run& bcs = run_of(r.figure6, "bcs_repositioning");
-  const Figure6Run& woodbury = run_of(r.figure6, "woodbury_addition");
-  const Figure6Run& ours = run_of(r.figure6, "default");
-  const auto told = [](const Figure6Run& run) {
-    return fmt::format("{} of them, median {}, worst {}, together {}", run.remeshes.size(),
-                       duration(run.median_s(true)), duration(run.worst_s(true)), duration(remeshing_s(run)));
-  };
-  int in_retraction = 0;
-  for (const Figure6Run& run : r.figure6.runs) in_retraction += remeshed_in_retraction(run);
-  const std::string seen = in_retraction == 0
-                               ? "The same steps are seen here, and none during retraction."
-                               : fmt::format("{} changes of the mesh fall into a retraction here.", in_retraction);
-  const std::string paper =
-      "In the paper the curve of the switches climbs in big steps, one for each repositioning, and runs flat during "
-      "retraction, when the mesh stays as it is; Woodbury with node addition stays far below. ";
-  const std::string between = fmt::format(
-      " Between them all three variants climb alike: our balance of needle and tissue, the same for all, takes {} an "
-      "iteration (median). The plot on the right leaves these iterations out.",
-      duration(ours.median_s(false)));
-  const std::string changes = fmt::format(
-      "Iterations that change the mesh: switches with repositioning, {}; Woodbury with node addition, {}; default, {}. "
-      "Each includes the balance; of the default’s, the change of the mesh itself takes about {}.",
-      told(bcs), told(woodbury), told(ours), duration(r.inside.ours.median_s));
-  return paragraph(paper + seen + between) + paragraph(changes);
-}
-
-std::string force_plots(const Reproduction& r) {
+std::string force_plots(const Figure6& figure) {
   std::string html;
-  for (const Figure6Run& run : r.figure6.runs) {
+  for (const Figure6Run& run : figure.runs) {
     std::string title = run.variant.label;
     if (run.variant.id == "default") title = "This program’s default";
     if (run.variant.id == "bcs_repositioning") title = "Switches, node repositioning";
@@ -200,56 +93,6 @@ std::string force_plots(const Reproduction& r) {
             "</figcaption><div class=\"plot forces\" id=\"forces-" + run.variant.id + "\"></div></figure>";
   }
   return html;
-}
-
-/// Largest absolute axial force [N].
-double peak(const Figure6Run& run) {
-  double most = 0.0;
-  for (const StepRecord& step : run.steps) most = std::max(most, std::abs(step.force_axial_N));
-  return most;
-}
-
-/// Root mean square difference of the axial forces of two runs over the second's peak [%].
-double difference_percent(const Figure6Run& run, const Figure6Run& other) {
-  double sum = 0.0;
-  const std::size_t count = std::min(run.steps.size(), other.steps.size());
-  for (std::size_t i = 0; i < count; ++i) sum += std::pow(run.steps[i].force_axial_N - other.steps[i].force_axial_N, 2);
-  return 100.0 * std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1))) / peak(other);
-}
-
-std::string forces_caption(const Reproduction& r) {
-  const Figure6Run& ours = run_of(r.figure6, "default");
-  std::string peaks;
-  for (const Figure6Run& run : r.figure6.runs)
-    peaks += fmt::format("{}{:.2f} N ({})", peaks.empty() ? "" : ", ", peak(run), run.variant.label);
-  return paragraph(
-             "The paper’s curves show the contact with the skin, the penetration of the prostate, the reversal of the "
-             "force while the tissue still sticks to the needle drawn back, and the start of slip; their axes reach "
-             "from "
-             "−0.6 to 0.9 N. The same features are marked here. Force falls at the end of the way in because friction "
-             "has a part that grows with speed, and the needle stops.") +
-         paragraph(
-             fmt::format("Largest axial forces: {}. The axial force of the switches with repositioning differs from "
-                         "the default’s by {:.1f} % of its peak (root mean square), that of Woodbury with node "
-                         "addition by {:.1f} %: each variant has its nodes in other places.",
-                         peaks, difference_percent(run_of(r.figure6, "bcs_repositioning"), ours),
-                         difference_percent(run_of(r.figure6, "woodbury_addition"), ours)));
-}
-
-std::string dimensions_caption(const Reproduction& r) {
-  const Figure6Run& bcs = run_of(r.figure6, "bcs_repositioning");
-  const Figure6Run& woodbury = run_of(r.figure6, "woodbury_addition");
-  const Figure6Run& ours = run_of(r.figure6, "default");
-  return paragraph(fmt::format(
-             "A node that is moved changes all elements around it, and their number varies: {} here. A node on a face "
-             "changes two elements: {} (at the skin one element). A node inside an element: {}.",
-             dimensions(bcs, true), dimensions(woodbury, false), dimensions(ours, false))) +
-         paragraph(fmt::format(
-             "Of {} changes asked for, the repositioning moved a node {} times. Otherwise the nearest node was one "
-             "that makes the shape of an organ, is held, or cannot go there without an element turning inside out; "
-             "then "
-             "a node was added, and reproduce.json says why.",
-             bcs.remeshes.size(), count_of(bcs, RemeshEvent::Kind::repositioned)));
 }
 
 std::string figure2_intro(const Reproduction& r) {
@@ -268,13 +111,14 @@ std::string segment_figures(const Reproduction& r) {
            "\"></div>" + paragraph(text) + "</figure>";
   };
   return one("Needle segment, symmetric", "segment",
-             fmt::format("The tetrahedral needle is built of these: {} tetrahedra around the axis, alike in every "
-                         "direction it may bend. Drawn twice as long as wide.",
+             fmt::format("The tetrahedral needle is built of these: {} tetrahedra around the axis, alike in "
+                         "opposite directions. Drawn twice as long as wide.",
                          r.figure2.symmetric.tets.size())) +
          one("Needle segment, asymmetric", "asymmetric",
-             fmt::format("For comparison: {} tetrahedra, every diagonal rising the same way. A needle of these moves "
-                         "sideways under a load that is straight.",
-                         r.figure2.asymmetric.tets.size()));
+             fmt::format(
+                 "For comparison, not used: {} tetrahedra, every diagonal rising the same way, so that opposite "
+                 "directions differ.",
+                 r.figure2.asymmetric.tets.size()));
 }
 
 std::string cell(const TableCell& cell, bool best) {
@@ -303,16 +147,16 @@ std::string table_rows(const std::vector<TableRow>& rows) {
 }
 
 std::string credibility(const Reproduction& r) {
-  return paragraph(
-      fmt::format("The paper states iterations of less than 1 ms with Woodbury. On its mesh one update of the whole "
-                  "inverse is {:.0f} "
-                  "million multiplications and as many additions; its processor could do at most one of each in a "
-                  "cycle of 3.2 GHz. So "
-                  "the figure can hold for iterations that leave the mesh alone, or for a part of the inverse, but not "
-                  "for one that "
-                  "changes all of K⁻¹. Here the same update takes {} on one core, {} using symmetry.",
-                  1e-6 * paper::cost_of_woodbury(3 * 570, 3 * 6), duration(r.on_faces.woodbury_full.median_s),
-                  duration(r.on_faces.woodbury_update_s)));
+  const double seconds = 2.0 * r.counted.woodbury / (stated::kFlopPerCycle * stated::kClock_Hz);
+  return paragraph(fmt::format(
+      "The paper states iterations of less than {:g} ms with Woodbury. On its mesh one update of the whole inverse is "
+      "{:.0f} million multiplications and as many additions; its processor could do at most one of each in a cycle of "
+      "{:g} GHz, which makes {:.1f} ms, and about {:.1f} ms where symmetry is used. So the figure can hold for "
+      "iterations that leave the mesh alone, or for a part of the inverse, but not for one that changes all of K⁻¹. "
+      "Here such an update, of order {} by {} rows, takes {} on one core, {} using symmetry.",
+      1e3 * stated::kWoodburyBelow_s, 1e-6 * r.counted.woodbury, 1e-9 * stated::kClock_Hz, 1e3 * seconds,
+      0.5e3 * seconds, r.on_faces.dofs, r.on_faces.change, duration(r.on_faces.woodbury_full.median_s),
+      duration(r.on_faces.woodbury_update_s)));
 }
 
 std::string pair(const std::string& name, const std::string& value) {
@@ -362,18 +206,20 @@ Result<std::string> reproduction_page(const Reproduction& r) {
       {"tiles", tiles(r)},
       {"notes", notes_box(r.notes)},
       {"figure5", figure5_caption(r)},
-      {"figure6", figure6_intro(r)},
-      {"cumulative", cumulative_caption(r)},
-      {"force_plots", force_plots(r)},
-      {"forces", forces_caption(r)},
-      {"dimensions", dimensions_caption(r)},
+      {"figure6", figure6_intro(r.figure6)},
+      {"cumulative", cumulative_caption(r.figure6, r.inside)},
+      {"force_plots", force_plots(r.figure6)},
+      {"forces", forces_caption(r.figure6, r.figure2.organ)},
+      {"dimensions", dimensions_caption(r.figure6)},
       {"figure2", figure2_intro(r)},
       {"segments", segment_figures(r)},
       {"table", table_rows(r.table)},
       {"credibility", credibility(r)},
       {"made", how_made(r)},
-      {"repeats", r.options.quick ? "every iteration of figure 6 was run once."
-                                  : "every iteration of figure 6 was run three times, and the median counts."},
+      {"repeats", r.figure6.repeats == 1
+                      ? std::string("once")
+                      : fmt::format("{} times, and the median of each iteration counts", r.figure6.repeats)},
+      {"tolerance", order(kLargestDifference)},
       {"curve_files", files},
       {"versions", html_escaped("Stylet " + r.version)},
       {"data", results::json_script_safe(page_data(r))},

@@ -45,7 +45,10 @@ Json figure5_json(const std::vector<Figure5Row>& rows) {
                     {"woodbury_s", row.woodbury_s},
                     {"woodbury_symmetric_s", row.woodbury_symmetric_s},
                     {"largest_error", row.largest_error},
-                    {"repeats", row.repeats}});
+                    {"repeats", row.repeats},
+                    {"added", row.added},
+                    {"bcs_multiplications", row.bcs_multiplications},
+                    {"woodbury_multiplications", row.woodbury_multiplications}});
   }
   return list;
 }
@@ -85,6 +88,7 @@ Json run_json(const Figure6Run& run) {
           {"worst_ms", {{"with_remeshing", 1e3 * run.worst_s(true)}, {"without", 1e3 * run.worst_s(false)}}},
           {"median_ms",
            {{"with_remeshing", number(1e3 * run.median_s(true))}, {"without", number(1e3 * run.median_s(false))}}},
+          {"compliance_mb", run.compliance_mb},
           {"not_converged", run.not_converged},
           {"events", events},
           {"remeshings", remeshings}};
@@ -100,6 +104,7 @@ Json figure6_json(const Figure6& figure) {
   return {{"mesh", {{"nodes", figure.nodes}, {"tets", figure.tets}, {"free_dofs", figure.free_dofs}}},
           {"dt_ms", figure.dt_ms},
           {"speed_mm_per_s", figure.speed_mm_per_s},
+          {"repeats", figure.repeats},
           {"insertions", figure.insertions},
           {"curves", curves},
           {"runs", runs}};

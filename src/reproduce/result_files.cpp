@@ -21,10 +21,13 @@ struct File {
 };
 
 std::string figure5_csv(const std::vector<Figure5Row>& rows) {
-  std::string csv = "dim,change,inverse_s,bcs_s,woodbury_s,woodbury_symmetric_s,largest_error,repeats\n";
+  std::string csv =
+      "dim,change,inverse_s,bcs_s,woodbury_s,woodbury_symmetric_s,largest_error,repeats,added,"
+      "bcs_multiplications,woodbury_multiplications\n";
   for (const Figure5Row& row : rows) {
-    csv += fmt::format("{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.2e},{}\n", row.dim, row.change, row.inverse_s, row.bcs_s,
-                       row.woodbury_s, row.woodbury_symmetric_s, row.largest_error, row.repeats);
+    csv += fmt::format("{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.2e},{},{},{:.0f},{:.0f}\n", row.dim, row.change,
+                       row.inverse_s, row.bcs_s, row.woodbury_s, row.woodbury_symmetric_s, row.largest_error,
+                       row.repeats, row.added, row.bcs_multiplications, row.woodbury_multiplications);
   }
   return csv;
 }

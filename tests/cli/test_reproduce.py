@@ -59,6 +59,9 @@ class Reproduce(InFolder):
         self.assertGreater(table["Woodbury over the default, same nodes"]["reproduced"], 50)
         self.assertLess(table["Woodbury over a symmetric rank-k update by BLAS"]["reproduced"], 1.6)
         self.assertEqual(table["nodes"]["paper"], 570)
+        for quantity in ("memory of the compliance", "preparing the compliance"):
+            self.assertLess(table[quantity]["default"], table[quantity]["reproduced"])
+        self.assertEqual(table["memory of the compliance"]["reproduced"], runs["woodbury_addition"]["compliance_mb"])
         self.assertEqual([row["quantity"] for row in rows(out / "table.csv")], list(table))
         for row in result["table"]:
             self.assertEqual({"quantity", "paper", "reproduced", "default"} - set(row), set())

@@ -19,6 +19,9 @@ TEST(Figure5, every_method_gives_the_inverse_from_scratch) {
     const Figure5Row& row = (*rows)[i];
     EXPECT_NEAR(row.dim, wanted[i], 0.15 * wanted[i]);
     EXPECT_EQ(row.change, 10);
+    EXPECT_EQ(row.added, 2);
+    EXPECT_NEAR(row.bcs_multiplications / row.dim, (2 * 10 - 2) * (row.dim + 1), 30.0);
+    EXPECT_LT(row.woodbury_multiplications, row.bcs_multiplications);
     EXPECT_LT(row.largest_error, 1e-11);
     EXPECT_GE(row.repeats, 3);
     for (const double seconds : {row.inverse_s, row.bcs_s, row.woodbury_s, row.woodbury_symmetric_s})

@@ -72,6 +72,15 @@ TEST(RemeshCost, counted_multiplications_are_those_the_paper_states) {
   }
 }
 
+TEST(RemeshCost, switches_take_new_degrees_of_freedom_one_way_only) {
+  const int N = 200;
+  const int k = 12;
+  const CountedCost all_old = count_operations(N, k);
+  const CountedCost three_new = count_operations(N, k, 3);
+  EXPECT_NEAR(three_new.switches / all_old.switches, (2.0 * k - 3) / (2.0 * k), 1e-12);
+  EXPECT_EQ(three_new.woodbury, all_old.woodbury);
+}
+
 TEST(RemeshBench, every_method_is_measured_at_every_size) {
   const auto rows = bench_remeshing({3, 4});
   ASSERT_TRUE(rows.ok()) << rows.error().message();

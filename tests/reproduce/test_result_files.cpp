@@ -30,6 +30,7 @@ Figure6Run made_up_run(const Figure6Variant& variant) {
     StepRecord step;
     step.time_s = 0.001 * (i + 1);
     step.force_axial_N = 0.1 * i;
+    step.base_depth_mm = i < 3 ? 1.0 * i : 4.5 - i;
     step.step_us = i == 2 ? 5000.0 : 100.0;
     run.steps.push_back(step);
     run.insertion.push_back(0);
@@ -51,8 +52,11 @@ Reproduction made_up() {
   r.figure2.contours.push_back({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {true, true, true, false}});
   r.figure2.surface_points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   r.figure2.surface_triangles = {{0, 1, 2}};
-  r.figure5 = {{52, 10, 4e-5, 3e-5, 2e-5, 1e-5, 1e-13, 3}, {98, 10, 4e-4, 3e-4, 2e-4, 1e-4, 1e-13, 3}};
+  r.figure5 = {{52, 10, 4e-5, 3e-5, 2e-5, 1e-5, 1e-13, 3, 2, 3e4, 2e4},
+               {98, 10, 4e-4, 3e-4, 2e-4, 1e-4, 1e-13, 5, 2, 9e4, 5e4}};
   r.figure6.nodes = 570;
+  r.figure6.repeats = 1;
+  r.figure6.insertions = {"a needle"};
   for (const Figure6Variant& variant : figure6_variants()) r.figure6.runs.push_back(made_up_run(variant));
   r.inside.ours.median_s = 1e-5;
   r.inside.woodbury.median_s = 1e-3;
@@ -120,7 +124,7 @@ TEST_F(ResultFiles, curves_and_table_are_sound_csv) {
   EXPECT_EQ(curves.substr(0, curves.find('\n')),
             "iteration,insertion,time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,step_us,"
             "cumulative_s,remeshings,dk_dimension,contacts,sticking,events");
-  EXPECT_NE(curves.find("2,1,0.003000,0.000000,0.200000000,0.000000000,0.000000000,5000.000,0.005200000,1,18,0,0,"
+  EXPECT_NE(curves.find("2,1,0.003000,2.000000,0.200000000,0.000000000,0.000000000,5000.000,0.005200000,1,18,0,0,"
                         "puncture:prostate\n"),
             std::string::npos);
   const std::string table = text_of(folder_ / "table.csv");
@@ -139,4 +143,37 @@ TEST_F(ResultFiles, the_page_stands_alone_and_escapes_what_it_is_given) {
   EXPECT_NE(markup.find("Not a medical device"), std::string::npos);
   for (const char* id : {"figure5-plot", "cumulative-plot", "forces-default", "dimension-plot", "contours", "surface"})
     EXPECT_NE(markup.find("id=\"" + std::string(id) + "\""), std::string::npos) << id;
+}
+
+TEST_F(ResultFiles, the_page_says_what_the_numbers_say) {
+  Reproduction r = made_up();
+  const auto says = [](const Reproduction& reproduction, const std::string& text) {
+    const auto page = reproduction_page(reproduction);
+    EXPECT_TRUE(page.ok());
+    return page.ok() && page->substr(0, page->find("<script")).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(says(r, "At every size the order is the same."));
+  EXPECT_TRUE(says(r, "1.50 times as many as Woodbury at order 52 and 1.80 times at order 98"));
+  EXPECT_TRUE(says(r, "18 times here"));
+  EXPECT_TRUE(says(r, "at least 3 repeats"));
+  EXPECT_TRUE(says(r, "each was run once"));
+  EXPECT_TRUE(says(r, "No mesh changes during a retraction."));
+  EXPECT_TRUE(says(r, "the force turned from push to pull before slip in 0, start of slip in 0."));
+  EXPECT_TRUE(says(r, "Of 1 changes made"));
+
+  std::swap(r.figure5[0].bcs_s, r.figure5[0].woodbury_s);
+  EXPECT_TRUE(says(r, "At some sizes the order is another"));
+  r.figure6.repeats = 5;
+  EXPECT_TRUE(says(r, "each was run 5 times"));
+  for (Figure6Run& run : r.figure6.runs) {
+    run.events.push_back({1, 0, {.kind = EventKind::retraction_start, .region = {}}});
+    run.events.push_back({4, 0, {.kind = EventKind::slip_start, .region = {}}});
+    run.steps[0].force_axial_N = 0.2;
+    run.steps[4].force_axial_N = -0.2;
+  }
+  EXPECT_FALSE(says(r, "the default’s axial force goes")) << "no rest";
+  for (Figure6Run& run : r.figure6.runs) run.steps[2].base_depth_mm = run.steps[3].base_depth_mm = 9.0;
+  EXPECT_TRUE(says(r, "the default’s axial force goes"));
+  EXPECT_TRUE(says(r, "3 changes of the mesh fall into a retraction."));
+  EXPECT_TRUE(says(r, "the force turned from push to pull before slip in 3, start of slip in 3."));
 }

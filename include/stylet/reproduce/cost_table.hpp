@@ -25,18 +25,25 @@ struct TableRow {
   std::string note;
 };
 
+/// What has to be there before the first iteration.
+struct Preparation {
+  double factor_s = 0.0;   ///< assembling the stiffness and factorising it; all variants need it
+  double factor_mb = 0.0;  ///< memory of the factor
+  double inverse_s = 0.0;  ///< from there to all of K⁻¹
+  double store_s = 0.0;    ///< from there to the blocks of K⁻¹ that the default holds
+};
+
 /// What the table is made from.
 struct TableInput {
   const Figure6& figure6;
   const MeshQuality& quality;
   const RemeshCost& on_faces;  ///< the paper's rule
   const RemeshCost& inside;    ///< the default's
-  double store_mb = 0.0;       ///< of the default in figure 6
-  double inverse_mb = 0.0;     ///< of the paper's engines in figure 6
-  double inverse_s = 0.0;      ///< time to invert the initial stiffness
+  const CountedCost& counted;  ///< at the paper's size
+  const Preparation& preparation;
 };
 
-/// Every number is computed but the paper's own.
+/// Every number is computed but the paper's own (paper_numbers.hpp).
 std::vector<TableRow> cost_table(const TableInput& input);
 
 }  // namespace stylet::reproduce

@@ -18,6 +18,9 @@ struct Figure5Row {
   double woodbury_symmetric_s = 0.0;  ///< one triangle only
   double largest_error = 0.0;         ///< of any method against the inverse from scratch, over its largest entry
   int repeats = 0;
+  int added = 0;                          ///< degrees of freedom of the new node, among those of ΔK
+  double bcs_multiplications = 0.0;       ///< and divisions, counted
+  double woodbury_multiplications = 0.0;  ///< likewise, on the whole matrix
 };
 
 /// The paper's figure 5: time to bring K⁻¹ up to date against the order of K. A square of tissue in plane strain, one

@@ -46,7 +46,8 @@ struct Figure6Run {
   std::vector<int> remeshings;         ///< (steps) changes of the mesh in this iteration
   std::vector<Figure6Event> events;
   std::vector<Figure6Remesh> remeshes;
-  int not_converged = 0;  ///< steps that kept the last iterate
+  double compliance_mb = 0.0;  ///< memory of what is kept of K⁻¹, at the end
+  int not_converged = 0;       ///< steps that kept the last iterate
 
   [[nodiscard]] double total_s() const;
   [[nodiscard]] double worst_s(bool with_remeshing) const;  ///< largest iteration that changed the mesh, or did not
@@ -60,8 +61,13 @@ struct Figure6 {
   Index free_dofs = 0;
   double dt_ms = 0.0;
   double speed_mm_per_s = 0.0;
+  double spacing_mm = 0.0;              ///< between contacts, but where nodes are added on faces
+  int repeats = 0;                      ///< runs of each variant
   std::vector<std::string> insertions;  ///< in words
   std::vector<Figure6Run> runs;
+
+  /// The run of a variant; there must be one.
+  [[nodiscard]] const Figure6Run& run(const std::string& id) const;
 };
 
 /// Two needles on different ways into the demo patient's prostate, meshed as the paper's (570 nodes), the pubic side

@@ -18,6 +18,9 @@ double cpu_seconds(Work&& work) {
   return thread_cpu_s() - before;
 }
 
+/// Results of methods that are timed may differ by this much, relatively; beyond it nothing is reported.
+inline constexpr double kLargestDifference = 1e-8;
+
 /// Median; of an even number of values the mean of the two in the middle. NaN of none.
 double median(std::vector<double> values);
 

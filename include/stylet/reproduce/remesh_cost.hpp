@@ -50,8 +50,6 @@ struct RemeshCost {
   Times hat;            ///< the 3 × 3 stiffness of the new node's hat function alone
   double woodbury_update_s = 0.0;  ///< median of the update of K⁻¹ alone, to be compared with rank_update
   double largest_error = 0.0;      ///< of the compliance among the added nodes, method against method, relative
-  double inverse_mb = 0.0;         ///< memory of the full inverse and its initial copy
-  double store_mb = 0.0;           ///< memory of the compliance store
 };
 
 /// Adds nodes along a straight way by every method in turn and times each event.
@@ -65,6 +63,7 @@ struct CountedCost {
   double switches = 0.0;
   double woodbury = 0.0;
 };
-CountedCost count_operations(int N, int k);
+/// @param added how many of the k are new: switches take them one way only
+CountedCost count_operations(int N, int k, int added = 0);
 
 }  // namespace stylet::reproduce

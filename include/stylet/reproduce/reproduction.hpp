@@ -27,6 +27,7 @@ struct Reproduction {
   Figure6 figure6;
   RemeshCost on_faces;  ///< the paper's rule
   RemeshCost inside;    ///< the default's rule
+  CountedCost counted;  ///< of one update at the paper's size
   std::vector<TableRow> table;
   std::vector<std::string> notes;  ///< what a reader should know, in sentences
 };
