@@ -44,7 +44,7 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   free = VecX::Zero(size);
   forces = MatX::Zero(3, settings.capacity + 1);
   if (settings.solver == CouplingSettings::Solver::staggered)
-    staggered = std::make_unique<paper::Staggered>(settings.capacity + 1);
+    staggered = std::make_unique<paper::Staggered>(settings.capacity + 1, needle->state().size());
 }
 
 void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, int region, double force_N) {

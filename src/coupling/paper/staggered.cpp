@@ -32,7 +32,7 @@
 namespace stylet {
 
 namespace {
-constexpr int kMaxIterations = 2000;
+constexpr int kMaxIterations = 500;
 constexpr int kMaxToggles = 100;
 constexpr long kSwitchesToRebuild = 20000;
 constexpr double kTolerance = 1e-10;  ///< of imbalance()
@@ -191,7 +191,7 @@ double Insertion::Parts::loaded_arc(double s) const {
 /// One Newton step of the needle under the tissue's forces, damped by springs as hard as the tissue around each contact
 /// while all other contacts stand still.
 void Insertion::Parts::bend_needle() {
-  const Staggered& s = *staggered;
+  Staggered& s = *staggered;
   const int count = load_count();
   for (int c = 0; c < count; ++c) {
     const int k = s.slot_of[static_cast<std::size_t>(c)];
@@ -205,7 +205,11 @@ void Insertion::Parts::bend_needle() {
   auto compliance_of_needle = N.topLeftCorner(size, size);
   auto motion = free.head(size);
   needle->linearise(loads, compliance_of_needle, motion, {springs.data(), static_cast<std::size_t>(count)});
+  s.shape_before = needle->state();
   needle->advance(loads);
+  s.shape_after = needle->state();
+  s.acceleration.accelerate(s.shape_before, s.shape_after);
+  needle->set_state(s.shape_after);
 }
 
 /// How far needle and tissue are from balance, over the largest force or 1 N: out-of-balance moment of the needle over
@@ -233,6 +237,7 @@ void Insertion::Parts::solve_staggered(double h, StepReport& report) {
   for (int c = 0; c < load_count(); ++c)
     system.lambda.segment<3>(3 * c) = frames[static_cast<std::size_t>(c)].transpose() * force_of(c);
   staggered->advance = 0.0;
+  staggered->acceleration.restart();
 
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     ++report.iterations;
@@ -242,7 +247,10 @@ void Insertion::Parts::solve_staggered(double h, StepReport& report) {
     solve_tissue(h);
     load_needle();
     const double error = imbalance();
-    if (error < kNearly && switch_contacts(report)) continue;
+    if (error < kNearly && switch_contacts(report)) {
+      staggered->acceleration.restart();
+      continue;
+    }
     if (cut(error < kNearly) && error < kTolerance) return;
     bend_needle();
   }

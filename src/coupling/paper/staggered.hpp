@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "coupling/paper/anderson.hpp"
 #include "stylet/coupling/paper/condensed_system.hpp"
 
 #include <limits>
@@ -10,8 +11,12 @@ namespace stylet::paper {
 /// What the staggered solver keeps from step to step. Loads are numbered as in Insertion: the tip first, then the shaft
 /// contacts; their places in K_W ("slots") change as contacts come and go.
 struct Staggered {
-  explicit Staggered(int contacts)
+  /// @param shape size of the needle's state
+  Staggered(int contacts, Eigen::Index shape)
       : system(contacts),
+        acceleration(shape),
+        shape_before(VecX::Zero(shape)),
+        shape_after(VecX::Zero(shape)),
         y(VecX::Zero(3 * contacts)),
         x(VecX::Zero(3 * contacts)),
         across(MatX::Zero(3 * contacts, 3)),
@@ -21,6 +26,9 @@ struct Staggered {
         load_of(static_cast<std::size_t>(contacts), 0) {}
 
   CondensedSystem system;
+  Anderson acceleration;
+  VecX shape_before;         ///< needle's state before it was bent
+  VecX shape_after;          ///< … and after
   VecX y;                    ///< (3 slots) displacement [mm] or force [N], as each row is controlled
   VecX x;                    ///< (3 slots) the other one
   MatX across;               ///< scratch
