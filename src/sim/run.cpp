@@ -83,6 +83,7 @@ class Runner {
     summary_.step_us_p99 = quantile(step_us_, 0.99);
     summary_.step_us_p999 = quantile(step_us_, 0.999);
     summary_.step_us_max = step_us_.empty() ? 0.0 : step_us_.back();
+    note_condition();
     note_flags();
     return summary_;
   }
@@ -173,6 +174,21 @@ class Runner {
       }
     }
     return observer_.on_frame(frame);
+  }
+
+  /// Woodbury's small matrix takes as many digits from K⁻¹ as its condition number has.
+  void note_condition() {
+    constexpr double digits_lost = 1e8;
+    double worst = 0.0;
+    for (const MeshChange& m : summary_.mesh_changes) {
+      if (m.change.condition > worst) worst = m.change.condition;
+    }
+    if (worst > digits_lost) {
+      summary_.warnings.push_back(fmt::format(
+          "A change of the mesh had a small matrix of condition {:.0e}: the inverse stiffness has lost half of its "
+          "digits; use engine = \"condensed\" or a better mesh.",
+          worst));
+    }
   }
 
   void note_flags() {
