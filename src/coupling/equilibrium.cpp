@@ -21,7 +21,8 @@ constexpr double kNeedleTolerance = 1e-10;  ///< out-of-balance moment over the 
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
 constexpr double kStill_mm = 1e-9;     ///< less is not sliding
-/// Friction without viscosity would leave a sliding contact's place undetermined: at 100 mm/s this adds 1e-7 N/mm.
+/// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined: at 100 mm/s this adds 1e-7
+/// N/mm.
 constexpr double kLeastViscosity = 1e-9;
 }  // namespace
 
@@ -67,10 +68,6 @@ void Insertion::Parts::fill_loads() {
   for (int c = 0; c < load_count(); ++c) loads[static_cast<std::size_t>(c)] = {arc_of(c), -force_of(c)};
 }
 
-double Insertion::Parts::slip_of(const Grip& grip, double h) const {
-  return h / std::max(std::max(grip.law.viscous_Ns_per_mm2, kLeastViscosity) * grip.length, kTiny);
-}
-
 /// What each row adds to the diagonal, and to the right-hand side, in its present state.
 void Insertion::Parts::soften_rows(double h) {
   system.shift.head(3 * load_count()).setZero();
@@ -88,7 +85,7 @@ void Insertion::Parts::soften_rows(double h) {
       }
     } else {
       Grip& grip = grips[static_cast<std::size_t>(c - 1)];
-      grip.slip = slip_of(grip, h);
+      grip.slip = h / std::max(std::max(grip.law.viscous_Ns_per_mm2, kLeastViscosity) * grip.length, kTiny);
       lateral = grip.softness;
       axial = grip.softness;
       if (grip.state == Grip::State::stick) {
@@ -120,8 +117,7 @@ void Insertion::Parts::linearise() {
   for (int c = 0; c < count; ++c) {
     const Mat3& Qc = frames[static_cast<std::size_t>(c)];
     const Vec3 freely = free.segment<3>(3 * c);
-    const double beyond = c == 0 ? 0.0 : grips[static_cast<std::size_t>(c - 1)].s - arc_of(c);
-    const Vec3 gap = needle->point(arc_of(c)) + freely - material_of(c) + beyond * Qc.col(2);
+    const Vec3 gap = shaft_point(c) + freely - material_of(c);
     system.gap.segment<3>(3 * c).noalias() = Qc.transpose() * gap;
     system.free.segment<3>(3 * c).noalias() = Qc.transpose() * freely;
     system.now.segment<3>(3 * c).noalias() = Qc.transpose() * force_of(c);
@@ -275,8 +271,7 @@ double Insertion::Parts::equation_error() const {
     const int k = r % 3;
     const Mat3& Q = frames[static_cast<std::size_t>(c)];
     const Vec3& f = c == 0 ? tip.force : grips[static_cast<std::size_t>(c - 1)].force;
-    const double beyond = c == 0 ? 0.0 : grips[static_cast<std::size_t>(c - 1)].s - arc_of(c);
-    const Vec3 gap = material_of(c) + tissue_displacement(point_of(c)) - needle->point(arc_of(c)) - beyond * Q.col(2);
+    const Vec3 gap = material_of(c) + tissue_displacement(point_of(c)) - shaft_point(c);
     const double value = Q.col(k).dot(gap) + system.D[r] * Q.col(k).dot(f) - system.shift[r];
     error = std::max(error, std::abs(value) / system.yield(r));
   }
@@ -296,7 +291,7 @@ bool Insertion::Parts::balanced(double slack) const {
 }
 
 /// Moves a sliding contact along the needle by what its friction law says.
-void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial, double h) {
+void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial) {
   if (grip.state == Grip::State::stick) return;
   if (grip.length < kNoLength_mm) {  // no friction at all: it follows the tissue
     const Vec3 gap = grip.x + tissue_displacement(grip.point) - needle->point(std::clamp(grip.s, 0.0, length()));
@@ -304,8 +299,7 @@ void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial, double
     return;
   }
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-  const double slip = slip_of(grip, h);
-  grip.s = grip.s_start + slip * (sign * grip.law.coulomb_N_per_mm * grip.length - axial);
+  grip.s = grip.s_start + grip.slip * (sign * grip.law.coulomb_N_per_mm * grip.length - axial);
 }
 
 /// Remembers where everything was, and aims the cut.
@@ -345,7 +339,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     }
     needle->advance(loads);
     for (std::size_t k = 0; k < grips.size(); ++k)
-      slide(grips[k], frames[k + 1], system.lambda[3 * static_cast<Eigen::Index>(k) + 5], h);
+      slide(grips[k], frames[k + 1], system.lambda[3 * static_cast<Eigen::Index>(k) + 5]);
     if (tip.touching && tip.state == Tip::State::cut) {
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
       march(std::max(0.0, slip * (system.lambda[2] - tip.cutting)));

@@ -115,7 +115,6 @@ struct Insertion::Parts {
     return load == 0 ? tip.x : grips[static_cast<std::size_t>(load - 1)].x;
   }
   [[nodiscard]] double arc_of(int load) const;
-  [[nodiscard]] double slip_of(const Grip& grip, double h) const;
   [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
   void begin_balance(int most_toggles);
   void set_frames();
@@ -129,7 +128,7 @@ struct Insertion::Parts {
   [[nodiscard]] double contradiction(int load) const;
   void change_state(int load, double axial, StepReport& report);
   void change_state(int load, StepReport& report);
-  void slide(Grip& grip, const Mat3& frame, double axial, double h);
+  void slide(Grip& grip, const Mat3& frame, double axial);
   void select_rows();
   [[nodiscard]] double equation_error() const;
   [[nodiscard]] bool balanced(double slack) const;

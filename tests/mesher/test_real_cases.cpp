@@ -57,7 +57,7 @@ class RealCase : public ::testing::TestWithParam<const char*> {
   void SetUp() override {
     const std::string path = path_of(GetParam());
     if (!path.empty() && !std::filesystem::exists(data_folder() / path)) {
-      GTEST_SKIP() << "no test data at " << (data_folder() / path);
+      GTEST_SKIP() << "no real case at " << (data_folder() / path) << " (set STYLET_SHARED_DATA to their folder)";
     }
   }
 
@@ -102,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(Some, AnySize, ::testing::Values("prostate_41", "robust
                          [](const auto& i) { return std::string(i.param); });
 
 TEST(RealMask, MeshingTwiceGivesTheSameMesh) {
-  if (!std::filesystem::exists(data_folder() / path_of("prostate_00"))) GTEST_SKIP() << "no test data";
+  if (!std::filesystem::exists(data_folder() / path_of("prostate_00")))
+    GTEST_SKIP() << "no real cases at " << data_folder() << " (set STYLET_SHARED_DATA to their folder)";
   const auto a = mesh_case("prostate_00", {});
   const auto b = mesh_case("prostate_00", {});
   ASSERT_TRUE(a.ok() && b.ok());

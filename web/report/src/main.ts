@@ -7,24 +7,12 @@ import { buildForcePlot } from './plots/force_plot';
 import { buildHistogram } from './plots/histogram';
 import { buildLegend, CurveChoice } from './plots/legend';
 import { buildViewer } from './viewer/panel';
+import { build } from './page_part';
 
 function box(id: string): HTMLElement {
   const element = document.getElementById(id);
   if (!element) throw new Error(`The page has no element "${id}"`);
   return element;
-}
-
-/** Builds one part of the page; when that fails the others still work, and the reader is told. */
-function build(id: string, part: (element: HTMLElement) => void): void {
-  const element = box(id);
-  try {
-    part(element);
-  } catch (error) {
-    const note = document.createElement('p');
-    note.className = 'note';
-    note.textContent = `This part could not be shown: ${error instanceof Error ? error.message : String(error)}`;
-    element.replaceChildren(note);
-  }
 }
 
 document.documentElement.classList.add('with-script');

@@ -44,7 +44,7 @@ class CondensedSystem {
   [[nodiscard]] Eigen::Block<const MatX> matrix() const { return K_.topLeftCorner(3 * points_, 3 * points_); }
   [[nodiscard]] double operator()(int i, int j) const { return K_(i, j); }
 
-  /// Switches since the last clear(): rounding adds up, about 1e-15 each at condition 1e6.
+  /// Switches since the last clear(): their rounding adds up.
   [[nodiscard]] long switches() const { return switches_; }
 
  private:

@@ -8,7 +8,8 @@
 
 namespace stylet::paper {
 
-/// K⁻¹ on the free degrees of freedom, written out [mm/N] (free × free). Takes minutes beyond a few thousand nodes.
+/// K⁻¹ on the free degrees of freedom, written out [mm/N] (free × free). One solve a column: time and memory grow with
+/// the square of the mesh.
 MatX full_inverse(const Tissue& tissue, const Progress& progress = {});
 
 /// The full inverse of the stiffness, kept and changed in place as the mesh changes, with room for added nodes.

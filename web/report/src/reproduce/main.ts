@@ -9,6 +9,7 @@ import { buildDimensionPlot } from './dimension_plot';
 import { drawContours, drawSegment, drawSurface } from './drawings';
 import { buildForceLegend, buildForcePlot, forceRange } from './force_plot';
 import { buildLinePlot } from './line_plot';
+import { build } from '../page_part';
 
 /** A time with the unit that suits it. */
 function duration(seconds: number): string {
@@ -18,20 +19,6 @@ function duration(seconds: number): string {
   if (size < 1e-3) return `${digits(seconds * 1e6)} µs`;
   if (size < 1) return `${digits(seconds * 1e3)} ms`;
   return `${digits(seconds)} s`;
-}
-
-/** Builds one part of the page; when that fails the others still work, and the reader is told. */
-function build(id: string, part: (element: HTMLElement) => void): void {
-  const element = document.getElementById(id);
-  if (!element) return;
-  try {
-    part(element);
-  } catch (error) {
-    const note = document.createElement('p');
-    note.className = 'note';
-    note.textContent = `This part could not be shown: ${error instanceof Error ? error.message : String(error)}`;
-    element.replaceChildren(note);
-  }
 }
 
 function figure5(box: HTMLElement, data: ReproductionData): void {

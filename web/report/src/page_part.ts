@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/** Builds one part of the page; when that fails the others still work, and the reader is told. */
+export function build(id: string, part: (element: HTMLElement) => void): void {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`The page has no element "${id}"`);
+  try {
+    part(element);
+  } catch (error) {
+    const note = document.createElement('p');
+    note.className = 'note';
+    note.textContent = `This part could not be shown: ${error instanceof Error ? error.message : String(error)}`;
+    element.replaceChildren(note);
+  }
+}
