@@ -16,8 +16,7 @@ namespace {
 constexpr int kMaxNewton = 30;
 constexpr int kMaxPivots = 60;
 constexpr int kMaxToggles = 6;
-constexpr double kTolerance = 1e-9;         ///< error of a row over its diagonal: a force, over the largest one or 1 N
-constexpr double kNeedleTolerance = 1e-10;  ///< out-of-balance moment over the largest force or 1 N, times the length
+constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
 constexpr double kStill_mm = 1e-9;     ///< less is not sliding
@@ -286,8 +285,8 @@ double Insertion::Parts::equation_error() const {
 bool Insertion::Parts::balanced(double slack) const {
   double largest = 1.0;
   for (const PointLoad& load : loads) largest = std::max(largest, load.force.norm());
-  return equation_error() < slack * kTolerance * largest &&
-         needle->residual(loads) < slack * kNeedleTolerance * largest * length();
+  const double allowed = slack * settings.tolerance * largest;
+  return equation_error() < allowed && needle->residual(loads) < kNeedleShare * allowed * length();
 }
 
 /// Moves a sliding contact along the needle by what its friction law says.

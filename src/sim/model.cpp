@@ -68,6 +68,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
   c.capacity = s.coupling.contacts;
+  c.tolerance = s.coupling.tolerance;
   const double area = 0.25 * std::numbers::pi * s.needle.diameter_mm * s.needle.diameter_mm * kSteelShare;
   c.axial_compliance_mm_per_N = s.needle.length_mm / (kSteelYoung_MPa * area);
   return c;

@@ -140,6 +140,10 @@ void describe_coupling(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.coupling.corridor_mm; });
   keys.integer("coupling.contacts", 8, 400, "largest number of contacts",
                [](auto& s, const Slot&) { return &s.coupling.contacts; });
+  keys.number("coupling.tolerance", "", 1e-12, 1e-4,
+              "coupled solver: error that a balance of needle and tissue may have, as a force over the largest one or "
+              "1 N; results do not hang on it",
+              [](auto& s, const Slot&) { return &s.coupling.tolerance; });
 }
 
 void describe_template(ScenarioEntries& keys) {
