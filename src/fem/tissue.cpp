@@ -259,6 +259,28 @@ Tissue& Tissue::operator=(Tissue&&) noexcept = default;
 Tissue::~Tissue() = default;
 
 const TetMesh& Tissue::mesh() const { return parts_->mesh; }
+Index Tissue::displacement_nodes() const { return parts_->mesh.node_count(); }
+Vec3 Tissue::node_position(Index node) const { return parts_->mesh.nodes[node]; }
+std::span<const Index> Tissue::nodes_of(Index tet) const { return parts_->mesh.tets[tet]; }
+
+Shape Tissue::shape(Index tet, const Vec4& weights) const {
+  Shape shape;
+  shape.count = 4;
+  for (int i = 0; i < 4; ++i) {
+    shape.node[i] = parts_->mesh.tets[tet][i];
+    shape.weight[i] = weights[i];
+  }
+  return shape;
+}
+
+ShapeGradients Tissue::shape_gradients(Index tet, const Vec4& /*weights*/) const {
+  ShapeGradients shape;
+  shape.count = 4;
+  shape.gradient.leftCols<4>() = barycentric_gradients(parts_->mesh, tet);
+  for (int i = 0; i < 4; ++i) shape.node[i] = parts_->mesh.tets[tet][i];
+  return shape;
+}
+
 const Material& Tissue::material(int region) const { return parts_->materials[region]; }
 const std::vector<Material>& Tissue::materials() const { return parts_->materials; }
 bool Tissue::is_fixed(Index node) const { return parts_->first_dof[node] < 0; }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
+#include "stylet/fem/shape.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 
 #include <Eigen/SparseCore>
 
 #include <memory>
+#include <span>
 
 namespace stylet {
 
@@ -35,12 +37,23 @@ class Tissue {
   ~Tissue();
 
   [[nodiscard]] const TetMesh& mesh() const;
+
+  /// Nodes that carry displacements: the mesh's, under the mesh's numbers, and after them any that the kind of element
+  /// adds. Wherever this class speaks of nodes it means these, n in number.
+  [[nodiscard]] Index displacement_nodes() const;
+  [[nodiscard]] Vec3 node_position(Index node) const;              ///< [mm] LPS, undeformed
+  [[nodiscard]] std::span<const Index> nodes_of(Index tet) const;  ///< displacement nodes of an element
+
+  /// Interpolation at a material point: a base tetrahedron and the barycentric weights in it.
+  [[nodiscard]] Shape shape(Index tet, const Vec4& weights) const;
+  [[nodiscard]] ShapeGradients shape_gradients(Index tet, const Vec4& weights) const;
+
   [[nodiscard]] const Material& material(int region) const;
   [[nodiscard]] const std::vector<Material>& materials() const;
   [[nodiscard]] bool is_fixed(Index node) const;
   [[nodiscard]] const std::vector<Index>& fixed_nodes() const;  ///< sorted
 
-  /// Free degrees of freedom: 3 × (nodes − fixed nodes). Node a's first one, or -1 where it is fixed.
+  /// Free degrees of freedom: 3 × (displacement nodes − fixed ones). Node a's first one, or -1 where it is fixed.
   [[nodiscard]] Index free_dofs() const;
   [[nodiscard]] Index first_dof(Index node) const;
 
