@@ -10,6 +10,9 @@ namespace stylet {
 namespace {
 /// Vertices a split may have: two elements that share a face.
 constexpr int kObservablesPerPoint = 6;
+
+/// The displacement of a node itself.
+Shape single_node(Index node) { return {.count = 1, .node = {node}, .weight = {1.0}}; }
 }  // namespace
 
 TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity)
@@ -42,7 +45,7 @@ void TrackCompliance::reset() {
 }
 
 bool TrackCompliance::stored(Index base_tet) const {
-  const auto& nodes = mesh_.locator().mesh().tets[static_cast<std::size_t>(base_tet)];
+  const auto nodes = store_->tissue().nodes_of(base_tet);
   return std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return store_->has(node); });
 }
 
@@ -53,11 +56,11 @@ Material TrackCompliance::material_of(Index base_tet) const {
 
 Mat3 TrackCompliance::base_block(const Observable& a, const Observable& b) const {
   Mat3 sum = Mat3::Zero();
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (a.weight[i] == 0.0) continue;
-    for (std::size_t j = 0; j < 4; ++j) {
-      if (b.weight[j] == 0.0) continue;
-      sum += (a.weight[i] * b.weight[j]) * store_->block(a.node[i], b.node[j]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.shape.count); ++i) {
+    if (a.shape.weight[i] == 0.0) continue;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(b.shape.count); ++j) {
+      if (b.shape.weight[j] == 0.0) continue;
+      sum += (a.shape.weight[i] * b.shape.weight[j]) * store_->block(a.shape.node[i], b.shape.node[j]);
     }
   }
   return sum;
@@ -91,13 +94,10 @@ void TrackCompliance::extend(int observable, int splits) {
   o.known = std::max(o.known, splits);
 }
 
-int TrackCompliance::new_observable(Index base_tet, const Vec4& weights) {
+int TrackCompliance::new_observable(const Shape& shape, Index vertex) {
   const int number = static_cast<int>(observables_.size());
-  Observable o;
-  o.node = mesh_.locator().mesh().tets[static_cast<std::size_t>(base_tet)];
-  for (std::size_t i = 0; i < 4; ++i) o.weight[i] = weights[static_cast<Eigen::Index>(i)];
-  observables_.push_back(o);
-  vertex_of_.push_back(-1);
+  observables_.push_back({shape, 0});
+  vertex_of_.push_back(vertex);
   for (int p = 0; p < capacity_; ++p) hat(number, p) = 0.0;
   return number;
 }
@@ -109,14 +109,7 @@ int TrackCompliance::vertex_observable(Index vertex) {
   }
   const auto found = std::find(vertex_of_.begin() + kFirstFree, vertex_of_.end(), vertex);
   if (found != vertex_of_.end()) return static_cast<int>(found - vertex_of_.begin());
-  const int number = static_cast<int>(observables_.size());
-  Observable o;
-  o.node[0] = vertex;
-  o.weight[0] = 1.0;
-  observables_.push_back(o);
-  vertex_of_.push_back(vertex);
-  for (int p = 0; p < capacity_; ++p) hat(number, p) = 0.0;
-  return number;
+  return new_observable(single_node(vertex), vertex);
 }
 
 void TrackCompliance::interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) {
@@ -172,7 +165,7 @@ TrackCompliance::Added TrackCompliance::place_inside(const MaterialPoint& at, co
   Mat3 stiffness = Mat3::Zero();
   add_hat_stiffness(stiffness, leaf, weights);
   split.flexibility = stiffness.inverse();
-  const int observable = new_observable(at.tet, at.weights);
+  const int observable = new_observable(store_->tissue().shape(at.tet, at.weights), -1);
   interpolate_hats(observable, leaf, weights);
   hat(observable, static_cast<int>(splits_.size())) = 1.0;
   mesh_.split_inside(leaf, x);
@@ -249,7 +242,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   split.flexibility = 0.5 * (split.flexibility + split.flexibility.transpose()).eval();
 
   const Vec4 base_weights = locator.weights(one_tet, x);
-  const int observable = new_observable(one_tet, base_weights);
+  const int observable = new_observable(store_->tissue().shape(one_tet, base_weights), -1);
   interpolate_hats(observable, one, weights_one);
   hat(observable, p) = 1.0;
   mesh_.split_face(one, local_one, two, local_two, x);
@@ -265,8 +258,9 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
 
   // The new hat lets the old points move more: A += z s⁻¹ zᵀ.
   for (int c = 0; c < points_; ++c) extend(point_observable_[static_cast<std::size_t>(c)], p + 1);
-  for (int i = 0; i < 4; ++i) {
-    if (tip_.tet >= 0) extend(kTipNodes + i, p + 1);
+  if (tip_.tet >= 0) {
+    const auto corners = static_cast<int>(store_->tissue().nodes_of(tip_.tet).size());
+    for (int i = 0; i < corners; ++i) extend(kTipNodes + i, p + 1);
   }
   for (int c = 0; c < points_; ++c) {
     const Mat3 left = z(point_observable_[static_cast<std::size_t>(c)], p) * splits_.back().flexibility;
@@ -305,27 +299,22 @@ TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3&
   if (placement == Placement::face) return place_on_face(at, x, travel);
   if (!stored(at.tet)) return {-1, Refusal::missing};
   if (placement == Placement::interior) return place_inside(at, x);
-  return {finish_point(new_observable(at.tet, at.weights)), Refusal::none};
+  return {finish_point(new_observable(store_->tissue().shape(at.tet, at.weights), -1)), Refusal::none};
 }
 
 bool TrackCompliance::move_tip(const MaterialPoint& at, const Vec3& /*x*/) {
   if (!stored(at.tet)) return false;
-  const auto& nodes = mesh_.locator().mesh().tets[static_cast<std::size_t>(at.tet)];
   const int splits = static_cast<int>(splits_.size());
+  const Shape shape = store_->tissue().shape(at.tet, at.weights);
   if (at.tet != tip_.tet) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      Observable& corner = observables_[static_cast<std::size_t>(kTipNodes) + i];
-      corner = {};
-      corner.node[0] = nodes[i];
-      corner.weight[0] = 1.0;
-      extend(kTipNodes + static_cast<int>(i), splits);
+    for (int i = 0; i < shape.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      observables_[kTipNodes + k] = {single_node(shape.node[k]), 0};
+      extend(kTipNodes + i, splits);
     }
   }
   tip_ = at;
-  Observable& tip = observables_[0];
-  tip.node = nodes;
-  for (std::size_t i = 0; i < 4; ++i) tip.weight[i] = at.weights[static_cast<Eigen::Index>(i)];
-  tip.known = 0;
+  observables_[0] = {shape, 0};
   extend(0, splits);
   write_row(kTip);
   return true;
@@ -340,27 +329,29 @@ void TrackCompliance::remove_last_embedded() {
 }
 
 VecX TrackCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
-  return store_->tissue().solve(base_load(forces));
+  return store_->tissue().solve(base_load(forces)).topRows(3 * mesh_.locator().mesh().node_count());
 }
 
 TrackCompliance::Nodes TrackCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {
   const Tissue& tissue = store_->tissue();
   const VecX load = base_load(forces);
-  return {tissue.mesh().nodes, load, tissue.support_forces(tissue.solve(load))};
+  std::vector<Vec3> positions;
+  for (Index node = 0; node < tissue.displacement_nodes(); ++node) positions.push_back(tissue.node_position(node));
+  return {std::move(positions), load, tissue.support_forces(tissue.solve(load))};
 }
 
 Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) const {
   if (tip_.tet < 0) return Mat3::Zero();
   const int splits = static_cast<int>(splits_.size());
-  const auto g = barycentric_gradients(mesh_.locator().mesh(), tip_.tet);
+  const ShapeGradients shape = store_->tissue().shape_gradients(tip_.tet, tip_.weights);
   Mat3 gradient = Mat3::Zero();
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < shape.count; ++i) {
     Vec3 u = Vec3::Zero();
     for (int c = 0; c < points_; ++c) {
       if (forces.col(c).isZero(0.0)) continue;
       u.noalias() += compliance(kTipNodes + i, point_observable_[static_cast<std::size_t>(c)], splits) * forces.col(c);
     }
-    gradient.noalias() += u * g.col(i).transpose();
+    gradient.noalias() += u * shape.gradient.col(i).transpose();
   }
   return gradient;
 }
@@ -383,12 +374,11 @@ VecX TrackCompliance::base_load(const Eigen::Ref<const MatX>& forces) const {
           split.border[static_cast<std::size_t>(j)] * amplitude;
     }
   }
-  VecX result = VecX::Zero(3 * mesh_.locator().mesh().node_count());
+  VecX result = VecX::Zero(3 * store_->tissue().displacement_nodes());
   for (std::size_t o = 0; o < observables_.size(); ++o) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (observables_[o].weight[i] == 0.0) continue;
-      result.segment<3>(3 * observables_[o].node[i]) +=
-          observables_[o].weight[i] * load.col(static_cast<Eigen::Index>(o));
+    const Shape& shape = observables_[o].shape;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
+      result.segment<3>(3 * shape.node[i]) += shape.weight[i] * load.col(static_cast<Eigen::Index>(o));
     }
   }
   return result;

@@ -47,8 +47,7 @@ class TrackCompliance final : public ContactCompliance {
  private:
   /// Something whose displacement can be asked for: a point, or a vertex of a split element.
   struct Observable {
-    std::array<Index, 4> node{-1, -1, -1, -1};
-    std::array<double, 4> weight{0, 0, 0, 0};
+    Shape shape;    ///< on the base nodes
     int known = 0;  ///< z_p is up to date for splits p < known
   };
   /// An added node.
@@ -59,8 +58,8 @@ class TrackCompliance final : public ContactCompliance {
     Mat3 flexibility = Mat3::Zero();  ///< s_p⁻¹ [mm/N]
   };
 
-  static constexpr int kTipNodes = 1;  ///< observables 1…4: the nodes of the tip's tetrahedron
-  static constexpr int kFirstFree = 5;
+  static constexpr int kTipNodes = 1;  ///< observables from 1: the displacement nodes of the tip's tetrahedron
+  static constexpr int kFirstFree = kTipNodes + kMostElementNodes;
 
   [[nodiscard]] bool stored(Index base_tet) const;
   [[nodiscard]] Mat3 base_block(const Observable& a, const Observable& b) const;
@@ -74,7 +73,7 @@ class TrackCompliance final : public ContactCompliance {
   }
   [[nodiscard]] Mat3 compliance(int a, int b, int splits) const;
   void extend(int observable, int splits);
-  int new_observable(Index base_tet, const Vec4& weights);
+  int new_observable(const Shape& shape, Index vertex);
   void interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights);
   Added place_inside(const MaterialPoint& at, const Vec3& x);
   Added place_on_face(const MaterialPoint& at, const Vec3& x, const Vec3& travel);
