@@ -7,6 +7,7 @@ namespace stylet::beam {
 
 BeamShape::BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness, ElementKind kind)
     : curvature(VecX::Zero(dof(elements))),
+      rest(VecX::Zero(dof(elements))),
       kind_(kind),
       clamp_weight_(kind == ElementKind::rod ? 2.0 : 1.0),
       elements_(elements),
@@ -77,7 +78,7 @@ Vec3 BeamShape::tangent(double s) const {
 
 double BeamShape::energy() const {
   double sum = 0.0;
-  for (int e = 0; e < elements_; ++e) sum += elastic_weight(e) * stiffness_.dot(kappa(e).cwiseAbs2());
+  for (int e = 0; e < elements_; ++e) sum += elastic_weight(e) * stiffness_.dot(strain(e).cwiseAbs2());
   return 0.5 * element_length_ * sum;
 }
 

@@ -46,13 +46,19 @@ class BeamShape {
   VecX curvature;
   void update();
 
+  /// [1/mm] (3 elements) curvature of the unloaded shape, 0 for a straight needle.
+  VecX rest;
+
   [[nodiscard]] int elements() const { return elements_; }
   [[nodiscard]] double length() const { return elements_ * element_length_; }
   [[nodiscard]] double element_length() const { return element_length_; }
   [[nodiscard]] Vec3 stiffness() const { return stiffness_; }  ///< [N mm²] EI, EI, GJ
   [[nodiscard]] Vec3 kappa(int e) const { return curvature.segment<3>(dof(e)); }
+  /// Curvature beyond that of the unloaded shape [1/mm].
+  [[nodiscard]] Vec3 strain(int e) const { return kappa(e) - rest.segment<3>(dof(e)); }
 
-  /// Elastic energy of element e is ½ elastic_weight l κᵀ D κ: 2 for the joint of rods at the clamp, else 1.
+  /// Elastic energy of element e is ½ elastic_weight l Δκᵀ D Δκ, Δκ its strain: 2 for the joint of rods at the clamp,
+  /// else 1.
   [[nodiscard]] double elastic_weight(int e) const { return e == 0 ? clamp_weight_ : 1.0; }
   void set_clamp_weight(double weight) { clamp_weight_ = weight; }
 

@@ -57,8 +57,8 @@ double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation, std:
         beyond.add(pull);
       }
     }
-    const Vec3 moment =
-        shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.kappa(e)) - generalised / shape.element_length();
+    const Vec3 moment = shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.strain(e)) -
+                        generalised / shape.element_length();
     // Written so that a NaN is not lost.
     if (!(moment.norm() <= largest)) largest = moment.norm();
   }
@@ -153,7 +153,7 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
       beyond.add(pull);
     }
 
-    g_.segment<3>(i) = shape.kappa(e).cwiseQuotient(scale_[static_cast<std::size_t>(e)]) - generalised;
+    g_.segment<3>(i) = shape.strain(e).cwiseQuotient(scale_[static_cast<std::size_t>(e)]) - generalised;
     H_.block<3, 3>(i, i) = Mat3::Identity() - scale * second * scale;
     lever_[e] = lever;
   }

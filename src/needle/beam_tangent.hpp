@@ -9,7 +9,7 @@
 
 namespace stylet::beam {
 
-/// Largest out-of-balance moment of any element, max_e |diag(EI, EI, GJ) κ_e - (1/l) Σ_c (∂r_c/∂κ_e)ᵀ f_c| [N mm].
+/// Largest out-of-balance moment of any element, max_e |diag(EI, EI, GJ) Δκ_e - (1/l) Σ_c (∂r_c/∂κ_e)ᵀ f_c| [N mm].
 /// @param base_rotation base axes to LPS
 [[nodiscard]] double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation,
                                        std::span<const PointLoad> loads);

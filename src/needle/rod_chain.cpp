@@ -37,7 +37,7 @@ double RodChain::residual(std::span<const PointLoad> loads) const {
 }
 
 void RodChain::straighten() {
-  parts_->shape.curvature.setZero();
+  parts_->shape.curvature = parts_->shape.rest;
   parts_->shape.update();
 }
 

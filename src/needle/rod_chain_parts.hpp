@@ -3,6 +3,7 @@
 
 #include "needle/beam_shape.hpp"
 #include "needle/beam_tangent.hpp"
+#include "needle/bow.hpp"
 #include "stylet/needle/rod_chain.hpp"
 
 namespace stylet {
@@ -11,7 +12,25 @@ struct RodChain::Parts {
   Parts(const NeedleSection& section, int elements, int load_capacity, beam::ElementKind kind)
       : length(section.length_mm),
         shape(elements, section.length_mm, section.bending_stiffness_Nmm2, section.torsion_stiffness_Nmm2, kind),
-        tangent(shape, load_capacity) {}
+        tangent(shape, load_capacity) {
+    bend_rest(section);
+  }
+
+  /// Gives the unloaded shape its bow: the same curvature everywhere, of which the joint at the clamp, standing for
+  /// half a rod, has half.
+  void bend_rest(const NeedleSection& section) {
+    const Vec3 axis = bow_axis(section);
+    const auto bend = [&](double k) {
+      for (int e = 0; e < shape.elements(); ++e)
+        shape.rest.segment<3>(beam::dof(e)) = k / shape.elastic_weight(e) * axis;
+      shape.curvature = shape.rest;
+      shape.update();
+    };
+    bend(bow_curvature(section, [&](double k) {
+      bend(k);
+      return shape.point(length).head<2>().norm();
+    }));
+  }
 
   double length;
   Pose base;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/needle/tet.hpp"
 
+#include "needle/bow.hpp"
 #include "needle/tet_shape.hpp"
 #include "needle/tet_tangent.hpp"
 
@@ -22,6 +23,12 @@ struct TetNeedle::Parts {
         tangent(shape, load_capacity),
         imbalance(VecX::Zero(shape.displacement.size())) {
     calibrate(section);
+    if (section.bow_mm > 0.0) bend_rest(section);
+  }
+
+  void bend_rest(const NeedleSection& section) {
+    const Vec3 axis = bow_axis(section);
+    shape.bend_rest(axis * bow_curvature(section, [&](double k) { return (1.0 - std::cos(k * length)) / k; }));
   }
 
   /// Makes the tip of the straight needle yield to a lateral force as much as theory says.
@@ -93,7 +100,7 @@ double TetNeedle::residual(std::span<const PointLoad> loads) const {
 }
 
 void TetNeedle::straighten() {
-  parts_->shape.displacement.setZero();
+  parts_->shape.displacement = parts_->shape.rest();
   parts_->shape.update();
 }
 

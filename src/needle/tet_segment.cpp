@@ -10,23 +10,17 @@ namespace stylet::tet {
 
 namespace {
 
+/// Edges from the first node, as columns.
+Mat3 edges(const std::vector<Vec3>& nodes, const std::array<int, 4>& node) {
+  Mat3 m;
+  for (int i = 0; i < 3; ++i) m.col(i) = nodes[node[i + 1]] - nodes[node[0]];
+  return m;
+}
+
 /// Adds a tetrahedron, its nodes ordered so that its volume is positive.
 void add_element(SegmentMesh& mesh, std::array<int, 4> node) {
-  const auto edges = [&] {
-    Mat3 m;
-    for (int i = 0; i < 3; ++i) m.col(i) = mesh.nodes[node[i + 1]] - mesh.nodes[node[0]];
-    return m;
-  };
-  if (edges().determinant() < 0.0) std::swap(node[2], node[3]);
-  const Mat3 X = edges();
-  const Mat3 inverse = X.inverse();
-  Element element{node, {}, X.determinant() / 6.0};
-  element.gradient[0].setZero();
-  for (int i = 0; i < 3; ++i) {
-    element.gradient[i + 1] = inverse.row(i);
-    element.gradient[0] -= inverse.row(i);
-  }
-  mesh.elements.push_back(element);
+  if (edges(mesh.nodes, node).determinant() < 0.0) std::swap(node[2], node[3]);
+  mesh.elements.push_back(make_element(mesh.nodes, node));
 }
 
 /// Every face's four triangles about its centre, joined to the centre of the body.
@@ -63,6 +57,18 @@ void fill_asymmetric(SegmentMesh& mesh) {
 }
 
 }  // namespace
+
+Element make_element(const std::vector<Vec3>& nodes, const std::array<int, 4>& node) {
+  const Mat3 X = edges(nodes, node);
+  const Mat3 inverse = X.inverse();
+  Element element{node, {}, X.determinant() / 6.0};
+  element.gradient[0].setZero();
+  for (int i = 0; i < 3; ++i) {
+    element.gradient[i + 1] = inverse.row(i);
+    element.gradient[0] -= inverse.row(i);
+  }
+  return element;
+}
 
 std::vector<int> SegmentMesh::neighbours_after(int middle) const {
   std::vector<int> found;

@@ -23,6 +23,9 @@ struct Element {
   double volume = 0.0;           ///< [mm³]
 };
 
+/// The element between four nodes. @param nodes [mm] of the segment, @param node ordered so that its volume is positive
+[[nodiscard]] Element make_element(const std::vector<Vec3>& nodes, const std::array<int, 4>& node);
+
 /// The piece of bar the needle repeats along its axis (z), all alike.
 struct SegmentMesh {
   std::vector<Vec3> nodes;  ///< [mm] from the centre of the layer nearer the base; kFirstMiddle and more

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle/tet_shape.hpp"
 
+#include "needle/rotation_terms.hpp"
+
 #include <utility>
 
 namespace stylet::tet {
@@ -14,6 +16,7 @@ TetShape::TetShape(SegmentMesh mesh, int segments, double segment_length, double
       states_(static_cast<std::size_t>(segments) * mesh_.elements.size()) {
   const Eigen::Index unknowns = 3 * segments * (mesh_.middle_nodes() + kLayerNodes);
   displacement.setZero(unknowns);
+  rest_.setZero(unknowns);
   force_.setZero(unknowns);
 }
 
@@ -23,6 +26,25 @@ Eigen::Index TetShape::dof(int segment, int node) const {
   if (node >= kFirstMiddle) return 3 * (before + node - kFirstMiddle);
   if (node >= kLayerNodes) return 3 * (before + middle + node - kLayerNodes);
   return 3 * (before - kLayerNodes + node);  // the layer at the end of the segment before
+}
+
+void TetShape::bend_rest(const Vec3& curvature) {
+  const int nodes = static_cast<int>(mesh_.nodes.size());
+  std::vector<Vec3> place(static_cast<std::size_t>(nodes));
+  bowed_.clear();
+  for (int k = 0; k < segments_; ++k) {
+    for (int i = 0; i < nodes; ++i) {
+      const Vec3 straight = mesh_.nodes[i] + k * curve_.spacing() * Vec3::UnitZ();
+      const double s = straight.z();
+      const beam::RotationTerms arc(s * curvature);
+      place[static_cast<std::size_t>(i)] = s * arc.chord() + arc.rotation() * Vec3(straight.x(), straight.y(), 0.0);
+      const Eigen::Index d = dof(k, i);
+      if (d >= 0) rest_.segment<3>(d) = place[static_cast<std::size_t>(i)] - straight;
+    }
+    for (const Element& element : mesh_.elements) bowed_.push_back(make_element(place, element.node));
+  }
+  displacement = rest_;
+  update();
 }
 
 void TetShape::scale_modulus(double factor) {
@@ -41,10 +63,11 @@ void TetShape::update() {
   const int nodes = static_cast<int>(mesh_.nodes.size());
   for (int k = 0; k < segments_; ++k) {
     for (int i = 0; i < nodes; ++i) {
-      u[i] = displacement_of(k, i);
+      u[i] = strain_displacement_of(k, i);
       f[i].setZero();
     }
-    for (const Element& element : mesh_.elements) {
+    for (int e = 0; e < static_cast<int>(mesh_.elements.size()); ++e) {
+      const Element& element = unloaded(k, e);
       // Differences before products: where a segment is moved but hardly deformed, no digits of the strain are lost.
       const Vec3& origin = u[element.node[0]];
       Mat3 H = Mat3::Zero();

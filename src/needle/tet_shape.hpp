@@ -18,7 +18,8 @@ struct ElementState {
   Mat3 S = Mat3::Zero();  ///< [MPa]
 };
 
-/// Displacements of all nodes in base axes, with stresses, nodal forces and energy, refreshed by update().
+/// Displacements of all nodes in base axes from where they are in a straight needle, with stresses, nodal forces and
+/// energy, refreshed by update().
 class TetShape {
  public:
   TetShape(SegmentMesh mesh, int segments, double segment_length, double young_modulus, double poisson);
@@ -28,6 +29,11 @@ class TetShape {
   void update();
   /// Counts the calls of update(): what was made for the same number is still valid.
   [[nodiscard]] long revision() const { return revision_; }
+
+  /// Makes a bow of constant curvature [1/mm] the unloaded shape, and takes it.
+  void bend_rest(const Vec3& curvature);
+  /// [mm] of the unloaded shape, as displacement.
+  [[nodiscard]] const VecX& rest() const { return rest_; }
 
   /// Multiplies Young's modulus (and stresses, forces, energy).
   void scale_modulus(double factor);
@@ -44,8 +50,10 @@ class TetShape {
   /// First unknown of the axis node of layer 1…n.
   [[nodiscard]] Eigen::Index axis_dof(int layer) const { return dof(layer - 1, kLayerNodes + kAxisNode); }
 
-  [[nodiscard]] const ElementState& element(int segment, int e) const {
-    return states_[static_cast<std::size_t>(segment) * mesh_.elements.size() + static_cast<std::size_t>(e)];
+  [[nodiscard]] const ElementState& element(int segment, int e) const { return states_[number(segment, e)]; }
+  /// An element of the unloaded needle, base axes.
+  [[nodiscard]] const Element& unloaded(int segment, int e) const {
+    return bowed_.empty() ? mesh_.elements[static_cast<std::size_t>(e)] : bowed_[number(segment, e)];
   }
   /// ∂energy/∂displacement [N]
   [[nodiscard]] const VecX& force() const { return force_; }
@@ -59,9 +67,17 @@ class TetShape {
   [[nodiscard]] Vec3 place(int segment, int node) const;
 
  private:
+  [[nodiscard]] std::size_t number(int segment, int e) const {
+    return static_cast<std::size_t>(segment) * mesh_.elements.size() + static_cast<std::size_t>(e);
+  }
   [[nodiscard]] Vec3 displacement_of(int segment, int node) const {
     const Eigen::Index i = dof(segment, node);
     return i < 0 ? Vec3::Zero() : Vec3(displacement.segment<3>(i));
+  }
+  /// From the unloaded shape.
+  [[nodiscard]] Vec3 strain_displacement_of(int segment, int node) const {
+    const Eigen::Index i = dof(segment, node);
+    return i < 0 ? Vec3::Zero() : Vec3(displacement.segment<3>(i) - rest_.segment<3>(i));
   }
 
   SegmentMesh mesh_;
@@ -71,6 +87,8 @@ class TetShape {
   double mu_;
   double energy_ = 0.0;
   long revision_ = 0;
+  VecX rest_;
+  std::vector<Element> bowed_;  ///< of a bowed needle, segment by segment; a straight one's segments are all alike
   std::vector<ElementState> states_;
   VecX force_;
 };

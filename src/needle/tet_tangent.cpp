@@ -98,7 +98,7 @@ void TetTangent::assemble_segment(const TetShape& shape, int segment) {
   K.material.setZero();
   K.geometric.setZero();
   for (int e = 0; e < static_cast<int>(mesh_.elements.size()); ++e) {
-    const Element& element = mesh_.elements[static_cast<std::size_t>(e)];
+    const Element& element = shape.unloaded(segment, e);
     const auto& [F, S] = shape.element(segment, e);
     const double lambda = element.volume * shape.lambda();
     const double mu = element.volume * shape.mu();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/model.hpp"
 
+#include "needle_choice.hpp"
 #include "planning.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
@@ -19,9 +20,6 @@ namespace {
 constexpr double kTentingMin_mm = 5.0;
 constexpr double kTentingMax_mm = 20.0;
 constexpr double kLagMax_mm = 5.0;
-constexpr double kSteelYoung_MPa = 200e3;
-/// Share of the needle's cross-section that is steel: 18 gauge, 1.27 mm outer and 1.0 mm inner diameter.
-constexpr double kSteelShare = 1.0 - (1.0 / 1.27) * (1.0 / 1.27);
 /// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
 constexpr double kBeyond_mm = 15.0;
 
@@ -69,14 +67,14 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
   c.capacity = s.coupling.contacts;
   c.tolerance = s.coupling.tolerance;
-  const double area = 0.25 * std::numbers::pi * s.needle.diameter_mm * s.needle.diameter_mm * kSteelShare;
-  c.axial_compliance_mm_per_N = s.needle.length_mm / (kSteelYoung_MPa * area);
+  c.axial_compliance_mm_per_N = axial_compliance(s.needle);
   return c;
 }
 
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
-  return make_needle(n.model, {n.length_mm, n.diameter_mm, n.bending_stiffness_Nmm2, n.torsion_stiffness_Nmm2},
-                     n.elements, capacity + 1);
+  const auto section = needle_section(n);
+  if (!section) return section.error();
+  return make_needle(n.model, *section, n.elements, capacity + 1);
 }
 
 /// Largest full inverse, kept twice, that an engine may ask for.
@@ -160,9 +158,9 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
 
   std::shared_ptr<Model> model(new Model);
   model->scenario_ = scenario;
-  model->coupling_ = coupling_settings(scenario);
-  if (const auto needle = build_needle(scenario.needle, model->coupling_.capacity); !needle)
+  if (const auto needle = build_needle(scenario.needle, scenario.coupling.contacts); !needle)
     return named(needle.error(), where);
+  model->coupling_ = coupling_settings(scenario);
   model->target_ = find_target(mesh);
 
   std::vector<Material> materials;

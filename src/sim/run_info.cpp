@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "needle_choice.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/needle/make_needle.hpp"
 #include "stylet/needle/tet.hpp"
@@ -27,8 +28,7 @@ constexpr std::array kShown{
     Documented{"needle.model", "most accurate for its cost"},
     Documented{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
     Documented{"needle.diameter_mm", "18 gauge"},
-    Documented{"needle.bending_stiffness_Nmm2", "steel tube (E 200 GPa), 1.27 mm outer and 1.0 mm inner diameter"},
-    Documented{"needle.torsion_stiffness_Nmm2", "the same tube (G 77 GPa)"},
+    Documented{"needle.stylet", "seeds and spacers lie where it would be"},
     Documented{kElements.data(), "numerical: no visible change of the needle's shape with more"},
     Documented{"coupling.method", "the mesh takes up what the needle does, at constant cost"},
     Documented{"coupling.rule", "old compliances do not change when a node is added"},
@@ -70,6 +70,21 @@ void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, cons
   row("friction_static_N_per_m", &TissueParameters::friction_static_N_per_m, "N/m");
   row("friction_coulomb_N_per_m", &TissueParameters::friction_coulomb_N_per_m, "N/m");
   row("friction_viscous_Ns_per_m2", &TissueParameters::friction_viscous_Ns_per_m2, "N s/m²");
+}
+
+/// The needle's stiffness, given or from its section.
+void add_section(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
+  const auto section = needle_section(choice);
+  if (!section) return;  // compile() has seen it succeed
+  const Cannula tube = cannula_of(choice);
+  std::string from = fmt::format("tube of {:.3g} mm outer and {:.3g} mm inner diameter, E {:g} GPa", choice.diameter_mm,
+                                 tube.lumen_diameter_mm, choice.young_GPa);
+  rows.push_back({"needle.torsion_stiffness_Nmm2", fmt::format("{:.0f}", section->torsion_stiffness_Nmm2), "N mm²",
+                  choice.torsion_stiffness_Nmm2 ? kFromScenario : from});
+  if (tube.stylet_diameter_mm > 0.0)
+    from += fmt::format(", stylet of {:.3g} mm, E {:g} GPa", tube.stylet_diameter_mm, choice.stylet_young_GPa);
+  rows.push_back({"needle.bending_stiffness_Nmm2", fmt::format("{:.0f}", section->bending_stiffness_Nmm2), "N mm²",
+                  choice.bending_stiffness_Nmm2 ? kFromScenario : from});
 }
 
 /// Numbers that a model of the needle finds for itself.
@@ -114,6 +129,7 @@ RunInfo Model::info(std::size_t insertion) const {
       text = std::to_string(default_needle_elements(scenario_.needle.model).value());
     info.parameters.push_back({shown.path, text, unit_of(shown.path), is_default ? shown.source : kFromScenario});
   }
+  add_section(info.parameters, scenario_.needle);
   if (scenario_.needle.model == "tet") add_needle(info.parameters, make_needle().get());
   return info;
 }

@@ -92,11 +92,33 @@ void describe_needle(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.needle.length_mm; });
   keys.number("needle.diameter_mm", "mm", 0.2, 5, "outer diameter; 18 gauge is 1.27",
               [](auto& s, const Slot&) { return &s.needle.diameter_mm; });
+  keys.number("needle.lumen_diameter_mm", "mm", 0, 5, "inner diameter of the tube; 0 = solid",
+              [](auto& s, const Slot&) { return &s.needle.lumen_diameter_mm; },
+              {.standard = "0.787 of the outer diameter, 1.0 for 18 gauge", .example = "1"});
+  keys.number("needle.young_GPa", "GPa", 0.5, 230, "Young's modulus of the tube; steel has 200",
+              [](auto& s, const Slot&) { return &s.needle.young_GPa; });
+  keys.choice("needle.stylet", {"out", "in"}, {},
+              "whether the stylet is in the tube: it slides freely, so its bending stiffness adds to the tube's",
+              [](auto& s, const Slot&) { return &s.needle.stylet; });
+  keys.number("needle.stylet_diameter_mm", "mm", 0.05, 5, "diameter of the stylet",
+              [](auto& s, const Slot&) { return &s.needle.stylet_diameter_mm; },
+              {.standard = "0.9 of the lumen", .example = "0.9"});
+  keys.number("needle.stylet_young_GPa", "GPa", 0.5, 230, "Young's modulus of the stylet",
+              [](auto& s, const Slot&) { return &s.needle.stylet_young_GPa; });
   keys.number("needle.bending_stiffness_Nmm2", "N mm²", 1, 1e7,
-              "bending stiffness E I; 12,700 … 25,500 for 18 gauge, by lumen and stylet",
-              [](auto& s, const Slot&) { return &s.needle.bending_stiffness_Nmm2; });
-  keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "torsion stiffness G J",
-              [](auto& s, const Slot&) { return &s.needle.torsion_stiffness_Nmm2; });
+              "bending stiffness E I as measured, instead of the section's",
+              [](auto& s, const Slot&) { return &s.needle.bending_stiffness_Nmm2; },
+              {.standard = "from the section, 15,722 for the default tube", .example = "15722"});
+  keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "torsion stiffness G J, instead of the section's",
+              [](auto& s, const Slot&) { return &s.needle.torsion_stiffness_Nmm2; },
+              {.standard = "from the section, 12,094 for the default tube", .example = "12094"});
+  keys.number("needle.bow_mm", "mm", 0, 100,
+              "how far the tip of the unloaded needle lies beside its axis (it is bent to a circle); up to a tenth of "
+              "the length",
+              [](auto& s, const Slot&) { return &s.needle.bow_mm; });
+  keys.number("needle.bow_deg", "degree", -360, 360,
+              "side to which it is bent, about the axis from the base's x to its y; turns with the needle's roll",
+              [](auto& s, const Slot&) { return &s.needle.bow_deg; });
   keys.integer("needle.elements", 0, 200,
                "number of elements of the needle, at least 4; 0 = 24 (beam, springs) or 60 (tet)",
                [](auto& s, const Slot&) { return &s.needle.elements; });

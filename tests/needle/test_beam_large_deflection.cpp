@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "elastica.hpp"
+#include "stylet/needle/theory.hpp"
 #include "support.hpp"
 
 #include <cmath>
@@ -10,12 +10,12 @@ namespace stylet {
 namespace {
 
 constexpr double kLength = 200.0;
-constexpr double kEI = 15700.0;
-constexpr double kGJ = 12100.0;
+constexpr double kEI = 15722.0;
+constexpr double kGJ = 12094.0;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-struct Elastica : test::Elastica {
-  explicit Elastica(double tip_slope) : test::Elastica(tip_slope, kLength, kEI) {}
+struct Elastica : stylet::Elastica {
+  explicit Elastica(double tip_slope) : stylet::Elastica(tip_slope, kLength, kEI) {}
 };
 
 double slope(const Needle& needle, double s) { return std::asin(needle.tangent(s).x()); }

@@ -38,6 +38,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"nan", {.bending_stiffness_Nmm2 = std::numeric_limits<double>::quiet_NaN()}, 24, 10, "nan"},
                     Refused{"torsion", {.torsion_stiffness_Nmm2 = -1.0}, 24, 10, "torsion stiffness"},
                     Refused{"stiffer_than_solid", {.bending_stiffness_Nmm2 = 30000.0}, 24, 10, "26817 N mm²"},
+                    Refused{"bow", {.bow_mm = -1.0}, 24, 10, "expected 0 … 20 mm"},
+                    Refused{"bow_direction", {.bow_deg = std::numeric_limits<double>::infinity()}, 24, 10, "degrees"},
                     Refused{"elements", {}, 3, 10, "4…500"}, Refused{"capacity", {}, 24, 0, "at least 1"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 

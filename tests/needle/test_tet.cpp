@@ -18,7 +18,7 @@ using tet::TetShape;
 using tet::TetTangent;
 
 constexpr double kLength = 200.0;
-constexpr double kEI = 15700.0;
+constexpr double kEI = 15722.0;
 
 std::unique_ptr<TetNeedle> tets(int segments = 60, Segment segment = Segment::symmetric,
                                 const NeedleSection& section = {}) {

@@ -287,8 +287,8 @@ TEST(RunInfo, says_of_every_parameter_whether_it_is_the_scenarios_or_where_it_co
   EXPECT_EQ(row("needle.length_mm").source, "scenario");
   EXPECT_EQ(row("needle.length_mm").value, "120");
   EXPECT_EQ(row("needle.diameter_mm").source, "18 gauge");
-  EXPECT_EQ(row("needle.bending_stiffness_Nmm2").value, "15700");
-  EXPECT_SAYS(row("needle.bending_stiffness_Nmm2").source, "steel");
+  EXPECT_EQ(row("needle.bending_stiffness_Nmm2").value, "15722");
+  EXPECT_SAYS(row("needle.bending_stiffness_Nmm2").source, "1 mm inner diameter, E 200 GPa");
   EXPECT_EQ(row("coupling.spacing_mm").source, "scenario");
   EXPECT_EQ(row("coupling.spacing_mm").unit, "mm");
   EXPECT_NE(row("coupling.grazing_deg").source, "scenario");

@@ -76,3 +76,35 @@ TEST(NeedleModels, AReportShowsTheModelItsElementsAndTheCalibrationOfTetrahedra)
   EXPECT_EQ(row(beam, "needle.tet.calibration"), nullptr);
   EXPECT_EQ(row(beam, "needle.elements")->value, "24");
 }
+
+TEST(NeedleSectionOfAScenario, StyletAndLumenDecideTheStiffnessUnlessItIsGiven) {
+  const auto stiffness = [](const Scenario& s) {
+    const RunInfo info = compiled(s)->info();
+    return std::stod(row(info, "needle.bending_stiffness_Nmm2")->value);
+  };
+  Scenario s = box_scenario();
+  EXPECT_EQ(stiffness(s), 15722.0);
+  s.needle.lumen_diameter_mm = 0.838;
+  EXPECT_NEAR(stiffness(s), 20.7e3, 100.0);
+  s.needle.lumen_diameter_mm = 1.0;
+  s.needle.stylet = "in";
+  EXPECT_NEAR(stiffness(s), 15722.0 + 200e3 * 0.0322062, 1.0);
+  s.needle.stylet_diameter_mm = 0.8;
+  EXPECT_NEAR(stiffness(s), 15722.0 + 200e3 * 0.0201062, 1.0);
+  s.needle.bending_stiffness_Nmm2 = 18000.0;
+  EXPECT_EQ(stiffness(s), 18000.0);
+  EXPECT_EQ(row(compiled(s)->info(), "needle.bending_stiffness_Nmm2")->source, "scenario");
+  s.needle.lumen_diameter_mm = 1.3;
+  EXPECT_SAYS(refused(s).message(), "lumen diameter");
+}
+
+TEST(NeedleSectionOfAScenario, TheTubesWallDecidesHowMuchItStretches) {
+  Scenario s = box_scenario();
+  const double thin = compiled(s)->coupling().axial_compliance_mm_per_N;
+  EXPECT_NEAR(thin, 120.0 / (200e3 * 0.48137), 1e-7);
+  s.needle.stylet = "in";  // slides freely: it does not hold the tube
+  EXPECT_EQ(compiled(s)->coupling().axial_compliance_mm_per_N, thin);
+  s.needle.lumen_diameter_mm = 0.0;
+  s.needle.stylet = "out";
+  EXPECT_NEAR(compiled(s)->coupling().axial_compliance_mm_per_N, 120.0 / (200e3 * 1.266769), 1e-7);
+}

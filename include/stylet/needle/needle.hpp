@@ -55,7 +55,7 @@ class Needle {
   /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium.
   [[nodiscard]] virtual double residual(std::span<const PointLoad> loads) const = 0;
 
-  /// Straightens the needle (stress-free shape), base kept.
+  /// Takes the stress-free shape: straight, or with the bow it was built with. The base is kept.
   virtual void straighten() = 0;
 
   /// Elastic energy stored in the shape [N mm].

@@ -9,8 +9,10 @@ namespace stylet {
 struct NeedleSection {
   double length_mm = 200.0;
   double outer_diameter_mm = 1.27;        ///< 18 gauge
-  double bending_stiffness_Nmm2 = 15700;  ///< E I; 12,700…25,500 for an 18 gauge cannula without…with stylet
-  double torsion_stiffness_Nmm2 = 12100;  ///< G J
+  double bending_stiffness_Nmm2 = 15722;  ///< E I; section_stiffness() of a Cannula gives it, as here for its defaults
+  double torsion_stiffness_Nmm2 = 12094;  ///< G J
+  double bow_mm = 0.0;   ///< offset of the unloaded needle's tip from its axis at the base, constant curvature
+  double bow_deg = 0.0;  ///< side of the tip, about the axis, from local x towards local y
 };
 
 /// What every needle model asks for: finite positive numbers, a stiffness that steel of this diameter can have, the

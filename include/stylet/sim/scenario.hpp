@@ -93,9 +93,16 @@ struct Scenario {
     std::string model = "beam";
     double length_mm = 200.0;
     double diameter_mm = 1.27;
-    double bending_stiffness_Nmm2 = 15700.0;
-    double torsion_stiffness_Nmm2 = 12100.0;
-    int elements = 0;  ///< 0 = the model's own
+    std::optional<double> lumen_diameter_mm;  ///< unset: that of an 18 gauge needle in proportion
+    double young_GPa = 200.0;
+    std::string stylet = "out";                ///< in, out
+    std::optional<double> stylet_diameter_mm;  ///< unset: 0.9 of the lumen
+    double stylet_young_GPa = 200.0;
+    std::optional<double> bending_stiffness_Nmm2;  ///< instead of the section's
+    std::optional<double> torsion_stiffness_Nmm2;  ///< instead of the section's
+    double bow_mm = 0.0;                           ///< offset of the unloaded needle's tip
+    double bow_deg = 0.0;                          ///< towards which side, about the axis
+    int elements = 0;                              ///< 0 = the model's own
     bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace stylet::test {
+/// Closed solutions of bent beams, which needles are checked against.
+namespace stylet {
+
+/// Small deflection [mm] at s of a cantilever of bending stiffness EI [N mm²] under a lateral force [N] at a, clamped
+/// at 0 (Euler–Bernoulli).
+inline double cantilever_deflection(double force, double a, double s, double bending_stiffness) {
+  const double near = std::min(s, a);
+  const double far = std::max(s, a);
+  return force * near * near * (3.0 * far - near) / (6.0 * bending_stiffness);
+}
 
 /// Cantilever under a dead end force P across its undeformed axis, by the slope at its tip [rad]. K. E. Bisshopp and
 /// D. C. Drucker, Large deflection of cantilever beams, Q. Appl. Math. 3 (1945) 272–275.
@@ -23,4 +33,4 @@ struct Elastica {
   }
 };
 
-}  // namespace stylet::test
+}  // namespace stylet

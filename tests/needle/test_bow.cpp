@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A needle that is not straight when nothing pulls on it.
+#include "needle_model_test.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace stylet {
+namespace {
+
+constexpr double kLength = 200.0;
+constexpr double kBow = 4.0;
+
+class BowedNeedle : public test::NeedleModelTest {
+ protected:
+  [[nodiscard]] static std::unique_ptr<Needle> bowed(double mm, double degrees) {
+    NeedleSection section;
+    section.bow_mm = mm;
+    section.bow_deg = degrees;
+    auto built = make_needle(model(), section, 0, 16);
+    EXPECT_TRUE(built.ok()) << (built.ok() ? "" : built.error().message());
+    return std::move(built).value();
+  }
+};
+
+TEST_P(BowedNeedle, UnloadedHasItsTipWhereTheBowSaysAndStoresNothing) {
+  for (const double degrees : {0.0, 90.0, 213.0}) {
+    const auto needle = bowed(kBow, degrees);
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const Vec3 side(std::cos(angle), std::sin(angle), 0.0);
+    const Vec3 tip = needle->point(kLength);
+    EXPECT_NEAR(tip.dot(side), kBow, 1e-9);
+    EXPECT_NEAR(tip.dot(side.cross(Vec3::UnitZ())), 0.0, 1e-9);
+    EXPECT_EQ(needle->energy(), 0.0);
+    EXPECT_LT(needle->residual({}), 1e-12);
+    // A circle: half way the offset is a quarter, up to the elements' own corners.
+    EXPECT_NEAR(needle->point(kLength / 2).dot(side), kBow / 4.0, 0.005 * kBow);
+    EXPECT_NEAR(needle->tangent(kLength).dot(side), 2.0 * kBow / kLength, 0.03 * 2.0 * kBow / kLength);
+    EXPECT_NEAR(needle->tangent(0.0).z(), 1.0, 1e-12);
+  }
+}
+
+TEST_P(BowedNeedle, ComesBackToItsBowFromAnyShape) {
+  const auto needle = bowed(kBow, 30.0);
+  const Vec3 tip = needle->point(kLength);
+  const VecX unloaded = needle->state();
+  test::settle(*needle, std::vector<PointLoad>{{kLength, {0.2, -0.3, 0.1}}}, tolerance());
+  EXPECT_GT((needle->point(kLength) - tip).norm(), 10.0);
+  settle(*needle, {});
+  EXPECT_LT((needle->point(kLength) - tip).norm(), 1e-6);
+  needle->straighten();
+  EXPECT_EQ(VecX(needle->state()), unloaded);
+  needle->set_state(VecX::Zero(unloaded.size()));  // held straight: bending energy EI κ² L / 2
+  EXPECT_NEAR(needle->point(kLength).x(), 0.0, 1e-12);
+  if (model() == "tet") return;  // its nodes on straight lines are not yet the least energy of a straight shaft
+  const double curvature = 2.0 * kBow / (kLength * kLength);
+  EXPECT_NEAR(needle->energy(), 0.5 * NeedleSection{}.bending_stiffness_Nmm2 * curvature * curvature * kLength,
+              0.03 * needle->energy());
+}
+
+TEST_P(BowedNeedle, SuperposedSmallLoadsBendItAsTheyBendAStraightOne) {
+  const auto straight = make();
+  const auto needle = bowed(kBow, 0.0);
+  const Vec3 tip = needle->point(kLength);
+  for (const Vec3& force : {Vec3(1e-4, 0, 0), Vec3(-1e-4, 0, 0), Vec3(0, 1e-4, 0)}) {
+    needle->straighten();
+    straight->straighten();
+    settle(*needle, std::vector<PointLoad>{{kLength, force}, {120.0, force}});
+    settle(*straight, std::vector<PointLoad>{{kLength, force}, {120.0, force}});
+    const Vec3 expected = straight->point(kLength) - Vec3(0, 0, kLength);
+    EXPECT_LT((needle->point(kLength) - tip - expected).head<2>().norm(), 0.005 * expected.norm());
+  }
+}
+
+TEST_P(BowedNeedle, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
+  const auto needle = bowed(10.0, 75.0);
+  std::vector<PointLoad> loads{{kLength, {0.1, 0.2, -0.1}}, {111.0, {-0.2, 0.1, 0.0}}};
+  settle(*needle, loads);
+  const MatX compliance = test::compliance_of(*needle, loads);
+  constexpr double h = 1e-4;
+  for (Eigen::Index column = 0; column < 6; ++column) {
+    VecX difference = VecX::Zero(6);
+    for (const double sign : {1.0, -1.0}) {
+      auto changed = loads;
+      changed[static_cast<std::size_t>(column / 3)].force[column % 3] += sign * h;
+      settle(*needle, changed);
+      for (std::size_t c = 0; c < 2; ++c)
+        difference.segment<3>(3 * static_cast<Eigen::Index>(c)) += sign * needle->point(loads[c].s) / (2 * h);
+    }
+    EXPECT_LT((difference - compliance.col(column)).norm(), 2e-6 * compliance.norm()) << column;
+  }
+}
+
+STYLET_FOR_EVERY_NEEDLE_MODEL(BowedNeedle);
+
+}  // namespace
+}  // namespace stylet
