@@ -72,7 +72,7 @@ void Insertion::Parts::march(double advance) {
 /// Axial force of the hand when the tip's force reaches its limit, the shaft's being those of the trial solution.
 double Insertion::Parts::force_at_break() const {
   const Vec3 axis = base.rotation * Vec3::UnitZ();
-  double force = tip.limit * frames[0].col(2).dot(axis);
+  double force = (tip.limit * frames[0].col(2) - needle->guide_load().force).dot(axis);
   for (int c = 1; c < load_count(); ++c) {
     force += (frames[static_cast<std::size_t>(c)] * system.lambda.segment<3>(3 * c)).dot(axis);
   }

@@ -11,6 +11,7 @@ namespace stylet {
 namespace {
 constexpr int kMaxSubSteps = 64;
 constexpr std::size_t kOldTracks = 64;
+constexpr double kBent_mm = 10.0;  ///< a bent shaft is rarely further from its axis
 
 std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue, const CouplingSettings& settings) {
   using Engine = CouplingSettings::Engine;
@@ -52,6 +53,20 @@ void Insertion::Parts::add_event(StepReport& report, InsertionEventKind kind, in
   report.event[static_cast<std::size_t>(report.events++)] = {kind, region, force_N};
 }
 
+/// Nothing but a guide bends the needle in the air.
+void Insertion::Parts::settle_in_air(StepReport& report) {
+  constexpr int enough = 50;
+  constexpr double tolerance_N = 1e-10;
+  for (int iteration = 0; needle->residual({}) > tolerance_N * length(); ++iteration) {
+    if (iteration == enough) {
+      report.flags |= StepReport::not_converged;
+      return;
+    }
+    needle->linearise({}, N.topLeftCorner(0, 0), free.head(0));
+    needle->advance({});
+  }
+}
+
 /// The needle is out: the tissue model is what it was before the first contact. The tracks stay known.
 void Insertion::Parts::finish_insertion(StepReport& report) {
   if (track.end_xi > 0.0) {
@@ -72,6 +87,7 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   tip = Tip{};
   compliance.reset();
   needle->straighten();
+  settle_in_air(report);
   phase = TipPhase::air;
   air_tip = needle->point(length());
   add_event(report, InsertionEventKind::withdrawn, -1);
@@ -80,6 +96,7 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
 void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) {
   needle->set_base(pose);
   if (phase == TipPhase::air) {
+    settle_in_air(report);
     const Vec3 now = needle->point(length());
     enter(air_tip, now, report);
     if (phase == TipPhase::air) {
@@ -128,8 +145,11 @@ void Insertion::Parts::summarise(StepReport& report) const {
   report.tip_position = needle->point(length());
   const bool tip_holds = tip.touching && tip.state != Tip::State::open;
   report.contacts = static_cast<int>(grips.size()) + (tip_holds ? 1 : 0);
-  report.hand_force = tip.force;
-  report.hand_torque = (needle->point(length()) - base.origin).cross(tip.force);
+  const PointLoad guide = needle->guide_load();
+  report.guide_force = guide.force;
+  report.hand_force = tip.force - guide.force;
+  report.hand_torque = (needle->point(length()) - base.origin).cross(tip.force) -
+                       (needle->point(guide.s) - base.origin).cross(guide.force);
   double sliding = 0.0;
   for (const Grip& grip : grips) {
     report.hand_force += grip.force;
@@ -153,15 +173,16 @@ Insertion::Insertion(Insertion&&) noexcept = default;
 Insertion& Insertion::operator=(Insertion&&) noexcept = default;
 
 void Insertion::place(const Pose& base) {
-  if (parts_->phase != TipPhase::air) {
-    StepReport unused;
-    parts_->finish_insertion(unused);
-  }
+  StepReport unused;
+  if (parts_->phase != TipPhase::air) parts_->finish_insertion(unused);
   parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->base = base;
   parts_->needle->set_base(base);
+  parts_->settle_in_air(unused);
   parts_->air_tip = parts_->needle->point(parts_->length());
 }
+
+void Insertion::place_guide(const Vec3& hole, const Vec3& axis) { parts_->needle->place_guide(hole, axis); }
 
 StepReport Insertion::step(const Pose& base, double dt) {
   Parts& p = *parts_;
@@ -172,8 +193,10 @@ StepReport Insertion::step(const Pose& base, double dt) {
     return report;
   }
   const Pose from = p.base;
+  // How far the shaft's points go: tilting swings the whole needle, rolling only what is bent.
   const double turn = 2.0 * std::acos(std::min(1.0, std::abs(from.rotation.dot(base.rotation))));
-  const double way = (base.origin - from.origin).norm() + turn * p.length();
+  const double tilt = (base.rotation * Vec3::UnitZ() - from.rotation * Vec3::UnitZ()).norm();
+  const double way = (base.origin - from.origin).norm() + tilt * p.length() + turn * kBent_mm;
   int count = kMaxSubSteps;
   if (way <= kMaxSubSteps * p.settings.max_advance_mm) {
     count = std::max(1, static_cast<int>(std::ceil(way / p.settings.max_advance_mm)));

@@ -153,6 +153,7 @@ struct Insertion::Parts {
   void wake_and_drop(StepReport& report);
   void share_length();
   void finish_insertion(StepReport& report);
+  void settle_in_air(StepReport& report);
 
   void sub_step(const Pose& pose, double h, StepReport& report);
   void summarise(StepReport& report) const;

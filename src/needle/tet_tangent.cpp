@@ -204,6 +204,7 @@ void TetTangent::add_segment(int segment) {
 void TetTangent::add_springs(const Mat3& base_rotation, std::span<const Mat3> springs) {
   assert(springs.size() == loads_.size());
   for (std::size_t c = 0; c < std::min(springs.size(), loads_.size()); ++c) {
+    if (springs[c].isZero(0.0)) continue;
     const Mat3 G = base_rotation.transpose() * springs[c] * base_rotation;
     const AxisCurve::Weights& w = loads_[c];
     for (int i = 0; i < AxisCurve::kReach; ++i) {

@@ -52,12 +52,15 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
         fmt::format("{}.retract = false leaves the needle in, and insertion[{}] follows", name, number + 1),
         "Only the last insertion may leave its needle in: there is one needle");
   }
-  const double reach = s.needle.length_mm - kNeedleOutside_mm;
+  const double reach = deepest_mm(s);
   if (p.depth_mm > reach) {
-    return input_error(place(name + ".depth_mm"),
-                       fmt::format("{}.depth_mm = {} is more than the needle's length less {} mm ({})", name,
-                                   p.depth_mm, kNeedleOutside_mm, reach),
-                       "Use a longer needle (needle.length_mm) or a smaller depth");
+    const std::string outside =
+        s.grid.guide ? fmt::format("{} mm and the template's distance, {} mm", kNeedleOutside_mm, s.grid.distance_mm)
+                     : fmt::format("{} mm", kNeedleOutside_mm);
+    return input_error(
+        place(name + ".depth_mm"),
+        fmt::format("{}.depth_mm = {} is more than the needle's length less {} ({})", name, p.depth_mm, outside, reach),
+        "Use a longer needle (needle.length_mm) or a smaller depth");
   }
   return Ok{};
 }

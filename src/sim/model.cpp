@@ -5,6 +5,7 @@
 #include "planning.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
+#include "stylet/needle/guided.hpp"
 #include "stylet/needle/make_needle.hpp"
 
 #include <fmt/format.h>
@@ -74,7 +75,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
   const auto section = needle_section(n);
   if (!section) return section.error();
-  return make_needle(n.model, *section, n.elements, capacity + 1);
+  return make_needle(n.model, *section, n.elements, capacity + 2);  // the tip, and a guide
 }
 
 /// Largest full inverse, kept twice, that an engine may ask for.
@@ -103,6 +104,14 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
   recorded.entry = entry ? Vec3(tip + entry->t * look_mm * recorded.direction) : tip;
   for (const MotionSample& sample : motion) {
     recorded.depth_mm = std::max(recorded.depth_mm, (tip_of(sample.base) - recorded.entry).dot(recorded.direction));
+  }
+  if (scenario.grid.guide && recorded.depth_mm > deepest_mm(scenario)) {
+    return input_error(
+        fmt::format("{}, insertion[{}].motion", where, number),
+        fmt::format("the recorded motion goes {:.1f} mm deep and would push the base through the "
+                    "template, which lets it go {:.1f} mm",
+                    recorded.depth_mm, deepest_mm(scenario)),
+        "Use a longer needle (needle.length_mm), a smaller template.distance_mm, or template.guide = false");
   }
   return recorded;
 }
@@ -242,7 +251,10 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
 std::unique_ptr<Needle> Model::make_needle() const {
   auto needle = build_needle(scenario_.needle, coupling_.capacity);  // compile() has seen it succeed
   if (!needle) return nullptr;
-  return std::move(*needle);
+  if (!scenario_.grid.guide) return std::move(*needle);
+  GuideHole hole;
+  hole.clearance_mm = scenario_.grid.clearance_mm;
+  return std::make_unique<GuidedNeedle>(std::move(*needle), hole, coupling_.capacity + 1);
 }
 
 }  // namespace stylet

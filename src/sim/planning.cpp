@@ -27,6 +27,10 @@ Eigen::AlignedBox3d extent(const TetMesh& mesh) {
 
 }  // namespace
 
+double deepest_mm(const Scenario& scenario) {
+  return scenario.needle.length_mm - kNeedleOutside_mm - (scenario.grid.guide ? scenario.grid.distance_mm : 0.0);
+}
+
 Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions) {
   Vec3 sum = Vec3::Zero();
   double volume = 0.0;
@@ -89,7 +93,7 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   if (result.depth_mm <= 0.0) {
     // To the far end of the target on this line; a line beside the target goes as deep as its centre.
     double last = -1.0;
-    const double reach = scenario.needle.length_mm - kNeedleOutside_mm;
+    const double reach = deepest_mm(scenario);
     Index hint = entry->tet;
     for (double depth = 0.25; depth < 2.0 * far; depth += 0.5) {
       const auto at = locator.find(result.entry + depth * result.direction, hint);
@@ -100,10 +104,11 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
     if (last < 0.0) last = (centre - result.entry).dot(result.direction);
     result.depth_mm = std::max(kLeastDepth_mm, last - kBeforeFarEnd_mm);
     if (result.depth_mm > reach) {
-      return input_error(place,
-                         fmt::format("the target's far end lies {:.0f} mm deep, the needle is {:.0f} mm long",
-                                     result.depth_mm, scenario.needle.length_mm),
-                         "Use a longer needle (needle.length_mm), or give a depth (depth_mm)");
+      return input_error(
+          place,
+          fmt::format("the target's far end lies {:.0f} mm deep, the needle is {:.0f} mm long and reaches {:.0f} mm",
+                      result.depth_mm, scenario.needle.length_mm, reach),
+          "Use a longer needle (needle.length_mm), or give a depth (depth_mm)");
     }
   }
   result.motion =

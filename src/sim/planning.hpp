@@ -8,6 +8,10 @@ namespace stylet {
 
 inline constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
 
+/// Largest depth [mm] of the base: what is left of the needle outside is held by the hand, and by the template if that
+/// guides it.
+double deepest_mm(const Scenario& scenario);
+
 /// Centroid of a set of regions by volume [mm] LPS; the whole mesh when the set is empty.
 Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions);
 

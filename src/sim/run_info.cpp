@@ -87,10 +87,24 @@ void add_section(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& 
                   choice.bending_stiffness_Nmm2 ? kFromScenario : from});
 }
 
+void add_guide(std::vector<ParameterRow>& rows, const TemplateGrid& grid) {
+  const TemplateGrid standard;
+  const auto source = [](bool is_default) { return is_default ? "stated, no measurement known" : kFromScenario; };
+  rows.push_back({"template.guide", "true", "", kFromScenario});
+  rows.push_back({"template.clearance_mm", fmt::format("{:g}", grid.clearance_mm), "mm",
+                  source(grid.clearance_mm == standard.clearance_mm)});
+  rows.push_back({"template.distance_mm", fmt::format("{:g}", grid.distance_mm), "mm",
+                  source(grid.distance_mm == standard.distance_mm)});
+}
+
 /// Numbers that a model of the needle finds for itself.
-void add_needle(std::vector<ParameterRow>& rows, const Needle* needle) {
-  const auto* tet = dynamic_cast<const TetNeedle*>(needle);
-  if (tet == nullptr) return;
+void add_tet(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
+  const auto section = needle_section(choice);
+  if (!section) return;  // compile() has seen it succeed
+  const int segments = choice.elements > 0 ? choice.elements : default_needle_elements(choice.model).value();
+  const auto built = TetNeedle::build(*section, segments, 1);
+  if (!built) return;
+  const TetNeedle* tet = built->get();
   rows.push_back({"needle.tet.calibration", fmt::format("{:.4g}", 1.0 / tet->stiffening()), "",
                   "factor on Young's modulus that makes the tip deflect as theory says; linear tetrahedra bend too "
                   "stiffly"});
@@ -129,8 +143,9 @@ RunInfo Model::info(std::size_t insertion) const {
       text = std::to_string(default_needle_elements(scenario_.needle.model).value());
     info.parameters.push_back({shown.path, text, unit_of(shown.path), is_default ? shown.source : kFromScenario});
   }
+  if (scenario_.grid.guide) add_guide(info.parameters, scenario_.grid);
   add_section(info.parameters, scenario_.needle);
-  if (scenario_.needle.model == "tet") add_needle(info.parameters, make_needle().get());
+  if (scenario_.needle.model == "tet") add_tet(info.parameters, scenario_.needle);
   return info;
 }
 

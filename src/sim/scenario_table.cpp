@@ -178,6 +178,14 @@ void describe_template(ScenarioEntries& keys) {
              [](auto& s, const Slot&) { return &s.grid.columns; });
   keys.texts("template.rows", 1, "row names from posterior to anterior",
              [](auto& s, const Slot&) { return &s.grid.rows; });
+  keys.boolean("template.guide",
+               "the hole holds the shaft sideways, whichever way the needle's line is given; it slides through freely",
+               [](auto& s, const Slot&) { return &s.grid.guide; });
+  keys.number("template.clearance_mm", "mm", 0, 2, "radius of the hole less radius of the needle",
+              [](auto& s, const Slot&) { return &s.grid.clearance_mm; });
+  keys.number("template.distance_mm", "mm", 0, 300,
+              "distance of the template from the skin along the needle; the base stops before it",
+              [](auto& s, const Slot&) { return &s.grid.distance_mm; });
 }
 
 void describe_insertion(ScenarioEntries& keys) {

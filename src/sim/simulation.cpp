@@ -81,6 +81,7 @@ void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& directio
   retracting_ = false;
   slipping_ = true;
   event_count_ = 0;
+  insertion_.place_guide(entry_ - model_->scenario().grid.distance_mm * direction_, direction_);
   insertion_.place(base);
   report_ = {};
   const double now = record_.time_s;
@@ -196,7 +197,7 @@ Simulation::Balance Simulation::balance(double scale_N) const {
     force += f;
     torque += (nodes.position[k] - entry_).cross(f);
   }
-  const double hand = (contacts - report_.hand_force).norm();
+  const double hand = (contacts - report_.hand_force - report_.guide_force).norm();
   return {std::max(force.norm(), hand) / scale_N, torque.norm() / (scale_N * 100.0)};
 }
 

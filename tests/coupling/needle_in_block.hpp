@@ -34,6 +34,7 @@ struct BlockOptions {
   std::function<void(TetMesh&)> edit;  ///< last change to the mesh before it is built
   CouplingSettings coupling;
   double needle_length = 150.0;
+  std::function<std::unique_ptr<Needle>(int load_capacity)> needle;  ///< instead of the usual beam
 };
 
 struct Happened {
@@ -68,13 +69,15 @@ class NeedleInBlock {
     topology = std::make_unique<Topology>(tissue->mesh());
     locator = std::make_unique<Locator>(tissue->mesh(), *topology);
     store = std::make_shared<ComplianceStore>(tissue);
-    auto needle = BeamNeedle::build({options.needle_length, 1.27, 15700, 12100}, 20, options.coupling.capacity + 1);
-    EXPECT_TRUE(needle.ok());
+    const int capacity = options.coupling.capacity + 1;
+    std::unique_ptr<Needle> needle =
+        options.needle ? options.needle(capacity)
+                       : BeamNeedle::build({options.needle_length, 1.27, 15700, 12100}, 20, capacity).value();
     std::shared_ptr<const MatX> inverse;
     if (options.coupling.engine != CouplingSettings::Engine::condensed)
       inverse = std::make_shared<const MatX>(paper::full_inverse(*tissue));
     insertion = std::make_unique<Insertion>(InsertionTissue{store, locator.get(), options.laws, inverse},
-                                            std::move(*needle), options.coupling);
+                                            std::move(needle), options.coupling);
     length = options.needle_length;
   }
 
@@ -87,7 +90,8 @@ class NeedleInBlock {
   }
 
   [[nodiscard]] Pose pose() const {
-    return {point + sideways + (depth - length) * axis, Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis)};
+    return {point + sideways + (depth - length) * axis,
+            Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis) * Eigen::AngleAxisd(roll, Vec3::UnitZ())};
   }
 
   /// Moves the base along the axis to a depth at a speed; records.
@@ -152,6 +156,7 @@ class NeedleInBlock {
   Vec3 axis = Vec3::UnitZ();
   Vec3 sideways = Vec3::Zero();
   double depth = 0.0;
+  double roll = 0.0;  ///< [rad] of the base about the axis
   StepReport report;
   unsigned flags = 0;
   double work = 0.0;

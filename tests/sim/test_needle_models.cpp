@@ -108,3 +108,35 @@ TEST(NeedleSectionOfAScenario, TheTubesWallDecidesHowMuchItStretches) {
   s.needle.stylet = "out";
   EXPECT_NEAR(compiled(s)->coupling().axial_compliance_mm_per_N, 120.0 / (200e3 * 1.266769), 1e-7);
 }
+
+TEST(GuideTemplate, HoldsTheNeedleOfARunAndIsPartOfItsBalance) {
+  for (const char* model : {"beam", "tet"}) {
+    SCOPED_TRACE(model);
+    Scenario s = thin_needle(model);
+    s.grid.guide = true;
+    s.grid.distance_mm = 15.0;
+    s.needle.bow_mm = 3.0;
+    const Finished run(compiled(s));
+    EXPECT_LT(run.summary.residual_force_balance, 1e-9);
+    for (const std::string& warning : run.summary.warnings) EXPECT_FALSE(contains(warning, "converge")) << warning;
+    ASSERT_NE(run.event(EventKind::withdrawn), nullptr);
+    // In the hole the bowed tip is nearer to its line than it would be in the open.
+    Scenario open = s;
+    open.grid.guide = false;
+    const auto first_tip = [](const Scenario& scenario) {
+      const Finished made(compiled(scenario));
+      return (made.kept.steps.front().tip_mm - Vec3(4.0, 7.0, 0.0)).head<2>().norm();
+    };
+    EXPECT_NEAR(first_tip(open), 3.0, 1e-6);
+    EXPECT_LT((run.kept.steps.front().tip_mm - Vec3(4.0, 7.0, 0.0)).head<2>().norm(), 1.5);
+    EXPECT_EQ(row(run.model->info(), "template.distance_mm")->value, "15");
+  }
+}
+
+TEST(GuideTemplate, TheBaseStopsBeforeIt) {
+  Scenario s = box_scenario();
+  s.insertions[0].depth_mm = 30.0;
+  s.grid.guide = true;
+  s.grid.distance_mm = 90.0;
+  EXPECT_SAYS(refused(s).what, "the template's distance, 90 mm (25)");
+}

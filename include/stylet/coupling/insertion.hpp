@@ -60,6 +60,7 @@ struct StepReport {
   TipPhase tip = TipPhase::air;
   Vec3 tip_position = Vec3::Zero();  ///< [mm] LPS
   Vec3 hand_force = Vec3::Zero();    ///< [N] LPS, exerted by the hand on the base
+  Vec3 guide_force = Vec3::Zero();   ///< [N] LPS, exerted by the guide template on the shaft
   Vec3 hand_torque = Vec3::Zero();   ///< [N mm] LPS, about the base
   double inserted_mm = 0.0;          ///< length of shaft in tissue
   int events = 0;
@@ -97,6 +98,9 @@ class Insertion {
   /// Places the needle without touching tissue; the first call before any step. A needle that is still in is taken out
   /// first, as if withdrawn.
   void place(const Pose& base);
+
+  /// Puts the guide template's hole, if the needle has one, at `hole` [mm] LPS. @param axis LPS, towards the patient
+  void place_guide(const Vec3& hole, const Vec3& axis);
 
   /// Moves the base from where it is to `base` in dt seconds.
   StepReport step(const Pose& base, double dt);

@@ -61,6 +61,12 @@ class Needle {
   /// Elastic energy stored in the shape [N mm].
   [[nodiscard]] virtual double energy() const = 0;
 
+  /// Puts the hole of a guide template, if the needle has one, at `hole` [mm] LPS. @param axis LPS, towards the tip
+  virtual void place_guide(const Vec3& /*hole*/, const Vec3& /*axis*/) {}
+  /// What the guide exerts on the needle at the present shape: LPS, square to the shaft. The hand at the base bears
+  /// what the loads and this leave.
+  [[nodiscard]] virtual PointLoad guide_load() const { return {}; }
+
   /// State to save and restore (a step that must be repeated), (dofs).
   [[nodiscard]] virtual Eigen::Ref<const VecX> state() const = 0;
   virtual void set_state(const Eigen::Ref<const VecX>& state) = 0;

@@ -47,7 +47,7 @@ class Model {
   [[nodiscard]] const Supports& supports() const { return supports_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// A needle of this model, straight.
+  /// A needle of this model, unloaded; in a guide where the template is one.
   [[nodiscard]] std::unique_ptr<Needle> make_needle() const;
 
   /// What a report says about this model.

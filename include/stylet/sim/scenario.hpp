@@ -46,6 +46,10 @@ struct TemplateGrid {
   /// "d3.5".
   [[nodiscard]] Result<std::array<double, 2>> offset_mm(const std::string& hole) const;
 
+  bool guide = false;          ///< the hole holds the shaft
+  double clearance_mm = 0.05;  ///< of the shaft in its hole: radius less radius
+  double distance_mm = 10.0;   ///< of the template from the skin, along the needle
+
   bool operator==(const TemplateGrid&) const = default;
 };
 

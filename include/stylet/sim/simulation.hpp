@@ -32,8 +32,8 @@ class Simulation {
   [[nodiscard]] Frame frame(const std::string& label = {}) const;
 
   /// Action against reaction (not in the loop). force: what the supports and the contacts exert on the tissue, or what
-  /// the hand and the contacts exert, whichever fails more to cancel, over `scale_N`; torque: the moments of supports
-  /// and contacts about the entry, over scale_N × 100 mm.
+  /// the hand, the guide and the contacts exert, whichever fails more to cancel, over `scale_N`; torque: the moments of
+  /// supports and contacts about the entry, over scale_N × 100 mm.
   struct Balance {
     double force = 0.0;
     double torque = 0.0;

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/needle/needle.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace stylet {
+
+/// A hole of a guide template.
+struct GuideHole {
+  double clearance_mm = 0.05;         ///< radius of the hole less that of the needle, ≥ 0
+  double stiffness_N_per_mm = 100.0;  ///< of shaft against hole, > 0
+};
+
+/// A needle of any model whose shaft runs through a hole. Where the shaft crosses the hole's plane, at x, it is free
+/// while its distance d from the hole's axis is less than the clearance c; beyond, the hole pushes back:
+///   W = ½ k (d − c)²,   force on the needle  −Pᵀ ∇W,   P = I − t nᵀ/(t·n)
+/// with the shaft's tangent t and the hole's axis n. P takes a motion of the shaft to that of the crossing, so the
+/// force is square to the shaft: the hole is smooth and the shaft slides through it without friction. It is one more
+/// load of the inner needle, with Pᵀ ∇²W P as its spring; the tangent of the coupling sees nothing but a stiffer
+/// needle. What the tangent leaves out is how the force turns with the shaft. There is no force while the tip has not
+/// reached the plane, and none when the base has passed it.
+class GuidedNeedle final : public Needle {
+ public:
+  /// @param inner built for at least load_capacity + 1 loads
+  GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole, int load_capacity);
+
+  void place_guide(const Vec3& hole, const Vec3& axis) override;
+  [[nodiscard]] PointLoad guide_load() const override;
+  /// Distance [mm] of the shaft from the hole's axis in its plane; 0 where it does not cross it.
+  [[nodiscard]] double offset() const;
+
+  [[nodiscard]] double length() const override { return inner_->length(); }
+  [[nodiscard]] std::string model() const override { return inner_->model(); }
+  void set_base(const Pose& base) override;
+  [[nodiscard]] const Pose& base() const override { return inner_->base(); }
+  [[nodiscard]] Vec3 point(double s) const override { return inner_->point(s); }
+  [[nodiscard]] Vec3 tangent(double s) const override { return inner_->tangent(s); }
+  bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                 std::span<const Mat3> springs = {}) override;
+  void advance(std::span<const PointLoad> loads) override;
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
+  void straighten() override;
+  /// Elastic energy of shape and hole.
+  [[nodiscard]] double energy() const override;
+  [[nodiscard]] Eigen::Ref<const VecX> state() const override { return inner_->state(); }
+  void set_state(const Eigen::Ref<const VecX>& state) override;
+
+ private:
+  /// How hole and shaft meet at the present shape.
+  struct Meeting {
+    bool crosses = false;           ///< the shaft crosses the hole's plane
+    double s = 0.0;                 ///< [mm] where
+    double beyond = 0.0;            ///< [mm] d − c where positive
+    Vec3 offset = Vec3::Zero();     ///< [mm] of the shaft from the hole, in the plane
+    Vec3 force = Vec3::Zero();      ///< [N] on the needle
+    Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
+  };
+
+  void meet();
+  [[nodiscard]] bool holds() const { return meeting_.crosses && (meeting_.beyond > 0.0 || hole_.clearance_mm == 0.0); }
+  [[nodiscard]] bool find_crossing();
+  std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const;
+
+  std::unique_ptr<Needle> inner_;
+  GuideHole hole_;
+  bool placed_ = false;
+  Vec3 centre_ = Vec3::Zero();  ///< [mm] LPS
+  Vec3 axis_ = Vec3::UnitZ();   ///< unit, LPS
+  Meeting meeting_;
+  bool held_ = false;    ///< at the last linearise()
+  PointLoad held_with_;  ///< and with what
+
+  mutable std::vector<PointLoad> loads_;  ///< the caller's, then the hole's
+  std::vector<Mat3> springs_;
+  MatX N_;     ///< [mm/N] (3w + 3)²
+  VecX free_;  ///< [mm] (3w + 3)
+};
+
+}  // namespace stylet

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/needle/guided.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+constexpr int kMostRounds = 60;
+constexpr double kOnPlane_mm = 1e-13;
+/// A shaft more oblique to the hole's axis than this does not run through it (cosine).
+constexpr double kMostOblique = 0.1;
+}  // namespace
+
+GuidedNeedle::GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole, int load_capacity)
+    : inner_(std::move(inner)), hole_(hole) {
+  const auto loads = static_cast<std::size_t>(load_capacity) + 1;
+  loads_.reserve(loads);
+  springs_.reserve(loads);
+  const auto size = 3 * static_cast<Eigen::Index>(loads);
+  N_.setZero(size, size);
+  free_.setZero(size);
+}
+
+void GuidedNeedle::place_guide(const Vec3& hole, const Vec3& axis) {
+  placed_ = true;
+  centre_ = hole;
+  axis_ = axis.normalized();
+  meet();
+}
+
+PointLoad GuidedNeedle::guide_load() const { return {meeting_.s, meeting_.force}; }
+
+double GuidedNeedle::offset() const { return meeting_.offset.norm(); }
+
+/// Arc length where the shaft crosses the plane, by Newton's method kept between bounds.
+bool GuidedNeedle::find_crossing() {
+  const auto before_plane = [this](double s) { return axis_.dot(centre_ - inner_->point(s)); };
+  double low = 0.0;
+  double high = length();
+  if (before_plane(low) < 0.0 || before_plane(high) > 0.0) return false;
+  double s = std::clamp(meeting_.s, low, high);
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double ahead = before_plane(s);
+    if (std::abs(ahead) < kOnPlane_mm) break;
+    (ahead > 0.0 ? low : high) = s;
+    const double advance = axis_.dot(inner_->tangent(s));
+    double next = s + ahead / advance;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (next == s) break;
+    s = next;
+  }
+  meeting_.s = s;
+  return true;
+}
+
+void GuidedNeedle::meet() {
+  const double s = meeting_.s;
+  meeting_ = {};
+  meeting_.s = s;
+  if (!placed_ || !find_crossing()) return;
+  const Vec3 t = inner_->tangent(meeting_.s);
+  const double cosine = axis_.dot(t);
+  if (cosine < kMostOblique) return;
+  meeting_.crosses = true;
+  const Vec3 away = inner_->point(meeting_.s) - centre_;
+  meeting_.offset = away - axis_ * axis_.dot(away);
+  const double d = meeting_.offset.norm();
+  meeting_.beyond = std::max(0.0, d - hole_.clearance_mm);
+  if (!holds()) return;
+
+  const Vec3 e = d > 0.0 ? Vec3(meeting_.offset / d) : Vec3(Vec3::Zero());
+  const double across = d > 0.0 ? meeting_.beyond / d : 1.0;  // stiffness square to e, over that along it
+  const Mat3 in_plane = Mat3::Identity() - axis_ * axis_.transpose();
+  const Mat3 H = hole_.stiffness_N_per_mm * (across * in_plane + (1.0 - across) * e * e.transpose());
+  const Mat3 P = Mat3::Identity() - t * axis_.transpose() / cosine;
+  meeting_.force = -hole_.stiffness_N_per_mm * meeting_.beyond * (P.transpose() * e);
+  meeting_.stiffness = P.transpose() * H * P;
+}
+
+std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const {
+  loads_.assign(loads.begin(), loads.end());
+  loads_.push_back(guide);
+  return loads_;
+}
+
+bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                             std::span<const Mat3> springs) {
+  held_ = holds();
+  if (!held_) return inner_->linearise(loads, compliance, free, springs);
+  held_with_ = guide_load();
+  assert(springs.empty() || springs.size() == loads.size());
+  if (springs.empty()) {
+    springs_.assign(loads.size(), Mat3::Zero());
+  } else {
+    springs_.assign(springs.begin(), springs.end());
+  }
+  springs_.push_back(meeting_.stiffness);
+  const auto size = 3 * static_cast<Eigen::Index>(loads.size());
+  const bool definite = inner_->linearise(with_guide(loads, held_with_), N_.topLeftCorner(size + 3, size + 3),
+                                          free_.head(size + 3), springs_);
+  compliance = N_.topLeftCorner(size, size);
+  free = free_.head(size);
+  return definite;
+}
+
+void GuidedNeedle::advance(std::span<const PointLoad> loads) {
+  inner_->advance(held_ ? with_guide(loads, held_with_) : loads);
+  meet();
+}
+
+double GuidedNeedle::residual(std::span<const PointLoad> loads) const {
+  return inner_->residual(holds() ? with_guide(loads, guide_load()) : loads);
+}
+
+void GuidedNeedle::set_base(const Pose& base) {
+  inner_->set_base(base);
+  meet();
+}
+
+void GuidedNeedle::straighten() {
+  inner_->straighten();
+  meet();
+}
+
+double GuidedNeedle::energy() const {
+  return inner_->energy() + 0.5 * hole_.stiffness_N_per_mm * meeting_.beyond * meeting_.beyond;
+}
+
+void GuidedNeedle::set_state(const Eigen::Ref<const VecX>& state) {
+  inner_->set_state(state);
+  meet();
+}
+
+}  // namespace stylet

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The hole of a guide template, around every model.
+#include "needle_model_test.hpp"
+#include "stylet/needle/guided.hpp"
+#include "stylet/needle/theory.hpp"
+#include "support/count_allocations.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace stylet {
+namespace {
+
+constexpr double kLength = 200.0;
+const double kEI = NeedleSection{}.bending_stiffness_Nmm2;
+
+class NeedleInAGuide : public test::NeedleModelTest {
+ protected:
+  [[nodiscard]] static std::unique_ptr<GuidedNeedle> guided(const GuideHole& hole, double at_mm,
+                                                            const Vec3& aside = {0, 0, 0}, double bow_mm = 0.0) {
+    NeedleSection section;
+    section.bow_mm = bow_mm;
+    auto built = make_needle(model(), section, 0, 17);
+    EXPECT_TRUE(built.ok());
+    auto needle = std::make_unique<GuidedNeedle>(std::move(built).value(), hole, 16);
+    needle->place_guide(Vec3(0, 0, at_mm) + aside, Vec3::UnitZ());
+    return needle;
+  }
+  /// Allowed error over theory of what the shaft does within `a` of the clamp: rods see it by their length.
+  [[nodiscard]] static double small(double a) {
+    const double rod = kLength / elements();
+    return model() == "tet" ? 0.04 : (model() == "springs" ? 0.01 + 0.5 * rod * rod / (a * a) : 0.01);
+  }
+};
+
+constexpr double kHard = 1e5;  // [N/mm] so hard that theory's rigid support is meant
+
+TEST_P(NeedleInAGuide, IsAProppedCantileverAsInTheory) {
+  constexpr double P = 1e-3;
+  for (const double a : {40.0, 75.0, 120.0}) {
+    for (const double clearance : {0.0, 0.002}) {
+      const auto needle = guided({clearance, kHard}, a);
+      test::settle(*needle, std::vector<PointLoad>{{kLength, {0, P, 0}}}, tolerance());
+      const double alone = cantilever_deflection(P, kLength, a, kEI);
+      const double reaction = (alone - std::min(alone, clearance)) / cantilever_deflection(1.0, a, a, kEI);
+      const double tip =
+          cantilever_deflection(P, kLength, kLength, kEI) - cantilever_deflection(reaction, a, kLength, kEI);
+      EXPECT_NEAR(needle->guide_load().force.y(), -reaction, small(a) * reaction) << a;
+      EXPECT_NEAR(needle->guide_load().s, a, 1e-3);
+      EXPECT_NEAR(needle->point(kLength).y(), tip, small(a) * tip) << a;
+      EXPECT_NEAR(needle->point(a).y(), std::min(alone, clearance), 1e-5) << a;
+    }
+  }
+}
+
+TEST_P(NeedleInAGuide, IsFreeInsideTheClearanceAndHeldBeyondIt) {
+  const GuideHole hole{0.3, 100.0};
+  const auto with = guided(hole, 60.0);
+  const auto without = make();
+  for (const double force : {0.002, 0.01, 0.1, 0.4}) {
+    const std::vector<PointLoad> loads{{kLength, {force, -0.3 * force, 0}}, {110.0, {0, force, 0}}};
+    test::settle(*with, loads, tolerance());
+    test::settle(*without, loads, tolerance());
+    const double alone = without->point(60.0).head<2>().norm();
+    if (alone < hole.clearance_mm) {
+      EXPECT_EQ(VecX(with->state()), VecX(without->state()));
+      EXPECT_EQ(with->guide_load().force, Vec3(0, 0, 0));
+    } else {
+      EXPECT_GT(with->offset(), hole.clearance_mm);
+      EXPECT_NEAR(with->offset(), hole.clearance_mm + with->guide_load().force.norm() / hole.stiffness_N_per_mm,
+                  0.01 * hole.clearance_mm);
+    }
+  }
+  EXPECT_GT(with->guide_load().force.norm(), 0.5);
+}
+
+TEST_P(NeedleInAGuide, TheHoleNeverPullsAlongTheShaft) {
+  const auto needle = guided({0.05, 100.0}, 70.0, {1.0, -2.0, 0.0});
+  test::settle(*needle, std::vector<PointLoad>{{kLength, {0.3, 0.1, -0.2}}}, tolerance());
+  const PointLoad guide = needle->guide_load();
+  EXPECT_GT(guide.force.norm(), 0.1);
+  EXPECT_NEAR(guide.force.dot(needle->tangent(guide.s)), 0.0, 1e-12);
+}
+
+TEST(BeamInAGuide, HandGuideAndLoadsAreInBalance) {
+  // The clamp's moment, which the hand bears, is that of loads and guide about the base. Read from the shape: beside
+  // the clamp the shaft's curvature is moment over EI.
+  const auto needle = std::make_unique<GuidedNeedle>(test::beam(48), GuideHole{0.05, 100.0}, 16);
+  needle->place_guide({0.0, -2.0, 70.0}, Vec3::UnitZ());
+  const std::vector<PointLoad> loads{{kLength, {0, 0.2, -0.1}}};
+  test::settle(*needle, loads);
+  const PointLoad guide = needle->guide_load();
+  const Vec3 moment = needle->point(kLength).cross(loads[0].force) + needle->point(guide.s).cross(guide.force);
+  const VecX state = needle->state();
+  const double curvature = 1.5 * state[0] - 0.5 * state[3];  // at the clamp, from the first two elements' means
+  EXPECT_NEAR(kEI * curvature, moment.x(), 1e-3 * std::abs(moment.x()));
+}
+
+TEST_P(NeedleInAGuide, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
+  const auto needle = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
+  needle->set_base({Vec3(0.1, 0.2, 3.0), Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Vec3::UnitX()))});
+  std::vector<PointLoad> loads{{kLength, {0.1, 0.02, -0.1}}, {120.0, {0.05, 0.1, 0}}};
+  settle(*needle, loads);
+  ASSERT_GT(needle->guide_load().force.norm(), 0.1);
+  const MatX compliance = test::compliance_of(*needle, loads);
+  constexpr double h = 1e-4;
+  for (Eigen::Index column = 0; column < 6; ++column) {
+    VecX difference = VecX::Zero(6);
+    for (const double sign : {1.0, -1.0}) {
+      auto changed = loads;
+      changed[static_cast<std::size_t>(column / 3)].force[column % 3] += sign * h;
+      settle(*needle, changed);
+      for (std::size_t c = 0; c < 2; ++c)
+        difference.segment<3>(3 * static_cast<Eigen::Index>(c)) += sign * needle->point(loads[c].s) / (2 * h);
+    }
+    // What the tangent leaves out, the turning of the guide's force, is small.
+    EXPECT_LT((difference - compliance.col(column)).norm(), 2e-3 * compliance.norm()) << column;
+  }
+}
+
+TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
+  // Clamped and propped half way the shaft bears more than free: Euler's load of the free half alone is four times as
+  // much, and the two halves turn each other.
+  const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
+  const auto free = make();
+  const auto held = guided({0.0, kHard}, 100.0);
+  MatX compliance(3, 3);
+  VecX motion(3);
+  const std::vector<PointLoad> loads{{kLength, {0, 0, -1.5 * euler}}};
+  settle(*held, loads);
+  EXPECT_TRUE(held->linearise(loads, compliance, motion));
+  settle(*free, loads);
+  EXPECT_FALSE(free->linearise(loads, compliance, motion));
+}
+
+TEST_P(NeedleInAGuide, OnSpringsBeyondBucklingNewtonReachesTheEquilibriumInFewSteps) {
+  const auto needle = guided({0.05, 100.0}, 60.0, {0.4, 0.0, 0.0});
+  const std::vector<PointLoad> given = {{kLength, {0.02, 0.01, -4.0}}, {150.0, {0, 0, -0.2}}};
+  const std::vector<Mat3> springs(2, Vec3(0.4, 0.4, 0.0).asDiagonal());
+  std::vector<PointLoad> loads = given;
+  MatX compliance(6, 6);
+  VecX free(6);
+  const auto hang = [&] {
+    for (std::size_t c = 0; c < 2; ++c)
+      loads[c].force = given[c].force + springs[c] * (Vec3(0.3, -0.2, given[c].s) - needle->point(given[c].s));
+  };
+  int iterations = 0;
+  for (; iterations < 20; ++iterations) {
+    hang();
+    if (needle->residual(loads) < 3.0 * tolerance()) break;
+    needle->linearise(loads, compliance, free, springs);
+    needle->advance(loads);
+  }
+  EXPECT_LE(iterations, 12);
+  EXPECT_GT(needle->guide_load().force.norm(), 0.1);
+}
+
+TEST_P(NeedleInAGuide, ABowedShaftIsStraightenedByIt) {
+  const auto needle = guided({0.0, kHard}, 120.0, {0, 0, 0}, 5.0);
+  EXPECT_NEAR(needle->offset(), 5.0 * 0.36, 0.05);
+  settle(*needle, {});
+  EXPECT_LT(needle->offset(), 1e-4);
+  EXPECT_LT(needle->guide_load().force.x(), 0.0);
+  EXPECT_LT(needle->point(kLength).x(), 5.0);
+  EXPECT_GT(needle->energy(), 0.0);
+}
+
+TEST_P(NeedleInAGuide, NothingHoldsBeforeTheTipComesOrWhenTheBaseHasPassed) {
+  for (const double at : {-5.0, 201.0}) {
+    const auto needle = guided({0.0, 100.0}, at, {3.0, 0.0, 0.0});
+    EXPECT_EQ(settle(*needle, {}), 0);
+    EXPECT_EQ(needle->guide_load().force, Vec3(0, 0, 0));
+    EXPECT_EQ(needle->offset(), 0.0);
+  }
+}
+
+TEST_P(NeedleInAGuide, NoCallAllocates) {
+  if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
+  const auto needle = guided({0.0, 100.0}, 70.0, {0.5, 0.2, 0.0});
+  std::vector<PointLoad> loads;
+  for (int c = 0; c < 16; ++c) loads.push_back({80.0 + 7.5 * c, Vec3(0.01, 0.02, -0.01)});
+  const std::vector<Mat3> springs(loads.size(), Mat3::Identity());
+  MatX compliance(48, 48);
+  VecX free(48);
+  double sink = 0.0;
+  const test::AllocationCount allocations;
+  needle->set_base({Vec3(0.1, 0.0, 1.0), Eigen::Quaterniond::Identity()});
+  for (int i = 0; i < 3; ++i) {
+    needle->linearise(loads, compliance, free);
+    needle->advance(loads);
+    needle->linearise(loads, compliance, free, springs);
+    needle->advance(loads);
+    sink += needle->residual(loads) + needle->energy() + needle->guide_load().force.x();
+  }
+  needle->straighten();
+  EXPECT_EQ(allocations.count(), 0);
+  EXPECT_TRUE(std::isfinite(sink));
+}
+
+STYLET_FOR_EVERY_NEEDLE_MODEL(NeedleInAGuide);
+
+}  // namespace
+}  // namespace stylet
