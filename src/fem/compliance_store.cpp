@@ -12,7 +12,7 @@ constexpr std::size_t kBatchNodes = 64;
 }  // namespace
 
 ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue)
-    : tissue_(std::move(tissue)), slot_(static_cast<std::size_t>(tissue_->mesh().node_count()), kNotStored) {
+    : tissue_(std::move(tissue)), slot_(static_cast<std::size_t>(tissue_->displacement_nodes()), kNotStored) {
   for (const Index a : tissue_->fixed_nodes()) slot_[a] = kFixed;
 }
 
@@ -23,12 +23,19 @@ void ComplianceStore::add_nodes(std::span<const Index> nodes, const Progress& pr
     slot_[a] = static_cast<Index>(nodes_.size());
     nodes_.push_back(a);
   }
+  // Nodes in the middle of an edge go with its ends.
+  for (Index a = tissue_->mesh().node_count(); a < tissue_->displacement_nodes(); ++a) {
+    const auto [one, other] = tissue_->ends_of(a);
+    if (slot_[a] != kNotStored || !has(one) || !has(other)) continue;
+    slot_[a] = static_cast<Index>(nodes_.size());
+    nodes_.push_back(a);
+  }
   if (nodes_.size() == old) return;
 
   const auto total = static_cast<Eigen::Index>(3 * nodes_.size());
   const auto kept = static_cast<Eigen::Index>(3 * old);
   blocks_.conservativeResize(total, total);
-  const Eigen::Index rows = 3 * Eigen::Index{tissue_->mesh().node_count()};
+  const Eigen::Index rows = 3 * Eigen::Index{tissue_->displacement_nodes()};
   for (std::size_t first = old; first < nodes_.size(); first += kBatchNodes) {
     report(progress, "compliance", static_cast<double>(first - old) / static_cast<double>(nodes_.size() - old));
     const std::size_t count = std::min(kBatchNodes, nodes_.size() - first);

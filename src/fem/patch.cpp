@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/fem/patch.hpp"
 
+#include "discretisation.hpp"
+
 #include <algorithm>
 
 namespace stylet {
@@ -19,16 +21,17 @@ PatchStiffness patch_stiffness(const Tissue& tissue, std::span<const Index> tets
 
   const auto size = 3 * static_cast<Eigen::Index>(patch.nodes.size());
   patch.K = MatX::Zero(size, size);
-  for (const Index t : tets) {
-    const auto gradients = barycentric_gradients(tissue.mesh(), t);
-    const double volume = tet_volume(tissue.mesh(), t);
-    const auto& tet = tissue.mesh().tets[t];
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        patch.K.block<3, 3>(row_of(tet[a]), row_of(tet[b])) += element_block(gradients, volume, material, a, b);
-      }
-    }
-  }
+  tissue.discretisation().stiffness(
+      tets, [&](Index /*tet*/) { return material; },
+      [&](std::span<const Index> nodes, const MatX& part) {
+        for (std::size_t a = 0; a < nodes.size(); ++a) {
+          for (std::size_t b = 0; b <= a; ++b) {
+            const Mat3 block = part.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+            patch.K.block<3, 3>(row_of(nodes[a]), row_of(nodes[b])) += block;
+            if (b < a) patch.K.block<3, 3>(row_of(nodes[b]), row_of(nodes[a])) += block.transpose();
+          }
+        }
+      });
   return patch;
 }
 

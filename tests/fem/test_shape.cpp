@@ -6,14 +6,17 @@ namespace {
 
 const Vec4 kInside(0.1, 0.2, 0.3, 0.4);
 
-Tissue body() {
+Tissue body(Element element) {
   TetMesh mesh = box_mesh({-20, 10, 30}, {20, 50, 90}, {2, 3, 2}, 0.15);
   const auto fixed = test::nodes_where(mesh, [](const Vec3& x) { return x.z() == 30.0; });
-  return test::build(std::move(mesh), {{0.02, 0.45}}, fixed);
+  return test::build(std::move(mesh), {{0.02, 0.45}}, fixed, element);
 }
 
-TEST(Shape, InterpolatesLinearFieldsAndTheirGradientsExactly) {
-  const Tissue tissue = body();
+using Shapes = test::ElementTest;
+STYLET_FOR_EVERY_ELEMENT(Shapes);
+
+TEST_P(Shapes, InterpolatesLinearFieldsAndTheirGradientsExactly) {
+  const Tissue tissue = body(GetParam());
   Mat3 gradient;
   gradient << 0.1, -0.2, 0.3, 0.05, 0.4, -0.1, 0.2, 0.15, -0.3;
   const auto field = [&](const Vec3& x) { return Vec3(gradient * x + Vec3(1, 2, 3)); };
@@ -34,8 +37,8 @@ TEST(Shape, InterpolatesLinearFieldsAndTheirGradientsExactly) {
   }
 }
 
-TEST(Shape, IsOneAtItsOwnNodeAndNamesTheElementsNodes) {
-  const Tissue tissue = body();
+TEST_P(Shapes, IsOneAtItsOwnNodeAndNamesTheElementsNodes) {
+  const Tissue tissue = body(GetParam());
   const auto nodes = tissue.nodes_of(5);
   for (int corner = 0; corner < 4; ++corner) {
     const Shape shape = tissue.shape(5, Vec4::Unit(corner));

@@ -14,8 +14,10 @@ class ComplianceStore {
  public:
   explicit ComplianceStore(std::shared_ptr<const Tissue> tissue);
 
-  /// Makes all blocks among `nodes` and those stored before available. Solves in batches; one call for
-  /// many nodes costs less than many calls. Numbers outside the mesh are passed over. Not for the step.
+  /// Makes all blocks among `nodes` and those stored before available, and those of the nodes that the kind of element
+  /// adds between two of them. Solves in batches; one call for many nodes costs less than many calls. Numbers outside
+  /// the mesh are passed over. Not for the step.
+  /// @param nodes of the mesh
   void add_nodes(std::span<const Index> nodes, const Progress& progress = {});
 
   /// True when the node's blocks are stored. Fixed nodes always count as stored: their compliance is zero.

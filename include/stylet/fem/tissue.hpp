@@ -2,6 +2,8 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
+#include "stylet/fem/element.hpp"
+#include "stylet/fem/material.hpp"
 #include "stylet/fem/shape.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 
@@ -12,36 +14,35 @@
 
 namespace stylet {
 
-/// Isotropic linear elasticity.
-struct Material {
-  double young_MPa = 0.0;  ///< Young's modulus, > 0
-  double poisson = 0.0;    ///< Poisson ratio, in (-1, 0.5)
+namespace detail {
+class Discretisation;
+}
 
-  [[nodiscard]] double lambda() const { return young_MPa * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  ///< [MPa]
-  [[nodiscard]] double mu() const { return young_MPa / (2 * (1 + poisson)); }                                ///< [MPa]
-};
-
-/// Linear elastic, quasi-static tissue on linear tetrahedra, held at the nodes of its fundamental displacement
+/// Linear elastic, quasi-static tissue on tetrahedra, held at the nodes of its fundamental displacement
 /// constraints: K u = f with K symmetric positive definite on the free degrees of freedom, factorised once.
 /// Immutable after build; safe to share between threads for reading (each caller brings its own Workspace).
 class Tissue {
  public:
   /// @param mesh checked mesh (kept by value)
   /// @param materials one per region of the mesh
-  /// @param fixed node numbers held at zero displacement; enough to exclude rigid motion, else an error says so
+  /// @param fixed node numbers held at zero displacement; enough to exclude rigid motion, else an error says so. A
+  ///   node that the kind of element adds between two of them is held as well.
   static Result<Tissue> build(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
-                              const Progress& progress = {});
+                              const Progress& progress = {}, Element element = Element::p1);
 
   Tissue(Tissue&&) noexcept;
   Tissue& operator=(Tissue&&) noexcept;
   ~Tissue();
 
   [[nodiscard]] const TetMesh& mesh() const;
+  [[nodiscard]] Element element() const;
 
   /// Nodes that carry displacements: the mesh's, under the mesh's numbers, and after them any that the kind of element
   /// adds. Wherever this class speaks of nodes it means these, n in number.
   [[nodiscard]] Index displacement_nodes() const;
-  [[nodiscard]] Vec3 node_position(Index node) const;              ///< [mm] LPS, undeformed
+  [[nodiscard]] Vec3 node_position(Index node) const;  ///< [mm] LPS, undeformed
+  /// Nodes of the mesh halfway between which a node lies; a node of the mesh lies at itself.
+  [[nodiscard]] std::array<Index, 2> ends_of(Index node) const;
   [[nodiscard]] std::span<const Index> nodes_of(Index tet) const;  ///< displacement nodes of an element
 
   /// Interpolation at a material point: a base tetrahedron and the barycentric weights in it.
@@ -68,7 +69,7 @@ class Tissue {
   /// Forces the supports exert on the tissue [N] (3n), non-zero at fixed nodes only: K_full u on their rows.
   [[nodiscard]] VecX support_forces(const VecX& u) const;
 
-  /// Cauchy stress of every element, constant in it: xx yy zz xy yz zx [MPa] (6 × tets).
+  /// Cauchy stress in the middle of every element (constant in linear ones): xx yy zz xy yz zx [MPa] (6 × tets).
   [[nodiscard]] MatX stress(const VecX& u) const;
 
   /// Numbers for reports.
@@ -78,6 +79,9 @@ class Tissue {
     Index factor_entries = 0;
   };
   [[nodiscard]] const Statistics& statistics() const;
+
+  /// How the stiffness is made of elements; for the parts of this module.
+  [[nodiscard]] const detail::Discretisation& discretisation() const;
 
  private:
   struct Parts;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+
+namespace stylet {
+
+/// Isotropic linear elasticity.
+struct Material {
+  double young_MPa = 0.0;  ///< Young's modulus, > 0
+  double poisson = 0.0;    ///< Poisson ratio, in (-1, 0.5)
+
+  [[nodiscard]] double lambda() const { return young_MPa * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  ///< [MPa]
+  [[nodiscard]] double mu() const { return young_MPa / (2 * (1 + poisson)); }                                ///< [MPa]
+
+  bool operator==(const Material&) const = default;
+};
+
+}  // namespace stylet

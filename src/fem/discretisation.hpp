@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/fem/element.hpp"
+#include "stylet/fem/material.hpp"
+#include "stylet/fem/shape.hpp"
+#include "stylet/geom/tet_mesh.hpp"
+
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace stylet::detail {
+
+/// A kind of finite element on a tetrahedral mesh: which nodes carry displacements, how points follow them, and the
+/// stiffness as a sum of small matrices. Knows no supports.
+class Discretisation {
+ public:
+  using MaterialOf = std::function<Material(Index tet)>;
+  /// Takes a symmetric matrix [N/mm] (3k × 3k) between k nodes; the lower triangle of blocks is what counts.
+  using Add = std::function<void(std::span<const Index> nodes, const MatX& K)>;
+
+  /// @param mesh outlives the discretisation
+  static std::unique_ptr<Discretisation> make(Element element, const TetMesh& mesh);
+
+  virtual ~Discretisation() = default;
+
+  [[nodiscard]] virtual Index nodes() const = 0;
+  /// Mesh nodes halfway between which a node lies; a node of the mesh lies at itself.
+  [[nodiscard]] virtual std::array<Index, 2> ends(Index node) const = 0;
+  [[nodiscard]] virtual std::span<const Index> nodes_of(Index tet) const = 0;
+  [[nodiscard]] virtual Shape shape(Index tet, const Vec4& weights) const = 0;
+  [[nodiscard]] virtual ShapeGradients shape_gradients(Index tet, const Vec4& weights) const = 0;
+
+  /// The stiffness of the elements `tets` by themselves, in parts, always in the same order.
+  virtual void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const = 0;
+
+  /// Stress in the middle of every element of the mesh: xx yy zz xy yz zx [MPa] (6 × tets).
+  /// @param u [mm] (3 × nodes)
+  [[nodiscard]] virtual MatX stress(const MaterialOf& material, const VecX& u) const = 0;
+
+  /// K u of the whole mesh, no node held [N] (3 × nodes), on the rows of nodes that are `wanted` (nodes).
+  [[nodiscard]] virtual VecX forces(const MaterialOf& material, const VecX& u,
+                                    const std::vector<char>& wanted) const = 0;
+};
+
+}  // namespace stylet::detail

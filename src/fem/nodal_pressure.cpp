@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "nodal_pressure.hpp"
+
+#include <algorithm>
+
+namespace stylet::detail {
+namespace {
+
+// What is left to the element itself: the same μ, λ = 0.
+Material without_volume(const Material& material) { return {2.0 * material.mu(), 0.0}; }
+
+}  // namespace
+
+void NodalPressure::for_each_group(std::span<const Index> tets, const MaterialOf& material,
+                                   const std::function<void(const Group&)>& visit) const {
+  std::vector<std::pair<Index, Index>> around;  // node, element
+  around.reserve(4 * tets.size());
+  for (const Index t : tets) {
+    for (const Index a : mesh_.tets[t]) around.emplace_back(a, t);
+  }
+  std::sort(around.begin(), around.end());
+  std::vector<Index> rest;
+  std::vector<Index> group;
+  for (std::size_t first = 0; first < around.size();) {
+    const Index node = around[first].first;
+    rest.clear();
+    for (; first < around.size() && around[first].first == node; ++first) rest.push_back(around[first].second);
+    while (!rest.empty()) {
+      const Material one = material(rest.front());
+      const auto others = std::stable_partition(rest.begin(), rest.end(), [&](Index t) { return material(t) == one; });
+      group.assign(rest.begin(), others);
+      rest.erase(rest.begin(), others);
+      double volume = 0.0;
+      for (const Index t : group) volume += 0.25 * tet_volume(mesh_, t);
+      visit({node, group, one, volume});
+    }
+  }
+}
+
+void NodalPressure::stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const {
+  LinearTetrahedra::stiffness(
+      tets, [&](Index t) { return without_volume(material(t)); }, add);
+  std::vector<Index> nodes;
+  for_each_group(tets, material, [&](const Group& group) {
+    nodes.clear();
+    for (const Index t : group.tets) nodes.insert(nodes.end(), mesh_.tets[t].begin(), mesh_.tets[t].end());
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    // V_a θ_a = dᵀ u
+    VecX d = VecX::Zero(3 * static_cast<Eigen::Index>(nodes.size()));
+    for (const Index t : group.tets) {
+      const auto gradients = barycentric_gradients(mesh_, t);
+      const double quarter = 0.25 * tet_volume(mesh_, t);
+      for (int b = 0; b < 4; ++b) {
+        const auto at = std::lower_bound(nodes.begin(), nodes.end(), mesh_.tets[t][b]) - nodes.begin();
+        d.segment<3>(3 * at) += quarter * gradients.col(b);
+      }
+    }
+    MatX K = d * d.transpose();
+    K *= group.material.lambda() / group.volume;
+    add(nodes, K);
+  });
+}
+
+MatX NodalPressure::stress(const MaterialOf& material, const VecX& u) const {
+  MatX stresses = LinearTetrahedra::stress([&](Index t) { return without_volume(material(t)); }, u);
+  std::vector<Index> all(mesh_.tets.size());
+  for (Index t = 0; t < mesh_.tet_count(); ++t) all[t] = t;
+  VecX divergence(mesh_.tet_count());
+  for (const Index t : all) divergence[t] = gradient(t, u).trace();
+  for_each_group(all, material, [&](const Group& group) {
+    double change = 0.0;
+    for (const Index t : group.tets) change += 0.25 * tet_volume(mesh_, t) * divergence[t];
+    const double pressure = group.material.lambda() * change / group.volume;
+    for (const Index t : group.tets) stresses.col(t).head<3>().array() += 0.25 * pressure;
+  });
+  return stresses;
+}
+
+}  // namespace stylet::detail

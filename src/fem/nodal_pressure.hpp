@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "linear_tetrahedra.hpp"
+
+namespace stylet::detail {
+
+/// Linear tetrahedra whose change of volume is averaged around each node: θ_a = Σ_e (V_e/4) div u_e / Σ_e V_e/4 over
+/// the elements e at node a that are of one material, energy Σ_e V_e μ ε:ε + Σ_a V_a ½ λ θ_a². An average never goes
+/// across two materials: there pressure jumps.
+/// @cite Bonet1998
+class NodalPressure final : public LinearTetrahedra {
+ public:
+  using LinearTetrahedra::LinearTetrahedra;
+
+  void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const override;
+  [[nodiscard]] MatX stress(const MaterialOf& material, const VecX& u) const override;
+
+ private:
+  /// The elements of one material around a node.
+  struct Group {
+    Index node;
+    std::span<const Index> tets;
+    Material material;
+    double volume;  ///< [mm³] Σ V_e / 4
+  };
+  void for_each_group(std::span<const Index> tets, const MaterialOf& material,
+                      const std::function<void(const Group&)>& visit) const;
+};
+
+}  // namespace stylet::detail
