@@ -208,6 +208,9 @@ VecX Tissue::support_forces(const VecX& u) const {
 }
 
 MatX Tissue::stress(const VecX& u) const {
+  if (u.size() < 3 * Eigen::Index{displacement_nodes()}) {
+    return detail::Discretisation::make(Element::nodal_pressure, mesh())->stress(parts_->material_of(), u);
+  }
   assert(u.size() == 3 * Eigen::Index{displacement_nodes()});
   return parts_->discretisation->stress(parts_->material_of(), u);
 }

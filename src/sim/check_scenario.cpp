@@ -104,6 +104,23 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                        "that moves, and coupling.engine = \"condensed\" never changes the stiffness of the mesh",
                        "Choose engine = \"woodbury\" or \"bcs\", or method = \"node-addition\"");
   }
+  if (s.tissue_model.element == "nodal-pressure" || s.tissue_model.element == "p2") {
+    const auto refused = [&](const std::string& setting, const char* cure) {
+      return input_error(
+          place("tissue.element"),
+          fmt::format("{} changes the stiffness of linear tetrahedra, and tissue.element = \"{}\" has none", setting,
+                      s.tissue_model.element),
+          cure);
+    };
+    if (s.coupling.method == "node-addition" || s.coupling.method == "node-repositioning") {
+      return refused(fmt::format("coupling.method = \"{}\"", s.coupling.method),
+                     "Set tissue.element = \"p1\", or coupling.method = \"embedded\"");
+    }
+    if (s.coupling.engine != "condensed") {
+      return refused(fmt::format("coupling.engine = \"{}\"", s.coupling.engine),
+                     "Set tissue.element = \"p1\", or coupling.engine = \"condensed\"");
+    }
+  }
   if (s.coupling.damping != Scenario{}.coupling.damping && s.coupling.solver != "staggered") {
     return input_error(place("coupling.damping"),
                        "coupling.damping belongs to coupling.solver = \"staggered\", and the solver is \"coupled\"",

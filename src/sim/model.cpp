@@ -72,6 +72,14 @@ CouplingSettings coupling_settings(const Scenario& s) {
   return c;
 }
 
+/// The methods of Goksel et al. 2005 are there to be compared: all on the same linear tetrahedra, which two of them
+/// need.
+Element element_of(const Scenario& s) {
+  const std::string& method = s.coupling.method;
+  const bool of_the_paper = method == "node-addition" || method == "node-repositioning" || method == "embedded";
+  return element_named(s.tissue_model.element).value_or(of_the_paper ? Element::p1 : Element::nodal_pressure);
+}
+
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
   const auto section = needle_section(n);
   if (!section) return section.error();
@@ -220,7 +228,8 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   }
 
   report(progress, "factorising the tissue", 0.0);
-  auto tissue = Tissue::build(std::move(mesh), std::move(materials), model->supports_.nodes, progress);
+  auto tissue =
+      Tissue::build(std::move(mesh), std::move(materials), model->supports_.nodes, progress, element_of(scenario));
   if (!tissue) return named(tissue.error(), where);
   model->tissue_ = std::make_shared<const Tissue>(std::move(*tissue));
   model->topology_ = std::make_unique<Topology>(model->tissue_->mesh());

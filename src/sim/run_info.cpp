@@ -133,6 +133,11 @@ RunInfo Model::info(std::size_t insertion) const {
   }
   for (std::size_t r = 0; r < mesh().regions.size(); ++r)
     add_tissue(info.parameters, mesh().regions[r], tissue_parameters_[r], laws_[r].rigid);
+  info.parameters.push_back(
+      {"tissue.element", to_string(tissue_->element()), "",
+       scenario_.tissue_model.element == "auto"
+           ? "by coupling.method: linear tetrahedra where it needs them or is compared, else one that does not lock"
+           : kFromScenario});
   const Scenario standard;
   for (const Documented& shown : kShown) {
     const auto value = scenario_value(scenario_, shown.path);

@@ -37,9 +37,17 @@ void describe_patient(ScenarioEntries& keys) {
 }
 
 void describe_tissue(ScenarioEntries& keys) {
+  keys.choice(
+      "tissue.element", {"auto", "p1", "nodal-pressure", "p2"}, {},
+      "finite element; p1 = linear tetrahedra, stiffen as Poisson's ratio nears 0.5; nodal-pressure = linear "
+      "tetrahedra with the change of volume averaged around nodes, do not; p2 = quadratic tetrahedra, nearly do "
+      "not, eight times the nodes; auto = p1 with the coupling methods node-addition, "
+      "node-repositioning and embedded, else nodal-pressure",
+      [](auto& s, const Slot&) { return &s.tissue_model.element; });
   keys.number("tissue.<region>.young_kPa", "kPa", 0.1, 1e8, "Young's modulus",
               [](auto& s, const Slot& t) { return &tissue(s, t).young_kPa; }, {.standard = "by region"});
-  keys.number("tissue.<region>.poisson", "", 0, 0.4999, "Poisson ratio; linear tetrahedra stiffen towards 0.5",
+  keys.number("tissue.<region>.poisson", "", 0, 0.4999,
+              "Poisson ratio; linear tetrahedra (tissue.element) stiffen towards 0.5",
               [](auto& s, const Slot& t) { return &tissue(s, t).poisson; }, {.standard = "by region"});
   keys.number("tissue.<region>.cutting_N", "N", 0, 100, "axial force at which the tip cuts",
               [](auto& s, const Slot& t) { return &tissue(s, t).cutting_N; }, {.standard = "by region"});

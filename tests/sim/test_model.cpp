@@ -7,6 +7,18 @@
 using namespace stylet;
 using namespace stylet::test;
 
+TEST(ModelElement, is_the_chosen_one_and_linear_by_itself_for_the_methods_of_the_paper) {
+  Scenario s = box_scenario();
+  for (const char* method : {"node-addition", "embedded"}) {
+    s.coupling.method = method;
+    EXPECT_EQ(compiled(s)->tissue().element(), Element::p1);
+  }
+  for (const Element element : {Element::p1, Element::nodal_pressure, Element::p2}) {
+    s.tissue_model.element = to_string(element);
+    EXPECT_EQ(compiled(s)->tissue().element(), element);
+  }
+}
+
 // What a scenario and a mesh are refused for.
 
 TEST(ModelRefuses, a_needle_that_misses_the_patient) {

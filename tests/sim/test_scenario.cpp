@@ -339,6 +339,25 @@ TEST(CheckScenario, keeps_contacts_apart_by_a_diameter) {
   EXPECT_SAYS(complaint(s), "coupling.spacing_mm = 1 is less than needle.diameter_mm = 1.27");
 }
 
+TEST(CheckScenario, wants_linear_tetrahedra_where_their_stiffness_changes) {
+  Scenario s = runnable();
+  for (const char* element : {"nodal-pressure", "p2"}) {
+    s.tissue_model.element = element;
+    for (const char* method : {"node-addition", "node-repositioning"}) {
+      s.coupling.method = method;
+      s.coupling.engine = "woodbury";
+      EXPECT_SAYS(complaint(s),
+                  "at <tissue.element>: coupling.method = \"" + std::string(method) + "\" changes the stiffness");
+      EXPECT_SAYS(complaint(s), "tissue.element = \"" + std::string(element) + "\"");
+      EXPECT_SAYS(complaint(s), "Set tissue.element = \"p1\", or coupling.method = \"embedded\"");
+    }
+    s.coupling.method = "embedded";
+    EXPECT_SAYS(complaint(s), "coupling.engine = \"woodbury\" changes the stiffness");
+    s.coupling.engine = "condensed";
+    EXPECT_EQ(complaint(s), "");
+  }
+}
+
 TEST(CheckScenario, wants_sliding_friction_below_static) {
   Scenario s = runnable();
   s.tissue["prostate"] = default_tissue("prostate");

@@ -70,6 +70,8 @@ class Tissue {
   [[nodiscard]] VecX support_forces(const VecX& u) const;
 
   /// Cauchy stress in the middle of every element (constant in linear ones): xx yy zz xy yz zx [MPa] (6 × tets).
+  /// @param u [mm] (3 × displacement nodes), or of the mesh's nodes only (3 × mesh nodes): what quadratic elements add
+  ///   is then not known, and the stress is that of linear ones with averaged pressure
   [[nodiscard]] MatX stress(const VecX& u) const;
 
   /// Numbers for reports.

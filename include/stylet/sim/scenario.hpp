@@ -79,6 +79,10 @@ struct Scenario {
     double scale = 0.0;                          ///< [mm] unit of a mesh file; 0 = as the file says
     bool operator==(const Patient&) const = default;
   } patient;
+  struct TissueModel {
+    std::string element = "auto";  ///< auto, p1, nodal-pressure, p2
+    bool operator==(const TissueModel&) const = default;
+  } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
   struct Fixed {
     std::vector<std::string> regions;  ///< regions whose nodes are all held; empty = pubic arch and femurs if there

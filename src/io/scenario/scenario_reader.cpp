@@ -22,9 +22,15 @@ constexpr std::uintmax_t kLargest_bytes = 1 << 20;
 constexpr const char* kHowTo =
     "Name a scenario, for example scenarios/demo.toml; stylet insert --print-schema prints one to fill in";
 
-/// The names that are a region's, a structure's or an entry's, replaced as the table of keys writes them.
+bool is_key(const std::string& pattern) {
+  const auto& keys = scenario_keys();
+  return std::any_of(keys.begin(), keys.end(), [&](const ScenarioKey& key) { return key.path == pattern; });
+}
+
+/// The names that are a region's, a structure's or an entry's, replaced as the table of keys writes them. A name below
+/// [tissue] is a region's unless it is a key of [tissue] itself.
 std::string pattern_of(std::vector<std::string> path) {
-  if (path.size() > 1 && path[0] == "tissue") path[1] = "<region>";
+  if (path.size() > 1 && path[0] == "tissue" && !is_key("tissue." + path[1])) path[1] = "<region>";
   if (path.size() > 2 && path[0] == "patient" && path[1] == "regions") path[2] = "<name>";
   for (std::string& part : path) {
     if (part.size() > 2 && part.front() == '[' && part.find_first_not_of("0123456789", 1) == part.size() - 1)
@@ -44,7 +50,6 @@ const std::vector<std::string>& known_tables() {
       if (dot == std::string::npos) continue;
       const std::string table = key.path.substr(0, dot);
       if (std::find(all.begin(), all.end(), table) != all.end()) continue;
-      if (table == "tissue.<region>") all.emplace_back("tissue");
       all.push_back(table);
     }
     return all;

@@ -27,6 +27,7 @@ constexpr std::array kTables{
               "Which structures or labels to use, and as what. Without this table structures are recognised by their "
               "names (prostate, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, "
               "seminal_vesicles and the zones of the gland, in several spellings), and all labels of a mask are used."},
+    TableText{"tissue", "[tissue]", "How all tissue is computed. No region may have the name of one of these keys."},
     TableText{"tissue.<region>", "[tissue.prostate]",
               "What a tissue is made of; one table for each region that is to differ from its defaults, which are "
               "those of the prostate here. docs/parameters.md gives all defaults and their sources."},

@@ -207,9 +207,10 @@ TEST(Report, tissue_parameters_are_one_line_per_region_with_unit_and_source) {
                                        {"tissue.prostate.cutting_N", "0.25", "N", "scenario"},
                                        {"tissue.pubic_arch", "held", "", "bone"},
                                        {"tissue.body.young_kPa", "60", "kPa", "stated"},
+                                       {"tissue.element", "p1", "", "scenario"},
                                        {"needle.length_mm", "200", "mm", "scenario"}};
   const std::string html = parameter_tables(rows);
-  EXPECT_EQ(count(html, "<tr>"), 2U + 4U);  // two heads, three tissues, one other
+  EXPECT_EQ(count(html, "<tr>"), 2U + 5U);  // two heads, three tissues, two of all
   EXPECT_NE(html.find("<code>young_<wbr>kPa</code><br>[kPa]"), std::string::npos);
   EXPECT_NE(html.find("<td>Prostate</td><td class=\"number\">40</td><td class=\"number\">0.25</td>"),
             std::string::npos);

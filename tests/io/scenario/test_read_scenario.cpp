@@ -235,6 +235,23 @@ TEST(ReadScenario, refuses_unknown_tables_with_the_nearest_also_when_they_are_em
   expect_says(refused(kHead + "[mesh.fine]\n"), {"line 3", "unknown table mesh.fine"});
 }
 
+TEST(ReadScenario, takes_keys_of_all_tissue_beside_those_of_one) {
+  for (const char* text : {"[tissue]\nelement = \"p1\"\n[tissue.prostate]\nyoung_kPa = 35\n",
+                           "[tissue.prostate]\nyoung_kPa = 35\n[tissue]\nelement = \"p1\"\n",
+                           "tissue.element = \"p1\"\ntissue.prostate.young_kPa = 35\n",
+                           "tissue = {element = \"p1\", prostate = {young_kPa = 35}}\n"}) {
+    const auto scenario = read(text + kHead + "[[insertion]]\nhole = \"D4\"\n");
+    ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+    EXPECT_EQ(scenario->tissue_model.element, "p1");
+    EXPECT_EQ(scenario->tissue.at("prostate").young_kPa, 35);
+    EXPECT_EQ(scenario->tissue.size(), 1U);
+  }
+  expect_says(refused("[tissue.element]\nyoung_kPa = 35\n" + kHead),
+              {"line 1", "tissue.element is a table, a value is expected", "below [tissue]"});
+  expect_says(refused("[tissue]\nelement = \"p3\"\n" + kHead), {"line 2", "p3", "\"nodal-pressure\""});
+  expect_says(refused("[tissue]\nelemnt = \"p1\"\n" + kHead), {"line 2", "elemnt"});
+}
+
 TEST(ReadScenario, refuses_tables_for_values_and_values_for_tables) {
   expect_says(refused(kHead + "[mesh.nodes]\n"),
               {"line 3", "mesh.nodes is a table, a value is expected", "nodes = 0 below [mesh]"});

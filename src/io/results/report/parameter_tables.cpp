@@ -3,6 +3,7 @@
 
 #include "report/anatomy.hpp"
 #include "report/text.hpp"
+#include "stylet/sim/scenario.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -29,7 +30,12 @@ std::string region_of(const ParameterRow& row) {
   return row.name.substr(kTissue.size(), row.name.find('.', kTissue.size()) - kTissue.size());
 }
 
-bool is_tissue(const ParameterRow& row) { return row.name.starts_with(kTissue); }
+/// Of one tissue; "tissue.element", a key by itself, is of all.
+bool is_tissue(const ParameterRow& row) {
+  const auto& keys = scenario_keys();
+  return row.name.starts_with(kTissue) &&
+         std::none_of(keys.begin(), keys.end(), [&](const ScenarioKey& key) { return key.path == row.name; });
+}
 
 /// One source as it is; several with the keys they belong to.
 std::string sources_of(const Tissue& tissue) {
