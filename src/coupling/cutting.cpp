@@ -24,12 +24,13 @@ bool Insertion::Parts::available(Index tet) const { return compliance.available(
 
 /// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; tissue
 /// turned by the deformation gradient F = I + ∇u is cut along F⁻¹ t. Where the track's end has drifted off the axis
-/// (the base moved sideways while the tip did not cut) the cut leads back to the axis.
+/// (the base moved sideways while the tip did not cut) the cut leads back to the axis. A bevelled tip leads it to a
+/// line beside the axis instead (bevel.cpp).
 void Insertion::Parts::aim_tip() {
-  gather_forces();
+  gather_filtered_forces();
   const Vec3 t = needle->tangent(length());
   const Mat3 F = Mat3::Identity() + compliance.gradient_at_tip(forces.leftCols(compliance.points()));
-  Vec3 along = t;
+  Vec3 along = t + lead_of_bevel(t);
   if (!std::isfinite(tip.lateral_softness)) {
     const Vec3 gap = tip.x + tissue_displacement(ContactCompliance::kTip) - needle->point(length());
     Vec3 back = -(gap - t * t.dot(gap)) / settings.merge_mm;
@@ -197,6 +198,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
   const int region = region_of(crossing.tet);
   const Vec3 t = needle->tangent(length());
   add_event(report, kind, region);
+  leave_memory_behind();
   tip = Tip{};
   tip.touching = true;
   tip.x = x;
@@ -251,6 +253,9 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
   }
   tip.x_start = tip.x;
   tip.at_start = tip.at;
+  memory.forget(ContactCompliance::kTip);
+  memory_xi = track.end_xi;
+  relaxing = false;
   if (!compliance.move_tip(tip.at, tip.x)) report.flags |= StepReport::compliance_missing;
 }
 

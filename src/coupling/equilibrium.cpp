@@ -46,6 +46,7 @@ Vec3 Insertion::Parts::tissue_displacement(int point) const {
   const auto row = compliance.matrix().middleRows<3>(3 * point);
   u.noalias() += row.middleCols<3>(0) * tip.force;
   for (const Grip& grip : grips) u.noalias() += row.middleCols<3>(3 * grip.point) * grip.force;
+  if (memory.on()) u = memory.share() * u + memory.displacement(compliance, point);
   return u;
 }
 
@@ -59,6 +60,7 @@ void Insertion::Parts::set_frames() {
     frame.col(0) = n1;
     frame.col(1) = t.cross(n1);
     frame.col(2) = t;
+    past[static_cast<std::size_t>(c)] = memory.displacement(compliance, point_of(c));
   }
 }
 
@@ -75,7 +77,8 @@ void Insertion::Parts::soften_rows(double h) {
     double axial = 0.0;
     double shift = 0.0;
     if (c == 0) {
-      lateral = std::isfinite(tip.lateral_softness) ? tip.lateral_softness : 0.0;
+      lateral = tip_lateral_softness();
+      system.shift.head<2>().noalias() = lateral * (frames[0].leftCols<2>().transpose() * bevel_force());
       axial = settings.axial_compliance_mm_per_N;
       if (tip.state == Tip::State::cut) {
         const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
@@ -116,7 +119,7 @@ void Insertion::Parts::linearise() {
   for (int c = 0; c < count; ++c) {
     const Mat3& Qc = frames[static_cast<std::size_t>(c)];
     const Vec3 freely = free.segment<3>(3 * c);
-    const Vec3 gap = shaft_point(c) + freely - material_of(c);
+    const Vec3 gap = shaft_point(c) + freely - unloaded(c);
     system.gap.segment<3>(3 * c).noalias() = Qc.transpose() * gap;
     system.free.segment<3>(3 * c).noalias() = Qc.transpose() * freely;
     system.now.segment<3>(3 * c).noalias() = Qc.transpose() * force_of(c);
@@ -124,7 +127,8 @@ void Insertion::Parts::linearise() {
       const Mat3& Qd = frames[static_cast<std::size_t>(d)];
       system.N.block<3, 3>(3 * c, 3 * d).noalias() = Qc.transpose() * N.block<3, 3>(3 * c, 3 * d) * Qd;
       if (d <= c)
-        system.A.block<3, 3>(3 * c, 3 * d).noalias() = Qc.transpose() * compliance(point_of(c), point_of(d)) * Qd;
+        system.A.block<3, 3>(3 * c, 3 * d).noalias() =
+            memory.share() * Qc.transpose() * compliance(point_of(c), point_of(d)) * Qd;
     }
   }
   system.begin(size);
@@ -135,7 +139,7 @@ void Insertion::Parts::linearise() {
 void Insertion::Parts::lend_springs() {
   constexpr double hardest_mm_per_N = 1e-3;
   for (int c = 0; c < load_count(); ++c) {
-    double own = compliance(point_of(c), point_of(c)).trace() / 3.0;
+    double own = memory.share() * compliance(point_of(c), point_of(c)).trace() / 3.0;
     bool lend = true;
     if (c == 0) {
       lend = grips.empty() && tip.touching && tip.state != Tip::State::open;
@@ -153,7 +157,7 @@ void Insertion::Parts::select_rows() {
   std::vector<int>& rows = system.rows;
   rows.clear();
   if (tip.touching && tip.state != Tip::State::open) {
-    if (std::isfinite(tip.lateral_softness)) {
+    if (tip_lateral_rows()) {
       rows.push_back(0);
       rows.push_back(1);
     }
@@ -182,7 +186,8 @@ double Insertion::Parts::contradiction(int load, double axial, double opening) c
   // not depend on speed; it counts as the force that pushes the tissue so far.
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
   const double back = grip.slip * (grip.law.coulomb_N_per_mm * grip.length - sign * axial);
-  return back > kStill_mm ? 3.0 * back / compliance(grip.point, grip.point).trace() : 0.0;
+  const double own = memory.share() * compliance(grip.point, grip.point).trace() / 3.0;
+  return back > kStill_mm ? back / own : 0.0;
 }
 
 void Insertion::Parts::change_state(int load, double axial, StepReport& report) {
@@ -275,7 +280,7 @@ double Insertion::Parts::equation_error() const {
     error = std::max(error, std::abs(value) / system.yield(r));
   }
   // A contact that is not held in a direction must carry nothing there.
-  if (tip.touching && tip.state != Tip::State::open && !std::isfinite(tip.lateral_softness)) {
+  if (tip.touching && tip.state != Tip::State::open && !tip_lateral_rows()) {
     error = std::max(error, (frames[0].leftCols<2>().transpose() * tip.force).norm());
   }
   return error;

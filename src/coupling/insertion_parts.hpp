@@ -4,6 +4,7 @@
 #include "contact_system.hpp"
 #include "paper/staggered.hpp"
 #include "stylet/coupling/insertion.hpp"
+#include "tissue_memory.hpp"
 
 #include <deque>
 
@@ -63,6 +64,9 @@ struct Insertion::Parts {
   CouplingSettings settings;
   std::unique_ptr<ContactCompliance> owned_compliance;
   ContactCompliance& compliance;
+  TissueMemory memory;
+  double memory_xi = 0.0;  ///< [mm] along the track, where the tip's share of the memory is
+  bool relaxing = false;   ///< the needle is out, the tissue not yet at rest
   Pose base;
   TipPhase phase = TipPhase::air;
   Vec3 air_tip = Vec3::Zero();  ///< where the tip was, in undeformed coordinates, while it is in the air
@@ -78,6 +82,7 @@ struct Insertion::Parts {
   // Scratch of the equilibrium, sized once.
   std::vector<PointLoad> loads;  ///< tip first, then the grips: the needle's side, −force
   std::vector<Mat3> frames;      ///< columns n1, n2, t at each load
+  std::vector<Vec3> past;        ///< [mm] by which earlier forces displace the tissue at each load
   std::vector<Mat3> springs;     ///< lent to the needle at each load
   MatX N;                        ///< [mm/N] needle's compliance, LPS
   VecX free;                     ///< [mm] needle's own Newton step at the loads, LPS
@@ -114,6 +119,8 @@ struct Insertion::Parts {
   [[nodiscard]] const Vec3& material_of(int load) const {
     return load == 0 ? tip.x : grips[static_cast<std::size_t>(load - 1)].x;
   }
+  /// Where the tissue at a contact would be without the forces of now.
+  [[nodiscard]] Vec3 unloaded(int load) const { return material_of(load) + past[static_cast<std::size_t>(load)]; }
   [[nodiscard]] double arc_of(int load) const;
   [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
   void begin_balance(int most_toggles);
@@ -132,6 +139,12 @@ struct Insertion::Parts {
   void select_rows();
   [[nodiscard]] double equation_error() const;
   [[nodiscard]] bool balanced(double slack) const;
+
+  // bevel.cpp: what an asymmetric tip does.
+  [[nodiscard]] Vec3 lead_of_bevel(const Vec3& tangent) const;
+  [[nodiscard]] double tip_lateral_softness() const;
+  [[nodiscard]] bool tip_lateral_rows() const;
+  [[nodiscard]] Vec3 bevel_force() const;
 
   // cutting.cpp: the tip, its track and surfaces.
   void aim_tip();
@@ -154,6 +167,13 @@ struct Insertion::Parts {
   void share_length();
   void finish_insertion(StepReport& report);
   void settle_in_air(StepReport& report);
+
+  // viscosity.cpp: what the tissue remembers of earlier forces.
+  void gather_filtered_forces();
+  void remember();
+  void leave_memory_behind();
+  void relax();
+  void forget_tissue();
 
   void sub_step(const Pose& pose, double h, StepReport& report);
   void summarise(StepReport& report) const;

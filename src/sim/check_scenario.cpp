@@ -13,6 +13,10 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
   const std::string name = fmt::format("insertion[{}]", number);
   const bool way_given = p.hole || p.entry_mm || p.direction || p.target_mm;
   if (!p.motion.empty()) {
+    if (p.roll_deg != 0.0) {
+      return input_error(place(name + ".roll_deg"), name + " has a recorded motion and roll_deg",
+                         "A recorded motion turns the needle itself: remove roll_deg");
+    }
     if (!way_given) return Ok{};
     return input_error(place(name + ".motion"), name + " has a recorded motion and a hole, entry, direction or target",
                        "Give the motion alone, or remove it");

@@ -61,6 +61,9 @@ CouplingSettings coupling_settings(const Scenario& s) {
     const int elements = s.needle.elements > 0 ? s.needle.elements : default_needle_elements(s.needle.model).value();
     c.needle_node_mm = s.needle.length_mm / elements;
   }
+  c.bevel.angle_rad = s.needle.bevel_deg * std::numbers::pi / 180.0;
+  c.bevel.law = s.needle.bevel_law == "force" ? Bevel::Law::force : Bevel::Law::offset;
+  c.bevel.force_ratio = s.needle.bevel_force_ratio;
   c.spacing_mm = s.coupling.spacing_mm;
   c.merge_mm = s.needle.diameter_mm;
   c.join_mm = s.needle.diameter_mm;

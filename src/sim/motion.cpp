@@ -20,9 +20,13 @@ BaseMotion::BaseMotion(std::vector<MotionSample> samples) : samples_(std::move(s
 
 BaseMotion BaseMotion::straight(const Vec3& entry, const Vec3& direction, double needle_length_mm, double approach_mm,
                                 double depth_mm, double speed_mm_per_s, double dwell_s, bool retract,
-                                double retract_speed_mm_per_s) {
+                                double retract_speed_mm_per_s, double roll_rad) {
   const Vec3 along = direction.normalized();
-  const auto pose = [&](double depth) { return pose_along(entry + (depth - needle_length_mm) * along, along); };
+  const auto pose = [&](double depth) {
+    Pose at = pose_along(entry + (depth - needle_length_mm) * along, along);
+    at.rotation = at.rotation * Eigen::AngleAxisd(roll_rad, Vec3::UnitZ());
+    return at;
+  };
   std::vector<MotionSample> samples{{0.0, pose(-approach_mm)}};
   const double way = approach_mm + depth_mm;
   samples.push_back({way / speed_mm_per_s, pose(depth_mm)});

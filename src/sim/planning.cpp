@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace stylet {
 
@@ -111,9 +112,9 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
           "Use a longer needle (needle.length_mm), or give a depth (depth_mm)");
     }
   }
-  result.motion =
-      BaseMotion::straight(result.entry, result.direction, scenario.needle.length_mm, plan.approach_mm, result.depth_mm,
-                           plan.speed_mm_per_s, plan.dwell_s, plan.retract, plan.retract_speed_mm_per_s);
+  result.motion = BaseMotion::straight(result.entry, result.direction, scenario.needle.length_mm, plan.approach_mm,
+                                       result.depth_mm, plan.speed_mm_per_s, plan.dwell_s, plan.retract,
+                                       plan.retract_speed_mm_per_s, plan.roll_deg * std::numbers::pi / 180.0);
   return result;
 }
 

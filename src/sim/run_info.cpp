@@ -29,6 +29,8 @@ constexpr std::array kShown{
     Documented{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
     Documented{"needle.diameter_mm", "18 gauge"},
     Documented{"needle.stylet", "seeds and spacers lie where it would be"},
+    Documented{"needle.bevel_deg", "stated: a symmetric tip"},
+    Documented{"needle.bow_mm", "a straight needle"},
     Documented{kElements.data(), "numerical: no visible change of the needle's shape with more"},
     Documented{"coupling.method", "the mesh takes up what the needle does, at constant cost"},
     Documented{"coupling.rule", "old compliances do not change when a node is added"},

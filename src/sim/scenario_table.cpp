@@ -120,6 +120,15 @@ void describe_needle(ScenarioEntries& keys) {
   keys.number("needle.torsion_stiffness_Nmm2", "N mm²", 1, 1e7, "torsion stiffness G J, instead of the section's",
               [](auto& s, const Slot&) { return &s.needle.torsion_stiffness_Nmm2; },
               {.standard = "from the section, 12,094 for the default tube", .example = "12094"});
+  keys.number("needle.bevel_deg", "degree", 0, 60,
+              "angle between the face of the tip's bevel and the axis, 10 … 30 for bevelled needles; 0 = symmetric tip",
+              [](auto& s, const Slot&) { return &s.needle.bevel_deg; });
+  keys.choice(
+      "needle.bevel_law", {"offset", "force"}, {},
+      "what a bevel does: the cut runs beside the axis on the sharp side; or the tissue pushes the tip sideways",
+      [](auto& s, const Slot&) { return &s.needle.bevel_law; });
+  keys.number("needle.bevel_force_ratio", "", 0, 1, "bevel_law force: lateral over axial force of the tip",
+              [](auto& s, const Slot&) { return &s.needle.bevel_force_ratio; });
   keys.number("needle.bow_mm", "mm", 0, 100,
               "how far the tip of the unloaded needle lies beside its axis (it is bent to a circle); up to a tenth of "
               "the length",
@@ -206,6 +215,11 @@ void describe_insertion(ScenarioEntries& keys) {
                  {.standard = "[0, 0, 1]", .example = "[0, 0, 1]"});
   keys.vector<3>("insertion[].target_mm", "mm", -1e4, 1e4, "a point to aim at, LPS, instead of a direction",
                  [](auto& s, const Slot& i) { return &plan(s, i).target_mm; }, {.example = "[10, 5, 0]"});
+  keys.number(
+      "insertion[].roll_deg", "degree", -360, 360,
+      "turn of the needle about its axis; at 0 the bevel's sharp side is to the patient's left, at 90 posterior "
+      "for a needle going superior",
+      [](auto& s, const Slot& i) { return &plan(s, i).roll_deg; });
   keys.number("insertion[].approach_mm", "mm", 0.1, 200, "free travel before the skin",
               [](auto& s, const Slot& i) { return &plan(s, i).approach_mm; });
   keys.number("insertion[].depth_mm", "mm", 0, 1000,

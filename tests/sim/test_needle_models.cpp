@@ -140,3 +140,42 @@ TEST(GuideTemplate, TheBaseStopsBeforeIt) {
   s.grid.distance_mm = 90.0;
   EXPECT_SAYS(refused(s).what, "the template's distance, 90 mm (25)");
 }
+
+/// Where a bevelled tip is at the deepest point, beside the needle's line [mm].
+Vec3 deepest_tip(const Scenario& s, const std::vector<std::vector<MotionSample>>& motions = {}) {
+  const Finished run(compiled(s, box_patient(), motions));
+  const auto deepest = std::max_element(run.kept.steps.begin(), run.kept.steps.end(),
+                                        [](const auto& a, const auto& b) { return a.base_depth_mm < b.base_depth_mm; });
+  return deepest->tip_mm - Vec3(4.0, 7.0, deepest->tip_mm.z());
+}
+
+TEST(BevelOfAScenario, RollTurnsItInPlannedAndInRecordedMotions) {
+  Scenario s = box_scenario();
+  const Vec3 straight = deepest_tip(s);
+  s.needle.bevel_deg = 25.0;
+  const Vec3 left = deepest_tip(s) - straight;
+  EXPECT_GT(left.x(), 0.1);  // LPS: x is the patient's left
+  EXPECT_GT(left.x(), 3.0 * std::abs(left.y()));
+  s.insertions[0].roll_deg = 90.0;
+  const Vec3 posterior = deepest_tip(s) - straight;
+  EXPECT_GT(posterior.y(), 0.1);
+  EXPECT_GT(posterior.y(), 3.0 * std::abs(posterior.x()));
+
+  const std::vector<MotionSample> recorded = compiled(s)->insertions()[0].motion.samples();
+  Scenario follows = s;
+  follows.insertions[0] = {};
+  follows.insertions[0].motion = "recorded.csv";
+  EXPECT_LT((deepest_tip(follows, {recorded}) - straight - posterior).norm(), 1e-3);
+  follows.insertions[0].roll_deg = 90.0;
+  EXPECT_SAYS(refused(follows, box_patient(), {recorded}).what, "recorded motion and roll_deg");
+}
+
+TEST(BevelOfAScenario, TheLawIsTheOneNamed) {
+  Scenario s = box_scenario();
+  s.needle.bevel_deg = 20.0;
+  EXPECT_TRUE(compiled(s)->coupling().bevel.offsets());
+  s.needle.bevel_law = "force";
+  s.needle.bevel_force_ratio = 0.04;
+  EXPECT_TRUE(compiled(s)->coupling().bevel.pushes());
+  EXPECT_EQ(compiled(s)->coupling().bevel.force_ratio, 0.04);
+}

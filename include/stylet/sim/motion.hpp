@@ -21,10 +21,11 @@ class BaseMotion {
 
   /// In along `direction`, a pause, and out again. The tip starts `approach` before `entry` and, as far as the base is
   /// concerned, ends `depth` beyond it.
-  /// @param entry [mm] LPS, skin point; @param direction unit vector, LPS
+  /// @param entry [mm] LPS, skin point; @param direction unit vector, LPS; @param roll_rad about it, from where
+  /// pose_along() puts the base
   static BaseMotion straight(const Vec3& entry, const Vec3& direction, double needle_length_mm, double approach_mm,
                              double depth_mm, double speed_mm_per_s, double dwell_s, bool retract,
-                             double retract_speed_mm_per_s);
+                             double retract_speed_mm_per_s, double roll_rad = 0.0);
 
   [[nodiscard]] Pose at(double time_s) const;
   [[nodiscard]] double duration_s() const { return samples_.empty() ? 0.0 : samples_.back().time_s; }

@@ -59,6 +59,7 @@ struct InsertionPlan {
   std::optional<std::array<double, 3>> entry_mm;   ///< a point the needle passes before the skin, LPS
   std::optional<std::array<double, 3>> direction;  ///< LPS, need not be a unit vector; default superior
   std::optional<std::array<double, 3>> target_mm;  ///< a point to aim at, LPS, instead of a direction
+  double roll_deg = 0.0;                           ///< of the needle about its axis, from local x to local y
   double approach_mm = 3.0;                        ///< free travel before the skin
   double depth_mm = 0.0;  ///< of the base beyond skin contact; 0 = to the far end of the target
   double speed_mm_per_s = 20.0;
@@ -108,9 +109,12 @@ struct Scenario {
     double stylet_young_GPa = 200.0;
     std::optional<double> bending_stiffness_Nmm2;  ///< instead of the section's
     std::optional<double> torsion_stiffness_Nmm2;  ///< instead of the section's
-    double bow_mm = 0.0;                           ///< offset of the unloaded needle's tip
-    double bow_deg = 0.0;                          ///< towards which side, about the axis
-    int elements = 0;                              ///< 0 = the model's own
+    double bevel_deg = 0.0;                        ///< between the bevel's face and the axis; 0 = symmetric
+    std::string bevel_law = "offset";
+    double bevel_force_ratio = 0.06;
+    double bow_mm = 0.0;   ///< offset of the unloaded needle's tip
+    double bow_deg = 0.0;  ///< towards which side, about the axis
+    int elements = 0;      ///< 0 = the model's own
     bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {

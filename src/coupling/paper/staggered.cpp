@@ -49,7 +49,7 @@ using paper::Staggered;
 void Insertion::Parts::condense_tissue() {
   Staggered& s = *staggered;
   const int count = load_count();
-  const bool same = s.version == compliance.version() && s.system.points() == count &&
+  const bool same = s.version == compliance.version() && s.share == memory.share() && s.system.points() == count &&
                     std::equal(grips.begin(), grips.end(), s.points.begin() + 1, s.points.begin() + count,
                                [](const Grip& grip, int point) { return grip.point == point; });
   const auto enter = [&](int c) {
@@ -57,10 +57,10 @@ void Insertion::Parts::condense_tissue() {
     for (int k = 0; k < s.system.points(); ++k) {
       const int d = s.load_of[static_cast<std::size_t>(k)];
       s.across.block<3, 3>(3 * k, 0).noalias() =
-          s.frames[static_cast<std::size_t>(d)].transpose() * compliance(point_of(d), point_of(c)) * Qc;
+          s.share * s.frames[static_cast<std::size_t>(d)].transpose() * compliance(point_of(d), point_of(c)) * Qc;
     }
     const int k = s.system.add(s.across.topRows(3 * s.system.points()),
-                               Qc.transpose() * compliance(point_of(c), point_of(c)) * Qc);
+                               s.share * Qc.transpose() * compliance(point_of(c), point_of(c)) * Qc);
     s.slot_of[static_cast<std::size_t>(c)] = k;
     s.load_of[static_cast<std::size_t>(k)] = c;
     s.points[static_cast<std::size_t>(c)] = point_of(c);
@@ -69,6 +69,7 @@ void Insertion::Parts::condense_tissue() {
   if (!same || s.system.switches() > kSwitchesToRebuild) {
     s.system.clear();
     s.version = compliance.version();
+    s.share = memory.share();
     for (int c = 0; c < count; ++c) enter(c);
   } else if (s.tip != tip.x) {
     const int k = s.slot_of[0];
@@ -106,10 +107,11 @@ void Insertion::Parts::impose_needle_on_tissue(double h) {
     s.system.control_displacement(3 * k + 1, lateral);
     s.system.control_displacement(3 * k + 2, axial);
 
-    const Vec3 gap = now.transpose() * (shaft_point(c) - material_of(c));
+    const Vec3 gap = now.transpose() * (shaft_point(c) - unloaded(c));
     auto y = s.y.segment<3>(3 * k);
     y = Vec3::Zero();
-    if (lateral) y.head<2>() = gap.head<2>();
+    if (lateral) y.head<2>() = gap.head<2>() + system.shift.segment<2>(3 * c);
+    if (tip_row && held && !lateral) y.head<2>() = now.leftCols<2>().transpose() * bevel_force();
     if (axial) y[2] = gap[2];
     if (!axial && held) y[2] = system.lambda[3 * c + 2];  // friction or cutting force, from the last iteration
   }
@@ -133,13 +135,13 @@ void Insertion::Parts::solve_tissue(double h) {
       if (!tip.touching || tip.state != Tip::State::cut) continue;
       // The tip cuts as far as the needle is beyond the tissue: force = cutting force + viscosity × speed.
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
-      const double beyond = Q.col(2).dot(shaft_point(0) - tip.x) - x[row];
+      const double beyond = Q.col(2).dot(shaft_point(0) - unloaded(0)) - x[row];
       s.advance = tip.advance + beyond / (Q.col(2).dot(tip.direction) + own / slip);
       force = tip.cutting + s.advance / slip;  // less than the cutting force: the needle goes back, see switch_contacts
       s.change = std::max(s.change, std::abs(force - s.y[row]));
     } else {
       Grip& grip = grips[static_cast<std::size_t>(c - 1)];
-      const double ahead = x[row] - Q.col(2).dot(shaft_point(c) - grip.x);
+      const double ahead = x[row] - Q.col(2).dot(shaft_point(c) - unloaded(c));
       s.change = std::max(s.change, std::abs(ahead) / own);
       if (grip.length < kNoLength_mm) {  // no friction at all: it follows the tissue
         grip.s += ahead;
@@ -166,7 +168,7 @@ void Insertion::Parts::solve_tissue(double h) {
 bool Insertion::Parts::switch_contacts(StepReport& report) {
   const Staggered& s = *staggered;
   const int tip_row = 3 * s.slot_of[0] + 2;
-  const double opening = frames[0].col(2).dot(shaft_point(0) - tip.x) - s.x[tip_row];
+  const double opening = frames[0].col(2).dot(shaft_point(0) - unloaded(0)) - s.x[tip_row];
   bool changed = false;
   for (int c = load_count() - 1; c >= 0; --c) {
     const double axial = system.lambda[3 * c + 2];
