@@ -3,7 +3,6 @@
 #include "reproduction_data.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -13,12 +12,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLast = "reproduce.json";  ///< a folder that holds it is complete
-
-struct File {
-  std::string name;
-  std::string content;
-};
+using results::csv_text;
+using results::File;
 
 std::string figure5_csv(const std::vector<Figure5Row>& rows) {
   std::string csv =
@@ -57,50 +52,19 @@ std::string figure6_csv(const Figure6Run& run) {
   return csv;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 std::string cell_text(const TableCell& cell) {
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{:.6g}", *number);
-  if (const auto* words = std::get_if<std::string>(&cell)) return quoted(*words);
+  if (const auto* words = std::get_if<std::string>(&cell)) return csv_text(*words);
   return {};
 }
 
 std::string table_csv(const std::vector<TableRow>& rows) {
   std::string csv = "group,quantity,unit,paper,reproduced,default,note\n";
   for (const TableRow& row : rows) {
-    csv += fmt::format("{},{},{},{},{},{},{}\n", quoted(row.group), quoted(row.quantity), quoted(row.unit),
-                       cell_text(row.paper), cell_text(row.reproduced), cell_text(row.ours), quoted(row.note));
+    csv += fmt::format("{},{},{},{},{},{},{}\n", csv_text(row.group), csv_text(row.quantity), csv_text(row.unit),
+                       cell_text(row.paper), cell_text(row.reproduced), cell_text(row.ours), csv_text(row.note));
   }
   return csv;
-}
-
-Result<> write_all(const std::vector<File>& files, const fs::path& folder) {
-  for (const File& file : files) {
-    if (auto done = results::write_file(folder / file.name, file.content); !done) return done;
-  }
-  return Ok{};
-}
-
-/// The files under a hidden name beside the folder, which then takes its place in one step.
-Result<> write_new_folder(const std::vector<File>& files, const fs::path& folder) {
-  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
-  if (auto ready = results::prepare_folder(parent); !ready) return ready;
-  const fs::path hidden = parent / fmt::format(".{}.{}.part", folder.filename().string(), ::getpid());
-  std::error_code code;
-  fs::create_directory(hidden, code);
-  if (code) return results::write_error(hidden, code.message());
-  Result<> done = write_all(files, hidden);
-  if (done) {
-    fs::rename(hidden, folder, code);
-    if (code) done = results::write_error(folder, code.message());
-  }
-  std::error_code ignored;
-  if (!done) fs::remove_all(hidden, ignored);
-  return done;
 }
 
 }  // namespace
@@ -113,15 +77,8 @@ Result<> write_reproduction(const Reproduction& reproduction, const fs::path& fo
                           {"figure5.csv", figure5_csv(reproduction.figure5)},
                           {"table.csv", table_csv(reproduction.table)}};
   for (const Figure6Run& run : reproduction.figure6.runs) files.push_back({curve_file(run), figure6_csv(run)});
-  files.push_back({kLast, reproduction_json(reproduction)});
-
-  // "out/" and "out" are the same folder.
-  const fs::path place = folder.has_filename() ? folder : folder.parent_path();
-  std::error_code code;
-  if (!fs::exists(place, code)) return write_new_folder(files, place);
-  if (auto ready = results::prepare_folder(place); !ready) return ready;
-  fs::remove(place / kLast, code);
-  return write_all(files, place);
+  files.push_back({"reproduce.json", reproduction_json(reproduction)});
+  return results::write_folder(files, folder);
 }
 
 }  // namespace stylet::reproduce

@@ -26,25 +26,6 @@ double quantile(const std::vector<double>& sorted, double q) {
   return sorted[std::min(at, sorted.size() - 1)];
 }
 
-/// Mean displacement of a set of regions by volume, and the largest of any of their nodes [mm].
-std::pair<Vec3, double> target_shift(const TetMesh& mesh, const std::vector<int>& regions, const VecX& u) {
-  Vec3 sum = Vec3::Zero();
-  double volume = 0.0;
-  double largest = 0.0;
-  for (Index t = 0; t < mesh.tet_count(); ++t) {
-    const int region = mesh.tet_region[static_cast<std::size_t>(t)];
-    if (std::find(regions.begin(), regions.end(), region) == regions.end()) continue;
-    const double v = tet_volume(mesh, t);
-    for (const Index node : mesh.tets[static_cast<std::size_t>(t)]) {
-      const Vec3 un = u.segment<3>(3 * node);
-      sum += 0.25 * v * un;
-      largest = std::max(largest, un.norm());
-    }
-    volume += v;
-  }
-  return {volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero()), largest};
-}
-
 class Runner {
  public:
   Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress)
@@ -220,6 +201,24 @@ class Runner {
 };
 
 }  // namespace
+
+TargetShift target_shift(const TetMesh& mesh, const std::vector<int>& regions, const VecX& u) {
+  Vec3 sum = Vec3::Zero();
+  double volume = 0.0;
+  double largest = 0.0;
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const int region = mesh.tet_region[static_cast<std::size_t>(t)];
+    if (std::find(regions.begin(), regions.end(), region) == regions.end()) continue;
+    const double v = tet_volume(mesh, t);
+    for (const Index node : mesh.tets[static_cast<std::size_t>(t)]) {
+      const Vec3 un = u.segment<3>(3 * node);
+      sum += 0.25 * v * un;
+      largest = std::max(largest, un.norm());
+    }
+    volume += v;
+  }
+  return {volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero()), largest};
+}
 
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress) {
   return Runner(model, observer, progress).all();

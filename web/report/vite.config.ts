@@ -2,10 +2,11 @@
 // One script and one style sheet for each page, which the stylet program carries inside and writes into it:
 //   vite build                      the report of an insertion
 //   vite build --mode reproduce     the page of stylet reproduce
+//   vite build --mode validate      the page of stylet validate
 import { defineConfig } from 'vite';
 
 export default defineConfig(({ mode }) => {
-  const page = mode === 'reproduce' ? { name: 'reproduce', entry: 'src/reproduce/main.ts' } : { name: 'report', entry: 'src/main.ts' };
+  const page = mode === 'reproduce' || mode === 'validate' ? { name: mode, entry: `src/${mode}/main.ts` } : { name: 'report', entry: 'src/main.ts' };
   return {
     build: {
       target: 'es2020',

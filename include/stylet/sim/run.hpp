@@ -13,6 +13,14 @@ class RunObserver {
   virtual Result<> on_frame(const Frame& frame) = 0;
 };
 
+/// How far regions were moved by a displacement of the mesh's nodes.
+struct TargetShift {
+  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over their volume
+  double largest_mm = 0.0;          ///< of any of their nodes
+};
+/// @param u [mm] (3n)
+TargetShift target_shift(const TetMesh& mesh, const std::vector<int>& regions, const VecX& u);
+
 /// Carries out all insertions of a model, one after the other, and sums up.
 /// Frames: one before, one per event worth a picture (labelled with the event's name), one at the deepest point
 /// ("deepest"), one after, and a regular series at scenario.output.frames_per_s, at most max_frames.

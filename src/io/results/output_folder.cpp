@@ -4,6 +4,7 @@
 #include "detail/whole_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
@@ -17,6 +18,31 @@ namespace {
 
 /// The reason of a failed stream operation, taken before anything else can change errno.
 std::string system_reason() { return std::strerror(errno); }
+
+Result<> write_all(const std::vector<File>& files, const fs::path& folder) {
+  for (const File& file : files) {
+    if (auto done = write_file(folder / file.name, file.content); !done) return done;
+  }
+  return Ok{};
+}
+
+/// The files under a hidden name beside the folder, which then takes its place in one step.
+Result<> write_new_folder(const std::vector<File>& files, const fs::path& folder) {
+  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+  if (auto ready = prepare_folder(parent); !ready) return ready;
+  const fs::path hidden = parent / fmt::format(".{}.{}.part", folder.filename().string(), ::getpid());
+  std::error_code code;
+  fs::create_directory(hidden, code);
+  if (code) return write_error(hidden, code.message());
+  Result<> done = write_all(files, hidden);
+  if (done) {
+    fs::rename(hidden, folder, code);
+    if (code) done = write_error(folder, code.message());
+  }
+  std::error_code ignored;
+  if (!done) fs::remove_all(hidden, ignored);
+  return done;
+}
 
 }  // namespace
 
@@ -55,6 +81,22 @@ Result<> prepare_folder(const fs::path& folder) {
   if (stream != nullptr) std::fclose(stream);
   fs::remove(probe, code);
   return Ok{};
+}
+
+Result<> write_folder(const std::vector<File>& files, const fs::path& folder) {
+  // "out/" and "out" are the same folder.
+  const fs::path place = folder.has_filename() ? folder : folder.parent_path();
+  std::error_code code;
+  if (!fs::exists(place, code)) return write_new_folder(files, place);
+  if (auto ready = prepare_folder(place); !ready) return ready;
+  if (!files.empty()) fs::remove(place / files.back().name, code);
+  return write_all(files, place);
+}
+
+std::string csv_text(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 std::string series_name(std::string_view stem, std::size_t number, std::string_view extension) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stylet::results {
 
@@ -14,6 +15,19 @@ Result<> prepare_folder(const std::filesystem::path& folder);
 
 /// Writes `content` as the file `path`, whole or not at all.
 Result<> write_file(const std::filesystem::path& path, std::string_view content);
+
+/// A file that is written in one go.
+struct File {
+  std::string name;
+  std::string content;
+};
+
+/// Fills a folder with these files. A new folder appears whole or not at all; in one that exists the files are replaced
+/// one by one, of which the last goes first and comes last: a folder that holds it is complete.
+Result<> write_folder(const std::vector<File>& files, const std::filesystem::path& folder);
+
+/// A text as a field of a CSV file, in quotation marks.
+std::string csv_text(std::string_view text);
 
 /// The error every writer of the result folder returns when the disk refuses: names the file and the system's reason.
 Error write_error(const std::filesystem::path& path, const std::string& reason);

@@ -4,7 +4,7 @@
 #include <string_view>
 
 /// Pages, style sheets and scripts (web/report/), which the build puts into the library: the report of an insertion and
-/// the page of stylet reproduce.
+/// the pages of stylet reproduce and stylet validate.
 namespace stylet::results {
 
 std::string_view report_template();  ///< HTML with {{slots}}
@@ -14,5 +14,9 @@ std::string_view report_js();
 std::string_view reproduce_template();  ///< HTML with {{slots}}
 std::string_view reproduce_css();
 std::string_view reproduce_js();
+
+std::string_view validate_template();  ///< HTML with {{slots}}
+std::string_view validate_css();
+std::string_view validate_js();
 
 }  // namespace stylet::results

@@ -4,6 +4,7 @@ import type uPlot from 'uplot';
 // Okabe & Ito: told apart by readers of every colour vision.
 export const INK = '#23262b';
 export const PALE = '#8a9099';
+export const SOFT = '#5b6169';
 export const GRID = '#e6e8eb';
 export const CURVES = [
   { key: 'axial', label: 'Axial', color: '#0072b2', width: 2 },

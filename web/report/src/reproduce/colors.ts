@@ -4,7 +4,6 @@ export const BLUE = '#0072b2';
 export const SKY = '#56b4e9';
 export const VERMILION = '#d55e00';
 const GREEN = '#009e73';
-export const SOFT = '#5b6169';
 
 /** Colour of a variant of the insertions. */
 export function colorOf(id: string): string {

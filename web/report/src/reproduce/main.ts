@@ -3,12 +3,13 @@ import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import './style.css';
 import { roundNumbers } from '../plots/round_numbers';
-import { BLUE, colorOf, SKY, SOFT, VERMILION } from './colors';
+import { SOFT } from '../plots/style';
+import { BLUE, colorOf, SKY, VERMILION } from './colors';
 import { decode, type ReproductionData, type Run } from './data';
 import { buildDimensionPlot } from './dimension_plot';
 import { drawContours, drawSegment, drawSurface } from './drawings';
 import { buildForceLegend, buildForcePlot, forceRange } from './force_plot';
-import { buildLinePlot } from './line_plot';
+import { buildLinePlot } from '../plots/line_plot';
 import { build } from '../page_part';
 
 /** A time with the unit that suits it. */

@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves over one abscissa, named at their right ends, on linear or logarithmic scales.
+// Curves on linear or logarithmic scales, named at their right ends.
 import uPlot from 'uplot';
-import { marksAt, roundNumbers } from '../plots/round_numbers';
-import { axis, font, fontSize, followWidth, lineScale } from '../plots/style';
-import { SOFT } from './colors';
+import { marksAt, roundNumbers } from './round_numbers';
+import { axis, font, fontSize, followWidth, lineScale, SOFT } from './style';
 
 const BAND = '#f0f1f3';
+const LEVEL = '#e3f0f8';
 
 export interface Line {
   label: string;
   color: string;
   values: ArrayLike<number>;
+  x?: ArrayLike<number>;  // an abscissa of its own, increasing
   dashed?: boolean;
   marks?: boolean;  // a dot at every value
+  bare?: boolean;   // dots only
   width?: number;
 }
 
 export interface LinePlot {
-  x: ArrayLike<number>;
+  x?: ArrayLike<number>;  // shared by all lines that have none of their own
   xLabel: string;
   yLabel: string;
   lines: Line[];
-  logX?: number[];     // marks of a logarithmic x axis
+  logX?: number[] | true;  // marks of a logarithmic x axis; true: decades
   logY?: boolean;
   lowest?: number;     // of a logarithmic y axis
+  level?: { from: number | null; to: number | null };  // stretch of y, shaded
+  unnamed?: boolean;   // no names at the curves' ends: a legend stands elsewhere
   bands?: { from: number; to: number; label: string }[];  // stretches of x, shaded
   text: (value: number) => string;  // a value of y in words
   xText: (value: number) => string;
@@ -85,6 +89,27 @@ function drawBands(plot: uPlot, bands: NonNullable<LinePlot['bands']>): void {
   ctx.restore();
 }
 
+/** Shades a stretch of y behind the curves. */
+function drawLevel(plot: uPlot, level: NonNullable<LinePlot['level']>): void {
+  const { ctx, bbox } = plot;
+  const at = (value: number | null, open: number) =>
+    value === null ? open : Math.max(bbox.top, Math.min(bbox.top + bbox.height, plot.valToPos(value, 'y', true)));
+  const top = at(level.to, bbox.top);
+  const bottom = at(level.from, bbox.top + bbox.height);
+  ctx.save();
+  ctx.fillStyle = LEVEL;
+  ctx.fillRect(bbox.left, top, bbox.width, bottom - top);
+  ctx.restore();
+}
+
+/** Curves over one list of abscissae: undefined where a curve has no value of its own. */
+function aligned(options: LinePlot, drawn: (value: number) => number | null): uPlot.AlignedData {
+  const { lines } = options;
+  const values = (line: Line) => Array.from(line.values, drawn);
+  if (!lines.some((line) => line.x)) return [Array.from(options.x ?? []), ...lines.map(values)] as uPlot.AlignedData;
+  return uPlot.join(lines.map((line) => [Array.from(line.x ?? options.x ?? []), values(line)] as uPlot.AlignedData));
+}
+
 /** A small box with all values at the pointer. */
 function readout(plot: uPlot, options: LinePlot): void {
   const box = document.createElement('div');
@@ -97,14 +122,16 @@ function readout(plot: uPlot, options: LinePlot): void {
     if (i === null || i === undefined) return;
     box.replaceChildren();
     const head = document.createElement('b');
-    head.textContent = options.xText(options.x[i]);
+    head.textContent = options.xText(plot.data[0][i]);
     box.append(head);
-    for (const line of options.lines) {
+    for (const [k, line] of options.lines.entries()) {
+      const value = plot.data[k + 1][i];
+      if (value === null || value === undefined) continue;
       const row = document.createElement('div');
       const name = document.createElement('span');
       name.style.color = line.color;
       name.textContent = `${line.label}: `;
-      row.append(name, options.text(line.values[i]));
+      row.append(name, options.text(value));
       box.append(row);
     }
     box.hidden = false;
@@ -115,23 +142,36 @@ function readout(plot: uPlot, options: LinePlot): void {
 }
 
 export function buildLinePlot(box: HTMLElement, options: LinePlot): void {
-  const { lines, x } = options;
+  const { lines } = options;
   let least = Infinity;
   let most = -Infinity;
-  for (const line of lines) {
-    for (let i = 0; i < line.values.length; i++) {
-      const value = line.values[i];
-      if (value > most) most = value;
-      if (value < least && value > 0) least = value;
-    }
+  const count = (value: number | null | undefined) => {
+    if (value === null || value === undefined || !isFinite(value) || (options.logY && value <= 0)) return;
+    most = Math.max(most, value);
+    least = Math.min(least, value);
+  };
+  for (const line of lines) for (let i = 0; i < line.values.length; i++) count(line.values[i]);
+  if (!isFinite(most)) throw new Error('there is no value to draw');
+  // The accepted stretch is seen whole where it is not far away from the curves.
+  const reach = options.logY ? [least / 100, most * 100] : [least - 2 * (most - least), most + 2 * (most - least)];
+  for (const bound of [options.level?.from, options.level?.to]) {
+    if (bound !== null && bound !== undefined && bound >= reach[0] && bound <= reach[1]) count(bound);
   }
-  const low = options.logY ? Math.max(least / 1.5, options.lowest ?? 0) : 0;
-  const high = options.logY ? most * 1.5 : most * 1.05;
-  const first = options.logX ? x[0] / 1.12 : x[0];
-  const last = options.logX ? x[x.length - 1] * 1.12 : x[x.length - 1];
-  const names = textWidth(lines.map((l) => l.label)) + 14;
-  const yMarks = options.logY ? marksAt(roundNumbers(low, high, [1]), options.text) : { values: (_u: uPlot, v: number[]) => v.map(options.text) };
-  const xMarks = options.logX ? marksAt(options.logX) : {};
+  const spare = 0.05 * Math.max(most - Math.min(0, least), 1e-300);
+  const low = options.logY ? Math.max(least / 1.5, options.lowest ?? 0) : least < 0 ? least - spare : 0;
+  const high = options.logY ? most * 1.5 : most > 0 ? most + spare : 0;
+  const data = aligned(options, (v) => (v === null || !isFinite(v) || (options.logY && v <= 0) ? null : v));
+  const xs = data[0];
+  const first = options.logX ? xs[0] / 1.12 : xs[0];
+  const last = options.logX ? xs[xs.length - 1] * 1.12 : xs[xs.length - 1];
+  const names = options.unnamed ? fontSize() : textWidth(lines.map((l) => l.label)) + 14;
+  const decades = (from: number, to: number) => {
+    const marks = roundNumbers(from, to, [1]);
+    const every = Math.ceil(marks.length / 6);
+    return marks.length > 1 ? marks.filter((_, i) => i % every === 0) : roundNumbers(from, to, [1, 2, 5]);
+  };
+  const yMarks = options.logY ? marksAt(decades(low, high), options.text) : { values: (_u: uPlot, v: number[]) => v.map(options.text) };
+  const xMarks = options.logX ? marksAt(options.logX === true ? decades(first, last) : options.logX, options.logX === true ? options.xText : undefined) : {};
   const unit = lineScale();
   const plot = new uPlot(
     {
@@ -153,14 +193,17 @@ export function buildLinePlot(box: HTMLElement, options: LinePlot): void {
         stroke: line.color,
         width: (line.width ?? 2) * unit,
         dash: line.dashed ? [6 * unit, 4 * unit] : undefined,
-        points: line.marks ? { show: true, size: 7 * unit, fill: line.color, stroke: line.color } : { show: false },
+        ...(line.bare ? { paths: () => null } : {}),
+        points: line.marks ? { show: true, size: (line.bare ? 4 : 7) * unit, fill: line.color, stroke: line.color } : { show: false },
       }))],
-      hooks: { drawClear: [(u: uPlot) => drawBands(u, options.bands ?? [])], draw: [(u: uPlot) => drawNames(u, lines)] },
+      hooks: {
+        drawClear: [(u: uPlot) => (options.level ? drawLevel(u, options.level) : undefined), (u: uPlot) => drawBands(u, options.bands ?? [])],
+        draw: [(u: uPlot) => (options.unnamed ? undefined : drawNames(u, lines))],
+      },
     } as uPlot.Options,
-    [Array.from(x), ...lines.map((l) => Array.from(l.values, (v) => (options.logY && v <= 0 ? null : v)))] as uPlot.AlignedData,
+    data,
     box,
   );
   followWidth(box, plot);
   readout(plot, options);
 }
-

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "output_path.hpp"
+#include "table.hpp"
+
+#include "stylet/validate/validation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace stylet::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using validate::Row;
+using validate::RowSpec;
+using validate::Validation;
+using validate::Verdict;
+
+struct ValidateArguments {
+  std::string output;
+  std::string data;
+  std::vector<std::string> only;
+  bool quick = false;
+  bool list = false;
+  bool sensitivity = false;
+};
+
+/// Where the shared data are: --data, else the environment, else beside the repository when run from it.
+fs::path data_folder(const ValidateArguments& arguments) {
+  if (!arguments.data.empty()) return arguments.data;
+  if (const char* named = std::getenv("STYLET_SHARED_DATA"); named != nullptr && *named != '\0') return named;
+  return fs::path("..") / "shared" / "data";
+}
+
+std::string command_text(const ValidateArguments& arguments) {
+  std::string text = "stylet validate -o " + arguments.output;
+  if (arguments.quick) text += " --quick";
+  if (arguments.sensitivity) text += " --sensitivity";
+  if (!arguments.only.empty()) text += fmt::format(" --only {}", fmt::join(arguments.only, " "));
+  return text;
+}
+
+std::string list_text() {
+  Table table({"id", "group", "quick", "claim"});
+  for (const RowSpec& row : validate::all_rows())
+    table.row({row.id, to_string(row.group), row.quick ? "yes" : "no", row.claim});
+  table.row({"sensitivity", "", "yes", "what to measure: how the outputs move with each parameter (--sensitivity)"});
+  return table.text();
+}
+
+Json list_json() {
+  Json rows = Json::array();
+  for (const RowSpec& row : validate::all_rows()) {
+    rows.push_back({{"id", row.id},
+                    {"group", to_string(row.group)},
+                    {"claim", row.claim},
+                    {"reference", row.reference},
+                    {"unit", row.unit},
+                    {"tolerance", row.accepted.text()},
+                    {"quick", row.quick}});
+  }
+  return {{"rows", rows}};
+}
+
+std::string number(double value) { return std::isnan(value) ? std::string("-") : fmt::format("{:.3g}", value); }
+
+std::string rows_text(const Validation& validation) {
+  Table table({"row", "result", "ours", "unit", "accepted", "seconds"});
+  for (const Row& row : validation.rows) {
+    table.row({row.spec.id, to_string(row.verdict), number(row.finding.value), row.spec.unit, row.spec.accepted.text(),
+               fmt::format("{:.1f}", row.seconds)});
+  }
+  return table.text();
+}
+
+std::string outcome_text(const Validation& v) {
+  std::string text = fmt::format("{} of {} judged claims pass, {} MISSED", v.count(Verdict::pass),
+                                 v.count(Verdict::pass) + v.count(Verdict::missed), v.count(Verdict::missed));
+  if (const int skipped = v.count(Verdict::skipped); skipped > 0) text += fmt::format(", {} skipped", skipped);
+  if (const int crashed = v.count(Verdict::crashed); crashed > 0) text += fmt::format(", {} crashed", crashed);
+  return text + fmt::format(" ({:.0f} s)", v.seconds);
+}
+
+std::string sensitivity_text(const validate::Sensitivity& study) {
+  const auto lines = validate::sensitivity_lines(study);
+  Table table(lines.front());
+  for (std::size_t i = 1; i < lines.size(); ++i) table.row(lines[i]);
+  return fmt::format(
+             "{}; each parameter moved by {:.0f} %, change of peak force, shift of the target and deflection of "
+             "the tip (base: {:.3g} N, {:.3g} mm, {:.3g} mm)\n",
+             study.scenario, 100.0 * study.change, study.base.peak_axial_N, study.base.target_shift_mm,
+             study.base.tip_deflection_mm) +
+         table.text();
+}
+
+Result<> run_validate(const ValidateArguments& arguments, Console& console) {
+  if (arguments.list) {
+    console.say(list_text());
+    return console.write_json(list_json());
+  }
+  if (arguments.output.empty())
+    return input_error("validate", "no folder for the page is given", "Name one with -o, or --list the rows");
+  const fs::path folder = arguments.output;
+  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  if (!arguments.data.empty() && !fs::is_directory(arguments.data))
+    return input_error("--data", fmt::format("'{}' is not a folder", arguments.data),
+                       "Name the folder of the shared data");
+  validate::ValidateOptions options;
+  options.quick = arguments.quick;
+  options.sensitivity = arguments.sensitivity;
+  options.only = arguments.only;
+  options.data = data_folder(arguments);
+  options.command = command_text(arguments);
+  const Progress progress = console.progress();
+  const Result<Validation> validation = validate::validate(options, progress);
+  if (!validation) return validation.error();
+  if (Result<> written = validate::write_validation(*validation, folder); !written) return written;
+
+  if (!validation->rows.empty()) console.say(outcome_text(*validation) + "\n\n" + rows_text(*validation));
+  for (const Row& row : validation->rows) {
+    if (row.verdict == Verdict::missed)
+      console.say(fmt::format("\nMISSED {}: {}. {}", row.spec.id, row.spec.claim, row.note()));
+    if (row.verdict == Verdict::skipped) console.say(fmt::format("\nskipped {}: {}", row.spec.id, row.note()));
+  }
+  if (validation->sensitivity) console.say("\n" + sensitivity_text(*validation->sensitivity));
+  console.say(fmt::format("\nPage: {}", (folder / "validate.html").string()));
+  if (Result<> json = console.write_json(Json::parse(validate::validation_json(*validation))); !json) return json;
+  for (const Row& row : validation->rows) {
+    if (row.verdict == Verdict::crashed)
+      return failure("row " + row.spec.id, row.note(), "The other rows were measured");
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Command add_validate_command(CLI::App& program) {
+  auto arguments = std::make_shared<ValidateArguments>();
+  CLI::App* app = program.add_subcommand(
+      "validate", "Check the model against analysis, independent code and published measurements");
+  app->add_option("-o,--output", arguments->output, "Folder for the page and its numbers")->type_name("OUT/");
+  app->add_option("--only", arguments->only, "Measure these rows only (--list has their names)")
+      ->type_name("ID")
+      ->expected(1, -1);
+  app->add_option("--data", arguments->data,
+                  "Folder of the shared data (default: $STYLET_SHARED_DATA, or ../shared/data); rows that need it are "
+                  "skipped without it")
+      ->type_name("FOLDER");
+  app->add_flag("--quick", arguments->quick, "Only rows that take a few seconds at the most: under a minute");
+  app->add_flag("--list", arguments->list, "List the rows and do nothing else");
+  app->add_flag("--sensitivity", arguments->sensitivity,
+                "Also: how peak force, shift of the target and deflection of the tip move with each parameter");
+  return {app, [arguments](Console& console) { return run_validate(*arguments, console); }};
+}
+
+}  // namespace stylet::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/sim/model.hpp"
+#include "stylet/sim/run.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace stylet::validate {
+
+/// An insertion, carried out, with every step.
+struct RecordedRun {
+  std::shared_ptr<const Model> model;
+  std::vector<StepRecord> steps;
+  std::vector<Frame> events;  ///< frames taken at events and at the deepest point, labelled
+  Summary summary;
+
+  /// The first event of a kind, in a region where one is named; null where there is none.
+  [[nodiscard]] const Event* event(EventKind kind, const std::string& region = {}) const;
+};
+
+/// Carries all insertions of a model out.
+Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, const Progress& progress = {});
+
+/// What rows may share: options, the shared data, and things too expensive to make twice.
+class Context {
+ public:
+  /// @param data folder of the shared data; need not exist
+  Context(bool quick, std::filesystem::path data, Progress progress)
+      : quick_(quick), data_(std::move(data)), progress_(std::move(progress)) {}
+
+  [[nodiscard]] bool quick() const { return quick_; }
+  [[nodiscard]] const Progress& progress() const { return progress_; }
+
+  /// A file of the shared data, or nothing where it is not there.
+  [[nodiscard]] std::optional<std::filesystem::path> data(const std::string& file) const;
+  /// "…/shared/data/NAME is not there …": what a row says that is skipped for want of it.
+  [[nodiscard]] std::string no_data(const std::string& file) const;
+
+  /// The demo patient, meshed as the demo scenario does it (about 3,000 nodes).
+  Result<TetMesh> demo_mesh();
+  /// The demo: hole e3.5, in and out at 20 mm/s, with default parameters. Carried out once.
+  Result<std::shared_ptr<const RecordedRun>> demo_run();
+
+ private:
+  bool quick_;
+  std::filesystem::path data_;
+  Progress progress_;
+  std::optional<TetMesh> demo_mesh_;
+  std::shared_ptr<const RecordedRun> demo_run_;
+};
+
+/// The demo scenario: one needle through hole e3.5 of the demo patient, whose pelvic side walls are held.
+Scenario demo_scenario();
+
+}  // namespace stylet::validate

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rows.hpp"
+
+#include "stylet/validate/validation.hpp"
+
+#include <algorithm>
+
+namespace stylet::validate {
+
+namespace {
+
+std::vector<RowSpec> collect() {
+  std::vector<RowSpec> rows;
+  for (const auto& more : {elasticity_rows(), manufactured_rows(), node_addition_rows(), condensed_system_rows(),
+                           needle_theory_rows(), insertion_law_rows(), step_and_tolerance_rows(), other_software_rows(),
+                           published_force_rows(), okamura_recording_rows(), prostate_motion_rows()})
+    rows.insert(rows.end(), more.begin(), more.end());
+  std::stable_sort(rows.begin(), rows.end(), [](const RowSpec& a, const RowSpec& b) { return a.group < b.group; });
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<RowSpec>& all_rows() {
+  static const std::vector<RowSpec> rows = collect();
+  return rows;
+}
+
+}  // namespace stylet::validate

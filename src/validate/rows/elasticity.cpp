@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tissue against closed solutions of linear elasticity, and against CalculiX.
+#include "../rows.hpp"
+#include "stylet/fem/tissue.hpp"
+#include "stylet/geom/box_mesh.hpp"
+#include "stylet/geom/topology.hpp"
+#include "stylet/validate/calculix.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+namespace stylet::validate {
+
+namespace {
+
+const Material kGland{0.040, 0.45};
+
+std::vector<Index> nodes_where(const TetMesh& mesh, const std::function<bool(const Vec3&)>& chosen) {
+  std::vector<Index> nodes;
+  for (Index a = 0; a < mesh.node_count(); ++a)
+    if (chosen(mesh.nodes[static_cast<std::size_t>(a)])) nodes.push_back(a);
+  return nodes;
+}
+
+VecX sample(const TetMesh& mesh, const std::function<Vec3(const Vec3&)>& field) {
+  VecX u(3 * Eigen::Index{mesh.node_count()});
+  for (Index a = 0; a < mesh.node_count(); ++a) u.segment<3>(3 * a) = field(mesh.nodes[static_cast<std::size_t>(a)]);
+  return u;
+}
+
+Mat3 stress_of(const Material& material, const Mat3& gradient) {
+  const Mat3 strain = 0.5 * (gradient + gradient.transpose());
+  return material.lambda() * strain.trace() * Mat3::Identity() + 2.0 * material.mu() * strain;
+}
+
+/// Nodal forces [N] (3n) of the traction σ n on all outer faces.
+VecX traction(const TetMesh& mesh, const Mat3& stress) {
+  VecX f = VecX::Zero(3 * Eigen::Index{mesh.node_count()});
+  const Topology topology(mesh);
+  for (const Face& face : topology.boundary) {
+    const auto x = [&](int k) { return mesh.nodes[static_cast<std::size_t>(face.nodes[static_cast<std::size_t>(k)])]; };
+    const Vec3 share = stress * (0.5 * (x(1) - x(0)).cross(x(2) - x(0))) / 3.0;
+    for (const Index a : face.nodes) f.segment<3>(3 * a) += share;
+  }
+  return f;
+}
+
+double relative_error(const VecX& value, const VecX& expected) {
+  return (value - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+}
+
+/// The jittered box of the patch test with its floor held.
+Result<Tissue> jittered_box(const Material& material) {
+  TetMesh mesh = box_mesh({-20, 10, 30}, {20, 50, 90}, {4, 5, 6}, 0.15);
+  const auto floor = nodes_where(mesh, [](const Vec3& x) { return x.z() == 30.0; });
+  return Tissue::build(std::move(mesh), {material}, floor);
+}
+
+Result<Finding> patch_test(Context&) {
+  const auto tissue = jittered_box(kGland);
+  if (!tissue) return tissue.error();
+  const TetMesh& mesh = tissue->mesh();
+  Finding finding;
+  finding.value = 0.0;
+  for (const Vec3& c : {Vec3(0.03, 0, 0), Vec3(0, -0.02, 0), Vec3(0, 0, 0.01), Vec3(0.01, 0.02, -0.03)}) {
+    const Mat3 gradient = c * Vec3::UnitZ().transpose();
+    const VecX expected = sample(mesh, [&](const Vec3& x) { return Vec3(c * (x.z() - 30.0)); });
+    const VecX u = tissue->solve(traction(mesh, stress_of(kGland, gradient)));
+    finding.value = std::max(finding.value, relative_error(u, expected));
+  }
+  finding.note = fmt::format("Irregular mesh of {} nodes, floor held, four linear fields.", mesh.node_count());
+  return finding;
+}
+
+Result<Finding> rigid_motions(Context&) {
+  const auto tissue = jittered_box(kGland);
+  if (!tissue) return tissue.error();
+  Finding finding;
+  finding.value = 0.0;
+  for (int mode = 0; mode < 6; ++mode) {
+    const Vec3 axis = Vec3::Unit(mode % 3);
+    const VecX u = sample(tissue->mesh(), [&](const Vec3& x) { return mode < 3 ? axis : Vec3(axis.cross(x) / 60.0); });
+    // Relative to the stress that a strain of the same motion over 1 mm would make.
+    const double scale = kGland.lambda() * u.cwiseAbs().maxCoeff();
+    finding.value = std::max(finding.value, tissue->stress(u).cwiseAbs().maxCoeff() / scale);
+  }
+  finding.note = "Three translations, three infinitesimal rotations; the largest stress in any element.";
+  return finding;
+}
+
+Result<Finding> uniaxial_bar(Context&) {
+  // Without lateral contraction the held end does not disturb the field.
+  const Material material{0.020, 0.0};
+  TetMesh mesh = box_mesh({0, 0, 0}, {10, 15, 100}, {2, 3, 20}, 0.15);
+  const auto floor = nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
+  const auto tissue = Tissue::build(std::move(mesh), {material}, floor);
+  if (!tissue) return tissue.error();
+  constexpr double force = 0.6;
+  constexpr double area = 150.0;
+  Mat3 stress = Mat3::Zero();
+  stress(2, 2) = force / area;
+  const VecX u = tissue->solve(traction(tissue->mesh(), stress));
+  const double strain = force / (material.young_MPa * area);
+  Finding finding;
+  finding.value = relative_error(u, sample(tissue->mesh(), [&](const Vec3& x) { return Vec3(0, 0, strain * x.z()); }));
+  finding.note = fmt::format("100 mm long, {:g} N on {:g} mm², 20 kPa: {:.4g} mm.", force, area, 100.0 * strain);
+  return finding;
+}
+
+Result<Finding> same_as_calculix(Context&) {
+  if (!calculix_installed())
+    return Finding::skip("CalculiX (the program ccx, Debian package calculix-ccx) is not installed.");
+  TetMesh mesh = box_mesh({-30, -20, 40}, {30, 30, 110}, {8, 7, 9}, 0.15);
+  assign_regions(mesh, {"fat", "gland"}, [](const Vec3& x) { return (x - Vec3(0, 5, 75)).norm() > 22 ? 0 : 1; });
+  const std::vector<Material> materials{{0.008, 0.45}, {0.060, 0.40}};
+  const auto fixed = nodes_where(mesh, [](const Vec3& x) { return x.z() == 40.0 || x.y() == -20.0; });
+
+  // A press on the top and pushes and pulls at a third of the free nodes.
+  VecX f = VecX::Zero(3 * Eigen::Index{mesh.node_count()});
+  std::mt19937 random(11);
+  for (Index a = 0; a < mesh.node_count(); ++a) {
+    if (std::binary_search(fixed.begin(), fixed.end(), a)) continue;
+    if (mesh.nodes[static_cast<std::size_t>(a)].z() == 110.0) f[3 * a + 2] -= 0.01;
+    if (a % 3 != 0) continue;
+    for (int axis = 0; axis < 3; ++axis) f[3 * a + axis] += 0.02 * (static_cast<double>(random()) / 4294967296.0 - 0.5);
+  }
+  const auto theirs = solve_with_calculix(mesh, materials, fixed, f);
+  if (!theirs) return theirs.error();
+  const Index nodes = mesh.node_count();
+  const auto tissue = Tissue::build(std::move(mesh), materials, fixed);
+  if (!tissue) return tissue.error();
+  const VecX ours = tissue->solve(f);
+  Finding finding;
+  finding.value = relative_error(ours, *theirs);
+  finding.note = fmt::format(
+      "{} nodes, two materials, loads on a third of the nodes, largest displacement {:.2f} mm; largest difference of "
+      "any "
+      "component over the largest displacement.",
+      nodes, ours.cwiseAbs().maxCoeff());
+  finding.why_missed = "CalculiX prints seven digits.";
+  Curve curve{.label = "nodes", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  std::vector<Eigen::Index> by_size(static_cast<std::size_t>(nodes));
+  for (std::size_t a = 0; a < by_size.size(); ++a) by_size[a] = static_cast<Eigen::Index>(a);
+  const auto theirs_of = [&](Eigen::Index a) { return theirs->segment<3>(3 * a).norm(); };
+  std::sort(by_size.begin(), by_size.end(), [&](auto a, auto b) { return theirs_of(a) < theirs_of(b); });
+  for (const Eigen::Index a : by_size) {
+    curve.x.push_back(theirs_of(a));
+    curve.y.push_back(ours.segment<3>(3 * a).norm());
+  }
+  finding.plot = {.x_label = "CalculiX [mm]", .y_label = "Stylet [mm]", .curves = {curve}};
+  return finding;
+}
+
+}  // namespace
+
+std::vector<RowSpec> elasticity_rows() {
+  return {
+      {"patch_test", Group::analysis, "A linear displacement field is reproduced under its tractions",
+       "u = c z, σ from Hooke’s law", "", Accepted::at_most(1e-10), true, patch_test},
+      {"rigid_motions", Group::analysis, "Rigid motions cause no stress", "σ = 0", "", Accepted::at_most(1e-10), true,
+       rigid_motions},
+      {"uniaxial_bar", Group::analysis, "A bar stretches by force × length over stiffness", "ΔL = F L / (E A)", "",
+       Accepted::at_most(1e-10), true, uniaxial_bar},
+      {"calculix", Group::other_code, "Same mesh, materials, supports and loads: the same displacements",
+       "CalculiX, C3D4 elements", "", Accepted::at_most(1e-6), true, same_as_calculix},
+  };
+}
+
+}  // namespace stylet::validate

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A whole insertion against what its laws say in closed form.
+#include "../rows.hpp"
+#include "../scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stylet::validate {
+
+namespace {
+
+/// A block of one tissue: its forces have closed forms.
+Block one_tissue() {
+  Block block;
+  block.gland_radius_mm = 0.0;
+  return block;
+}
+
+Curve force_curve(const Drive& drive, const std::string& label) {
+  return {.label = label,
+          .x = column(drive.steps(), &StepRecord::base_depth_mm),
+          .y = column(drive.steps(), &StepRecord::force_axial_N)};
+}
+
+/// Force against time, for motions that go back and forth.
+Curve force_over_time(const Drive& drive, const std::string& label) {
+  return {.label = label,
+          .x = column(drive.steps(), &StepRecord::time_s),
+          .y = column(drive.steps(), &StepRecord::force_axial_N)};
+}
+
+double percent_off(double value, double expected) { return 100.0 * std::abs(value / expected - 1.0); }
+
+Result<Finding> steady_cutting(Context&) {
+  const auto model = one_tissue().compile();
+  if (!model) return model.error();
+  const RegionLaws& laws = (*model)->laws().front();
+  constexpr double speed = 10.0;
+  const double along = laws.friction.coulomb_N_per_mm + laws.friction.viscous_Ns_per_mm2 * speed;
+  const double tip = laws.cutting_N + (*model)->coupling().tip_viscosity_Ns_per_mm * speed;
+  Finding finding;
+  finding.value = 0.0;
+  Curve law{.label = "cutting + friction", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Drive drive(*model);
+  for (double depth = 2.0; depth <= 50.0; depth += 2.0) {
+    drive.go(depth, speed);
+    if (drive.simulation().report().tip != TipPhase::cutting || depth < 20.0) continue;
+    const double expected = tip + along * drive.simulation().report().inserted_mm;
+    finding.value = std::max(finding.value, percent_off(drive.last().record.force_axial_N, expected));
+    law.x.push_back(depth);
+    law.y.push_back(expected);
+  }
+  finding.note = "Constant speed, one tissue, from 20 mm on; the inserted length is the simulated one.";
+  finding.why_missed = "Where contacts are laid the force is not quite steady.";
+  finding.plot = {
+      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(drive, "ours"), law}};
+  return finding;
+}
+
+Result<Finding> reversal(Context&) {
+  const auto model = one_tissue().compile();
+  if (!model) return model.error();
+  const FrictionLaw& friction = (*model)->laws().front().friction;
+  constexpr double speed = 20.0;
+  Drive drive(*model);
+  drive.go(50.0, speed);
+  const double pushing = drive.last().record.force_axial_N;
+  drive.go(49.9, speed);
+  const int sticking = drive.last().record.sticking;
+  const int contacts = drive.last().record.contacts;
+  drive.go(40.0, speed);
+  const double expected =
+      -(friction.coulomb_N_per_mm + friction.viscous_Ns_per_mm2 * speed) * drive.simulation().report().inserted_mm;
+  Finding finding;
+  finding.value = percent_off(drive.last().record.force_axial_N, expected);
+  finding.note = fmt::format(
+      "Pushed in with {:.2f} N; 0.1 mm after the turn {} of {} contacts stick; 10 mm after it all slide out, {:.3f} N "
+      "against {:.3f} N.",
+      pushing, sticking, contacts, drive.last().record.force_axial_N, expected);
+  finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
+  return finding;
+}
+
+Result<Finding> second_pass(Context&) {
+  const auto model = one_tissue().compile();
+  if (!model) return model.error();
+  const FrictionLaw& friction = (*model)->laws().front().friction;
+  constexpr double speed = 10.0;
+  Drive drive(*model);
+  drive.go(40.0, speed);
+  drive.go(20.0, speed);
+  const double deepest = drive.insertion().track().end_xi;
+  drive.go(34.0, speed);
+  const double expected =
+      (friction.coulomb_N_per_mm + friction.viscous_Ns_per_mm2 * speed) * drive.simulation().report().inserted_mm;
+  Finding finding;
+  finding.value = percent_off(drive.last().record.force_axial_N, expected);
+  const double cut = drive.insertion().track().end_xi - deepest;
+  if (cut > 0.0) finding.value = 100.0;
+  finding.note =
+      fmt::format("In to 40 mm, out to 20, in to 34: {:.3f} N, friction alone is {:.3f} N; {:g} mm cut anew.",
+                  drive.last().record.force_axial_N, expected, cut);
+  drive.go(45.0, speed);
+  finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
+  return finding;
+}
+
+Result<Finding> withdrawal(Context&) {
+  Block block;
+  const auto model = block.compile({{-9, 7, 0}});
+  if (!model) return model.error();
+  Drive used(*model);
+  used.go(50.0);
+  used.go(-1.0);
+  const double left = used.insertion().displacement().cwiseAbs().maxCoeff();
+  used.aim(1);
+  const std::size_t from = used.steps().size();
+  used.go(50.0);
+  Drive fresh(*model, -1.0, 1);
+  fresh.go(50.0);
+  Finding finding;
+  finding.value = left;
+  for (std::size_t i = 0; i < fresh.steps().size(); ++i) {
+    const double difference = (used.steps()[from + i].hand_force - fresh.steps()[i].hand_force).norm();
+    finding.value = std::max(finding.value, difference / fresh.peak_N());
+  }
+  finding.note = fmt::format(
+      "Left over after the needle is out: {:g} mm. A second needle elsewhere feels what it would feel in fresh tissue; "
+      "largest difference over the peak.",
+      left);
+  finding.plot = {
+      .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(fresh, "fresh tissue")}};
+  Curve second{.label = "second needle", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  for (std::size_t i = from; i < used.steps().size(); ++i) {
+    second.x.push_back(used.steps()[i].record.base_depth_mm);
+    second.y.push_back(used.steps()[i].record.force_axial_N);
+  }
+  finding.plot.curves.push_back(std::move(second));
+  return finding;
+}
+
+Result<Finding> moved_scene(Context&) {
+  const auto run = [](const Eigen::Affine3d& placing) -> Result<std::vector<DriveStep>> {
+    Block block;
+    block.direction = {0.1, 0.05, 1.0};
+    block.placing = placing;
+    const auto model = block.compile();
+    if (!model) return model.error();
+    Drive drive(*model);
+    drive.go(40.0);
+    drive.shift(placing.linear() * Vec3(0.5, 0.2, 0.0));
+    drive.go(50.0);
+    drive.go(20.0);
+    return drive.steps();
+  };
+  const auto plain = run(Eigen::Affine3d::Identity());
+  if (!plain) return plain.error();
+  double peak = 0.0;
+  for (const DriveStep& s : *plain) peak = std::max(peak, s.hand_force.norm());
+
+  Eigen::Affine3d turned = Eigen::Affine3d::Identity();
+  turned.rotate(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())).pretranslate(Vec3(30, -20, 55));
+  Eigen::Affine3d mirrored = Eigen::Affine3d::Identity();
+  mirrored.linear().diagonal() << -1.0, 1.0, 1.0;
+  Finding finding;
+  finding.value = 0.0;
+  finding.plot = {.x_label = "step", .y_label = "difference over the peak", .log_y = true};
+  for (const auto& [label, placing] : {std::pair{"turned and moved", turned}, {"mirrored", mirrored}}) {
+    const auto other = run(placing);
+    if (!other) return other.error();
+    Curve curve{.label = label, .x = {}, .y = {}};
+    for (std::size_t i = 0; i < plain->size(); ++i) {
+      const double off = ((*other)[i].hand_force - placing.linear() * (*plain)[i].hand_force).norm() / peak;
+      finding.value = std::max(finding.value, off);
+      curve.x.push_back(static_cast<double>(i));
+      curve.y.push_back(off);
+    }
+    finding.plot.curves.push_back(std::move(curve));
+  }
+  finding.note = "An oblique insertion through a capsule, the base shifted sideways on the way, and back.";
+  return finding;
+}
+
+Result<Finding> contact_changes(Context&) {
+  Block block = one_tissue();
+  block.direction = {0.1, 0.05, 1.0};
+  const auto model = block.compile();
+  if (!model) return model.error();
+  Drive drive(*model);
+  drive.go(30.0);
+  drive.shift({0.6, 0.3, 0.0});
+  drive.wait(0.01);
+  drive.go(60.0);
+  drive.wait(0.02);
+  drive.go(5.0);
+  const auto& steps = drive.steps();
+  const auto force = [&](std::size_t i) { return steps[i].record.force_axial_N; };
+  const auto depth = [&](std::size_t i) { return steps[i].record.base_depth_mm; };
+  double worst = 0.0;
+  int changes = 0;
+  Curve jumps{.label = "changes", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  for (std::size_t i = 3; i + 2 < steps.size(); ++i) {
+    if (steps[i].shaft_contacts == steps[i - 1].shaft_contacts || depth(i) < 8.0) continue;
+    if (std::abs(depth(i) - depth(i - 1)) < 1e-9) continue;
+    const double around = 0.5 * (force(i - 1) - force(i - 2) + force(i + 1) - force(i));
+    const double jump = std::abs(force(i) - force(i - 1) - around);
+    worst = std::max(worst, jump);
+    ++changes;
+    jumps.x.push_back(steps[i].record.time_s);
+    jumps.y.push_back(100.0 * jump / drive.peak_N());
+  }
+  Finding finding;
+  finding.value = 100.0 * worst / drive.peak_N();
+  if (changes < 10) finding.value = std::numeric_limits<double>::quiet_NaN();  // nothing was shown
+  finding.note = fmt::format(
+      "{} contacts laid or dropped on an oblique way in and out; the step of the force at each, less the mean of the "
+      "steps "
+      "around it, over the peak of {:.2f} N.",
+      changes, drive.peak_N());
+  finding.plot = {.x_label = "time [s]", .y_label = "jump of the force [% of peak]", .curves = {jumps}};
+  return finding;
+}
+
+Result<Finding> energy(Context&) {
+  Block block;
+  block.direction = {0.05, 0.1, 1.0};
+  const auto model = block.compile();
+  if (!model) return model.error();
+  Drive drive(*model);
+  Finding finding;
+  Curve work{.label = "work of the hand", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve stored{.label = "stored energy", .x = {}, .y = {}};
+  double surplus = -1e300;
+  double most = 0.0;
+  for (const double to : {10.0, 20.0, 35.0, 50.0, 30.0, 45.0, 60.0, 20.0}) {
+    const double from = drive.steps().empty() ? -1.0 : drive.last().record.base_depth_mm;
+    for (int k = 1; k <= 10; ++k) {
+      drive.go(from + (to - from) * k / 10.0);
+      const double now = drive.insertion().tissue_energy() + drive.insertion().needle().energy();
+      surplus = std::max(surplus, now - drive.last().work_Nmm);
+      most = std::max(most, drive.last().work_Nmm);
+      work.x.push_back(drive.last().record.time_s);
+      work.y.push_back(drive.last().work_Nmm);
+      stored.x.push_back(drive.last().record.time_s);
+      stored.y.push_back(now);
+    }
+  }
+  finding.value = surplus / most;
+  finding.note = "In and out several times; the largest of stored energy less work of the hand, over all the work.";
+  finding.plot = {.x_label = "time [s]", .y_label = "energy [N mm]", .curves = {stored, work}};
+  return finding;
+}
+
+Result<Finding> balance(Context& context, bool torque) {
+  const auto run = context.demo_run();
+  if (!run) return run.error();
+  Finding finding;
+  finding.value = torque ? (*run)->summary.residual_torque_balance : (*run)->summary.residual_force_balance;
+  finding.note = fmt::format(
+      "The demo insertion, {} steps: what the supports and the contacts exert on the tissue{}, largest of the run over "
+      "the "
+      "peak force{}.",
+      (*run)->summary.steps,
+      torque ? ", moments about the entry" : "; what the hand and the contacts exert on the needle",
+      torque ? " × 100 mm" : "");
+  if (!torque) {
+    Curve force{.label = "the demo", .x = {}, .y = {}};
+    for (const StepRecord& s : (*run)->steps) {
+      force.x.push_back(s.time_s);
+      force.y.push_back(s.force_axial_N);
+    }
+    finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force}};
+  }
+  return finding;
+}
+
+}  // namespace
+
+std::vector<RowSpec> insertion_law_rows() {
+  return {
+      {"steady_cutting", Group::analysis, "The hand pushes with cutting force plus friction per inserted length",
+       "F_cut + η v + (C + b v) L", "%", Accepted::at_most(2.0), true, steady_cutting},
+      {"reversal", Group::analysis, "After a reversal the shaft sticks, then slides, and friction points the other way",
+       "−(C + b v) L", "%", Accepted::at_most(2.0), true, reversal},
+      {"second_pass", Group::analysis, "On an old track there is nothing to cut until its end",
+       "(C + b v) L; nothing cut anew", "%", Accepted::at_most(3.0), true, second_pass},
+      {"withdrawal", Group::analysis, "A needle that is out leaves the tissue as it was", "zero; fresh tissue", "",
+       Accepted::at_most(1e-12), true, withdrawal},
+      {"moved_scene", Group::analysis, "A scene turned, moved or mirrored gives the same forces in its own frame",
+       "the scene as it was", "", Accepted::at_most(1e-8), true, moved_scene},
+      {"contact_changes", Group::analysis, "Laying and dropping contacts does not show in the force of the hand",
+       "continuity", "%", Accepted::at_most(0.1), true, contact_changes},
+      {"energy", Group::analysis, "The hand puts in at least the energy that is stored", "dissipation ≥ 0", "",
+       Accepted::at_most(1e-6), true, energy},
+      {"force_balance", Group::analysis, "Action equals reaction: hand, contacts and supports balance",
+       "Newton’s third law", "", Accepted::at_most(1e-9), false, [](Context& c) { return balance(c, false); }},
+      {"torque_balance", Group::analysis, "Moments of supports and contacts balance", "Newton’s third law", "",
+       Accepted::at_most(1e-9), false, [](Context& c) { return balance(c, true); }},
+  };
+}
+
+}  // namespace stylet::validate

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The needle models against beam theory.
+#include "../rows.hpp"
+#include "stylet/needle/make_needle.hpp"
+#include "stylet/needle/theory.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace stylet::validate {
+
+namespace {
+
+constexpr double kForce = 1e-5;  ///< [N] geometry stays linear to 1e-6
+constexpr double kBalance_Nmm = 1e-8;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Shape under a lateral load, against Euler and Bernoulli's, everywhere along the needle.
+Result<Finding> small_deflection(const std::string& model) {
+  const NeedleSection section;
+  auto needle = make_needle(model, section, 0, 8);
+  if (!needle) return needle.error();
+  const double length = section.length_mm;
+  Finding finding;
+  finding.value = 0.0;
+  for (const double a : {0.2 * length, 0.5 * length, length}) {
+    (*needle)->straighten();
+    const std::vector<PointLoad> loads{{a, {0, kForce, 0}}};
+    if (auto found = find_equilibrium(**needle, loads, 1e-10); !found) return found.error();
+    const double tip = cantilever_deflection(kForce, a, length, section.bending_stiffness_Nmm2);
+    Curve ours{.label = fmt::format("load at {:g} mm", a), .x = {}, .y = {}};
+    Curve theory{.label = "theory", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+    for (int k = 0; k <= 40; ++k) {
+      const double s = length * k / 40;
+      const double exact = cantilever_deflection(kForce, a, s, section.bending_stiffness_Nmm2);
+      const double found = (*needle)->point(s).y();
+      finding.value = std::max(finding.value, 100.0 * std::abs(found - exact) / tip);
+      ours.x.push_back(s);
+      ours.y.push_back(1e3 * found);
+      theory.x.push_back(s);
+      theory.y.push_back(1e3 * exact);
+    }
+    finding.plot.curves.push_back(std::move(ours));
+    if (a == length) finding.plot.curves.push_back(std::move(theory));
+  }
+  finding.plot.x_label = "arc length [mm]";
+  finding.plot.y_label = "deflection [µm]";
+  finding.note = "200 mm needle, a lateral load at three places; largest error of the shape over the tip’s deflection.";
+  return finding;
+}
+
+/// The tip under a dead load, up to a slope of 60 degrees.
+Result<Finding> large_deflection(const std::string& model) {
+  const NeedleSection section;
+  auto needle = make_needle(model, section, 0, 8);
+  if (!needle) return needle.error();
+  Finding finding;
+  finding.value = 0.0;
+  Curve ours{.label = model, .x = {}, .y = {}};
+  Curve theory{.label = "elastica", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  for (int degrees = 5; degrees <= 60; degrees += 5) {
+    const Elastica exact(degrees * kDegree, section.length_mm, section.bending_stiffness_Nmm2);
+    const std::vector<PointLoad> loads{{section.length_mm, {exact.force, 0, 0}}};
+    if (auto found = find_equilibrium(**needle, loads, kBalance_Nmm * 10.0); !found) return found.error();
+    const Vec3 tip = (*needle)->point(section.length_mm);
+    const double shortening = section.length_mm - exact.reach;
+    finding.value = std::max({finding.value, 100.0 * std::abs(tip.x() / exact.deflection - 1.0),
+                              100.0 * std::abs((section.length_mm - tip.z()) / shortening - 1.0)});
+    ours.x.push_back(exact.force);
+    ours.y.push_back(tip.x());
+    theory.x.push_back(exact.force);
+    theory.y.push_back(exact.deflection);
+  }
+  finding.plot = {.x_label = "force [N]", .y_label = "tip deflection [mm]", .curves = {ours, theory}};
+  finding.note = "Dead load across the tip, slope of the tip 5° to 60°; largest error of deflection and shortening.";
+  return finding;
+}
+
+}  // namespace
+
+std::vector<RowSpec> needle_theory_rows() {
+  std::vector<RowSpec> rows;
+  for (const std::string& model : needle_models()) {
+    rows.push_back({"needle_small_" + model, Group::analysis,
+                    fmt::format("Needle model “{}” bends as a thin beam under small loads", model),
+                    "Euler–Bernoulli cantilever", "%", Accepted::at_most(0.5), true,
+                    [model](Context&) { return small_deflection(model); }});
+  }
+  for (const std::string& model : needle_models()) {
+    rows.push_back({"needle_large_" + model, Group::analysis,
+                    fmt::format("Needle model “{}” follows the elastica to 60° of tip rotation", model),
+                    "elastica, Bisshopp & Drucker 1945", "%", Accepted::at_most(1.0), true,
+                    [model](Context&) { return large_deflection(model); }});
+  }
+  return rows;
+}
+
+}  // namespace stylet::validate

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A recorded insertion into liver: the shape of the force over depth.
+#include "../number_table.hpp"
+#include "../rows.hpp"
+#include "../scene.hpp"
+#include "published_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace stylet::validate {
+
+namespace {
+
+using namespace published;
+
+constexpr const char* kFile = "force_okamura_insertion/depth_force.csv";
+constexpr double kBin_mm = 1.0;
+constexpr double kSoftest_kPa = 2.0;
+constexpr double kStiffest_kPa = 400.0;
+constexpr double kContact_N = 0.15;  ///< more than the noise of free travel
+
+/// The recording, mean force in bins of depth, depth counted from contact.
+struct Recording {
+  std::vector<double> depth_mm;
+  std::vector<double> force_N;
+  double first_peak_N = 0.0;  ///< before the first drop
+  double first_peak_mm = 0.0;
+  double contact_mm = 0.0;  ///< on the recording's own scale
+};
+
+Result<Recording> read_recording_of(const std::filesystem::path& file) {
+  const auto columns = read_number_table(file);
+  if (!columns) return columns.error();
+  if (columns->size() < 2)
+    return input_error(file.string(), "two columns are expected", "Use the file as it was published");
+  const auto& depth = (*columns)[0];
+  const auto& force = (*columns)[1];
+  const double most = *std::max_element(depth.begin(), depth.end());
+  // The points are not in order and several forces share a depth: bins.
+  const auto bins = static_cast<std::size_t>(1e3 * most / kBin_mm) + 1;
+  std::vector<double> sum(bins, 0.0);
+  std::vector<int> count(bins, 0);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    const auto bin = static_cast<std::size_t>(std::max(0.0, 1e3 * depth[i]) / kBin_mm);  // metres
+    sum[bin] += force[i];
+    ++count[bin];
+  }
+  Recording out;
+  for (std::size_t b = 0; b < bins; ++b) {
+    if (count[b] == 0) continue;
+    const double f = sum[b] / count[b];
+    const double z = (static_cast<double>(b) + 0.5) * kBin_mm;
+    if (out.depth_mm.empty() && f < kContact_N) {
+      out.contact_mm = z;
+      continue;
+    }
+    out.depth_mm.push_back(z - out.contact_mm);
+    out.force_N.push_back(f);
+  }
+  // The first peak is the largest force before the first fall by half.
+  for (std::size_t i = 0; i < out.force_N.size(); ++i) {
+    if (out.force_N[i] > out.first_peak_N) {
+      out.first_peak_N = out.force_N[i];
+      out.first_peak_mm = out.depth_mm[i];
+    } else if (out.force_N[i] < 0.5 * out.first_peak_N) {
+      break;
+    }
+  }
+  if (out.force_N.size() < 10)
+    return input_error(file.string(), "there is no rise of the force", "Use the file as it was published");
+  return out;
+}
+
+/// A run with the literature's parameters and the two that are fitted.
+Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
+  Block block;
+  block.gland_radius_mm = 0.0;
+  TissueParameters& tissue = block.tissue("body");
+  tissue.young_kPa = young_kPa;
+  tissue.puncture_N = puncture_N;
+  tissue.cutting_N = okamura::kCutting.mean;
+  tissue.friction_static_N_per_m = okamura::kStatic_N_per_m;
+  tissue.friction_coulomb_N_per_m = okamura::kCoulomb_N_per_m;
+  tissue.friction_viscous_Ns_per_m2 = okamura::kViscous_Ns_per_m2;
+  const auto model = block.compile();
+  if (!model) return model.error();
+  Drive drive(*model, 0.0);
+  drive.go(depth_mm, okamura::kSpeed_mm_per_s, 10e-3);
+  return Curve{.label = "simulated",
+               .x = column(drive.steps(), &StepRecord::base_depth_mm),
+               .y = column(drive.steps(), &StepRecord::force_axial_N)};
+}
+
+double rms(const Recording& recording, const Curve& curve) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < recording.depth_mm.size(); ++i)
+    sum += std::pow(interpolated(curve.x, curve.y, recording.depth_mm[i]) - recording.force_N[i], 2);
+  return std::sqrt(sum / static_cast<double>(recording.depth_mm.size()));
+}
+
+Result<Finding> force_over_depth(Context& context) {
+  const auto path = context.data(kFile);
+  if (!path) return Finding::skip(context.no_data(kFile));
+  const auto recording = read_recording_of(*path);
+  if (!recording) return recording.error();
+  // The puncture's force is read off the recording; the modulus is fitted, on a logarithmic scale, finer and finer.
+  const double depth = recording->depth_mm.back();
+  double best_rms = 1e300;
+  double best_kPa = 0.0;
+  Curve best;
+  double low = std::log(kSoftest_kPa);
+  double high = std::log(kStiffest_kPa);
+  for (int round = 0; round < 3; ++round) {
+    const double step = (high - low) / 8.0;
+    for (int k = 0; k <= 8; ++k) {
+      const double kPa = std::exp(low + step * k);
+      auto curve = simulate(kPa, recording->first_peak_N, depth);
+      if (!curve) return curve.error();
+      const double off = rms(*recording, *curve);
+      if (off >= best_rms) continue;
+      best_rms = off;
+      best_kPa = kPa;
+      best = std::move(*curve);
+    }
+    low = std::max(std::log(kSoftest_kPa), std::log(best_kPa) - step);
+    high = std::min(std::log(kStiffest_kPa), std::log(best_kPa) + step);
+  }
+  const double peak = *std::max_element(recording->force_N.begin(), recording->force_N.end());
+  const double punch_kPa = okamura::modulus_kPa(Scenario{}.needle.diameter_mm, default_tissue("body").poisson);
+  const bool plausible =
+      std::abs(recording->first_peak_N - okamura::kPuncture.mean) <= 2.0 * okamura::kPuncture.deviation;
+  const bool at_edge = best_kPa <= 1.05 * kSoftest_kPa || best_kPa >= 0.95 * kStiffest_kPa;
+  Finding finding;
+  finding.value = 100.0 * best_rms / peak;
+  finding.note = fmt::format(
+      "Fitted: puncture {:.2f} N (study: 2.30 ± 0.83 N, {}) and modulus {:.0f} kPa{} (its measured stiffness by the "
+      "flat "
+      "punch: "
+      "{:.0f} kPa). From the literature: cutting 0.94 N, friction 18.5 and 10.6 N/m, 212 N s/m². RMS difference over "
+      "the "
+      "recording’s largest force.",
+      recording->first_peak_N, plausible ? "within two deviations" : "outside two deviations", best_kPa,
+      at_edge ? ", the edge of what was searched" : "", punch_kPa);
+  finding.why_missed =
+      "The recording shows two layers, each with a membrane: the force falls to 0.2 N, below the cutting force of "
+      "liver, and "
+      "rises over 17 mm to a second puncture. The model has one layer here, its tissue does not stiffen, and a second "
+      "layer "
+      "would need more than two fitted values.";
+  finding.plot = {
+      .x_label = "depth from contact [mm]",
+      .y_label = "axial force [N]",
+      .curves = {
+          best, {.label = "recorded", .x = recording->depth_mm, .y = recording->force_N, .kind = Curve::Kind::points}}};
+  return finding;
+}
+
+}  // namespace
+
+std::vector<RowSpec> okamura_recording_rows() {
+  return {{"liver_recording", Group::measurements, "A recorded insertion into liver: shape of the force over depth",
+           "recording of Okamura et al. 2004, digitised", "% of peak", Accepted::at_most(15.0), false,
+           force_over_depth}};
+}
+
+}  // namespace stylet::validate

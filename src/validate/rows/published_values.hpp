@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// Published measurements that rows are judged against; each is used as its source states it.
+namespace stylet::validate::published {
+
+struct Measured {
+  double mean;
+  double deviation;  ///< one standard deviation
+};
+
+/// Bovine liver ex vivo, bevelled 18G needle, 3 mm/s. A. M. Okamura, C. Simone, M. D. O'Leary, Force modeling for
+/// needle insertion into soft tissue, IEEE Trans. Biomed. Eng. 51 (2004) 1707–1716. @cite Okamura2004
+namespace okamura {
+inline constexpr Measured kPuncture{2.304, 0.829};      ///< [N] 19 insertions
+inline constexpr Measured kPunctureDepth{16.65, 3.55};  ///< [mm]
+inline constexpr Measured kDrop{0.658, 0.564};          ///< [N] at the puncture
+inline constexpr Measured kCutting{0.94, 0.36};         ///< [N] 5 insertions
+inline constexpr double kStatic_N_per_m = 18.45;
+inline constexpr double kCoulomb_N_per_m = 10.57;
+inline constexpr double kViscous_Ns_per_m2 = 212.3;
+inline constexpr double kSpeed_mm_per_s = 3.0;
+
+/// Force [N] on the tip before the puncture, at a depth [mm].
+inline double stiffness_N(double z_mm) { return 0.0480 * z_mm + 0.0052 * z_mm * z_mm; }
+
+/// Modulus of linear tissue that a flat punch of the needle's diameter presses in as far at the mean depth of puncture:
+/// F/z = 2 R E / (1 − ν²).
+inline double modulus_kPa(double diameter_mm, double poisson) {
+  const double z = kPunctureDepth.mean;
+  return 1e3 * stiffness_N(z) / z * (1.0 - poisson * poisson) / diameter_mm;
+}
+}  // namespace okamura
+
+/// PVC gel, 17G, 1 mm/s. S. P. DiMaio, S. E. Salcudean, Needle insertion modeling and simulation, IEEE Trans. Robot.
+/// Autom. 19 (2003) 864–875. @cite DiMaio2003
+namespace dimaio {
+inline constexpr double kYoung_kPa = 25.3;
+inline constexpr double kPoisson = 0.48;
+inline constexpr double kPuncture_N = 0.7;
+inline constexpr double kFriction_N_per_m = 34.0;
+inline constexpr double kSpeed_mm_per_s = 1.0;
+inline constexpr double kDepth_mm = 70.0;
+/// Force density peaks at 68 N/m near the tip; over some 5 mm of tip that is this much more than along the shaft.
+inline constexpr double kTipExcess_N = (68.0 - 34.0) * 5e-3;
+}  // namespace dimaio
+
+/// Medians over 99 papers. D. J. van Gerwen, J. Dankelman, J. J. van den Dobbelsteen, Needle–tissue interaction forces:
+/// a survey of experimental data, Med. Eng. Phys. 34 (2012) 665–680. @cite vanGerwen2012
+namespace vanGerwen {
+inline constexpr double kPeak_N = 5.0;
+inline constexpr double kPuncture_N = 1.22;
+inline constexpr double kCutting_N = 0.95;
+inline constexpr double kFriction_N = 1.0;
+}  // namespace vanGerwen
+
+/// Prostate in vivo and in a phantom.
+namespace prostate {
+inline constexpr double kSlowShift_mm = 20.0;  ///< largest, pushed slowly (McLaughlin et al., AAPM 2022)
+inline constexpr double kFastShift_mm = 1.0;   ///< driven fast
+/// Mean seed misplacement by axis [cm]: lateral, sagittal, axial (357 needles of 15 patients).
+inline constexpr double kSeedX_cm = 0.13;
+inline constexpr double kSeedY_cm = 0.15;
+inline constexpr double kSeedZ_cm = 0.38;
+/// Largest shift of gold markers [mm] by axis in 18 patients (Radiat. Oncol. 7 (2012) 24).
+inline constexpr double kMarkerLateral_mm = 7.0;
+inline constexpr double kMarkerSagittal_mm = 5.0;
+inline constexpr double kMarkerAxial_mm = 12.0;
+}  // namespace prostate
+
+}  // namespace stylet::validate::published

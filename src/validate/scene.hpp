@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/geom/box_mesh.hpp"
+#include "stylet/sim/simulation.hpp"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <functional>
+
+namespace stylet::validate {
+
+/// A block of tissue, 100 mm wide and deep unless told otherwise, skin at z = 0, in a box of rigid wall that is open at
+/// the skin, and a needle along z. Compiled from a Scenario, so that it follows every default.
+struct Block {
+  Vec3 lo{-50, -50, 0};  ///< [mm] of what is soft; the wall is one cell thick
+  Vec3 hi{50, 50, 100};
+  std::array<int, 3> cells{8, 8, 8};  ///< of what is soft
+  double jitter = 0.1;
+  double gland_radius_mm = 20.0;  ///< a ball of "prostate" …
+  Vec3 gland_centre{0, 0, 45};    ///< … here; radius 0: none
+  std::array<double, 3> entry_mm{3, 2, 0};
+  std::array<double, 3> direction{0, 0, 1};
+  double depth_mm = 60.0;                                 ///< compliance is prepared so deep
+  Eigen::Affine3d placing = Eigen::Affine3d::Identity();  ///< rigid, mirrored or not: where the whole scene goes
+  Scenario scenario;  ///< all but patient, supports and insertions; its tissue is default_tissue() where not given
+
+  /// The tissue parameters of a region of the block, to be changed.
+  TissueParameters& tissue(const std::string& region);
+  [[nodiscard]] TetMesh mesh() const;
+  /// @param more entry points of further insertions, along the same direction
+  [[nodiscard]] Result<std::shared_ptr<const Model>> compile(const std::vector<std::array<double, 3>>& more = {}) const;
+};
+
+/// What a step of a drive left.
+struct DriveStep {
+  StepRecord record;
+  Vec3 hand_force = Vec3::Zero();  ///< [N] LPS
+  int shaft_contacts = 0;
+  double work_Nmm = 0.0;  ///< of the hand, since the start; the base is only translated
+};
+
+/// Moves the needle of a model in and out by hand and keeps every step.
+class Drive {
+ public:
+  /// @param insertion number of the planned insertion whose line is followed
+  explicit Drive(std::shared_ptr<const Model> model, double start_mm = -1.0, std::size_t insertion = 0);
+
+  /// Puts the needle in front of another insertion's entry; it should be out.
+  void aim(std::size_t insertion, double start_mm = -1.0);
+  /// Moves the base along the line to a depth [mm] at a speed [mm/s].
+  void go(double to_mm, double speed_mm_per_s = 20.0, double dt_s = 1e-3);
+  void wait(double seconds, double dt_s = 1e-3);
+  /// Moves the base sideways [mm] LPS in one step.
+  void shift(const Vec3& sideways, double dt_s = 1e-3);
+
+  [[nodiscard]] const std::vector<DriveStep>& steps() const { return steps_; }
+  [[nodiscard]] const DriveStep& last() const { return steps_.back(); }
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  [[nodiscard]] const Event* event(EventKind kind) const;
+  [[nodiscard]] unsigned flags() const { return flags_; }
+  [[nodiscard]] double peak_N() const;  ///< largest axial force, absolute
+  [[nodiscard]] const Simulation& simulation() const { return simulation_; }
+  [[nodiscard]] const Insertion& insertion() const { return simulation_.insertion(); }
+
+ private:
+  void step(double dt_s);
+  [[nodiscard]] Pose pose() const;
+
+  std::shared_ptr<const Model> model_;
+  Simulation simulation_;
+  std::size_t number_ = 0;
+  double depth_mm_ = -1.0;
+  Vec3 sideways_ = Vec3::Zero();
+  Pose base_;
+  std::vector<DriveStep> steps_;
+  std::vector<Event> events_;
+  unsigned flags_ = 0;
+};
+
+/// A quantity of all steps of a drive.
+std::vector<double> column(const std::vector<DriveStep>& steps, double StepRecord::*quantity);
+
+}  // namespace stylet::validate

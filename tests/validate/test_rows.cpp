@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rows there are: named, complete, and those of pure algebra hold.
+#include "stylet/geom/box_mesh.hpp"
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/validate/calculix.hpp"
+#include "stylet/validate/context.hpp"
+#include "stylet/validate/validation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+using namespace stylet;
+using namespace stylet::validate;
+
+TEST(Rows, have_a_name_of_their_own_and_say_what_is_claimed_and_against_what) {
+  std::set<std::string> ids;
+  for (const RowSpec& row : all_rows()) {
+    EXPECT_TRUE(ids.insert(row.id).second) << row.id << " twice";
+    EXPECT_TRUE(std::all_of(row.id.begin(), row.id.end(), [](unsigned char c) {
+      return std::islower(c) || std::isdigit(c) || c == '_';
+    })) << row.id;
+    EXPECT_FALSE(row.claim.empty() || row.claim.back() == '.') << row.id;
+    EXPECT_FALSE(row.reference.empty()) << row.id;
+    EXPECT_TRUE(row.measure) << row.id;
+  }
+  EXPECT_EQ(ids.count("sensitivity"), 0u) << "--only takes this word for the study";
+}
+
+TEST(Rows, of_one_group_follow_each_other) {
+  const auto& rows = all_rows();
+  EXPECT_TRUE(
+      std::is_sorted(rows.begin(), rows.end(), [](const RowSpec& a, const RowSpec& b) { return a.group < b.group; }));
+  EXPECT_EQ(rows.front().group, Group::analysis);
+  EXPECT_EQ(rows.back().group, Group::independence);
+}
+
+TEST(Rows, that_algebra_decides_pass) {
+  ValidateOptions options;
+  options.only = {"patch_test",       "rigid_motions",     "uniaxial_bar",
+                  "condensed_system", "needle_small_beam", "needle_large_beam"};
+  const auto validation = validate::validate(options);
+  ASSERT_TRUE(validation.ok());
+  ASSERT_EQ(validation->rows.size(), options.only.size());
+  for (const Row& row : validation->rows) {
+    EXPECT_EQ(row.verdict, Verdict::pass) << row.spec.id << ": " << row.finding.value << ", " << row.note();
+    EXPECT_GT(row.finding.value, 0.0) << row.spec.id << ": nothing was computed";
+  }
+}
+
+TEST(Rows, that_need_shared_data_are_skipped_plainly_without_it) {
+  ValidateOptions options;
+  options.only = {"step_time", "liver_recording"};
+  options.data = "/nowhere";
+  const auto validation = validate::validate(options);
+  ASSERT_TRUE(validation.ok());
+  for (const Row& row : validation->rows) {
+    EXPECT_EQ(row.verdict, Verdict::skipped) << row.spec.id;
+    EXPECT_NE(row.note().find("STYLET_SHARED_DATA"), std::string::npos) << row.note();
+  }
+}
+
+TEST(CalculiX, computes_the_same_displacements) {
+  const auto validation = validate::validate({.only = {"calculix"}});
+  ASSERT_TRUE(validation.ok());
+  const Row& row = validation->rows.front();
+  if (row.verdict == Verdict::skipped) GTEST_SKIP() << row.note();
+  EXPECT_EQ(row.verdict, Verdict::pass) << row.finding.value << ", " << row.note();
+}
+
+TEST(CalculiX, deck_has_every_node_element_support_and_load) {
+  const TetMesh mesh = box_mesh({0, 0, 0}, {10, 10, 10}, {1, 1, 1});
+  VecX f = VecX::Zero(3 * mesh.node_count());
+  f[3 * 7 + 2] = -0.5;
+  const std::string deck = calculix_deck(mesh, {{0.02, 0.45}}, {0, 1}, f);
+  EXPECT_NE(deck.find("8, 1.000000000000e+01, 1.000000000000e+01, 1.000000000000e+01\n"), std::string::npos);
+  EXPECT_NE(deck.find("*ELEMENT, TYPE=C3D4, ELSET=R0\n1, "), std::string::npos);
+  EXPECT_NE(deck.find("*ELASTIC\n2.000000000000e-02, 4.500000000000e-01\n"), std::string::npos);
+  EXPECT_NE(deck.find("*BOUNDARY\n1, 1, 3\n2, 1, 3\n"), std::string::npos);
+  EXPECT_NE(deck.find("*CLOAD\n8, 3, -5.000000000000e-01\n"), std::string::npos);
+}
+
+TEST(DemoScenario, is_the_demo_that_is_shipped) {
+  const auto shipped = read_scenario(STYLET_SCENARIOS "/demo.toml");
+  ASSERT_TRUE(shipped.ok()) << shipped.error().message();
+  Scenario ours = demo_scenario();
+  ours.name = shipped->name;
+  EXPECT_EQ(to_toml(ours), to_toml(*shipped));
+}
