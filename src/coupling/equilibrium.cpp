@@ -186,8 +186,7 @@ double Insertion::Parts::contradiction(int load, double axial, double opening) c
   // not depend on speed; it counts as the force that pushes the tissue so far.
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
   const double back = grip.slip * (grip.law.coulomb_N_per_mm * grip.length - sign * axial);
-  const double own = memory.share() * compliance(grip.point, grip.point).trace() / 3.0;
-  return back > kStill_mm ? back / own : 0.0;
+  return back > kStill_mm ? 3.0 * back / (memory.share() * compliance(grip.point, grip.point).trace()) : 0.0;
 }
 
 void Insertion::Parts::change_state(int load, double axial, StepReport& report) {

@@ -13,15 +13,21 @@ constexpr int kMaxSubSteps = 64;
 constexpr std::size_t kOldTracks = 64;
 constexpr double kBent_mm = 10.0;  ///< a bent shaft is rarely further from its axis
 
-std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue, const CouplingSettings& settings) {
+std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue, const CouplingSettings& settings,
+                                                   int capacity) {
   using Engine = CouplingSettings::Engine;
   if (settings.engine == Engine::condensed)
-    return std::make_unique<TrackCompliance>(tissue.store, *tissue.locator, settings.capacity);
+    return std::make_unique<TrackCompliance>(tissue.store, *tissue.locator, capacity);
   const auto engine =
       settings.engine == Engine::bcs ? paper::DenseInverse::Engine::bcs : paper::DenseInverse::Engine::woodbury;
   const bool move_nodes = settings.method == CouplingSettings::Method::node_repositioning;
   return std::make_unique<paper::InverseCompliance>(tissue.store->shared_tissue(), *tissue.locator, tissue.inverse,
-                                                    engine, move_nodes, settings.capacity);
+                                                    engine, move_nodes, capacity);
+}
+
+/// Points the tissue may be held at or remember: an insertion may begin before the tissue has forgotten the one before.
+int most_points(const CouplingSettings& settings) {
+  return settings.relaxation_s > 0.0 ? 2 * settings.capacity : settings.capacity;
 }
 }  // namespace
 
@@ -29,8 +35,9 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
     : tissue(std::move(tissue_)),
       needle(std::move(needle_)),
       settings(settings_),
-      owned_compliance(make_compliance(tissue, settings_)),
+      owned_compliance(make_compliance(tissue, settings_, most_points(settings_))),
       compliance(*owned_compliance),
+      memory(settings_.relaxation_s, most_points(settings_) + 1),
       system(settings_.capacity + 1) {
   const auto capacity = static_cast<std::size_t>(settings.capacity);
   const Eigen::Index size = 3 * (settings.capacity + 1);
@@ -41,9 +48,10 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   loads.reserve(capacity + 1);
   frames.resize(capacity + 1);
   springs.resize(capacity + 1);
+  past.resize(capacity + 1, Vec3::Zero());
   N = MatX::Zero(size, size);
   free = VecX::Zero(size);
-  forces = MatX::Zero(3, settings.capacity + 1);
+  forces = MatX::Zero(3, most_points(settings) + 1);
   if (settings.solver == CouplingSettings::Solver::staggered)
     staggered = std::make_unique<paper::Staggered>(settings.capacity + 1, needle->state().size());
 }
@@ -67,8 +75,10 @@ void Insertion::Parts::settle_in_air(StepReport& report) {
   }
 }
 
-/// The needle is out: the tissue model is what it was before the first contact. The tracks stay known.
+/// The needle is out: the tissue model is what it was before the first contact, or goes back to it as it relaxes. The
+/// tracks stay known.
 void Insertion::Parts::finish_insertion(StepReport& report) {
+  leave_memory_behind();
   if (track.end_xi > 0.0) {
     if (joined < 0) {
       if (old_count < old_tracks.size()) {
@@ -85,7 +95,8 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   joined = -1;
   grips.clear();
   tip = Tip{};
-  compliance.reset();
+  relaxing = memory.on();
+  if (!relaxing) forget_tissue();
   needle->straighten();
   settle_in_air(report);
   phase = TipPhase::air;
@@ -95,11 +106,13 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
 
 void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) {
   needle->set_base(pose);
+  memory.begin(h);
   if (phase == TipPhase::air) {
     settle_in_air(report);
     const Vec3 now = needle->point(length());
     enter(air_tip, now, report);
     if (phase == TipPhase::air) {
+      relax();
       air_tip = now;
       return;
     }
@@ -135,6 +148,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     }
     air_tip = now;
   }
+  remember();
   if (grips.empty() && (!tip.touching || tip.state == Tip::State::open) && t.dot(track.entry - tip_now) > 0.0) {
     finish_insertion(report);
   }
@@ -175,6 +189,7 @@ Insertion& Insertion::operator=(Insertion&&) noexcept = default;
 void Insertion::place(const Pose& base) {
   StepReport unused;
   if (parts_->phase != TipPhase::air) parts_->finish_insertion(unused);
+  if (parts_->relaxing) parts_->forget_tissue();
   parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->base = base;
   parts_->needle->set_base(base);
@@ -289,12 +304,19 @@ ContactCompliance::Nodes Insertion::nodes() const {
 }
 
 VecX Insertion::displacement() const {
-  parts_->gather_forces();
+  parts_->gather_filtered_forces();
   return parts_->compliance.displacement(parts_->forces.leftCols(parts_->compliance.points()));
 }
 
 double Insertion::tissue_energy() const {
   const Parts& p = *parts_;
+  if (p.memory.on()) {
+    parts_->gather_filtered_forces();
+    double stored = 0.0;
+    for (int point = 0; point < p.compliance.points(); ++point)
+      stored += 0.5 * p.forces.col(point).dot(p.tissue_displacement(point));
+    return stored;
+  }
   double energy = 0.5 * p.tip.force.dot(p.tissue_displacement(ContactCompliance::kTip));
   for (const Grip& grip : p.grips) energy += 0.5 * grip.force.dot(p.tissue_displacement(grip.point));
   return energy;

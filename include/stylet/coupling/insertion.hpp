@@ -123,7 +123,7 @@ class Insertion {
   /// What contacts and supports exert on the nodes of the mesh as it is now. Allocates.
   [[nodiscard]] ContactCompliance::Nodes nodes() const;
 
-  /// ½ fᵀ A f, elastic energy in the tissue [N mm].
+  /// ½ fᵀ A f, elastic energy in the tissue [N mm]; of viscous tissue what it has stored.
   [[nodiscard]] double tissue_energy() const;
 
   /// The current track, and those of earlier insertions.

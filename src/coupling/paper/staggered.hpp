@@ -37,6 +37,7 @@ struct Staggered {
   std::vector<int> slot_of;  ///< (loads)
   std::vector<int> load_of;  ///< (slots)
   unsigned version = std::numeric_limits<unsigned>::max();  ///< of the compliance K_W was made from
+  double share = 1.0;                                       ///< of that compliance which is felt at once
   Vec3 tip = Vec3::Zero();                                  ///< [mm] where the tip's column was made
   double advance = 0.0;                                     ///< [mm] of the cut in this sub-step
   double change = 0.0;  ///< [N] by which friction and cutting forces still change from one iteration to the next

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/tissue_memory.hpp"
+
+#include "needle_in_block.hpp"
+#include "stylet/coupling/track_compliance.hpp"
+#include "support/count_allocations.hpp"
+
+namespace stylet {
+namespace {
+
+using test::BlockOptions;
+using test::NeedleInBlock;
+
+// A tissue point of compliance A by itself: enough to test the filter against closed forms.
+class TwoPoints final : public ContactCompliance {
+ public:
+  TwoPoints() {
+    points_ = 2;
+    A_ = MatX::Identity(6, 6) * 2.0;
+    A_.block<3, 3>(0, 3) = A_.block<3, 3>(3, 0) = 0.5 * Mat3::Identity();
+  }
+  Added add(const MaterialPoint&, const Vec3&, Placement, const Vec3&) override { return {}; }
+  bool move_tip(const MaterialPoint&, const Vec3&) override { return true; }
+  [[nodiscard]] bool available(Index) const override { return true; }
+  void remove_last_embedded() override {}
+  void reset() override {}
+  [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>&) const override { return Mat3::Zero(); }
+  [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>&) const override { return {}; }
+  [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>&) const override { return {}; }
+  [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
+};
+
+constexpr double kTau_s = 0.2;
+
+// Displacement of point 0 after `time` under a constant force of 1 N along x on point 1, in steps of h.
+double creep(double time, double h) {
+  const TwoPoints compliance;
+  TissueMemory memory(kTau_s, 2);
+  MatX forces = MatX::Zero(3, 2);
+  forces(0, 1) = 1.0;
+  for (int k = 0; k < std::lround(time / h); ++k) {
+    memory.begin(h);
+    memory.end(forces);
+  }
+  return memory.displacement(compliance, 0).x();
+}
+
+TEST(TissueMemory, CreepsUnderAConstantForceAsKelvinVoigtDoesToFirstOrderInTime) {
+  for (const double time : {0.1, 0.2, 0.6}) {
+    const double exact = 0.5 * (1.0 - std::exp(-time / kTau_s));
+    const double coarse = creep(time, 2e-3) - exact;
+    const double fine = creep(time, 1e-3) - exact;
+    EXPECT_LT(std::abs(fine), 2e-3 * exact);
+    EXPECT_NEAR(coarse / fine, 2.0, 0.02) << time;
+  }
+}
+
+TEST(TissueMemory, GoesBackWhenTheForceIsGoneAndThenIsRelaxed) {
+  const TwoPoints compliance;
+  TissueMemory memory(kTau_s, 2);
+  MatX forces = MatX::Zero(3, 2);
+  forces(2, 1) = 1.0;
+  memory.begin(10.0);
+  memory.end(forces);
+  const double before = memory.displacement(compliance, 1).z();
+  forces.setZero();
+  for (int k = 0; k < 200; ++k) {
+    memory.begin(1e-3);
+    memory.end(forces);
+  }
+  EXPECT_NEAR(memory.displacement(compliance, 1).z() / before, std::exp(-1.0), 2e-3);
+  EXPECT_FALSE(memory.relaxed(compliance));
+  for (int k = 0; k < 4000; ++k) {
+    memory.begin(1e-3);
+    memory.end(forces);
+  }
+  EXPECT_TRUE(memory.relaxed(compliance));
+}
+
+TEST(TissueMemory, HandsOverForceWithoutLosingAny) {
+  const TwoPoints compliance;
+  TissueMemory memory(kTau_s, 2);
+  MatX forces = MatX::Zero(3, 2);
+  forces(1, 0) = 4.0;
+  memory.begin(1.0);
+  memory.end(forces);
+  const double all = memory.past(0)[1];
+  memory.hand_over(0, 1, 0.25);
+  EXPECT_DOUBLE_EQ(memory.past(0)[1], 0.75 * all);
+  EXPECT_DOUBLE_EQ(memory.past(1)[1], 0.25 * all);
+}
+
+TEST(TissueMemory, IsElasticWithoutARelaxationTime) {
+  const TwoPoints compliance;
+  TissueMemory memory(0.0, 2);
+  memory.begin(1e-3);
+  EXPECT_EQ(memory.share(), 1.0);
+  memory.end(MatX::Ones(3, 2));
+  EXPECT_EQ(memory.share(), 1.0);
+  EXPECT_EQ(memory.displacement(compliance, 0), Vec3::Zero());
+  EXPECT_TRUE(memory.relaxed(compliance));
+}
+
+// Small enough for the skin not to break at first touch: a Kelvin–Voigt solid resists a blow of speed v by k v τ at
+// once.
+constexpr double kQuick_s = 0.05;
+
+BlockOptions viscous(double relaxation_s, CouplingSettings::Method method = CouplingSettings::Method::embedded) {
+  BlockOptions options;
+  options.cells = {6, 6, 6};
+  options.coupling.method = method;
+  options.coupling.relaxation_s = relaxation_s;
+  return options;
+}
+
+// The needle pushed 30 mm in, or far enough to be stuck there, and then held.
+NeedleInBlock pushed_in(double relaxation_s, double dt,
+                        CouplingSettings::Method method = CouplingSettings::Method::embedded) {
+  NeedleInBlock run(viscous(relaxation_s, method));
+  run.aim({2.0, 3.0, 0.0});
+  run.go(30.0, 20.0, dt);
+  return run;
+}
+
+TEST(ViscousTissue, AStuckNeedleMovedSidewaysRelaxesToTheElasticForce) {
+  // Sideways all is bilateral and linear: what the tissue resists beyond its elasticity dies away with τ.
+  NeedleInBlock run = pushed_in(kQuick_s, 1e-3);
+  NeedleInBlock elastic = pushed_in(0.0, 1e-3);
+  run.wait(5.0 * kQuick_s);
+  elastic.wait(5.0 * kQuick_s);
+  const double at_rest = run.last_force.x();
+  const double elastic_at_rest = elastic.last_force.x();
+  run.sideways = elastic.sideways = Vec3(1.0, 0.0, 0.0);
+  run.step(1e-3);
+  elastic.step(1e-3);
+  const double first = run.last_force.x() - at_rest;
+  const double settled = elastic.last_force.x() - elastic_at_rest;
+  EXPECT_GT(first, 1.2 * settled);  // harder at once (the needle bends instead), …
+  run.wait(8.0 * kQuick_s);
+  EXPECT_NEAR(run.last_force.x() - at_rest, settled, 0.02 * settled);  // … and no harder in the end
+}
+
+TEST(ViscousTissue, DentsLessBeforeItsSkinBreaksAtTheSameForce) {
+  NeedleInBlock run = pushed_in(0.01, 1e-3);
+  NeedleInBlock elastic = pushed_in(0.0, 1e-3);
+  const auto* broke = run.first(InsertionEventKind::puncture);
+  const auto* broke_elastic = elastic.first(InsertionEventKind::puncture);
+  ASSERT_NE(broke, nullptr);
+  EXPECT_NEAR(broke->force, broke_elastic->force, 0.05);
+  // The dent d grows at v, so the force is k (d + v τ): it breaks v τ = 0.2 mm earlier, once the motion is steady.
+  EXPECT_NEAR(broke->depth, broke_elastic->depth - 20.0 * 0.01, 0.03);
+  EXPECT_EQ(run.flags, 0u);
+}
+
+TEST(ViscousTissue, CurvesOfDifferentTimeStepsApproachEachOtherToFirstOrder) {
+  const auto curve = [](double dt) {
+    BlockOptions options = viscous(0.02);
+    options.region_at = [](const Vec3&) { return 0; };
+    NeedleInBlock run(options);
+    run.aim({2.0, 3.0, 0.0});
+    run.go(31.0, 20.0, dt);  // from −1 mm: whole numbers of steps
+    run.wait(0.08, dt);
+    std::vector<double> forces;
+    const auto stride = static_cast<std::size_t>(std::lround(8e-3 / dt));
+    for (std::size_t k = stride - 1; k < run.forces.size(); k += stride) forces.push_back(run.forces[k]);
+    return forces;
+  };
+  const auto finest = curve(0.5e-3);
+  const auto rms = [&](const std::vector<double>& other) {
+    double sum = 0.0;
+    double peak = 0.0;
+    const std::size_t count = std::min(other.size(), finest.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      sum += std::pow(other[k] - finest[k], 2);
+      peak = std::max(peak, std::abs(finest[k]));
+    }
+    return std::sqrt(sum / static_cast<double>(count)) / peak;
+  };
+  const double coarse = rms(curve(4e-3));
+  const double fine = rms(curve(2e-3));
+  std::printf("RMS of the curve's distance to dt 0.5 ms over its peak: dt 4 ms %.5f, dt 2 ms %.5f\n", coarse, fine);
+  EXPECT_LT(coarse, 0.01);
+  EXPECT_NEAR(coarse / fine, (4.0 - 0.5) / (2.0 - 0.5), 0.5);  // the distance is c (dt − 0.5 ms)
+}
+
+TEST(ViscousTissue, HandForceBalancesContactForcesAndSupports) {
+  for (const auto method : {CouplingSettings::Method::embedded, CouplingSettings::Method::node_addition}) {
+    NeedleInBlock run = pushed_in(kQuick_s, 2e-3, method);
+    Vec3 contacts = Vec3::Zero();
+    for (const ContactState& contact : run.insertion->contacts()) contacts += contact.force;
+    EXPECT_LT((run.report.hand_force - contacts).norm(), 1e-9 * contacts.norm());
+    const auto nodes = run.insertion->nodes();
+    Vec3 support = Vec3::Zero();
+    for (Eigen::Index a = 0; a < nodes.support.size() / 3; ++a) support += nodes.support.segment<3>(3 * a);
+    EXPECT_LT((support + contacts).norm(), 1e-9 * contacts.norm());
+  }
+}
+
+TEST(ViscousTissue, ComesBackAfterWithdrawalAndThenIsAsNew) {
+  NeedleInBlock run = pushed_in(kQuick_s, 2e-3);
+  run.go(-2.0, 40.0, 2e-3);
+  ASSERT_EQ(run.count(InsertionEventKind::withdrawn), 1);
+  const double left = run.insertion->displacement().cwiseAbs().maxCoeff();
+  EXPECT_GT(left, 1e-3);
+  run.wait(kQuick_s, 2e-3);
+  EXPECT_NEAR(run.insertion->displacement().cwiseAbs().maxCoeff(), left * std::exp(-1.0), 0.02 * left);
+  EXPECT_GT(run.insertion->compliance().points(), 1);
+  run.wait(16.0 * kQuick_s, 2e-3);
+  EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(run.insertion->compliance().points(), 1);
+}
+
+TEST(ViscousTissue, CanBeEnteredAgainBeforeItHasRelaxed) {
+  NeedleInBlock run = pushed_in(kQuick_s, 2e-3, CouplingSettings::Method::node_addition);
+  run.go(-2.0, 40.0, 2e-3);
+  ASSERT_EQ(run.count(InsertionEventKind::withdrawn), 1);
+  run.go(30.0, 20.0, 2e-3);
+  EXPECT_EQ(run.flags, 0u);
+  EXPECT_EQ(run.count(InsertionEventKind::skin_contact), 2);
+  run.go(-2.0, 40.0, 2e-3);
+  run.wait(17.0 * kQuick_s, 2e-3);
+  EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(ViscousTissue, StaggeredAndCoupledSolversAgree) {
+  BlockOptions options = viscous(kQuick_s, CouplingSettings::Method::node_addition);
+  NeedleInBlock coupled(options);
+  options.coupling.solver = CouplingSettings::Solver::staggered;
+  NeedleInBlock staggered(options);
+  double difference = 0.0;
+  for (NeedleInBlock* run : {&coupled, &staggered}) {
+    run->aim({2.0, 3.0, 0.0});
+    run->go(20.0, 20.0, 4e-3);
+    run->wait(0.1, 4e-3);
+    run->go(10.0, 20.0, 4e-3);
+  }
+  ASSERT_EQ(coupled.forces.size(), staggered.forces.size());
+  for (std::size_t k = 0; k < coupled.forces.size(); ++k)
+    difference = std::max(difference, std::abs(coupled.forces[k] - staggered.forces[k]));
+  EXPECT_LT(difference, 1e-6 * coupled.peak());
+}
+
+TEST(ViscousTissue, StepsDoNotAllocate) {
+  if (!test::AllocationCount::available()) GTEST_SKIP() << "under a sanitizer the memory functions cannot be replaced";
+  NeedleInBlock run(viscous(kQuick_s));
+  run.aim({2.0, 3.0, 0.0});
+  run.insertion->prepare(60.0);
+  long allocations = 0;
+  const auto move = [&](double to, double way) {
+    for (; way > 0.0 ? run.depth < to : run.depth > to; run.depth += way) {
+      run.insertion->prepare(60.0);
+      const test::AllocationCount allocated;
+      run.insertion->step(run.pose(), 1e-3);
+      allocations += allocated.count();
+    }
+  };
+  move(30.0, 0.02);
+  move(-2.0, -0.1);
+  move(1.0, 0.02);
+  EXPECT_EQ(allocations, 0);
+}
+
+}  // namespace
+}  // namespace stylet
