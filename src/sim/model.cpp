@@ -69,6 +69,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.join_mm = s.needle.diameter_mm;
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
+  c.relaxation_s = s.tissue_model.relaxation_s;
   c.capacity = s.coupling.contacts;
   c.tolerance = s.coupling.tolerance;
   c.axial_compliance_mm_per_N = axial_compliance(s.needle);

@@ -140,6 +140,8 @@ RunInfo Model::info(std::size_t insertion) const {
        scenario_.tissue_model.element == "auto"
            ? "by coupling.method: linear tetrahedra where it needs them or is compared, else one that does not lock"
            : kFromScenario});
+  info.parameters.push_back({"tissue.relaxation_s", fmt::format("{:g}", scenario_.tissue_model.relaxation_s), "s",
+                             scenario_.tissue_model.relaxation_s == 0.0 ? "stated: elastic" : kFromScenario});
   const Scenario standard;
   for (const Documented& shown : kShown) {
     const auto value = scenario_value(scenario_, shown.path);

@@ -44,6 +44,10 @@ void describe_tissue(ScenarioEntries& keys) {
       "not, eight times the nodes; auto = p1 with the coupling methods node-addition, "
       "node-repositioning and embedded, else nodal-pressure",
       [](auto& s, const Slot&) { return &s.tissue_model.element; });
+  keys.number("tissue.relaxation_s", "s", 0, 100,
+              "relaxation time of all tissue (Kelvin-Voigt): under a constant force it yields as 1 - exp(-t/time); 0 = "
+              "elastic",
+              [](auto& s, const Slot&) { return &s.tissue_model.relaxation_s; });
   keys.number("tissue.<region>.young_kPa", "kPa", 0.1, 1e8, "Young's modulus",
               [](auto& s, const Slot& t) { return &tissue(s, t).young_kPa; }, {.standard = "by region"});
   keys.number("tissue.<region>.poisson", "", 0, 0.4999,

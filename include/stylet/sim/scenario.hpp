@@ -82,6 +82,7 @@ struct Scenario {
   } patient;
   struct TissueModel {
     std::string element = "auto";  ///< auto, p1, nodal-pressure, p2
+    double relaxation_s = 0.0;     ///< Kelvin–Voigt's relaxation time; 0 = elastic
     bool operator==(const TissueModel&) const = default;
   } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
