@@ -80,6 +80,14 @@ class Bench(InFolder):
         self.assertEqual(found, {(nodes, method) for nodes in (125, 216) for method in methods})
         self.assertTrue(all(row["median_us"] > 0 for row in result["rows"]))
 
+    def test_needle_gives_every_model_with_its_errors_and_its_cost(self):
+        result = self.json_of("bench", "needle")
+        self.assertEqual({row["model"] for row in result["rows"]}, {"beam", "springs", "tet"})
+        self.assertEqual(sum(row["default"] for row in result["rows"]), 3)
+        for row in result["rows"]:
+            self.assertEqual(len(row["error_elastica_deflection"]), len(result["tip_slopes_deg"]))
+            self.assertGreater(row["solve_us"], 0)
+
     def test_an_unknown_subject_is_refused_with_those_there_are(self):
         self.refuse("bench", "remsh", says=["remsh", "remesh"])
 

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every model against beam theory: small deflections to Euler–Bernoulli, large ones to the elastica.
 #include "needle_model_test.hpp"
-#include "stylet/needle/tet.hpp"
 #include "stylet/needle/theory.hpp"
 #include "support.hpp"
 
-#include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <numbers>
 
 namespace stylet {
@@ -97,55 +93,6 @@ TEST_P(NeedleTheory, BucklesAtEulersLoad) {
 }
 
 STYLET_FOR_EVERY_NEEDLE_MODEL(NeedleTheory);
-
-/// Time [µs] of one linearise + advance with 20 loads over the outer half, the least of several tries.
-double iteration_us(Needle& needle) {
-  std::vector<PointLoad> loads;
-  for (int c = 1; c <= 20; ++c) loads.push_back({100.0 + 5.0 * c, Vec3(5e-4, 1e-3, -5e-4)});
-  MatX compliance(60, 60);
-  VecX free(60);
-  double least = 1e300;
-  for (int i = 0; i < 10; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    needle.linearise(loads, compliance, free);
-    needle.advance(loads);
-    const std::chrono::duration<double, std::micro> taken = std::chrono::steady_clock::now() - start;
-    least = std::min(least, taken.count());
-  }
-  return least;
-}
-
-/// The table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
-TEST(NeedleModels, AccuracyAgainstCost) {
-  const Elastica exact(60.0 * kDegree, kLength, kEI);
-  std::printf("model   | elements | load at L/3 | load at L | elastica 60 deg | axial N/mm | stiffening | µs\n");
-  for (const auto& [model, counts] :
-       {std::pair{"beam", std::vector{12, 24, 48}}, {"springs", {12, 24, 48}}, {"tet", {24, 40, 60, 80, 120}}}) {
-    for (const int count : counts) {
-      auto built = make_needle(model, {}, count, 20);
-      ASSERT_TRUE(built.ok());
-      Needle& needle = **built;
-      const double third = kLength / 3.0;
-      const MatX small =
-          test::compliance_of(needle, std::vector<PointLoad>{{third, Vec3::Zero()}, {kLength, Vec3::Zero()}});
-      const double inner = small(3, 0) / deflection(1.0, third, kLength) - 1.0;
-      const double end = small(3, 3) / deflection(1.0, kLength, kLength) - 1.0;
-      const auto* tet = dynamic_cast<const TetNeedle*>(&needle);
-      test::settle(needle, std::vector<PointLoad>{{kLength, {exact.force, 0, 0}}}, 1e-7);
-      const double large = needle.point(kLength).x() / exact.deflection - 1.0;
-      needle.straighten();
-      std::printf("%-7s | %8d | %10.3f%% | %8.3f%% | %14.3f%% | %10.4g | %10.4g | %.0f\n", model, count, 100 * inner,
-                  100 * end, 100 * large,
-                  tet != nullptr ? tet->axial_stiffness() : std::numeric_limits<double>::infinity(),
-                  tet != nullptr ? tet->stiffening() : 1.0, iteration_us(needle));
-      if (count == default_needle_elements(model).value()) {
-        EXPECT_LT(std::abs(inner), 0.01);
-        EXPECT_LT(std::abs(end), 0.002);
-        EXPECT_LT(std::abs(large), 0.005);
-      }
-    }
-  }
-}
 
 }  // namespace
 }  // namespace stylet
