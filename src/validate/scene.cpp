@@ -103,9 +103,9 @@ void Drive::step(double dt_s) {
   const bool tip = made.record.tip_state == TipState::pressing || made.record.tip_state == TipState::cutting ||
                    made.record.tip_state == TipState::bone;
   made.shaft_contacts = report.contacts - (tip ? 1 : 0);
-  if (!steps_.empty()) {
-    made.work_Nmm = last().work_Nmm + 0.5 * (made.hand_force + last().hand_force).dot(next.origin - base_.origin);
-  }
+  const Vec3 force_before = steps_.empty() ? Vec3(Vec3::Zero()) : last().hand_force;
+  made.work_Nmm =
+      (steps_.empty() ? 0.0 : last().work_Nmm) + 0.5 * (made.hand_force + force_before).dot(next.origin - base_.origin);
   base_ = next;
   flags_ |= report.flags;
   for (const Event& event : simulation_.new_events()) events_.push_back(event);

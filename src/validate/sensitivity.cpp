@@ -2,6 +2,7 @@
 #include "stylet/validate/sensitivity.hpp"
 
 #include "fem/blas_threads.hpp"
+#include "sim/needle_choice.hpp"
 #include "stylet/mesher/mesher.hpp"
 #include "stylet/phantom/phantom.hpp"
 #include "stylet/validate/context.hpp"
@@ -79,6 +80,7 @@ class Study {
   Result<> base() {
     scenario_ = demo_scenario();
     scenario_.output.frames_per_s = 0.0;
+    scenario_.needle.lumen_diameter_mm.reset();  // the lumen follows the diameter
     if (quick_) {
       scenario_.mesh.nodes = 600;
       scenario_.run.dt_ms = 4.0;
@@ -117,10 +119,9 @@ class Study {
       const auto more = tissue_parameters(region, quick_);
       all.insert(all.end(), more.begin(), more.end());
     }
-    all.push_back({"needle.young_GPa", "needle: bending stiffness (modulus of its steel)"});
+    all.push_back({"needle.bending_stiffness_Nmm2", "needle: bending stiffness"});
     if (quick_) return all;
-    all.push_back({"needle.diameter_mm", "needle: diameter"});
-    all.push_back({"needle.lumen_diameter_mm", "needle: diameter of its lumen"});
+    all.push_back({"needle.diameter_mm", "needle: diameter, lumen in proportion"});
     all.push_back({"needle.length_mm", "needle: length"});
     all.push_back({"insertion[0].speed_mm_per_s", "speed of insertion"});
     all.push_back({"coupling.tip_viscosity_Ns_per_m", "viscosity of cutting"});
@@ -141,7 +142,11 @@ class Study {
 
   /// A parameter lower and higher.
   void move(const Parameter& parameter) {
-    const auto value = scenario_value(scenario_, parameter.key);
+    auto value = scenario_value(scenario_, parameter.key);
+    if (parameter.key == "needle.bending_stiffness_Nmm2") {  // of tube and stylet where the scenario gives none
+      if (const auto section = needle_section(scenario_.needle); section)
+        value = ScenarioValue{.number = section->bending_stiffness_Nmm2};
+    }
     if (!value || value->number == 0.0) return;  // 20 % of nothing is nothing
     Influence influence;
     influence.key = parameter.key;

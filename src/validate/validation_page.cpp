@@ -71,10 +71,12 @@ std::string row_html(const Row& row) {
 std::string group_html(const Validation& v, Group group) {
   std::string rows;
   int count = 0;
+  int judged = 0;
   int passed = 0;
   for (const Row& row : v.rows) {
     if (row.spec.group != group) continue;
     ++count;
+    judged += row.verdict == Verdict::pass || row.verdict == Verdict::missed ? 1 : 0;
     passed += row.verdict == Verdict::pass ? 1 : 0;
     rows += row_html(row);
   }
@@ -86,7 +88,7 @@ std::string group_html(const Validation& v, Group group) {
       "<col class=\"value\"><col class=\"accepted\"><col class=\"plotted\"></colgroup>"
       "<thead><tr><th>Result</th><th>Claim</th><th>Reference</th><th>Our number</th><th>Accepted</th>"
       "<th>Picture</th></tr></thead><tbody>{4}</tbody></table></div></section>",
-      static_cast<int>(group), html_escaped(title(group)), passed, count, rows);
+      static_cast<int>(group), html_escaped(title(group)), passed, judged, rows);
 }
 
 std::string counted(int count, const char* one, const char* many) {
@@ -143,7 +145,8 @@ Result<std::string> validation_page(const Validation& v) {
   for (const Group group : kGroups) groups += group_html(v, group);
   const results::Slots slots{
       {"version", html_escaped(v.version)},
-      {"facts", html_escaped(fmt::format("{} claims · {}", v.rows.size(), reproduce::this_machine().processor))},
+      {"facts", html_escaped(fmt::format("{} · {}", counted(static_cast<int>(v.rows.size()), "claim", "claims"),
+                                         reproduce::this_machine().processor))},
       {"css", std::string(results::validate_css())},
       {"summary", summary_html(v)},
       {"groups", groups},
