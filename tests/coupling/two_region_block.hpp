@@ -14,13 +14,13 @@ namespace stylet::test {
 
 /// A two-region block with one face held, all compliances stored.
 struct Block {
-  explicit Block(int cells = 4) {
+  explicit Block(int cells = 4, Element element = Element::p1) {
     TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {cells, cells, cells}, 0.12);
     assign_regions(mesh, {"soft", "stiff"}, [](const Vec3& x) { return x.x() + 0.3 * x.y() < 26 ? 0 : 1; });
     for (Index node = 0; node < mesh.node_count(); ++node) {
       if (mesh.nodes[static_cast<std::size_t>(node)].z() > 39.999) fixed.push_back(node);
     }
-    auto built = Tissue::build(mesh, materials, fixed);
+    auto built = Tissue::build(mesh, materials, fixed, {}, element);
     EXPECT_TRUE(built.ok());
     tissue = std::make_shared<const Tissue>(std::move(*built));
     topology = std::make_unique<Topology>(tissue->mesh());

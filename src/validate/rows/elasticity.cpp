@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 namespace stylet::validate {
@@ -109,28 +110,27 @@ Result<Finding> uniaxial_bar(Context&) {
   return finding;
 }
 
-Result<Finding> same_as_calculix(Context&) {
+Result<Finding> same_as_calculix(Element element, const std::array<int, 3>& cells) {
   if (!calculix_installed())
     return Finding::skip("CalculiX (the program ccx, Debian package calculix-ccx) is not installed.");
-  TetMesh mesh = box_mesh({-30, -20, 40}, {30, 30, 110}, {8, 7, 9}, 0.15);
+  TetMesh mesh = box_mesh({-30, -20, 40}, {30, 30, 110}, cells, 0.15);
   assign_regions(mesh, {"fat", "gland"}, [](const Vec3& x) { return (x - Vec3(0, 5, 75)).norm() > 22 ? 0 : 1; });
-  const std::vector<Material> materials{{0.008, 0.45}, {0.060, 0.40}};
   const auto fixed = nodes_where(mesh, [](const Vec3& x) { return x.z() == 40.0 || x.y() == -20.0; });
+  const auto tissue = Tissue::build(std::move(mesh), {{0.008, 0.45}, {0.060, 0.40}}, fixed, {}, element);
+  if (!tissue) return tissue.error();
 
   // A press on the top and pushes and pulls at a third of the free nodes.
-  VecX f = VecX::Zero(3 * Eigen::Index{mesh.node_count()});
+  const Index nodes = tissue->displacement_nodes();
+  VecX f = VecX::Zero(3 * Eigen::Index{nodes});
   std::mt19937 random(11);
-  for (Index a = 0; a < mesh.node_count(); ++a) {
-    if (std::binary_search(fixed.begin(), fixed.end(), a)) continue;
-    if (mesh.nodes[static_cast<std::size_t>(a)].z() == 110.0) f[3 * a + 2] -= 0.01;
+  for (Index a = 0; a < nodes; ++a) {
+    if (tissue->is_fixed(a)) continue;
+    if (tissue->node_position(a).z() == 110.0) f[3 * a + 2] -= 0.01;
     if (a % 3 != 0) continue;
     for (int axis = 0; axis < 3; ++axis) f[3 * a + axis] += 0.02 * (static_cast<double>(random()) / 4294967296.0 - 0.5);
   }
-  const auto theirs = solve_with_calculix(mesh, materials, fixed, f);
+  const auto theirs = solve_with_calculix(*tissue, f);
   if (!theirs) return theirs.error();
-  const Index nodes = mesh.node_count();
-  const auto tissue = Tissue::build(std::move(mesh), materials, fixed);
-  if (!tissue) return tissue.error();
   const VecX ours = tissue->solve(f);
   Finding finding;
   finding.value = relative_error(ours, *theirs);
@@ -164,7 +164,15 @@ std::vector<RowSpec> elasticity_rows() {
       {"uniaxial_bar", Group::analysis, "A bar stretches by force × length over stiffness", "ΔL = F L / (E A)", "",
        Accepted::at_most(1e-10), true, uniaxial_bar},
       {"calculix", Group::other_code, "Same mesh, materials, supports and loads: the same displacements",
-       "CalculiX, C3D4 elements", "", Accepted::at_most(1e-6), true, same_as_calculix},
+       "CalculiX, C3D4 elements", "", Accepted::at_most(1e-6), true,
+       [](Context&) {
+         return same_as_calculix(Element::p1, {8, 7, 9});
+       }},
+      {"calculix_quadratic", Group::other_code, "The same with quadratic tetrahedra", "CalculiX, C3D10 elements", "",
+       Accepted::at_most(1e-6), true,
+       [](Context&) {
+         return same_as_calculix(Element::p2, {4, 4, 5});
+       }},
   };
 }
 
