@@ -73,12 +73,12 @@ struct CouplingSettings {
   double grazing_cos = 0.17;  ///< the tip slides off where |axis · surface normal| is smaller (80° from the normal)
   double max_advance_mm = 0.25;             ///< of the base in one sub-step
   double axial_compliance_mm_per_N = 2e-3;  ///< of the steel shaft, L / (E A)
-  double join_mm = 1.27;    ///< a new entry this near to an old track joins it: twice the needle's radius
-  Bevel bevel;              ///< of the tip
+  double join_mm = 1.27;      ///< a new entry this near to an old track joins it: twice the needle's radius
+  Bevel bevel;                ///< of the tip
   double relaxation_s = 0.0;  ///< of the tissue (Kelvin–Voigt); 0 = elastic
-  int capacity = 96;        ///< largest number of contacts
-  double tolerance = 1e-9;  ///< coupled solver: error of a balance, as a force over the largest one or 1 N
-  double damping = 1.0;     ///< of the staggered solver: springs on the needle, over the tissue's own stiffness there
+  int capacity = 96;          ///< largest number of contacts
+  double tolerance = 1e-9;    ///< coupled solver: error of a balance, as a force over the largest one or 1 N
+  double damping = 1.0;       ///< of the staggered solver: springs on the needle, over the tissue's own stiffness there
   double needle_node_mm = 0.0;  ///< staggered: forces go to the nearest multiple of this along the needle; 0 = where
                                 ///< they act
 };
