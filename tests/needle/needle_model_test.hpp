@@ -29,6 +29,24 @@ class NeedleModelTest : public testing::TestWithParam<std::string> {
   static int settle(Needle& needle, std::span<const PointLoad> loads) {
     return test::settle(needle, loads, tolerance());
   }
+
+  /// How equilibrium positions follow the loads [mm/N] (3w × 3w), by equilibria solved anew.
+  static MatX compliance_by_differences(Needle& needle, const std::vector<PointLoad>& loads) {
+    constexpr double h = 1e-4;
+    const auto size = 3 * static_cast<Eigen::Index>(loads.size());
+    MatX compliance = MatX::Zero(size, size);
+    for (Eigen::Index column = 0; column < size; ++column) {
+      for (const double sign : {1.0, -1.0}) {
+        auto changed = loads;
+        changed[static_cast<std::size_t>(column / 3)].force[column % 3] += sign * h;
+        settle(needle, changed);
+        for (std::size_t c = 0; c < loads.size(); ++c)
+          compliance.col(column).segment<3>(3 * static_cast<Eigen::Index>(c)) +=
+              sign * needle.point(loads[c].s) / (2 * h);
+      }
+    }
+    return compliance;
+  }
 };
 
 }  // namespace stylet::test
