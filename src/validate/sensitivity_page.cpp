@@ -97,8 +97,10 @@ std::string sensitivity_html(const Sensitivity& study) {
                         value_text(study.base.*output.value), output.unit);
   }
   std::string rows;
+  std::size_t runs = 1;
   for (const std::size_t k : by_influence(study)) {
     const Influence& i = study.influences[k];
+    runs += two_sided(i) ? 2 : 1;
     const std::string range =
         two_sided(i) ? fmt::format("{} → {} … {}", i.base, i.low, i.high) : fmt::format("{} → {}", i.base, i.low);
     std::string cells;
@@ -120,13 +122,12 @@ std::string sensitivity_html(const Sensitivity& study) {
       "<p>{}. Each parameter is moved by ±{:.0f} %, all others stay. Bars show the change of the output from its base "
       "value; the longest bar of a column is its most influential parameter. Choices, at the end, are not moved but "
       "made "
-      "otherwise; their bars may be cut off at the column’s scale. {} runs on {} threads in {:.0f} s.</p>"
+      "otherwise; their bars may be cut off at the column’s scale. {} runs on {} threads in {:.0f}&nbsp;s.</p>"
       "<div class=\"swatches\"><span><i style=\"background:#56b4e9\"></i>parameter lower, or the other choice</span>"
       "<span><i style=\"background:#d55e00\"></i>parameter higher</span></div>"
       "<div class=\"scroll\"><table class=\"tornado\"><colgroup><col class=\"parameter\"><col><col><col></colgroup>"
       "<thead><tr><th>Parameter</th>{}</tr></thead><tbody>{}</tbody></table></div></section>",
-      html_escaped(study.scenario), 100.0 * study.change, 2 * study.influences.size() + 1, study.threads, study.seconds,
-      head, rows);
+      html_escaped(study.scenario), 100.0 * study.change, runs, study.threads, study.seconds, head, rows);
 }
 
 std::vector<std::vector<std::string>> sensitivity_lines(const Sensitivity& study) {
