@@ -32,16 +32,21 @@ class TwoPoints final : public ContactCompliance {
 
 constexpr double kTau_s = 0.2;
 
+// The forces act for `time` in steps of h.
+void act(TissueMemory& memory, const MatX& forces, double time, double h) {
+  for (int k = 0; k < std::lround(time / h); ++k) {
+    memory.begin(h);
+    memory.end(forces);
+  }
+}
+
 // Displacement of point 0 after `time` under a constant force of 1 N along x on point 1, in steps of h.
 double creep(double time, double h) {
   const TwoPoints compliance;
   TissueMemory memory(kTau_s, 2);
   MatX forces = MatX::Zero(3, 2);
   forces(0, 1) = 1.0;
-  for (int k = 0; k < std::lround(time / h); ++k) {
-    memory.begin(h);
-    memory.end(forces);
-  }
+  act(memory, forces, time, h);
   return memory.displacement(compliance, 0).x();
 }
 
@@ -64,16 +69,10 @@ TEST(TissueMemory, GoesBackWhenTheForceIsGoneAndThenIsRelaxed) {
   memory.end(forces);
   const double before = memory.displacement(compliance, 1).z();
   forces.setZero();
-  for (int k = 0; k < 200; ++k) {
-    memory.begin(1e-3);
-    memory.end(forces);
-  }
+  act(memory, forces, kTau_s, 1e-3);
   EXPECT_NEAR(memory.displacement(compliance, 1).z() / before, std::exp(-1.0), 2e-3);
   EXPECT_FALSE(memory.relaxed(compliance));
-  for (int k = 0; k < 4000; ++k) {
-    memory.begin(1e-3);
-    memory.end(forces);
-  }
+  act(memory, forces, 20.0 * kTau_s, 1e-3);
   EXPECT_TRUE(memory.relaxed(compliance));
 }
 
