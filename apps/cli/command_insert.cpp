@@ -222,7 +222,7 @@ Command add_insert_command(CLI::App& program) {
            fmt::format("{}; the same as --set {}=…", meaning, key))
         ->type_name("WORD");
   };
-  shorthand("--method", "coupling.method", "node-addition, node-repositioning or embedded");
+  shorthand("--method", "coupling.method", "near-field, node-addition, node-repositioning or embedded");
   shorthand("--rule", "coupling.rule", "where nodes are added: interior or paper");
   shorthand("--engine", "coupling.engine", "what is kept of the inverse stiffness: condensed, woodbury or bcs");
   shorthand("--solver", "coupling.solver", "coupled or staggered");

@@ -48,7 +48,8 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
 
 /// Where nodes for contacts go. A node that is moved may go anywhere, so faces concern added ones only.
 Placement Insertion::Parts::placement_of_contacts() const {
-  if (settings.method == CouplingSettings::Method::embedded) return Placement::embedded;
+  if (settings.method == CouplingSettings::Method::embedded || settings.method == CouplingSettings::Method::near_field)
+    return Placement::embedded;
   const bool adds = settings.method == CouplingSettings::Method::node_addition;
   return adds && settings.rule == CouplingSettings::Rule::paper ? Placement::face : Placement::interior;
 }
@@ -147,18 +148,25 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
   share_length();
 }
 
+/// How far the tip is beyond a contact [mm]: along the shaft, or along the track while that is less. Tissue that the
+/// tip has just passed springs back along the shaft at once; the track grows with the cut only.
+double Insertion::Parts::passed_by(const Grip& grip) const {
+  const double along_shaft = length() - grip.s;
+  if (track.open) return std::max(0.0, along_shaft);
+  return std::max(0.0, std::min(along_shaft, track.end_xi - grip.xi));
+}
+
 /// Tributary lengths, softness of young contacts, and the hand-over of the tip's lateral hold to the shaft.
 void Insertion::Parts::share_length() {
-  const double end = length();
+  const auto age = [&](const Grip& grip) { return std::min(1.0, passed_by(grip) / settings.spacing_mm); };
   for (Grip& grip : grips) {
-    const double rho = std::clamp((end - grip.s) / settings.spacing_mm, kYoungest, 1.0);
     const double own = compliance(grip.point, grip.point).trace() / 3.0;
-    grip.softness = own * (1.0 / rho - 1.0);
+    grip.softness = own * (1.0 / std::max(age(grip), kYoungest) - 1.0);
     grip.length = 0.0;
   }
   for (std::size_t k = 0; k < grips.size(); ++k) {
     Grip& grip = grips[k];
-    const double rho = std::clamp((end - grip.s) / settings.spacing_mm, 0.0, 1.0);
+    const double rho = age(grip);
     const double before = k == 0 ? grip.xi : grip.xi - grips[k - 1].xi;
     if (k == 0) {
       grip.length += before * rho;
@@ -167,7 +175,7 @@ void Insertion::Parts::share_length() {
       grips[k - 1].length += before * (1.0 - 0.5 * rho);
     }
     if (k + 1 == grips.size()) {
-      double after = std::max(0.0, end - grip.s);
+      double after = passed_by(grip);
       if (track.open) after = std::min(after, std::max(0.0, track.air_from_xi - grip.xi));
       grip.length += after;
     }
@@ -177,7 +185,7 @@ void Insertion::Parts::share_length() {
     tip.lateral_softness = 0.0;
     return;
   }
-  const double rho = std::clamp((end - grips.front().s) / settings.spacing_mm, 0.0, 1.0);
+  const double rho = age(grips.front());
   const double own = compliance(ContactCompliance::kTip, ContactCompliance::kTip).trace() / 3.0;
   tip.lateral_softness = rho >= 1.0 - kYoungest ? std::numeric_limits<double>::infinity() : own * rho / (1.0 - rho);
 }

@@ -20,9 +20,22 @@ constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance mome
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
 constexpr double kStill_mm = 1e-9;     ///< less is not sliding
+/// On either side of the speed where friction stops growing its two laws agree; so little says nothing about the side.
+constexpr double kSameSpeed_mm = 1e-6;
 /// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined: at 100 mm/s this adds 1e-7
 /// N/mm.
 constexpr double kLeastViscosity = 1e-9;
+/// What is left of friction's growth with speed beyond the speed where it ends: enough to tell how far a contact
+/// slides.
+constexpr double kFlat = 1e-3;
+
+/// Newton's iteration takes the tissue's compliance at the tip as it is, not as it changes with the cut. Where it
+/// changes fast (next to held tissue) the cut would jump to and fro: it is followed the more slowly the longer that
+/// lasts.
+double damping_of_cut(int iteration) {
+  constexpr int patience = 6;
+  return iteration < patience ? 1.0 : iteration < 2 * patience ? 0.5 : 0.25;
+}
 }  // namespace
 
 double Insertion::Parts::arc_of(int load) const {
@@ -87,7 +100,12 @@ void Insertion::Parts::soften_rows(double h) {
       }
     } else {
       Grip& grip = grips[static_cast<std::size_t>(c - 1)];
-      grip.slip = h / std::max(std::max(grip.law.viscous_Ns_per_mm2, kLeastViscosity) * grip.length, kTiny);
+      const double slow = std::max(grip.law.viscous_Ns_per_mm2, kLeastViscosity);
+      const double viscosity = grip.fast ? std::max(kFlat * slow, kLeastViscosity) : slow;
+      grip.coulomb = grip.law.coulomb_N_per_mm * grip.length;
+      if (grip.fast) grip.coulomb += (slow - viscosity) * grip.law.viscous_to_mm_per_s * grip.length;
+      grip.slip = h / std::max(viscosity * grip.length, kTiny);
+      grip.reach = slow > kLeastViscosity ? grip.law.viscous_to_mm_per_s * h : std::numeric_limits<double>::infinity();
       lateral = grip.softness;
       axial = grip.softness;
       if (grip.state == Grip::State::stick) {
@@ -95,7 +113,7 @@ void Insertion::Parts::soften_rows(double h) {
       } else {
         const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
         axial += grip.slip;
-        shift = grip.slip * sign * grip.law.coulomb_N_per_mm * grip.length + grip.s_start - grip.s;
+        shift = grip.slip * sign * grip.coulomb + grip.s_start - grip.s;
       }
     }
     system.D.segment<3>(3 * c) << lateral, lateral, axial;
@@ -182,11 +200,18 @@ double Insertion::Parts::contradiction(int load, double axial, double opening) c
   const Grip& grip = grips[static_cast<std::size_t>(load - 1)];
   if (grip.toggles > toggle_limit || grip.length < kNoLength_mm) return 0.0;
   if (grip.state == Grip::State::stick) return std::abs(axial) - grip.law.static_N_per_mm * grip.length;
-  // Sliding the other way than its state says. A length is what tells, since forces hardly differ where friction does
-  // not depend on speed; it counts as the force that pushes the tissue so far.
+  // Sliding the other way than its state says, or faster or slower. A length is what tells, since forces hardly differ
+  // where friction does not depend on speed; it counts as the force that pushes the tissue so far.
+  const double slides = way(grip, axial);
+  const double wrong =
+      grip.fast ? grip.reach - slides - kSameSpeed_mm : std::max(-slides, slides - grip.reach - kSameSpeed_mm);
+  return wrong > kStill_mm ? 3.0 * wrong / (memory.share() * compliance(grip.point, grip.point).trace()) : 0.0;
+}
+
+/// By how much [mm] a sliding contact slides in this sub-step, in the sense of its state, under an axial force.
+double Insertion::Parts::way(const Grip& grip, double axial) {
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-  const double back = grip.slip * (grip.law.coulomb_N_per_mm * grip.length - sign * axial);
-  return back > kStill_mm ? 3.0 * back / (memory.share() * compliance(grip.point, grip.point).trace()) : 0.0;
+  return grip.slip * (sign * axial - grip.coulomb);
 }
 
 void Insertion::Parts::change_state(int load, double axial, StepReport& report) {
@@ -206,6 +231,11 @@ void Insertion::Parts::change_state(int load, double axial, StepReport& report) 
   if (++grip.toggles > toggle_limit) report.flags |= StepReport::contact_cycling;
   if (grip.state == Grip::State::stick) {
     grip.state = axial > 0.0 ? Grip::State::forward : Grip::State::backward;
+    grip.fast = false;
+    return;
+  }
+  if (grip.fast || way(grip, axial) > grip.reach) {
+    grip.fast = !grip.fast;
     return;
   }
   grip.state = Grip::State::stick;
@@ -302,7 +332,7 @@ void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial) {
     return;
   }
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-  grip.s = grip.s_start + grip.slip * (sign * grip.law.coulomb_N_per_mm * grip.length - axial);
+  grip.s = grip.s_start - sign * way(grip, axial);
 }
 
 /// Remembers where everything was, and aims the cut.
@@ -345,7 +375,8 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       slide(grips[k], frames[k + 1], system.lambda[3 * static_cast<Eigen::Index>(k) + 5]);
     if (tip.touching && tip.state == Tip::State::cut) {
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
-      march(std::max(0.0, slip * (system.lambda[2] - tip.cutting)));
+      const double proposed = std::max(0.0, slip * (system.lambda[2] - tip.cutting));
+      march(tip.advance + damping_of_cut(iteration) * (proposed - tip.advance));
       if (tip.blocked || tip.held) {
         tip.state = Tip::State::stick;
         changed = true;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "insertion_parts.hpp"
+#include "stylet/coupling/near_field/near_field_compliance.hpp"
 #include "stylet/coupling/paper/inverse_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
+
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +16,8 @@ constexpr int kMaxSubSteps = 64;
 constexpr std::size_t kOldTracks = 64;
 constexpr double kBent_mm = 10.0;  ///< a bent shaft is rarely further from its axis
 
-std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue, const CouplingSettings& settings,
-                                                   int capacity) {
+std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, const CouplingSettings& settings,
+                                             int capacity) {
   using Engine = CouplingSettings::Engine;
   if (settings.engine == Engine::condensed)
     return std::make_unique<TrackCompliance>(tissue.store, *tissue.locator, capacity);
@@ -29,10 +32,28 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
 int most_points(const CouplingSettings& settings) {
   return settings.relaxation_s > 0.0 ? 2 * settings.capacity : settings.capacity;
 }
+
+/// Without a kernel of the mesh the near field starts with an empty one, which prepare() fills.
+InsertionTissue with_kernel(InsertionTissue tissue, const CouplingSettings& settings) {
+  if (settings.method == CouplingSettings::Method::near_field && !tissue.kernel)
+    tissue.kernel = std::make_shared<MeshKernel>(tissue.store->shared_tissue(), tissue.locator->topology());
+  return tissue;
+}
+
+std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue, const CouplingSettings& settings,
+                                                   int capacity) {
+  auto engine = engine_of(tissue, settings, capacity);
+  if (settings.method != CouplingSettings::Method::near_field) return engine;
+  NeedleKernel needle{settings.needle_radius_mm, settings.spacing_mm, {}};
+  for (const RegionLaws& laws : tissue.laws)
+    needle.press_N.push_back(laws.rigid ? 0.0 : std::max(laws.puncture_N, laws.cutting_N));
+  return std::make_unique<NearFieldCompliance>(std::move(engine), tissue.store->shared_tissue(), tissue.kernel, needle,
+                                               settings.capacity);
+}
 }  // namespace
 
 Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_)
-    : tissue(std::move(tissue_)),
+    : tissue(with_kernel(std::move(tissue_), settings_)),
       needle(std::move(needle_)),
       settings(settings_),
       owned_compliance(make_compliance(tissue, settings_, most_points(settings_))),
@@ -238,7 +259,9 @@ StepReport Insertion::step(const Pose& base, double dt) {
 
 void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;
-  if (p.settings.engine != CouplingSettings::Engine::condensed) return;  // everything is there
+  const bool condensed = p.settings.engine == CouplingSettings::Engine::condensed;
+  const bool near_field = p.settings.method == CouplingSettings::Method::near_field;
+  if (!condensed && !near_field) return;  // everything is there
   const Locator& locator = *p.tissue.locator;
   const Vec3 tip = p.needle->point(p.length());
   if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
@@ -260,7 +283,7 @@ void Insertion::prepare(double radius_mm) {
   std::vector<Index> nodes;
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const auto tet = static_cast<std::size_t>(queue[head]);
-    for (const Index node : locator.mesh().tets[tet]) nodes.push_back(node);
+    for (const Index node : p.tissue.store->tissue().nodes_of(queue[head])) nodes.push_back(node);
     for (const Index next : locator.topology().neighbour[tet]) {
       if (next < 0 || seen[static_cast<std::size_t>(next)]) continue;
       // An element counts when its bounding ball meets the ball around the tip.
@@ -275,7 +298,8 @@ void Insertion::prepare(double radius_mm) {
       queue.push_back(next);
     }
   }
-  p.tissue.store->add_nodes(nodes);
+  if (condensed) p.tissue.store->add_nodes(nodes);
+  if (near_field) p.tissue.kernel->add_nodes(nodes);
 }
 
 const Needle& Insertion::needle() const { return *parts_->needle; }
@@ -306,6 +330,26 @@ ContactCompliance::Nodes Insertion::nodes() const {
 VecX Insertion::displacement() const {
   parts_->gather_filtered_forces();
   return parts_->compliance.displacement(parts_->forces.leftCols(parts_->compliance.points()));
+}
+
+VecX Insertion::mesh_displacement() const {
+  parts_->gather_filtered_forces();
+  return parts_->compliance.mesh_displacement(parts_->forces.leftCols(parts_->compliance.points()));
+}
+
+double Insertion::compliance_condition() const {
+  const Parts& p = *parts_;
+  std::vector<Eigen::Index> rows;
+  const auto take = [&](int point) {
+    for (Eigen::Index k = 0; k < 3; ++k) rows.push_back(3 * point + k);
+  };
+  if (p.tip.touching && p.tip.state != Tip::State::open) take(ContactCompliance::kTip);
+  for (const Grip& grip : p.grips) take(grip.point);
+  if (rows.empty()) return 1.0;
+  const MatX A = p.compliance.matrix()(rows, rows);
+  const Eigen::SelfAdjointEigenSolver<MatX> eigen(A, Eigen::EigenvaluesOnly);
+  const VecX& values = eigen.eigenvalues();
+  return values[0] > 0.0 ? values[values.size() - 1] / values[0] : std::numeric_limits<double>::infinity();
 }
 
 double Insertion::tissue_energy() const {

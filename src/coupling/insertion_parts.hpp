@@ -26,8 +26,11 @@ struct Grip {
   double softness = 0.0;  ///< [mm/N] a young contact yields this much: it comes alive and dies without a jump
   double length = 0.0;    ///< [mm] tributary length
   FrictionLaw law;
-  double slip = 0.0;  ///< [mm/N] by which it slides in this sub-step for each newton beyond Coulomb's friction
   State state = State::stick;
+  bool fast = false;          ///< slides faster than friction grows with speed
+  double coulomb = 0.0;       ///< [N] sliding friction, continued to speed 0 from the present speed
+  double slip = 0.0;          ///< [mm/N] by which it slides in this sub-step for each newton beyond that
+  double reach = 0.0;         ///< [mm] by which it slides in this sub-step at the speed where friction stops growing
   int toggles = 0;            ///< changes of state in this sub-step
   Vec3 force = Vec3::Zero();  ///< [N] on the tissue
 };
@@ -133,6 +136,7 @@ struct Insertion::Parts {
   /// @param axial [N] force on the tissue @param opening [N] what an open tip would take if it were held
   [[nodiscard]] double contradiction(int load, double axial, double opening) const;
   [[nodiscard]] double contradiction(int load) const;
+  [[nodiscard]] static double way(const Grip& grip, double axial);
   void change_state(int load, double axial, StepReport& report);
   void change_state(int load, StepReport& report);
   void slide(Grip& grip, const Mat3& frame, double axial);
@@ -164,6 +168,7 @@ struct Insertion::Parts {
   bool lay_mark(double xi, const Vec3& x, const MaterialPoint& at, Placement placement, const Vec3& travel,
                 StepReport& report);
   void wake_and_drop(StepReport& report);
+  [[nodiscard]] double passed_by(const Grip& grip) const;
   void share_length();
   void finish_insertion(StepReport& report);
   void settle_in_air(StepReport& report);

@@ -118,7 +118,7 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
     };
     if (s.coupling.method == "node-addition" || s.coupling.method == "node-repositioning") {
       return refused(fmt::format("coupling.method = \"{}\"", s.coupling.method),
-                     "Set tissue.element = \"p1\", or coupling.method = \"embedded\"");
+                     "Set tissue.element = \"p1\", or coupling.method = \"near-field\" or \"embedded\"");
     }
     if (s.coupling.engine != "condensed") {
       return refused(fmt::format("coupling.engine = \"{}\"", s.coupling.engine),

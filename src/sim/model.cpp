@@ -48,7 +48,8 @@ std::vector<int> find_target(const TetMesh& mesh) {
 
 CouplingSettings coupling_settings(const Scenario& s) {
   CouplingSettings c;
-  c.method = s.coupling.method == "embedded"             ? CouplingSettings::Method::embedded
+  c.method = s.coupling.method == "near-field"           ? CouplingSettings::Method::near_field
+             : s.coupling.method == "embedded"           ? CouplingSettings::Method::embedded
              : s.coupling.method == "node-repositioning" ? CouplingSettings::Method::node_repositioning
                                                          : CouplingSettings::Method::node_addition;
   c.engine = s.coupling.engine == "bcs"        ? CouplingSettings::Engine::bcs
@@ -65,6 +66,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.bevel.law = s.needle.bevel_law == "force" ? Bevel::Law::force : Bevel::Law::offset;
   c.bevel.force_ratio = s.needle.bevel_force_ratio;
   c.spacing_mm = s.coupling.spacing_mm;
+  c.needle_radius_mm = 0.5 * s.needle.diameter_mm;
   c.merge_mm = s.needle.diameter_mm;
   c.join_mm = s.needle.diameter_mm;
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
@@ -80,7 +82,8 @@ CouplingSettings coupling_settings(const Scenario& s) {
 /// need.
 Element element_of(const Scenario& s) {
   const std::string& method = s.coupling.method;
-  const bool of_the_paper = method == "node-addition" || method == "node-repositioning" || method == "embedded";
+  const bool of_the_paper = method == "node-addition" || method == "node-repositioning" || method == "embedded" ||
+                            s.coupling.engine != "condensed";
   return element_named(s.tissue_model.element).value_or(of_the_paper ? Element::p1 : Element::nodal_pressure);
 }
 
@@ -195,7 +198,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     laws.cutting_N = p.cutting_N;
     laws.puncture_N = p.puncture_N;
     laws.friction = {p.friction_static_N_per_m * 1e-3, p.friction_coulomb_N_per_m * 1e-3,
-                     p.friction_viscous_Ns_per_m2 * 1e-6};
+                     p.friction_viscous_Ns_per_m2 * 1e-6, p.friction_viscous_to_mm_per_s};
     laws.surrounding = name == "body";
     const bool in_target =
         std::find(model->target_.begin(), model->target_.end(), static_cast<int>(r)) != model->target_.end();
@@ -251,12 +254,14 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
           "Use engine = \"condensed\", which keeps only what the needle touches, or a coarser mesh (mesh.nodes)");
     }
     model->inverse_ = std::make_shared<const MatX>(paper::full_inverse(*model->tissue_, progress));
-    return std::shared_ptr<const Model>(std::move(model));
   }
+  const bool near_field = model->coupling_.method == CouplingSettings::Method::near_field;
+  if (near_field) model->kernel_ = std::make_shared<MeshKernel>(model->tissue_, *model->topology_);
   for (const PlannedInsertion& insertion : model->insertions_) {
     const Vec3 end = insertion.entry + (insertion.depth_mm + kBeyond_mm) * insertion.direction;
-    model->store_->add_nodes(corridor_nodes(model->mesh(), insertion.entry, end, scenario.coupling.corridor_mm),
-                             progress);
+    const auto nodes = corridor_nodes(*model->tissue_, insertion.entry, end, scenario.coupling.corridor_mm);
+    if (!model->inverse_) model->store_->add_nodes(nodes, progress);
+    if (near_field) model->kernel_->add_nodes(nodes, progress);
   }
   return std::shared_ptr<const Model>(std::move(model));
 }

@@ -118,11 +118,13 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   return result;
 }
 
-std::vector<Index> corridor_nodes(const TetMesh& mesh, const Vec3& from, const Vec3& to, double radius_mm) {
+std::vector<Index> corridor_nodes(const Tissue& tissue, const Vec3& from, const Vec3& to, double radius_mm) {
+  const TetMesh& mesh = tissue.mesh();
   const Vec3 way = to - from;
   const double length2 = std::max(way.squaredNorm(), 1e-12);
-  std::vector<char> wanted(mesh.nodes.size(), 0);
-  for (const auto& tet : mesh.tets) {
+  std::vector<char> wanted(static_cast<std::size_t>(tissue.displacement_nodes()), 0);
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const auto& tet = mesh.tets[static_cast<std::size_t>(t)];
     // An element counts when its bounding ball meets the corridor.
     Vec3 centre = Vec3::Zero();
     for (const Index node : tet) centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
@@ -130,7 +132,7 @@ std::vector<Index> corridor_nodes(const TetMesh& mesh, const Vec3& from, const V
     for (const Index node : tet) ball = std::max(ball, (mesh.nodes[static_cast<std::size_t>(node)] - centre).norm());
     const double f = std::clamp((centre - from).dot(way) / length2, 0.0, 1.0);
     if ((centre - from - f * way).norm() > radius_mm + ball) continue;
-    for (const Index node : tet) wanted[static_cast<std::size_t>(node)] = 1;
+    for (const Index node : tissue.nodes_of(t)) wanted[static_cast<std::size_t>(node)] = 1;
   }
   std::vector<Index> nodes;
   for (std::size_t node = 0; node < wanted.size(); ++node) {

@@ -21,7 +21,7 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
                                         const Locator& locator, const std::vector<int>& target,
                                         const std::string& where);
 
-/// Nodes of all elements within `radius` of the segment from `from` to `to`.
-std::vector<Index> corridor_nodes(const TetMesh& mesh, const Vec3& from, const Vec3& to, double radius_mm);
+/// Displacement nodes of all elements within `radius` of the segment from `from` to `to`.
+std::vector<Index> corridor_nodes(const Tissue& tissue, const Vec3& from, const Vec3& to, double radius_mm);
 
 }  // namespace stylet

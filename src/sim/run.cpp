@@ -64,6 +64,10 @@ class Runner {
     summary_.step_us_p99 = quantile(step_us_, 0.99);
     summary_.step_us_p999 = quantile(step_us_, 0.999);
     summary_.step_us_max = step_us_.empty() ? 0.0 : step_us_.back();
+    if (model_->kernel()) {
+      const MeshKernel::Blur blur = model_->kernel()->blur();
+      summary_.mesh_blur = {blur.smallest_mm, blur.median_mm, blur.largest_mm, blur.nodes};
+    }
     note_condition();
     note_flags();
     return summary_;
@@ -147,8 +151,11 @@ class Runner {
     const Simulation::Balance balance = simulation_.balance(1.0);  // relative to the peak once that is known
     summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
     summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
+    summary_.compliance_condition =
+        std::max(summary_.compliance_condition, simulation_.insertion().compliance_condition());
     if (label == "deepest") {
-      const auto [mean, largest] = target_shift(model_->mesh(), model_->target_regions(), frame.displacement);
+      const auto [mean, largest] =
+          target_shift(model_->mesh(), model_->target_regions(), simulation_.insertion().mesh_displacement());
       if (largest >= summary_.target_shift_max_mm) {
         summary_.target_shift_centroid_mm = mean;
         summary_.target_shift_max_mm = largest;

@@ -32,7 +32,7 @@ constexpr std::array kShown{
     Documented{"needle.bevel_deg", "stated: a symmetric tip"},
     Documented{"needle.bow_mm", "a straight needle"},
     Documented{kElements.data(), "numerical: no visible change of the needle's shape with more"},
-    Documented{"coupling.method", "the mesh takes up what the needle does, at constant cost"},
+    Documented{"coupling.method", "force does not depend on the mesh"},
     Documented{"coupling.rule", "old compliances do not change when a node is added"},
     Documented{"coupling.engine", "cost does not depend on the size of the mesh"},
     Documented{"coupling.solver", "no damping to choose"},
@@ -54,7 +54,7 @@ std::string unit_of(const std::string& path) {
   return {};
 }
 
-/// The seven rows of a region, or one that says that it is held.
+/// The rows of a region, or one that says that it is held.
 void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, const TissueParameters& used, bool held) {
   if (held) {
     rows.push_back({"tissue." + region, "held", "", "bone, or a region the scenario holds"});
@@ -72,6 +72,7 @@ void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, cons
   row("friction_static_N_per_m", &TissueParameters::friction_static_N_per_m, "N/m");
   row("friction_coulomb_N_per_m", &TissueParameters::friction_coulomb_N_per_m, "N/m");
   row("friction_viscous_Ns_per_m2", &TissueParameters::friction_viscous_Ns_per_m2, "N s/m²");
+  row("friction_viscous_to_mm_per_s", &TissueParameters::friction_viscous_to_mm_per_s, "mm/s");
 }
 
 /// The needle's stiffness, given or from its section.

@@ -211,7 +211,7 @@ std::optional<ScenarioValue> scenario_value(const Scenario& scenario, const std:
   const std::string pattern = pattern_of(path, slot);
   const ScenarioEntry* entry = find(pattern);
   if (!entry) return std::nullopt;
-  const bool there = !(pattern.starts_with("tissue.") && !scenario.tissue.contains(slot.name)) &&
+  const bool there = !(pattern.starts_with("tissue.<region>") && !scenario.tissue.contains(slot.name)) &&
                      !(pattern.starts_with("patient.regions.") && !scenario.patient.regions.contains(slot.name)) &&
                      !(pattern.starts_with("insertion[]") && slot.index >= scenario.insertions.size());
   return there ? entry->load(scenario, slot) : std::nullopt;

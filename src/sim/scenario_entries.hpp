@@ -94,13 +94,10 @@ class ScenarioEntries {
   }
 
   /// One of several words.
-  /// @param later words that are reserved for what this version does not have
   template <class Field>
-  void choice(const char* path, const std::vector<std::string>& words, const std::vector<std::string>& later,
-              const char* meaning, Field field) {
+  void choice(const char* path, const std::vector<std::string>& words, const char* meaning, Field field) {
     add({path, Type::text, "", "", fmt::format("\"{}\"", fmt::join(words, "\", \"")), meaning, ""}, field, {},
         [=](auto& target, const ScenarioValue& v) -> std::string {
-          if (std::find(later.begin(), later.end(), v.text) != later.end()) return "not available in this version";
           if (std::find(words.begin(), words.end(), v.text) == words.end()) {
             const std::string near = nearest_name(v.text, words);
             return "not one of its words" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");

@@ -54,7 +54,7 @@ EventKind event_kind(InsertionEventKind kind) {
 }
 
 InsertionTissue tissue_of(const Model& model) {
-  return {model.store(), &model.locator(), model.laws(), model.inverse()};
+  return {model.store(), &model.locator(), model.laws(), model.inverse(), model.kernel()};
 }
 
 }  // namespace

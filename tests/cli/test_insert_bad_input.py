@@ -90,8 +90,8 @@ class BadScenario(InFolder):
     def test_hole_that_is_not_in_the_template(self):
         self.refuse_setting("insertion.hole=H9", ["H9", "columns are A … G"], "phantom.toml")
 
-    def test_methods_of_other_versions(self):
-        self.refuse_setting("coupling.method=near-field", ["near-field", "not available in this version"])
+    def test_methods_there_are_not(self):
+        self.refuse_setting("coupling.method=near-feild", ["did you mean", "near-field", "node-addition"])
 
     def test_what_does_not_go_together(self):
         self.refuse("insert", "block.toml", "-o", "out", "--method", "node-repositioning",

@@ -26,8 +26,8 @@ struct BlockOptions {
   std::vector<std::string> regions{"body", "prostate"};
   std::function<int(const Vec3&)> region_at = [](const Vec3& x) { return (x - Vec3(0, 0, 45)).norm() < 20.0 ? 1 : 0; };
   std::vector<Material> materials{{0.06, 0.45}, {0.04, 0.45}};
-  std::vector<RegionLaws> laws{{0.35, 1.0, {18e-3, 11e-3, 250e-6}, false, true, -1},
-                               {0.25, 0.6, {18e-3, 11e-3, 250e-6}, false, false, -1}};
+  std::vector<RegionLaws> laws{{0.35, 1.0, {18e-3, 11e-3, 250e-6, 50.0}, false, true, -1},
+                               {0.25, 0.6, {18e-3, 11e-3, 250e-6, 50.0}, false, false, -1}};
   std::function<bool(const Vec3&)> held = [](const Vec3& x) {
     return std::abs(x.x()) > 49.9 || std::abs(x.y()) > 49.9 || x.z() > 99.9;
   };

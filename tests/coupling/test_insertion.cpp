@@ -28,8 +28,9 @@ TEST(Insertion, steady_cutting_force_is_cutting_plus_friction_along_the_shaft) {
   run.go(20, 10.0);
   // Cutting 0.35 N + (11 N/m + 250 N s/m² × 10 mm/s) × 20 mm + tip viscosity 2 N s/m × 10 mm/s. The tip lags behind the
   // base by what it pushes the tissue ahead, so the inserted length is a little less than the depth.
-  const double friction = (11e-3 + 250e-6 * 10.0) * 20.0;
-  EXPECT_NEAR(run.forces.back(), 0.35 + 0.02 + friction, 0.02);
+  EXPECT_NEAR(run.report.inserted_mm, 20.0, 5.0);
+  const double friction = (11e-3 + 250e-6 * 10.0) * run.report.inserted_mm;
+  EXPECT_NEAR(run.forces.back(), 0.35 + 0.02 + friction, 0.01);
 }
 
 TEST(Insertion, reversal_sticks_first_then_slips_and_the_force_changes_sign) {
@@ -38,7 +39,7 @@ TEST(Insertion, reversal_sticks_first_then_slips_and_the_force_changes_sign) {
   run.go(50);
   const double pushing = run.forces.back();
   ASSERT_GT(pushing, 0.8);
-  run.go(49.9);
+  run.go(49.5);
   EXPECT_LT(run.report.sliding_share, 0.5) << "the tissue follows the needle at first";
   EXPECT_GT(run.report.sticking, 6);
   run.go(45);
@@ -134,7 +135,8 @@ TEST(Insertion, the_hand_puts_in_at_least_the_energy_that_is_stored) {
 }
 
 TEST(Insertion, laying_and_dropping_contacts_moves_the_base_force_by_less_than_a_thousandth_of_its_peak) {
-  for (const auto method : {CouplingSettings::Method::node_addition, CouplingSettings::Method::embedded}) {
+  for (const auto method : {CouplingSettings::Method::near_field, CouplingSettings::Method::node_addition,
+                            CouplingSettings::Method::embedded}) {
     BlockOptions options;
     options.coupling.method = method;
     options.region_at = [](const Vec3&) { return 0; };  // no capsule: its puncture is a jump of its own
@@ -237,7 +239,8 @@ TEST(Insertion, force_does_not_depend_on_the_time_step) {
 }
 
 TEST(Insertion, contacts_denser_than_elements_do_not_make_the_system_singular) {
-  for (const auto method : {CouplingSettings::Method::node_addition, CouplingSettings::Method::embedded}) {
+  for (const auto method : {CouplingSettings::Method::near_field, CouplingSettings::Method::node_addition,
+                            CouplingSettings::Method::embedded}) {
     for (const auto rule : {CouplingSettings::Rule::interior, CouplingSettings::Rule::paper}) {
       BlockOptions options;
       options.cells = {3, 3, 3};  // elements of 33 mm

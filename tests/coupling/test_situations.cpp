@@ -54,7 +54,8 @@ TEST(Situation, bone_under_the_skin_is_touched_without_a_puncture) {
 }
 
 TEST(Situation, an_element_with_only_held_nodes_is_passed_without_a_singular_system) {
-  for (const auto method : {CouplingSettings::Method::node_addition, CouplingSettings::Method::embedded}) {
+  for (const auto method : {CouplingSettings::Method::near_field, CouplingSettings::Method::node_addition,
+                            CouplingSettings::Method::embedded}) {
     BlockOptions options;
     options.coupling.method = method;
     const auto sides = options.held;

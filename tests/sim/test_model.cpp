@@ -305,7 +305,7 @@ TEST(RunInfo, says_of_every_parameter_whether_it_is_the_scenarios_or_where_it_co
   EXPECT_EQ(row("coupling.spacing_mm").unit, "mm");
   EXPECT_NE(row("coupling.grazing_deg").source, "scenario");
   EXPECT_EQ(row("run.dt_ms").source, "scenario");
-  EXPECT_EQ(info.method, "node-addition, interior rule");
+  EXPECT_EQ(info.method, "near-field");
   EXPECT_EQ(info.target_regions, std::vector<int>{1});
   EXPECT_NEAR((info.entry_mm - Vec3(4, 7, 0)).norm(), 0.0, 1e-9);
   for (const ParameterRow& p : info.parameters) EXPECT_FALSE(p.source.empty()) << p.name;

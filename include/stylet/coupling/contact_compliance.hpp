@@ -89,6 +89,12 @@ class ContactCompliance {
   /// Displacement [mm] (3n) of the material at the base mesh's nodes. Allocates; for pictures and checks.
   [[nodiscard]] virtual VecX displacement(const Eigen::Ref<const MatX>& forces) const = 0;
 
+  /// The same without the near field of the needle, where an implementation adds one: what the mesh represents. Means
+  /// over volumes should use it, since a near field at nodes says nothing about the material between them.
+  [[nodiscard]] virtual VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
+    return displacement(forces);
+  }
+
   /// Every node of the mesh as it is now.
   struct Nodes {
     std::vector<Vec3> position;  ///< [mm] LPS, undeformed

@@ -3,6 +3,7 @@
 
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/laws.hpp"
+#include "stylet/coupling/near_field/mesh_kernel.hpp"
 #include "stylet/coupling/track.hpp"
 #include "stylet/fem/compliance_store.hpp"
 #include "stylet/needle/needle.hpp"
@@ -83,6 +84,7 @@ struct InsertionTissue {
   const Locator* locator = nullptr;
   std::vector<RegionLaws> laws;           ///< one per region of the mesh
   std::shared_ptr<const MatX> inverse{};  ///< the full K⁻¹ (paper::full_inverse), for engines that keep it
+  std::shared_ptr<MeshKernel> kernel{};   ///< of the mesh, for the near-field method
 };
 
 /// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
@@ -119,6 +121,12 @@ class Insertion {
   /// Displacement of the material at the mesh's nodes [mm] (3n). Solves for it, allocates; for pictures,
   /// never in the loop.
   [[nodiscard]] VecX displacement() const;
+
+  /// The same without the near field of the needle; for means over volumes.
+  [[nodiscard]] VecX mesh_displacement() const;
+
+  /// Condition number of A among the contacts and the tip where it touches; 1 without any. Allocates.
+  [[nodiscard]] double compliance_condition() const;
 
   /// What contacts and supports exert on the nodes of the mesh as it is now. Allocates.
   [[nodiscard]] ContactCompliance::Nodes nodes() const;

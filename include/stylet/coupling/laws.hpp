@@ -8,12 +8,15 @@
 
 namespace stylet {
 
-/// Friction between shaft and tissue per unit of inserted length. Static limit D; sliding C + b |v|, C ≤ D.
+/// Friction between shaft and tissue per unit of inserted length. Static limit D; sliding C + b |v|, C ≤ D, up to a
+/// speed beyond which it grows no more: b was measured on slow needles, and tissue that springs back along the shaft
+/// after a puncture is fast.
 /// @cite Okamura2004
 struct FrictionLaw {
-  double static_N_per_mm = 0.0;     ///< D
-  double coulomb_N_per_mm = 0.0;    ///< C
-  double viscous_Ns_per_mm2 = 0.0;  ///< b
+  double static_N_per_mm = 0.0;                                          ///< D
+  double coulomb_N_per_mm = 0.0;                                         ///< C
+  double viscous_Ns_per_mm2 = 0.0;                                       ///< b
+  double viscous_to_mm_per_s = std::numeric_limits<double>::infinity();  ///< where C + b |v| ends
 };
 
 /// What a region does to the needle.
@@ -43,6 +46,7 @@ inline double membrane_force(const std::vector<RegionLaws>& laws, int from, int 
 /// Settings of the contact between needle and tissue.
 struct CouplingSettings {
   enum class Method {
+    near_field,          ///< interpolated, with the mesh's own near field replaced by the needle's
     node_addition,       ///< a tissue node is put where the needle needs one
     node_repositioning,  ///< the nearest tissue node is moved there; one is added where it must not be moved
     embedded             ///< no node: the element's nodes carry interpolated forces
@@ -60,12 +64,13 @@ struct CouplingSettings {
     coupled,   ///< needle, tissue and laws in one system
     staggered  ///< needle and tissue in turn, damped
   };
-  Method method = Method::node_addition;
+  Method method = Method::near_field;
   Rule rule = Rule::interior;
   Engine engine = Engine::condensed;
   Solver solver = Solver::coupled;
-  double spacing_mm = 4.0;     ///< between contacts along the track
-  double merge_mm = 1.27;      ///< contacts are never closer than this: twice the needle's radius
+  double needle_radius_mm = 0.635;  ///< as the tissue near it feels it
+  double spacing_mm = 4.0;          ///< between contacts along the track
+  double merge_mm = 1.27;           ///< contacts are never closer than this: twice the needle's radius
   double independence = 0.05;  ///< a contact must keep this share of its own compliance when its neighbours are held
   double tip_viscosity_Ns_per_mm =
       2e-3;  ///< cutting force grows by this times the speed of cutting; makes a puncture's drop a motion

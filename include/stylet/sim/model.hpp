@@ -40,6 +40,8 @@ class Model {
   [[nodiscard]] const std::shared_ptr<ComplianceStore>& store() const { return store_; }
   /// The full K⁻¹, for engines that keep it; else empty.
   [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
+  /// Kernel of the mesh near the needles' ways, where coupling.method = "near-field"; empty otherwise.
+  [[nodiscard]] const std::shared_ptr<MeshKernel>& kernel() const { return kernel_; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
@@ -62,6 +64,7 @@ class Model {
   std::unique_ptr<Locator> locator_;
   std::shared_ptr<ComplianceStore> store_;
   std::shared_ptr<const MatX> inverse_;
+  std::shared_ptr<MeshKernel> kernel_;
   std::vector<RegionLaws> laws_;
   std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;

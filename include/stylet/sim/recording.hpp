@@ -119,12 +119,18 @@ struct Summary {
   double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
   std::vector<Event> events;
   double tip_deflection_mm = 0;                  ///< largest distance of the tip from the straight line of insertion
-  Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< LPS, of the target's volume at the deepest point of insertion
+  Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< LPS, of the target's volume at the deepest point of insertion;
+                                                 ///< what the mesh represents, as the next
   double target_shift_max_mm = 0;                ///< of any target node, at the deepest point
   double residual_force_balance = 0;  ///< |base force − sum of contact forces| / peak force, largest of the run
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;
+  double compliance_condition = 1.0;  ///< of the compliance among the contacts, largest of the frames
+  struct Blur {
+    double smallest_mm = 0, median_mm = 0, largest_mm = 0;
+    int nodes = 0;  ///< 0 = the coupling puts no near field right
+  } mesh_blur;      ///< radius over which the mesh smears a force, along the needle's way
   std::vector<MeshChange> mesh_changes;
   std::vector<std::string> warnings;
 };

@@ -22,7 +22,8 @@ struct TissueParameters {
   double friction_static_N_per_m = 0;
   double friction_coulomb_N_per_m = 0;
   double friction_viscous_Ns_per_m2 = 0;
-  std::string source;  ///< where the values come from
+  double friction_viscous_to_mm_per_s = 50;  ///< sliding friction grows no more beyond this speed
+  std::string source;                        ///< where the values come from
 
   bool operator==(const TissueParameters&) const = default;
 };
@@ -119,7 +120,7 @@ struct Scenario {
     bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {
-    std::string method = "node-addition";
+    std::string method = "near-field";
     std::string rule = "interior";
     std::string solver = "coupled";
     std::string engine = "condensed";

@@ -148,7 +148,7 @@ void Insertion::Parts::solve_tissue(double h) {
       } else {
         const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
         grip.s += ahead / (1.0 + own / grip.slip);
-        force = sign * grip.law.coulomb_N_per_mm * grip.length - (grip.s - grip.s_start) / grip.slip;
+        force = sign * grip.coulomb - (grip.s - grip.s_start) / grip.slip;
       }
     }
     const double change = force - s.y[row];

@@ -60,6 +60,12 @@ std::string summary_json(const Summary& s) {
       {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
       {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
       {"contacts_max", s.contacts_max},
+      {"compliance_condition", s.compliance_condition},
+      {"mesh_blur_mm",
+       {{"min", s.mesh_blur.smallest_mm},
+        {"median", s.mesh_blur.median_mm},
+        {"max", s.mesh_blur.largest_mm},
+        {"nodes", s.mesh_blur.nodes}}},
       {"mesh_changes", changes},
       {"warnings", s.warnings},
   };
@@ -100,6 +106,10 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     s.step_us_p999 = number(step.at("p999"));
     s.step_us_max = number(step.at("max"));
     s.contacts_max = json.at("contacts_max").get<int>();
+    s.compliance_condition = number(json.at("compliance_condition"));
+    const Json& blur = json.at("mesh_blur_mm");
+    s.mesh_blur = {number(blur.at("min")), number(blur.at("median")), number(blur.at("max")),
+                   blur.at("nodes").get<int>()};
     for (const Json& m : json.value("mesh_changes", Json::array())) {
       const auto kind = word(m.at("kind").get<std::string>(), RemeshEvent::Kind::repositioned);
       const auto refused = word(m.at("not_moved_because").get<std::string>(), RemeshEvent::Refused::inverts);

@@ -296,8 +296,8 @@ TEST(ReadScenario, refuses_values_out_of_range) {
   expect_says(refused_line_4("[needle]", "length_mm = -inf"), {"needle.length_mm = -inf is not finite"});
   expect_says(refused_line_4("[fixed]", "box_mm = [1, 2, 3]"), {"fixed.box_mm = [1, 2, 3] is 3 numbers long, not 6"});
   expect_says(refused_line_4("[fixed]", "outer = \"side\""), {"fixed.outer = \"side\"", "did you mean \"sides\"?"});
-  expect_says(refused_line_4("[coupling]", "method = \"near-field\""),
-              {"coupling.method = \"near-field\" is not available in this version", "\"node-addition\""});
+  expect_says(refused_line_4("[coupling]", "method = \"near\""),
+              {"coupling.method = \"near\" is not one of its words", "\"near-field\", \"node-addition\""});
   expect_says(refused_line_4("[template]", "columns = []"), {"template.columns", "too short"});
 }
 

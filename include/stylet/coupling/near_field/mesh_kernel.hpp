@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/near_field/kelvinlet.hpp"
+#include "stylet/coupling/near_field/surface_distance.hpp"
+#include "stylet/fem/tissue.hpp"
+#include "stylet/geom/topology.hpp"
+
+#include <memory>
+#include <span>
+
+namespace stylet {
+
+/// What a mesh makes of a point force nearby: the discrete counterpart of the medium's kernel, between displacement
+/// nodes.
+///
+/// For a node q the problem is solved on a patch, three rings of elements around it, made of one medium throughout,
+/// with the kernel itself prescribed on the patch's rim and a unit force on q. Held nodes follow the kernel as the rim
+/// does, outer faces are free, and the kernel has their image. What comes out, g(p,q), has the singular part of the
+/// tissue's K⁻¹ and its discretisation error, and nothing else; K⁻¹ − g is smooth. docs/theory/near_field.md §3.
+///
+/// Computed before the needle comes; reading neither solves nor allocates.
+class MeshKernel {
+ public:
+  /// @param tissue its mesh
+  /// @param topology of that mesh; not kept
+  MeshKernel(std::shared_ptr<const Tissue> tissue, const Topology& topology);
+
+  /// Makes g among these nodes and those there already available. Not for the step.
+  void add_nodes(std::span<const Index> nodes, const Progress& progress = {});
+
+  [[nodiscard]] bool has(Index node) const { return slot_[static_cast<std::size_t>(node)] >= 0; }
+
+  /// g(p,q) for E = 1 MPa [mm/N]: displacement of p per force on q. Both must be there.
+  /// @param medium number of the medium, medium_of()
+  [[nodiscard]] Mat3 operator()(Index p, Index q, int medium) const;
+
+  /// Whether two nodes are so near each other through the material that one's patch has the other inside.
+  [[nodiscard]] bool neighbours(Index p, Index q) const {
+    return find(rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(q)])], p, 0) != nullptr;
+  }
+
+  /// Media differ by their Poisson ratio; E only scales.
+  [[nodiscard]] int medium_of(int region) const { return region_medium_[static_cast<std::size_t>(region)]; }
+  [[nodiscard]] Medium medium(int number) const;  ///< with E = 1 MPa
+
+  /// The free surface near a node.
+  [[nodiscard]] const NearSurface& skin(Index node) const {
+    return rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(node)])].skin;
+  }
+
+  /// Mean length of the edges at a node [mm].
+  [[nodiscard]] double edge(Index node) const {
+    return rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(node)])].edge;
+  }
+
+  /// Radius over which the mesh smears a force on a node: the ε of the regularised kernel with the same
+  /// self-compliance. Of nodes away from surfaces. For reports; no force depends on it.
+  struct Blur {
+    double smallest_mm = 0.0;
+    double median_mm = 0.0;
+    double largest_mm = 0.0;
+    int nodes = 0;
+  };
+  [[nodiscard]] Blur blur() const;
+
+ private:
+  struct Row {
+    Index node = -1;
+    double edge = 0.0;
+    NearSurface skin;
+    std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
+    std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa
+  };
+  [[nodiscard]] Row make_row(Index node) const;
+  void make_symmetric(std::size_t first_new);
+  [[nodiscard]] const Mat3* find(const Row& row, Index node, int medium) const;
+
+  std::shared_ptr<const Tissue> tissue_;
+  SurfaceDistance skin_;
+  std::vector<double> poisson_;                ///< (media)
+  std::vector<int> region_medium_;             ///< (regions)
+  std::vector<std::vector<Index>> node_tets_;  ///< (n) elements around a displacement node
+  std::vector<Index> slot_;                    ///< (n) row of a node, -1
+  std::vector<Row> rows_;
+};
+
+}  // namespace stylet

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/contact_compliance.hpp"
+#include "stylet/coupling/near_field/mesh_kernel.hpp"
+#include "stylet/coupling/near_field/needle_kernel.hpp"
+#include "stylet/fem/tissue.hpp"
+
+#include <memory>
+
+namespace stylet {
+
+/// Compliance among held points with the near field of the needle put right. Elements cannot represent the field of a
+/// needle thinner than they are. So what the mesh makes of that field is taken out of K⁻¹, and the field itself put in:
+///   A(c,d) = Λ_c (K⁻¹ − g) Λ_dᵀ + ⟨G⟩(c,d),
+/// g being the mesh's own kernel (MeshKernel) and ⟨G⟩ the medium's, averaged over the needle's pieces. K⁻¹ − g is
+/// smooth, any mesh represents it; ⟨G⟩ does not know the mesh. docs/theory/near_field.md derives it.
+///
+/// Points are interpolated, whatever placement is asked for; the mesh does not change.
+class NearFieldCompliance final : public ContactCompliance {
+ public:
+  /// @param far Λ K⁻¹ Λᵀ from whatever engine keeps K⁻¹; has no points yet
+  /// @param kernel of the tissue's mesh
+  NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
+                      std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity);
+
+  /// @param travel direction of the piece of needle there; zero = a point
+  Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
+  bool move_tip(const MaterialPoint& at, const Vec3& x) override;
+  [[nodiscard]] bool available(Index base_tet) const override;
+  void remove_last_embedded() override;
+  void reset() override;
+
+  /// Of the far field: what the mesh represents.
+  [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const override;
+
+  /// With the near field, wherever a node lies in it.
+  [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
+
+ private:
+  /// What the kernels need to know of a point.
+  struct Place {
+    Shape shape;
+    Segment piece;
+    double epsilon = 0.0;  ///< [mm] of the needle there
+    int medium = 0;
+    double young_MPa = 0.0;
+    NearSurface skin;
+    double edge = 0.0;   ///< [mm] size of the elements there
+    double moves = 1.0;  ///< 0…1: weight of the element's nodes that are not held
+  };
+  [[nodiscard]] Place place_at(const MaterialPoint& at, const Vec3& x) const;
+  [[nodiscard]] bool neighbours(const Shape& at, const Shape& on) const;
+  [[nodiscard]] Mat3 correction(const Place& at, const Place& on) const;
+  [[nodiscard]] Mat3 correction(const Place& at, const Place& on, const Place& medium_of) const;
+  void write_row(int point);
+
+  std::unique_ptr<ContactCompliance> far_;
+  std::shared_ptr<const Tissue> tissue_;
+  std::shared_ptr<const MeshKernel> kernel_;
+  NeedleKernel needle_;
+  std::vector<Place> places_;  ///< (points)
+};
+
+}  // namespace stylet

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+#include "stylet/geom/tet_mesh.hpp"
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace stylet {
+
+/// The nearest surface of one kind, as a plane.
+struct NearSurface {
+  double depth = std::numeric_limits<double>::infinity();  ///< [mm]
+  Vec3 inwards = Vec3::UnitZ();                            ///< unit normal, into the tissue
+  double share = 0.0;  ///< 0…1: how much of its image counts; fades out some elements away from it
+};
+
+/// Distance to a set of triangles, with a normal that turns continuously along them.
+class SurfaceDistance {
+ public:
+  /// @param triangles corners ordered so that the normal points out of the tissue; empty = nothing near
+  SurfaceDistance(const std::vector<Vec3>& nodes, std::vector<std::array<Index, 3>> triangles);
+  ~SurfaceDistance();
+  SurfaceDistance(SurfaceDistance&&) noexcept;
+  SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
+
+  [[nodiscard]] NearSurface nearest(const Vec3& x) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace stylet

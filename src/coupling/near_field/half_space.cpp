@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/coupling/near_field/half_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stylet {
+
+Mat3 free_surface_image(const Vec3& r, const SurfacePair& surface, double epsilon, const Medium& medium) {
+  const double nu = medium.poisson;
+  const double z = surface.at;
+  const double c = surface.on;
+  const Vec3& n = surface.inwards;
+  const Vec3 along = r - n.dot(r) * n;  // x, y of Mindlin's paper
+  const double sum = z + c;
+  const double R2 = std::sqrt(along.squaredNorm() + sum * sum + epsilon * epsilon);
+  const double R = R2 + sum;
+  const double inverse = 1.0 / R2;
+  const double cube = inverse * inverse * inverse;
+  const double fifth = cube * inverse * inverse;
+  const double k = 3.0 - 4.0 * nu;
+  const double m = 4.0 * (1.0 - nu) * (1.0 - 2.0 * nu);
+  const double near = m * inverse / R;  // 4(1−ν)(1−2ν) / (R₂ (R₂ + z + c))
+
+  // Force along the surface.
+  const double tangential = inverse + 2.0 * c * z * cube + m / R;
+  const double dyad = k * cube - 6.0 * c * z * fifth - near / R;
+  // Displacement along the normal of a force along the surface, and the other way round.
+  const double down = k * (z - c) * cube - 6.0 * c * z * sum * fifth + near;
+  const double out = k * (z - c) * cube + 6.0 * c * z * sum * fifth - near;
+  // Force along the normal.
+  const double normal = (8.0 * (1.0 - nu) * (1.0 - nu) - k) * inverse + (k * sum * sum - 2.0 * c * z) * cube +
+                        6.0 * c * z * sum * sum * fifth;
+
+  const double scale = 1.0 / (16.0 * std::numbers::pi * medium.mu * (1.0 - nu));
+  Mat3 image = tangential * (Mat3::Identity() - n * n.transpose()) + dyad * along * along.transpose() +
+               down * n * along.transpose() + out * along * n.transpose() + normal * n * n.transpose();
+  return scale * image;
+}
+
+namespace {
+
+/// 1 where both points see the same plane, 0 where their nearest surfaces are two, as on both sides of a fold: then the
+/// difference of their depths is not that of their places.
+double one_plane(const Vec3& r, const SurfacePair& surface) {
+  constexpr double same = 0.25;
+  constexpr double different = 0.5;
+  const double off = std::abs(surface.inwards.dot(r) - (surface.at - surface.on));
+  constexpr double rounding_mm = 1e-6;
+  const double distance = r.norm() + rounding_mm;
+  if (off <= same * distance) return 1.0;
+  return std::max(0.0, (different * distance - off) / ((different - same) * distance));
+}
+
+}  // namespace
+
+Mat3 surface_image(const Vec3& r, const NearSurface& at, const NearSurface& on, double epsilon, const Medium& medium) {
+  double share = 0.5 * (at.share + on.share);
+  if (share == 0.0) return Mat3::Zero();
+  const SurfacePair pair{(at.inwards + on.inwards).normalized(), at.depth, on.depth};
+  share *= one_plane(r, pair) * std::max(0.0, at.inwards.dot(on.inwards));
+  if (share == 0.0) return Mat3::Zero();
+  return share * free_surface_image(r, pair, epsilon, medium);
+}
+
+}  // namespace stylet

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/coupling/near_field/near_field_compliance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+
+/// Beyond so many edges the mesh represents the field as it is: what is left is its error of interpolation, of relative
+/// size (edge / distance)² / 8.
+constexpr double kReach = 5.0;
+
+Medium scaled(Medium medium, double young_MPa) {
+  medium.mu *= young_MPa;
+  return medium;
+}
+
+}  // namespace
+
+NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
+                                         std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle,
+                                         int capacity)
+    : far_(std::move(far)), tissue_(std::move(tissue)), kernel_(std::move(kernel)), needle_(needle) {
+  places_.reserve(static_cast<std::size_t>(capacity) + 1);
+  A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
+  reset();
+}
+
+void NearFieldCompliance::reset() {
+  far_->reset();
+  places_.assign(1, Place{});
+  points_ = 1;
+  ++version_;
+  A_.setZero();
+}
+
+bool NearFieldCompliance::available(Index base_tet) const {
+  const auto nodes = tissue_->nodes_of(base_tet);
+  return far_->available(base_tet) &&
+         std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return kernel_->has(node); });
+}
+
+NearFieldCompliance::Place NearFieldCompliance::place_at(const MaterialPoint& at, const Vec3& x) const {
+  const Tissue& tissue = *tissue_;
+  const int region = tissue.mesh().tet_region[static_cast<std::size_t>(at.tet)];
+  Place place;
+  place.shape = tissue.shape(at.tet, at.weights);
+  place.piece.centre = x;
+  place.medium = kernel_->medium_of(region);
+  place.young_MPa = tissue.material(region).young_MPa;
+  const NearSurface& any = kernel_->skin(tissue.mesh().tets[static_cast<std::size_t>(at.tet)][0]);
+  const bool has_skin = std::isfinite(any.depth);
+  place.skin = {0.0, Vec3::Zero(), 0.0};
+  place.moves = 0.0;
+  const auto& corners = tissue.mesh().tets[static_cast<std::size_t>(at.tet)];
+  for (int i = 0; i < 4; ++i) {
+    const Index corner = corners[static_cast<std::size_t>(i)];
+    const double weight = at.weights[i];
+    place.edge += weight * kernel_->edge(corner);
+    if (!tissue.is_fixed(corner)) place.moves += weight;
+    if (!has_skin) continue;
+    const NearSurface& there = kernel_->skin(corner);
+    place.skin.depth += weight * there.depth;
+    place.skin.inwards += weight * there.inwards;
+    place.skin.share += weight * there.share;
+  }
+  place.moves = std::clamp(place.moves, 0.0, 1.0);
+  place.skin.inwards.normalize();
+  place.skin.depth = std::max(0.0, place.skin.depth);
+  if (!has_skin) place.skin = {};
+  return place;
+}
+
+/// What the needle's kernel and the mesh's differ by in the medium of one of the two places.
+Mat3 NearFieldCompliance::correction(const Place& at, const Place& on, const Place& medium_of) const {
+  const Medium medium = scaled(kernel_->medium(medium_of.medium), medium_of.young_MPa);
+  Mat3 of_mesh = Mat3::Zero();
+  for (int i = 0; i < at.shape.count; ++i) {
+    for (int j = 0; j < on.shape.count; ++j) {
+      const auto a = static_cast<std::size_t>(i);
+      const auto b = static_cast<std::size_t>(j);
+      const double weight = at.shape.weight[a] * on.shape.weight[b];
+      if (weight != 0.0) of_mesh += weight * (*kernel_)(at.shape.node[a], on.shape.node[b], medium_of.medium);
+    }
+  }
+  return needle_kernel(at.piece, at.skin, on.piece, on.skin, std::sqrt(at.epsilon * on.epsilon), medium) -
+         of_mesh / medium_of.young_MPa;
+}
+
+bool NearFieldCompliance::neighbours(const Shape& at, const Shape& on) const {
+  for (int i = 0; i < at.count; ++i) {
+    for (int j = 0; j < on.count; ++j) {
+      if (kernel_->neighbours(at.node[static_cast<std::size_t>(i)], on.node[static_cast<std::size_t>(j)])) return true;
+    }
+  }
+  return false;
+}
+
+Mat3 NearFieldCompliance::correction(const Place& at, const Place& on) const {
+  const double edge = 0.5 * (at.edge + on.edge);
+  const double distance2 = (at.piece.centre - on.piece.centre).squaredNorm();
+  if (distance2 > kReach * kReach * edge * edge) return Mat3::Zero();
+  if (distance2 < edge * edge && !neighbours(at.shape, on.shape)) return Mat3::Zero();  // across a gap of air
+  const double share = at.moves * on.moves;
+  if (share == 0.0) return Mat3::Zero();
+  if (at.medium == on.medium && at.young_MPa == on.young_MPa) return share * correction(at, on, at);
+  return 0.5 * share * (correction(at, on, at) + correction(at, on, on));
+}
+
+void NearFieldCompliance::write_row(int point) {
+  const Place& at = places_[static_cast<std::size_t>(point)];
+  for (int d = 0; d < points_; ++d) {
+    const Mat3 block = (*far_)(point, d) + correction(at, places_[static_cast<std::size_t>(d)]);
+    A_.block<3, 3>(3 * point, 3 * d) = block;
+    A_.block<3, 3>(3 * d, 3 * point) = block.transpose();
+  }
+  const Mat3 own = A_.block<3, 3>(3 * point, 3 * point);
+  A_.block<3, 3>(3 * point, 3 * point) = 0.5 * (own + own.transpose());
+}
+
+ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const Vec3& x, Placement /*placement*/,
+                                                  const Vec3& travel) {
+  if (!available(at.tet)) return {-1, Refusal::missing};
+  const Added added = far_->add(at, x, Placement::embedded);
+  if (added.point < 0) return added;
+  Place place = place_at(at, x);
+  if (travel.squaredNorm() > 0.0) {
+    place.piece.direction = travel.normalized();
+    place.piece.length = needle_.segment_mm;
+  }
+  place.epsilon = needle_.shaft_epsilon();
+  places_.push_back(place);
+  ++points_;
+  ++version_;
+  write_row(added.point);
+  return added;
+}
+
+bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
+  if (!available(at.tet)) return false;
+  far_->move_tip(at, x);
+  Place& tip = places_[kTip];
+  tip = place_at(at, x);
+  tip.epsilon = needle_.tip_epsilon(tip.skin.depth, kernel_->medium(tip.medium).poisson);
+  write_row(kTip);
+  if (!needle_.press_N.empty()) {
+    const int region = tissue_->mesh().tet_region[static_cast<std::size_t>(at.tet)];
+    const Medium medium = scaled(kernel_->medium(tip.medium), tip.young_MPa);
+    A_.topLeftCorner<3, 3>() +=
+        tip.moves * needle_.dent(tip.skin, needle_.press_N[static_cast<std::size_t>(region)], medium);
+  }
+  return true;
+}
+
+void NearFieldCompliance::remove_last_embedded() {
+  far_->remove_last_embedded();
+  places_.pop_back();
+  --points_;
+  ++version_;
+}
+
+Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) const {
+  return far_->gradient_at_tip(forces);
+}
+
+VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
+  VecX u = far_->displacement(forces);
+  for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
+    if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
+    Place here;
+    here.shape.count = 1;
+    here.shape.node[0] = node;
+    here.shape.weight[0] = 1.0;
+    here.piece.centre = tissue_->node_position(node);
+    here.skin = kernel_->skin(node);
+    here.edge = kernel_->edge(node);
+    for (int d = 0; d < points_; ++d) {
+      if (forces.col(d).isZero(0.0)) continue;
+      const Place& on = places_[static_cast<std::size_t>(d)];
+      here.epsilon = on.epsilon;  // the node, being passive, has no radius of its own
+      here.medium = on.medium;
+      here.young_MPa = on.young_MPa;
+      u.segment<3>(3 * Eigen::Index{node}) += correction(here, on) * forces.col(d);
+    }
+  }
+  return u;
+}
+
+VecX NearFieldCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
+  return far_->displacement(forces);
+}
+
+ContactCompliance::Nodes NearFieldCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {
+  return far_->nodes(forces);
+}
+
+}  // namespace stylet

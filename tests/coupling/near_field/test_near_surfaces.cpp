@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/near_field/medium_block.hpp"
+
+namespace stylet {
+namespace {
+
+using test::MediumBlock;
+
+/// Compliance of a tip at x as in a half space without sides: the block's held nodes move with the half space's field.
+Mat3 tip_in_half_space(MediumBlock& block, const NeedleKernel& needle, const Vec3& x) {
+  block.prepare({x});
+  NearFieldCompliance compliance = block.compliance(needle, 1);
+  EXPECT_TRUE(compliance.move_tip(block.at(x), x));
+  const double depth = x.z() + 50.0;
+  std::vector<Mat3> field;
+  for (const Index node : block.fixed) {
+    const Vec3& y = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
+    const SurfacePair surface{Vec3::UnitZ(), y.z() + 50.0, depth};
+    field.push_back(kelvinlet(y - x, 1e-6, block.medium) + free_surface_image(y - x, surface, 1e-6, block.medium));
+  }
+  return compliance(0, 0) + block.lift(x, field);
+}
+
+class TipNearTheSkin : public testing::TestWithParam<int> {};
+
+TEST_P(TipNearTheSkin, gives_way_like_a_flat_punch_on_it) {
+  MediumBlock block({.cells = GetParam(), .skin = true});
+  const NeedleKernel needle;
+  const double punch = (1.0 - 0.45 * 0.45) / (2.0 * needle.radius_mm * 0.01);
+  for (const Vec3& x : {Vec3(1.3, 0.7, -50), Vec3(4.1, -3.3, -50), Vec3(0.2, 8.9, -50)})
+    EXPECT_NEAR(tip_in_half_space(block, needle, x)(2, 2) / punch, 1.0, 0.03) << x.transpose();
+}
+
+TEST_P(TipNearTheSkin, gives_way_as_mindlin_says_below_it) {
+  MediumBlock block({.cells = GetParam(), .skin = true});
+  const NeedleKernel needle;
+  for (const double depth : {1.0, 2.0, 4.0, 7.0, 10.0}) {
+    const Vec3 x(2.3, -1.7, depth - 50.0);
+    const double epsilon = needle.tip_epsilon(depth, block.medium.poisson);
+    const Mat3 mindlin = kelvinlet(Vec3::Zero(), epsilon, block.medium) +
+                         free_surface_image(Vec3::Zero(), {Vec3::UnitZ(), depth, depth}, epsilon, block.medium);
+    const Mat3 ours = tip_in_half_space(block, needle, x);
+    EXPECT_LT((ours - mindlin).norm(), 0.03 * mindlin.norm()) << depth;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Meshes, TipNearTheSkin, testing::Values(7, 12));
+
+TEST(PointForceNearTheSkin, moves_other_points_as_mindlin_says) {
+  MediumBlock block({.cells = 14, .skin = true});
+  for (const double depth : {1.0, 3.0, 6.0, 10.0}) {
+    const Vec3 source(2.3, -1.7, depth - 50.0);
+    for (const Vec3& way : {Vec3(3, 0, 0), Vec3(-2, 2, 3), Vec3(0, 0, 5), Vec3(6, -4, 2)}) {
+      const Vec3 seen = source + way;
+      block.prepare({source, seen});
+      NearFieldCompliance compliance = block.compliance({.radius_mm = 0.05}, 1);  // a point, as Mindlin's force is
+      ASSERT_TRUE(compliance.move_tip(block.at(source), source));
+      ASSERT_EQ(compliance.add(block.at(seen), seen, Placement::embedded).point, 1);
+      std::vector<Mat3> field;
+      for (const Index node : block.fixed) {
+        const Vec3& y = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
+        field.push_back(kelvinlet(y - source, 1e-6, block.medium) +
+                        free_surface_image(y - source, {Vec3::UnitZ(), y.z() + 50.0, depth}, 1e-6, block.medium));
+      }
+      const Mat3 mindlin = kelvinlet(way, 1e-6, block.medium) +
+                           free_surface_image(way, {Vec3::UnitZ(), depth + way.z(), depth}, 1e-6, block.medium);
+      const Mat3 ours = compliance(1, 0) + block.lift(seen, field);
+      EXPECT_LT((ours - mindlin).norm(), 0.1 * mindlin.norm()) << depth << ": " << way.transpose();
+    }
+  }
+}
+
+TEST(TipNearBone, gives_way_less_the_nearer_it_is_and_not_at_all_on_it) {
+  MediumBlock block({.cells = 10, .also_held = [](const Vec3& x) { return x.z() > 9.0; }});
+  const NeedleKernel needle;
+  double before = 1e9;
+  double surface = 1e9;
+  for (Index node = 0; node < block.tissue->mesh().node_count(); ++node) {
+    const Vec3& x = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
+    if (x.z() > 9.0 && std::max(std::abs(x.x()), std::abs(x.y())) < 9) surface = std::min(surface, x.z());
+  }
+  for (const double away : {20.0, 10.0, 5.0, 2.0, 1.0}) {
+    const Vec3 x(0.4, 0.3, surface - away);
+    block.prepare({x});
+    NearFieldCompliance compliance = block.compliance(needle, 1);
+    ASSERT_TRUE(compliance.move_tip(block.at(x), x));
+    const double own = compliance(0, 0).trace();
+    EXPECT_GT(own, 0.0) << away;
+    EXPECT_LT(own, before) << away;
+    before = own;
+  }
+  for (Index node = 0; node < block.tissue->mesh().node_count(); ++node) {
+    const Vec3& x = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
+    if (x.z() > 15.0 || x.z() < 9.0 || std::max(std::abs(x.x()), std::abs(x.y())) > 25) continue;
+    block.prepare({x});
+    NearFieldCompliance compliance = block.compliance(needle, 1);
+    ASSERT_TRUE(compliance.move_tip(block.at(x), x));
+    EXPECT_LT(compliance(0, 0).norm(), 1e-9) << x.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace stylet
