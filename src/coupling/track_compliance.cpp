@@ -336,6 +336,7 @@ TrackCompliance::Nodes TrackCompliance::nodes(const Eigen::Ref<const MatX>& forc
   const Tissue& tissue = store_->tissue();
   const VecX load = base_load(forces);
   std::vector<Vec3> positions;
+  positions.reserve(static_cast<std::size_t>(tissue.displacement_nodes()));
   for (Index node = 0; node < tissue.displacement_nodes(); ++node) positions.push_back(tissue.node_position(node));
   return {std::move(positions), load, tissue.support_forces(tissue.solve(load))};
 }

@@ -123,7 +123,7 @@ Result<Tissue> Tissue::build(TetMesh mesh, std::vector<Material> materials, std:
   report(progress, "assembling", 0.0);
   auto assembled = detail::assemble(discretisation, parts->mesh.tet_count(), parts->material_of(), parts->first_dof,
                                     parts->free_dofs);
-  parts->K = std::move(assembled.K);
+  parts->K.swap(assembled.K);
 
   const auto start = std::chrono::steady_clock::now();
   const auto failed = parts->factor.factorise(parts->K, assembled.pattern, progress);

@@ -41,7 +41,7 @@ Vec3 nearest_weights(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c)
 }  // namespace
 
 struct SurfaceDistance::Tree {
-  const std::vector<Vec3>* nodes;
+  const std::vector<Vec3>* nodes = nullptr;
   std::vector<std::array<Index, 3>> triangles;
   std::vector<Vec3> normal;  ///< (n) at the nodes, the triangles' means weighted by area
   Eigen::KdBVH<double, 3, int> boxes;
