@@ -64,7 +64,7 @@ Result<Finding> liver_puncture_depth(Context&) {
   finding.why_missed =
       "A contact tied to the mesh is held by a whole element: on a coarse mesh the tip’s own field, a few radii wide, "
       "is "
-      "missing, and the tissue seems many times too stiff. The near-field correction is there for this.";
+      "missing, and the tissue seems many times too stiff. With the near-field coupling that is no longer the reason.";
   finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(*drive)}};
   Curve measured{.label = "measured stiffness", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (int k = 0; k <= 33; ++k) {
@@ -167,7 +167,7 @@ Result<Finding> demo_puncture_depth(Context& context) {
   finding.why_missed = fmt::format(
       "A flat punch at the same force and modulus sinks in by {:.0f} mm. A contact tied to the mesh is held by whole "
       "elements "
-      "and far too stiff; the near-field correction is there for this.",
+      "and far too stiff; with the near-field coupling that is no longer the reason.",
       tenting_mm(tissue, tissue.puncture_N, (*run)->model->scenario().needle.diameter_mm));
   return finding;
 }
