@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bodies.hpp"
-#include "quadrature.hpp"
+#include "validate/quadrature.hpp"
 
 #include <cstdio>
 #include <numbers>
@@ -79,7 +79,7 @@ Errors solve(const Manufactured& problem, const Material& material, int cells, E
   const auto fixed =
       test::nodes_where(mesh, [](const Vec3& x) { return (x.array() == 0.0).any() || (x.array() == kSide_mm).any(); });
   const Tissue tissue = test::build(std::move(mesh), {material}, fixed, element);
-  const auto rule = test::quadrature();
+  const auto rule = validate::tetrahedron_rule(4);
   // Visits every quadrature point: place, volume, shape.
   const auto for_each_point = [&](const auto& visit) {
     for (Index t = 0; t < tissue.mesh().tet_count(); ++t) {
@@ -184,21 +184,8 @@ TEST(TissueConvergence, AveragedPressureAndQuadraticTetrahedraDoNotLock) {
   EXPECT_LT(lost_compliance(Element::p2, 10, 0.499), 0.05);
 }
 
-// A block of 60 mm stands on its floor and is pressed from above by a smooth hill of pressure; mean depth under the
-// load, weighted with it [mm].
 double indentation(const Material& material, int cells, Element element) {
-  constexpr double peak_MPa = 2e-3;
-  TetMesh mesh = box_mesh({0, 0, 0}, Vec3::Constant(kSide_mm), {cells, cells, cells}, 0.1);
-  const auto fixed = test::nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
-  const Tissue tissue = test::build(std::move(mesh), {material}, fixed, element);
-  const VecX f = test::traction(tissue, [&](const Vec3& x, int /*region*/) {
-    Mat3 stress = Mat3::Zero();
-    const double hill = std::sin(kPi * x.x() / kSide_mm) * std::sin(kPi * x.y() / kSide_mm);
-    if (x.z() == kSide_mm) stress(2, 2) = -peak_MPa * hill * hill;
-    return stress;
-  });
-  const VecX u = tissue.solve(f);
-  return f.dot(u) / std::abs(test::resultant(f).z());
+  return validate::press_block(material, cells, element).value().dent_mm;
 }
 
 TEST(NearlyIncompressibleBlock, IsAsSoftAsAFineMeshSaysWithEveryElementButTheLinear) {

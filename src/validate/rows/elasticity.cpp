@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tissue against closed solutions of linear elasticity, and against CalculiX.
 #include "../rows.hpp"
+#include "../solids.hpp"
 #include "stylet/fem/tissue.hpp"
 #include "stylet/geom/box_mesh.hpp"
-#include "stylet/geom/topology.hpp"
 #include "stylet/validate/calculix.hpp"
 
 #include <fmt/format.h>
@@ -18,38 +18,9 @@ namespace {
 
 const Material kGland{0.040, 0.45};
 
-std::vector<Index> nodes_where(const TetMesh& mesh, const std::function<bool(const Vec3&)>& chosen) {
-  std::vector<Index> nodes;
-  for (Index a = 0; a < mesh.node_count(); ++a)
-    if (chosen(mesh.nodes[static_cast<std::size_t>(a)])) nodes.push_back(a);
-  return nodes;
-}
-
-VecX sample(const TetMesh& mesh, const std::function<Vec3(const Vec3&)>& field) {
-  VecX u(3 * Eigen::Index{mesh.node_count()});
-  for (Index a = 0; a < mesh.node_count(); ++a) u.segment<3>(3 * a) = field(mesh.nodes[static_cast<std::size_t>(a)]);
-  return u;
-}
-
-Mat3 stress_of(const Material& material, const Mat3& gradient) {
-  const Mat3 strain = 0.5 * (gradient + gradient.transpose());
-  return material.lambda() * strain.trace() * Mat3::Identity() + 2.0 * material.mu() * strain;
-}
-
-/// Nodal forces [N] (3n) of the traction σ n on all outer faces.
-VecX traction(const TetMesh& mesh, const Mat3& stress) {
-  VecX f = VecX::Zero(3 * Eigen::Index{mesh.node_count()});
-  const Topology topology(mesh);
-  for (const Face& face : topology.boundary) {
-    const auto x = [&](int k) { return mesh.nodes[static_cast<std::size_t>(face.nodes[static_cast<std::size_t>(k)])]; };
-    const Vec3 share = stress * (0.5 * (x(1) - x(0)).cross(x(2) - x(0))) / 3.0;
-    for (const Index a : face.nodes) f.segment<3>(3 * a) += share;
-  }
-  return f;
-}
-
-double relative_error(const VecX& value, const VecX& expected) {
-  return (value - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+/// Nodal forces [N] of one stress on all outer faces.
+VecX uniform_traction(const Tissue& tissue, const Mat3& stress) {
+  return traction(tissue, [&](const Vec3&, int) { return stress; });
 }
 
 /// The jittered box of the patch test with its floor held.
@@ -67,8 +38,8 @@ Result<Finding> patch_test(Context&) {
   finding.value = 0.0;
   for (const Vec3& c : {Vec3(0.03, 0, 0), Vec3(0, -0.02, 0), Vec3(0, 0, 0.01), Vec3(0.01, 0.02, -0.03)}) {
     const Mat3 gradient = c * Vec3::UnitZ().transpose();
-    const VecX expected = sample(mesh, [&](const Vec3& x) { return Vec3(c * (x.z() - 30.0)); });
-    const VecX u = tissue->solve(traction(mesh, stress_of(kGland, gradient)));
+    const VecX expected = sample(*tissue, [&](const Vec3& x) { return Vec3(c * (x.z() - 30.0)); });
+    const VecX u = tissue->solve(uniform_traction(*tissue, stress_of(kGland, gradient)));
     finding.value = std::max(finding.value, relative_error(u, expected));
   }
   finding.note = fmt::format("Irregular mesh of {} nodes, floor held, four linear fields.", mesh.node_count());
@@ -82,7 +53,7 @@ Result<Finding> rigid_motions(Context&) {
   finding.value = 0.0;
   for (int mode = 0; mode < 6; ++mode) {
     const Vec3 axis = Vec3::Unit(mode % 3);
-    const VecX u = sample(tissue->mesh(), [&](const Vec3& x) { return mode < 3 ? axis : Vec3(axis.cross(x) / 60.0); });
+    const VecX u = sample(*tissue, [&](const Vec3& x) { return mode < 3 ? axis : Vec3(axis.cross(x) / 60.0); });
     // Relative to the stress that a strain of the same motion over 1 mm would make.
     const double scale = kGland.lambda() * u.cwiseAbs().maxCoeff();
     finding.value = std::max(finding.value, tissue->stress(u).cwiseAbs().maxCoeff() / scale);
@@ -102,10 +73,10 @@ Result<Finding> uniaxial_bar(Context&) {
   constexpr double area = 150.0;
   Mat3 stress = Mat3::Zero();
   stress(2, 2) = force / area;
-  const VecX u = tissue->solve(traction(tissue->mesh(), stress));
+  const VecX u = tissue->solve(uniform_traction(*tissue, stress));
   const double strain = force / (material.young_MPa * area);
   Finding finding;
-  finding.value = relative_error(u, sample(tissue->mesh(), [&](const Vec3& x) { return Vec3(0, 0, strain * x.z()); }));
+  finding.value = relative_error(u, sample(*tissue, [&](const Vec3& x) { return Vec3(0, 0, strain * x.z()); }));
   finding.note = fmt::format("100 mm long, {:g} N on {:g} mm², 20 kPa: {:.4g} mm.", force, area, 100.0 * strain);
   return finding;
 }

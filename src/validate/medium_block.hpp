@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/near_field/near_field_compliance.hpp"
+#include "stylet/coupling/track_compliance.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stylet::validate {
+
+/// A cube of 100 mm around the origin, E = 10 kPa unless told otherwise, and what checks of the near field ask of it.
+struct MediumBlock {
+  struct Options {
+    int cells = 10;
+    double poisson = 0.45;
+    double jitter = 0.15;
+    bool skin = false;  ///< the face z = −50 mm is free; else all faces are held
+    std::vector<std::string> regions{"body"};
+    std::function<int(const Vec3&)> region_at = [](const Vec3&) { return 0; };
+    std::vector<Material> materials{};  ///< empty: one of 10 kPa
+    std::function<bool(const Vec3&)> also_held = [](const Vec3&) { return false; };
+    Element element = Element::p1;
+  };
+  static constexpr double kHalf_mm = 50.0;
+  static constexpr double kYoung_MPa = 0.01;
+
+  /// Errors: those of Tissue::build.
+  static Result<MediumBlock> build(const Options& options);
+
+  /// @param x inside the cube, or std::bad_optional_access is thrown
+  [[nodiscard]] MaterialPoint at(const Vec3& x) const;
+
+  /// Makes the compliance around these points available.
+  void prepare_mesh(const std::vector<Vec3>& points) { store->add_nodes(corners_around(points)); }
+  /// The near field of the mesh as well.
+  void prepare(const std::vector<Vec3>& points);
+
+  [[nodiscard]] NearFieldCompliance compliance(const NeedleKernel& needle, int capacity) const;
+
+  /// What the k held nodes feel of unit forces on the material point x [N/N] (3k × 3), node by node in the order of
+  /// `fixed`. By reciprocity −reactionsᵀ U is what moving the held nodes by U moves the point by.
+  [[nodiscard]] MatX reactions(const Vec3& x) const;
+
+  /// What moving the held nodes by `field` moves the material point x by (3×3).
+  /// @param field (k) displacement of the held nodes per unit of three loads
+  [[nodiscard]] Mat3 lift(const Vec3& x, const std::vector<Mat3>& field) const;
+
+  /// Compliance of a needle's tip at x [mm/N].
+  [[nodiscard]] Mat3 tip(const NeedleKernel& needle, const Vec3& x);
+
+  /// Displacement of the material point `seen` per force of a tip at x [mm/N].
+  [[nodiscard]] Mat3 tip_moves(const NeedleKernel& needle, const Vec3& x, const Vec3& seen);
+
+  std::vector<Index> fixed;
+  std::shared_ptr<const Tissue> tissue;
+  std::unique_ptr<Topology> topology;
+  std::unique_ptr<Locator> locator;
+  std::shared_ptr<ComplianceStore> store;
+  std::shared_ptr<MeshKernel> kernel;
+  Medium medium;  ///< of the first region
+
+ private:
+  [[nodiscard]] std::vector<Index> corners_around(const std::vector<Vec3>& points) const;
+};
+
+/// A straight needle of 64 mm around the cube's middle, held along its length and displaced as a whole.
+struct NeedleLine {
+  static constexpr double kLength_mm = 64.0;
+  static constexpr double kWay_mm = 5.0;
+  enum class Method { near_field, node_addition, embedded };
+
+  struct Options {
+    double spacing_mm = 4.0;  ///< of the points at which the needle is held
+    Vec3 direction = Vec3::UnitZ();
+    bool unbounded = false;  ///< the held faces move as they would in an unbounded medium
+    Method method = Method::near_field;
+  };
+  /// Methods other than the near field leave points out that follow from others, as an insertion does.
+  static NeedleLine build(MediumBlock& block, Options options);
+
+  /// Force [N] that moves the line by kWay_mm along a unit vector.
+  [[nodiscard]] double force(const Vec3& along) const;
+  [[nodiscard]] double lateral() const { return force(direction.unitOrthogonal()); }
+  [[nodiscard]] double axial() const { return force(direction); }
+
+  Vec3 direction = Vec3::UnitZ();
+  std::vector<Vec3> points;  ///< [mm]
+  MatX A;                    ///< compliance among the points [mm/N] (3·points × 3·points)
+};
+
+}  // namespace stylet::validate

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nearly incompressible tissue: what elements make of it that lock, and that do not.
+#include "../rows.hpp"
+#include "../solids.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::validate {
+
+namespace {
+
+struct Case {
+  Element element;
+  const char* label;
+  std::vector<int> cells;  ///< the last is the one that is judged
+};
+
+Result<Finding> locking(Context&) {
+  const Material nearly{0.02, 0.499};
+  const auto fine = press_block(nearly, 12, Element::p2);
+  if (!fine) return fine.error();
+  Finding finding;
+  finding.value = 0.0;
+  std::string each;
+  for (const Case& chosen :
+       {Case{Element::nodal_pressure, "averaged pressure (default)", {4, 6, 8, 12, 16}},
+        Case{Element::p2, "quadratic", {2, 3, 4, 6, 8}}, Case{Element::p1, "linear", {4, 6, 8, 12, 16}}}) {
+    Curve curve{.label = chosen.label, .x = {}, .y = {}};
+    for (const int cells : chosen.cells) {
+      const auto found = press_block(nearly, cells, chosen.element);
+      if (!found) return found.error();
+      curve.x.push_back(found->displacement_nodes);
+      curve.y.push_back(found->dent_mm);
+    }
+    const double off = 100.0 * (curve.y.back() / fine->dent_mm - 1.0);
+    each += fmt::format("{}{} {:+.1f} %", each.empty() ? "" : ", ", chosen.label, off);
+    if (chosen.element != Element::p1) finding.value = std::max(finding.value, std::abs(off));
+    finding.plot.curves.push_back(std::move(curve));
+  }
+  Curve reference{.label = "fine mesh", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  for (const double x : {finding.plot.curves.front().x.front(), finding.plot.curves.front().x.back()}) {
+    reference.x.push_back(x);
+    reference.y.push_back(fine->dent_mm);
+  }
+  finding.plot.curves.push_back(std::move(reference));
+  finding.plot.x_label = "displacement nodes";
+  finding.plot.y_label = "dent [mm]";
+  finding.plot.log_x = true;
+  finding.note = fmt::format(
+      "A cube of 60 mm at ν = 0.499 that stands on its floor, a smooth pressure on top; dent on about 4,900 "
+      "displacement nodes against quadratic tetrahedra on {}: {}. The worse of the two that do not lock counts; the "
+      "reference is one of them on a finer mesh, the other shares no assumption with it.",
+      fine->displacement_nodes, each);
+  finding.why_missed = "The mesh is too coarse, or the reference itself is not fine enough.";
+  return finding;
+}
+
+}  // namespace
+
+std::vector<RowSpec> locking_rows() {
+  return {{"locking", Group::analysis, "Nearly incompressible tissue is as soft as it should be",
+           "a fine mesh of quadratic tetrahedra", "%", Accepted::at_most(2.0), false, locking}};
+}
+
+}  // namespace stylet::validate

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tip that has broken the skin stands in a dent sixteen times as deep as it is thick (docs/theory/near_field.md §5).
+#include "coupling/needle_in_block.hpp"
+
+namespace stylet {
+namespace {
+
+using test::BlockOptions;
+using test::NeedleInBlock;
+
+class TipInTheDent : public testing::TestWithParam<int> {};
+
+TEST_P(TipInTheDent, meets_no_more_force_than_broke_the_skin) {
+  constexpr double kPuncture_N = 1.0;
+  constexpr double kCutting_N = 0.05;
+  BlockOptions options;
+  options.cells = {GetParam(), GetParam(), GetParam()};
+  options.region_at = [](const Vec3&) { return 0; };
+  options.laws[0] = {kCutting_N, kPuncture_N, {}, false, true, -1};
+  NeedleInBlock run(options);
+  run.aim({2.0, 3.0, 0.0}, Vec3::UnitZ(), 0.0);
+  // Steps so short that the tip's way through the dent, some hundredths of a second, is seen.
+  constexpr double dt = 2e-4;
+  while (run.first(InsertionEventKind::puncture) == nullptr && run.depth < 30.0) run.go(run.depth + 0.01, 20.0, dt);
+  ASSERT_NE(run.first(InsertionEventKind::puncture), nullptr);
+  const auto broke = static_cast<std::size_t>(run.forces.size()) - 1;
+  run.go(run.depth + 15.0, 20.0, dt);
+
+  constexpr double hardly_N = 1e-3;
+  double least = kPuncture_N;
+  double rise = 0.0;
+  for (std::size_t i = broke; i < run.forces.size(); ++i) {
+    rise = std::max(rise, run.forces[i] - least);
+    least = std::min(least, run.forces[i]);
+  }
+  std::printf("rise %g\n", rise);
+  EXPECT_LT(rise, hardly_N);
+  EXPECT_NEAR(run.forces.back(), kCutting_N + options.coupling.tip_viscosity_Ns_per_mm * 20.0, 0.01);
+  EXPECT_EQ(run.flags, 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Meshes, TipInTheDent, testing::Values(5, 8, 14));
+
+}  // namespace
+}  // namespace stylet
