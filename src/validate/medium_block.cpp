@@ -157,7 +157,8 @@ NeedleLine NeedleLine::build(MediumBlock& block, Options options) {
   const int wanted = static_cast<int>(std::lround(kLength_mm / options.spacing_mm));
   const NeedleKernel needle{.segment_mm = options.spacing_mm};
   for (int k = 0; k < wanted; ++k)
-    line.points.push_back(Vec3(1.3, 0.7, 0.0) + (options.spacing_mm * (k + 0.5) - 0.5 * kLength_mm) * line.direction);
+    line.points.emplace_back(Vec3(1.3, 0.7, 0.0) +
+                             (options.spacing_mm * (k + 0.5) - 0.5 * kLength_mm) * line.direction);
   if (options.method == Method::near_field) {
     block.prepare(line.points);
     NearFieldCompliance contacts = block.compliance(needle, wanted);

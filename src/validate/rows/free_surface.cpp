@@ -47,7 +47,7 @@ Result<Finding> flat_punch(Context&) {
   Curve punch{.label = "flat punch", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (const std::string& method : {std::string("near-field"), std::string("embedded")}) {
     Curve curve{.label = method, .x = {}, .y = {}, .kind = Curve::Kind::points};
-    for (const int cells : {16, 12, 8, 6, 4}) {
+    for (const int cells : {12, 8, 6, 4}) {
       for (const std::array<double, 3>& entry :
            {std::array{3.0, 2.0, 0.0}, std::array{-4.1, 7.3, 0.0}, std::array{9.7, -1.2, 0.0}}) {
         const auto pressed = press_skin(method, cells, entry);
@@ -65,7 +65,7 @@ Result<Finding> flat_punch(Context&) {
     finding.plot.curves.push_back(std::move(curve));
   }
   finding.note = fmt::format(
-      "The hand presses the tip 0.1 mm into the skin of the block, at three places on meshes of five sizes; worst of "
+      "The hand presses the tip 0.1 mm into the skin of the block, at three places on meshes of four sizes; worst of "
       "all. Punch {:.3f} N/mm, {}. That the tip at a surface is as stiff as a flat punch was set, by its kernel’s "
       "radius, from this very formula; what is not set and shows here is that mesh, place in the mesh and a whole "
       "insertion’s set-up do not change it. The block is 100 mm wide and held around, a half space is not.",
@@ -110,7 +110,7 @@ Result<Finding> mindlin(Context&) {
     HalfSpace half{std::move(*built)};
     const Medium& medium = half.block.medium;
     Curve ours{.label = fmt::format("ours, elements of {:.0f} mm", 100.0 / cells), .x = {}, .y = {}};
-    for (const double depth : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0}) {
+    for (const double depth : {1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0}) {
       const Vec3 source = Vec3(2.3, -1.7, depth) - half.up;
       const auto far = half.far_field(source);
       // A ball of 1.5 kernel radii, deep inside; the surface's part is that of a point force.

@@ -65,6 +65,7 @@ class Lazy {
 };
 
 constexpr Element kDefaultElement = Element::nodal_pressure;  ///< what coupling.method = "near-field" takes
+constexpr int kFinestOfOthers = 20;                           ///< cells along an edge
 const std::string kNearField = "near field";
 const std::string kNodeAddition = "node addition";
 const std::string kEmbedded = "embedded";
@@ -82,7 +83,7 @@ void measure_methods(MediumBlock& block, NeedleLine::Options options, double x, 
   }
 }
 
-/// The needle line in one block after the other, finer and finer.
+/// The needle line in one block after the other. The finest mesh is for the near field alone, which is what is judged.
 Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbounded) {
   Study study;
   study.ours = {Forces(kNearField), Forces(kNodeAddition), Forces(kEmbedded)};
@@ -90,6 +91,7 @@ Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbound
   for (const int n : cells) {
     report(context.progress(), fmt::format("{} nodes", (n + 1) * (n + 1) * (n + 1)), 0.0);
     for (const Element element : {kDefaultElement, Element::p1}) {
+      if (element == Element::p1 && n > kFinestOfOthers) continue;
       auto block = MediumBlock::build({.cells = n, .element = element});
       if (!block) return block.error();
       measure_methods(*block, {.unbounded = unbounded}, kSide_mm / n, study);
@@ -160,14 +162,15 @@ Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
   return finding;
 }
 
-Result<Study> box_study(Context& context) { return over_meshes(context, {7, 10, 16, 26, 36}, false); }
+Result<Study> box_study(Context& context) { return over_meshes(context, {7, 10, 14, 20, 36}, false); }
 
 Result<Finding> over_mesh_size(const Result<Study>& study, bool lateral) {
   if (!study) return study.error();
   Finding finding;
   finding.value = spread(study->ours.front().of(lateral));
-  finding.note = fmt::format("{}, outer faces held; 512 … 50,653 nodes, largest over smallest force. {}.", kNeedle,
-                             ranges(*study, lateral));
+  finding.note = fmt::format(
+      "{}, outer faces held; 512 … 50,653 nodes, largest over smallest force; the other methods up to 9,261 nodes. {}.",
+      kNeedle, ranges(*study, lateral));
   finding.why_missed =
       "What is left is the far field: supports and the cube’s size are represented by elements, and those of 14 mm are "
       "stiffer than fine ones.";
@@ -196,6 +199,7 @@ Result<Finding> over_spacing(Context& context) {
       "The needle line in the held cube on 4,913 nodes, contacts 2 … 8 mm apart: {:.2f} % laterally, {:.2f} % axially "
       "between largest and smallest force, the larger counts. Lateral: {}. Axial: {}.",
       lateral, axial, ranges(study, true), ranges(study, false));
+  finding.why_missed = "Pieces of a needle as long as the spacing are taken to share their force evenly.";
   finding.plot = study.plot("contact spacing [mm]", true);
   return finding;
 }
