@@ -44,7 +44,7 @@ Result<Finding> viscosity(Context&) {
   pressing.wait(kTau_s, kStep_s);
   const double moving_s = kDent_mm / kSpeed_mm_per_s;
   double press_off = 0.0;
-  Curve force{.label = "force while pressed in and held", .x = {}, .y = {}};
+  Curve force{.label = "force over the held force", .x = {}, .y = {}};
   Curve force_law{.label = "k (d + τ v)", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (std::size_t i = 0; i < pressing.steps().size(); ++i) {
     const double time = kStep_s * static_cast<double>(i + 1);
@@ -65,7 +65,7 @@ Result<Finding> viscosity(Context&) {
   drive.go(-2.0, 40.0, kStep_s);
   const VecX first = drive.insertion().displacement();
   double relax_off = 0.0;
-  Curve left{.label = "tissue left displaced after the needle is out", .x = {0.0}, .y = {1.0}};
+  Curve left{.label = "displacement over the first, needle out", .x = {0.0}, .y = {1.0}};
   Curve law{.label = "exp(−t/τ)", .x = {0.0}, .y = {1.0}, .kind = Curve::Kind::reference};
   for (int look = 1; look <= 30; ++look) {
     constexpr double every_s = 0.1 * kTau_s;
@@ -84,13 +84,13 @@ Result<Finding> viscosity(Context&) {
   finding.value = std::max(press_off, relax_off);
   finding.note = fmt::format(
       "τ = {:g} s, steps of {:g} ms. The tip pressed into the skin at {:g} mm/s and held: the force is off by at most "
-      "{:.2f} % of the held {:.3f} N, whose stiffness k is the elastic block’s. A needle taken out after 30 mm: the "
+      "{:.2f} % of the held {:.3f} N, whose stiffness k is the elastic block’s; most in the step after a start or "
+      "stop, which the needle’s own "
+      "compression softens. A needle taken out after 30 mm: the "
       "whole field of displacement, {:.2f} mm at first, dies away to within {:.2f} % of that.",
       kTau_s, 1e3 * kStep_s, kSpeed_mm_per_s, press_off, held_N, first.cwiseAbs().maxCoeff(), relax_off);
   finding.why_missed = "Steps in time are of first order: dt/(2τ) of the change is to be expected.";
-  finding.plot = {.x_label = "time over τ",
-                  .y_label = "over the held force, over the first displacement",
-                  .curves = {force, left, force_law, law}};
+  finding.plot = {.x_label = "time over τ", .y_label = "force, displacement", .curves = {force, left, force_law, law}};
   return finding;
 }
 
