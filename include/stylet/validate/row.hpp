@@ -46,6 +46,11 @@ struct Curve {
   std::vector<double> x;
   std::vector<double> y;
   Kind kind = Kind::ours;
+
+  void add(double abscissa, double ordinate) {
+    x.push_back(abscissa);
+    y.push_back(ordinate);
+  }
 };
 
 /// A row's picture; none without curves.

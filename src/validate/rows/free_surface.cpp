@@ -67,8 +67,7 @@ Result<Finding> flat_punch(Context&) {
         if (method == kJudged)
           finding.value = std::max(finding.value, 100.0 * std::abs(pressed->ours / pressed->punch - 1.0));
       }
-      curve.x.push_back(100.0 / cells);
-      curve.y.push_back(sum / static_cast<double>(kEntries.size()));
+      curve.add(100.0 / cells, sum / static_cast<double>(kEntries.size()));
     }
     finding.note += fmt::format("{}{} {:.4f} … {:.4f} N/mm", finding.note.empty() ? "" : ", ", method, low, high);
     finding.plot.curves.push_back(std::move(curve));
@@ -129,13 +128,10 @@ Result<Finding> mindlin(Context&) {
       const Mat3 exact = ball + surface_part(source + half.up, source + half.up, medium);
       const Mat3 found = half.block.tip(needle, source) + half.block.lift(source, far);
       tip_off = std::max(tip_off, 100.0 * (found - exact).norm() / exact.norm());
-      ours.x.push_back(depth);
-      ours.y.push_back(found(2, 2));
+      ours.add(depth, found(2, 2));
       if (cells == 7) {
-        reference.x.push_back(depth);
-        reference.y.push_back(exact(2, 2));
-        deep.x.push_back(depth);
-        deep.y.push_back(ball(2, 2));
+        reference.add(depth, exact(2, 2));
+        deep.add(depth, ball(2, 2));
       }
       for (const Vec3& way : {Vec3(3, 0, 0), Vec3(-2, 2, 3), Vec3(0, 0, 5), Vec3(6, -4, 2)}) {
         const Vec3 seen = source + way;

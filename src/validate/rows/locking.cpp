@@ -32,8 +32,7 @@ Result<Finding> locking(Context&) {
     for (const int cells : chosen.cells) {
       const auto found = press_block(nearly, cells, chosen.element);
       if (!found) return found.error();
-      curve.x.push_back(found->displacement_nodes);
-      curve.y.push_back(found->dent_mm);
+      curve.add(found->displacement_nodes, found->dent_mm);
     }
     const double off = 100.0 * (curve.y.back() / fine->dent_mm - 1.0);
     each += fmt::format("{}{} {:+.1f} %", each.empty() ? "" : ", ", chosen.label, off);
@@ -42,8 +41,7 @@ Result<Finding> locking(Context&) {
   }
   Curve reference{.label = "fine mesh", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (const double x : {finding.plot.curves.front().x.front(), finding.plot.curves.front().x.back()}) {
-    reference.x.push_back(x);
-    reference.y.push_back(fine->dent_mm);
+    reference.add(x, fine->dent_mm);
   }
   finding.plot.curves.push_back(std::move(reference));
   finding.plot.x_label = "displacement nodes";

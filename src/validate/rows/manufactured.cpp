@@ -88,10 +88,8 @@ Result<Finding> order(Element element, const std::string& label, int expected, c
     const auto error = error_of(*n, element);
     if (!error) return error.error();
     const double h = kSide_mm / *n;
-    ours.x.push_back(h);
-    ours.y.push_back(*error);
-    slope.x.push_back(h);
-    slope.y.push_back(ours.y.front() * std::pow(h / ours.x.front(), expected) / 1.3);
+    ours.add(h, *error);
+    slope.add(h, ours.y.front() * std::pow(h / ours.x.front(), expected) / 1.3);
   }
   Finding finding;
   finding.value = std::log(ours.y[2] / ours.y[0]) / std::log(ours.x[2] / ours.x[0]);

@@ -53,10 +53,8 @@ Result<Finding> viscosity(Context&) {
     const double law = stiffness * (dent + (moves ? kTau_s * kSpeed_mm_per_s : 0.0)) / held_N;
     const double found = pressing.steps()[i].record.force_axial_N / held_N;
     press_off = std::max(press_off, 100.0 * std::abs(found - law));
-    force.x.push_back(time / kTau_s);
-    force.y.push_back(found);
-    force_law.x.push_back(time / kTau_s);
-    force_law.y.push_back(law);
+    force.add(time / kTau_s, found);
+    force_law.add(time / kTau_s, law);
   }
 
   // In, out, and left alone.
@@ -74,10 +72,8 @@ Result<Finding> viscosity(Context&) {
     const double expected = std::exp(-time / kTau_s);
     const VecX now = drive.insertion().displacement();
     relax_off = std::max(relax_off, 100.0 * (now - expected * first).norm() / first.norm());
-    left.x.push_back(time / kTau_s);
-    left.y.push_back(now.norm() / first.norm());
-    law.x.push_back(time / kTau_s);
-    law.y.push_back(expected);
+    left.add(time / kTau_s, now.norm() / first.norm());
+    law.add(time / kTau_s, expected);
   }
 
   Finding finding;
