@@ -13,7 +13,7 @@ Mat3 tip_in_half_space(MediumBlock& block, const NeedleKernel& needle, const Vec
   for (const Index node : block.fixed) {
     const Vec3& y = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
     const SurfacePair surface{Vec3::UnitZ(), y.z() + 50.0, depth};
-    field.push_back(kelvinlet(y - x, 1e-6, block.medium) + free_surface_image(y - x, surface, 1e-6, block.medium));
+    field.emplace_back(kelvinlet(y - x, 1e-6, block.medium) + free_surface_image(y - x, surface, 1e-6, block.medium));
   }
   return block.tip(needle, x) + block.lift(x, field);
 }
@@ -52,8 +52,8 @@ TEST(PointForceNearTheSkin, moves_other_points_as_mindlin_says) {
       std::vector<Mat3> field;
       for (const Index node : block.fixed) {
         const Vec3& y = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
-        field.push_back(kelvinlet(y - source, 1e-6, block.medium) +
-                        free_surface_image(y - source, {Vec3::UnitZ(), y.z() + 50.0, depth}, 1e-6, block.medium));
+        field.emplace_back(kelvinlet(y - source, 1e-6, block.medium) +
+                           free_surface_image(y - source, {Vec3::UnitZ(), y.z() + 50.0, depth}, 1e-6, block.medium));
       }
       const Mat3 mindlin = kelvinlet(way, 1e-6, block.medium) +
                            free_surface_image(way, {Vec3::UnitZ(), depth + way.z(), depth}, 1e-6, block.medium);
