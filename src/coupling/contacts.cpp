@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-/// Laying, waking and dropping of shaft contacts. A contact young enough to lie within one spacing of the tip yields:
-/// softness c₀(1/ρ − 1) with ρ = distance to the tip / spacing, and its share of the friction grows with ρ. It is born
-/// and dies with zero force, so neither moves the base force.
+/// Laying, waking and dropping of shaft contacts. A contact young enough to lie within three diameters of the tip
+/// yields: softness c₀(1/ρ − 1) with ρ = distance to the tip / three diameters, and its share of the friction grows
+/// with ρ. It is born and dies with zero force, so neither moves the base force.
 namespace stylet {
 
 namespace {
 constexpr double kTriesPerSpacing = 16.0;  ///< where a contact cannot be laid, the next place is tried so soon
 constexpr double kPatience = 1.5;          ///< spacings without a node before an interpolated contact will do
+constexpr double kHandOver = 6.0;          ///< needle radii behind the tip over which a contact takes hold
 constexpr double kYoungest = 1e-6;         ///< smallest ρ
 }  // namespace
 
@@ -158,7 +159,8 @@ double Insertion::Parts::passed_by(const Grip& grip) const {
 
 /// Tributary lengths, softness of young contacts, and the hand-over of the tip's lateral hold to the shaft.
 void Insertion::Parts::share_length() {
-  const auto age = [&](const Grip& grip) { return std::min(1.0, passed_by(grip) / settings.spacing_mm); };
+  const double hand_over = kHandOver * settings.needle_radius_mm;
+  const auto age = [&](const Grip& grip) { return std::min(1.0, passed_by(grip) / hand_over); };
   for (Grip& grip : grips) {
     const double own = compliance(grip.point, grip.point).trace() / 3.0;
     grip.softness = own * (1.0 / std::max(age(grip), kYoungest) - 1.0);

@@ -114,7 +114,9 @@ void Insertion::Parts::cross_surface(StepReport& report) {
   if (tip.next_tet != tip.at.tet) {
     tip.at.tet = tip.next_tet;
     tip.at.weights = tissue.locator->weights(tip.at.tet, tip.x);
+    const Vec3 there = memory.displacement(compliance, ContactCompliance::kTip);
     compliance.move_tip(tip.at, tip.x);
+    memory.keep_displacement(compliance, ContactCompliance::kTip, there);
   }
   tip.at_start = tip.at;
   tip.x_start = tip.x;
@@ -251,6 +253,8 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
     tip.cutting = tissue.laws[static_cast<std::size_t>(inside)].cutting_N;
     tip.limit = tip.cutting;
   }
+  const RegionLaws& outside = tissue.laws[static_cast<std::size_t>(region)];
+  compliance.enter_by(outside.rigid ? 0.0 : std::max(outside.puncture_N, outside.cutting_N));
   tip.x_start = tip.x;
   tip.at_start = tip.at;
   memory.forget(ContactCompliance::kTip);

@@ -335,13 +335,10 @@ void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial) {
   grip.s = grip.s_start - sign * way(grip, axial);
 }
 
-/// Remembers where everything was, and aims the cut.
+/// Remembers where the tip was, and aims the cut.
 void Insertion::Parts::begin_balance(int most_toggles) {
   toggle_limit = most_toggles;
-  for (Grip& grip : grips) {
-    grip.s_start = grip.s;
-    grip.toggles = 0;
-  }
+  for (Grip& grip : grips) grip.toggles = 0;
   tip.toggles = 0;
   tip.blocked = tip.held = false;
   tip.x_start = tip.x;

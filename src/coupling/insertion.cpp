@@ -13,6 +13,7 @@ namespace stylet {
 
 namespace {
 constexpr int kMaxSubSteps = 64;
+constexpr int kMostSurfaces = 4;  ///< met in one sub-step
 constexpr std::size_t kOldTracks = 64;
 constexpr double kBent_mm = 10.0;  ///< a bent shaft is rarely further from its axis
 
@@ -44,11 +45,9 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
                                                    int capacity) {
   auto engine = engine_of(tissue, settings, capacity);
   if (settings.method != CouplingSettings::Method::near_field) return engine;
-  NeedleKernel needle{settings.needle_radius_mm, settings.spacing_mm, {}};
-  for (const RegionLaws& laws : tissue.laws)
-    needle.press_N.push_back(laws.rigid ? 0.0 : std::max(laws.puncture_N, laws.cutting_N));
+  const NeedleKernel needle{settings.needle_radius_mm, settings.spacing_mm};
   return std::make_unique<NearFieldCompliance>(std::move(engine), tissue.store->shared_tissue(), tissue.kernel, needle,
-                                               settings.capacity);
+                                               capacity);
 }
 }  // namespace
 
@@ -139,16 +138,25 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     }
     share_length();
   }
-  if (settings.solver == CouplingSettings::Solver::staggered) {
-    solve_staggered(h, report);
-  } else {
-    solve_equilibrium(h, report);
-  }
+  for (Grip& grip : grips) grip.s_start = grip.s;
+  bool broke = false;
+  int surfaces = 0;
+  do {
+    if (settings.solver == CouplingSettings::Solver::staggered) {
+      solve_staggered(h, report);
+    } else {
+      solve_equilibrium(h, report);
+    }
+    // What is held by a surface for the rest of a sub-step pushes it on; viscous tissue resists that at once, and with
+    // more than the surface bears.
+    const bool met = memory.on() && tip.touching && tip.blocked;
+    commit_tip(report);
+    broke = met && tip.touching && tip.force.norm() > tip.limit;
+  } while (broke && ++surfaces < kMostSurfaces);
   for (Grip& grip : grips) {
     const double speed = std::abs(grip.s - grip.s_start) / h;
     if (grip.state != Grip::State::stick && speed < settings.zero_band_mm_per_s) grip.state = Grip::State::stick;
   }
-  commit_tip(report);
   wake_and_drop(report);
 
   const Vec3 tip_now = needle->point(length());
@@ -335,6 +343,11 @@ VecX Insertion::displacement() const {
 VecX Insertion::mesh_displacement() const {
   parts_->gather_filtered_forces();
   return parts_->compliance.mesh_displacement(parts_->forces.leftCols(parts_->compliance.points()));
+}
+
+Vec3 Insertion::mean_near_field(Index tet) const {
+  parts_->gather_filtered_forces();
+  return parts_->compliance.mean_near_field(tet, parts_->forces.leftCols(parts_->compliance.points()));
 }
 
 double Insertion::compliance_condition() const {

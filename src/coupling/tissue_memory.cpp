@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tissue_memory.hpp"
 
+#include <Eigen/Cholesky>
+
 namespace stylet {
 
 namespace {
@@ -36,6 +38,13 @@ void TissueMemory::hand_over(int from, int to, double part) {
   const Vec3 moved = part * past_.col(from);
   past_.col(from) -= moved;
   past_.col(to) += moved;
+}
+
+void TissueMemory::keep_displacement(const ContactCompliance& compliance, int point, const Vec3& u) {
+  if (!on()) return;
+  const Eigen::LDLT<Mat3> own(compliance(point, point));
+  if (own.isPositive() && own.vectorD().minCoeff() > 0.0)
+    past_.col(point) += own.solve(u - displacement(compliance, point));
 }
 
 bool TissueMemory::relaxed(const ContactCompliance& compliance) const {

@@ -37,6 +37,10 @@ class TissueMemory {
   /// Moves a part of what is past from one point to another.
   void hand_over(int from, int to, double part);
 
+  /// The point's compliance has changed, but it is the same material: changes what is past there so that earlier forces
+  /// displace it by `u` [mm] as before.
+  void keep_displacement(const ContactCompliance& compliance, int point, const Vec3& u);
+
   /// Forgets a point's past: it is another material point from now on.
   void forget(int point) { past_.col(point).setZero(); }
 

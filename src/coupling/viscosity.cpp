@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "insertion_parts.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 /// What viscous tissue remembers of the needle. All of this is at rest where the relaxation time is 0.
 namespace stylet {
+
+namespace {
+constexpr double kTipReach = 2.5;   ///< needle radii over which the field of a tip (ε = 1.5 R) falls to a third
+constexpr double kDentReach = 4.0;  ///< times the dent: so much slower, or the tissue would start back past the tip
+}  // namespace
 
 /// Forces that u = A g goes by: those of now where the tissue is elastic, else filtered over time.
 void Insertion::Parts::gather_filtered_forces() {
@@ -13,8 +21,10 @@ void Insertion::Parts::gather_filtered_forces() {
   }
 }
 
-/// The sub-step is over. The tip is a new material point wherever it has cut to; what it left behind goes to the points
-/// of the track on either side of it by the lever rule, which keeps force and moment.
+/// The sub-step is over. The tip is a new material point wherever it has cut to. What it left behind goes to the points
+/// of the track on either side, but not at once: such a point stands for a piece of shaft and yields several times less
+/// than a tip, and tissue would start back. It goes as the tip's own field falls off with the way it has cut, and where
+/// the dent is deeper than that field is wide, no faster than a tip can follow.
 void Insertion::Parts::remember() {
   if (!memory.on()) return;
   gather_forces();
@@ -33,10 +43,17 @@ void Insertion::Parts::remember() {
       ahead = &mark;
     }
   }
-  const double next = ahead != nullptr ? ahead->xi : track.end_xi;
-  const double back = behind != nullptr ? (next - here) / (next - behind->xi) : 0.0;
+  const double dent =
+      (compliance(ContactCompliance::kTip, ContactCompliance::kTip) * memory.past(ContactCompliance::kTip)).norm();
+  const double reach = std::max(kTipReach * settings.needle_radius_mm, kDentReach * dent);
+  const double left = 1.0 - std::exp(-(track.end_xi - here) / reach);
+  if (ahead == nullptr) {
+    if (behind != nullptr) memory.hand_over(ContactCompliance::kTip, behind->point, left);
+    return;
+  }
+  const double back = behind != nullptr ? left * (ahead->xi - here) / (ahead->xi - behind->xi) : 0.0;
   if (behind != nullptr) memory.hand_over(ContactCompliance::kTip, behind->point, back);
-  if (ahead != nullptr) memory.hand_over(ContactCompliance::kTip, ahead->point, 1.0);
+  memory.hand_over(ContactCompliance::kTip, ahead->point, (left - back) / (1.0 - back));
 }
 
 /// The tip leaves its place: the last point of the track takes over what is remembered there.

@@ -182,6 +182,39 @@ TEST(ViscousTissue, CurvesOfDifferentTimeStepsApproachEachOtherToFirstOrder) {
   EXPECT_NEAR(coarse / fine, (4.0 - 0.5) / (2.0 - 0.5), 0.5);  // the distance is c (dt − 0.5 ms)
 }
 
+// The needle in through both organs, near field and all.
+NeedleInBlock near_field_in(double relaxation_s, double dt) {
+  NeedleInBlock run(viscous(relaxation_s, CouplingSettings::Method::near_field));
+  run.aim({2.0, 3.0, 0.0});
+  run.go(55.0, 20.0, dt);
+  return run;
+}
+
+TEST(ViscousTissue, WithTheNearFieldNoStepShowsAForceThatIsNotThere) {
+  // Between 5 ms and 200 ms of relaxation a dent is gone before, while and long after the tip passes it.
+  const double elastic = near_field_in(0.0, 2e-3).peak();
+  for (const double relaxation_s : {0.005, 0.05, 0.2}) {
+    for (const double dt : {1e-3, 4e-3}) {
+      const NeedleInBlock run = near_field_in(relaxation_s, dt);
+      EXPECT_GE(run.count(InsertionEventKind::puncture), 2);
+      EXPECT_LT(run.peak(), 1.05 * elastic) << relaxation_s << " s, dt " << dt;
+    }
+  }
+}
+
+TEST(ViscousTissue, WithTheNearFieldCanBeEnteredAgainWhileItRemembersMorePointsThanANeedleHas) {
+  BlockOptions options = viscous(1.0, CouplingSettings::Method::near_field);
+  options.coupling.capacity = 12;
+  NeedleInBlock run(options);
+  run.aim({2.0, 3.0, 0.0});
+  run.go(35.0, 20.0, 2e-3);
+  run.go(-2.0, 40.0, 2e-3);
+  ASSERT_EQ(run.count(InsertionEventKind::withdrawn), 1);
+  run.go(35.0, 20.0, 2e-3);
+  EXPECT_EQ(run.count(InsertionEventKind::skin_contact), 2);
+  EXPECT_GT(run.insertion->compliance().points(), options.coupling.capacity + 1);
+}
+
 TEST(ViscousTissue, HandForceBalancesContactForcesAndSupports) {
   for (const auto method : {CouplingSettings::Method::embedded, CouplingSettings::Method::node_addition}) {
     NeedleInBlock run = pushed_in(kQuick_s, 2e-3, method);

@@ -73,6 +73,9 @@ class ContactCompliance {
   /// Moves the tip to x in base tetrahedron at.tet. False, and nothing changed, when compliance is missing there.
   virtual bool move_tip(const MaterialPoint& at, const Vec3& x) = 0;
 
+  /// The needle is to go in through a surface that breaks at `force` [N]; until it is told, through none.
+  virtual void enter_by(double /*force*/) {}
+
   /// Whether the compliance of a base tetrahedron's nodes is there.
   [[nodiscard]] virtual bool available(Index base_tet) const = 0;
 
@@ -93,6 +96,11 @@ class ContactCompliance {
   /// over volumes should use it, since a near field at nodes says nothing about the material between them.
   [[nodiscard]] virtual VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
     return displacement(forces);
+  }
+
+  /// Mean over a base tetrahedron [mm] of what the near field adds to mesh_displacement() between its nodes. Allocates.
+  [[nodiscard]] virtual Vec3 mean_near_field(Index /*base_tet*/, const Eigen::Ref<const MatX>& /*forces*/) const {
+    return Vec3::Zero();
   }
 
   /// Every node of the mesh as it is now.

@@ -124,6 +124,8 @@ class Insertion {
 
   /// The same without the near field of the needle; for means over volumes.
   [[nodiscard]] VecX mesh_displacement() const;
+  /// Mean over a tetrahedron [mm] of what the near field adds to mesh_displacement() between its nodes. Allocates.
+  [[nodiscard]] Vec3 mean_near_field(Index tet) const;
 
   /// Condition number of A among the contacts and the tip where it touches; 1 without any. Allocates.
   [[nodiscard]] double compliance_condition() const;

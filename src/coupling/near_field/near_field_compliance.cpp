@@ -12,6 +12,8 @@ namespace {
 /// size (edge / distance)² / 8.
 constexpr double kReach = 5.0;
 
+constexpr double kQuadrature_mm = 1.5;
+
 Medium scaled(Medium medium, double young_MPa) {
   medium.mu *= young_MPa;
   return medium;
@@ -145,12 +147,8 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   tip = place_at(at, x);
   tip.epsilon = needle_.tip_epsilon(tip.skin.depth, kernel_->medium(tip.medium).poisson);
   write_row(kTip);
-  if (!needle_.press_N.empty()) {
-    const int region = tissue_->mesh().tet_region[static_cast<std::size_t>(at.tet)];
-    const Medium medium = scaled(kernel_->medium(tip.medium), tip.young_MPa);
-    A_.topLeftCorner<3, 3>() +=
-        tip.moves * needle_.dent(tip.skin, needle_.press_N[static_cast<std::size_t>(region)], medium);
-  }
+  const Medium medium = scaled(kernel_->medium(tip.medium), tip.young_MPa);
+  A_.topLeftCorner<3, 3>() += tip.moves * needle_.dent(tip.skin, press_N_, medium);
   return true;
 }
 
@@ -165,6 +163,23 @@ Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) 
   return far_->gradient_at_tip(forces);
 }
 
+/// What forces on the points move a passive place by, beyond what the mesh has there.
+Vec3 NearFieldCompliance::near_field(Place here, const Eigen::Ref<const MatX>& forces) const {
+  const bool nowhere = here.young_MPa == 0.0;  // a node, between media: the contact's will do
+  Vec3 sum = Vec3::Zero();
+  for (int d = 0; d < points_; ++d) {
+    if (forces.col(d).isZero(0.0)) continue;
+    const Place& on = places_[static_cast<std::size_t>(d)];
+    here.epsilon = on.epsilon;  // being passive, it has no radius of its own
+    if (nowhere) {
+      here.medium = on.medium;
+      here.young_MPa = on.young_MPa;
+    }
+    sum += correction(here, on) * forces.col(d);
+  }
+  return sum;
+}
+
 VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
   VecX u = far_->displacement(forces);
   for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
@@ -176,20 +191,39 @@ VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) con
     here.piece.centre = tissue_->node_position(node);
     here.skin = kernel_->skin(node);
     here.edge = kernel_->edge(node);
-    for (int d = 0; d < points_; ++d) {
-      if (forces.col(d).isZero(0.0)) continue;
-      const Place& on = places_[static_cast<std::size_t>(d)];
-      here.epsilon = on.epsilon;  // the node, being passive, has no radius of its own
-      here.medium = on.medium;
-      here.young_MPa = on.young_MPa;
-      u.segment<3>(3 * Eigen::Index{node}) += correction(here, on) * forces.col(d);
-    }
+    u.segment<3>(3 * Eigen::Index{node}) += near_field(here, forces);
   }
   return u;
 }
 
 VecX NearFieldCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
   return far_->displacement(forces);
+}
+
+Vec3 NearFieldCompliance::mean_near_field(Index base_tet, const Eigen::Ref<const MatX>& forces) const {
+  if (!available(base_tet)) return Vec3::Zero();
+  const auto& corners = tissue_->mesh().tets[static_cast<std::size_t>(base_tet)];
+  double edge = 0.0;
+  for (const Index corner : corners) edge += 0.25 * kernel_->edge(corner);
+  const int parts = std::max(2, static_cast<int>(std::ceil(edge / kQuadrature_mm)));
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (int i = 0; i < parts; ++i) {
+    for (int j = 0; i + j < parts; ++j) {
+      for (int k = 0; i + j + k < parts; ++k) {
+        const int l = parts - 1 - i - j - k;
+        MaterialPoint at;
+        at.tet = base_tet;
+        at.weights = (Vec4(i, j, k, l).array() + 0.25) / parts;
+        Vec3 x = Vec3::Zero();
+        for (int a = 0; a < 4; ++a)
+          x += at.weights[a] * tissue_->mesh().nodes[static_cast<std::size_t>(corners[static_cast<std::size_t>(a)])];
+        sum += near_field(place_at(at, x), forces);
+        ++count;
+      }
+    }
+  }
+  return sum / count;
 }
 
 ContactCompliance::Nodes NearFieldCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {

@@ -26,6 +26,10 @@ constexpr Rule kFour{4,
 /// An image is as smooth as its source is far: beyond this many lengths of a piece its middle will do.
 constexpr double kSmooth = 2.0;
 
+/// Displacement under the tip falls over depth at this many times less than would make tissue overtake the tip. At 1 a
+/// cut would not unload the tip at all.
+constexpr double kDentMargin = 1.5;
+
 NearSurface moved(const NearSurface& skin, const Vec3& way) {
   NearSurface there = skin;
   there.depth = std::max(0.0, there.depth + there.inwards.dot(way));
@@ -48,20 +52,20 @@ Mat3 NeedleKernel::tip_self(const NearSurface& surface, const Medium& medium) co
 }
 
 Mat3 NeedleKernel::dent(const NearSurface& surface, double press, const Medium& medium) const {
-  if (surface.share == 0.0 || press <= 0.0) return Mat3::Zero();
-  const auto normal = [&](double depth) {
+  if (press <= 0.0 || !std::isfinite(surface.depth)) return Mat3::Zero();
+  const auto own = [&](double depth) {
     NearSurface there = surface;
     there.depth = depth;
     there.share = 1.0;
-    return surface.inwards.dot(tip_self(there, medium) * surface.inwards);
+    return tip_self(there, medium);
   };
-  // Steepest at the surface; more than one millimetre of dent per millimetre of depth would turn the tissue inside out.
-  const double little = 1e-2 * radius_mm;
-  const double steepness = press * (normal(0.0) - normal(little)) / little;
-  if (steepness <= 1.0) return Mat3::Zero();
-  NearSurface stretched = surface;
-  stretched.depth /= steepness;
-  return tip_self(stretched, medium) - tip_self(surface, medium);
+  const auto normal = [&](const Mat3& compliance) { return surface.inwards.dot(compliance * surface.inwards); };
+  const Mat3 here = own(surface.depth);
+  const Mat3 at_surface = own(0.0);
+  const double allowed = normal(at_surface) - surface.depth / (kDentMargin * press);
+  const double excess = allowed - normal(here);
+  if (excess <= 0.0) return Mat3::Zero();
+  return excess / (normal(at_surface) - normal(here)) * (at_surface - here);
 }
 
 Mat3 needle_kernel(const Segment& at, const NearSurface& skin_at, const Segment& on, const NearSurface& skin_on,

@@ -27,6 +27,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
+  void enter_by(double force) override { press_N_ = force; }
   [[nodiscard]] bool available(Index base_tet) const override;
   void remove_last_embedded() override;
   void reset() override;
@@ -37,6 +38,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// With the near field, wherever a node lies in it.
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] Vec3 mean_near_field(Index base_tet, const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
 
@@ -56,12 +58,14 @@ class NearFieldCompliance final : public ContactCompliance {
   [[nodiscard]] bool neighbours(const Shape& at, const Shape& on) const;
   [[nodiscard]] Mat3 correction(const Place& at, const Place& on) const;
   [[nodiscard]] Mat3 correction(const Place& at, const Place& on, const Place& medium_of) const;
+  [[nodiscard]] Vec3 near_field(Place here, const Eigen::Ref<const MatX>& forces) const;
   void write_row(int point);
 
   std::unique_ptr<ContactCompliance> far_;
   std::shared_ptr<const Tissue> tissue_;
   std::shared_ptr<const MeshKernel> kernel_;
   NeedleKernel needle_;
+  double press_N_ = 0.0;       ///< what the surface the needle went in by took before it broke
   std::vector<Place> places_;  ///< (points)
 };
 

@@ -4,17 +4,12 @@
 #include "stylet/coupling/near_field/kelvinlet.hpp"
 #include "stylet/coupling/near_field/surface_distance.hpp"
 
-#include <vector>
-
 namespace stylet {
 
 /// The needle as the tissue near it feels it.
 struct NeedleKernel {
   double radius_mm = 0.635;
   double segment_mm = 4.0;  ///< of shaft that a contact stands for: the spacing of contacts
-
-  /// (regions) [N] force with which the tip presses on the surface of a region before it goes in; empty = next to none.
-  std::vector<double> press_N{};
 
   /// √e R: a line of regularised forces on the axis with this radius moves the medium like a bonded rigid cylinder of
   /// radius R, laterally and axially, for every Poisson ratio (docs/theory/near_field.md §2).
@@ -24,9 +19,10 @@ struct NeedleKernel {
   [[nodiscard]] double tip_epsilon(double depth, double poisson) const;
 
   /// What the tip's own compliance is more than the half space's at a depth below a free surface it was pressed on
-  /// [mm/N]: the linear dent is so steep that it would turn the tissue under it inside out, and a tip that has broken
-  /// the surface would meet a growing force. The dent is stretched over the depth to which it just does not
-  /// (docs/theory/near_field.md §5). Zero at the surface and far below it.
+  /// [mm/N]. The linear dent is so steep that it would turn the tissue under it inside out, and a tip that has broken
+  /// the surface would meet a growing force. So the compliance falls over depth no faster than to let the tip through,
+  /// until it has come down to the half space's (docs/theory/near_field.md §5). Zero at the surface and from there on.
+  /// Does not depend on surface.share.
   /// @param press [N] force that made the dent
   [[nodiscard]] Mat3 dent(const NearSurface& surface, double press, const Medium& medium) const;
 
