@@ -32,6 +32,7 @@ struct BlockOptions {
     return std::abs(x.x()) > 49.9 || std::abs(x.y()) > 49.9 || x.z() > 99.9;
   };
   std::function<void(TetMesh&)> edit;  ///< last change to the mesh before it is built
+  Element element = Element::p1;
   CouplingSettings coupling;
   double needle_length = 150.0;
   std::function<std::unique_ptr<Needle>(int load_capacity)> needle;  ///< instead of the usual beam
@@ -60,7 +61,7 @@ class NeedleInBlock {
     }
     std::sort(fixed.begin(), fixed.end());
     fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
-    auto built = Tissue::build(std::move(mesh), options.materials, fixed);
+    auto built = Tissue::build(std::move(mesh), options.materials, fixed, {}, options.element);
     if (!built) {
       ADD_FAILURE() << built.error().message();
       return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a bevelled tip does to a needle's way through tissue.
+#include "mirrored_block.hpp"
 #include "needle_in_block.hpp"
 
 #include <numbers>
@@ -163,34 +164,11 @@ TEST(BevelForce, TheTipIsPushedByItsShareOfTheAxialForce) {
   EXPECT_NEAR(tip.force.dot(t.cross(side)), 0.0, 1e-5);
 }
 
-/// A block that is its own mirror image in x = 0. Upside down, so that the surface's triangles along the plane belong
-/// to elements with a face in it: those that touch it with an edge have a gradient of their own side only.
-void mirror(TetMesh& mesh) {
-  for (Vec3& x : mesh.nodes) x.z() = 100.0 - x.z();
-  const std::size_t nodes = mesh.nodes.size();
-  std::vector<Index> image(nodes);
-  for (std::size_t k = 0; k < nodes; ++k) {
-    const Vec3 x = mesh.nodes[k];
-    image[k] = static_cast<Index>(k);
-    if (x.x() == 0.0) continue;
-    image[k] = static_cast<Index>(mesh.nodes.size());
-    mesh.nodes.emplace_back(-x.x(), x.y(), x.z());
-  }
-  const std::size_t tets = mesh.tets.size();
-  for (std::size_t t = 0; t < tets; ++t) {
-    std::array<Index, 4> tet = mesh.tets[t];
-    for (Index& node : tet) node = image[static_cast<std::size_t>(node)];
-    std::swap(mesh.tets[t][0], mesh.tets[t][1]);
-    mesh.tets.push_back(tet);
-    mesh.tet_region.push_back(mesh.tet_region[t]);
-  }
-}
-
 BlockOptions symmetric_block(double bevel_deg, Bevel::Law law = Bevel::Law::offset) {
   BlockOptions options = tissue(bevel_deg, law);
   options.lo = {0, -50, 0};
   options.cells = {3, 5, 6};
-  options.edit = mirror;
+  options.edit = test::mirror;
   return options;
 }
 
