@@ -154,11 +154,11 @@ class Runner {
     summary_.compliance_condition =
         std::max(summary_.compliance_condition, simulation_.insertion().compliance_condition());
     if (label == "deepest") {
-      const auto [mean, largest] =
-          target_shift(model_->mesh(), model_->target_regions(), simulation_.insertion().mesh_displacement());
-      if (largest >= summary_.target_shift_max_mm) {
-        summary_.target_shift_centroid_mm = mean;
-        summary_.target_shift_max_mm = largest;
+      const TargetShift shift = target_shift(*model_, simulation_.insertion());
+      summary_.target_shifts.push_back(shift);
+      if (shift.largest_mm >= summary_.target_shift_max_mm) {
+        summary_.target_shift_centroid_mm = shift.centroid_mm;
+        summary_.target_shift_max_mm = shift.largest_mm;
       }
     }
     return observer_.on_frame(frame);
@@ -209,19 +209,24 @@ class Runner {
 
 }  // namespace
 
-TargetShift target_shift(const TetMesh& mesh, const std::vector<int>& regions, const VecX& u) {
+TargetShift target_shift(const Model& model, const Insertion& insertion) {
+  const TetMesh& mesh = model.mesh();
+  const std::vector<int>& regions = model.target_regions();
+  const VecX u = insertion.mesh_displacement();
   Vec3 sum = Vec3::Zero();
   double volume = 0.0;
   double largest = 0.0;
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const int region = mesh.tet_region[static_cast<std::size_t>(t)];
     if (std::find(regions.begin(), regions.end(), region) == regions.end()) continue;
-    const double v = tet_volume(mesh, t);
+    Vec3 mean = insertion.mean_near_field(t);
     for (const Index node : mesh.tets[static_cast<std::size_t>(t)]) {
       const Vec3 un = u.segment<3>(3 * node);
-      sum += 0.25 * v * un;
+      mean += 0.25 * un;
       largest = std::max(largest, un.norm());
     }
+    const double v = tet_volume(mesh, t);
+    sum += v * mean;
     volume += v;
   }
   return {volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero()), largest};

@@ -109,6 +109,12 @@ struct MeshChange {
   RemeshEvent change;
 };
 
+/// How far the target was moved.
+struct TargetShift {
+  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume, the near field of the needle included
+  double largest_mm = 0.0;          ///< of any of its nodes, of what the mesh represents: depends on the mesh
+};
+
 /// What a run comes to.
 struct Summary {
   std::string version;
@@ -119,9 +125,9 @@ struct Summary {
   double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
   std::vector<Event> events;
   double tip_deflection_mm = 0;                  ///< largest distance of the tip from the straight line of insertion
-  Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< LPS, of the target's volume at the deepest point of insertion;
-                                                 ///< what the mesh represents, as the next
-  double target_shift_max_mm = 0;                ///< of any target node, at the deepest point
+  std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion
+  Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< of the one that moved it furthest, as the next
+  double target_shift_max_mm = 0;
   double residual_force_balance = 0;  ///< |base force − sum of contact forces| / peak force, largest of the run
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;

@@ -13,13 +13,8 @@ class RunObserver {
   virtual Result<> on_frame(const Frame& frame) = 0;
 };
 
-/// How far regions were moved by a displacement of the mesh's nodes.
-struct TargetShift {
-  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over their volume
-  double largest_mm = 0.0;          ///< of any of their nodes
-};
-/// @param u [mm] (3n)
-TargetShift target_shift(const TetMesh& mesh, const std::vector<int>& regions, const VecX& u);
+/// How far the needle has moved the target. Not for the loop: it solves for the whole displacement.
+TargetShift target_shift(const Model& model, const Insertion& insertion);
 
 /// Carries out all insertions of a model, one after the other, and sums up.
 /// Frames: one before, one per event worth a picture (labelled with the event's name), one at the deepest point

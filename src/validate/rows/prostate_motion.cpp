@@ -88,10 +88,10 @@ Result<TemplateRun> through_template(Context& context) {
   }
   for (const Frame& frame : run->events) {
     if (frame.label != "deepest") continue;
-    out.centroid_mm.push_back(target_shift(mesh, target, frame.displacement).centroid_mm);
     for (const Index node : nodes)
       out.largest_mm = out.largest_mm.cwiseMax(frame.displacement.segment<3>(3 * node).cwiseAbs());
   }
+  for (const TargetShift& shift : run->summary.target_shifts) out.centroid_mm.push_back(shift.centroid_mm);
   if (out.centroid_mm.size() != out.holes.size())
     return failure("template", "a needle has no deepest point", "Run the same holes with stylet insert to see why");
   return out;

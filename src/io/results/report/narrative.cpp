@@ -131,7 +131,7 @@ std::string tell_target(const RunRecording& run) {
     return fmt::format("With the needle at its deepest, the {} lay where it was before.", target_name(run));
   }
   return fmt::format(
-      "With the needle at its deepest, the centre of the {} had moved by {:.1f} mm ({}); the point of it that moved "
+      "With the needle at its deepest, the centre of the {} had moved by {:.2f} mm ({}); the point of it that moved "
       "most, by {:.1f} mm.",
       target_name(run), s.target_shift_centroid_mm.norm(), describe_shift(s.target_shift_centroid_mm),
       s.target_shift_max_mm);

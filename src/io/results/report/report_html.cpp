@@ -31,7 +31,7 @@ std::string tiles(const RunRecording& run, const Frame& deepest) {
   std::string html = tile(fmt::format("{:.1f} mm", deepest.base_depth_mm), "deepest insertion") +
                      tile(fmt::format("{:.2f} N", s.peak_axial_N), "largest axial force");
   if (!run.info.target_regions.empty()) {
-    html += tile(fmt::format("{:.1f} mm", s.target_shift_centroid_mm.norm()), "shift of the target’s centre") +
+    html += tile(fmt::format("{:.2f} mm", s.target_shift_centroid_mm.norm()), "shift of the target’s centre") +
             tile(fmt::format("{:.1f} mm", s.target_shift_max_mm), "largest motion in the target");
   }
   html += tile(fmt::format("{:.1f} mm", s.tip_deflection_mm), "tip beside its straight line") +
