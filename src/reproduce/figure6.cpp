@@ -108,7 +108,7 @@ const Figure6Run& Figure6::run(const std::string& id) const {
 std::vector<Figure6Variant> figure6_variants() {
   return {{"bcs_repositioning", "switches, node repositioning", "node-repositioning", "interior", "bcs"},
           {"woodbury_addition", "Woodbury, node addition", "node-addition", "paper", "woodbury"},
-          {"default", "this program’s default", "node-addition", "interior", "condensed"}};
+          {"default", "this program’s default for node addition", "node-addition", "interior", "condensed"}};
 }
 
 Scenario figure6_scenario(bool quick) {

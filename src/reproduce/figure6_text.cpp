@@ -135,7 +135,8 @@ std::string figure6_intro(const Figure6& figure) {
              "motion of the base: the paper’s first way (boundary condition switches; a contact about every {:g} mm, "
              "and the "
              "node nearest to the tip is moved there), its second (Woodbury; a node is added wherever the tip enters "
-             "an element), and this program’s default (a contact about every {:g} mm, a node added inside an element; "
+             "an element), and this program’s default for node addition (a contact about every {:g} mm, a node added "
+             "inside an element; "
              "compliance among the points held only).",
              figure.nodes, figure.tets,
              figure.insertions.size() == 1 ? std::string("one needle")

@@ -87,7 +87,7 @@ std::string force_plots(const Figure6& figure) {
   std::string html;
   for (const Figure6Run& run : figure.runs) {
     std::string title = run.variant.label;
-    if (run.variant.id == "default") title = "This program’s default";
+    if (run.variant.id == "default") title = "This program’s default for node addition";
     if (run.variant.id == "bcs_repositioning") title = "Switches, node repositioning";
     html += "<figure class=\"force-run\"><figcaption>" + html_escaped(title) +
             "</figcaption><div class=\"plot forces\" id=\"forces-" + run.variant.id + "\"></div></figure>";
