@@ -6,6 +6,7 @@
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/reproduce/needle_bench.hpp"
 #include "stylet/reproduce/remesh_bench.hpp"
+#include "stylet/validate/coupling_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -17,8 +18,11 @@ namespace {
 
 struct BenchArguments {
   std::string what;
-  int nodes = 1331;
+  int nodes = 0;  ///< 0 = the default of what is measured
 };
+
+constexpr int kRemeshNodes = 1331;
+constexpr int kCouplingNodes = 40000;
 
 /// Sizes of a cube, by its cells, up to a number of nodes.
 std::vector<int> sizes_up_to(int nodes) {
@@ -77,7 +81,13 @@ Result<> run_needle(Console& console) {
 }
 
 Result<> run_remesh(const BenchArguments& arguments, Console& console) {
-  const auto rows = reproduce::bench_remeshing(sizes_up_to(arguments.nodes), console.progress());
+  const int nodes = arguments.nodes > 0 ? arguments.nodes : kRemeshNodes;
+  constexpr int smallest = 125;
+  constexpr int largest = 4096;
+  if (nodes < smallest || nodes > largest)
+    return input_error("--nodes", fmt::format("remesh takes {} to {} nodes, not {}", smallest, largest, nodes),
+                       "The full inverse is what limits it");
+  const auto rows = reproduce::bench_remeshing(sizes_up_to(nodes), console.progress());
   if (!rows) return rows.error();
   const std::vector<std::string> methods{"shortcut", "bordered", "woodbury", "bcs", "inverse"};
   std::vector<std::string> header{"nodes"};
@@ -99,6 +109,89 @@ Result<> run_remesh(const BenchArguments& arguments, Console& console) {
   return console.write_json(json);
 }
 
+std::string number(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("-");
+}
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json coupling_json(const validate::CouplingRow& row) {
+  constexpr double every_s = 0.01;  // of the curve, for a picture
+  Json curve = Json::array();
+  const auto every = static_cast<std::size_t>(std::lround(every_s / row.curve.dt_s));
+  for (std::size_t k = every; k <= row.curve.force_N.size(); k += every) curve.push_back(row.curve.force_N[k - 1]);
+  return {{"study", to_string(row.study)},
+          {"method", row.method},
+          {"element", row.element},
+          {"nodes", row.nodes},
+          {"spacing_mm", row.spacing_mm},
+          {"dt_ms", row.dt_ms},
+          {"peak_N", row.peak_N},
+          {"rms_vs_finest_percent", row.rms_vs_finest_percent},
+          {"target_shift_mm", row.target_shift_mm},
+          {"skin_puncture_mm", or_null(row.skin_mm)},
+          {"capsule_puncture_mm", or_null(row.capsule_mm)},
+          {"gland_from_mm", or_null(row.gland_from_mm)},
+          {"gland_to_mm", or_null(row.gland_to_mm)},
+          {"gland_surface_mean_mm", row.surface_mean_mm},
+          {"step_cpu_us_p50", row.step_us},
+          {"offline_s", row.offline_s},
+          {"curve_every_s", every_s},
+          {"curve_force_axial_N", curve}};
+}
+
+std::vector<std::string> coupling_cells(const validate::CouplingRow& row) {
+  return {to_string(row.study),
+          row.method,
+          row.element,
+          std::to_string(row.nodes),
+          number(row.spacing_mm, 0),
+          number(row.dt_ms, 2),
+          number(row.peak_N, 3),
+          number(row.rms_vs_finest_percent, 2),
+          number(row.target_shift_mm, 4),
+          number(row.skin_mm, 2),
+          number(row.capsule_mm, 2),
+          fmt::format("{} … {}", number(row.gland_from_mm, 1), number(row.gland_to_mm, 1)),
+          number(row.surface_mean_mm, 2),
+          number(row.step_us, 0),
+          number(row.offline_s, 1)};
+}
+
+Result<> run_coupling(const BenchArguments& arguments, Console& console) {
+  validate::CouplingBenchOptions options;
+  options.largest = kCouplingNodes;
+  if (arguments.nodes > 0) options.largest = arguments.nodes;
+  if (options.largest < 500)
+    return input_error("--nodes", fmt::format("coupling takes 500 nodes or more, not {}", options.largest),
+                       "500 nodes is the coarsest mesh of the demo patient");
+  const auto rows = validate::bench_coupling(options, console.progress());
+  if (!rows) return rows.error();
+  Table table({"over", "method", "element", "nodes", "spacing [mm]", "dt [ms]", "peak [N]", "RMS [%]", "shift [mm]",
+               "skin [mm]", "capsule [mm]", "gland [mm]", "off by [mm]", "step [µs]", "before [s]"});
+  Json json{{"depth_mm", options.depth_mm}, {"rows", Json::array()}};
+  for (const validate::CouplingRow& row : *rows) {
+    table.row(coupling_cells(row));
+    json["rows"].push_back(coupling_json(row));
+  }
+  json["machine"] = machine_json();
+  console.say(fmt::format(
+      "Demo insertion, in to {:g} mm and out. RMS: difference of the axial force from the finest of its kind, over "
+      "that one's peak;\n"
+      "shift: of the gland's centroid; skin, capsule: depth of the base when they break; gland: where the mesh has it "
+      "on the needle's line,\n"
+      "off by: mean distance of its surface from the contours; step: processor time, median; before: what is computed "
+      "before the needle moves.",
+      options.depth_mm));
+  console.say(table.text());
+  return console.write_json(json);
+}
+
+Result<> run_bench(const BenchArguments& arguments, Console& console) {
+  if (arguments.what == "needle") return run_needle(console);
+  if (arguments.what == "coupling") return run_coupling(arguments, console);
+  return run_remesh(arguments, console);
+}
+
 }  // namespace
 
 Command add_bench_command(CLI::App& program) {
@@ -107,17 +200,17 @@ Command add_bench_command(CLI::App& program) {
   app->add_option(
          "WHAT", arguments->what,
          "remesh: time of one change of the mesh against the number of nodes, by the default's two rules, by "
-         "Woodbury, by boundary condition switches, by an inverse from scratch; needle: accuracy of the needle "
-         "models against their cost")
+         "Woodbury, by boundary condition switches, by an inverse from scratch; coupling: force of one insertion over "
+         "mesh, spacing of contacts and time step, with the near field and with node addition; needle: accuracy of "
+         "the needle models against their cost")
       ->required()
-      ->check(one_of({"remesh", "needle"}));
-  app->add_option("--nodes", arguments->nodes, "remesh: largest mesh, 125 to 4096 nodes")
+      ->check(one_of({"remesh", "coupling", "needle"}));
+  app->add_option("--nodes", arguments->nodes,
+                  fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {})",
+                              kRemeshNodes, kCouplingNodes))
       ->type_name("N")
-      ->check(whole_number_between(125, 4096))
-      ->capture_default_str();
-  return {app, [arguments](Console& console) {
-            return arguments->what == "needle" ? run_needle(console) : run_remesh(*arguments, console);
-          }};
+      ->check(whole_number_between(1, 1000000));
+  return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};
 }
 
 }  // namespace stylet::cli

@@ -100,4 +100,13 @@ Result<std::shared_ptr<const RecordedRun>> Context::demo_run() {
   return demo_run_;
 }
 
+Result<std::vector<CouplingRow>> Context::demo_on_meshes() {
+  if (demo_on_meshes_.empty()) {
+    auto rows = bench_coupling({.largest = 10000, .mesh_only = true}, progress_);
+    if (!rows) return rows.error();
+    demo_on_meshes_ = std::move(*rows);
+  }
+  return demo_on_meshes_;
+}
+
 }  // namespace stylet::validate

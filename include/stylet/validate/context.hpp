@@ -4,6 +4,7 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/sim/model.hpp"
 #include "stylet/sim/run.hpp"
+#include "stylet/validate/coupling_bench.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -45,6 +46,8 @@ class Context {
   Result<TetMesh> demo_mesh();
   /// The demo: hole e3.5, in and out at 20 mm/s, with default parameters. Carried out once.
   Result<std::shared_ptr<const RecordedRun>> demo_run();
+  /// The demo insertion on meshes of 500 to 10,000 nodes, with the near field and with node addition. Carried out once.
+  Result<std::vector<CouplingRow>> demo_on_meshes();
 
  private:
   bool quick_;
@@ -52,6 +55,7 @@ class Context {
   Progress progress_;
   std::optional<TetMesh> demo_mesh_;
   std::shared_ptr<const RecordedRun> demo_run_;
+  std::vector<CouplingRow> demo_on_meshes_;
 };
 
 /// The demo scenario: one needle through hole e3.5 of the demo patient, whose pelvic side walls are held.

@@ -2,6 +2,7 @@
 // Results must not hang on the time step or on the solver's tolerance.
 #include "../rows.hpp"
 #include "../scene.hpp"
+#include "stylet/validate/force_curve.hpp"
 
 #include <fmt/format.h>
 
@@ -15,36 +16,27 @@ namespace {
 Result<Finding> time_steps(Context&) {
   const auto model = Block().compile();
   if (!model) return model.error();
-  constexpr double coarsest = 2e-3;
-  std::vector<std::vector<double>> forces;  // at multiples of the coarsest step
+  std::vector<ForceCurve> forces;
   Finding finding;
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]"};
-  double peak = 0.0;
+  finding.value = 0.0;
+  std::string each;
   for (const double dt : {0.25e-3, 0.5e-3, 1e-3, 2e-3}) {
     Drive drive(*model);
     drive.go(55.0, 20.0, dt);
     drive.wait(0.1, dt);
     drive.go(-1.0, 20.0, dt);
-    const auto every = static_cast<std::size_t>(std::lround(coarsest / dt));
-    std::vector<double>& force = forces.emplace_back();
+    ForceCurve& force = forces.emplace_back(ForceCurve{.dt_s = dt, .force_N = {}});
+    for (const DriveStep& step : drive.steps()) force.force_N.push_back(step.record.force_axial_N);
     Curve curve{.label = fmt::format("{:g} ms", 1e3 * dt), .x = {}, .y = {}};
-    for (std::size_t i = every - 1; i < drive.steps().size(); i += every) {
-      force.push_back(drive.steps()[i].record.force_axial_N);
-      curve.x.push_back(static_cast<double>(force.size()) * coarsest);
-      curve.y.push_back(force.back());
-    }
-    peak = std::max(peak, drive.peak_N());
+    const auto every = static_cast<std::size_t>(std::lround(2e-3 / dt));
+    for (std::size_t k = every; k <= force.force_N.size(); k += every)
+      curve.add(static_cast<double>(k) * dt, force.force_N[k - 1]);
     finding.plot.curves.push_back(std::move(curve));
-  }
-  finding.value = 0.0;
-  std::string each;
-  for (std::size_t k = 1; k < forces.size(); ++k) {
-    double sum = 0.0;
-    const std::size_t count = std::min(forces[0].size(), forces[k].size());
-    for (std::size_t i = 0; i < count; ++i) sum += std::pow(forces[k][i] - forces[0][i], 2);
-    const double rms = 100.0 * std::sqrt(sum / static_cast<double>(count)) / peak;
+    if (forces.size() == 1) continue;
+    const double rms = 100.0 * rms_difference_N(force, forces.front()) / forces.front().peak_N();
     finding.value = std::max(finding.value, rms);
-    each += fmt::format("{}{:.2f} % at {}", each.empty() ? "" : ", ", rms, finding.plot.curves[k].label);
+    each += fmt::format("{}{:.2f} % at {:g} ms", each.empty() ? "" : ", ", rms, 1e3 * dt);
   }
   finding.note = "Skin, capsule, a pause, and out; RMS difference from 0.25 ms over the peak: " + each + ".";
   finding.why_missed = "What differs is the moment of the punctures.";
