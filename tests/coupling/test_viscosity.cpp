@@ -256,24 +256,20 @@ TEST(ViscousTissue, CanBeEnteredAgainBeforeItHasRelaxed) {
 
 TEST(ViscousTissue, StaggeredAndCoupledSolversAgree) {
   BlockOptions options = viscous(kQuick_s, CouplingSettings::Method::node_addition);
-  // With more static than sliding friction a contact that just fails to slide may as well stick; and one that creeps at
-  // the edge of the zero band is stopped a step earlier or later.
-  options.coupling.zero_band_mm_per_s = 0.0;
-  for (RegionLaws& laws : options.laws) laws.friction.static_N_per_mm = laws.friction.coulomb_N_per_mm;
   NeedleInBlock coupled(options);
   options.coupling.solver = CouplingSettings::Solver::staggered;
   NeedleInBlock staggered(options);
   double difference = 0.0;
   for (NeedleInBlock* run : {&coupled, &staggered}) {
     run->aim({2.0, 3.0, 0.0});
-    run->go(20.0, 20.0, 2e-3);
-    run->wait(0.1, 2e-3);
-    run->go(10.0, 20.0, 2e-3);
+    run->go(20.0, 20.0, 4e-3);
+    run->wait(0.1, 4e-3);
+    run->go(10.0, 20.0, 4e-3);
   }
   ASSERT_EQ(coupled.forces.size(), staggered.forces.size());
   for (std::size_t k = 0; k < coupled.forces.size(); ++k)
     difference = std::max(difference, std::abs(coupled.forces[k] - staggered.forces[k]));
-  EXPECT_LT(difference, 1e-6 * coupled.peak());
+  EXPECT_LT(difference, 1e-7 * coupled.peak());
 }
 
 TEST(ViscousTissue, StepsDoNotAllocate) {
