@@ -366,7 +366,7 @@ TEST(Membrane, ASecondPassAlongTheTrackNeedsFrictionOnly) {
 }
 
 /// How far a tip of 0 or 20° goes off the plane of a block that is its own mirror image.
-double sideways(bool bevelled, Bevel::Law law, double roll) {
+double sideways(bool bevelled, Bevel::Law law, double roll, double spacing_mm = 4.0) {
   BlockOptions options;
   options.element = Element::nodal_pressure;
   options.lo.x() = 0.0;
@@ -378,6 +378,7 @@ double sideways(bool bevelled, Bevel::Law law, double roll) {
   options.laws = {{0.35, 0.5, kFriction, false, true, -1}};
   options.coupling.bevel.angle_rad = bevelled ? std::numbers::pi / 9.0 : 0.0;
   options.coupling.bevel.law = law;
+  options.coupling.spacing_mm = spacing_mm;
   NeedleInBlock run(options);
   run.roll = roll;
   run.aim({0.0, 2.0, 0.0});
@@ -395,6 +396,12 @@ TEST_P(TipInTheNearField, IsDrawnToTheSideRollSaysAndNowhereWithoutABevel) {
   EXPECT_NEAR(sideways(true, GetParam(), std::numbers::pi), -bevel, 0.01 * bevel);
   EXPECT_NEAR(sideways(true, GetParam(), 0.5 * std::numbers::pi), 0.0, 1e-9 * bevel);
   EXPECT_NEAR(sideways(false, GetParam(), 1.0), 0.0, 1e-9 * bevel);
+}
+
+TEST(BevelledTipInTheNearField, IsDrawnAsideAsFarWhateverTheSpacingOfContacts) {
+  const double usual = sideways(true, Bevel::Law::offset, 0.0);
+  for (const double spacing_mm : {2.0, 3.0, 6.0, 8.0})
+    EXPECT_NEAR(sideways(true, Bevel::Law::offset, 0.0, spacing_mm), usual, 0.05 * usual) << spacing_mm << " mm";
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, TipInTheNearField, testing::Values(Bevel::Law::offset, Bevel::Law::force),

@@ -348,6 +348,21 @@ TEST(Situation, the_force_of_a_puncture_is_that_of_the_break_at_any_speed) {
   }
 }
 
+TEST(Situation, viscous_tissue_may_remember_more_points_than_a_needle_holds) {
+  BlockOptions options;
+  options.cells = {6, 6, 6};
+  options.coupling.relaxation_s = 1.0;
+  options.coupling.capacity = 12;
+  NeedleInBlock run(options);
+  run.aim({2.0, 3.0, 0.0});
+  run.go(35.0, 20.0, 2e-3);
+  run.go(-2.0, 40.0, 2e-3);
+  ASSERT_EQ(run.count(Kind::withdrawn), 1);
+  run.go(35.0, 20.0, 2e-3);
+  EXPECT_EQ(run.count(Kind::skin_contact), 2);
+  EXPECT_GT(run.insertion->compliance().points(), options.coupling.capacity + 1);
+}
+
 TEST(Step, does_not_allocate_over_puncture_full_contact_and_retraction) {
   if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
   for (const auto rule : {CouplingSettings::Rule::interior, CouplingSettings::Rule::paper}) {
