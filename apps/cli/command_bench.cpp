@@ -22,7 +22,6 @@ struct BenchArguments {
 };
 
 constexpr int kRemeshNodes = 1331;
-constexpr int kCouplingNodes = 40000;
 
 /// Sizes of a cube, by its cells, up to a number of nodes.
 std::vector<int> sizes_up_to(int nodes) {
@@ -117,7 +116,7 @@ Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nu
 Json coupling_json(const validate::CouplingRow& row) {
   constexpr double every_s = 0.01;  // of the curve, for a picture
   Json curve = Json::array();
-  const auto every = static_cast<std::size_t>(std::lround(every_s / row.curve.dt_s));
+  const auto every = static_cast<std::size_t>(std::max(1L, std::lround(every_s / row.curve.dt_s)));
   for (std::size_t k = every; k <= row.curve.force_N.size(); k += every) curve.push_back(row.curve.force_N[k - 1]);
   return {{"study", to_string(row.study)},
           {"method", row.method},
@@ -159,7 +158,6 @@ std::vector<std::string> coupling_cells(const validate::CouplingRow& row) {
 
 Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   validate::CouplingBenchOptions options;
-  options.largest = kCouplingNodes;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
   if (options.largest < 500)
     return input_error("--nodes", fmt::format("coupling takes 500 nodes or more, not {}", options.largest),
@@ -207,7 +205,7 @@ Command add_bench_command(CLI::App& program) {
       ->check(one_of({"remesh", "coupling", "needle"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {})",
-                              kRemeshNodes, kCouplingNodes))
+                              kRemeshNodes, validate::CouplingBenchOptions{}.largest))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};

@@ -200,7 +200,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
   const int region = region_of(crossing.tet);
   const Vec3 t = needle->tangent(length());
   add_event(report, kind, region);
-  leave_memory_behind();
+  leave_memory_behind(1.0);
   tip = Tip{};
   tip.touching = true;
   tip.x = x;
@@ -254,7 +254,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
     tip.limit = tip.cutting;
   }
   const RegionLaws& outside = tissue.laws[static_cast<std::size_t>(region)];
-  compliance.enter_by(outside.rigid ? 0.0 : std::max(outside.puncture_N, outside.cutting_N));
+  compliance.enter_by(outside.rigid ? 0.0 : std::max(outside.puncture_N, outside.cutting_N), t);
   tip.x_start = tip.x;
   tip.at_start = tip.at;
   memory.forget(ContactCompliance::kTip);

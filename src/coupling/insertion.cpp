@@ -98,7 +98,7 @@ void Insertion::Parts::settle_in_air(StepReport& report) {
 /// The needle is out: the tissue model is what it was before the first contact, or goes back to it as it relaxes. The
 /// tracks stay known.
 void Insertion::Parts::finish_insertion(StepReport& report) {
-  leave_memory_behind();
+  leave_memory_behind(1.0);
   if (track.end_xi > 0.0) {
     if (joined < 0) {
       if (old_count < old_tracks.size()) {

@@ -176,7 +176,7 @@ struct Insertion::Parts {
   // viscosity.cpp: what the tissue remembers of earlier forces.
   void gather_filtered_forces();
   void remember();
-  void leave_memory_behind();
+  void leave_memory_behind(double part);
   void relax();
   void forget_tissue();
 

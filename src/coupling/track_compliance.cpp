@@ -329,7 +329,11 @@ void TrackCompliance::remove_last_embedded() {
 }
 
 VecX TrackCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
-  return store_->tissue().solve(base_load(forces)).topRows(3 * mesh_.locator().mesh().node_count());
+  return mesh_displacement(forces).head(3 * Eigen::Index{mesh_.locator().mesh().node_count()});
+}
+
+VecX TrackCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
+  return store_->tissue().solve(base_load(forces));
 }
 
 TrackCompliance::Nodes TrackCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {

@@ -8,7 +8,8 @@
 namespace stylet {
 
 namespace {
-constexpr double kTipReach = 2.5;   ///< needle radii over which the field of a tip (ε = 1.5 R) falls to a third
+constexpr double kTipReach =
+    2.5;  ///< needle radii over which a tip's field (ε = 1.5 R) falls to a half along the force
 constexpr double kDentReach = 4.0;  ///< times the dent: so much slower, or the tissue would start back past the tip
 }  // namespace
 
@@ -21,47 +22,29 @@ void Insertion::Parts::gather_filtered_forces() {
   }
 }
 
-/// The sub-step is over. The tip is a new material point wherever it has cut to. What it left behind goes to the points
-/// of the track on either side, but not at once: such a point stands for a piece of shaft and yields several times less
-/// than a tip, and tissue would start back. It goes as the tip's own field falls off with the way it has cut, and where
-/// the dent is deeper than that field is wide, no faster than a tip can follow.
+/// The sub-step is over. The tip is a new material point wherever it has cut to. What it left behind goes to the last
+/// point of the track, but not at once: such a point stands for a piece of shaft and yields several times less than a
+/// tip, and tissue would start back. It goes as the tip's own field falls off with the way it has cut, and where the
+/// dent is deeper than that field is wide, no faster than a tip can follow. Before there is such a point it stays.
 void Insertion::Parts::remember() {
   if (!memory.on()) return;
   gather_forces();
   memory.end(forces.leftCols(compliance.points()));
-  const double here = memory_xi;
+  const double cut = track.end_xi - memory_xi;
   memory_xi = track.end_xi;
-  if (track.end_xi <= here) return;
-
-  const Track::Mark* behind = nullptr;
-  const Track::Mark* ahead = nullptr;
-  for (const Track::Mark& mark : track.marks) {
-    if (mark.point < 0) continue;
-    if (mark.xi <= here) {
-      behind = &mark;
-    } else if (ahead == nullptr) {
-      ahead = &mark;
-    }
-  }
+  if (cut <= 0.0) return;
   const double dent =
       (compliance(ContactCompliance::kTip, ContactCompliance::kTip) * memory.past(ContactCompliance::kTip)).norm();
   const double reach = std::max(kTipReach * settings.needle_radius_mm, kDentReach * dent);
-  const double left = 1.0 - std::exp(-(track.end_xi - here) / reach);
-  if (ahead == nullptr) {
-    if (behind != nullptr) memory.hand_over(ContactCompliance::kTip, behind->point, left);
-    return;
-  }
-  const double back = behind != nullptr ? left * (ahead->xi - here) / (ahead->xi - behind->xi) : 0.0;
-  if (behind != nullptr) memory.hand_over(ContactCompliance::kTip, behind->point, back);
-  memory.hand_over(ContactCompliance::kTip, ahead->point, (left - back) / (1.0 - back));
+  leave_memory_behind(1.0 - std::exp(-cut / reach));
 }
 
-/// The tip leaves its place: the last point of the track takes over what is remembered there.
-void Insertion::Parts::leave_memory_behind() {
+/// The last point of the track takes over a part of what is remembered at the tip.
+void Insertion::Parts::leave_memory_behind(double part) {
   if (!memory.on()) return;
   for (auto mark = track.marks.rbegin(); mark != track.marks.rend(); ++mark) {
     if (mark->point < 0) continue;
-    memory.hand_over(ContactCompliance::kTip, mark->point, 1.0);
+    memory.hand_over(ContactCompliance::kTip, mark->point, part);
     return;
   }
 }

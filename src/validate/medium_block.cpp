@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace stylet::validate {
 
@@ -86,16 +87,15 @@ Mat3 MediumBlock::lift(const Vec3& x, const std::vector<Mat3>& field) const {
 Mat3 MediumBlock::tip(const NeedleKernel& needle, const Vec3& x) {
   prepare({x});
   NearFieldCompliance contacts = compliance(needle, 1);
-  contacts.move_tip(at(x), x);
+  if (!contacts.move_tip(at(x), x)) throw std::logic_error("the tip was refused");
   return contacts(0, 0);
 }
 
 Mat3 MediumBlock::tip_moves(const NeedleKernel& needle, const Vec3& x, const Vec3& seen) {
   prepare({x, seen});
   NearFieldCompliance contacts = compliance(needle, 1);
-  contacts.move_tip(at(x), x);
-  contacts.add(at(seen), seen, Placement::embedded);
-  return contacts(1, 0);
+  if (!contacts.move_tip(at(x), x)) throw std::logic_error("the tip was refused");
+  return contacts(contacts.add(at(seen), seen, Placement::embedded).point, 0);
 }
 
 namespace {

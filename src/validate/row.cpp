@@ -55,6 +55,8 @@ const char* to_string(Verdict verdict) {
   return "";
 }
 
+double worse(double one, double other) { return std::isnan(one) || one > other ? one : other; }
+
 bool Accepted::holds(double value) const {
   return !std::isnan(value) && (!from || value >= *from) && (!to || value <= *to);
 }

@@ -73,8 +73,9 @@ class ContactCompliance {
   /// Moves the tip to x in base tetrahedron at.tet. False, and nothing changed, when compliance is missing there.
   virtual bool move_tip(const MaterialPoint& at, const Vec3& x) = 0;
 
-  /// The needle is to go in through a surface that breaks at `force` [N]; until it is told, through none.
-  virtual void enter_by(double /*force*/) {}
+  /// The needle is to go in, along the unit vector `direction`, through a surface that breaks at `force` [N]; until it
+  /// is told, and after reset(), through none.
+  virtual void enter_by(double /*force*/, const Vec3& /*direction*/) {}
 
   /// Whether the compliance of a base tetrahedron's nodes is there.
   [[nodiscard]] virtual bool available(Index base_tet) const = 0;
@@ -92,13 +93,18 @@ class ContactCompliance {
   /// Displacement [mm] (3n) of the material at the base mesh's nodes. Allocates; for pictures and checks.
   [[nodiscard]] virtual VecX displacement(const Eigen::Ref<const MatX>& forces) const = 0;
 
-  /// The same without the near field of the needle, where an implementation adds one: what the mesh represents. Means
-  /// over volumes should use it, since a near field at nodes says nothing about the material between them.
+  /// The same without the near field of the needle, where an implementation adds one: what the mesh represents. Of all
+  /// displacement nodes, those that the kind of element adds included (3 × Tissue::displacement_nodes()); nodes put at
+  /// the needle do not count. Allocates. Means over volumes should start from it, since a near field at nodes says
+  /// nothing about the material between them.
+  /// @param forces [N] LPS (3 × points())
   [[nodiscard]] virtual VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
     return displacement(forces);
   }
 
-  /// Mean over a base tetrahedron [mm] of what the near field adds to mesh_displacement() between its nodes. Allocates.
+  /// Mean over a base tetrahedron [mm], LPS, of what the near field adds to mesh_displacement() between its nodes; zero
+  /// where the compliance of its nodes is not there. Allocates.
+  /// @param forces [N] LPS (3 × points())
   [[nodiscard]] virtual Vec3 mean_near_field(Index /*base_tet*/, const Eigen::Ref<const MatX>& /*forces*/) const {
     return Vec3::Zero();
   }

@@ -122,9 +122,11 @@ class Insertion {
   /// never in the loop.
   [[nodiscard]] VecX displacement() const;
 
-  /// The same without the near field of the needle; for means over volumes.
+  /// The same without the near field of the needle, of all displacement nodes (3 × Tissue::displacement_nodes()); for
+  /// means over volumes. Nodes put at the needle do not count.
   [[nodiscard]] VecX mesh_displacement() const;
-  /// Mean over a tetrahedron [mm] of what the near field adds to mesh_displacement() between its nodes. Allocates.
+  /// Mean over a tetrahedron [mm], LPS, of what the near field adds to mesh_displacement() between its nodes; zero
+  /// where the compliance of its nodes is not there. Allocates.
   [[nodiscard]] Vec3 mean_near_field(Index tet) const;
 
   /// Condition number of A among the contacts and the tip where it touches; 1 without any. Allocates.

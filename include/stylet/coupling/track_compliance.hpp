@@ -35,6 +35,7 @@ class TrackCompliance final : public ContactCompliance {
   void reset() override;
   [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return changes_; }
 

@@ -37,8 +37,8 @@ struct CouplingRow {
 };
 
 struct CouplingBenchOptions {
-  Index largest = 40000;  ///< meshes with more nodes are left out
-  double depth_mm = 60.0;
+  Index largest = 40000;   ///< meshes with more nodes are left out
+  double depth_mm = 60.0;  ///< of the base beyond skin contact
   bool mesh_only = false;  ///< only the study of meshes
 };
 

@@ -78,6 +78,9 @@ struct Finding {
   }
 };
 
+/// The larger of two errors; NaN when either is, so that nothing passes that could not be measured.
+double worse(double one, double other);
+
 class Context;
 
 /// A claim and how to check it. Rows know nothing of each other. docs/validation.md shows how to add one.

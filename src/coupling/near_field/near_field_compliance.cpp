@@ -32,6 +32,7 @@ NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far,
 
 void NearFieldCompliance::reset() {
   far_->reset();
+  press_N_ = 0.0;
   places_.assign(1, Place{});
   points_ = 1;
   ++version_;
@@ -148,7 +149,8 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   tip.epsilon = needle_.tip_epsilon(tip.skin.depth, kernel_->medium(tip.medium).poisson);
   write_row(kTip);
   const Medium medium = scaled(kernel_->medium(tip.medium), tip.young_MPa);
-  A_.topLeftCorner<3, 3>() += tip.moves * needle_.dent(tip.skin, press_N_, medium);
+  if (tip.skin.inwards.dot(entry_) > 0.0)  // not the far surface, from inside
+    A_.topLeftCorner<3, 3>() += tip.moves * needle_.dent(tip.skin, press_N_, medium);
   return true;
 }
 
@@ -197,7 +199,7 @@ VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) con
 }
 
 VecX NearFieldCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
-  return far_->displacement(forces);
+  return far_->mesh_displacement(forces);
 }
 
 Vec3 NearFieldCompliance::mean_near_field(Index base_tet, const Eigen::Ref<const MatX>& forces) const {

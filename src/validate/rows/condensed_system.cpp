@@ -72,7 +72,7 @@ Result<Finding> switches_and_rotations(Context&) {
     fill(y);
     const VecX x = solve_mixed(A, system, y);
     const double error = (system.matrix() * y - x).cwiseAbs().maxCoeff() / x.cwiseAbs().maxCoeff();
-    finding.value = std::max(finding.value, error);
+    finding.value = worse(finding.value, error);
     curve.x.push_back(k);
     curve.y.push_back(error);
   }

@@ -65,7 +65,7 @@ Result<Finding> flat_punch(Context&) {
         sum += pressed->ours;
         stiffness = pressed->punch;
         if (method == kJudged)
-          finding.value = std::max(finding.value, 100.0 * std::abs(pressed->ours / pressed->punch - 1.0));
+          finding.value = worse(finding.value, 100.0 * std::abs(pressed->ours / pressed->punch - 1.0));
       }
       curve.add(100.0 / cells, sum / static_cast<double>(kEntries.size()));
     }
@@ -127,7 +127,7 @@ Result<Finding> mindlin(Context&) {
       const Mat3 ball = kelvinlet(Vec3::Zero(), 1.5 * needle.radius_mm, medium);
       const Mat3 exact = ball + surface_part(source + half.up, source + half.up, medium);
       const Mat3 found = half.block.tip(needle, source) + half.block.lift(source, far);
-      tip_off = std::max(tip_off, 100.0 * (found - exact).norm() / exact.norm());
+      tip_off = worse(tip_off, 100.0 * (found - exact).norm() / exact.norm());
       ours.add(depth, found(2, 2));
       if (cells == 7) {
         reference.add(depth, exact(2, 2));
@@ -137,14 +137,14 @@ Result<Finding> mindlin(Context&) {
         const Vec3 seen = source + way;
         const Mat3 there = point_force(seen + half.up, source + half.up, medium);
         const Mat3 moved = half.block.tip_moves(point, source, seen) + half.block.lift(seen, far);
-        field_off = std::max(field_off, 100.0 * (moved - there).norm() / there.norm());
+        field_off = worse(field_off, 100.0 * (moved - there).norm() / there.norm());
       }
     }
     finding.plot.curves.push_back(std::move(ours));
   }
   finding.plot.curves.push_back(std::move(reference));
   finding.plot.curves.push_back(std::move(deep));
-  finding.value = std::max(tip_off, field_off);
+  finding.value = worse(tip_off, field_off);
   finding.note = fmt::format(
       "1 … 10 mm below a free face, two meshes, all nine components: the tip’s own compliance within {:.1f} %, the "
       "displacement at four points 3 … 7 mm away from a point force within {:.1f} %. The coupling uses Mindlin’s "

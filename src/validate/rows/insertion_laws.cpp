@@ -50,7 +50,7 @@ Result<Finding> steady_cutting(Context&) {
     drive.go(depth, speed);
     if (drive.simulation().report().tip != TipPhase::cutting || depth < 20.0) continue;
     const double expected = tip + along * drive.simulation().report().inserted_mm;
-    finding.value = std::max(finding.value, percent_off(drive.last().record.force_axial_N, expected));
+    finding.value = worse(finding.value, percent_off(drive.last().record.force_axial_N, expected));
     law.x.push_back(depth);
     law.y.push_back(expected);
   }
@@ -127,7 +127,7 @@ Result<Finding> withdrawal(Context&) {
   finding.value = left;
   for (std::size_t i = 0; i < fresh.steps().size(); ++i) {
     const double difference = (used.steps()[from + i].hand_force - fresh.steps()[i].hand_force).norm();
-    finding.value = std::max(finding.value, difference / fresh.peak_N());
+    finding.value = worse(finding.value, difference / fresh.peak_N());
   }
   finding.note = fmt::format(
       "Left over after the needle is out: {:g} mm. A second needle elsewhere feels what it would feel in fresh tissue; "
@@ -176,7 +176,7 @@ Result<Finding> moved_scene(Context&) {
     Curve curve{.label = label, .x = {}, .y = {}};
     for (std::size_t i = 0; i < plain->size(); ++i) {
       const double off = ((*other)[i].hand_force - placing.linear() * (*plain)[i].hand_force).norm() / peak;
-      finding.value = std::max(finding.value, off);
+      finding.value = worse(finding.value, off);
       curve.x.push_back(static_cast<double>(i));
       curve.y.push_back(off);
     }
@@ -243,7 +243,7 @@ Result<Finding> energy(Context&) {
       drive.go(from + (to - from) * k / looks);
       const double now = drive.insertion().tissue_energy() + drive.insertion().needle().energy();
       if (drive.last().work_Nmm <= 0.0) continue;
-      finding.value = std::max(finding.value, now / drive.last().work_Nmm);
+      finding.value = worse(finding.value, now / drive.last().work_Nmm);
       work.x.push_back(drive.last().record.time_s);
       work.y.push_back(drive.last().work_Nmm);
       stored.x.push_back(drive.last().record.time_s);

@@ -17,7 +17,7 @@ constexpr const char* kDefault = "near-field";
 Curve curve_of(const CouplingRow& row) {
   Curve curve{.label = fmt::format("{}, {} nodes", row.method, row.nodes), .x = {}, .y = {}};
   if (row.method != kDefault) curve.kind = Curve::Kind::reference;
-  const auto every = static_cast<std::size_t>(std::lround(20e-3 / row.curve.dt_s));
+  const auto every = static_cast<std::size_t>(std::max(1L, std::lround(20e-3 / row.curve.dt_s)));
   for (std::size_t k = every; k <= row.curve.force_N.size(); k += every)
     curve.add(static_cast<double>(k) * row.curve.dt_s, row.curve.force_N[k - 1]);
   return curve;
@@ -31,7 +31,7 @@ Result<Finding> force(Context& context) {
   finding.value = 0.0;
   for (const CouplingRow& row : *rows) {
     if (row.method == kDefault) {
-      finding.value = std::max(finding.value, row.rms_vs_finest_percent);
+      finding.value = worse(finding.value, row.rms_vs_finest_percent);
       finding.note +=
           fmt::format("{} nodes: peak {:.3f} N, RMS {:.2f} %, skin breaks at {:.1f} mm, capsule at {:.1f} mm. ",
                       row.nodes, row.peak_N, row.rms_vs_finest_percent, row.skin_mm, row.capsule_mm);
@@ -64,7 +64,7 @@ Result<Finding> shift(Context& context) {
     }
     curves.back().add(row.nodes, row.target_shift_mm);
     const double off = 100.0 * (row.target_shift_mm / finest - 1.0);
-    if (row.method == kDefault) finding.value = std::max(finding.value, std::abs(off));
+    if (row.method == kDefault) finding.value = worse(finding.value, std::abs(off));
     finding.note += fmt::format("{}, {} nodes: {:.4f} mm ({:+.1f} %), gland’s surface off by {:.2f} mm on average. ",
                                 row.method, row.nodes, row.target_shift_mm, off, row.surface_mean_mm);
   }

@@ -36,7 +36,7 @@ Result<Finding> locking(Context&) {
     }
     const double off = 100.0 * (curve.y.back() / fine->dent_mm - 1.0);
     each += fmt::format("{}{} {:+.1f} %", each.empty() ? "" : ", ", chosen.label, off);
-    if (chosen.element != Element::p1) finding.value = std::max(finding.value, std::abs(off));
+    if (chosen.element != Element::p1) finding.value = worse(finding.value, std::abs(off));
     finding.plot.curves.push_back(std::move(curve));
   }
   Curve reference{.label = "fine mesh", .x = {}, .y = {}, .kind = Curve::Kind::reference};

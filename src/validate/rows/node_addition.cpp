@@ -114,7 +114,7 @@ Result<Finding> node_additions(Context&) {
       auto curve =
           add_nodes(*cube, engine.compliance, engine.mesh, placement, fmt::format("{}, {}", engine.name, rule));
       if (!curve) return curve.error();
-      for (const double error : curve->y) finding.value = std::max(finding.value, error);
+      for (const double error : curve->y) finding.value = worse(finding.value, error);
       finding.plot.curves.push_back(std::move(*curve));
     }
   }

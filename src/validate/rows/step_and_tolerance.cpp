@@ -35,7 +35,7 @@ Result<Finding> time_steps(Context&) {
     finding.plot.curves.push_back(std::move(curve));
     if (forces.size() == 1) continue;
     const double rms = 100.0 * rms_difference_N(force, forces.front()) / forces.front().peak_N();
-    finding.value = std::max(finding.value, rms);
+    finding.value = worse(finding.value, rms);
     each += fmt::format("{}{:.2f} % at {:g} ms", each.empty() ? "" : ", ", rms, 1e3 * dt);
   }
   finding.note = "Skin, capsule, a pause, and out; RMS difference from 0.25 ms over the peak: " + each + ".";

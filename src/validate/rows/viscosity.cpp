@@ -52,7 +52,7 @@ Result<Finding> viscosity(Context&) {
     const double dent = std::min(kDent_mm, kSpeed_mm_per_s * time);
     const double law = stiffness * (dent + (moves ? kTau_s * kSpeed_mm_per_s : 0.0)) / held_N;
     const double found = pressing.steps()[i].record.force_axial_N / held_N;
-    press_off = std::max(press_off, 100.0 * std::abs(found - law));
+    press_off = worse(press_off, 100.0 * std::abs(found - law));
     force.add(time / kTau_s, found);
     force_law.add(time / kTau_s, law);
   }
@@ -71,13 +71,13 @@ Result<Finding> viscosity(Context&) {
     const double time = every_s * look;
     const double expected = std::exp(-time / kTau_s);
     const VecX now = drive.insertion().displacement();
-    relax_off = std::max(relax_off, 100.0 * (now - expected * first).norm() / first.norm());
+    relax_off = worse(relax_off, 100.0 * (now - expected * first).norm() / first.norm());
     left.add(time / kTau_s, now.norm() / first.norm());
     law.add(time / kTau_s, expected);
   }
 
   Finding finding;
-  finding.value = std::max(press_off, relax_off);
+  finding.value = worse(press_off, relax_off);
   finding.note = fmt::format(
       "τ = {:g} s, steps of {:g} ms. The tip pressed into the skin at {:g} mm/s and held: the force is off by at most "
       "{:.2f} % of the held {:.3f} N, whose stiffness k is the elastic block’s; most in the step after a start or "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tip that has broken the skin stands in a dent sixteen times as deep as it is thick (docs/theory/near_field.md §5).
+// A tip that has broken the skin stands in a dent eight times as deep as it is thick (docs/theory/near_field.md §5).
 #include "coupling/needle_in_block.hpp"
 
 namespace stylet {

@@ -27,7 +27,10 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
-  void enter_by(double force) override { press_N_ = force; }
+  void enter_by(double force, const Vec3& direction) override {
+    press_N_ = force;
+    entry_ = direction;
+  }
   [[nodiscard]] bool available(Index base_tet) const override;
   void remove_last_embedded() override;
   void reset() override;
@@ -65,7 +68,8 @@ class NearFieldCompliance final : public ContactCompliance {
   std::shared_ptr<const Tissue> tissue_;
   std::shared_ptr<const MeshKernel> kernel_;
   NeedleKernel needle_;
-  double press_N_ = 0.0;       ///< what the surface the needle went in by took before it broke
+  double press_N_ = 0.0;       ///< what the surface the needle went in by took before it broke …
+  Vec3 entry_ = Vec3::Zero();  ///< … and which way it went
   std::vector<Place> places_;  ///< (points)
 };
 
