@@ -44,7 +44,7 @@ struct CouplingBenchOptions {
 
 /// The demo insertion, in and out to one depth, on meshes of about 500, 2,000, 10,000 and 40,000 nodes with the near
 /// field and with node addition; over the spacing of contacts and over the time step; and with quadratic elements on
-/// the two coarse meshes, which shows what their shape alone does.
+/// the two coarse meshes, which tells what linear ones resist too much from what the meshes' shape does.
 /// @return the finest of each study and method first
 Result<std::vector<CouplingRow>> bench_coupling(const CouplingBenchOptions& options, const Progress& progress = {});
 
