@@ -345,9 +345,19 @@ VecX Insertion::mesh_displacement() const {
   return parts_->compliance.mesh_displacement(parts_->forces.leftCols(parts_->compliance.points()));
 }
 
-Vec3 Insertion::mean_near_field(Index tet) const {
-  parts_->gather_filtered_forces();
-  return parts_->compliance.mean_near_field(tet, parts_->forces.leftCols(parts_->compliance.points()));
+std::vector<TissueForce> Insertion::tissue_forces() const {
+  Parts& p = *parts_;
+  p.gather_filtered_forces();
+  std::vector<TissueForce> result;
+  const auto take = [&](const MaterialPoint& at, int point) {
+    const Vec3 force = p.forces.col(point);
+    if (!force.isZero(0.0)) result.push_back({at, force});
+  };
+  take(p.tip.at, ContactCompliance::kTip);
+  for (const Track::Mark& mark : p.track.marks) {
+    if (mark.point >= 0) take(mark.at, mark.point);
+  }
+  return result;
 }
 
 double Insertion::compliance_condition() const {

@@ -2,6 +2,7 @@
 #include "stylet/sim/run.hpp"
 
 #include "stylet/core/version.hpp"
+#include "stylet/sim/target_motion.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <optional>
 
 namespace stylet {
 
@@ -154,7 +156,9 @@ class Runner {
     summary_.compliance_condition =
         std::max(summary_.compliance_condition, simulation_.insertion().compliance_condition());
     if (label == "deepest") {
-      const TargetShift shift = target_shift(*model_, simulation_.insertion());
+      const auto measured = target_shift();
+      if (!measured) return measured.error();
+      const TargetShift& shift = *measured;
       summary_.target_shifts.push_back(shift);
       if (shift.largest_mm >= summary_.target_shift_max_mm) {
         summary_.target_shift_centroid_mm = shift.centroid_mm;
@@ -162,6 +166,15 @@ class Runner {
       }
     }
     return observer_.on_frame(frame);
+  }
+
+  Result<TargetShift> target_shift() {
+    if (!target_motion_) {
+      auto motion = TargetMotion::of(*model_, progress_);
+      if (!motion) return motion.error();
+      target_motion_ = std::move(*motion);
+    }
+    return target_motion_->shift(simulation_.insertion());
   }
 
   /// Woodbury's small matrix takes as many digits from K⁻¹ as its condition number has.
@@ -196,6 +209,7 @@ class Runner {
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;
+  std::optional<TargetMotion> target_motion_;  ///< computed when first asked for
   RunObserver& observer_;
   const Progress& progress_;
   long step_ns_;
@@ -208,40 +222,6 @@ class Runner {
 };
 
 }  // namespace
-
-namespace {
-
-/// Mean over an element of what its nodes move by [mm]: a linear function's is the mean of its corners; a quadratic
-/// one's has weights −1/20 at the corners and 1/5 in the middle of the edges.
-Vec3 mean_of_nodes(const Tissue& tissue, Index tet, const VecX& u) {
-  const auto nodes = tissue.nodes_of(tet);
-  const bool linear = nodes.size() == 4;
-  Vec3 mean = Vec3::Zero();
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    mean += (linear ? 0.25 : k < 4 ? -0.05 : 0.2) * u.segment<3>(3 * Eigen::Index{nodes[k]});
-  return mean;
-}
-
-}  // namespace
-
-TargetShift target_shift(const Model& model, const Insertion& insertion) {
-  const TetMesh& mesh = model.mesh();
-  const std::vector<int>& regions = model.target_regions();
-  const VecX u = insertion.mesh_displacement();
-  Vec3 sum = Vec3::Zero();
-  double volume = 0.0;
-  double largest = 0.0;
-  for (Index t = 0; t < mesh.tet_count(); ++t) {
-    const int region = mesh.tet_region[static_cast<std::size_t>(t)];
-    if (std::find(regions.begin(), regions.end(), region) == regions.end()) continue;
-    for (const Index node : mesh.tets[static_cast<std::size_t>(t)])
-      largest = std::max(largest, u.segment<3>(3 * Eigen::Index{node}).norm());
-    const double v = tet_volume(mesh, t);
-    sum += v * (mean_of_nodes(model.tissue(), t, u) + insertion.mean_near_field(t));
-    volume += v;
-  }
-  return {volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero()), largest};
-}
 
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress) {
   return Runner(model, observer, progress).all();

@@ -95,18 +95,10 @@ class ContactCompliance {
 
   /// The same without the near field of the needle, where an implementation adds one: what the mesh represents. Of all
   /// displacement nodes, those that the kind of element adds included (3 × Tissue::displacement_nodes()); nodes put at
-  /// the needle do not count. Allocates. Means over volumes should start from it, since a near field at nodes says
-  /// nothing about the material between them.
+  /// the needle do not count. Allocates.
   /// @param forces [N] LPS (3 × points())
   [[nodiscard]] virtual VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
     return displacement(forces);
-  }
-
-  /// Mean over a base tetrahedron [mm], LPS, of what the near field adds to mesh_displacement() between its nodes; zero
-  /// where the compliance of its nodes is not there. Allocates.
-  /// @param forces [N] LPS (3 × points())
-  [[nodiscard]] virtual Vec3 mean_near_field(Index /*base_tet*/, const Eigen::Ref<const MatX>& /*forces*/) const {
-    return Vec3::Zero();
   }
 
   /// Every node of the mesh as it is now.

@@ -78,6 +78,12 @@ struct ContactState {
   bool tip = false;
 };
 
+/// Force on a point of the tissue.
+struct TissueForce {
+  MaterialPoint at;
+  Vec3 force = Vec3::Zero();  ///< [N] LPS
+};
+
 /// What the tissue contributes; everything outlives the Insertion.
 struct InsertionTissue {
   std::shared_ptr<ComplianceStore> store;
@@ -122,13 +128,13 @@ class Insertion {
   /// never in the loop.
   [[nodiscard]] VecX displacement() const;
 
-  /// The same without the near field of the needle, of all displacement nodes (3 × Tissue::displacement_nodes()); for
-  /// means over volumes. Nodes put at the needle do not count.
+  /// The same without the near field of the needle: what the mesh represents, and so alike for all of its nodes, near
+  /// the needle or not.
   [[nodiscard]] VecX mesh_displacement() const;
-  /// Mean over a tetrahedron [mm], LPS, of what the near field adds to mesh_displacement() between its nodes; zero
-  /// where the compliance of its nodes is not there. Allocates.
-  [[nodiscard]] Vec3 mean_near_field(Index tet) const;
 
+  /// Forces that hold the tissue where it is, on material points: contacts, and in viscous tissue what it remembers of
+  /// them. Allocates.
+  [[nodiscard]] std::vector<TissueForce> tissue_forces() const;
   /// Condition number of A among the contacts and the tip where it touches; 1 without any. Allocates.
   [[nodiscard]] double compliance_condition() const;
 

@@ -13,9 +13,6 @@ class RunObserver {
   virtual Result<> on_frame(const Frame& frame) = 0;
 };
 
-/// How far the needle has moved the target. Not for the loop: it solves for the whole displacement.
-TargetShift target_shift(const Model& model, const Insertion& insertion);
-
 /// Carries out all insertions of a model, one after the other, and sums up.
 /// Frames: one before, one per event worth a picture (labelled with the event's name), one at the deepest point
 /// ("deepest"), one after, and a regular series at scenario.output.frames_per_s, at most max_frames.

@@ -12,8 +12,6 @@ namespace {
 /// size (edge / distance)² / 8.
 constexpr double kReach = 5.0;
 
-constexpr double kQuadrature_mm = 1.5;
-
 Medium scaled(Medium medium, double young_MPa) {
   medium.mu *= young_MPa;
   return medium;
@@ -200,32 +198,6 @@ VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) con
 
 VecX NearFieldCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {
   return far_->mesh_displacement(forces);
-}
-
-Vec3 NearFieldCompliance::mean_near_field(Index base_tet, const Eigen::Ref<const MatX>& forces) const {
-  if (!available(base_tet)) return Vec3::Zero();
-  const auto& corners = tissue_->mesh().tets[static_cast<std::size_t>(base_tet)];
-  double edge = 0.0;
-  for (const Index corner : corners) edge += 0.25 * kernel_->edge(corner);
-  const int parts = std::max(2, static_cast<int>(std::ceil(edge / kQuadrature_mm)));
-  Vec3 sum = Vec3::Zero();
-  int count = 0;
-  for (int i = 0; i < parts; ++i) {
-    for (int j = 0; i + j < parts; ++j) {
-      for (int k = 0; i + j + k < parts; ++k) {
-        const int l = parts - 1 - i - j - k;
-        MaterialPoint at;
-        at.tet = base_tet;
-        at.weights = (Vec4(i, j, k, l).array() + 0.25) / parts;
-        Vec3 x = Vec3::Zero();
-        for (int a = 0; a < 4; ++a)
-          x += at.weights[a] * tissue_->mesh().nodes[static_cast<std::size_t>(corners[static_cast<std::size_t>(a)])];
-        sum += near_field(place_at(at, x), forces);
-        ++count;
-      }
-    }
-  }
-  return sum / count;
 }
 
 ContactCompliance::Nodes NearFieldCompliance::nodes(const Eigen::Ref<const MatX>& forces) const {

@@ -41,7 +41,6 @@ class NearFieldCompliance final : public ContactCompliance {
   /// With the near field, wherever a node lies in it.
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
-  [[nodiscard]] Vec3 mean_near_field(Index base_tet, const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
 
