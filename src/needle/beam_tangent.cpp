@@ -43,31 +43,11 @@ constexpr double kSmallestShift = 0.05;
 
 }  // namespace
 
-double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
-  Resultant beyond;
-  double largest = 0.0;
-  for (int e = shape.elements() - 1; e >= 0; --e) {
-    Vec3 generalised = shape.shift(e).transpose() * beyond.force + shape.spin(e).transpose() * beyond.moment();
-    for (const PointLoad& load : loads) {
-      const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
-      for (int i = 0; i < pulls.count; ++i) {
-        const Pull& pull = pulls.pull[static_cast<std::size_t>(i)];
-        if (pull.at.element != e) continue;
-        generalised.noalias() += shape.inner_jacobian(pull.at).transpose() * pull.force;
-        beyond.add(pull);
-      }
-    }
-    const Vec3 moment = shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.strain(e)) -
-                        generalised / shape.element_length();
-    // Written so that a NaN is not lost.
-    if (!(moment.norm() <= largest)) largest = moment.norm();
-  }
-  return largest;
-}
-
 BeamTangent::BeamTangent(const BeamShape& shape, int load_capacity)
     : elements_(shape.elements()),
       scale_(static_cast<std::size_t>(elements_)),
+      first_(static_cast<std::size_t>(elements_)),
+      work_(static_cast<std::size_t>(elements_)),
       H_(MatX::Zero(dof(elements_), dof(elements_))),
       L_(MatX::Identity(dof(elements_), dof(elements_))),
       g_(VecX::Zero(dof(elements_))),
@@ -87,6 +67,8 @@ void BeamTangent::reserve(Eigen::Index loads) {
   Y_.setZero(dof(elements_), 3 * loads);
   force_.setZero(3 * loads);
   pulls_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
+  acting_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
+  next_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
   last_pull_.reserve(static_cast<std::size_t>(loads));
   last_moved_.reserve(static_cast<std::size_t>(loads));
 }
@@ -101,6 +83,65 @@ void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, st
   z_ = g_;
   solve_lower(L_, 0, z_);
   solve_jacobian();
+}
+
+/// Virtual work of the loads per curvature of each element.
+void BeamTangent::sum_work(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
+  acting_.clear();
+  next_.clear();
+  std::fill(first_.begin(), first_.end(), -1);
+  for (const PointLoad& load : loads) {
+    const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
+    for (int i = 0; i < pulls.count; ++i) {
+      const Pull& pull = pulls.pull[static_cast<std::size_t>(i)];
+      if (pull.at.element < 0) continue;
+      int& first = first_[static_cast<std::size_t>(pull.at.element)];
+      next_.push_back(first);
+      first = static_cast<int>(acting_.size());
+      acting_.push_back(pull);
+    }
+  }
+  Resultant beyond;
+  for (int e = elements_ - 1; e >= 0; --e) {
+    Vec3 work = shape.shift(e).transpose() * beyond.force + shape.spin(e).transpose() * beyond.moment();
+    for (int i = first_[static_cast<std::size_t>(e)]; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+      const Pull& pull = acting_[static_cast<std::size_t>(i)];
+      work.noalias() += shape.inner_jacobian(pull.at).transpose() * pull.force;
+      beyond.add(pull);
+    }
+    work_[static_cast<std::size_t>(e)] = work;
+  }
+}
+
+double BeamTangent::largest_imbalance(const BeamShape& shape, const Mat3& base_rotation,
+                                      std::span<const PointLoad> loads) {
+  reserve(static_cast<Eigen::Index>(loads.size()));
+  sum_work(shape, base_rotation, loads);
+  double largest = 0.0;
+  for (int e = 0; e < elements_; ++e) {
+    const Vec3 moment = shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.strain(e)) -
+                        work_[static_cast<std::size_t>(e)] / shape.element_length();
+    // Written so that a NaN is not lost.
+    if (!(moment.norm() <= largest)) largest = moment.norm();
+  }
+  return largest;
+}
+
+bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                        Eigen::Ref<VecX> free) {
+  if (loads.size() != last_moved_.size()) return false;
+  sum_work(shape, base_rotation, loads);
+  for (int e = 0; e < elements_; ++e) {
+    const Vec3& scale = scale_[static_cast<std::size_t>(e)];
+    g_.segment<3>(row(e)) =
+        shape.strain(e).cwiseQuotient(scale) - scale.cwiseProduct(work_[static_cast<std::size_t>(e)]);
+  }
+  for (std::size_t c = 0; c < loads.size(); ++c) force_.segment<3>(3 * static_cast<Eigen::Index>(c)) = loads[c].force;
+  z_ = g_;
+  solve_lower(L_, 0, z_);
+  free.noalias() = Y_.leftCols(free.size()).transpose() * z_;
+  free = -free;
+  return true;
 }
 
 void BeamTangent::locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {

@@ -9,11 +9,6 @@
 
 namespace stylet::beam {
 
-/// Largest out-of-balance moment of any element, max_e |diag(EI, EI, GJ) Δκ_e - (1/l) Σ_c (∂r_c/∂κ_e)ᵀ f_c| [N mm].
-/// @param base_rotation base axes to LPS
-[[nodiscard]] double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation,
-                                       std::span<const PointLoad> loads);
-
 /// Gradient, Hessian and their factor for a shape under dead loads, in scaled unknowns y: κ_e = scale ∘ y, so that the
 /// elastic part of the Hessian is the unit matrix. Unknowns run from the tip to the base: then a load touches only the
 /// end of its column of Jᵀ, and forward substitution keeps the zeros before it.
@@ -29,6 +24,16 @@ class BeamTangent {
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
 
+  /// Gradient for this shape and these loads; Hessian, J and springs as assemble() left them.
+  /// @param free -J H⁻¹ g [mm] (3w) LPS, written
+  /// @return false, and nothing done, when there were not as many loads
+  bool relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+             Eigen::Ref<VecX> free);
+
+  /// Largest out-of-balance moment of any element, max_e |diag(EI, EI, GJ) Δκ_e - (1/l) Σ_c (∂r_c/∂κ_e)ᵀ f_c| [N mm].
+  [[nodiscard]] double largest_imbalance(const BeamShape& shape, const Mat3& base_rotation,
+                                         std::span<const PointLoad> loads);
+
   /// Adds the Newton step for these loads to the curvature.
   void step(std::span<const PointLoad> loads, BeamShape& shape);
 
@@ -40,6 +45,7 @@ class BeamTangent {
 
  private:
   void reserve(Eigen::Index loads);
+  void sum_work(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
   [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
   void locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
   void assemble_energy(const BeamShape& shape);
@@ -53,6 +59,10 @@ class BeamTangent {
   int elements_;
   std::vector<Vec3> scale_;      ///< (n) κ_e = scale_e ∘ y_e, scale_e = (weight_e l diag(EI, EI, GJ))^-1/2
   std::vector<Pull> pulls_;      ///< base axes, load by load
+  std::vector<Pull> acting_;     ///< pulls of sum_work(), …
+  std::vector<int> next_;        ///< … for each the next one on the same element, or -1, …
+  std::vector<int> first_;       ///< (n) … and the first one of an element
+  std::vector<Vec3> work_;       ///< (n) Σ_c (∂r_c/∂κ_e)ᵀ f_c [N mm²]
   std::vector<int> last_pull_;   ///< (w) where in pulls_ each load's pulls end
   std::vector<int> last_moved_;  ///< (w) element nearest the tip that moves the load point, -1 = none
   VecX force_;                   ///< [N] (3w) LPS

@@ -106,6 +106,16 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   return definite;
 }
 
+bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
+  if (held_ != holds()) return false;
+  if (!held_) return inner_->relax(loads, free);
+  held_with_ = guide_load();
+  const auto size = 3 * static_cast<Eigen::Index>(loads.size());
+  if (!inner_->relax(with_guide(loads, held_with_), free_.head(size + 3))) return false;
+  free = free_.head(size);
+  return true;
+}
+
 void GuidedNeedle::advance(std::span<const PointLoad> loads) {
   inner_->advance(held_ ? with_guide(loads, held_with_) : loads);
   meet();

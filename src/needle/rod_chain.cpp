@@ -27,13 +27,17 @@ bool RodChain::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> comp
   return parts_->tangent.elastic_shift() == 0.0;
 }
 
+bool RodChain::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
+  return parts_->tangent.relax(parts_->shape, parts_->base_rotation, loads, free);
+}
+
 void RodChain::advance(std::span<const PointLoad> loads) {
   parts_->tangent.step(loads, parts_->shape);
   parts_->shape.update();
 }
 
 double RodChain::residual(std::span<const PointLoad> loads) const {
-  return beam::largest_imbalance(parts_->shape, parts_->base_rotation, loads);
+  return parts_->tangent.largest_imbalance(parts_->shape, parts_->base_rotation, loads);
 }
 
 void RodChain::straighten() {

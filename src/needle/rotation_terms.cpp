@@ -5,17 +5,40 @@
 
 namespace stylet::beam {
 
+namespace {
+
+/// Terms after which the series of c_6 has rounding only, for x below 4, and below kSmall: an element bent by 0.2 rad.
+constexpr int kTerms = 12;
+constexpr int kFewTerms = 4;
+constexpr double kSmall = 0.04;
+
+/// 1/((i + 6)(i + 5)): term j of the series of c_6 over the one before has i = 2j, of c_7 i = 2j + 1.
+constexpr auto kRatio = [] {
+  std::array<double, 2 * kTerms + 2> ratio{};
+  for (std::size_t i = 0; i < ratio.size(); ++i) {
+    const double n = static_cast<double>(i) + 6.0;
+    ratio[i] = 1.0 / (n * (n - 1.0));
+  }
+  return ratio;
+}();
+
+}  // namespace
+
 std::array<double, 8> stumpff(double x) {
   static constexpr std::array<double, 6> inverse_factorial = {1.0, 1.0, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120};
   std::array<double, 8> c{};
   // x c_{k+2} = 1/k! - c_k, downwards from the series where x is small, upwards from the circular functions where it is
   // large: each direction divides or multiplies errors the right way round.
   if (x < 4.0) {
-    for (int k = 6; k <= 7; ++k) {
-      double sum = 1.0;
-      for (int j = 12; j >= 1; --j) sum = 1.0 - x * sum / ((2.0 * j + k) * (2.0 * j + k - 1.0));
-      c[k] = sum / (k == 6 ? 720.0 : 5040.0);
+    const int terms = x < kSmall ? kFewTerms : kTerms;
+    double sixth = 1.0;
+    double seventh = 1.0;
+    for (int j = terms; j >= 1; --j) {
+      sixth = 1.0 - x * kRatio[static_cast<std::size_t>(2 * j)] * sixth;
+      seventh = 1.0 - x * kRatio[static_cast<std::size_t>(2 * j + 1)] * seventh;
     }
+    c[6] = sixth / 720.0;
+    c[7] = seventh / 5040.0;
     for (int k = 5; k >= 0; --k) c[k] = inverse_factorial[k] - x * c[k + 2];
   } else {
     const double theta = std::sqrt(x);

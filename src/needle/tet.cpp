@@ -90,6 +90,10 @@ bool TetNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> com
   return parts_->tangent.material_shift() == 0.0;
 }
 
+bool TetNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
+  return parts_->tangent.relax(parts_->shape, parts_->base_rotation, loads, free);
+}
+
 void TetNeedle::advance(std::span<const PointLoad> loads) {
   parts_->tangent.step(loads, parts_->shape);
   parts_->shape.update();

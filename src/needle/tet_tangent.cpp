@@ -124,17 +124,32 @@ void TetTangent::assemble_segment(const TetShape& shape, int segment) {
 
 void TetTangent::assemble_loads(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
   reserve(static_cast<Eigen::Index>(loads.size()));
-  gradient_ = shape.force();
   loads_.clear();
-  for (const PointLoad& load : loads) {
-    force_.segment<3>(3 * static_cast<Eigen::Index>(loads_.size())) = load.force;
-    loads_.push_back(shape.curve().weights(load.s));
-    const AxisCurve::Weights& w = loads_.back();
-    const Vec3 force = base_rotation.transpose() * load.force;
+  for (const PointLoad& load : loads) loads_.push_back(shape.curve().weights(load.s));
+  assemble_gradient(shape, base_rotation, loads);
+}
+
+void TetTangent::assemble_gradient(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
+  gradient_ = shape.force();
+  for (std::size_t c = 0; c < loads.size(); ++c) {
+    force_.segment<3>(3 * static_cast<Eigen::Index>(c)) = loads[c].force;
+    const AxisCurve::Weights w = shape.curve().weights(loads[c].s);
+    const Vec3 force = base_rotation.transpose() * loads[c].force;
     for (int i = 0; i < AxisCurve::kReach; ++i) {
       if (w.value[i] != 0.0) gradient_.segment<3>(shape.axis_dof(w.first + i)) -= w.value[i] * force;
     }
   }
+}
+
+bool TetTangent::relax(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                       Eigen::Ref<VecX> free) {
+  if (loads.size() != loads_.size()) return false;
+  assemble_gradient(shape, base_rotation, loads);
+  reduce_gradient();
+  band_.solve_lower(0, z_.data());
+  free.noalias() = Y_.leftCols(free.size()).transpose() * z_;
+  free = -free;
+  return true;
 }
 
 void TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs) {

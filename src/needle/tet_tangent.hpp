@@ -24,6 +24,11 @@ class TetTangent {
   /// J K⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J K⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
 
+  /// Gradient for this shape and these loads; stiffness, J and springs as assemble() left them.
+  /// @param free -J K⁻¹ g [mm] (3w) LPS, written
+  /// @return false, and nothing done, when there were not as many loads
+  bool relax(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads, Eigen::Ref<VecX> free);
+
   /// Adds the Newton step for these loads to the displacement.
   void step(std::span<const PointLoad> loads, TetShape& shape);
 
@@ -50,6 +55,7 @@ class TetTangent {
   void reserve(Eigen::Index loads);
   void assemble_segment(const TetShape& shape, int segment);
   void assemble_loads(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
+  void assemble_gradient(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
   [[nodiscard]] bool factorise(double shift);
   [[nodiscard]] bool eliminate_middle(int segment);
   void add_segment(int segment);

@@ -49,7 +49,15 @@ class Needle {
   virtual bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                          std::span<const Mat3> springs = {}) = 0;
 
-  /// Takes the Newton step of the last linearise() with these loads in place of those given there (same s, same order).
+  /// The same problem at the shape of now under these loads, with the tangent and the springs of the last linearise():
+  /// a step that converges linearly, at a small part of the cost. The compliance is that of then.
+  /// @param loads (w) as many as then, in the same order
+  /// @param free [mm] (3w), written: motion of the load points by that step with unchanged loads
+  /// @return false, and nothing done, where that tangent is not the needle's any more: linearise() again
+  virtual bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) = 0;
+
+  /// Takes the step of the last linearise() or relax() with these loads in place of those given there (same s, same
+  /// order).
   virtual void advance(std::span<const PointLoad> loads) = 0;
 
   /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium.

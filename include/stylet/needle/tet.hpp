@@ -42,6 +42,7 @@ class TetNeedle final : public Needle {
   [[nodiscard]] Vec3 tangent(double s) const override;
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs = {}) override;
+  bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
   void straighten() override;
