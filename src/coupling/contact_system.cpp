@@ -1,96 +1,165 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact_system.hpp"
 
-#include "core/dense_cholesky.hpp"
-#include "core/dense_lu.hpp"
+#include <Eigen/LU>
+
+#include <array>
 
 namespace stylet {
 
-ContactSystem::ContactSystem(int contacts) {
-  const Eigen::Index n = 3 * contacts;
-  A = N = matrix_ = work_ = MatX::Zero(n, n);
-  gap = free = now = spring = D = shift = lambda = p = needle_ = preload_ = right_ = VecX::Zero(n);
-  rows.reserve(static_cast<std::size_t>(n));
+ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1) {
+  const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
+  A = N = MatX::Zero(n, n);
+  free = now = gap = shift = lambda = push = right_ = lent_ = work_ = VecX::Zero(n);
+  frame.assign(static_cast<std::size_t>(contacts), Mat3::Identity());
+  yield.assign(static_cast<std::size_t>(contacts), Yield{});
+  spring.assign(static_cast<std::size_t>(contacts), Mat3::Zero());
+  through_springs_ = back_ = column_ = row_ = MatX::Zero(n, 3);
+  solved_ = MatX::Zero(n, 4);
 }
 
-void ContactSystem::begin(Eigen::Index size) {
-  size_ = size;
-  auto pushed = preload_.head(size);
-  pushed.noalias() = N.topLeftCorner(size, size).lazyProduct(now.head(size));
-  needle_.head(size) = gap.head(size) + pushed;
+/// lent_ = G way
+void ContactSystem::lend(const Eigen::Ref<const VecX>& way) {
+  for (int c = 0; c < count; ++c)
+    lent_.segment<3>(3 * c).noalias() = spring[static_cast<std::size_t>(c)] * way.segment<3>(3 * c);
+}
+
+bool ContactSystem::factorise() {
+  const Eigen::Index n = grip_rows();
+  if (n == 0) return true;
+  const auto A_gg = A.block(3, 3, n, n);
+  const auto N_gg = N.block(3, 3, n, n);
+  const auto springs = supported ? std::span<const Mat3>(spring).subspan(1, grip_count()) : std::span<const Mat3>();
+  if (!grips_.factorise(A_gg, N_gg, springs, grip_yields())) return false;
+  if (!supported) return true;
+  for (int k = 0; k < 3; ++k) {
+    lend(N.col(k).head(rows()));
+    auto lent = lent_.segment(3, n);
+    auto through = through_springs_.col(k).head(n);
+    through.noalias() = A_gg.lazyProduct(lent);
+    for (std::size_t g = 0; g < grip_count(); ++g) {
+      const auto row = 3 * static_cast<Eigen::Index>(g);
+      through.segment<3>(row) += yield[g + 1].of(lent.segment<3>(row));
+    }
+    lend(A.col(k).head(rows()));
+    back_.col(k).head(n).noalias() = N_gg.lazyProduct(lent);
+  }
+  return true;
+}
+
+void ContactSystem::add_tip() {
+  const Eigen::Index n = grip_rows();
+  if (n == 0) return;
+  const Mat3& Q = frame.front();
+  column_.topRows(n).noalias() = A.block(3, 0, n, 3).lazyProduct(Q);
+  column_.topRows(n).noalias() += N.block(3, 0, n, 3).lazyProduct(Q);
+  row_.topRows(n) = column_.topRows(n);
+  if (!supported) return;
+  column_.topRows(n).noalias() -= through_springs_.topRows(n).lazyProduct(Q);
+  row_.topRows(n).noalias() -= back_.topRows(n).lazyProduct(Q);
+}
+
+Vec3 ContactSystem::error(int contact) const {
+  const auto c = static_cast<std::size_t>(contact);
+  const Vec3 off = gap.segment<3>(3 * contact) + yield[c].of(now.segment<3>(3 * contact));
+  return frame[c].transpose() * off - shift.segment<3>(3 * contact);
+}
+
+double ContactSystem::own_yield(int contact, int k) const {
+  const auto c = static_cast<std::size_t>(contact);
+  const Vec3 d = frame[c].col(k);
+  const Mat3 own = A.block<3, 3>(3 * contact, 3 * contact) + N.block<3, 3>(3 * contact, 3 * contact);
+  return d.dot(own * d) + d.dot(yield[c].of(d));
+}
+
+bool ContactSystem::solve(TipRows held) {
+  const Eigen::Index n = grip_rows();
+  if (n > 0 && !grips_.change(grip_yields())) {
+    if (!factorise()) return false;
+    add_tip();
+  }
+
+  auto right = right_.head(rows());
+  right = free.head(rows());
   if (supported) {
-    pushed = spring.head(size).cwiseProduct(free.head(size) + pushed);
-  } else {
-    pushed.setZero();
+    lend(free);
+    const auto lent = lent_.head(rows());
+    right.noalias() -= A.topLeftCorner(rows(), rows()).lazyProduct(lent);
+    for (int c = 0; c < count; ++c)
+      right.segment<3>(3 * c) -= yield[static_cast<std::size_t>(c)].of(lent.segment<3>(3 * c));
   }
-}
+  for (int c = 0; c < count; ++c) right.segment<3>(3 * c) -= frame[static_cast<std::size_t>(c)] * error(c);
 
-bool ContactSystem::solve() {
-  const auto held = static_cast<Eigen::Index>(rows.size());
-  lambda.head(size_).setZero();
-  p.head(size_).setZero();
-  if (held == 0) return true;
-  return supported ? solve_supported(held) : solve_symmetric(held);
-}
+  // The grips by themselves: B⁻¹ of the tip's columns and of the right-hand side.
+  auto solved = solved_.topRows(n);
+  if (n > 0) {
+    solved.leftCols<3>() = column_.topRows(n);
+    solved.col(3) = right.tail(n);
+    grips_.solve(solved);
+  }
 
-bool ContactSystem::solve_symmetric(Eigen::Index held) {
-  for (Eigen::Index j = 0; j < held; ++j) {
-    const int rj = rows[static_cast<std::size_t>(j)];
-    for (Eigen::Index i = j; i < held; ++i) {
-      const int ri = rows[static_cast<std::size_t>(i)];
-      matrix_(i, j) = A(ri, rj) + N(ri, rj);
+  // The tip: its three rows with the grips taken out.
+  const Mat3& Q = frame.front();
+  Mat3 own = A.topLeftCorner<3, 3>();
+  const Yield& tip = yield.front();
+  own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();
+  const Mat3 N_tip = N.topLeftCorner<3, 3>();
+  if (supported) own -= own * spring.front() * N_tip;
+  Mat3 corner = Q.transpose() * (own + N_tip) * Q;
+  Vec3 rest = Q.transpose() * right.head<3>();
+  if (n > 0) {
+    if (supported) {
+      Mat3 through = Mat3::Zero();  // A G N of the tip, by way of the grips
+      for (int c = 1; c < count; ++c)
+        through += A.block<3, 3>(0, 3 * c) * spring[static_cast<std::size_t>(c)] * N.block<3, 3>(3 * c, 0);
+      corner -= Q.transpose() * through * Q;
     }
-    matrix_(j, j) += D[rj];
-    right_[j] = needle_[rj] + shift[rj];
+    corner.noalias() -= row_.topRows(n).transpose().lazyProduct(solved.leftCols<3>());
+    rest.noalias() -= row_.topRows(n).transpose().lazyProduct(solved.col(3));
   }
-  auto matrix = matrix_.topLeftCorner(held, held);
-  auto right = right_.head(held);
-  if (!dense::factorise(matrix)) return false;
-  dense::solve_lower(matrix, 0, right);
-  dense::solve_upper(matrix, right);
-  for (Eigen::Index i = 0; i < held; ++i) lambda[rows[static_cast<std::size_t>(i)]] = right[i];
-  p.head(size_) = lambda.head(size_);
-  return true;
+  // Rows that are not held carry nothing any more.
+  Vec3 change = -(Q.transpose() * now.head<3>());
+  if (held == TipRows::all) {
+    const Eigen::PartialPivLU<Mat3> lu(corner);
+    change = lu.solve(rest);
+  } else if (held == TipRows::axial) {
+    change[2] = (rest[2] - corner(2, 0) * change[0] - corner(2, 1) * change[1]) / corner(2, 2);
+  }
+  push.head<3>() = now.head<3>() + Q * change;
+  if (n > 0) push.segment(3, n) = now.segment(3, n) + solved.col(3) - solved.leftCols<3>().lazyProduct(change);
+
+  // λ = p + G (r − r_now), r − r_now = free − N (p − λ_now)
+  auto forces = work_.head(rows());
+  forces = push.head(rows());
+  if (supported) {
+    right = push.head(rows()) - now.head(rows());
+    lent_.head(rows()).noalias() = N.topLeftCorner(rows(), rows()).lazyProduct(right);
+    right = free.head(rows()) - lent_.head(rows());
+    lend(right);
+    forces += lent_.head(rows());
+  }
+  for (int c = 0; c < count; ++c)
+    lambda.segment<3>(3 * c).noalias() = frame[static_cast<std::size_t>(c)].transpose() * forces.segment<3>(3 * c);
+  if (held == TipRows::none) lambda.head<3>().setZero();
+  if (held == TipRows::axial) lambda.head<2>().setZero();
+  return push.head(rows()).allFinite();
 }
 
-bool ContactSystem::solve_supported(Eigen::Index held) {
-  // work = (A + D) G on the held rows, then matrix = A + D + N − work N.
-  auto work = work_.topLeftCorner(held, held);
-  auto matrix = matrix_.topLeftCorner(held, held);
-  auto right = right_.head(held);
-  for (Eigen::Index j = 0; j < held; ++j) {
-    const int rj = rows[static_cast<std::size_t>(j)];
-    for (Eigen::Index i = 0; i < held; ++i) {
-      const int ri = rows[static_cast<std::size_t>(i)];
-      const double stiffness = a(ri, rj) + (i == j ? D[ri] : 0.0);
-      work(i, j) = stiffness * spring[rj];
-      matrix(i, j) = stiffness + N(ri, rj);
-    }
-  }
-  for (Eigen::Index i = 0; i < held; ++i) {
-    const int ri = rows[static_cast<std::size_t>(i)];
-    right[i] = needle_[ri] + shift[ri];
-  }
-  for (Eigen::Index k = 0; k < held; ++k) {
-    const int rk = rows[static_cast<std::size_t>(k)];
-    if (spring[rk] == 0.0) continue;
-    for (Eigen::Index j = 0; j < held; ++j) matrix.col(j) -= N(rk, rows[static_cast<std::size_t>(j)]) * work.col(k);
-    right -= (preload_[rk] / spring[rk]) * work.col(k);
-  }
-  if (!dense::solve_unsymmetric(matrix, right)) return false;
-  for (Eigen::Index i = 0; i < held; ++i) p[rows[static_cast<std::size_t>(i)]] = right[i];
-  // λ = p + G (free − N (p − now)) = p + preload − G N p
-  for (Eigen::Index i = 0; i < held; ++i) {
-    const int ri = rows[static_cast<std::size_t>(i)];
-    lambda[ri] = p[ri] + preload_[ri] - spring[ri] * N.row(ri).head(size_).dot(p.head(size_));
-  }
-  return true;
+double ContactSystem::axial_excess(int contact) const {
+  const auto c = static_cast<std::size_t>(contact);
+  const Vec3 change = frame[c] * lambda.segment<3>(3 * contact) - now.segment<3>(3 * contact);
+  return frame[c].col(2).dot(grips_.yield(contact - 1).of(change) - yield[c].of(change));
 }
 
-double ContactSystem::opening(int row) const {
-  double value = needle_[row] - N.row(row).head(size_).dot(p.head(size_));
-  for (const int r : rows) value -= a(row, r) * lambda[r];
-  return value;
+double ContactSystem::opening() const {
+  const Vec3 t = frame.front().col(2);
+  Vec3 way = free.head<3>() - gap.head<3>();
+  for (int c = 0; c < count; ++c) {
+    const Vec3 force = frame[static_cast<std::size_t>(c)] * lambda.segment<3>(3 * c);
+    way -= N.block<3, 3>(0, 3 * c) * (push.segment<3>(3 * c) - now.segment<3>(3 * c));
+    way -= A.block<3, 3>(0, 3 * c) * (force - now.segment<3>(3 * c));
+  }
+  return t.dot(way);
 }
 
 }  // namespace stylet

@@ -1,63 +1,87 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/core/types.hpp"
+#include "grip_matrix.hpp"
 
 #include <vector>
 
 namespace stylet {
 
-/// The linear equations of one Newton iteration, in the contacts' local frames (three rows a contact: two lateral, one
-/// axial). Tissue: u = A λ. Needle, under p: r = r_now + free − N (p − f_now). Held rows:
-///   (A λ)_i + D_i λ_i = (r − X)_i + shift_i,      other rows: λ_i = 0.
-/// Without springs λ = p and the matrix A + N + D is symmetric positive definite. Where the needle alone would buckle,
-/// N is that of the needle on springs G (Needle::linearise) whose forces belong to the contacts: λ = p + G (r − r_now),
-/// matrix (A + D)(I − G N) + N, unsymmetric and regular as long as needle and tissue together are stable. Sized once;
-/// nothing allocates after that.
+/// The linear equations of one iteration: contact forces λ on the tissue and pushes p on the needle, whose loads are
+/// −p. Tissue, needle, and contact c:
+///   u = A λ,   r = r_now + free − N (p − λ_now),   λ = p + G (r − r_now),   X + u − r + D λ = shift,
+/// G being springs lent to a needle that would buckle by itself, or nothing (Needle::linearise): their forces belong to
+/// the contacts. With π = p − λ_now and error = X + A λ_now − r_now + D λ_now − shift the rows that are held become
+///   [P (I − G N) + N] π = free − error − P G free,   P = A + diag(D).
+/// docs/theory/coupling.md §4 derives them.
+///
+/// What is dear, the matrix of the shaft's contacts, is factorised by factorise() and used for as long as iterations
+/// converge with it (GripMatrix). The tip, whose compliance changes with every cut and which may be held in none, one
+/// or all of its directions, is added by a border of three rows each time. Three rows a contact, the tip first; LPS but
+/// for `shift` and `lambda`, which are in the contacts' frames (n1, n2, t). Sized once; nothing allocates after that.
 class ContactSystem {
  public:
+  /// What of the tip is held.
+  enum class TipRows { none, axial, all };
+
+  /// @param contacts most contacts, tip included
   explicit ContactSystem(int contacts);
 
-  MatX A;                  ///< [mm/N] lower triangle (block rows c ≥ d are written)
-  MatX N;                  ///< [mm/N] full
-  VecX gap;                ///< [mm] (r_now + free − X) in local frames
-  VecX free;               ///< [mm] in local frames
-  VecX now;                ///< [N] f_now in local frames
-  VecX spring;             ///< [N/mm] G, zero without springs
-  VecX D;                  ///< [mm/N] what each row yields by itself
-  VecX shift;              ///< [mm]
-  std::vector<int> rows;   ///< held rows
-  bool supported = false;  ///< springs are lent
+  int count = 0;             ///< contacts, tip included
+  MatX A;                    ///< [mm/N] tissue's compliance, full
+  MatX N;                    ///< [mm/N] needle's compliance, full
+  VecX free;                 ///< [mm]
+  VecX now;                  ///< [N] λ_now
+  VecX gap;                  ///< [mm] X + A λ_now − r_now: how far the tissue's points are beyond the needle's
+  VecX shift;                ///< [mm] in the frames
+  std::vector<Mat3> frame;   ///< columns n1, n2, t of each contact
+  std::vector<Yield> yield;  ///< D
+  std::vector<Mat3> spring;  ///< [N/mm] G
+  bool supported = false;    ///< springs are lent
 
-  VecX lambda;  ///< [N] contact forces on the tissue
-  VecX p;       ///< [N] what the needle is to be advanced with (its loads are −p)
+  VecX lambda;  ///< [N] contact forces on the tissue, in the frames
+  VecX push;    ///< [N] p
 
-  /// Call after A, N, gap, free, now are written for `size` rows.
-  void begin(Eigen::Index size);
+  /// Takes A, N, D and the springs of now into the matrix. False where it is singular.
+  [[nodiscard]] bool factorise();
 
-  /// The needle's side of a row moves by `way` [mm]: its contact went back along the shaft.
-  void move_row(int row, double way) { needle_[row] += way; }
+  /// Adds the tip with A and N as they are now.
+  void add_tip();
 
-  /// λ and p for the present rows, D and shift. False when the matrix is singular.
-  bool solve();
+  /// λ and p for D, shift and gap of now. False where the matrix is singular.
+  [[nodiscard]] bool solve(TipRows held);
 
-  /// (r − X − A λ)_i of the last solution: how far the needle is beyond the tissue in a row that is not held [mm].
-  [[nodiscard]] double opening(int row) const;
+  /// X + A λ_now − r_now + D λ_now − shift of a contact [mm], in its frame.
+  [[nodiscard]] Vec3 error(int contact) const;
 
-  /// Diagonal of A + N + D: how far a row gives way to its own unit force [mm/N].
-  [[nodiscard]] double yield(int row) const { return A(row, row) + N(row, row) + D[row]; }
+  /// How far a contact gives way to its own unit force along direction k of its frame [mm/N].
+  [[nodiscard]] double own_yield(int contact, int k) const;
+
+  /// By how much the last solution takes a contact of the shaft to give way along t beyond what D of now says [mm]: the
+  /// matrix is an older one. Where D is large, a sliding contact without viscosity, its force cannot tell how far it
+  /// slides; with this it can.
+  [[nodiscard]] double axial_excess(int contact) const;
+
+  /// (r − X − A λ)·t of the tip in the last solution: how far the needle is beyond the tissue where it is not held
+  /// [mm].
+  [[nodiscard]] double opening() const;
 
  private:
-  [[nodiscard]] double a(Eigen::Index i, Eigen::Index j) const { return i >= j ? A(i, j) : A(j, i); }
-  bool solve_symmetric(Eigen::Index held);
-  bool solve_supported(Eigen::Index held);
+  [[nodiscard]] Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(count); }
+  [[nodiscard]] Eigen::Index grip_rows() const { return rows() - 3; }
+  [[nodiscard]] std::span<const Yield> grip_yields() const { return std::span(yield).subspan(1, grip_count()); }
+  [[nodiscard]] std::size_t grip_count() const { return static_cast<std::size_t>(count - 1); }
+  void lend(const Eigen::Ref<const VecX>& way);
 
-  Eigen::Index size_ = 0;
-  VecX needle_;   ///< gap + N now
-  VecX preload_;  ///< G (free + N now)
-  MatX matrix_;
-  MatX work_;
+  GripMatrix grips_;
+  MatX through_springs_;  ///< (3g × 3) P G N of grips and tip, as factorised
+  MatX back_;             ///< (3g × 3) (A G N)ᵀ of tip and grips, as factorised
+  MatX column_;           ///< (3g × 3) C: rows of the grips, columns of the tip in its frame
+  MatX row_;              ///< (3g × 3) transposed rows of the tip in its frame
+  MatX solved_;           ///< (3g × 4) B⁻¹ of C, and of the right-hand side
   VecX right_;
+  VecX lent_;  ///< [N] G × something
+  VecX work_;
 };
 
 }  // namespace stylet

@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
-/// One sub-step's balance. Unknown are the contact forces f (on the tissue; the needle gets −f). With the tissue's
-/// compliance A and the needle's tangent compliance N every held direction d of contact c gives one row
-///   d·(X_c + A f − r(s_c) + softness f) = 0,    r(s_c) = r + free − N (f − f_old),
-/// so the matrix of the held rows is dᵀ(A + N)d + diag(softness): symmetric positive definite. Sliding and cutting stay
-/// in the system as soft rows (viscous friction is a compliance h/(bℓ)), so a change of state changes one diagonal
-/// entry. Newton's iteration goes over the needle's geometry, the frames, and the place of the cut.
+/// One sub-step's balance: Newton's iteration over the needle's shape, the frames and the place of the cut, with the
+/// linear equations of ContactSystem. Their matrix is dear and changes little from step to step, so it is kept, and
+/// errors are taken as they are: an iteration with an old matrix converges to the same balance, linearly. Sliding and
+/// cutting stay in the system as soft rows (viscous friction is a compliance h/(bℓ)), so a change of state changes D in
+/// one direction.
 namespace stylet {
 
 namespace {
 constexpr int kMaxNewton = 30;
 constexpr int kMaxPivots = 60;
-constexpr int kMaxToggles = 6;
+constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifted together, then one by one
+constexpr int kMaxToggles = 12;
+constexpr double kSlow = 0.1;         ///< an old matrix that leaves more of the error than this is made anew, …
+constexpr int kManyIterations = 4;    ///< … and before the next step when it took so many
 constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
@@ -82,21 +84,21 @@ void Insertion::Parts::fill_loads() {
   for (int c = 0; c < load_count(); ++c) loads[static_cast<std::size_t>(c)] = {arc_of(c), -force_of(c)};
 }
 
-/// What each row adds to the diagonal, and to the right-hand side, in its present state.
+/// What each contact yields by itself in its present state, and what that adds to the right-hand side.
 void Insertion::Parts::soften_rows(double h) {
-  system.shift.head(3 * load_count()).setZero();
   for (int c = 0; c < load_count(); ++c) {
-    double lateral = 0.0;
-    double axial = 0.0;
-    double shift = 0.0;
+    const Mat3& Q = frames[static_cast<std::size_t>(c)];
+    Yield& yield = system.yield[static_cast<std::size_t>(c)];
+    Vec3 shift = Vec3::Zero();
+    yield.along = Q.col(2);
     if (c == 0) {
-      lateral = tip_lateral_softness();
-      system.shift.head<2>().noalias() = lateral * (frames[0].leftCols<2>().transpose() * bevel_force());
-      axial = settings.axial_compliance_mm_per_N;
+      yield.lateral = tip_lateral_rows() ? tip_lateral_softness() : 0.0;
+      yield.axial = settings.axial_compliance_mm_per_N;
+      shift.head<2>().noalias() = yield.lateral * (Q.leftCols<2>().transpose() * bevel_force());
       if (tip.state == Tip::State::cut) {
         const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
-        axial += slip;
-        shift = slip * tip.cutting + tip.advance;
+        yield.axial += slip;
+        shift[2] = slip * tip.cutting + tip.advance;
       }
     } else {
       Grip& grip = grips[static_cast<std::size_t>(c - 1)];
@@ -106,50 +108,68 @@ void Insertion::Parts::soften_rows(double h) {
       if (grip.fast) grip.coulomb += (slow - viscosity) * grip.law.viscous_to_mm_per_s * grip.length;
       grip.slip = h / std::max(viscosity * grip.length, kTiny);
       grip.reach = slow > kLeastViscosity ? grip.law.viscous_to_mm_per_s * h : std::numeric_limits<double>::infinity();
-      lateral = grip.softness;
-      axial = grip.softness;
-      if (grip.state == Grip::State::stick) {
-        shift = 0.0;
-      } else {
+      yield.lateral = yield.axial = grip.softness;
+      if (grip.state != Grip::State::stick) {
         const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-        axial += grip.slip;
-        shift = grip.slip * sign * grip.coulomb + grip.s_start - grip.s;
+        yield.axial += grip.slip;
+        shift[2] = grip.slip * sign * grip.coulomb + grip.s_start - grip.s;
       }
     }
-    system.D.segment<3>(3 * c) << lateral, lateral, axial;
-    system.shift[3 * c + 2] = shift;
+    system.shift.segment<3>(3 * c) = shift;
   }
 }
 
-/// The needle's tangent at its present shape and everything else of the linear equations that no change of state
-/// changes.
+/// What the linear equations are about: tissue's compliance among the contacts, their forces, and how far tissue and
+/// needle are apart.
+void Insertion::Parts::gather_system() {
+  const int count = load_count();
+  const auto size = static_cast<Eigen::Index>(3 * count);
+  const double share = memory.share();
+  bool same = static_cast<int>(system_points.size()) == count;
+  for (int c = 0; same && c < count; ++c) same = system_points[static_cast<std::size_t>(c)] == point_of(c);
+  if (!same) {
+    tangent_fits = false;
+    system_points.clear();
+    for (int c = 0; c < count; ++c) system_points.push_back(point_of(c));
+  }
+  system.count = count;
+  const bool whole = !same || system_version != compliance.version() || system_share != share;
+  for (int c = 0; c < (whole ? count : 1); ++c) {
+    for (int d = c; d < count; ++d) {
+      const Mat3 block = share * compliance(point_of(c), point_of(d));
+      system.A.block<3, 3>(3 * c, 3 * d) = block;
+      system.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
+    }
+  }
+  if (whole && same) matrix_fits = false;
+  system_version = compliance.version();
+  system_share = share;
+
+  auto now = system.now.head(size);
+  auto gap = system.gap.head(size);
+  for (int c = 0; c < count; ++c) now.segment<3>(3 * c) = force_of(c);
+  gap.noalias() = system.A.topLeftCorner(size, size) * now;
+  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) += unloaded(c) - shaft_point(c);
+}
+
+/// The needle's tangent at its present shape, and the matrix made of it.
 void Insertion::Parts::linearise() {
   const int count = load_count();
   const auto size = static_cast<Eigen::Index>(3 * count);
-  auto compliance_of_needle = N.topLeftCorner(size, size);
-  auto motion = free.head(size);
-  system.spring.head(size).setZero();
+  auto compliance_of_needle = system.N.topLeftCorner(size, size);
+  auto motion = system.free.head(size);
   system.supported = !needle->linearise(loads, compliance_of_needle, motion);
   if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness at each contact
     lend_springs();
     needle->linearise(loads, compliance_of_needle, motion, {springs.data(), static_cast<std::size_t>(count)});
   }
-  for (int c = 0; c < count; ++c) {
-    const Mat3& Qc = frames[static_cast<std::size_t>(c)];
-    const Vec3 freely = free.segment<3>(3 * c);
-    const Vec3 gap = shaft_point(c) + freely - unloaded(c);
-    system.gap.segment<3>(3 * c).noalias() = Qc.transpose() * gap;
-    system.free.segment<3>(3 * c).noalias() = Qc.transpose() * freely;
-    system.now.segment<3>(3 * c).noalias() = Qc.transpose() * force_of(c);
-    for (int d = 0; d < count; ++d) {
-      const Mat3& Qd = frames[static_cast<std::size_t>(d)];
-      system.N.block<3, 3>(3 * c, 3 * d).noalias() = Qc.transpose() * N.block<3, 3>(3 * c, 3 * d) * Qd;
-      if (d <= c)
-        system.A.block<3, 3>(3 * c, 3 * d).noalias() =
-            memory.share() * Qc.transpose() * compliance(point_of(c), point_of(d)) * Qd;
-    }
-  }
-  system.begin(size);
+  tangent_fits = true;
+  matrix_fits = false;
+}
+
+/// The needle's step with the tangent of before. False where that is another needle's.
+bool Insertion::Parts::relax_needle() {
+  return tangent_fits && needle->relax(loads, system.free.head(static_cast<Eigen::Index>(3 * load_count())));
 }
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
@@ -157,7 +177,7 @@ void Insertion::Parts::linearise() {
 void Insertion::Parts::lend_springs() {
   constexpr double hardest_mm_per_N = 1e-3;
   for (int c = 0; c < load_count(); ++c) {
-    double own = memory.share() * compliance(point_of(c), point_of(c)).trace() / 3.0;
+    double own = system.A.block<3, 3>(3 * c, 3 * c).trace() / 3.0;
     bool lend = true;
     if (c == 0) {
       lend = grips.empty() && tip.touching && tip.state != Tip::State::open;
@@ -167,30 +187,22 @@ void Insertion::Parts::lend_springs() {
     const double stiffness = lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0;
     const Mat3& Q = frames[static_cast<std::size_t>(c)];
     springs[static_cast<std::size_t>(c)] = stiffness * Q.leftCols<2>() * Q.leftCols<2>().transpose();
-    system.spring.segment<2>(3 * c).setConstant(stiffness);
   }
 }
 
-void Insertion::Parts::select_rows() {
-  std::vector<int>& rows = system.rows;
-  rows.clear();
-  if (tip.touching && tip.state != Tip::State::open) {
-    if (tip_lateral_rows()) {
-      rows.push_back(0);
-      rows.push_back(1);
-    }
-    rows.push_back(2);
-  }
-  for (int r = 3; r < 3 * load_count(); ++r) rows.push_back(r);
+ContactSystem::TipRows Insertion::Parts::tip_rows() const {
+  if (!tip.touching || tip.state == Tip::State::open) return ContactSystem::TipRows::none;
+  return tip_lateral_rows() ? ContactSystem::TipRows::all : ContactSystem::TipRows::axial;
 }
 
 /// By how much [N] a solution contradicts the state of a contact; 0 = consistent, or frozen.
-double Insertion::Parts::contradiction(int load, double axial, double opening) const {
+double Insertion::Parts::contradiction(int load, const Trial& trial) const {
+  const double axial = trial.axial;
   if (load == 0) {
     if (!tip.touching || tip.toggles > toggle_limit) return 0.0;
     switch (tip.state) {
       case Tip::State::open:
-        return opening;
+        return trial.opening;
       case Tip::State::stick:
         return std::max(-axial, tip.blocked || tip.held ? 0.0 : axial - tip.limit);
       case Tip::State::cut:
@@ -202,7 +214,7 @@ double Insertion::Parts::contradiction(int load, double axial, double opening) c
   if (grip.state == Grip::State::stick) return std::abs(axial) - grip.law.static_N_per_mm * grip.length;
   // Sliding the other way than its state says, or faster or slower. A length is what tells, since forces hardly differ
   // where friction does not depend on speed; it counts as the force that pushes the tissue so far.
-  const double slides = way(grip, axial);
+  const double slides = trial.slides;
   const double wrong =
       grip.fast ? grip.reach - slides - kSameSpeed_mm : std::max(-slides, slides - grip.reach - kSameSpeed_mm);
   return wrong > kStill_mm ? 3.0 * wrong / (memory.share() * compliance(grip.point, grip.point).trace()) : 0.0;
@@ -214,13 +226,13 @@ double Insertion::Parts::way(const Grip& grip, double axial) {
   return grip.slip * (sign * axial - grip.coulomb);
 }
 
-void Insertion::Parts::change_state(int load, double axial, StepReport& report) {
+void Insertion::Parts::change_state(int load, const Trial& trial, StepReport& report) {
   ++report.pivots;
   if (load == 0) {
     if (++tip.toggles > toggle_limit) report.flags |= StepReport::contact_cycling;
     if (tip.state != Tip::State::stick) {
       tip.state = Tip::State::stick;
-    } else if (axial < 0.0) {
+    } else if (trial.axial < 0.0) {
       tip.state = Tip::State::open;
     } else {
       start_cut(report);
@@ -230,11 +242,11 @@ void Insertion::Parts::change_state(int load, double axial, StepReport& report) 
   Grip& grip = grips[static_cast<std::size_t>(load - 1)];
   if (++grip.toggles > toggle_limit) report.flags |= StepReport::contact_cycling;
   if (grip.state == Grip::State::stick) {
-    grip.state = axial > 0.0 ? Grip::State::forward : Grip::State::backward;
+    grip.state = trial.axial > 0.0 ? Grip::State::forward : Grip::State::backward;
     grip.fast = false;
     return;
   }
-  if (grip.fast || way(grip, axial) > grip.reach) {
+  if (grip.fast || trial.slides > grip.reach) {
     grip.fast = !grip.fast;
     return;
   }
@@ -242,18 +254,26 @@ void Insertion::Parts::change_state(int load, double axial, StepReport& report) 
   grip.s = grip.s_start;  // back to where it was held
 }
 
-/// The same on the present solution of the coupled system.
-double Insertion::Parts::contradiction(int load) const {
-  const bool open = load == 0 && tip.state == Tip::State::open;
-  return contradiction(load, system.lambda[3 * load + 2],
-                       open ? system.opening(2) / std::max(system.yield(2), kTiny) : 0.0);
+/// What the present solution of the coupled system says of a contact.
+Insertion::Parts::Trial Insertion::Parts::trial(int load) const {
+  Trial result{.axial = system.lambda[3 * load + 2]};
+  if (load > 0) {
+    const Grip& grip = grips[static_cast<std::size_t>(load - 1)];
+    const double sign = grip.state == Grip::State::backward ? -1.0 : 1.0;
+    result.slides = way(grip, result.axial) + sign * system.axial_excess(load);
+  } else if (tip.state == Tip::State::open) {
+    result.opening = system.opening() / std::max(system.own_yield(0, 2), kTiny);
+  }
+  return result;
 }
 
-void Insertion::Parts::change_state(int load, StepReport& report) {
+/// A contact that is held again went back along the shaft; the right-hand side must know at once.
+void Insertion::Parts::change_and_tell(int load, StepReport& report) {
   const double s = load == 0 ? 0.0 : grips[static_cast<std::size_t>(load - 1)].s;
-  change_state(load, system.lambda[3 * load + 2], report);
-  // A contact that is held again went back along the shaft; the row's right-hand side must know at once.
-  if (load > 0) system.move_row(3 * load + 2, grips[static_cast<std::size_t>(load - 1)].s - s);
+  change_state(load, trial(load), report);
+  if (load == 0) return;
+  system.gap.segment<3>(3 * load) -=
+      (grips[static_cast<std::size_t>(load - 1)].s - s) * frames[static_cast<std::size_t>(load)].col(2);
 }
 
 /// Solves the held rows, then lets every state that contradicts its own law change, until none does.
@@ -262,18 +282,21 @@ bool Insertion::Parts::pivot(double h, StepReport& report) {
   bool changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
     soften_rows(h);
-    select_rows();
-    if (!system.solve()) {
+    if (round == kAllAtOnce) {  // what an old matrix is off by may make states go to and fro
+      matrix_fits = system.factorise();
+      system.add_tip();
+    }
+    if (!system.solve(tip_rows())) {
       report.flags |= StepReport::not_converged;
       return changed;
     }
 
     // Find the worst contradiction; while there are many, change all of them at once.
-    const bool all_at_once = round < 4;
+    const bool all_at_once = round < kAllAtOnce;
     double worst = kTiny;
     int worst_load = -1;
     for (int c = 0; c < load_count(); ++c) {
-      const double size_of_it = contradiction(c);
+      const double size_of_it = contradiction(c, trial(c));
       if (size_of_it > worst) {
         worst = size_of_it;
         worst_load = c;
@@ -283,56 +306,71 @@ bool Insertion::Parts::pivot(double h, StepReport& report) {
 
     changed = true;
     if (!all_at_once) {
-      change_state(worst_load, report);
+      change_and_tell(worst_load, report);
       continue;
     }
-    const bool tip_too = contradiction(0) > kTiny;
+    const bool tip_too = contradiction(0, trial(0)) > kTiny;
     for (int c = 1; c < load_count(); ++c) {
-      if (contradiction(c) > kTiny) change_state(c, report);
+      if (contradiction(c, trial(c)) > kTiny) change_and_tell(c, report);
     }
-    if (tip_too) change_state(0, report);
+    if (tip_too) change_and_tell(0, report);
   }
   report.flags |= StepReport::contact_cycling;
   return changed;
 }
 
-/// Largest error of a held row at the present shape, as a force: error over the row's diagonal.
+/// Largest error of a held row at the present shape, as a force: error over what the row yields.
 double Insertion::Parts::equation_error() const {
   double error = 0.0;
-  for (const int r : system.rows) {
-    const int c = r / 3;
-    const int k = r % 3;
-    const Mat3& Q = frames[static_cast<std::size_t>(c)];
-    const Vec3& f = c == 0 ? tip.force : grips[static_cast<std::size_t>(c - 1)].force;
-    const Vec3 gap = material_of(c) + tissue_displacement(point_of(c)) - shaft_point(c);
-    const double value = Q.col(k).dot(gap) + system.D[r] * Q.col(k).dot(f) - system.shift[r];
-    error = std::max(error, std::abs(value) / system.yield(r));
+  const auto held = tip_rows();
+  for (int c = 0; c < load_count(); ++c) {
+    const Vec3 off = system.error(c);
+    for (int k = 0; k < 3; ++k) {
+      if (c == 0 && (held == ContactSystem::TipRows::none || (held == ContactSystem::TipRows::axial && k < 2)))
+        continue;
+      const double force = std::abs(off[k]) / system.own_yield(c, k);
+      if (!(force <= error)) error = force;
+    }
   }
   // A contact that is not held in a direction must carry nothing there.
-  if (tip.touching && tip.state != Tip::State::open && !tip_lateral_rows()) {
+  if (held == ContactSystem::TipRows::axial)
     error = std::max(error, (frames[0].leftCols<2>().transpose() * tip.force).norm());
-  }
   return error;
 }
 
-/// True when needle, tissue and laws are in balance to `slack` times the tolerance.
-bool Insertion::Parts::balanced(double slack) const {
+/// How far needle, tissue and laws are from balance: 1 is the tolerance.
+double Insertion::Parts::imbalance_over_tolerance() const {
   double largest = 1.0;
   for (const PointLoad& load : loads) largest = std::max(largest, load.force.norm());
-  const double allowed = slack * settings.tolerance * largest;
-  return equation_error() < allowed && needle->residual(loads) < kNeedleShare * allowed * length();
+  const double allowed = settings.tolerance * largest;
+  return std::max(equation_error(), needle->residual(loads) / (kNeedleShare * length())) / allowed;
 }
 
-/// Moves a sliding contact along the needle by what its friction law says.
-void Insertion::Parts::slide(Grip& grip, const Mat3& frame, double axial) {
+/// Moves a sliding contact along the needle by what the present solution says.
+void Insertion::Parts::slide(int load) {
+  Grip& grip = grips[static_cast<std::size_t>(load - 1)];
   if (grip.state == Grip::State::stick) return;
   if (grip.length < kNoLength_mm) {  // no friction at all: it follows the tissue
     const Vec3 gap = grip.x + tissue_displacement(grip.point) - needle->point(std::clamp(grip.s, 0.0, length()));
-    grip.s = std::clamp(grip.s, 0.0, length()) + frame.col(2).dot(gap);
+    grip.s = std::clamp(grip.s, 0.0, length()) + frames[static_cast<std::size_t>(load)].col(2).dot(gap);
     return;
   }
   const double sign = grip.state == Grip::State::forward ? 1.0 : -1.0;
-  grip.s = grip.s_start - sign * way(grip, axial);
+  grip.s = grip.s_start - sign * trial(load).slides;
+}
+
+/// Starts the sub-step from where it will probably end: what slid and cut in the last one goes on as the base does.
+void Insertion::Parts::expect(const Pose& from, const Pose& to) {
+  constexpr double most = 4.0;  // times as far as before
+  const double way = (to.origin - from.origin).dot(to.rotation * Vec3::UnitZ());
+  const double share = last_way != 0.0 ? way / last_way : 0.0;
+  last_way = way;
+  expected_cut = 0.0;
+  if (!(share > 0.0 && share < most)) return;
+  expected_cut = share * last_cut;
+  for (Grip& grip : grips) {
+    if (grip.state != Grip::State::stick) grip.s = grip.s_start + share * grip.slid;
+  }
 }
 
 /// Remembers where the tip was, and aims the cut.
@@ -349,27 +387,44 @@ void Insertion::Parts::begin_balance(int most_toggles) {
 
 void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
+  if (tip.touching && tip.state == Tip::State::cut && expected_cut > 0.0) {
+    march(expected_cut);
+    if (tip.blocked || tip.held) march(0.0);  // left to the balance
+    tip.blocked = tip.held = false;
+  }
 
   bool changed = true;
-  for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
+  bool old_matrix = false;
+  double before = std::numeric_limits<double>::infinity();
+  const auto look = [&] {
     fill_loads();
     set_frames();
-    if (iteration > 0) {
-      soften_rows(h);
-      if (!changed && balanced(1.0)) return;
+    gather_system();
+    soften_rows(h);
+    return imbalance_over_tolerance();
+  };
+  for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
+    const double error = look();
+    if (iteration > 0 && !changed && error < 1.0) {
+      if (iteration > kManyIterations) tangent_fits = false;
+      return;
     }
+    const double enough = iteration > 1 ? kSlow : 1.0 / kSlow;
+    const bool slow = iteration > 0 && old_matrix && (changed ? iteration > 1 : !(error < enough * before));
+    before = error;
     ++report.iterations;
-    linearise();
+    old_matrix = !slow && relax_needle();
+    if (!old_matrix) linearise();
+    if (!matrix_fits) matrix_fits = system.factorise();
+    system.add_tip();
     changed = pivot(h, report);
 
     for (int c = 0; c < load_count(); ++c) {
-      const Mat3& Q = frames[static_cast<std::size_t>(c)];
-      loads[static_cast<std::size_t>(c)].force.noalias() = -(Q * system.p.segment<3>(3 * c));
-      force_of(c).noalias() = Q * system.lambda.segment<3>(3 * c);
+      loads[static_cast<std::size_t>(c)].force = -system.push.segment<3>(3 * c);
+      force_of(c).noalias() = frames[static_cast<std::size_t>(c)] * system.lambda.segment<3>(3 * c);
     }
     needle->advance(loads);
-    for (std::size_t k = 0; k < grips.size(); ++k)
-      slide(grips[k], frames[k + 1], system.lambda[3 * static_cast<Eigen::Index>(k) + 5]);
+    for (int c = 1; c < load_count(); ++c) slide(c);
     if (tip.touching && tip.state == Tip::State::cut) {
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
       const double proposed = std::max(0.0, slip * (system.lambda[2] - tip.cutting));
@@ -380,10 +435,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       }
     }
   }
-  fill_loads();
-  set_frames();
-  soften_rows(h);
-  if (changed || !balanced(1e3)) report.flags |= StepReport::not_converged;
+  if (changed || !(look() < 1e3)) report.flags |= StepReport::not_converged;
 }
 
 }  // namespace stylet

@@ -60,17 +60,13 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
       memory(settings_.relaxation_s, most_points(settings_) + 1),
       system(settings_.capacity + 1) {
   const auto capacity = static_cast<std::size_t>(settings.capacity);
-  const Eigen::Index size = 3 * (settings.capacity + 1);
   track.marks.reserve(capacity);
   old_tracks.resize(kOldTracks);
   for (Track& old : old_tracks) old.marks.reserve(capacity);
   grips.reserve(capacity);
   loads.reserve(capacity + 1);
-  frames.resize(capacity + 1);
-  springs.resize(capacity + 1);
   past.resize(capacity + 1, Vec3::Zero());
-  N = MatX::Zero(size, size);
-  free = VecX::Zero(size);
+  system_points.reserve(capacity + 1);
   forces = MatX::Zero(3, most_points(settings) + 1);
   if (settings.solver == CouplingSettings::Solver::staggered)
     staggered = std::make_unique<paper::Staggered>(settings.capacity + 1, needle->state().size());
@@ -90,7 +86,7 @@ void Insertion::Parts::settle_in_air(StepReport& report) {
       report.flags |= StepReport::not_converged;
       return;
     }
-    needle->linearise({}, N.topLeftCorner(0, 0), free.head(0));
+    needle->linearise({}, system.N.topLeftCorner(0, 0), system.free.head(0));
     needle->advance({});
   }
 }
@@ -125,6 +121,7 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
 }
 
 void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) {
+  const Pose before = needle->base();
   needle->set_base(pose);
   memory.begin(h);
   if (phase == TipPhase::air) {
@@ -139,6 +136,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     share_length();
   }
   for (Grip& grip : grips) grip.s_start = grip.s;
+  expect(before, pose);
   bool broke = false;
   int surfaces = 0;
   do {
@@ -150,11 +148,14 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     // What is held by a surface for the rest of a sub-step pushes it on; viscous tissue resists that at once, and with
     // more than the surface bears.
     const bool met = memory.on() && tip.touching && tip.blocked;
+    last_cut = tip.touching ? tip.advance : 0.0;
+    expected_cut = 0.0;
     commit_tip(report);
     broke = met && tip.touching && tip.force.norm() > tip.limit;
   } while (broke && ++surfaces < kMostSurfaces);
   for (Grip& grip : grips) {
-    const double speed = std::abs(grip.s - grip.s_start) / h;
+    grip.slid = grip.s - grip.s_start;
+    const double speed = std::abs(grip.slid) / h;
     if (grip.state != Grip::State::stick && speed < settings.zero_band_mm_per_s) grip.state = Grip::State::stick;
   }
   wake_and_drop(report);

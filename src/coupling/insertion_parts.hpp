@@ -23,6 +23,7 @@ struct Grip {
   Vec3 x = Vec3::Zero();  ///< [mm] tissue point, undeformed
   double s = 0.0;         ///< [mm] where on the needle it is now
   double s_start = 0.0;   ///< … at the start of the sub-step
+  double slid = 0.0;      ///< [mm] along the needle in the last sub-step
   double softness = 0.0;  ///< [mm/N] a young contact yields this much: it comes alive and dies without a jump
   double length = 0.0;    ///< [mm] tributary length
   FrictionLaw law;
@@ -79,17 +80,23 @@ struct Insertion::Parts {
   int joined = -1;          ///< old track this insertion runs in
   std::vector<Grip> grips;  ///< grip k sits on mark k of the track
   Tip tip;
+  double last_way = 0.0;      ///< [mm] of the base along its axis in the last sub-step …
+  double last_cut = 0.0;      ///< [mm] … and of the tip through tissue
+  double expected_cut = 0.0;  ///< [mm] in this one
   double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
   Vec3 prepared_at = Vec3::Constant(1e30);
 
   // Scratch of the equilibrium, sized once.
   std::vector<PointLoad> loads;  ///< tip first, then the grips: the needle's side, −force
-  std::vector<Mat3> frames;      ///< columns n1, n2, t at each load
   std::vector<Vec3> past;        ///< [mm] by which earlier forces displace the tissue at each load
-  std::vector<Mat3> springs;     ///< lent to the needle at each load
-  MatX N;                        ///< [mm/N] needle's compliance, LPS
-  VecX free;                     ///< [mm] needle's own Newton step at the loads, LPS
   ContactSystem system;
+  std::vector<Mat3>& frames = system.frame;
+  std::vector<Mat3>& springs = system.spring;   ///< lent to the needle at each load
+  std::vector<int> system_points;               ///< points whose compliance system.A holds, …
+  unsigned system_version = 0;                  ///< … as of this version of it, …
+  double system_share = 0.0;                    ///< … and times this share
+  bool tangent_fits = false;                    ///< the needle's tangent is of these contacts
+  bool matrix_fits = false;                     ///< the system's matrix is of that tangent and compliance
   std::unique_ptr<paper::Staggered> staggered;  ///< where that solver is chosen
   int toggle_limit = 0;                         ///< a contact that changes its state more often is frozen
   MatX forces;                                  ///< (3 × points) on the tissue
@@ -126,23 +133,31 @@ struct Insertion::Parts {
   [[nodiscard]] Vec3 unloaded(int load) const { return material_of(load) + past[static_cast<std::size_t>(load)]; }
   [[nodiscard]] double arc_of(int load) const;
   [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
+  void expect(const Pose& from, const Pose& to);
   void begin_balance(int most_toggles);
   void set_frames();
   void fill_loads();
   void soften_rows(double h);
+  void gather_system();
   void linearise();
+  [[nodiscard]] bool relax_needle();
   void lend_springs();
   bool pivot(double h, StepReport& report);
-  /// @param axial [N] force on the tissue @param opening [N] what an open tip would take if it were held
-  [[nodiscard]] double contradiction(int load, double axial, double opening) const;
-  [[nodiscard]] double contradiction(int load) const;
+  /// What a solution says of a contact.
+  struct Trial {
+    double axial = 0.0;    ///< [N] force on the tissue
+    double slides = 0.0;   ///< [mm] in this sub-step, in the sense of its state
+    double opening = 0.0;  ///< [N] what an open tip would take if it were held
+  };
+  [[nodiscard]] Trial trial(int load) const;
+  [[nodiscard]] double contradiction(int load, const Trial& trial) const;
   [[nodiscard]] static double way(const Grip& grip, double axial);
-  void change_state(int load, double axial, StepReport& report);
-  void change_state(int load, StepReport& report);
-  void slide(Grip& grip, const Mat3& frame, double axial);
-  void select_rows();
+  void change_state(int load, const Trial& trial, StepReport& report);
+  void change_and_tell(int load, StepReport& report);
+  void slide(int load);
+  [[nodiscard]] ContactSystem::TipRows tip_rows() const;
   [[nodiscard]] double equation_error() const;
-  [[nodiscard]] bool balanced(double slack) const;
+  [[nodiscard]] double imbalance_over_tolerance() const;
 
   // bevel.cpp: what an asymmetric tip does.
   [[nodiscard]] Vec3 lead_of_bevel(const Vec3& tangent) const;

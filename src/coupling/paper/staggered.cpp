@@ -172,8 +172,11 @@ bool Insertion::Parts::switch_contacts(StepReport& report) {
   bool changed = false;
   for (int c = load_count() - 1; c >= 0; --c) {
     const double axial = system.lambda[3 * c + 2];
-    if (contradiction(c, axial, opening / std::max(s.system(tip_row, tip_row), kTiny)) <= kClear_N) continue;
-    change_state(c, axial, report);
+    const Trial trial{.axial = axial,
+                      .slides = c > 0 ? way(grips[static_cast<std::size_t>(c - 1)], axial) : 0.0,
+                      .opening = opening / std::max(s.system(tip_row, tip_row), kTiny)};
+    if (contradiction(c, trial) <= kClear_N) continue;
+    change_state(c, trial, report);
     changed = true;
   }
   return changed;
@@ -204,8 +207,8 @@ void Insertion::Parts::bend_needle() {
     springs[static_cast<std::size_t>(c)] = settings.damping * Q * stiffness.asDiagonal() * Q.transpose();
   }
   const auto size = static_cast<Eigen::Index>(3 * count);
-  auto compliance_of_needle = N.topLeftCorner(size, size);
-  auto motion = free.head(size);
+  auto compliance_of_needle = system.N.topLeftCorner(size, size);
+  auto motion = system.free.head(size);
   needle->linearise(loads, compliance_of_needle, motion, {springs.data(), static_cast<std::size_t>(count)});
   s.shape_before = needle->state();
   needle->advance(loads);
