@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kNearField = "near-field";
 constexpr const char* kNodeAddition = "node-addition";
 /// A needle in the demo strays by less, and elements that touch the corridor reach further; a narrow one keeps the time
-/// before the first step short on fine meshes. The near field in the target's shift ends with it.
+/// before the first step short on fine meshes.
 constexpr double kCorridor_mm = 3.0;
 
 /// One insertion to be carried out.

@@ -111,7 +111,7 @@ struct MeshChange {
 
 /// How far the target was moved.
 struct TargetShift {
-  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume, the near field of the needle included
+  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume (MeanDisplacement)
   double largest_mm = 0.0;          ///< of any of its nodes, of what the mesh represents: depends on the mesh
 };
 
