@@ -36,9 +36,20 @@ void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref
   }
 }
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): y is written through the view
-void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<VecX> y) {
-  L.triangularView<Eigen::Lower>().transpose().solveInPlace(y);
+void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
+  const Eigen::Index n = L.rows();
+  if (Y.cols() == 1) {
+    auto y = Y.col(0);
+    L.triangularView<Eigen::Lower>().transpose().solveInPlace(y);
+    return;
+  }
+  for (Eigen::Index k = (n - 1) / kTile * kTile; k >= 0; k -= kTile) {
+    const Eigen::Index nk = std::min(kTile, n - k);
+    const Eigen::Index below = n - k - nk;
+    auto tile = Y.middleRows(k, nk);
+    if (below > 0) tile.noalias() -= L.block(k + nk, k, below, nk).transpose() * Y.bottomRows(below);
+    L.block(k, k, nk, nk).triangularView<Eigen::Lower>().transpose().solveInPlace(tile);
+  }
 }
 
 }  // namespace stylet::dense

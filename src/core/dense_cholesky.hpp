@@ -15,7 +15,7 @@ inline constexpr Eigen::Index kTile = 24;
 /// Y ← L⁻¹ Y for a block of columns whose rows before `start` are zero (they are left alone).
 void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y);
 
-/// y ← L⁻ᵀ y
-void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<VecX> y);
+/// Y ← L⁻ᵀ Y
+void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y);
 
 }  // namespace stylet::dense

@@ -47,6 +47,11 @@ bool ContactSystem::factorise() {
   return true;
 }
 
+bool ContactSystem::keep_first(int contacts) {
+  count = contacts;
+  return grips_.keep_first(contacts - 1);
+}
+
 void ContactSystem::add_tip() {
   const Eigen::Index n = grip_rows();
   if (n == 0) return;

@@ -45,6 +45,9 @@ class ContactSystem {
   /// Takes A, N, D and the springs of now into the matrix. False where it is singular.
   [[nodiscard]] bool factorise();
 
+  /// The first `contacts` of those in the matrix are all there are now. False where it must be made anew.
+  [[nodiscard]] bool keep_first(int contacts);
+
   /// Adds the tip with A and N as they are now.
   void add_tip();
 

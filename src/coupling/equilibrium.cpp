@@ -125,8 +125,12 @@ void Insertion::Parts::gather_system() {
   const int count = load_count();
   const auto size = static_cast<Eigen::Index>(3 * count);
   const double share = memory.share();
-  bool same = static_cast<int>(system_points.size()) == count;
+  bool same = static_cast<int>(system_points.size()) >= count;
   for (int c = 0; same && c < count; ++c) same = system_points[static_cast<std::size_t>(c)] == point_of(c);
+  if (same && static_cast<int>(system_points.size()) > count) {  // the last ones slid off the tip
+    system_points.resize(static_cast<std::size_t>(count));
+    matrix_fits = matrix_fits && system.keep_first(count);
+  }
   if (!same) {
     tangent_fits = false;
     system_points.clear();

@@ -83,7 +83,7 @@ void GripMatrix::solve_base(Eigen::Ref<MatX> Y) const {
     return;
   }
   dense::solve_lower(factor, 0, Y);
-  for (Eigen::Index c = 0; c < Y.cols(); ++c) dense::solve_upper(factor, Y.col(c));
+  dense::solve_upper(factor, Y);
 }
 
 /// eᵀ (I − G N) y
@@ -142,6 +142,15 @@ bool GripMatrix::change(std::span<const Yield> yields) {
       changed_ = true;
     }
   }
+  return true;
+}
+
+bool GripMatrix::keep_first(int grips) {
+  if (supported_ || grips > grips_) return false;
+  grips_ = grips;
+  count_ = 0;
+  changed_ = false;
+  std::fill(known_.begin(), known_.end(), Eigen::Vector3i::Constant(-1));
   return true;
 }
 

@@ -44,6 +44,9 @@ class GripMatrix {
   ///   turned: factorise again
   [[nodiscard]] bool change(std::span<const Yield> yields);
 
+  /// Forgets all contacts but the first. @return false, and nothing done, where that takes a new factor
+  [[nodiscard]] bool keep_first(int grips);
+
   /// Y ← B⁻¹ Y
   void solve(Eigen::Ref<MatX> Y) const;
 

@@ -129,7 +129,9 @@ double BeamTangent::largest_imbalance(const BeamShape& shape, const Mat3& base_r
 
 bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                         Eigen::Ref<VecX> free) {
-  if (loads.size() != last_moved_.size()) return false;
+  if (loads.size() > last_moved_.size()) return false;
+  last_moved_.resize(loads.size());
+  last_pull_.resize(loads.size());
   sum_work(shape, base_rotation, loads);
   for (int e = 0; e < elements_; ++e) {
     const Vec3& scale = scale_[static_cast<std::size_t>(e)];

@@ -91,6 +91,7 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   held_ = holds();
   if (!held_) return inner_->linearise(loads, compliance, free, springs);
   held_with_ = guide_load();
+  held_loads_ = loads.size();
   assert(springs.empty() || springs.size() == loads.size());
   if (springs.empty()) {
     springs_.assign(loads.size(), Mat3::Zero());
@@ -109,6 +110,7 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
 bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
   if (held_ != holds()) return false;
   if (!held_) return inner_->relax(loads, free);
+  if (loads.size() != held_loads_) return false;  // the hole's comes after them
   held_with_ = guide_load();
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   if (!inner_->relax(with_guide(loads, held_with_), free_.head(size + 3))) return false;

@@ -143,7 +143,8 @@ void TetTangent::assemble_gradient(const TetShape& shape, const Mat3& base_rotat
 
 bool TetTangent::relax(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                        Eigen::Ref<VecX> free) {
-  if (loads.size() != loads_.size()) return false;
+  if (loads.size() > loads_.size()) return false;
+  loads_.resize(loads.size());
   assemble_gradient(shape, base_rotation, loads);
   reduce_gradient();
   band_.solve_lower(0, z_.data());

@@ -26,7 +26,7 @@ class TetTangent {
 
   /// Gradient for this shape and these loads; stiffness, J and springs as assemble() left them.
   /// @param free -J K⁻¹ g [mm] (3w) LPS, written
-  /// @return false, and nothing done, when there were not as many loads
+  /// @return false, and nothing done, when there were fewer loads
   bool relax(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads, Eigen::Ref<VecX> free);
 
   /// Adds the Newton step for these loads to the displacement.

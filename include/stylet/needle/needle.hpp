@@ -51,7 +51,7 @@ class Needle {
 
   /// The same problem at the shape of now under these loads, with the tangent and the springs of the last linearise():
   /// a step that converges linearly, at a small part of the cost. The compliance is that of then.
-  /// @param loads (w) as many as then, in the same order
+  /// @param loads (w) those of then, wherever they are now, or the first of them; the others are forgotten
   /// @param free [mm] (3w), written: motion of the load points by that step with unchanged loads
   /// @return false, and nothing done, where that tangent is not the needle's any more: linearise() again
   virtual bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) = 0;
