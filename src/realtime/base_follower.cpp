@@ -17,6 +17,8 @@ constexpr double kStill_mm = 1e-9;
 /// A body that proves stiffer than S by more than this factor (2 is where the step becomes unstable) may be so in
 /// directions not yet tried.
 constexpr double kSurprise = 1.5;
+/// Share of the coupling's stiffness that does not count.
+constexpr double kNegligible = 1e-9;
 /// Beyond this S says no more than "does not move" [N/mm].
 constexpr double kStiffest = 1e6;
 
@@ -53,16 +55,18 @@ BaseFollower::Vec6 BaseFollower::offset(const Pose& device) const {
 
 void BaseFollower::learn(const Vec6& y) {
   if (moved_.norm() < kStill_mm) return;
+  // Less is nothing beside the coupling; as S shrinks it would end in numbers too small to divide by.
+  const double nothing = kNegligible * K_[0] * moved_.squaredNorm();
   const double sy = moved_.dot(y);
   const Vec6 Ss = S_ * moved_;
   const double sSs = moved_.dot(Ss);
-  if (sy > kSurprise * sSs) {
+  if (sy > std::max(kSurprise * sSs, nothing)) {
     S_ = std::min(y.squaredNorm() / sy, kStiffest) * Mat6::Identity();
     return;
   }
   const double share = sy > sSs ? 1.0 : kShrink;
-  if (sy > 0.0) S_.noalias() += share * std::min(1.0 / sy, kStiffest / y.squaredNorm()) * y * y.transpose();
-  if (sSs > 0.0) S_.noalias() -= share / sSs * Ss * Ss.transpose();
+  if (sy > nothing) S_.noalias() += share * std::min(1.0 / sy, kStiffest / y.squaredNorm()) * y * y.transpose();
+  if (sSs > nothing) S_.noalias() -= share / sSs * Ss * Ss.transpose();
 }
 
 void BaseFollower::move(const Vec6& by, double dt) {
@@ -93,7 +97,12 @@ const Pose& BaseFollower::follow(const Pose& device, const Wrench& hand, double 
   Mat6 stiffness = S_;
   stiffness.diagonal() += K_ + damping;
   const Vec6 unbalanced = K_.cwiseProduct(e) + damping.cwiseProduct(e - before_) - force;
-  move(stiffness.ldlt().solve(unbalanced), dt);
+  Vec6 by = stiffness.ldlt().solve(unbalanced);
+  if (!by.allFinite()) {  // forces beyond all bounds
+    S_.setZero();
+    by.setZero();
+  }
+  move(by, dt);
   before_ = offset(device);
   return base_;
 }

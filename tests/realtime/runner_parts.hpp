@@ -142,6 +142,8 @@ inline RunnerSettings plain_settings() {
   s.realtime_scheduling = false;
   s.lock_memory = false;
   s.late_after_s = 0.1;  // a busy machine is late at times
+  s.guard.fade_s = 0.02;
+  s.guard.recover_s = 0.05;
   return s;
 }
 

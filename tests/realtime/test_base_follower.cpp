@@ -141,22 +141,27 @@ TEST(BaseFollower, friction_that_sticks_and_slides_stays_within_its_limit) {
   }
 }
 
-TEST(BaseFollower, viscous_bodies_are_no_trouble_at_any_period) {
-  for (const double c : {0.001, 0.1, 10.0}) {
-    for (const double dt : {1e-4, 1e-3, 1e-2}) {
-      double before = 0.0;
-      double largest = 0.0;
-      BaseFollower follower(kUnlimited, coupling());
-      follower.start(at(0.0));
-      double force = 0.0;
-      for (int step = 0; step < 3000; ++step) {
-        const double z = follower.follow(at(4.0), {{0, 0, force}, {0, 0, 0}}, dt).origin.z();
-        force = c * (z - before) / dt;
-        before = z;
-        if (step > 10) largest = std::max(largest, std::abs(force));
+TEST(BaseFollower, a_body_that_slides_viscously_is_followed_without_ringing) {
+  // Viscous friction reaches the base through the elasticity k of tissue and shaft. 0.002 N s/mm is a cutting tip,
+  // 0.01 N s/mm a shaft 40 mm deep with friction of 250 N s/m².
+  for (const double k : {0.3, 3.0, 30.0}) {
+    for (const double c : {0.002, 0.01, 0.1}) {
+      for (const double dt : {2.5e-4, 1e-3, 4e-3}) {
+        const double speed = 20.0;
+        double anchor = 0.0;
+        double largest = 0.0;
+        BaseFollower follower(kUnlimited, coupling());
+        follower.start(at(0.0));
+        double force = 0.0;
+        for (double t = 0.0; t < 4.0; t += dt) {
+          const double z = follower.follow(at(speed * t), {{0, 0, force}, {0, 0, 0}}, dt).origin.z();
+          // k (z − a) = c (a − a₀)/dt
+          anchor = (k * z + c / dt * anchor) / (k + c / dt);
+          force = k * (z - anchor);
+          if (t > 3.0) largest = std::max(largest, std::abs(force - c * speed));
+        }
+        EXPECT_LT(largest, 0.05 * c * speed) << "k " << k << ", c " << c << ", dt " << dt;
       }
-      EXPECT_LT(largest, 2.5) << "the coupling stretched by 4 mm has 2 N; c " << c << ", dt " << dt;
-      EXPECT_LT(before, 4.2) << "c " << c << ", dt " << dt;
     }
   }
 }
@@ -197,4 +202,28 @@ TEST(BaseFollower, a_force_that_is_not_finite_does_not_reach_the_base) {
     ASSERT_TRUE(base.origin.allFinite());
     ASSERT_TRUE(base.rotation.coeffs().allFinite());
   }
+}
+
+TEST(BaseFollower, forces_beyond_all_bounds_do_not_spoil_it) {
+  BaseFollower follower(kUnlimited, coupling());
+  follower.start(at(0.0));
+  for (int k = 0; k < 3000; ++k) {
+    const double huge = k % 100 == 50 ? 1e300 : 0.0;
+    const Pose& base = follower.follow(at(1.0), {{huge, 0, 0}, {0, huge, 0}}, 1e-3);
+    ASSERT_TRUE(base.origin.allFinite()) << k;
+    if (k % 100 == 50) follower.start(at(0.0));
+  }
+}
+
+TEST(BaseFollower, is_as_good_after_a_hundred_thousand_steps_as_after_one) {
+  // What S has learned of a body that yields at a constant force dwindles for ever.
+  BaseFollower follower(kUnlimited, coupling());
+  follower.start(at(0.0));
+  double force = 0.0;
+  for (int k = 0; k < 100'000; ++k) {
+    const double z = follower.follow(at(5e-3 * k), {{0, 0, force}, {0, 0, 0}}, 1e-3).origin.z();
+    force = std::min(1.0, z);
+    ASSERT_TRUE(std::isfinite(z)) << k;
+  }
+  EXPECT_NEAR(follower.base().origin.z(), 5e-3 * 99'999 - 1.0 / 0.5, 0.01);
 }
