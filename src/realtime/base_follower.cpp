@@ -17,6 +17,8 @@ constexpr double kStill_mm = 1e-9;
 /// A body that proves stiffer than S by more than this factor (2 is where the step becomes unstable) may be so in
 /// directions not yet tried.
 constexpr double kSurprise = 1.5;
+/// A motion that changes by less than this share of itself is steady.
+constexpr double kUneven = 0.02;
 /// Share of the coupling's stiffness that does not count.
 constexpr double kNegligible = 1e-9;
 /// Beyond this S says no more than "does not move" [N/mm].
@@ -43,6 +45,9 @@ void BaseFollower::start(const Pose& base) {
   S_.setZero();
   before_.setZero();
   moved_.setZero();
+  moved_before_.setZero();
+  change_.setZero();
+  continued_.setZero();
   force_.setZero();
   first_ = true;
 }
@@ -53,20 +58,35 @@ BaseFollower::Vec6 BaseFollower::offset(const Pose& device) const {
   return e;
 }
 
+/// Takes S to the stiffness that motion s and change of force y show, in all directions, if they show a much stiffer
+/// body than S says. @return whether they do
+bool BaseFollower::stiffen(const Vec6& s, const Vec6& y) {
+  const double sy = s.dot(y);
+  if (sy <= std::max(kSurprise * s.dot(S_ * s), kNegligible * K_[0] * s.squaredNorm())) return false;
+  S_ = std::min(y.squaredNorm() / sy, kStiffest) * Mat6::Identity();
+  return true;
+}
+
 void BaseFollower::learn(const Vec6& y) {
+  const Vec6 ds = moved_ - moved_before_;
+  const Vec6 dy = y - change_;
+  change_ = y;
+  continued_.setZero();
   if (moved_.norm() < kStill_mm) return;
+  // Changes of a steady motion show stiffness while sliding hides it.
+  const bool stiffer = stiffen(moved_, y) || (ds.norm() > kUneven * moved_.norm() && stiffen(ds, dy));
   // Less is nothing beside the coupling; as S shrinks it would end in numbers too small to divide by.
   const double nothing = kNegligible * K_[0] * moved_.squaredNorm();
   const double sy = moved_.dot(y);
   const Vec6 Ss = S_ * moved_;
   const double sSs = moved_.dot(Ss);
-  if (sy > std::max(kSurprise * sSs, nothing)) {
-    S_ = std::min(y.squaredNorm() / sy, kStiffest) * Mat6::Identity();
-    return;
+  const double sliding = sSs > nothing ? std::clamp(1.0 - sy / sSs, 0.0, 1.0) : 0.0;
+  if (!stiffer) {
+    const double share = sy > sSs ? 1.0 : kShrink;
+    if (sy > nothing) S_.noalias() += share * std::min(1.0 / sy, kStiffest / y.squaredNorm()) * y * y.transpose();
+    if (sSs > nothing) S_.noalias() -= share / sSs * Ss * Ss.transpose();
   }
-  const double share = sy > sSs ? 1.0 : kShrink;
-  if (sy > nothing) S_.noalias() += share * std::min(1.0 / sy, kStiffest / y.squaredNorm()) * y * y.transpose();
-  if (sSs > nothing) S_.noalias() -= share / sSs * Ss * Ss.transpose();
+  continued_ = sliding * moved_;
 }
 
 void BaseFollower::move(const Vec6& by, double dt) {
@@ -97,7 +117,8 @@ const Pose& BaseFollower::follow(const Pose& device, const Wrench& hand, double 
   Mat6 stiffness = S_;
   stiffness.diagonal() += K_ + damping;
   const Vec6 unbalanced = K_.cwiseProduct(e) + damping.cwiseProduct(e - before_) - force;
-  Vec6 by = stiffness.ldlt().solve(unbalanced);
+  Vec6 by = stiffness.ldlt().solve(unbalanced + S_ * continued_);
+  moved_before_ = moved_;
   if (!by.allFinite()) {  // forces beyond all bounds
     S_.setZero();
     by.setZero();
