@@ -41,14 +41,15 @@ BaseFollower::BaseFollower(const Limits& limits, const VirtualCoupling& coupling
 
 void BaseFollower::start(const Pose& base) {
   base_ = base;
-  twist_ = {};
   S_.setZero();
-  before_.setZero();
-  moved_.setZero();
-  moved_before_.setZero();
-  change_.setZero();
-  continued_.setZero();
   force_.setZero();
+  hold();
+}
+
+void BaseFollower::hold() {
+  twist_ = {};
+  moved_.setZero();
+  continued_.setZero();
   first_ = true;
 }
 
@@ -108,6 +109,7 @@ const Pose& BaseFollower::follow(const Pose& device, const Wrench& hand, double 
   if (hand.finite()) force << hand.force, hand.torque / lever_;
   if (first_) {
     before_ = e;  // the handle was at rest, too
+    change_.setZero();
     first_ = false;
   } else {
     learn(force - force_);

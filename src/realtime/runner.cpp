@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <latch>
+#include <future>
 #include <system_error>
 #include <thread>
 
@@ -17,7 +17,7 @@ namespace stylet {
 
 namespace {
 
-/// From start() to the first turn: both threads are up by then.
+/// From start() to the first turn: both threads are waiting for it by then.
 constexpr std::int64_t kLead_ns = 2'000'000;
 
 Result<> in_range(const char* name, double value, double least, double most, const char* unit) {
@@ -49,9 +49,12 @@ struct RealtimeRunner::Parts {
                   exchange, times),
         device_loop(*device, coupling, guard, settings, exchange, times) {}
 
-  void set_up(int priority, ThreadRights& granted) const {
+  /// In the thread itself, before its first turn.
+  [[nodiscard]] ThreadRights set_up(int priority) const {
+    ThreadRights granted;
     prepare_thread();
     if (settings.realtime_scheduling) request_realtime_scheduling(priority, granted);
+    return granted;
   }
   void join() {
     for (std::thread* thread : {&device_thread, &step_thread}) {
@@ -99,37 +102,39 @@ Result<> RealtimeRunner::start() {
   Parts& p = *parts_;
   if (running()) return failure("real-time runner", "it runs already", "stop it first");
   p.exchange.stop.store(false, std::memory_order_release);
-  p.memory.emplace(p.settings.lock_memory);
-  ThreadRights of_step;
-  ThreadRights of_device;
-  std::latch ready(2);
-  const std::int64_t origin = monotonic_ns() + kLead_ns;
   // A step is due an eighth of a period after the device, so that it finds the sample of its own period.
   const std::int64_t after = std::llround(p.settings.period_s * 1e9) / 8;
+  std::promise<std::int64_t> first_turn;
+  const std::shared_future<std::int64_t> origin = first_turn.get_future().share();
+  std::promise<ThreadRights> device_promise;
+  std::promise<ThreadRights> step_promise;
+  std::future<ThreadRights> of_device = device_promise.get_future();
+  std::future<ThreadRights> of_step = step_promise.get_future();
   try {
-    p.device_thread = std::thread([&p, &of_device, &ready, origin] {
-      p.set_up(p.settings.priority + 1, of_device);
-      ready.count_down();
-      p.device_loop.run(p.zero_ns, origin);
+    p.device_thread = std::thread([&p, origin, granted = std::move(device_promise)]() mutable {
+      granted.set_value(p.set_up(p.settings.priority + 1));
+      p.device_loop.run(p.zero_ns, origin.get());
     });
-    p.step_thread = std::thread([&p, &of_step, &ready, origin, after] {
-      p.set_up(p.settings.priority, of_step);
-      ready.count_down();
-      p.step_loop.run(p.zero_ns, origin + after);
+    p.step_thread = std::thread([&p, origin, after, granted = std::move(step_promise)]() mutable {
+      granted.set_value(p.set_up(p.settings.priority));
+      p.step_loop.run(p.zero_ns, origin.get() + after);
     });
   } catch (const std::system_error& error) {
     p.exchange.stop.store(true, std::memory_order_release);
+    first_turn.set_value(monotonic_ns());
     p.join();
     return failure("real-time runner", fmt::format("the system gives no thread: {}", error.what()),
                    "raise the limit on the number of threads");
   }
-  ready.wait();
-  p.rights = of_step;
-  p.rights.realtime_scheduling = of_step.realtime_scheduling && of_device.realtime_scheduling;
-  if (of_step.scheduling_error == 0) p.rights.scheduling_error = of_device.scheduling_error;
+  p.rights = of_step.get();
+  const ThreadRights device_rights = of_device.get();
+  p.rights.realtime_scheduling = p.rights.realtime_scheduling && device_rights.realtime_scheduling;
+  if (p.rights.scheduling_error == 0) p.rights.scheduling_error = device_rights.scheduling_error;
+  p.memory.emplace(p.settings.lock_memory);  // now, so that the threads' stacks are among it
   p.rights.memory_locked = p.memory->locked();
   p.rights.memory_error = p.memory->error();
   p.rights.denormals_flushed = FlushDenormals::available();
+  first_turn.set_value(monotonic_ns() + kLead_ns);
   return Ok{};
 }
 

@@ -38,16 +38,14 @@ void StepLoop::step(double dt, double now_s) {
   exchange_.input.fetch();
   const DeviceInput& input = exchange_.input.value();
   if (usable(input, now_s, settings_.late_after_s)) {
-    handle_ = handle(input);
+    follower_.follow(handle(input), outcome_.hand, dt);
   } else {
-    // The base stays: also within the coupling, which would otherwise go on pulling it.
-    handle_ = follower_.base();
+    follower_.hold();
     ++counters_.without_input;
   }
-  const Pose& base = follower_.follow(handle_, outcome_.hand, dt);
   const std::int64_t wall = monotonic_ns();
   const std::int64_t cpu = thread_cpu_ns();
-  outcome_ = body_.step(base, dt);
+  outcome_ = body_.step(follower_.base(), dt);
   times_.step_cpu.add(thread_cpu_ns() - cpu);
   times_.step_wall.add(monotonic_ns() - wall);
   ++counters_.steps;

@@ -33,7 +33,6 @@ class StepLoop {
   std::int64_t simulated_ns_ = 0;
   std::int64_t single_done_ = 0;
   bool said_paused_ = false;
-  Pose handle_;  ///< last good one
   StepOutcome outcome_;
   LoopCounters counters_;
   LoopCounters before_;  ///< of earlier runs, for what PeriodGrid counts

@@ -169,6 +169,23 @@ TEST(BaseFollower, a_body_that_slides_viscously_is_followed_without_ringing) {
   }
 }
 
+TEST(BaseFollower, held_it_stays_and_goes_on_without_a_jolt) {
+  BaseFollower follower(BaseFollower::Limits{}, coupling());
+  follower.start(at(0.0));
+  double force = 0.0;
+  const auto go = [&](double z) { force = 2.0 * follower.follow(at(z), {{0, 0, force}, {0, 0, 0}}, 1e-3).origin.z(); };
+  for (int k = 0; k < 1000; ++k) go(5.0);
+  ASSERT_NEAR(follower.base().origin.z(), 1.0, 1e-9);
+  for (int k = 0; k < 100; ++k) follower.hold();
+  EXPECT_NEAR(follower.base().origin.z(), 1.0, 1e-9);
+  EXPECT_EQ(follower.twist().velocity, Vec3::Zero());
+  go(5.0);
+  EXPECT_NEAR(follower.base().origin.z(), 1.0, 1e-9) << "found again where it was";
+  follower.hold();
+  go(8.0);
+  EXPECT_LT(follower.base().origin.z(), 1.6 + 1e-9) << "and no further than its new balance where it was not";
+}
+
 TEST(BaseFollower, a_handle_that_jumps_moves_the_base_no_faster_than_allowed) {
   const BaseFollower::Limits limits{.speed_mm_per_s = 100.0, .turn_rad_per_s = 2.0};
   const Pose far{{0, 300, 400}, Eigen::Quaterniond(Eigen::AngleAxisd(3.0, Vec3::UnitX()))};

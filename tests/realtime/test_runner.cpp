@@ -109,21 +109,34 @@ TEST(RealtimeRunner, forces_that_are_no_numbers_or_not_to_be_trusted_fade) {
 }
 
 TEST(RealtimeRunner, a_handle_lost_from_sight_leaves_the_base_where_it_is_and_feels_nothing) {
-  for (const int how : {0, 1, 2}) {
-    SpringRun run;
-    run.start();
-    ASSERT_TRUE(pressed(run));
-    std::atomic<bool>& lost = how == 0 ? run.hand->valid : how == 1 ? run.hand->stuck : run.hand->broken;
-    lost = how != 0;
-    EXPECT_TRUE(nothing_felt(run)) << how;
-    run.hand->z = 7.0;
-    ASSERT_TRUE(goes_on(run)) << how;
-    EXPECT_EQ(run.runner->snapshot().base.origin[2], 4.0) << how;
-    EXPECT_GT(run.runner->snapshot().counters.without_input, 0) << how;
-    lost = how == 0;
-    EXPECT_TRUE(comes_true([&] { return std::abs(run.felt() + 7.0) < 1e-9; })) << how;
-    run.runner->stop();
-    run.expect_gentle();
+  enum class Loss { invalid, old, no_number };
+  for (const Loss loss : {Loss::invalid, Loss::old, Loss::no_number}) {
+    for (const bool coupled : {false, true}) {
+      RunnerSettings s = plain_settings();
+      if (coupled) s.coupling = VirtualCouplingSettings{};
+      SpringRun run(s);
+      // Base and spring of 1 N/mm share the way with the coupling's 0.5 N/mm.
+      const double share = coupled ? 1.0 / 3.0 : 1.0;
+      const auto felt = [&](double z) { return comes_true([&] { return std::abs(run.felt() + share * z) < 1e-6; }); };
+      run.start();
+      run.hand->z = 4.0;
+      ASSERT_TRUE(felt(4.0));
+      const auto lose = [&](bool lost) {
+        if (loss == Loss::invalid) run.hand->valid = !lost;
+        if (loss == Loss::old) run.hand->stuck = lost;
+        if (loss == Loss::no_number) run.hand->broken = lost;
+      };
+      lose(true);
+      EXPECT_TRUE(nothing_felt(run));
+      run.hand->z = 7.0;
+      ASSERT_TRUE(goes_on(run));
+      EXPECT_NEAR(run.runner->snapshot().base.origin[2], 4.0 * share, 1e-6);
+      EXPECT_GT(run.runner->snapshot().counters.without_input, 0);
+      lose(false);
+      EXPECT_TRUE(felt(7.0));
+      run.runner->stop();
+      run.expect_gentle();
+    }
   }
 }
 

@@ -39,6 +39,9 @@ class BaseFollower {
   /// counts @param dt [s] > 0
   const Pose& follow(const Pose& device, const Wrench& hand, double dt);
 
+  /// The base stays in this step: nobody says where the handle is. What follows is as after start(), but for S.
+  void hold();
+
   [[nodiscard]] const Pose& base() const { return base_; }
   /// Of the last step.
   [[nodiscard]] const Twist& twist() const { return twist_; }
