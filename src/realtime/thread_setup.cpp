@@ -84,6 +84,7 @@ void request_realtime_scheduling(int priority, ThreadRights& rights) {
 
 void prepare_thread() {
   // Half a megabyte is several times what a step uses; volatile so that the writes take place.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): written below, a page at a time
   std::array<volatile char, std::size_t{512} * 1024> stack;
   constexpr std::size_t page = 4096;
   for (std::size_t k = 0; k < stack.size(); k += page) stack[k] = 0;
