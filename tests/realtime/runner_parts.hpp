@@ -9,9 +9,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <limits>
-#include <mutex>
+#include <numbers>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -31,6 +32,7 @@ inline bool comes_true(const std::function<bool()>& condition) {
 /// A base on a spring along z, which does what a test tells it to.
 struct SpringBody final : Steppable {
   double stiffness = 1.0;  ///< [N/mm]
+  double drive = 0.0;      ///< [N s/mm] pushes along with its motion, which no needle in tissue does
   int events_per_step = 0;
   std::atomic<bool> hang{false};      ///< the step does not return until this is false
   std::atomic<bool> nonsense{false};  ///< forces that are not finite
@@ -55,9 +57,10 @@ struct SpringBody final : Steppable {
     volatile double small = std::numeric_limits<double>::min();
     flushes.store(small * 0.25 == 0.0);
     policy.store(sched_getscheduler(0));
+    const double speed = (base.origin.z() - at.origin.z()) / dt;
     at = base;
     if (dts.size() < dts.capacity()) dts.push_back(dt);
-    hand = {{0, 0, stiffness * at.origin.z()}, {0, 0, 0}};
+    hand = {{0, 0, stiffness * at.origin.z() - drive * speed}, {0, 0, 0}};
     if (nonsense.load()) hand.force.x() = std::numeric_limits<double>::quiet_NaN();
     steps.fetch_add(1);
     return {hand, !distrust.load()};
@@ -80,6 +83,7 @@ struct TestHand final : Device {
   std::atomic<bool> valid{true};
   std::atomic<bool> stuck{false};  ///< the stamps of its samples stand still
   std::atomic<bool> broken{false};
+  std::atomic<bool> sways{false};  ///< by 2 mm around z, once in 0.2 s
   std::atomic<std::int64_t> turns{0};
   double stamp = 0.0;
   std::vector<Wrench> felt;  ///< room is taken before; read after stop()
@@ -96,6 +100,7 @@ struct TestHand final : Device {
     input.time_s = stamp;
     input.valid = valid.load();
     input.pose.origin[2] = broken.load() ? std::numeric_limits<double>::quiet_NaN() : z.load();
+    if (sways.load()) input.pose.origin[2] += 2.0 * std::sin(10.0 * std::numbers::pi * time.now_s);
     return input;
   }
   void write(const Wrench& on_hand) noexcept override {

@@ -217,6 +217,24 @@ TEST(RealtimeRunner, through_the_coupling_the_hand_feels_the_coupling_however_st
   run.expect_gentle();
 }
 
+TEST(RealtimeRunner, a_body_that_gives_more_than_it_took_is_damped) {
+  RunnerSettings s = plain_settings();
+  s.coupling = VirtualCouplingSettings{};
+  SpringRun run(s, [](SpringBody& body) {
+    body.stiffness = 0.0;
+    body.drive = 1e-3;
+  });
+  run.start();
+  run.hand->sways = true;
+  EXPECT_TRUE(comes_true([&] {
+    run.runner->fetch_device();
+    return run.runner->device_snapshot().damped > 20;
+  }));
+  EXPECT_LT(run.runner->device_snapshot().lowest_energy_Nmm, 0.0);
+  run.runner->stop();
+  run.expect_gentle();
+}
+
 TEST(RealtimeRunner, events_come_out_in_order_and_those_without_room_are_counted) {
   SpringRun run(plain_settings(), [](SpringBody& body) { body.events_per_step = 32; });
   run.start();
