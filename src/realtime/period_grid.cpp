@@ -12,6 +12,7 @@ std::int64_t PeriodGrid::last_before(std::int64_t now_ns) const {
 void PeriodGrid::wake(std::int64_t now_ns) {
   const std::int64_t now = std::max(last_before(now_ns), tick_);
   skipped_ += now - tick_;
+  due_ = tick_;
   tick_ = now;
 }
 
@@ -25,7 +26,7 @@ std::int64_t PeriodGrid::take() {
 
 bool PeriodGrid::finish(std::int64_t now_ns) {
   const std::int64_t passed = last_before(now_ns);
-  const bool missed = now_ns > origin_ + (tick_ + 1) * period_;
+  const bool missed = now_ns > origin_ + (due_ + 1) * period_;
   // A point is only still ahead if it has not passed; one hit exactly is taken at once.
   std::int64_t next = std::max(passed, tick_) + 1;
   if (passed > tick_ && origin_ + passed * period_ == now_ns) next = passed;

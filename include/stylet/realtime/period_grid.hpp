@@ -29,7 +29,8 @@ class PeriodGrid {
   /// This turn is not taken (paused): its time does not count.
   void pass() { taken_ = tick_; }
 
-  /// The turn is over. @return true when it missed its deadline, the next point of the grid
+  /// The turn is over. @return true when it missed its deadline: the point of the grid after the one it was due at,
+  /// whether it was woken too late or took too long
   bool finish(std::int64_t now_ns);
 
   [[nodiscard]] std::int64_t skipped() const { return skipped_; }         ///< points without a turn
@@ -42,6 +43,7 @@ class PeriodGrid {
   std::int64_t period_;
   int most_;
   std::int64_t tick_ = 0;
+  std::int64_t due_ = 0;  ///< point at which the present turn was due
   std::int64_t taken_ = -1;
   std::int64_t skipped_ = 0;
   std::int64_t lost_ = 0;

@@ -71,7 +71,7 @@ class RealtimeRunner {
   /// Takes the oldest events not yet taken. @return how many
   std::size_t take_events(std::span<EventSnapshot> out);
 
-  /// Any thread, any time. 90 kB.
+  /// Any thread, any time; about 95 kB.
   [[nodiscard]] std::unique_ptr<RunnerTimes> times() const;
   /// What the last start() was granted.
   [[nodiscard]] const ThreadRights& rights() const;

@@ -13,7 +13,7 @@ namespace stylet {
 /// What the loop has counted since the runner was made.
 struct LoopCounters {
   std::int64_t steps = 0;
-  std::int64_t missed_deadlines = 0;  ///< steps that ended after the next one was due
+  std::int64_t missed_deadlines = 0;  ///< steps that ended after the next one was due: woken late, or too long
   std::int64_t skipped_periods = 0;   ///< points of the grid without a step
   std::int64_t lost_ns = 0;           ///< time beyond the catch-up limit: the clock is ahead of simulated time by it
   std::int64_t distrusted = 0;        ///< steps whose force was not let through
