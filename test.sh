@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 
 case "${1:-}" in
-  "") steps=(packages format module_order machine_paths build tests sanitizers lint) ;;
+  "") steps=(packages format module_order machine_paths build tests sanitizers threads lint) ;;
   --quick) steps=(packages build unit_tests) ;;
   *) echo "usage: ./test.sh [--quick]" >&2; exit 2 ;;
 esac
@@ -20,6 +20,7 @@ build()         { scripts/build release; }
 unit_tests()    { ctest --preset release --parallel "$(nproc)" --label-regex unit; }
 tests()         { ctest --preset release --parallel "$(nproc)"; }
 sanitizers()    { scripts/build sanitize; ctest --preset sanitize --parallel "$(nproc)" --label-regex unit; }
+threads()       { scripts/build threads; ctest --preset threads; }
 lint()          { scripts/check_lint; }
 
 declare -A about=(
@@ -30,8 +31,9 @@ declare -A about=(
   [build]="release build into build/"
   [unit_tests]="unit tests"
   [tests]="all tests: unit, command line, real data, slow, installed library"
-  [sanitizers]="core to sim under address and undefined-behaviour sanitizers, unit tests"
-  [lint]="clang-tidy on core to sim"
+  [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit tests"
+  [threads]="what runs in several threads under the thread sanitizer"
+  [lint]="clang-tidy on core to realtime"
 )
 
 times=()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the library (core…sim) with its headers for find_package(stylet), and the stylet program.
+# Installs the library (core…realtime) with its headers for find_package(stylet), and the stylet program.
 include(CMakePackageConfigHelpers)
 set(STYLET_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/stylet)
 
 install(TARGETS stylet EXPORT stylet-targets)
-foreach(module core geom fem needle coupling sim)
+foreach(module core geom fem needle coupling sim realtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/stylet/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
 endforeach()
 if(TARGET stylet_cli)

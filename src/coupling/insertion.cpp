@@ -318,17 +318,28 @@ const Track& Insertion::track() const { return parts_->track; }
 std::span<const Track> Insertion::old_tracks() const { return {parts_->old_tracks.data(), parts_->old_count}; }
 
 std::vector<ContactState> Insertion::contacts() const {
+  std::vector<ContactState> result(parts_->grips.size() + 1);
+  result.resize(contacts(result));
+  return result;
+}
+
+std::size_t Insertion::contacts(std::span<ContactState> out) const {
   const Parts& p = *parts_;
-  std::vector<ContactState> result;
-  if (p.tip.touching && p.tip.state != Tip::State::open) {
-    result.push_back({p.tip.x + p.tissue_displacement(ContactCompliance::kTip), p.tip.force, p.length(), 0.0,
-                      p.tip.state == Tip::State::stick, true});
+  std::size_t count = 0;
+  if (p.tip.touching && p.tip.state != Tip::State::open && !out.empty()) {
+    out[count++] = {p.tip.x + p.tissue_displacement(ContactCompliance::kTip),
+                    p.tip.force,
+                    p.length(),
+                    0.0,
+                    p.tip.state == Tip::State::stick,
+                    true};
   }
   for (const Grip& grip : p.grips) {
-    result.push_back({grip.x + p.tissue_displacement(grip.point), grip.force, grip.s, grip.length,
-                      grip.state == Grip::State::stick, false});
+    if (count == out.size()) break;
+    out[count++] = {grip.x + p.tissue_displacement(grip.point), grip.force, grip.s, grip.length,
+                    grip.state == Grip::State::stick,           false};
   }
-  return result;
+  return count;
 }
 
 ContactCompliance::Nodes Insertion::nodes() const {

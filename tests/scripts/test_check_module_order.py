@@ -49,6 +49,16 @@ class ModuleOrder(unittest.TestCase):
         self.assertIn("mesher must not include sim", text)
         self.assertIn("mesher must not include io", text)
 
+    def test_realtime_sees_the_simulation_but_no_files_and_is_not_seen_by_it(self):
+        status, text = self.check({"src/realtime/a.cpp": '#include "stylet/sim/simulation.hpp"\n#include <pthread.h>\n'})
+        self.assertEqual((status, text), (0, ""))
+        status, text = self.check({"src/realtime/a.cpp": '#include "stylet/io/input.hpp"\n#include <sys/socket.h>\n',
+                                   "src/sim/b.cpp": '#include "stylet/realtime/runner.hpp"\n'})
+        self.assertEqual(status, 1)
+        self.assertIn("realtime must not include io", text)
+        self.assertIn("sys/socket.h", text)
+        self.assertIn("sim must not include realtime", text)
+
     def test_reproduce_sees_all_and_is_seen_by_none(self):
         status, text = self.check({"src/reproduce/a.cpp": '#include "stylet/mesher/mesher.hpp"\n#include "io/inside.hpp"\n',
                                    "src/io/inside.hpp": ""})

@@ -123,6 +123,8 @@ class Insertion {
 
   /// Contacts now, the tip first when it touches. Allocates.
   [[nodiscard]] std::vector<ContactState> contacts() const;
+  /// The same into room provided; does not allocate. @return how many were written; capacity + 1 always fit
+  std::size_t contacts(std::span<ContactState> out) const;
 
   /// Displacement of the material at the mesh's nodes [mm] (3n). Solves for it, allocates; for pictures,
   /// never in the loop.

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/realtime/snapshot.hpp"
+#include "stylet/sim/simulation.hpp"
+
+#include <span>
+
+namespace stylet {
+
+/// What a step came to, as far as the loop is concerned.
+struct StepOutcome {
+  Wrench hand;           ///< what the hand exerts on the base; about the base point
+  bool trusted = false;  ///< false: the step did not find its balance, its force must not reach a hand
+};
+
+/// Something with a base that the real-time loop moves. None of these calls may allocate, lock, wait or throw; all come
+/// from the loop's thread while it runs.
+class Steppable {
+ public:
+  virtual ~Steppable() = default;
+
+  /// Where the base is now.
+  [[nodiscard]] virtual Pose base() const noexcept = 0;
+  /// Moves the base in dt seconds.
+  virtual StepOutcome step(const Pose& base, double dt) noexcept = 0;
+  /// Writes what the last step looks like; time_s, clock_s, paused, trusted and counters are the loop's own.
+  virtual void describe(Snapshot& out) noexcept = 0;
+  /// Copies the last step's events. @return how many; those beyond out.size() are left out
+  virtual std::size_t events(std::span<EventSnapshot> out) noexcept = 0;
+};
+
+/// A Simulation in the loop. Simulation::prepare() allocates and solves, so the loop never calls it: where the tip
+/// leaves the compliance that is there, it is held and flagged (StepReport::compliance_missing) until somebody else has
+/// provided more.
+class SimulationSteppable final : public Steppable {
+ public:
+  /// Places the needle at the start of one of the model's insertions.
+  explicit SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion = 0);
+
+  /// Not while the loop runs.
+  [[nodiscard]] Simulation& simulation() { return simulation_; }
+
+  [[nodiscard]] Pose base() const noexcept override;
+  StepOutcome step(const Pose& base, double dt) noexcept override;
+  void describe(Snapshot& out) noexcept override;
+  std::size_t events(std::span<EventSnapshot> out) noexcept override;
+
+ private:
+  Simulation simulation_;
+  std::vector<ContactState> contacts_;  ///< room
+};
+
+}  // namespace stylet

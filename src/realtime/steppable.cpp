@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/realtime/steppable.hpp"
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+
+/// After these the force of a step is not the model's.
+constexpr unsigned kDistrusted = StepReport::not_converged | StepReport::invalid_input;
+
+}  // namespace
+
+SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion)
+    : simulation_(model), contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1) {
+  const PlannedInsertion& plan = model->insertions()[insertion];
+  simulation_.place(plan.motion.at(0.0), plan.entry, plan.direction);
+}
+
+Pose SimulationSteppable::base() const noexcept { return simulation_.insertion().needle().base(); }
+
+StepOutcome SimulationSteppable::step(const Pose& base, double dt) noexcept {
+  simulation_.step(base, dt);
+  const StepReport& report = simulation_.report();
+  return {{report.hand_force, report.hand_torque}, (report.flags & kDistrusted) == 0};
+}
+
+void SimulationSteppable::describe(Snapshot& out) noexcept {
+  const StepRecord& record = simulation_.record();
+  const StepReport& report = simulation_.report();
+  const Needle& needle = simulation_.insertion().needle();
+  out.base_depth_mm = record.base_depth_mm;
+  out.base = plain(needle.base());
+  out.hand = plain(Wrench{report.hand_force, report.hand_torque});
+  out.force_axial_N = record.force_axial_N;
+  out.tip = plain(record.tip_mm);
+  out.tip_state = record.tip_state;
+  constexpr std::size_t last = Snapshot::kCentreline - 1;
+  for (std::size_t k = 0; k <= last; ++k)
+    out.centreline[k] = plain(needle.point(needle.length() * static_cast<double>(k) / static_cast<double>(last)));
+  const std::size_t found = simulation_.insertion().contacts(contacts_);
+  const std::size_t shown = std::min(found, Snapshot::kContacts);
+  for (std::size_t k = 0; k < shown; ++k) {
+    const ContactState& c = contacts_[k];
+    out.contacts[k] = {plain(c.position), plain(c.force), c.s, c.sticking, c.tip};
+  }
+  out.contact_count = static_cast<int>(shown);
+  out.contacts_left_out = static_cast<int>(found - shown);
+  out.sticking = record.sticking;
+  out.iterations = record.iterations;
+  out.flags = report.flags;
+}
+
+std::size_t SimulationSteppable::events(std::span<EventSnapshot> out) noexcept {
+  const std::vector<std::string>& regions = simulation_.model().mesh().regions;
+  std::size_t count = 0;
+  for (const Event& event : simulation_.new_events()) {
+    if (count == out.size()) break;
+    const auto found = std::find(regions.begin(), regions.end(), event.region);
+    const int region = found == regions.end() ? -1 : static_cast<int>(found - regions.begin());
+    out[count++] = {event.kind, event.time_s, event.depth_mm, event.force_N, region};
+  }
+  return count;
+}
+
+}  // namespace stylet

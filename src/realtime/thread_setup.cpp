@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thread_setup.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+
+#if defined(__linux__)
+#include <sys/prctl.h>
+#endif
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace stylet {
+
+namespace {
+
+#if defined(__SSE2__)
+constexpr unsigned long kFlush = 0x8040;  // FTZ and DAZ of MXCSR
+unsigned long mode() { return _mm_getcsr(); }
+void set_mode(unsigned long value) { _mm_setcsr(static_cast<unsigned>(value)); }
+#elif defined(__aarch64__)
+constexpr unsigned long kFlush = 1ul << 24;  // FZ of FPCR
+unsigned long mode() {
+  unsigned long value = 0;
+  asm volatile("mrs %0, fpcr" : "=r"(value));
+  return value;
+}
+void set_mode(unsigned long value) { asm volatile("msr fpcr, %0" : : "r"(value)); }
+#else
+constexpr unsigned long kFlush = 0;
+unsigned long mode() { return 0; }
+void set_mode(unsigned long /*value*/) {}
+#endif
+
+std::mutex mutex;
+int holders = 0;
+
+}  // namespace
+
+FlushDenormals::FlushDenormals() : before_(mode()) { set_mode(before_ | kFlush); }
+FlushDenormals::~FlushDenormals() { set_mode(before_); }
+bool FlushDenormals::available() { return kFlush != 0; }
+
+LockedMemory::LockedMemory(bool wanted) {
+  if (!wanted) return;
+  const std::scoped_lock lock(mutex);
+  if (holders == 0) {
+    // Memory to come is locked too only where there is no limit that it could run into: a limit would make allocations
+    // fail elsewhere in the process.
+    rlimit limit{};
+    const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
+    if (mlockall(unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) != 0) {
+      error_ = errno;
+      return;
+    }
+  }
+  ++holders;
+  held_ = true;
+}
+
+LockedMemory::~LockedMemory() {
+  if (!held_) return;
+  const std::scoped_lock lock(mutex);
+  if (--holders == 0) munlockall();
+}
+
+void request_realtime_scheduling(int priority, ThreadRights& rights) {
+  sched_param param{};
+  param.sched_priority = std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
+  rights.scheduling_error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+  rights.realtime_scheduling = rights.scheduling_error == 0;
+  rights.priority = rights.realtime_scheduling ? param.sched_priority : 0;
+}
+
+void prepare_thread() {
+  // Half a megabyte is several times what a step uses; volatile so that the writes take place.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): written below, a page at a time
+  std::array<volatile char, std::size_t{512} * 1024> stack;
+  constexpr std::size_t page = 4096;
+  for (std::size_t k = 0; k < stack.size(); k += page) stack[k] = 0;
+#if defined(__linux__)
+  // An ordinary thread is woken up to 50 µs late to save power, unless it asks.
+  prctl(PR_SET_TIMERSLACK, 1ul, 0ul, 0ul, 0ul);
+#endif
+}
+
+std::string ThreadRights::describe() const {
+  const auto refusal = [](int error) {
+    // strerror is not safe among threads; the two refusals there are have their own words.
+    if (error == EPERM) return std::string("not permitted");
+    if (error == ENOMEM) return std::string("more memory than may be locked");
+    return fmt::format("error {}", error);
+  };
+  std::string text = realtime_scheduling     ? fmt::format("real-time scheduling with priority {}", priority)
+                     : scheduling_error != 0 ? "ordinary scheduling (" + refusal(scheduling_error) + ")"
+                                             : std::string("ordinary scheduling");
+  text += memory_locked       ? ", memory locked"
+          : memory_error != 0 ? ", memory not locked (" + refusal(memory_error) + ")"
+                              : ", memory not locked";
+  text += denormals_flushed ? ", denormal numbers flushed" : ", denormal numbers not flushed";
+  return text;
+}
+
+}  // namespace stylet

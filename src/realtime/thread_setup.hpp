@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/realtime/thread_rights.hpp"
+
+namespace stylet {
+
+/// Denormal numbers count as zero in this thread while it lives; the former mode comes back. FTZ and DAZ on x86,
+/// FPCR.FZ on 64-bit ARM.
+class FlushDenormals {
+ public:
+  FlushDenormals();
+  ~FlushDenormals();
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+  /// False on processors where this class does nothing.
+  [[nodiscard]] static bool available();
+
+ private:
+  unsigned long before_ = 0;
+};
+
+/// Keeps all pages of the process in memory while any of these that asked for it lives.
+class LockedMemory {
+ public:
+  explicit LockedMemory(bool wanted);
+  ~LockedMemory();
+  LockedMemory(const LockedMemory&) = delete;
+  LockedMemory& operator=(const LockedMemory&) = delete;
+
+  [[nodiscard]] int error() const { return error_; }  ///< errno of the refusal
+  [[nodiscard]] bool locked() const { return held_; }
+
+ private:
+  bool held_ = false;
+  int error_ = 0;
+};
+
+/// Asks for SCHED_FIFO for the calling thread and writes down the answer. @param priority 1…99, clamped to what there
+/// is
+void request_realtime_scheduling(int priority, ThreadRights& rights);
+
+/// Touches the stack a loop may use, so that its pages are there; asks for exact timers.
+void prepare_thread();
+
+}  // namespace stylet

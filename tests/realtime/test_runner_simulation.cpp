@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "runner_parts.hpp"
+#include "sim/box_patient.hpp"
+#include "stylet/realtime/scripted_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+/// One second: in, a short stay, and some of the way out.
+std::shared_ptr<const Model> one_second() {
+  static const std::shared_ptr<const Model> model = [] {
+    Scenario s = box_scenario();
+    s.insertions[0].depth_mm = 20.0;
+    s.insertions[0].speed_mm_per_s = 50.0;
+    s.insertions[0].retract_speed_mm_per_s = 50.0;
+    return compiled(s);
+  }();
+  return model;
+}
+
+RunnerSettings slow_settings() {
+  RunnerSettings s = plain_settings();
+  s.period_s = 4e-3;
+  s.late_after_s = 0.5;
+  return s;
+}
+
+/// A runner on the box model that a script leads, with both threads' allocations counted.
+struct BoxRun {
+  CountingBody* body = nullptr;
+  CountingDevice* device = nullptr;
+  SimulationSteppable* simulation = nullptr;
+  std::unique_ptr<RealtimeRunner> runner;
+
+  explicit BoxRun(const RunnerSettings& settings) {
+    auto s = std::make_unique<SimulationSteppable>(one_second());
+    simulation = s.get();
+    auto b = std::make_unique<CountingBody>(std::move(s));
+    auto d = std::make_unique<CountingDevice>(std::make_unique<ScriptedDevice>(one_second()->insertions()[0].motion));
+    body = b.get();
+    device = d.get();
+    auto made = RealtimeRunner::create(std::move(b), std::move(d), settings);
+    if (!made) throw std::runtime_error(made.error().message());
+    runner = std::move(*made);
+  }
+
+  /// Runs until the script is over, looking at what comes out all the while.
+  void run(const std::function<void(const Snapshot&)>& look = {}) const {
+    const double end = one_second()->insertions()[0].motion.duration_s();
+    ASSERT_TRUE(runner->start().ok());
+    ASSERT_TRUE(comes_true([&] {
+      if (runner->fetch_snapshot() && look) look(runner->snapshot());
+      return runner->snapshot().time_s > end + 0.02;
+    }));
+    runner->stop();
+  }
+};
+
+}  // namespace
+
+TEST(RealtimeRunner, takes_a_simulation_through_an_insertion_led_by_a_script) {
+  BoxRun box(slow_settings());
+  int seen = 0;
+  double last = 0.0;
+  double most_N = 0.0;
+  box.run([&](const Snapshot& s) {
+    ++seen;
+    ASSERT_GT(s.time_s, last);
+    last = s.time_s;
+    most_N = std::max(most_N, s.force_axial_N);
+    // All of one step: the needle runs from base to tip, and the hand bears what the contacts exert.
+    ASSERT_EQ(s.centreline.front(), s.base.origin);
+    ASSERT_EQ(s.centreline.back(), s.tip);
+    Vec3 contacts = Vec3::Zero();
+    for (int k = 0; k < s.contact_count; ++k) contacts += vec3(s.contacts[static_cast<std::size_t>(k)].force);
+    ASSERT_NEAR((contacts - vec3(s.hand.force)).norm(), 0.0, 1e-9);
+    ASSERT_EQ(s.contacts_left_out, 0);
+    ASSERT_TRUE(s.trusted);
+    ASSERT_EQ(s.flags & StepReport::compliance_missing, 0u) << "the plan's corridor is there from the start";
+  });
+  EXPECT_GT(seen, 10);
+  EXPECT_GT(most_N, 0.3);
+  EXPECT_EQ(box.runner->snapshot().tip_state, TipState::air) << "it came out again";
+
+  std::vector<EventSnapshot> events(100);
+  events.resize(box.runner->take_events(events));
+  std::vector<EventKind> kinds;
+  for (const EventSnapshot& e : events) kinds.push_back(e.kind);
+  ASSERT_FALSE(kinds.empty());
+  EXPECT_EQ(kinds.front(), EventKind::skin_contact);
+  EXPECT_EQ(kinds.back(), EventKind::withdrawn);
+  const auto puncture = std::find(kinds.begin(), kinds.end(), EventKind::puncture);
+  ASSERT_NE(puncture, kinds.end());
+  EXPECT_LT(puncture, std::find(kinds.begin(), kinds.end(), EventKind::retraction_start));
+  const auto region = static_cast<std::size_t>(events[static_cast<std::size_t>(puncture - kinds.begin())].region);
+  ASSERT_LT(region, one_second()->mesh().regions.size());
+  EXPECT_EQ(one_second()->mesh().regions[region], "body");
+}
+
+TEST(RealtimeRunner, neither_thread_allocates_from_its_first_turn_to_its_last) {
+  if (!AllocationCount::available())
+    GTEST_SKIP() << "under a sanitizer the memory functions cannot be replaced by counting ones";
+  BoxRun box(slow_settings());
+  box.run();
+  EXPECT_GT(box.runner->snapshot().counters.steps, 50);
+  EXPECT_EQ(box.body->allocations, 0);
+  EXPECT_EQ(box.device->allocations, 0);
+}
+
+TEST(SimulationSteppable, shows_what_the_simulation_says) {
+  SimulationSteppable body(one_second());
+  const BaseMotion& motion = one_second()->insertions()[0].motion;
+  Simulation& simulation = body.simulation();
+  Snapshot shown;
+  int contacts = 0;
+  for (double t = 0.0; t < 0.4; t += 4e-3) {
+    const StepOutcome outcome = body.step(motion.at(t), 4e-3);
+    body.describe(shown);
+    EXPECT_EQ(outcome.hand.force, simulation.report().hand_force);
+    EXPECT_EQ(outcome.hand.torque, simulation.report().hand_torque);
+    EXPECT_TRUE(outcome.trusted);
+    const std::vector<ContactState> expected = simulation.insertion().contacts();
+    ASSERT_EQ(static_cast<std::size_t>(shown.contact_count), expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_EQ(vec3(shown.contacts[k].position), expected[k].position);
+      EXPECT_EQ(vec3(shown.contacts[k].force), expected[k].force);
+      EXPECT_EQ(shown.contacts[k].sticking, expected[k].sticking);
+      EXPECT_EQ(shown.contacts[k].tip, expected[k].tip);
+    }
+    contacts = std::max(contacts, shown.contact_count);
+    EXPECT_EQ(shown.base_depth_mm, simulation.record().base_depth_mm);
+    EXPECT_EQ(vec3(shown.centreline[32]), simulation.insertion().needle().point(60.0)) << "halfway";
+  }
+  EXPECT_GT(contacts, 3);
+  // A pose that is none: the step is not taken, and its force goes nowhere.
+  Pose none;
+  none.origin.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(body.step(none, 4e-3).trusted);
+}
+
+TEST(ScriptedDevice, follows_simulated_time_and_stamps_with_the_clock) {
+  ScriptedDevice device(one_second()->insertions()[0].motion);
+  const DeviceInput input = device.read({.now_s = 7.0, .simulated_s = 0.25});
+  EXPECT_TRUE(input.valid);
+  EXPECT_EQ(input.time_s, 7.0);
+  EXPECT_EQ(vec3(input.pose.origin), one_second()->insertions()[0].motion.at(0.25).origin);
+}
