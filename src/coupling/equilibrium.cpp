@@ -363,6 +363,24 @@ void Insertion::Parts::slide(int load) {
   grip.s = grip.s_start - sign * trial(load).slides;
 }
 
+void Insertion::Parts::keep_iterate() {
+  kept.needle = needle->state();
+  kept.advance = tip.advance;
+  kept.tip_force = tip.force;
+  for (std::size_t k = 0; k < grips.size(); ++k) kept.grips[k] = {grips[k].force, grips[k].s};
+}
+
+/// To the iterate that was kept; no state has changed since.
+void Insertion::Parts::go_back() {
+  needle->set_state(kept.needle);
+  tip.force = kept.tip_force;
+  for (std::size_t k = 0; k < grips.size(); ++k) {
+    grips[k].force = kept.grips[k].force;
+    grips[k].s = kept.grips[k].s;
+  }
+  if (tip.touching && tip.state == Tip::State::cut) march(kept.advance);
+}
+
 /// Starts the sub-step from where it will probably end: what slid and cut in the last one goes on as the base does.
 void Insertion::Parts::expect(const Pose& from, const Pose& to) {
   constexpr double most = 4.0;  // times as far as before
@@ -407,18 +425,29 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     soften_rows(h);
     return imbalance_over_tolerance();
   };
+  bool exact = false;
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
-    const double error = look();
+    double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
       if (iteration > kManyIterations) tangent_fits = false;
       return;
     }
-    const double enough = iteration > 1 ? kSlow : 1.0 / kSlow;
-    const bool slow = iteration > 0 && old_matrix && (changed ? iteration > 1 : !(error < enough * before));
+    if (old_matrix) {
+      const double enough = iteration > 1 ? kSlow : 1.0 / kSlow;
+      exact = changed ? iteration > 1 : !(error < enough * before);
+      if (exact && !changed && !(error < before)) {  // it led away: from where it began, with a new one
+        go_back();
+        error = look();
+      }
+    }
     before = error;
     ++report.iterations;
-    old_matrix = !slow && relax_needle();
-    if (!old_matrix) linearise();
+    old_matrix = !exact && relax_needle();
+    if (old_matrix) {
+      keep_iterate();
+    } else {
+      linearise();
+    }
     if (!matrix_fits) matrix_fits = system.factorise();
     system.add_tip();
     changed = pivot(h, report);

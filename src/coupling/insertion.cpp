@@ -67,6 +67,8 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   loads.reserve(capacity + 1);
   past.resize(capacity + 1, Vec3::Zero());
   system_points.reserve(capacity + 1);
+  kept.needle = needle->state();
+  kept.grips.resize(capacity);
   forces = MatX::Zero(3, most_points(settings) + 1);
   if (settings.solver == CouplingSettings::Solver::staggered)
     staggered = std::make_unique<paper::Staggered>(settings.capacity + 1, needle->state().size());

@@ -91,12 +91,23 @@ struct Insertion::Parts {
   std::vector<Vec3> past;        ///< [mm] by which earlier forces displace the tissue at each load
   ContactSystem system;
   std::vector<Mat3>& frames = system.frame;
-  std::vector<Mat3>& springs = system.spring;   ///< lent to the needle at each load
-  std::vector<int> system_points;               ///< points whose compliance system.A holds, …
-  unsigned system_version = 0;                  ///< … as of this version of it, …
-  double system_share = 0.0;                    ///< … and times this share
-  bool tangent_fits = false;                    ///< the needle's tangent is of these contacts
-  bool matrix_fits = false;                     ///< the system's matrix is of that tangent and compliance
+  std::vector<Mat3>& springs = system.spring;  ///< lent to the needle at each load
+  std::vector<int> system_points;              ///< points whose compliance system.A holds, …
+  unsigned system_version = 0;                 ///< … as of this version of it, …
+  double system_share = 0.0;                   ///< … and times this share
+  bool tangent_fits = false;                   ///< the needle's tangent is of these contacts
+  bool matrix_fits = false;                    ///< the system's matrix is of that tangent and compliance
+  /// An iterate, before an old matrix is tried on it.
+  struct Iterate {
+    struct AtGrip {
+      Vec3 force = Vec3::Zero();
+      double s = 0.0;
+    };
+    VecX needle;
+    Vec3 tip_force = Vec3::Zero();
+    double advance = 0.0;
+    std::vector<AtGrip> grips;
+  } kept;
   std::unique_ptr<paper::Staggered> staggered;  ///< where that solver is chosen
   int toggle_limit = 0;                         ///< a contact that changes its state more often is frozen
   MatX forces;                                  ///< (3 × points) on the tissue
@@ -134,6 +145,8 @@ struct Insertion::Parts {
   [[nodiscard]] double arc_of(int load) const;
   [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
   void expect(const Pose& from, const Pose& to);
+  void keep_iterate();
+  void go_back();
   void begin_balance(int most_toggles);
   void set_frames();
   void fill_loads();
