@@ -14,7 +14,7 @@ ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1) {
   frame.assign(static_cast<std::size_t>(contacts), Mat3::Identity());
   yield.assign(static_cast<std::size_t>(contacts), Yield{});
   spring.assign(static_cast<std::size_t>(contacts), Mat3::Zero());
-  through_springs_ = back_ = column_ = row_ = MatX::Zero(n, 3);
+  lent_by_tip_ = column_ = row_ = MatX::Zero(n, 3);
   solved_ = MatX::Zero(n, 4);
 }
 
@@ -30,21 +30,7 @@ bool ContactSystem::factorise() {
   const auto A_gg = A.block(3, 3, n, n);
   const auto N_gg = N.block(3, 3, n, n);
   const auto springs = supported ? std::span<const Mat3>(spring).subspan(1, grip_count()) : std::span<const Mat3>();
-  if (!grips_.factorise(A_gg, N_gg, springs, grip_yields())) return false;
-  if (!supported) return true;
-  for (int k = 0; k < 3; ++k) {
-    lend(N.col(k).head(rows()));
-    auto lent = lent_.segment(3, n);
-    auto through = through_springs_.col(k).head(n);
-    through.noalias() = A_gg.lazyProduct(lent);
-    for (std::size_t g = 0; g < grip_count(); ++g) {
-      const auto row = 3 * static_cast<Eigen::Index>(g);
-      through.segment<3>(row) += yield[g + 1].of(lent.segment<3>(row));
-    }
-    lend(A.col(k).head(rows()));
-    back_.col(k).head(n).noalias() = N_gg.lazyProduct(lent);
-  }
-  return true;
+  return grips_.factorise(A_gg, N_gg, springs, grip_yields());
 }
 
 bool ContactSystem::keep_first(int contacts) {
@@ -60,8 +46,15 @@ void ContactSystem::add_tip() {
   column_.topRows(n).noalias() += N.block(3, 0, n, 3).lazyProduct(Q);
   row_.topRows(n) = column_.topRows(n);
   if (!supported) return;
-  column_.topRows(n).noalias() -= through_springs_.topRows(n).lazyProduct(Q);
-  row_.topRows(n).noalias() -= back_.topRows(n).lazyProduct(Q);
+  for (int k = 0; k < 3; ++k) {
+    work_.head(rows()).noalias() = N.topRows(rows()).leftCols<3>().lazyProduct(Q.col(k));
+    lend(work_);
+    lent_by_tip_.col(k).head(n) = lent_.segment(3, n);
+    column_.col(k).head(n).noalias() -= A.block(3, 3, n, n) * lent_.segment(3, n);
+    work_.head(rows()).noalias() = A.topRows(rows()).leftCols<3>().lazyProduct(Q.col(k));
+    lend(work_);
+    row_.col(k).head(n).noalias() -= N.block(3, 3, n, n) * lent_.segment(3, n);
+  }
 }
 
 Vec3 ContactSystem::error(int contact) const {
@@ -99,6 +92,13 @@ bool ContactSystem::solve(TipRows held) {
   auto solved = solved_.topRows(n);
   if (n > 0) {
     solved.leftCols<3>() = column_.topRows(n);
+    if (supported) {  // − D G N of grips and tip
+      for (int k = 0; k < 3; ++k) {
+        for (int c = 1; c < count; ++c)
+          solved.col(k).segment<3>(3 * c - 3) -=
+              yield[static_cast<std::size_t>(c)].of(lent_by_tip_.col(k).segment<3>(3 * c - 3));
+      }
+    }
     solved.col(3) = right.tail(n);
     grips_.solve(solved);
   }
@@ -152,7 +152,8 @@ bool ContactSystem::solve(TipRows held) {
 
 double ContactSystem::axial_excess(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
-  const Vec3 change = frame[c] * lambda.segment<3>(3 * contact) - now.segment<3>(3 * contact);
+  Vec3 change = frame[c] * lambda.segment<3>(3 * contact) - now.segment<3>(3 * contact);
+  if (supported) change -= spring[c] * free.segment<3>(3 * contact);
   return frame[c].col(2).dot(grips_.yield(contact - 1).of(change) - yield[c].of(change));
 }
 

@@ -77,11 +77,10 @@ class ContactSystem {
   void lend(const Eigen::Ref<const VecX>& way);
 
   GripMatrix grips_;
-  MatX through_springs_;  ///< (3g × 3) P G N of grips and tip, as factorised
-  MatX back_;             ///< (3g × 3) (A G N)ᵀ of tip and grips, as factorised
-  MatX column_;           ///< (3g × 3) C: rows of the grips, columns of the tip in its frame
-  MatX row_;              ///< (3g × 3) transposed rows of the tip in its frame
-  MatX solved_;           ///< (3g × 4) B⁻¹ of C, and of the right-hand side
+  MatX lent_by_tip_;  ///< (3g × 3) G N of grips and tip
+  MatX column_;       ///< (3g × 3) C: rows of the grips, columns of the tip in its frame
+  MatX row_;          ///< (3g × 3) transposed rows of the tip in its frame
+  MatX solved_;       ///< (3g × 4) B⁻¹ of C, and of the right-hand side
   VecX right_;
   VecX lent_;  ///< [N] G × something
   VecX work_;

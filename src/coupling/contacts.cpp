@@ -44,6 +44,7 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
     }
   }
   track.marks.push_back({xi, x, at, region_of(at.tet), added.point});
+  point_at[static_cast<std::size_t>(added.point)] = at;
   return true;
 }
 
@@ -134,6 +135,7 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
         break;
       }
       mark.point = added.point;
+      point_at[static_cast<std::size_t>(added.point)] = mark.at;
     }
     const double ahead = t.dot(mark.x + tissue_displacement(mark.point) - tip_now);
     if (ahead >= 0.0) break;

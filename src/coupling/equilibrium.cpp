@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/largest.hpp"
 #include "insertion_parts.hpp"
 
 #include <algorithm>
@@ -281,19 +282,19 @@ void Insertion::Parts::change_and_tell(int load, StepReport& report) {
 }
 
 /// Solves the held rows, then lets every state that contradicts its own law change, until none does.
-/// @return true when a state has changed
-bool Insertion::Parts::pivot(double h, StepReport& report) {
-  bool changed = false;
+/// @param changed whether a state has
+/// @return false when the matrix is singular
+bool Insertion::Parts::pivot(double h, StepReport& report, bool& changed) {
+  changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
     soften_rows(h);
     if (round == kAllAtOnce) {  // what an old matrix is off by may make states go to and fro
       matrix_fits = system.factorise();
+      if (!matrix_fits) return false;
       system.add_tip();
     }
-    if (!system.solve(tip_rows())) {
-      report.flags |= StepReport::not_converged;
-      return changed;
-    }
+    matrix_fits = system.solve(tip_rows());
+    if (!matrix_fits) return false;
 
     // Find the worst contradiction; while there are many, change all of them at once.
     const bool all_at_once = round < kAllAtOnce;
@@ -306,7 +307,7 @@ bool Insertion::Parts::pivot(double h, StepReport& report) {
         worst_load = c;
       }
     }
-    if (worst_load < 0) return changed;
+    if (worst_load < 0) return true;
 
     changed = true;
     if (!all_at_once) {
@@ -320,7 +321,7 @@ bool Insertion::Parts::pivot(double h, StepReport& report) {
     if (tip_too) change_and_tell(0, report);
   }
   report.flags |= StepReport::contact_cycling;
-  return changed;
+  return true;
 }
 
 /// Largest error of a held row at the present shape, as a force: error over what the row yields.
@@ -332,13 +333,12 @@ double Insertion::Parts::equation_error() const {
     for (int k = 0; k < 3; ++k) {
       if (c == 0 && (held == ContactSystem::TipRows::none || (held == ContactSystem::TipRows::axial && k < 2)))
         continue;
-      const double force = std::abs(off[k]) / system.own_yield(c, k);
-      if (!(force <= error)) error = force;
+      error = larger_or_nan(error, std::abs(off[k]) / system.own_yield(c, k));
     }
   }
   // A contact that is not held in a direction must carry nothing there.
   if (held == ContactSystem::TipRows::axial)
-    error = std::max(error, (frames[0].leftCols<2>().transpose() * tip.force).norm());
+    error = larger_or_nan(error, (frames[0].leftCols<2>().transpose() * tip.force).norm());
   return error;
 }
 
@@ -347,7 +347,7 @@ double Insertion::Parts::imbalance_over_tolerance() const {
   double largest = 1.0;
   for (const PointLoad& load : loads) largest = std::max(largest, load.force.norm());
   const double allowed = settings.tolerance * largest;
-  return std::max(equation_error(), needle->residual(loads) / (kNeedleShare * length())) / allowed;
+  return larger_or_nan(equation_error(), needle->residual(loads) / (kNeedleShare * length())) / allowed;
 }
 
 /// Moves a sliding contact along the needle by what the present solution says.
@@ -433,8 +433,8 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       return;
     }
     if (old_matrix) {
-      const double enough = iteration > 1 ? kSlow : 1.0 / kSlow;
-      exact = changed ? iteration > 1 : !(error < enough * before);
+      const double enough = iteration > 1 ? kSlow : 1.0;
+      exact = changed ? iteration > 1 || !(error < before) : !(error < enough * before);
       if (exact && !changed && !(error < before)) {  // it led away: from where it began, with a new one
         go_back();
         error = look();
@@ -449,8 +449,16 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       linearise();
     }
     if (!matrix_fits) matrix_fits = system.factorise();
-    system.add_tip();
-    changed = pivot(h, report);
+    if (matrix_fits) system.add_tip();
+    if (!matrix_fits || !pivot(h, report, changed)) {
+      if (!old_matrix) {  // needle and tissue as they are have no balance nearby: they stay
+        report.flags |= StepReport::not_converged;
+        return;
+      }
+      exact = true;
+      old_matrix = false;
+      continue;
+    }
 
     for (int c = 0; c < load_count(); ++c) {
       loads[static_cast<std::size_t>(c)].force = -system.push.segment<3>(3 * c);

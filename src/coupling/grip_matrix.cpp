@@ -75,6 +75,7 @@ bool GripMatrix::factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<con
   return dense::factorise_lu(B, pivots_);
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): Y is written through the view
 void GripMatrix::solve_base(Eigen::Ref<MatX> Y) const {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips_);
   const auto factor = factor_.topLeftCorner(n, n);

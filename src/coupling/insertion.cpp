@@ -70,6 +70,7 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   kept.needle = needle->state();
   kept.grips.resize(capacity);
   forces = MatX::Zero(3, most_points(settings) + 1);
+  point_at.resize(static_cast<std::size_t>(most_points(settings)) + 1);
   if (settings.solver == CouplingSettings::Solver::staggered)
     staggered = std::make_unique<paper::Staggered>(settings.capacity + 1, needle->state().size());
 }
@@ -88,6 +89,7 @@ void Insertion::Parts::settle_in_air(StepReport& report) {
       report.flags |= StepReport::not_converged;
       return;
     }
+    tangent_fits = false;
     needle->linearise({}, system.N.topLeftCorner(0, 0), system.free.head(0));
     needle->advance({});
   }
@@ -112,6 +114,7 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   track.open = false;
   joined = -1;
   grips.clear();
+  if (tip.at.tet >= 0) point_at[ContactCompliance::kTip] = tip.at;
   tip = Tip{};
   relaxing = memory.on();
   if (!relaxing) forget_tissue();
@@ -223,6 +226,8 @@ void Insertion::place(const Pose& base) {
   if (parts_->phase != TipPhase::air) parts_->finish_insertion(unused);
   if (parts_->relaxing) parts_->forget_tissue();
   parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
+  parts_->tangent_fits = false;
+  parts_->last_way = parts_->last_cut = 0.0;
   parts_->base = base;
   parts_->needle->set_base(base);
   parts_->settle_in_air(unused);
@@ -363,13 +368,10 @@ std::vector<TissueForce> Insertion::tissue_forces() const {
   Parts& p = *parts_;
   p.gather_filtered_forces();
   std::vector<TissueForce> result;
-  const auto take = [&](const MaterialPoint& at, int point) {
+  if (p.tip.at.tet >= 0) p.point_at[ContactCompliance::kTip] = p.tip.at;
+  for (int point = 0; point < p.compliance.points(); ++point) {
     const Vec3 force = p.forces.col(point);
-    if (!force.isZero(0.0)) result.push_back({at, force});
-  };
-  take(p.tip.at, ContactCompliance::kTip);
-  for (const Track::Mark& mark : p.track.marks) {
-    if (mark.point >= 0) take(mark.at, mark.point);
+    if (!force.isZero(0.0)) result.push_back({p.point_at[static_cast<std::size_t>(point)], force});
   }
   return result;
 }

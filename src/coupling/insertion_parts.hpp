@@ -111,6 +111,7 @@ struct Insertion::Parts {
   std::unique_ptr<paper::Staggered> staggered;  ///< where that solver is chosen
   int toggle_limit = 0;                         ///< a contact that changes its state more often is frozen
   MatX forces;                                  ///< (3 × points) on the tissue
+  std::vector<MaterialPoint> point_at;          ///< (points) where they are; the tip's is where it was held last
 
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
   void solve_equilibrium(double h, StepReport& report);
@@ -155,7 +156,7 @@ struct Insertion::Parts {
   void linearise();
   [[nodiscard]] bool relax_needle();
   void lend_springs();
-  bool pivot(double h, StepReport& report);
+  [[nodiscard]] bool pivot(double h, StepReport& report, bool& changed);
   /// What a solution says of a contact.
   struct Trial {
     double axial = 0.0;    ///< [N] force on the tissue

@@ -2,6 +2,7 @@
 #include "needle/beam_tangent.hpp"
 
 #include "core/dense_cholesky.hpp"
+#include "core/largest.hpp"
 #include "needle/condense_columns.hpp"
 
 #include <algorithm>
@@ -121,8 +122,7 @@ double BeamTangent::largest_imbalance(const BeamShape& shape, const Mat3& base_r
   for (int e = 0; e < elements_; ++e) {
     const Vec3 moment = shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.strain(e)) -
                         work_[static_cast<std::size_t>(e)] / shape.element_length();
-    // Written so that a NaN is not lost.
-    if (!(moment.norm() <= largest)) largest = moment.norm();
+    largest = larger_or_nan(largest, moment.norm());
   }
   return largest;
 }

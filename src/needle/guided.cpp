@@ -9,6 +9,9 @@ namespace stylet {
 
 namespace {
 constexpr int kMostRounds = 60;
+/// A hole bears the shaft with a stiffness that turns as the shaft runs along its edge: a tangent with an older one
+/// serves as long as it differs by no more than this part.
+constexpr double kTurned = 0.02;
 constexpr double kOnPlane_mm = 1e-13;
 /// A shaft more oblique to the hole's axis than this does not run through it (cosine).
 constexpr double kMostOblique = 0.1;
@@ -92,6 +95,7 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   if (!held_) return inner_->linearise(loads, compliance, free, springs);
   held_with_ = guide_load();
   held_loads_ = loads.size();
+  held_stiffness_ = meeting_.stiffness;
   assert(springs.empty() || springs.size() == loads.size());
   if (springs.empty()) {
     springs_.assign(loads.size(), Mat3::Zero());
@@ -111,6 +115,7 @@ bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free
   if (held_ != holds()) return false;
   if (!held_) return inner_->relax(loads, free);
   if (loads.size() != held_loads_) return false;  // the hole's comes after them
+  if ((meeting_.stiffness - held_stiffness_).norm() > kTurned * held_stiffness_.norm()) return false;
   held_with_ = guide_load();
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   if (!inner_->relax(with_guide(loads, held_with_), free_.head(size + 3))) return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle/tet_shape.hpp"
 
+#include "core/largest.hpp"
 #include "needle/rotation_terms.hpp"
 
 #include <utility>
@@ -124,10 +125,7 @@ double largest_imbalance(const TetShape& shape, const Mat3& base_rotation, std::
   Vec3 force = Vec3::Zero();
   Vec3 moment = Vec3::Zero();  // about the layer in hand
   double largest = 0.0;
-  // Written so that a NaN is not lost.
-  const auto note = [&largest](double value) {
-    if (!(value <= largest)) largest = value;
-  };
+  const auto note = [&largest](double value) { largest = larger_or_nan(largest, value); };
   for (int k = shape.segments() - 1; k >= 0; --k) {
     const Vec3 centre = shape.axis_point(k);
     moment += (shape.axis_point(k + 1) - centre).cross(force);

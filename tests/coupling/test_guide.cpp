@@ -67,6 +67,36 @@ TEST(Guide, HoldsTheShaftInAnInsertionAndItsForceIsTheHandsToo) {
   EXPECT_EQ(run.flags, 0u);
 }
 
+TEST(Guide, HoldsAShaftThatRunsRoundTheEdgeOfItsHole) {
+  for (const double bow : {0.0, 0.3}) {
+    for (const int back : {200, 1200}) {
+      SCOPED_TRACE(testing::Message() << "bow " << bow << " mm, back in " << back << " steps");
+      NeedleInBlock run(guided(bow));
+      aim_through_template(run);
+      run.go(45.0);
+      int most = 0;
+      double largest = 0.0;
+      const auto pull = [&](const Vec3& by, int steps) {
+        const Vec3 from = run.sideways;
+        for (int k = 1; k <= steps; ++k) {
+          run.sideways = from + by * static_cast<double>(k) / steps;
+          run.step(1e-3);
+          most = std::max(most, run.report.iterations);
+          largest = std::max(largest, run.report.guide_force.norm());
+        }
+      };
+      pull({3.0, 0.0, 0.0}, 200);
+      const double once = largest;
+      pull({-6.0, 1.0, 0.0}, back);
+      EXPECT_EQ(run.flags & ~unsigned(StepReport::contact_cycling), 0u);
+      EXPECT_LE(most, 12);
+      EXPECT_GT(once, 0.1);
+      EXPECT_LT(largest, 1.5 * once);
+      expect_balance(run);
+    }
+  }
+}
+
 TEST(Guide, KeepsTheShaftStraightWhereTheHandsPushWouldBendIt) {
   // Pushed by more than it bears freely, a little out of line: with the template only 10 mm before the skin are free.
   const auto deflection = [](BlockOptions options) {

@@ -259,6 +259,37 @@ TEST(ViscousTissue, StaggeredAndCoupledSolversAgree) {
   EXPECT_LT(difference, 1e-7 * coupled.peak());
 }
 
+/// What the forces that hold the tissue displace it by, by the mesh alone.
+VecX displaced_by_forces(const NeedleInBlock& run) {
+  VecX load = VecX::Zero(3 * run.tissue->displacement_nodes());
+  for (const TissueForce& force : run.insertion->tissue_forces()) {
+    const Shape shape = run.tissue->shape(force.at.tet, force.at.weights);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i)
+      load.segment<3>(3 * Eigen::Index{shape.node[i]}) += shape.weight[i] * force.force;
+  }
+  return run.tissue->solve(load);
+}
+
+TEST(ViscousTissue, HasForcesForAllThatItIsDisplacedByAlsoWhenTheNeedleIsOutOrInAgain) {
+  NeedleInBlock run(viscous(0.5, CouplingSettings::Method::near_field));
+  run.aim({2.0, 3.0, 0.0});
+  const auto expect_all = [&](const char* when) {
+    const VecX u = run.insertion->mesh_displacement();
+    EXPECT_GT(u.norm(), 1e-2) << when;
+    EXPECT_LT((displaced_by_forces(run) - u).norm(), 1e-9 * u.norm()) << when;
+  };
+  run.go(0.5);
+  expect_all("pressing");
+  run.go(-2.0, 50.0);
+  expect_all("lifted off before anything was cut");
+  run.go(25.0);
+  expect_all("deep");
+  run.go(-2.0, 100.0);
+  expect_all("out");
+  run.go(12.0, 50.0);
+  expect_all("in again");
+}
+
 TEST(ViscousTissue, StepsDoNotAllocate) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "under a sanitizer the memory functions cannot be replaced";
   NeedleInBlock run(viscous(kQuick_s, CouplingSettings::Method::near_field));

@@ -71,9 +71,10 @@ class GuidedNeedle final : public Needle {
   Vec3 centre_ = Vec3::Zero();  ///< [mm] LPS
   Vec3 axis_ = Vec3::UnitZ();   ///< unit, LPS
   Meeting meeting_;
-  bool held_ = false;           ///< at the last linearise()
-  PointLoad held_with_;         ///< and with what
-  std::size_t held_loads_ = 0;  ///< and how many loads before it
+  bool held_ = false;                   ///< at the last linearise()
+  PointLoad held_with_;                 ///< and with what
+  Mat3 held_stiffness_ = Mat3::Zero();  ///< [N/mm] of the hole then
+  std::size_t held_loads_ = 0;          ///< and how many loads before it
 
   mutable std::vector<PointLoad> loads_;  ///< the caller's, then the hole's
   std::vector<Mat3> springs_;

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/dense_cholesky.hpp"
+#include "core/dense_lu.hpp"
+#include "core/dense_product.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace stylet {
+namespace {
+
+/// Sizes around those of the tiles.
+constexpr std::array<Eigen::Index, 9> kSizes{1, 2, 23, 24, 25, 48, 71, 123, 180};
+
+/// The same on every run, entries between −1 and 1.
+MatX some_matrix(Eigen::Index rows, Eigen::Index columns) {
+  MatX A(rows, columns);
+  unsigned state = 12345U + static_cast<unsigned>(rows * 1000 + columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      state = 1664525U * state + 1013904223U;
+      A(i, j) = static_cast<double>(state >> 8) / static_cast<double>(1U << 23) - 1.0;
+    }
+  }
+  return A;
+}
+
+TEST(DenseCholesky, solves_for_one_and_for_several_columns) {
+  for (const Eigen::Index n : kSizes) {
+    const MatX root = some_matrix(n, n);
+    const MatX A = root * root.transpose() + static_cast<double>(n) * MatX::Identity(n, n);
+    MatX L = A;
+    ASSERT_TRUE(dense::factorise(L)) << n;
+    for (const Eigen::Index columns : {1, 4, 30}) {
+      const MatX b = some_matrix(n, columns);
+      MatX x = b;
+      dense::solve_lower(L, 0, x);
+      dense::solve_upper(L, x);
+      EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm()) << n << " × " << columns;
+    }
+  }
+}
+
+TEST(DenseLu, solves_with_rows_that_must_be_swapped) {
+  for (const Eigen::Index n : kSizes) {
+    MatX A = some_matrix(n, n);
+    A.diagonal().setZero();  // no pivot where it stands
+    if (n == 1) A(0, 0) = 2.0;
+    MatX LU = A;
+    std::vector<int> pivots(static_cast<std::size_t>(n));
+    ASSERT_TRUE(dense::factorise_lu(LU, pivots)) << n;
+    const MatX b = some_matrix(n, 4);
+    MatX x = b;
+    dense::solve_lu(LU, pivots, x);
+    EXPECT_LT((A * x - b).norm(), 1e-10 * A.norm() * x.norm()) << n;
+  }
+}
+
+TEST(DenseLu, refuses_a_singular_matrix_and_one_that_is_not_finite) {
+  std::vector<int> pivots(30);
+  MatX twice = some_matrix(30, 30);
+  twice.col(29) = twice.col(3);
+  EXPECT_FALSE(dense::factorise_lu(twice, pivots));
+  MatX broken = some_matrix(30, 30);
+  broken(17, 11) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(dense::factorise_lu(broken, pivots));
+}
+
+TEST(DenseProduct, is_subtracted_whatever_the_sizes) {
+  for (const Eigen::Index n : {1, 47, 48, 49, 123}) {
+    const MatX A = some_matrix(n, n + 5);
+    const MatX B = some_matrix(n + 5, 30);
+    const MatX C = some_matrix(n, 30);
+    MatX result = C;
+    dense::subtract_product(result, A, B);
+    EXPECT_LT((result - (C - A * B)).norm(), 1e-13 * (A.norm() * B.norm())) << n;
+  }
+}
+
+}  // namespace
+}  // namespace stylet

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The linear equations of an iteration, against the same equations written down whole.
+#include "coupling/contact_system.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace stylet {
+namespace {
+
+using TipRows = ContactSystem::TipRows;
+
+/// Contacts along a curved needle in a medium whose compliance falls off with distance.
+struct Equations {
+  explicit Equations(int contacts, bool lend_springs) : system(contacts) {
+    system.count = contacts;
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
+    for (int c = 0; c < contacts; ++c) {
+      for (int d = 0; d < contacts; ++d) {
+        const Vec3 r = (c - d) * Vec3(0.1, 0.05, 3.0);
+        const double fall = 2.0 / (1.0 + r.norm());
+        system.A.block<3, 3>(3 * c, 3 * d) = fall * (Mat3::Identity() + r * r.transpose() / (1.0 + r.squaredNorm()));
+        const double lever = std::min(c + 1, d + 1);
+        system.N.block<3, 3>(3 * c, 3 * d) =
+            0.05 * lever * lever * (3.0 * std::max(c + 1, d + 1) - lever) * Vec3(1.0, 1.0, 1e-3).asDiagonal();
+      }
+      const double angle = 0.02 * c;
+      system.frame[static_cast<std::size_t>(c)] = Eigen::AngleAxisd(angle, Vec3(0.6, 0.8, 0.0)).toRotationMatrix();
+      Yield& yield = system.yield[static_cast<std::size_t>(c)];
+      yield = {system.frame[static_cast<std::size_t>(c)].col(2), 0.1, c % 3 == 0 ? 4.0 : 0.1};
+      system.spring[static_cast<std::size_t>(c)].setZero();
+      if (lend_springs && c > 0) {
+        const Vec3 t = yield.along;
+        system.spring[static_cast<std::size_t>(c)] = 0.4 * (Mat3::Identity() - t * t.transpose());
+      }
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Index i = 3 * c + k;
+        system.now[i] = 0.1 * std::sin(1.0 + 2.0 * static_cast<double>(i));
+        system.gap[i] = 0.2 * std::cos(3.0 * static_cast<double>(i));
+        system.free[i] = 0.1 * std::sin(0.7 * static_cast<double>(i));
+        system.shift[i] = 0.05 * std::cos(static_cast<double>(i));
+      }
+    }
+    system.supported = lend_springs;
+    rows = n;
+  }
+
+  /// What solve() is to find: λ in the frames and p, from all equations at once.
+  [[nodiscard]] std::pair<VecX, VecX> whole(TipRows held) const {
+    MatX Q = MatX::Zero(rows, rows);
+    MatX D = MatX::Zero(rows, rows);
+    MatX G = MatX::Zero(rows, rows);
+    for (int c = 0; c < system.count; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      Q.block<3, 3>(3 * c, 3 * c) = system.frame[i];
+      for (int k = 0; k < 3; ++k) D.col(3 * c + k).segment<3>(3 * c) = system.yield[i].of(Vec3::Unit(k));
+      G.block<3, 3>(3 * c, 3 * c) = system.spring[i];
+    }
+    const MatX A = system.A.topLeftCorner(rows, rows);
+    const MatX N = system.N.topLeftCorner(rows, rows);
+    const VecX now = system.now.head(rows);
+    // Unknown λ and p: λ − p − G (free − N (p − now)) = 0, and in the frames either the row or λ = 0.
+    MatX left = MatX::Zero(2 * rows, 2 * rows);
+    VecX right = VecX::Zero(2 * rows);
+    left.topLeftCorner(rows, rows).setIdentity();
+    left.topRightCorner(rows, rows) = -MatX::Identity(rows, rows) + G * N;
+    right.head(rows) = G * (system.free.head(rows) + N * now);
+    left.bottomLeftCorner(rows, rows) = Q.transpose() * (A + D);
+    left.bottomRightCorner(rows, rows) = Q.transpose() * N;
+    right.tail(rows) =
+        Q.transpose() * (A * now + N * now + system.free.head(rows) - system.gap.head(rows)) + system.shift.head(rows);
+    for (int k = 0; k < 3; ++k) {
+      const bool is_held = held == TipRows::all || (held == TipRows::axial && k == 2);
+      if (is_held) continue;
+      left.row(rows + k).setZero();
+      left.row(rows + k).head<3>() = Q.block<3, 3>(0, 0).col(k).transpose();
+      right[rows + k] = 0.0;
+    }
+    const VecX solution = left.partialPivLu().solve(right);
+    return {Q.transpose() * solution.head(rows), solution.tail(rows)};
+  }
+
+  void expect_solved(TipRows held, const char* what) {
+    ASSERT_TRUE(system.solve(held)) << what;
+    const auto [lambda, push] = whole(held);
+    EXPECT_LT((system.lambda.head(rows) - lambda).norm(), 1e-9 * lambda.norm() + 1e-14) << what;
+    EXPECT_LT((system.push.head(rows) - push).norm(), 1e-9 * push.norm() + 1e-14) << what;
+  }
+
+  ContactSystem system;
+  Eigen::Index rows;
+};
+
+class ContactEquations : public testing::TestWithParam<bool> {};
+
+TEST_P(ContactEquations, are_solved_whatever_of_the_tip_is_held) {
+  for (const int contacts : {1, 2, 9, 31}) {
+    Equations equations(contacts, GetParam());
+    ASSERT_TRUE(equations.system.factorise());
+    equations.system.add_tip();
+    for (const TipRows held : {TipRows::all, TipRows::axial, TipRows::none})
+      equations.expect_solved(held, std::to_string(contacts).c_str());
+  }
+}
+
+TEST_P(ContactEquations, are_solved_with_contacts_that_slide_or_hold_since_the_matrix_was_made) {
+  Equations equations(20, GetParam());
+  ASSERT_TRUE(equations.system.factorise());
+  equations.system.add_tip();
+  auto& yield = equations.system.yield;
+  yield[3].axial = 0.1;
+  equations.expect_solved(TipRows::all, "one holds");
+  yield[4].axial = 7.0;
+  yield[5].axial = 3e5;
+  equations.expect_solved(TipRows::axial, "two slide, one of them freely");
+  yield[3].axial = 4.0;
+  yield[5].axial = 0.1;
+  equations.expect_solved(TipRows::all, "two are as they were");
+  yield[19].lateral = 50.0;
+  yield[19].axial = 60.0;
+  equations.expect_solved(TipRows::all, "the youngest yields in all directions");
+  for (std::size_t c = 1; c < 20; ++c) yield[c].axial = 2.0;
+  equations.expect_solved(TipRows::none, "all change");
+}
+
+TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_contacts_are_gone) {
+  Equations equations(12, GetParam());
+  ContactSystem& system = equations.system;
+  ASSERT_TRUE(system.factorise());
+  const Mat3 more = 0.3 * Mat3::Identity();
+  if (!GetParam()) {
+    system.yield[6].axial = 5.0;
+    ASSERT_TRUE(system.solve(TipRows::all));
+  }
+  if (!system.keep_first(9)) {
+    ASSERT_TRUE(system.factorise());
+  }
+  equations.rows = 27;
+  system.A.topLeftCorner<3, 3>() += more;
+  system.add_tip();
+  equations.expect_solved(TipRows::all, "nine of twelve, a softer tip");
+}
+
+TEST_P(ContactEquations, tell_how_far_the_needle_is_beyond_the_tissue_where_the_tip_is_free) {
+  Equations equations(7, GetParam());
+  ContactSystem& system = equations.system;
+  ASSERT_TRUE(system.factorise());
+  system.add_tip();
+  ASSERT_TRUE(system.solve(TipRows::none));
+  const auto [lambda, push] = equations.whole(TipRows::none);
+  VecX force(equations.rows);
+  for (int c = 0; c < 7; ++c)
+    force.segment<3>(3 * c) = system.frame[static_cast<std::size_t>(c)] * lambda.segment<3>(3 * c);
+  const VecX now = system.now.head(equations.rows);
+  const auto n = equations.rows;
+  const VecX way = system.free.head(n) - system.N.topLeftCorner(n, n) * (push - now) - system.gap.head(n) -
+                   system.A.topLeftCorner(n, n) * (force - now);
+  EXPECT_NEAR(system.opening(), system.frame[0].col(2).dot(way.head<3>()), 1e-10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Needle, ContactEquations, testing::Values(false, true),
+                         [](const auto& tested) { return tested.param ? "on_springs" : "by_itself"; });
+
+}  // namespace
+}  // namespace stylet
