@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/core/result.hpp"
+#include "stylet/core/types.hpp"
+
+#include <string>
+#include <vector>
+
+namespace stylet::validate {
+
+/// Quantiles of the times of many steps [µs].
+struct StepTimes {
+  double p50 = 0.0;
+  double p99 = 0.0;
+  double p999 = 0.0;
+  double max = 0.0;
+};
+
+/// What a step costs on one mesh with so many contacts.
+struct ScaleRow {
+  Index nodes = 0;
+  std::string element;      ///< tissue.element
+  int contacts = 0;         ///< wanted
+  int contacts_max = 0;     ///< there were
+  double spacing_mm = 0.0;  ///< that gave them
+  long steps = 0;           ///< measured: those with at least kShare of the most contacts
+  long events = 0;          ///< of the insertion in them
+  long flagged = 0;         ///< of them, with a flag (StepReport)
+  double iterations = 0.0;  ///< of the solver in a step, mean
+  StepTimes cpu_us;         ///< thread CPU time
+  StepTimes wall_us;
+  double mesh_s = 0.0;     ///< from contours, wall clock
+  double factor_s = 0.0;   ///< of the stiffness
+  double store_s = 0.0;    ///< compliance and kernel of the corridor, and everything else before the first step
+  double memory_mb = 0.0;  ///< resident in the process with the model ready
+};
+
+struct ScaleBenchOptions {
+  Index largest = 20000;  ///< meshes with more nodes are left out
+};
+
+/// The demo patient on meshes of 570, 5,000, 20,000 and 100,000 nodes; on each the default scenario's needle goes 90 mm
+/// in, back and forth by 15 mm at the deepest point, further in each time, and out, with contacts as near each other as
+/// give 20, 40 and 60 of them.
+Result<std::vector<ScaleRow>> bench_scale(const ScaleBenchOptions& options, const Progress& progress = {});
+
+}  // namespace stylet::validate

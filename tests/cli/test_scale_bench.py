@@ -1,0 +1,27 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet bench scale: what its rows hold, on the coarsest mesh. Times are not tested: they are the machine's."""
+import unittest
+
+from program import InFolder
+
+
+class ScaleBench(InFolder):
+    def test_measures_three_numbers_of_contacts_on_each_mesh(self):
+        rows = self.json_of("bench", "scale", "--nodes", "570")["rows"]
+        self.assertEqual([r["contacts"] for r in rows], [20, 40, 60])
+        for row in rows:
+            self.assertLess(abs(row["nodes"] - 570), 0.03 * 570)
+            self.assertLess(abs(row["contacts_max"] - row["contacts"]), 0.1 * row["contacts"])
+            self.assertGreater(row["steps"], 1000)
+            self.assertGreater(row["events"], 0)
+            self.assertEqual(row["step_cpu_p99_over_coarsest"], 1)
+            for times in (row["step_cpu_us"], row["step_wall_us"]):
+                self.assertTrue(0 < times["p50"] <= times["p99"] <= times["p999"] <= times["max"])
+            self.assertTrue(all(seconds > 0 for seconds in row["offline_s"].values()))
+            self.assertGreater(row["memory_mb"], 0)
+        self.refuse("bench", "scale", "--nodes", "569", says=["--nodes", "569", "570"])
+
+
+if __name__ == "__main__":
+    unittest.main()
