@@ -142,11 +142,12 @@ void Insertion::Parts::gather_system() {
   for (int c = 0; c < (whole ? count : 1); ++c) {
     for (int d = c; d < count; ++d) {
       const Mat3 block = share * compliance(point_of(c), point_of(d));
+      // A contact laid ahead of the shaft changes nothing among those there, unless it changes the mesh.
+      if (c > 0 && block != system.A.block<3, 3>(3 * c, 3 * d)) matrix_fits = false;
       system.A.block<3, 3>(3 * c, 3 * d) = block;
       system.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
     }
   }
-  if (whole && same) matrix_fits = false;
   system_version = compliance.version();
   system_share = share;
 
