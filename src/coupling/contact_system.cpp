@@ -3,8 +3,6 @@
 
 #include <Eigen/LU>
 
-#include <array>
-
 namespace stylet {
 
 ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1) {
@@ -72,17 +70,14 @@ double ContactSystem::own_yield(int contact, int k) const {
 
 bool ContactSystem::solve(TipRows held) {
   const Eigen::Index n = grip_rows();
-  if (n > 0 && !grips_.change(grip_yields())) {
-    if (!factorise()) return false;
-    add_tip();
-  }
+  if (n > 0 && !grips_.change(grip_yields()) && !factorise()) return false;
 
   auto right = right_.head(rows());
   right = free.head(rows());
   if (supported) {
     lend(free);
     const auto lent = lent_.head(rows());
-    right.noalias() -= A.topLeftCorner(rows(), rows()).lazyProduct(lent);
+    right.noalias() -= A.topLeftCorner(rows(), rows()) * lent;
     for (int c = 0; c < count; ++c)
       right.segment<3>(3 * c) -= yield[static_cast<std::size_t>(c)].of(lent.segment<3>(3 * c));
   }
@@ -138,7 +133,7 @@ bool ContactSystem::solve(TipRows held) {
   forces = push.head(rows());
   if (supported) {
     right = push.head(rows()) - now.head(rows());
-    lent_.head(rows()).noalias() = N.topLeftCorner(rows(), rows()).lazyProduct(right);
+    lent_.head(rows()).noalias() = N.topLeftCorner(rows(), rows()) * right;
     right = free.head(rows()) - lent_.head(rows());
     lend(right);
     forces += lent_.head(rows());

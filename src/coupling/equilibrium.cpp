@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxNewton = 30;
 constexpr int kMaxPivots = 60;
 constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifted together, then one by one
-constexpr int kMaxToggles = 12;
+constexpr int kMaxToggles = 6;
 constexpr double kSlow = 0.1;         ///< an old matrix that leaves more of the error than this is made anew, …
 constexpr int kManyIterations = 4;    ///< … and before the next step when it took so many
 constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
@@ -292,7 +292,6 @@ bool Insertion::Parts::pivot(double h, StepReport& report, bool& changed) {
     if (round == kAllAtOnce) {  // what an old matrix is off by may make states go to and fro
       matrix_fits = system.factorise();
       if (!matrix_fits) return false;
-      system.add_tip();
     }
     matrix_fits = system.solve(tip_rows());
     if (!matrix_fits) return false;

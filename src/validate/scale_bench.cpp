@@ -3,6 +3,7 @@
 
 #include "stylet/mesher/mesher.hpp"
 #include "stylet/phantom/phantom.hpp"
+#include "stylet/reproduce/measure.hpp"
 #include "stylet/sim/simulation.hpp"
 #include "stylet/validate/context.hpp"
 
@@ -10,8 +11,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 
 namespace stylet::validate {
@@ -26,14 +27,8 @@ constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
 /// Steps with fewer of the most contacts are not of that number.
 constexpr double kShare = 0.85;
-/// As in `bench coupling`: a needle in the demo strays by less.
-constexpr double kCorridor_mm = 3.0;
 
-double seconds(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double resident_mb() {
   std::ifstream statm("/proc/self/statm");
@@ -92,11 +87,11 @@ std::vector<Step> drive(const std::shared_ptr<const Model>& model, const Progres
     Pose base = first;
     base.origin += (depth - start) * plan.direction;
     simulation.prepare();
-    const double wall = seconds(CLOCK_MONOTONIC);
-    const double cpu = seconds(CLOCK_THREAD_CPUTIME_ID);
+    const double wall = wall_s();
+    const double cpu = reproduce::thread_cpu_s();
     simulation.step(base, kDt_s);
-    const double cpu_after = seconds(CLOCK_THREAD_CPUTIME_ID);
-    const double wall_after = seconds(CLOCK_MONOTONIC);
+    const double cpu_after = reproduce::thread_cpu_s();
+    const double wall_after = wall_s();
     steps.push_back({simulation.record().contacts, simulation.record().iterations,
                      static_cast<int>(simulation.new_events().size()), simulation.report().flags != 0,
                      1e6 * (cpu_after - cpu), 1e6 * (wall_after - wall)});
@@ -113,17 +108,16 @@ Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, const Progr
   Scenario scenario = demo_scenario();
   scenario.coupling.spacing_mm = row.spacing_mm;
   scenario.coupling.contacts = std::max(scenario.coupling.contacts, contacts + 20);
-  scenario.coupling.corridor_mm = kCorridor_mm;
   scenario.insertions.front().depth_mm = kDepth_mm + kCycles * kFurther_mm;
   scenario.output.frames_per_s = 0.0;
-  const double start = seconds(CLOCK_MONOTONIC);
+  const double start = wall_s();
   const auto model = Model::compile(scenario, anatomy.mesh, "the demo", {}, progress);
   if (!model) return model.error();
   row.nodes = (*model)->mesh().node_count();
   row.element = to_string((*model)->tissue().element());
   row.mesh_s = anatomy.report.seconds;
   row.factor_s = (*model)->tissue().statistics().factor_seconds;
-  row.store_s = seconds(CLOCK_MONOTONIC) - start - row.factor_s;
+  row.store_s = wall_s() - start - row.factor_s;
   row.memory_mb = resident_mb();
 
   const std::vector<Step> steps = drive(*model, progress);
