@@ -26,6 +26,7 @@ TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, c
   z_.resize(observables * static_cast<std::size_t>(capacity));
   hat_.assign(observables * static_cast<std::size_t>(capacity), 0.0);
   changes_.reserve(static_cast<std::size_t>(capacity));
+  tip_node_rows_.resize(static_cast<std::size_t>(kMostElementNodes * (capacity + 1)));
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
   reset();
 }
@@ -41,6 +42,7 @@ void TrackCompliance::reset() {
   ++version_;
   changes_.clear();
   tip_ = {};
+  tip_element_.reset();
   A_.setZero();
 }
 
@@ -259,8 +261,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   // The new hat lets the old points move more: A += z s⁻¹ zᵀ.
   for (int c = 0; c < points_; ++c) extend(point_observable_[static_cast<std::size_t>(c)], p + 1);
   if (tip_.tet >= 0) {
-    const auto corners = static_cast<int>(store_->tissue().nodes_of(tip_.tet).size());
-    for (int i = 0; i < corners; ++i) extend(kTipNodes + i, p + 1);
+    for (int i = 0; i < tip_element_.count(); ++i) know_tip_node(tip_element_.number(i));
   }
   for (int c = 0; c < points_; ++c) {
     const Mat3 left = z(point_observable_[static_cast<std::size_t>(c)], p) * splits_.back().flexibility;
@@ -277,7 +278,35 @@ int TrackCompliance::finish_point(int observable) {
   point_observable_.push_back(observable);
   ++points_;
   write_row(points_ - 1);
+  const int splits = static_cast<int>(splits_.size());
+  for (int i = 0; i < tip_element_.count(); ++i) {
+    const int number = tip_element_.number(i);
+    extend(kTipNodes + number, splits);
+    tip_node_row(number, points_ - 1) = compliance(kTipNodes + number, observable, splits);
+  }
   return points_ - 1;
+}
+
+/// A of a node of the tip's element and all points.
+void TrackCompliance::know_tip_node(int number) {
+  const int splits = static_cast<int>(splits_.size());
+  extend(kTipNodes + number, splits);
+  for (int c = 1; c < points_; ++c)
+    tip_node_row(number, c) = compliance(kTipNodes + number, point_observable_[static_cast<std::size_t>(c)], splits);
+}
+
+/// The tip is interpolated, so its row is as well.
+void TrackCompliance::write_tip_row() {
+  const Shape& shape = observables_[0].shape;
+  for (int d = 1; d < points_; ++d) {
+    Mat3 block = Mat3::Zero();
+    for (int i = 0; i < shape.count; ++i)
+      block += shape.weight[static_cast<std::size_t>(i)] * tip_node_row(tip_element_.number(i), d);
+    A_.block<3, 3>(0, 3 * d) = block;
+    A_.block<3, 3>(3 * d, 0) = block.transpose();
+  }
+  const Mat3 own = compliance(0, 0, static_cast<int>(splits_.size()));
+  A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());  // rounding must not make it unsymmetric
 }
 
 void TrackCompliance::write_row(int point) {
@@ -304,19 +333,17 @@ TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3&
 
 bool TrackCompliance::move_tip(const MaterialPoint& at, const Vec3& /*x*/) {
   if (!stored(at.tet)) return false;
-  const int splits = static_cast<int>(splits_.size());
   const Shape shape = store_->tissue().shape(at.tet, at.weights);
   if (at.tet != tip_.tet) {
-    for (int i = 0; i < shape.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      observables_[kTipNodes + k] = {single_node(shape.node[k]), 0};
-      extend(kTipNodes + i, splits);
+    for (const int number : tip_element_.enter(shape)) {
+      observables_[static_cast<std::size_t>(kTipNodes + number)] = {single_node(tip_element_.node(number)), 0};
+      know_tip_node(number);
     }
   }
   tip_ = at;
   observables_[0] = {shape, 0};
-  extend(0, splits);
-  write_row(kTip);
+  extend(0, static_cast<int>(splits_.size()));
+  write_tip_row();
   return true;
 }
 
@@ -351,11 +378,9 @@ Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) cons
   const ShapeGradients shape = store_->tissue().shape_gradients(tip_.tet, tip_.weights);
   Mat3 gradient = Mat3::Zero();
   for (int i = 0; i < shape.count; ++i) {
-    Vec3 u = Vec3::Zero();
-    for (int c = 0; c < points_; ++c) {
-      if (forces.col(c).isZero(0.0)) continue;
-      u.noalias() += compliance(kTipNodes + i, point_observable_[static_cast<std::size_t>(c)], splits) * forces.col(c);
-    }
+    const int number = tip_element_.number(i);
+    Vec3 u = compliance(kTipNodes + number, 0, splits) * forces.col(kTip);
+    for (int c = 1; c < points_; ++c) u.noalias() += tip_node_row(number, c) * forces.col(c);
     gradient.noalias() += u * shape.gradient.col(i).transpose();
   }
   return gradient;

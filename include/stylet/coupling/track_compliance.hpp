@@ -3,6 +3,7 @@
 
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/split_mesh.hpp"
+#include "stylet/coupling/tip_element.hpp"
 #include "stylet/fem/compliance_store.hpp"
 
 #include <memory>
@@ -59,7 +60,7 @@ class TrackCompliance final : public ContactCompliance {
     Mat3 flexibility = Mat3::Zero();  ///< s_p⁻¹ [mm/N]
   };
 
-  static constexpr int kTipNodes = 1;  ///< observables from 1: the displacement nodes of the tip's tetrahedron
+  static constexpr int kTipNodes = 1;  ///< observables from 1: the displacement nodes of the tip's element, by number
   static constexpr int kFirstFree = kTipNodes + kMostElementNodes;
 
   [[nodiscard]] bool stored(Index base_tet) const;
@@ -83,6 +84,14 @@ class TrackCompliance final : public ContactCompliance {
   int finish_point(int observable);
   int vertex_observable(Index vertex);
   void write_row(int point);
+  void know_tip_node(int number);
+  void write_tip_row();
+  Mat3& tip_node_row(int number, int point) {
+    return tip_node_rows_[static_cast<std::size_t>(number * (capacity_ + 1) + point)];
+  }
+  [[nodiscard]] const Mat3& tip_node_row(int number, int point) const {
+    return tip_node_rows_[static_cast<std::size_t>(number * (capacity_ + 1) + point)];
+  }
   [[nodiscard]] Material material_of(Index base_tet) const;
 
   std::shared_ptr<const ComplianceStore> store_;
@@ -97,6 +106,9 @@ class TrackCompliance final : public ContactCompliance {
   std::vector<double> hat_;
   std::vector<RemeshEvent> changes_;
   MaterialPoint tip_;
+  TipElement tip_element_;
+  std::vector<Mat3>
+      tip_node_rows_;  ///< (numbers × points) A of the nodes of the tip's element and the points but the tip
 };
 
 }  // namespace stylet

@@ -22,8 +22,15 @@ Medium scaled(Medium medium, double young_MPa) {
 NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                                          std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle,
                                          int capacity)
-    : far_(std::move(far)), tissue_(std::move(tissue)), kernel_(std::move(kernel)), needle_(needle) {
+    : far_(std::move(far)),
+      tissue_(std::move(tissue)),
+      kernel_(std::move(kernel)),
+      needle_(needle),
+      capacity_(capacity + 1) {
   places_.reserve(static_cast<std::size_t>(capacity) + 1);
+  const std::size_t entries = tip_node_entry(kMostElementNodes, 0, 0);
+  tip_node_g_.assign(entries, Mat3::Zero());
+  tip_node_known_.assign(entries, 0);
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
   reset();
 }
@@ -34,6 +41,8 @@ void NearFieldCompliance::reset() {
   places_.assign(1, Place{});
   points_ = 1;
   ++version_;
+  tip_tet_ = -1;
+  tip_element_.reset();
   A_.setZero();
 }
 
@@ -74,20 +83,43 @@ NearFieldCompliance::Place NearFieldCompliance::place_at(const MaterialPoint& at
   return place;
 }
 
-/// What the needle's kernel and the mesh's differ by in the medium of one of the two places.
-Mat3 NearFieldCompliance::correction(const Place& at, const Place& on, const Place& medium_of) const {
-  const Medium medium = scaled(kernel_->medium(medium_of.medium), medium_of.young_MPa);
-  Mat3 of_mesh = Mat3::Zero();
-  for (int i = 0; i < at.shape.count; ++i) {
-    for (int j = 0; j < on.shape.count; ++j) {
+Mat3 NearFieldCompliance::of_mesh(const Shape& at, const Shape& on, int medium) const {
+  Mat3 sum = Mat3::Zero();
+  for (int i = 0; i < at.count; ++i) {
+    for (int j = 0; j < on.count; ++j) {
       const auto a = static_cast<std::size_t>(i);
       const auto b = static_cast<std::size_t>(j);
-      const double weight = at.shape.weight[a] * on.shape.weight[b];
-      if (weight != 0.0) of_mesh += weight * (*kernel_)(at.shape.node[a], on.shape.node[b], medium_of.medium);
+      const double weight = at.weight[a] * on.weight[b];
+      if (weight != 0.0) sum += weight * (*kernel_)(at.node[a], on.node[b], medium);
     }
   }
-  return needle_kernel(at.piece, at.skin, on.piece, on.skin, std::sqrt(at.epsilon * on.epsilon), medium) -
-         of_mesh / medium_of.young_MPa;
+  return sum;
+}
+
+/// The same between tip and another point: what the element's nodes have to do with the point stays while the tip goes
+/// through the element.
+Mat3 NearFieldCompliance::of_mesh_at_tip(int point, int medium) {
+  const Shape& tip = places_[kTip].shape;
+  const Shape& on = places_[static_cast<std::size_t>(point)].shape;
+  Mat3 sum = Mat3::Zero();
+  for (int i = 0; i < tip.count; ++i) {
+    const int number = tip_element_.number(i);
+    const std::size_t entry = tip_node_entry(number, point, medium);
+    if (tip_node_known_[entry] == 0) {
+      const Shape node{.count = 1, .node = {tip_element_.node(number)}, .weight = {1.0}};
+      tip_node_g_[entry] = of_mesh(node, on, medium);
+      tip_node_known_[entry] = 1;
+    }
+    sum += tip.weight[static_cast<std::size_t>(i)] * tip_node_g_[entry];
+  }
+  return sum;
+}
+
+void NearFieldCompliance::forget_tip_node(int number, int first_point, int last_point) {
+  const auto at = [&](int point) {
+    return tip_node_known_.begin() + static_cast<std::ptrdiff_t>(tip_node_entry(number, point, 0));
+  };
+  std::fill(at(first_point), at(last_point), char{0});
 }
 
 bool NearFieldCompliance::neighbours(const Shape& at, const Shape& on) const {
@@ -99,26 +131,32 @@ bool NearFieldCompliance::neighbours(const Shape& at, const Shape& on) const {
   return false;
 }
 
-Mat3 NearFieldCompliance::correction(const Place& at, const Place& on) const {
+/// What the needle's kernel and the mesh's differ by. @param g g(at, on) in a medium
+template <class OfMesh>
+Mat3 NearFieldCompliance::correction(const Place& at, const Place& on, const OfMesh& g) const {
   const double edge = 0.5 * (at.edge + on.edge);
   const double distance2 = (at.piece.centre - on.piece.centre).squaredNorm();
   if (distance2 > kReach * kReach * edge * edge) return Mat3::Zero();
   if (distance2 < edge * edge && !neighbours(at.shape, on.shape)) return Mat3::Zero();  // across a gap of air
   const double share = at.moves * on.moves;
   if (share == 0.0) return Mat3::Zero();
-  if (at.medium == on.medium && at.young_MPa == on.young_MPa) return share * correction(at, on, at);
-  return 0.5 * share * (correction(at, on, at) + correction(at, on, on));
+  const auto in_medium_of = [&](const Place& place) -> Mat3 {
+    const Medium medium = scaled(kernel_->medium(place.medium), place.young_MPa);
+    return needle_kernel(at.piece, at.skin, on.piece, on.skin, std::sqrt(at.epsilon * on.epsilon), medium) -
+           g(place.medium) / place.young_MPa;
+  };
+  if (at.medium == on.medium && at.young_MPa == on.young_MPa) return share * in_medium_of(at);
+  return 0.5 * share * (in_medium_of(at) + in_medium_of(on));
 }
 
-void NearFieldCompliance::write_row(int point) {
+template <class OfMesh>
+void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const Place& at = places_[static_cast<std::size_t>(point)];
-  for (int d = 0; d < points_; ++d) {
-    const Mat3 block = (*far_)(point, d) + correction(at, places_[static_cast<std::size_t>(d)]);
-    A_.block<3, 3>(3 * point, 3 * d) = block;
-    A_.block<3, 3>(3 * d, 3 * point) = block.transpose();
-  }
-  const Mat3 own = A_.block<3, 3>(3 * point, 3 * point);
-  A_.block<3, 3>(3 * point, 3 * point) = 0.5 * (own + own.transpose());
+  const Place& on = places_[static_cast<std::size_t>(other)];
+  Mat3 block = (*far_)(point, other) + correction(at, on, g);
+  if (point == other) block = 0.5 * (block + block.transpose()).eval();
+  A_.block<3, 3>(3 * point, 3 * other) = block;
+  A_.block<3, 3>(3 * other, 3 * point) = block.transpose();
 }
 
 ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const Vec3& x, Placement /*placement*/,
@@ -135,7 +173,11 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   places_.push_back(place);
   ++points_;
   ++version_;
-  write_row(added.point);
+  for (int number = 0; number < kMostElementNodes; ++number) forget_tip_node(number, added.point, added.point + 1);
+  write_block(added.point, kTip, [&](int medium) -> Mat3 { return of_mesh_at_tip(added.point, medium).transpose(); });
+  for (int d = 1; d < points_; ++d)
+    write_block(added.point, d,
+                [&](int medium) { return of_mesh(place.shape, places_[static_cast<std::size_t>(d)].shape, medium); });
   return added;
 }
 
@@ -145,7 +187,12 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   Place& tip = places_[kTip];
   tip = place_at(at, x);
   tip.epsilon = needle_.tip_epsilon(tip.skin.depth, kernel_->medium(tip.medium).poisson);
-  write_row(kTip);
+  if (at.tet != tip_tet_) {
+    for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
+    tip_tet_ = at.tet;
+  }
+  write_block(kTip, kTip, [&](int medium) { return of_mesh(tip.shape, tip.shape, medium); });
+  for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   const Medium medium = scaled(kernel_->medium(tip.medium), tip.young_MPa);
   if (tip.skin.inwards.dot(entry_) > 0.0)  // not the far surface, from inside
     A_.topLeftCorner<3, 3>() += tip.moves * needle_.dent(tip.skin, press_N_, medium);
@@ -175,7 +222,8 @@ Vec3 NearFieldCompliance::near_field(Place here, const Eigen::Ref<const MatX>& f
       here.medium = on.medium;
       here.young_MPa = on.young_MPa;
     }
-    sum += correction(here, on) * forces.col(d);
+    const auto g = [&](int medium) { return of_mesh(here.shape, on.shape, medium); };
+    sum += correction(here, on, g) * forces.col(d);
   }
   return sum;
 }

@@ -43,6 +43,7 @@ class MeshKernel {
   /// Media differ by their Poisson ratio; E only scales.
   [[nodiscard]] int medium_of(int region) const { return region_medium_[static_cast<std::size_t>(region)]; }
   [[nodiscard]] Medium medium(int number) const;  ///< with E = 1 MPa
+  [[nodiscard]] int media() const { return static_cast<int>(poisson_.size()); }
 
   /// The free surface near a node.
   [[nodiscard]] const NearSurface& skin(Index node) const {

@@ -4,6 +4,7 @@
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
 #include "stylet/coupling/near_field/needle_kernel.hpp"
+#include "stylet/coupling/tip_element.hpp"
 #include "stylet/fem/tissue.hpp"
 
 #include <memory>
@@ -58,10 +59,18 @@ class NearFieldCompliance final : public ContactCompliance {
   };
   [[nodiscard]] Place place_at(const MaterialPoint& at, const Vec3& x) const;
   [[nodiscard]] bool neighbours(const Shape& at, const Shape& on) const;
-  [[nodiscard]] Mat3 correction(const Place& at, const Place& on) const;
-  [[nodiscard]] Mat3 correction(const Place& at, const Place& on, const Place& medium_of) const;
+  /// g(at, on) for E = 1 MPa in a medium.
+  [[nodiscard]] Mat3 of_mesh(const Shape& at, const Shape& on, int medium) const;
+  [[nodiscard]] Mat3 of_mesh_at_tip(int point, int medium);
+  template <class OfMesh>
+  [[nodiscard]] Mat3 correction(const Place& at, const Place& on, const OfMesh& g) const;
   [[nodiscard]] Vec3 near_field(Place here, const Eigen::Ref<const MatX>& forces) const;
-  void write_row(int point);
+  template <class OfMesh>
+  void write_block(int point, int other, const OfMesh& g);
+  [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
+    return static_cast<std::size_t>((number * capacity_ + point) * kernel_->media() + medium);
+  }
+  void forget_tip_node(int number, int first_point, int last_point);
 
   std::unique_ptr<ContactCompliance> far_;
   std::shared_ptr<const Tissue> tissue_;
@@ -70,6 +79,12 @@ class NearFieldCompliance final : public ContactCompliance {
   double press_N_ = 0.0;       ///< what the surface the needle went in by took before it broke …
   Vec3 entry_ = Vec3::Zero();  ///< … and which way it went
   std::vector<Place> places_;  ///< (points)
+  int capacity_;               ///< of points, tip included
+  int tip_tet_ = -1;
+  TipElement tip_element_;
+  // g between the nodes of the tip's element and the points, for E = 1 MPa, as it is asked for.
+  std::vector<Mat3> tip_node_g_;      ///< (numbers × points × media) [mm/N]
+  std::vector<char> tip_node_known_;  ///< (the same)
 };
 
 }  // namespace stylet
