@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/dense_cholesky.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/dense_kernels.hpp"
 
 #include <algorithm>
 
@@ -11,17 +11,14 @@ bool factorise(Eigen::Ref<MatX> A) {
   const Eigen::Index n = A.rows();
   for (Eigen::Index k = 0; k < n; k += kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);
+    const Eigen::Index below = n - k - nk;
     const auto done = A.block(k, 0, nk, k);
     auto diagonal = A.block(k, k, nk, nk);
-    if (k > 0) diagonal.noalias() -= done * done.transpose();
-    Eigen::LLT<Eigen::Ref<MatX>> llt(diagonal);
-    if (llt.info() != Eigen::Success) return false;
-    for (Eigen::Index i = k + nk; i < n; i += kTile) {
-      const Eigen::Index ni = std::min(kTile, n - i);
-      auto tile = A.block(i, k, ni, nk);
-      if (k > 0) tile.noalias() -= A.block(i, 0, ni, k) * done.transpose();
-      diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(tile);
-    }
+    auto rest = A.block(k + nk, k, below, nk);
+    subtract_product_transposed(diagonal, done, done);
+    if (!factorise_tile(diagonal)) return false;
+    subtract_product_transposed(rest, A.block(k + nk, 0, below, k), done);
+    divide_by_transposed_tile(diagonal, rest);
   }
   return A.diagonal().allFinite();
 }
@@ -31,24 +28,23 @@ void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref
   for (Eigen::Index k = start; k < n; k += kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);
     auto tile = Y.middleRows(k, nk);
-    if (k > start) tile.noalias() -= L.block(k, start, nk, k - start) * Y.middleRows(start, k - start);
-    L.block(k, k, nk, nk).triangularView<Eigen::Lower>().solveInPlace(tile);
+    subtract_product(tile, L.block(k, start, nk, k - start), Y.middleRows(start, k - start));
+    solve_lower_tile(L.block(k, k, nk, nk), false, tile);
   }
 }
 
 void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
   const Eigen::Index n = L.rows();
-  if (Y.cols() == 1) {
-    auto y = Y.col(0);
-    L.triangularView<Eigen::Lower>().transpose().solveInPlace(y);
-    return;
-  }
   for (Eigen::Index k = (n - 1) / kTile * kTile; k >= 0; k -= kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);
     const Eigen::Index below = n - k - nk;
     auto tile = Y.middleRows(k, nk);
-    if (below > 0) tile.noalias() -= L.block(k + nk, k, below, nk).transpose() * Y.bottomRows(below);
-    L.block(k, k, nk, nk).triangularView<Eigen::Lower>().transpose().solveInPlace(tile);
+    for (Eigen::Index c = 0; c < Y.cols(); ++c) {
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kTile, 1> known(nk);
+      transposed_product(known, L.block(k + nk, k, below, nk), Y.col(c).tail(below));
+      tile.col(c) -= known;
+    }
+    solve_lower_transposed_tile(L.block(k, k, nk, nk), tile);
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/dense_lu.hpp"
 
-#include "core/dense_product.hpp"
+#include "core/dense_cholesky.hpp"
+#include "core/dense_kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,24 +49,63 @@ bool factorise_lu(Eigen::Ref<MatX> A, std::span<int> pivots) {
     if (!factorise_panel(A, k, nk, tiny, pivots)) return false;
     swap_rows(A.leftCols(k), pivots, k, end);
     swap_rows(A.rightCols(n - end), pivots, k, end);
-    const auto diagonal = A.block(k, k, nk, nk);
-    for (Eigen::Index j = end; j < n; j += kTile) {
-      const Eigen::Index nj = std::min(kTile, n - j);
-      auto tile = A.block(k, j, nk, nj);
-      diagonal.triangularView<Eigen::UnitLower>().solveInPlace(tile);
-    }
+    solve_lower_tile(A.block(k, k, nk, nk), true, A.block(k, end, nk, n - end));
     subtract_product(A.bottomRightCorner(n - end, n - end), A.block(end, k, n - end, nk), A.block(k, end, nk, n - end));
   }
   return A.allFinite();
 }
 
+bool append_lu(Eigen::Ref<MatX> LU, Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& R,
+               const Eigen::Ref<const MatX>& last, std::span<int> pivots) {
+  const Eigen::Index m = last.rows();
+  const Eigen::Index n = LU.rows() - m;
+  const auto old = LU.topLeftCorner(n, n);
+  swap_rows(C, pivots, 0, n);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    auto column = C.col(j);
+    old.triangularView<Eigen::UnitLower>().solveInPlace(column);
+  }
+  LU.topRightCorner(n, m) = C;
+  for (Eigen::Index i = 0; i < m; ++i) {  // row by row: x U = r
+    auto row = C.col(i);
+    row = R.row(i).transpose();
+    old.triangularView<Eigen::Upper>().transpose().solveInPlace(row);
+    LU.row(n + i).head(n) = row.transpose();
+  }
+  auto corner = LU.bottomRightCorner(m, m);
+  corner = last;
+  const double tiny = kSingular * last.cwiseAbs().maxCoeff();
+  corner.noalias() -= LU.bottomLeftCorner(m, n).lazyProduct(LU.topRightCorner(n, m));
+  for (Eigen::Index j = 0; j < m; ++j) {
+    Eigen::Index pivot = 0;
+    const double largest = corner.col(j).tail(m - j).cwiseAbs().maxCoeff(&pivot);
+    if (!(largest > tiny)) return false;
+    pivot += j;
+    pivots[static_cast<std::size_t>(n + j)] = static_cast<int>(n + pivot);
+    if (pivot != j) LU.row(n + j).swap(LU.row(n + pivot));
+    for (Eigen::Index i = j + 1; i < m; ++i) {
+      corner(i, j) /= corner(j, j);
+      corner.row(i).tail(m - j - 1) -= corner(i, j) * corner.row(j).tail(m - j - 1);
+    }
+  }
+  return LU.bottomRows(m).allFinite();
+}
+
 void solve_lu(const Eigen::Ref<const MatX>& LU, std::span<const int> pivots, Eigen::Ref<MatX> Y) {
   const Eigen::Index n = LU.rows();
   swap_rows(Y, pivots, 0, n);
-  for (Eigen::Index c = 0; c < Y.cols(); ++c) {
-    auto y = Y.col(c);
-    LU.triangularView<Eigen::UnitLower>().solveInPlace(y);
-    LU.triangularView<Eigen::Upper>().solveInPlace(y);
+  for (Eigen::Index k = 0; k < n; k += kTile) {
+    const Eigen::Index nk = std::min(kTile, n - k);
+    auto tile = Y.middleRows(k, nk);
+    subtract_product(tile, LU.block(k, 0, nk, k), Y.topRows(k));
+    solve_lower_tile(LU.block(k, k, nk, nk), true, tile);
+  }
+  for (Eigen::Index k = (n - 1) / kTile * kTile; k >= 0; k -= kTile) {
+    const Eigen::Index nk = std::min(kTile, n - k);
+    const Eigen::Index after = k + nk;
+    auto tile = Y.middleRows(k, nk);
+    subtract_product(tile, LU.block(k, after, nk, n - after), Y.bottomRows(n - after));
+    solve_upper_tile(LU.block(k, k, nk, nk), tile);
   }
 }
 

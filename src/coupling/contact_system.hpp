@@ -45,11 +45,17 @@ class ContactSystem {
   /// Takes A, N, D and the springs of now into the matrix. False where it is singular.
   [[nodiscard]] bool factorise();
 
+  /// Adds the contact after those in the matrix, with A, N and D of now; no spring is lent at it. False where the
+  /// matrix must be made anew.
+  [[nodiscard]] bool append();
+
   /// The first `contacts` of those in the matrix are all there are now. False where it must be made anew.
   [[nodiscard]] bool keep_first(int contacts);
 
-  /// Adds the tip with A and N as they are now.
+  /// Adds the tip with A and N as they are now: good for as long as neither the tip nor the matrix changes much.
   void add_tip();
+  /// The matrix has been made anew, or has grown or shrunk, since.
+  [[nodiscard]] bool lacks_tip() const { return lacks_tip_; }
 
   /// λ and p for D, shift and gap of now. False where the matrix is singular.
   [[nodiscard]] bool solve(TipRows held);
@@ -74,15 +80,21 @@ class ContactSystem {
   [[nodiscard]] Eigen::Index grip_rows() const { return rows() - 3; }
   [[nodiscard]] std::span<const Yield> grip_yields() const { return std::span(yield).subspan(1, grip_count()); }
   [[nodiscard]] std::size_t grip_count() const { return static_cast<std::size_t>(count - 1); }
+  [[nodiscard]] std::span<const Mat3> grip_springs() const {
+    return supported ? std::span(spring).subspan(1, grip_count()) : std::span<const Mat3>();
+  }
   void lend(const Eigen::Ref<const VecX>& way);
+  void list_lent();
 
   GripMatrix grips_;
+  bool lacks_tip_ = true;
   MatX lent_by_tip_;  ///< (3g × 3) G N of grips and tip
-  MatX column_;       ///< (3g × 3) C: rows of the grips, columns of the tip in its frame
-  MatX row_;          ///< (3g × 3) transposed rows of the tip in its frame
-  MatX solved_;       ///< (3g × 4) B⁻¹ of C, and of the right-hand side
+  MatX column_;       ///< (3g × 3) B₀⁻¹ of rows of the grips, columns of the tip
+  MatX row_;          ///< (3g × 3) transposed rows of the tip
+  MatX solved_;       ///< (3g × 4) B⁻¹ of the tip's columns, and of the right-hand side
   VecX right_;
-  VecX lent_;  ///< [N] G × something
+  std::vector<int> lent_to_;  ///< contacts with a spring
+  VecX lent_;                 ///< [N] G × something, there
   VecX work_;
 };
 

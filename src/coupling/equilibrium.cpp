@@ -17,8 +17,14 @@ constexpr int kMaxNewton = 30;
 constexpr int kMaxPivots = 60;
 constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifted together, then one by one
 constexpr int kMaxToggles = 6;
-constexpr double kSlow = 0.1;         ///< an old matrix that leaves more of the error than this is made anew, …
-constexpr int kManyIterations = 4;    ///< … and before the next step when it took so many
+constexpr int kManyIterations = 5;  ///< an old matrix is made anew before the next step when it took so many
+// A tangent costs as much as some iterations with an old one, and spread over more of them it does no harm to the
+// longest step: this many are waited for, and so many when there have been so many tangents in one balance.
+constexpr int kSoon = 4;
+constexpr int kPatience = 6;
+constexpr int kManyTangents = 2;
+constexpr int kTryWithout = 16;  ///< tangents on springs, then one without
+constexpr int kFewSprings = 6;
 constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
@@ -120,36 +126,57 @@ void Insertion::Parts::soften_rows(double h) {
   }
 }
 
+/// Goes over to the contacts of now. What was there before and is the first of them stays as it is.
+/// @return how many stayed
+int Insertion::Parts::renew_contacts() {
+  const int count = load_count();
+  const int before = static_cast<int>(system_points.size());
+  int same = 0;
+  while (same < std::min(before, count) && system_points[static_cast<std::size_t>(same)] == point_of(same)) ++same;
+  if (same < std::min(before, count)) {
+    tangent_fits = matrix_fits = false;
+  } else if (count < before) {  // the last ones slid off the tip
+    matrix_fits = matrix_fits && system.keep_first(count);
+  }
+  system_points.resize(static_cast<std::size_t>(same));
+  for (int c = same; c < count; ++c) system_points.push_back(point_of(c));
+  return same;
+}
+
+/// A contact that has come alive goes into tangent and matrix, where they are there.
+void Insertion::Parts::append_contact(int load) {
+  const int count = load + 1;
+  const Eigen::Index before = 3 * static_cast<Eigen::Index>(load);
+  auto rows = system.N.block(before, 0, 3, before + 3);
+  tangent_fits = tangent_fits && needle->append({loads.data(), static_cast<std::size_t>(count)}, rows);
+  if (!tangent_fits) return;
+  system.N.block(0, before, before, 3) = rows.leftCols(before).transpose();
+  springs[static_cast<std::size_t>(load)].setZero();
+  system.count = count;
+  matrix_fits = matrix_fits && system.append();
+}
+
 /// What the linear equations are about: tissue's compliance among the contacts, their forces, and how far tissue and
 /// needle are apart.
 void Insertion::Parts::gather_system() {
   const int count = load_count();
   const auto size = static_cast<Eigen::Index>(3 * count);
   const double share = memory.share();
-  bool same = static_cast<int>(system_points.size()) >= count;
-  for (int c = 0; same && c < count; ++c) same = system_points[static_cast<std::size_t>(c)] == point_of(c);
-  if (same && static_cast<int>(system_points.size()) > count) {  // the last ones slid off the tip
-    system_points.resize(static_cast<std::size_t>(count));
-    matrix_fits = matrix_fits && system.keep_first(count);
-  }
-  if (!same) {
-    tangent_fits = false;
-    system_points.clear();
-    for (int c = 0; c < count; ++c) system_points.push_back(point_of(c));
-  }
-  system.count = count;
-  const bool whole = !same || system_version != compliance.version() || system_share != share;
-  for (int c = 0; c < (whole ? count : 1); ++c) {
-    for (int d = c; d < count; ++d) {
+  const int same = renew_contacts();
+  const bool whole = system_version != compliance.version() || system_share != share;
+  for (int c = 0; c < count; ++c) {
+    for (int d = whole || c == 0 ? c : std::max(c, same); d < count; ++d) {
       const Mat3 block = share * compliance(point_of(c), point_of(d));
       // A contact laid ahead of the shaft changes nothing among those there, unless it changes the mesh.
-      if (c > 0 && block != system.A.block<3, 3>(3 * c, 3 * d)) matrix_fits = false;
+      if (c > 0 && d < same && block != system.A.block<3, 3>(3 * c, 3 * d)) matrix_fits = false;
       system.A.block<3, 3>(3 * c, 3 * d) = block;
       system.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
     }
   }
   system_version = compliance.version();
   system_share = share;
+  for (int c = same; c < count; ++c) append_contact(c);
+  system.count = count;
 
   auto now = system.now.head(size);
   auto gap = system.gap.head(size);
@@ -164,10 +191,18 @@ void Insertion::Parts::linearise() {
   const auto size = static_cast<Eigen::Index>(3 * count);
   auto compliance_of_needle = system.N.topLeftCorner(size, size);
   auto motion = system.free.head(size);
-  system.supported = !needle->linearise(loads, compliance_of_needle, motion);
-  if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness at each contact
-    lend_springs();
-    needle->linearise(loads, compliance_of_needle, motion, {springs.data(), static_cast<std::size_t>(count)});
+  // What needed springs will need them again while it is pushed on; now and then it is tried without.
+  const bool expected = system.supported && last_way > 0.0 && ++supported_for < kTryWithout;
+  system.supported = expected || !needle->linearise(loads, compliance_of_needle, motion);
+  if (!expected) supported_for = 0;
+  if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness
+    // At a few contacts that is enough as a rule, and cheaper; at all of them always.
+    const std::span<const Mat3> lent(springs.data(), static_cast<std::size_t>(count));
+    lend_springs(kFewSprings);
+    if (!needle->linearise(loads, compliance_of_needle, motion, lent) && count > kFewSprings) {
+      lend_springs(count);
+      needle->linearise(loads, compliance_of_needle, motion, lent);
+    }
   }
   tangent_fits = true;
   matrix_fits = false;
@@ -180,15 +215,19 @@ bool Insertion::Parts::relax_needle() {
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
 /// the needle on them does not buckle where needle and tissue together do not.
-void Insertion::Parts::lend_springs() {
+/// @param most of them, evenly spread, the last contact's among them
+void Insertion::Parts::lend_springs(int most) {
   constexpr double hardest_mm_per_N = 1e-3;
-  for (int c = 0; c < load_count(); ++c) {
+  const int count = load_count();
+  const int every = (std::max(count - 1, 1) + most - 1) / most;
+  for (int c = 0; c < count; ++c) {
     double own = system.A.block<3, 3>(3 * c, 3 * c).trace() / 3.0;
     bool lend = true;
     if (c == 0) {
       lend = grips.empty() && tip.touching && tip.state != Tip::State::open;
     } else {
       own += grips[static_cast<std::size_t>(c - 1)].softness;
+      lend = (count - 1 - c) % every == 0;
     }
     const double stiffness = lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0;
     const Mat3& Q = frames[static_cast<std::size_t>(c)];
@@ -386,6 +425,7 @@ void Insertion::Parts::expect(const Pose& from, const Pose& to) {
   constexpr double most = 4.0;  // times as far as before
   const double way = (to.origin - from.origin).dot(to.rotation * Vec3::UnitZ());
   const double share = last_way != 0.0 ? way / last_way : 0.0;
+  if (way < 0.0 && last_way > 0.0 && system.supported) tangent_fits = false;  // without springs it is cheaper
   last_way = way;
   expected_cut = 0.0;
   if (!(share > 0.0 && share < most)) return;
@@ -421,21 +461,26 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   const auto look = [&] {
     fill_loads();
     set_frames();
-    gather_system();
     soften_rows(h);
+    gather_system();
     return imbalance_over_tolerance();
   };
-  bool exact = false;
+  bool old_matrix_failed = false;
+  int tangents = 0;
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
     double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
       if (iteration > kManyIterations) tangent_fits = false;
       return;
     }
-    if (old_matrix) {
-      const double enough = iteration > 1 ? kSlow : 1.0;
-      exact = changed ? iteration > 1 || !(error < before) : !(error < enough * before);
-      if (exact && !changed && !(error < before)) {  // it led away: from where it began, with a new one
+    bool exact = old_matrix_failed;
+    old_matrix_failed = false;
+    if (iteration > 0 && !exact) {
+      const double rate = error / before;
+      const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
+      exact = changed ? iteration > 1 || !(rate < 1.0) : !(iteration == 1 ? rate < 1.0 : done_after(kSoon));
+      if (tangents >= kManyTangents && done_after(kPatience)) exact = false;
+      if (exact && old_matrix && !changed && !(error < before)) {  // it led away: from where it began, with a new one
         go_back();
         error = look();
       }
@@ -447,16 +492,16 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       keep_iterate();
     } else {
       linearise();
+      ++tangents;
     }
     if (!matrix_fits) matrix_fits = system.factorise();
-    if (matrix_fits) system.add_tip();
+    if (matrix_fits && (iteration == 0 || !old_matrix)) system.add_tip();
     if (!matrix_fits || !pivot(h, report, changed)) {
       if (!old_matrix) {  // needle and tissue as they are have no balance nearby: they stay
         report.flags |= StepReport::not_converged;
         return;
       }
-      exact = true;
-      old_matrix = false;
+      old_matrix_failed = true;
       continue;
     }
 

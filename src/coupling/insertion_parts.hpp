@@ -95,6 +95,7 @@ struct Insertion::Parts {
   std::vector<int> system_points;              ///< points whose compliance system.A holds, …
   unsigned system_version = 0;                 ///< … as of this version of it, …
   double system_share = 0.0;                   ///< … and times this share
+  int supported_for = 0;                       ///< tangents on springs since one without was tried
   bool tangent_fits = false;                   ///< the needle's tangent is of these contacts
   bool matrix_fits = false;                    ///< the system's matrix is of that tangent and compliance
   /// An iterate, before an old matrix is tried on it.
@@ -152,10 +153,12 @@ struct Insertion::Parts {
   void set_frames();
   void fill_loads();
   void soften_rows(double h);
+  int renew_contacts();
+  void append_contact(int load);
   void gather_system();
   void linearise();
   [[nodiscard]] bool relax_needle();
-  void lend_springs();
+  void lend_springs(int most);
   [[nodiscard]] bool pivot(double h, StepReport& report, bool& changed);
   /// What a solution says of a contact.
   struct Trial {

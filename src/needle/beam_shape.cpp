@@ -22,6 +22,7 @@ BeamShape::BeamShape(int elements, double length, double bending_stiffness, doub
 }
 
 void BeamShape::update() {
+  ++revision_;
   const double l = element_length_;
   for (int e = 0; e < elements_; ++e) {
     const RotationTerms terms(l * kappa(e), kind_);

@@ -45,6 +45,8 @@ class BeamShape {
   /// [1/mm] (3 elements) body-frame curvature: x, y bending, z twist. Call update() after writing.
   VecX curvature;
   void update();
+  /// How often it was updated.
+  [[nodiscard]] unsigned revision() const { return revision_; }
 
   /// [1/mm] (3 elements) curvature of the unloaded shape, 0 for a straight needle.
   VecX rest;
@@ -60,7 +62,10 @@ class BeamShape {
   /// Elastic energy of element e is ½ elastic_weight l Δκᵀ D Δκ, Δκ its strain: 2 for the joint of rods at the clamp,
   /// else 1.
   [[nodiscard]] double elastic_weight(int e) const { return e == 0 ? clamp_weight_ : 1.0; }
-  void set_clamp_weight(double weight) { clamp_weight_ = weight; }
+  void set_clamp_weight(double weight) {
+    clamp_weight_ = weight;
+    ++revision_;
+  }
 
   /// Arc lengths past the tip count as the tip.
   [[nodiscard]] Station locate(double s) const;
@@ -97,6 +102,7 @@ class BeamShape {
   [[nodiscard]] Vec3 deviation(int node) const { return origin_[node] - node * element_length_ * Vec3::UnitZ(); }
 
   ElementKind kind_;
+  unsigned revision_ = 0;
   double clamp_weight_;
   int elements_;
   double element_length_;

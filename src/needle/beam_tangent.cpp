@@ -70,15 +70,18 @@ void BeamTangent::reserve(Eigen::Index loads) {
   pulls_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
   acting_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
   next_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
+  work_loads_.reserve(static_cast<std::size_t>(loads));
   last_pull_.reserve(static_cast<std::size_t>(loads));
   last_moved_.reserve(static_cast<std::size_t>(loads));
 }
 
 void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                            std::span<const Mat3> springs) {
-  locate(shape, base_rotation, loads);
+  reserve(static_cast<Eigen::Index>(loads.size()));
+  keep_first(0);
+  for (const PointLoad& load : loads) locate(shape, base_rotation, load);
   assemble_energy(shape);
-  assemble_jacobian(shape, base_rotation);
+  for (Eigen::Index c = 0; c < load_count(); ++c) assemble_jacobian(shape, base_rotation, c);
   if (!springs.empty()) add_springs(springs);
   factorise_shifted();
   z_ = g_;
@@ -86,8 +89,15 @@ void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, st
   solve_jacobian();
 }
 
-/// Virtual work of the loads per curvature of each element.
+/// Virtual work of the loads per curvature of each element. The same question comes twice in an iteration.
 void BeamTangent::sum_work(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
+  const auto same = [](const PointLoad& a, const PointLoad& b) { return a.s == b.s && a.force == b.force; };
+  if (work_revision_ == shape.revision() && work_rotation_ == base_rotation &&
+      std::equal(loads.begin(), loads.end(), work_loads_.begin(), work_loads_.end(), same))
+    return;
+  work_revision_ = shape.revision();
+  work_rotation_ = base_rotation;
+  work_loads_.assign(loads.begin(), loads.end());
   acting_.clear();
   next_.clear();
   std::fill(first_.begin(), first_.end(), -1);
@@ -130,8 +140,7 @@ double BeamTangent::largest_imbalance(const BeamShape& shape, const Mat3& base_r
 bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                         Eigen::Ref<VecX> free) {
   if (loads.size() > last_moved_.size()) return false;
-  last_moved_.resize(loads.size());
-  last_pull_.resize(loads.size());
+  keep_first(loads.size());
   sum_work(shape, base_rotation, loads);
   for (int e = 0; e < elements_; ++e) {
     const Vec3& scale = scale_[static_cast<std::size_t>(e)];
@@ -146,22 +155,39 @@ bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::
   return true;
 }
 
-void BeamTangent::locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads) {
-  reserve(static_cast<Eigen::Index>(loads.size()));
-  pulls_.clear();
-  last_pull_.clear();
-  last_moved_.clear();
-  for (const PointLoad& load : loads) {
-    force_.segment<3>(3 * load_count()) = load.force;
-    const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
-    int last_moved = -1;
-    for (int i = 0; i < pulls.count; ++i) {
-      pulls_.push_back(pulls.pull[static_cast<std::size_t>(i)]);
-      last_moved = std::max(last_moved, pulls_.back().at.element);
-    }
-    last_pull_.push_back(static_cast<int>(pulls_.size()));
-    last_moved_.push_back(last_moved);
+void BeamTangent::keep_first(std::size_t loads) {
+  last_moved_.resize(loads);
+  last_pull_.resize(loads);
+  pulls_.resize(loads == 0 ? 0 : static_cast<std::size_t>(last_pull_.back()));
+}
+
+/// Another load, after those there.
+void BeamTangent::locate(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load) {
+  force_.segment<3>(3 * load_count()) = load.force;
+  const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
+  int last_moved = -1;
+  for (int i = 0; i < pulls.count; ++i) {
+    pulls_.push_back(pulls.pull[static_cast<std::size_t>(i)]);
+    last_moved = std::max(last_moved, pulls_.back().at.element);
   }
+  last_pull_.push_back(static_cast<int>(pulls_.size()));
+  last_moved_.push_back(last_moved);
+}
+
+bool BeamTangent::append(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                         Eigen::Ref<MatX> compliance) {
+  const auto size = 3 * static_cast<Eigen::Index>(loads.size());
+  if (loads.size() > last_moved_.size() + 1 || size > Y_.cols()) return false;
+  keep_first(loads.size() - 1);
+  locate(shape, base_rotation, loads.back());
+  const Eigen::Index c = load_count() - 1;
+  assemble_jacobian(shape, base_rotation, c);
+  auto column = Y_.middleCols<3>(3 * c);
+  const Eigen::Index first = start(c, c + 1);
+  solve_lower(L_, first, column);
+  const Eigen::Index reach = Y_.rows() - first;
+  compliance.noalias() = column.bottomRows(reach).transpose().lazyProduct(Y_.leftCols(size).bottomRows(reach));
+  return true;
 }
 
 void BeamTangent::assemble_energy(const BeamShape& shape) {
@@ -223,25 +249,23 @@ void BeamTangent::factorise_shifted() {
   L_.setIdentity();
 }
 
-void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation) {
+void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation, Eigen::Index load) {
   const Mat3 to_base = base_rotation.transpose();
   const Eigen::Index rows = Y_.rows();
-  std::size_t p = 0;
-  for (Eigen::Index c = 0; c < load_count(); ++c) {
-    auto column = Y_.middleCols<3>(3 * c);
-    column.setZero();
-    for (; p < static_cast<std::size_t>(last_pull_[static_cast<std::size_t>(c)]); ++p) {
-      const Pull& pull = pulls_[p];
-      if (pull.at.element < 0) continue;
-      const Eigen::Index i = row(pull.at.element);
-      const Eigen::Index below = rows - i - 3;
-      const Mat3 shifted = pull.weight * to_base;
-      const Mat3 turned = pull.weight * cross(pull.point) * to_base;
-      column.middleRows<3>(i).noalias() += scale_[static_cast<std::size_t>(pull.at.element)].asDiagonal() *
-                                           (shape.inner_jacobian(pull.at).transpose() * shifted);
-      column.bottomRows(below).noalias() += shift_.bottomRows(below).lazyProduct(shifted);
-      column.bottomRows(below).noalias() += spin_.bottomRows(below).lazyProduct(turned);
-    }
+  auto column = Y_.middleCols<3>(3 * load);
+  column.setZero();
+  const auto c = static_cast<std::size_t>(load);
+  for (int p = load == 0 ? 0 : last_pull_[c - 1]; p < last_pull_[c]; ++p) {
+    const Pull& pull = pulls_[static_cast<std::size_t>(p)];
+    if (pull.at.element < 0) continue;
+    const Eigen::Index i = row(pull.at.element);
+    const Eigen::Index below = rows - i - 3;
+    const Mat3 shifted = pull.weight * to_base;
+    const Mat3 turned = pull.weight * cross(pull.point) * to_base;
+    column.middleRows<3>(i).noalias() += scale_[static_cast<std::size_t>(pull.at.element)].asDiagonal() *
+                                         (shape.inner_jacobian(pull.at).transpose() * shifted);
+    column.bottomRows(below).noalias() += shift_.bottomRows(below).lazyProduct(shifted);
+    column.bottomRows(below).noalias() += spin_.bottomRows(below).lazyProduct(turned);
   }
 }
 

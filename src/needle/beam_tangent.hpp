@@ -24,6 +24,14 @@ class BeamTangent {
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
 
+  /// Adds a load after the first ones there: its column of Jᵀ for this shape, Hessian and the other columns as they
+  /// are.
+  /// @param loads (w) those there, or the first of them, and the new one last
+  /// @param compliance [mm/N] (3 × 3w) LPS rows of J H⁻¹ Jᵀ, written
+  /// @return false, and nothing done, when there is no room or there were fewer
+  bool append(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+              Eigen::Ref<MatX> compliance);
+
   /// Gradient for this shape and these loads; Hessian, J and springs as assemble() left them.
   /// @param free -J H⁻¹ g [mm] (3w) LPS, written
   /// @return false, and nothing done, when there were fewer loads
@@ -45,32 +53,36 @@ class BeamTangent {
 
  private:
   void reserve(Eigen::Index loads);
+  void keep_first(std::size_t loads);
   void sum_work(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
   [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
-  void locate(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
+  void locate(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load);
   void assemble_energy(const BeamShape& shape);
   void factorise_shifted();
-  void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation);
+  void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation, Eigen::Index load);
   void add_springs(std::span<const Mat3> springs);
   void solve_jacobian();
   [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
 
   int elements_;
-  std::vector<Vec3> scale_;      ///< (n) κ_e = scale_e ∘ y_e, scale_e = (weight_e l diag(EI, EI, GJ))^-1/2
-  std::vector<Pull> pulls_;      ///< base axes, load by load
-  std::vector<Pull> acting_;     ///< pulls of sum_work(), …
-  std::vector<int> next_;        ///< … for each the next one on the same element, or -1, …
-  std::vector<int> first_;       ///< (n) … and the first one of an element
-  std::vector<Vec3> work_;       ///< (n) Σ_c (∂r_c/∂κ_e)ᵀ f_c [N mm²]
-  std::vector<int> last_pull_;   ///< (w) where in pulls_ each load's pulls end
-  std::vector<int> last_moved_;  ///< (w) element nearest the tip that moves the load point, -1 = none
-  VecX force_;                   ///< [N] (3w) LPS
-  MatX H_, L_;                   ///< (3n × 3n) lower triangles
-  VecX g_, z_, step_;            ///< (3n) gradient, L⁻¹ g, work
-  MatX spin_, shift_;            ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
-  std::vector<Mat3> lever_;      ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
-  MatX Y_;                       ///< (3n × 3 capacity) L⁻¹ Jᵀ
+  std::vector<Vec3> scale_;            ///< (n) κ_e = scale_e ∘ y_e, scale_e = (weight_e l diag(EI, EI, GJ))^-1/2
+  std::vector<Pull> pulls_;            ///< base axes, load by load
+  std::vector<Pull> acting_;           ///< pulls of sum_work(), …
+  std::vector<int> next_;              ///< … for each the next one on the same element, or -1, …
+  std::vector<int> first_;             ///< (n) … and the first one of an element
+  std::vector<Vec3> work_;             ///< (n) Σ_c (∂r_c/∂κ_e)ᵀ f_c [N mm²]
+  unsigned work_revision_ = 0;         ///< of the shape that work_ is of, …
+  Mat3 work_rotation_ = Mat3::Zero();  ///< … and the base, …
+  std::vector<PointLoad> work_loads_;  ///< … and the loads
+  std::vector<int> last_pull_;         ///< (w) where in pulls_ each load's pulls end
+  std::vector<int> last_moved_;        ///< (w) element nearest the tip that moves the load point, -1 = none
+  VecX force_;                         ///< [N] (3w) LPS
+  MatX H_, L_;                         ///< (3n × 3n) lower triangles
+  VecX g_, z_, step_;                  ///< (3n) gradient, L⁻¹ g, work
+  MatX spin_, shift_;                  ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
+  std::vector<Mat3> lever_;            ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
+  MatX Y_;                             ///< (3n × 3 capacity) L⁻¹ Jᵀ
   double elastic_shift_ = 0.0;
 };
 

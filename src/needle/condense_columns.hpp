@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/dense_cholesky.hpp"
+#include "core/dense_kernels.hpp"
 #include "stylet/core/types.hpp"
 
 #include <algorithm>
@@ -10,14 +11,13 @@
 namespace stylet {
 
 /// What the needle's tangent H = L Lᵀ means for its load points, from Y = L⁻¹ Jᵀ and z = L⁻¹ g: compliance = Yᵀ Y
-/// [mm/N] (3w × 3w) and free = -Yᵀ z [mm] (3w). In tiles so small that Eigen's products take no memory from the heap.
+/// [mm/N] (3w × 3w) and free = -Yᵀ z [mm] (3w).
 /// @param start start(a, b): row of Y before which the columns of loads a … b - 1 are zero
 template <class Start>
 void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const Start& start,
                       Eigen::Ref<MatX>& compliance, Eigen::Ref<VecX>& free) {
   assert(compliance.rows() == 3 * loads && compliance.cols() == 3 * loads && free.size() == 3 * loads);
   constexpr Eigen::Index stride = dense::kTile / 3;
-  constexpr Eigen::Index deepest = 480;
   for (Eigen::Index a = 0; a < loads; a += stride) {
     const Eigen::Index na = std::min(stride, loads - a);
     const Eigen::Index start_a = start(a, a + na);
@@ -29,17 +29,7 @@ void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const St
       const Eigen::Index nb = std::min(stride, loads - b);
       const Eigen::Index depth = Y.rows() - std::max(start_a, start(b, b + nb));
       auto tile = compliance.block(3 * a, 3 * b, 3 * na, 3 * nb);
-      const auto others = Y.middleCols(3 * b, 3 * nb);
-      const auto end = Y.rows();
-      for (Eigen::Index row = end - depth; row < end || row == end - depth; row += deepest) {
-        const Eigen::Index rows = std::min(deepest, end - row);
-        const auto product = columns.middleRows(row, rows).transpose() * others.middleRows(row, rows);
-        if (row == end - depth) {
-          tile.noalias() = product;
-        } else {
-          tile.noalias() += product;
-        }
-      }
+      dense::transposed_product(tile, columns.bottomRows(depth), Y.middleCols(3 * b, 3 * nb).bottomRows(depth));
       if (a == b) {
         tile.template triangularView<Eigen::StrictlyUpper>() = tile.transpose();
       } else {

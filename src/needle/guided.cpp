@@ -83,9 +83,10 @@ void GuidedNeedle::meet() {
   meeting_.stiffness = P.transpose() * H * P;
 }
 
+/// The hole comes first: loads are added and forgotten at the other end.
 std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const {
-  loads_.assign(loads.begin(), loads.end());
-  loads_.push_back(guide);
+  loads_.assign(1, guide);
+  loads_.insert(loads_.end(), loads.begin(), loads.end());
   return loads_;
 }
 
@@ -94,32 +95,41 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   held_ = holds();
   if (!held_) return inner_->linearise(loads, compliance, free, springs);
   held_with_ = guide_load();
-  held_loads_ = loads.size();
   held_stiffness_ = meeting_.stiffness;
   assert(springs.empty() || springs.size() == loads.size());
-  if (springs.empty()) {
-    springs_.assign(loads.size(), Mat3::Zero());
-  } else {
-    springs_.assign(springs.begin(), springs.end());
-  }
-  springs_.push_back(meeting_.stiffness);
+  springs_.assign(loads.size() + 1, Mat3::Zero());
+  springs_.front() = meeting_.stiffness;
+  std::copy(springs.begin(), springs.end(), springs_.begin() + 1);
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   const bool definite = inner_->linearise(with_guide(loads, held_with_), N_.topLeftCorner(size + 3, size + 3),
                                           free_.head(size + 3), springs_);
-  compliance = N_.topLeftCorner(size, size);
-  free = free_.head(size);
+  compliance = N_.block(3, 3, size, size);
+  free = free_.segment(3, size);
   return definite;
 }
 
-bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
+bool GuidedNeedle::fits() const {
   if (held_ != holds()) return false;
-  if (!held_) return inner_->relax(loads, free);
-  if (loads.size() != held_loads_) return false;  // the hole's comes after them
-  if ((meeting_.stiffness - held_stiffness_).norm() > kTurned * held_stiffness_.norm()) return false;
-  held_with_ = guide_load();
+  return !held_ || (meeting_.stiffness - held_stiffness_).norm() <= kTurned * held_stiffness_.norm();
+}
+
+bool GuidedNeedle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) {
+  if (!fits()) return false;
+  if (!held_) return inner_->append(loads, compliance);
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
-  if (!inner_->relax(with_guide(loads, held_with_), free_.head(size + 3))) return false;
-  free = free_.head(size);
+  auto rows = N_.topLeftCorner(3, size + 3);
+  if (!inner_->append(with_guide(loads, guide_load()), rows)) return false;
+  compliance = rows.rightCols(size);
+  return true;
+}
+
+bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
+  if (!fits()) return false;
+  if (!held_) return inner_->relax(loads, free);
+  const auto size = 3 * static_cast<Eigen::Index>(loads.size());
+  if (!inner_->relax(with_guide(loads, guide_load()), free_.head(size + 3))) return false;
+  held_with_ = guide_load();
+  free = free_.segment(3, size);
   return true;
 }
 

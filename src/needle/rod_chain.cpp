@@ -27,6 +27,10 @@ bool RodChain::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> comp
   return parts_->tangent.elastic_shift() == 0.0;
 }
 
+bool RodChain::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) {
+  return parts_->tangent.append(parts_->shape, parts_->base_rotation, loads, compliance);
+}
+
 bool RodChain::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
   return parts_->tangent.relax(parts_->shape, parts_->base_rotation, loads, free);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/dense_cholesky.hpp"
+#include "core/dense_kernels.hpp"
 #include "core/dense_lu.hpp"
-#include "core/dense_product.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,6 +55,33 @@ TEST(DenseLu, solves_with_rows_that_must_be_swapped) {
     dense::solve_lu(LU, pivots, x);
     EXPECT_LT((A * x - b).norm(), 1e-10 * A.norm() * x.norm()) << n;
   }
+}
+
+TEST(DenseLu, takes_more_rows_and_columns_in) {
+  for (const Eigen::Index n : kSizes) {
+    MatX A = some_matrix(n + 3, n + 3);
+    A.diagonal().tail(3).setZero();
+    A(0, 0) += 2.0;
+    MatX LU = A;
+    std::vector<int> pivots(static_cast<std::size_t>(n + 3));
+    ASSERT_TRUE(dense::factorise_lu(LU.topLeftCorner(n, n), pivots)) << n;
+    MatX C = A.topRightCorner(n, 3);
+    ASSERT_TRUE(dense::append_lu(LU, C, A.bottomLeftCorner(3, n), A.bottomRightCorner(3, 3), pivots)) << n;
+    const MatX b = some_matrix(n + 3, 4);
+    MatX x = b;
+    dense::solve_lu(LU, pivots, x);
+    EXPECT_LT((A * x - b).norm(), 1e-10 * A.norm() * x.norm()) << n;
+  }
+}
+
+TEST(DenseLu, takes_no_rows_in_that_follow_from_those_there) {
+  const MatX A = some_matrix(30, 30);
+  MatX LU(33, 33);
+  LU.topLeftCorner(30, 30) = A;
+  std::vector<int> pivots(33);
+  ASSERT_TRUE(dense::factorise_lu(LU.topLeftCorner(30, 30), pivots));
+  MatX C = A.leftCols(3);
+  EXPECT_FALSE(dense::append_lu(LU, C, A.topRows(3), A.topLeftCorner(3, 3), pivots));
 }
 
 TEST(DenseLu, refuses_a_singular_matrix_and_one_that_is_not_finite) {

@@ -142,6 +142,27 @@ TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_conta
   equations.expect_solved(TipRows::all, "nine of twelve, a softer tip");
 }
 
+TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matrix_was_made) {
+  for (const int before : {1, 2, 12}) {
+    Equations equations(before + 3, GetParam());
+    ContactSystem& system = equations.system;
+    for (int c = before; c < before + 3; ++c) system.spring[static_cast<std::size_t>(c)].setZero();
+    system.count = before;
+    ASSERT_TRUE(system.factorise());
+    for (int c = before; c < before + 3; ++c) {
+      system.count = c + 1;
+      system.yield.back().lateral = 1e4;  // the youngest
+      ASSERT_TRUE(system.append()) << before;
+      system.add_tip();
+      equations.rows = 3 * system.count;
+      equations.expect_solved(TipRows::all, "as they come");
+    }
+    system.yield.back().lateral = 2.0;
+    system.yield[static_cast<std::size_t>(before)].axial = 9.0;
+    equations.expect_solved(TipRows::axial, "one older, one slides");
+  }
+}
+
 TEST_P(ContactEquations, tell_how_far_the_needle_is_beyond_the_tissue_where_the_tip_is_free) {
   Equations equations(7, GetParam());
   ContactSystem& system = equations.system;

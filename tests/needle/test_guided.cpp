@@ -109,6 +109,28 @@ TEST_P(NeedleInAGuide, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
     EXPECT_LT((differences - compliance).col(column).norm(), 2e-3 * compliance.norm()) << column;
 }
 
+TEST_P(NeedleInAGuide, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
+  const auto needle = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
+  const auto other = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
+  const std::vector<PointLoad> loads{{kLength, {0.1, 0.02, -0.1}}, {120.0, {0.05, 0.1, 0}}, {90.0, {0, 0, 0}}};
+  for (GuidedNeedle* n : {needle.get(), other.get()}) settle(*n, std::span(loads).first(2));
+  ASSERT_GT(needle->guide_load().force.norm(), 0.1);
+  MatX compliance(9, 9);
+  VecX free(9);
+  MatX expected(9, 9);
+  VecX expected_free(9);
+  needle->linearise(std::span(loads).first(2), compliance.topLeftCorner(6, 6), free.head(6));
+  if (model() == "tet") {  // this one wants a new tangent
+    EXPECT_FALSE(needle->append(loads, compliance.bottomRows<3>()));
+    return;
+  }
+  ASSERT_TRUE(needle->append(loads, compliance.bottomRows<3>()));
+  ASSERT_TRUE(needle->relax(loads, free));
+  other->linearise(loads, expected, expected_free);
+  EXPECT_LT((compliance.bottomRows<3>() - expected.bottomRows<3>()).norm(), 1e-11 * expected.norm());
+  EXPECT_LT((free - expected_free).norm(), 1e-11 * expected.norm());
+}
+
 TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
   // Clamped and propped half way the shaft bears more than free: Euler's load of the free half alone is four times as
   // much, and the two halves turn each other.

@@ -208,6 +208,44 @@ TEST_P(NeedleContract, RelaxingUnderTheFirstLoadsOnlyIsTheSameAsIfThereHadBeenNo
   EXPECT_LT((needle->point(kLength) - other->point(kLength)).norm(), 1e-3);
 }
 
+TEST_P(NeedleContract, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
+  const auto needle = make();
+  const auto other = make();
+  const auto loads = spread_loads(6);
+  const std::span<const PointLoad> all(loads);
+  for (Needle* n : {needle.get(), other.get()}) {
+    n->set_base(somewhere());
+    settle(*n, all.first(5));
+  }
+  auto unloaded = loads;
+  unloaded.back().force.setZero();
+  MatX compliance(18, 18);
+  MatX expected(18, 18);
+  VecX free(18);
+  VecX expected_free(18);
+  // Seven were there, the last two are gone, then one comes.
+  auto seven = unloaded;
+  seven.back() = {31.0, Vec3::Zero()};
+  seven.push_back({77.0, Vec3::Zero()});
+  MatX larger(21, 21);
+  VecX larger_free(21);
+  needle->linearise(seven, larger, larger_free);
+  if (model() == "tet") {  // this one wants a new tangent
+    EXPECT_FALSE(needle->append(unloaded, compliance.bottomRows<3>()));
+    return;
+  }
+  ASSERT_TRUE(needle->append(unloaded, compliance.bottomRows<3>()));
+  other->linearise(unloaded, expected, expected_free);
+  EXPECT_LT((compliance.bottomRows<3>() - expected.bottomRows<3>()).norm(), 1e-12 * expected.bottomRows<3>().norm());
+  ASSERT_TRUE(needle->relax(unloaded, free));
+  EXPECT_LT((free - expected_free).norm(), 1e-12 * expected.norm());
+  needle->advance(loads);
+  other->advance(loads);
+  EXPECT_LT((needle->state() - other->state()).norm(), 1e-11 * other->state().norm());
+  MatX two(3, 24);
+  EXPECT_FALSE(needle->append(spread_loads(8), two)) << "two at once";
+}
+
 TEST_P(NeedleContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
   const auto needle = make();
   const auto full = spread_loads(7);

@@ -40,6 +40,7 @@ class GuidedNeedle final : public Needle {
   [[nodiscard]] Vec3 tangent(double s) const override { return inner_->tangent(s); }
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs = {}) override;
+  bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) override;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
@@ -61,6 +62,8 @@ class GuidedNeedle final : public Needle {
   };
 
   void meet();
+  /// The tangent is one with the hole as it holds now.
+  [[nodiscard]] bool fits() const;
   [[nodiscard]] bool holds() const { return meeting_.crosses && (meeting_.beyond > 0.0 || hole_.clearance_mm == 0.0); }
   [[nodiscard]] bool find_crossing();
   std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const;
@@ -74,9 +77,8 @@ class GuidedNeedle final : public Needle {
   bool held_ = false;                   ///< at the last linearise()
   PointLoad held_with_;                 ///< and with what
   Mat3 held_stiffness_ = Mat3::Zero();  ///< [N/mm] of the hole then
-  std::size_t held_loads_ = 0;          ///< and how many loads before it
 
-  mutable std::vector<PointLoad> loads_;  ///< the caller's, then the hole's
+  mutable std::vector<PointLoad> loads_;  ///< the hole's, then the caller's
   std::vector<Mat3> springs_;
   MatX N_;     ///< [mm/N] (3w + 3)²
   VecX free_;  ///< [mm] (3w + 3)

@@ -56,6 +56,13 @@ class Needle {
   /// @return false, and nothing done, where that tangent is not the needle's any more: linearise() again
   virtual bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) = 0;
 
+  /// Adds a load to the problem of the last linearise(), after the first ones of then: its part of the compliance, the
+  /// rest of which stays as it is. No spring is lent to it. To be followed by relax().
+  /// @param loads (w) those of then, or the first of them, and the new one last
+  /// @param compliance [mm/N] (3 × 3w), written: motion of the new load point by each load
+  /// @return false, and nothing done, where that takes a linearise()
+  virtual bool append(std::span<const PointLoad> /*loads*/, Eigen::Ref<MatX> /*compliance*/) { return false; }
+
   /// Takes the step of the last linearise() or relax() with these loads in place of those given there (same s, same
   /// order).
   virtual void advance(std::span<const PointLoad> loads) = 0;

@@ -23,6 +23,7 @@ class RodChain : public Needle {
   [[nodiscard]] Vec3 tangent(double s) const final;
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs = {}) final;
+  bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) final;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) final;
   void advance(std::span<const PointLoad> loads) final;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const final;

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/dense_kernels.hpp"
+
+#include <cmath>
+
+// The same code for several processors, chosen when the program is loaded. Sanitizers cannot see through that choice.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define STYLET_FOR_PROCESSORS __attribute__((target_clones("avx2", "default")))
+#else
+#define STYLET_FOR_PROCESSORS
+#endif
+#define STYLET_INLINE [[gnu::always_inline]] inline
+
+namespace stylet::dense {
+
+namespace {
+
+using Size = Eigen::Index;
+
+/// Four numbers side by side, wherever they lie: one register of AVX, or two of SSE.
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+constexpr Size kFour = 4;
+
+STYLET_INLINE const Four& four(const double* at) { return *reinterpret_cast<const Four*>(at); }
+STYLET_INLINE Four& four(double* at) { return *reinterpret_cast<Four*>(at); }
+
+/// C (4 Rows × Columns) −= A B; b(k, j) = b[k down + j across].
+template <int Rows, int Columns>
+STYLET_INLINE void subtract_block(double* c, Size ldc, const double* a, Size lda, const double* b, Size down,
+                                  Size across, Size depth) {
+  Four sum[Columns][Rows];
+  for (int j = 0; j < Columns; ++j) {
+    for (int i = 0; i < Rows; ++i) sum[j][i] = four(c + j * ldc + i * kFour);
+  }
+  for (Size k = 0; k < depth; ++k) {
+    Four column[Rows];
+    for (int i = 0; i < Rows; ++i) column[i] = four(a + k * lda + i * kFour);
+    for (int j = 0; j < Columns; ++j) {
+      const double factor = b[k * down + j * across];
+      for (int i = 0; i < Rows; ++i) sum[j][i] -= column[i] * factor;
+    }
+  }
+  for (int j = 0; j < Columns; ++j) {
+    for (int i = 0; i < Rows; ++i) four(c + j * ldc + i * kFour) = sum[j][i];
+  }
+}
+
+/// All rows of so many columns.
+template <int Columns>
+STYLET_INLINE void subtract_columns(double* c, Size ldc, const double* a, Size lda, const double* b, Size down,
+                                    Size across, Size rows, Size depth) {
+  constexpr int kTall = Columns == 1 ? 6 : 2;
+  Size i = 0;
+  for (; i + kTall * kFour <= rows; i += kTall * kFour)
+    subtract_block<kTall, Columns>(c + i, ldc, a + i, lda, b, down, across, depth);
+  for (; i + kFour <= rows; i += kFour) subtract_block<1, Columns>(c + i, ldc, a + i, lda, b, down, across, depth);
+  for (; i < rows; ++i) {
+    for (int j = 0; j < Columns; ++j) {
+      double sum = c[i + j * ldc];
+      for (Size k = 0; k < depth; ++k) sum -= a[i + k * lda] * b[k * down + j * across];
+      c[i + j * ldc] = sum;
+    }
+  }
+}
+
+STYLET_INLINE void subtract_any(double* c, Size ldc, const double* a, Size lda, const double* b, Size down, Size across,
+                                Size rows, Size columns, Size depth) {
+  Size j = 0;
+  for (; j + 4 <= columns; j += 4)
+    subtract_columns<4>(c + j * ldc, ldc, a, lda, b + j * across, down, across, rows, depth);
+  for (; j + 2 <= columns; j += 2)
+    subtract_columns<2>(c + j * ldc, ldc, a, lda, b + j * across, down, across, rows, depth);
+  if (j < columns) subtract_columns<1>(c + j * ldc, ldc, a, lda, b + j * across, down, across, rows, depth);
+}
+
+/// c(i, j) = Σ_k a(k, i) b(k, j): four sums side by side, then the rest.
+template <int Rows, int Columns>
+STYLET_INLINE void dot_block(double* c, Size ldc, const double* a, Size lda, const double* b, Size ldb, Size depth) {
+  Four sum[Rows][Columns];
+  for (int i = 0; i < Rows; ++i) {
+    for (int j = 0; j < Columns; ++j) sum[i][j] = Four{0.0, 0.0, 0.0, 0.0};
+  }
+  Size k = 0;
+  for (; k + kFour <= depth; k += kFour) {
+    for (int j = 0; j < Columns; ++j) {
+      const Four right = four(b + k + j * ldb);
+      for (int i = 0; i < Rows; ++i) sum[i][j] += four(a + k + i * lda) * right;
+    }
+  }
+  for (int i = 0; i < Rows; ++i) {
+    for (int j = 0; j < Columns; ++j) {
+      const Four& s = sum[i][j];
+      double total = (s[0] + s[1]) + (s[2] + s[3]);
+      for (Size rest = k; rest < depth; ++rest) total += a[rest + i * lda] * b[rest + j * ldb];
+      c[i + j * ldc] = total;
+    }
+  }
+}
+
+template <int Columns>
+STYLET_INLINE void dot_columns(double* c, Size ldc, const double* a, Size lda, const double* b, Size ldb, Size rows,
+                               Size depth) {
+  Size i = 0;
+  for (; i + 4 <= rows; i += 4) dot_block<4, Columns>(c + i, ldc, a + i * lda, lda, b, ldb, depth);
+  for (; i < rows; ++i) dot_block<1, Columns>(c + i, ldc, a + i * lda, lda, b, ldb, depth);
+}
+
+STYLET_FOR_PROCESSORS
+void subtract(double* c, Size ldc, const double* a, Size lda, const double* b, Size down, Size across, Size rows,
+              Size columns, Size depth) {
+  subtract_any(c, ldc, a, lda, b, down, across, rows, columns, depth);
+}
+
+STYLET_FOR_PROCESSORS
+void dot(double* c, Size ldc, const double* a, Size lda, const double* b, Size ldb, Size rows, Size columns,
+         Size depth) {
+  Size j = 0;
+  for (; j + 2 <= columns; j += 2) dot_columns<2>(c + j * ldc, ldc, a, lda, b + j * ldb, ldb, rows, depth);
+  if (j < columns) dot_columns<1>(c + j * ldc, ldc, a, lda, b + j * ldb, ldb, rows, depth);
+}
+
+/// to −= factor × from
+STYLET_INLINE void subtract_multiple(double* to, const double* from, double factor, Size count) {
+  Size i = 0;
+  for (; i + kFour <= count; i += kFour) four(to + i) -= four(from + i) * factor;
+  for (; i < count; ++i) to[i] -= from[i] * factor;
+}
+
+STYLET_FOR_PROCESSORS
+void lower(const double* l, Size ldl, Size n, bool unit, double* y, Size ldy, Size columns) {
+  for (Size c = 0; c < columns; ++c) {
+    double* x = y + c * ldy;
+    for (Size j = 0; j < n; ++j) {
+      if (!unit) x[j] /= l[j + j * ldl];
+      subtract_multiple(x + j + 1, l + j + 1 + j * ldl, x[j], n - j - 1);
+    }
+  }
+}
+
+STYLET_FOR_PROCESSORS
+void upper(const double* u, Size ldu, Size n, double* y, Size ldy, Size columns) {
+  for (Size c = 0; c < columns; ++c) {
+    double* x = y + c * ldy;
+    for (Size j = n - 1; j >= 0; --j) {
+      x[j] /= u[j + j * ldu];
+      subtract_multiple(x, u + j * ldu, x[j], j);
+    }
+  }
+}
+
+STYLET_FOR_PROCESSORS
+void lower_transposed(const double* l, Size ldl, Size n, double* y, Size ldy, Size columns) {
+  for (Size c = 0; c < columns; ++c) {
+    double* x = y + c * ldy;
+    for (Size j = n - 1; j >= 0; --j) {
+      double known = 0.0;
+      dot_block<1, 1>(&known, 1, l + j + 1 + j * ldl, ldl, x + j + 1, ldy, n - j - 1);
+      x[j] = (x[j] - known) / l[j + j * ldl];
+    }
+  }
+}
+
+STYLET_FOR_PROCESSORS
+void divide_by_transposed(const double* l, Size ldl, Size n, double* x, Size ldx, Size rows) {
+  for (Size j = 0; j < n; ++j) {
+    double* column = x + j * ldx;
+    subtract_columns<1>(column, ldx, x, ldx, l + j, ldl, 1, rows, j);
+    const double inverse = 1.0 / l[j + j * ldl];
+    for (Size i = 0; i < rows; ++i) column[i] *= inverse;
+  }
+}
+
+STYLET_FOR_PROCESSORS
+bool cholesky(double* a, Size lda, Size n) {
+  for (Size j = 0; j < n; ++j) {
+    double* column = a + j * lda;
+    subtract_columns<1>(column + j, lda, a + j, lda, a + j, lda, 1, n - j, j);
+    const double pivot = column[j];
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    const double root = std::sqrt(pivot);
+    column[j] = root;
+    const double inverse = 1.0 / root;
+    for (Size i = j + 1; i < n; ++i) column[i] *= inverse;
+  }
+  return true;
+}
+
+}  // namespace
+
+// NOLINTBEGIN(performance-unnecessary-value-param): the results are written through the views
+
+void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
+  subtract(C.data(), C.outerStride(), A.data(), A.outerStride(), B.data(), 1, B.outerStride(), C.rows(), C.cols(),
+           A.cols());
+}
+
+void subtract_product_transposed(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
+  subtract(C.data(), C.outerStride(), A.data(), A.outerStride(), B.data(), B.outerStride(), 1, C.rows(), C.cols(),
+           A.cols());
+}
+
+void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
+  dot(C.data(), C.outerStride(), A.data(), A.outerStride(), B.data(), B.outerStride(), C.rows(), C.cols(), A.rows());
+}
+
+void solve_lower_tile(const Eigen::Ref<const MatX>& L, bool unit, Eigen::Ref<MatX> Y) {
+  lower(L.data(), L.outerStride(), L.rows(), unit, Y.data(), Y.outerStride(), Y.cols());
+}
+
+void solve_lower_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
+  lower_transposed(L.data(), L.outerStride(), L.rows(), Y.data(), Y.outerStride(), Y.cols());
+}
+
+void solve_upper_tile(const Eigen::Ref<const MatX>& U, Eigen::Ref<MatX> Y) {
+  upper(U.data(), U.outerStride(), U.rows(), Y.data(), Y.outerStride(), Y.cols());
+}
+
+void divide_by_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> X) {
+  divide_by_transposed(L.data(), L.outerStride(), L.rows(), X.data(), X.outerStride(), X.rows());
+}
+
+bool factorise_tile(Eigen::Ref<MatX> A) { return cholesky(A.data(), A.outerStride(), A.rows()); }
+
+// NOLINTEND(performance-unnecessary-value-param)
+
+}  // namespace stylet::dense

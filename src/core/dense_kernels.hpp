@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+
+/// The inner loops of the dense solvers: small matrices, column after column in memory, no work space. On processors
+/// with AVX2 its instructions are used. Sums are taken in the same order everywhere and products are rounded before
+/// they are added, so results do not depend on the processor.
+namespace stylet::dense {
+
+/// C ← C − A B, element (i, j) over k = 0, 1, … in turn.
+void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
+
+/// C ← C − A Bᵀ
+void subtract_product_transposed(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
+
+/// C ← Aᵀ B
+void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
+
+/// Y ← L⁻¹ Y for a small lower triangle L. @param unit its diagonal counts as ones
+void solve_lower_tile(const Eigen::Ref<const MatX>& L, bool unit, Eigen::Ref<MatX> Y);
+
+/// Y ← L⁻ᵀ Y
+void solve_lower_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y);
+
+/// Y ← U⁻¹ Y for a small upper triangle U.
+void solve_upper_tile(const Eigen::Ref<const MatX>& U, Eigen::Ref<MatX> Y);
+
+/// X ← X L⁻ᵀ
+void divide_by_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> X);
+
+/// A = L Lᵀ for a small A, L over its lower triangle. @return false when A is not positive definite
+[[nodiscard]] bool factorise_tile(Eigen::Ref<MatX> A);
+
+}  // namespace stylet::dense
