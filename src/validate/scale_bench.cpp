@@ -74,15 +74,14 @@ struct Step {
   double wall_us = 0.0;
 };
 
-std::vector<Step> drive(const std::shared_ptr<const Model>& model, const Progress& progress) {
-  Simulation simulation(model);
-  const PlannedInsertion& plan = model->insertions().front();
+/// Once in, back and forth, and out.
+void drive(Simulation& simulation, std::vector<Step>& steps) {
+  const PlannedInsertion& plan = simulation.model().insertions().front();
   const Pose first = plan.motion.at(0.0);
   simulation.place(first, plan.entry, plan.direction);
   const double start = simulation.record().base_depth_mm;
-  std::vector<Step> steps;
   const std::vector<double> way = depths(start);
-  steps.reserve(way.size());
+  steps.reserve(steps.size() + way.size());
   for (const double depth : way) {
     Pose base = first;
     base.origin += (depth - start) * plan.direction;
@@ -95,13 +94,21 @@ std::vector<Step> drive(const std::shared_ptr<const Model>& model, const Progres
     steps.push_back({simulation.record().contacts, simulation.record().iterations,
                      static_cast<int>(simulation.new_events().size()), simulation.report().flags != 0,
                      1e6 * (cpu_after - cpu), 1e6 * (wall_after - wall)});
-    if (steps.size() % 512 == 0)
-      report(progress, "stepping", static_cast<double>(steps.size()) / static_cast<double>(way.size()));
+  }
+}
+
+std::vector<Step> drive(const std::shared_ptr<const Model>& model, long least, const Progress& progress) {
+  std::vector<Step> steps;
+  auto simulation = std::make_unique<Simulation>(model);
+  for (int times = 0; times == 0 || static_cast<long>(steps.size()) < least; ++times) {
+    report(progress, "stepping", static_cast<double>(steps.size()) / static_cast<double>(std::max(1L, least)));
+    if (times > 0 && times % 2 == 0) simulation = std::make_unique<Simulation>(model);
+    drive(*simulation, steps);
   }
   return steps;
 }
 
-Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, const Progress& progress) {
+Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least, const Progress& progress) {
   ScaleRow row;
   row.contacts = contacts;
   row.spacing_mm = (kDepth_mm + kCycles * kFurther_mm) / (contacts - 1);  // the tip is one of them
@@ -120,11 +127,14 @@ Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, const Progr
   row.store_s = wall_s() - start - row.factor_s;
   row.memory_mb = resident_mb();
 
-  const std::vector<Step> steps = drive(*model, progress);
+  const std::vector<Step> steps = drive(*model, least, progress);
+  row.all_steps = static_cast<long>(steps.size());
   for (const Step& step : steps) row.contacts_max = std::max(row.contacts_max, step.contacts);
   std::vector<double> cpu;
   std::vector<double> wall;
   for (const Step& step : steps) {
+    row.all_longest_us = std::max(row.all_longest_us, step.cpu_us);
+    if (step.cpu_us > 1000.0) ++row.all_over_1ms;
     if (step.contacts < kShare * row.contacts_max) continue;
     cpu.push_back(step.cpu_us);
     wall.push_back(step.wall_us);
@@ -151,8 +161,8 @@ Result<std::vector<ScaleRow>> bench_scale(const ScaleBenchOptions& options, cons
     mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
     const auto anatomy = mesh_contours(patient, mesh, progress);
     if (!anatomy) return anatomy.error();
-    for (const int contacts : {20, 40, 60}) {
-      auto row = measure(*anatomy, contacts, progress);
+    for (const int contacts : options.contacts) {
+      auto row = measure(*anatomy, contacts, options.steps, progress);
       if (!row) return row.error();
       rows.push_back(std::move(*row));
     }

@@ -20,6 +20,13 @@ class ScaleBench(InFolder):
                 self.assertTrue(0 < times["p50"] <= times["p99"] <= times["p999"] <= times["max"])
             self.assertTrue(all(seconds > 0 for seconds in row["offline_s"].values()))
             self.assertGreater(row["memory_mb"], 0)
+        again = self.json_of("bench", "scale", "--nodes", "570", "--contacts", "20", "--steps", "25000")["rows"]
+        self.assertEqual([r["contacts"] for r in again], [20])
+        self.assertGreaterEqual(again[0]["all_steps"], 25000)
+        self.assertLess(again[0]["steps"], again[0]["all_steps"])
+        self.assertGreaterEqual(again[0]["all_longest_us"], again[0]["step_cpu_us"]["max"])
+        self.assertEqual(again[0]["flagged"], 0)
+        self.refuse("bench", "scale", "--nodes", "570", "--contacts", "3", says=["--contacts", "'3'"])
         self.refuse("bench", "scale", "--nodes", "569", says=["--nodes", "569", "570"])
 
 
