@@ -152,9 +152,8 @@ void measure_all(const Ground& ground, std::size_t inside, std::size_t on_faces,
   }));
   rows.push_back(measure(ground, "paper", track, on_faces, options, [&](std::size_t k) {
     const reproduce::AddedNode& node = ground.on_faces[k];
-    const Index hint = ground.on_faces[k == 0 ? 0 : k - 1].at.tet;
-    const auto at = locator.find(node.x, hint, -travel);
-    track.add(*at, node.x, Placement::face, travel);
+    // The march of the tip tells through which element's face it goes.
+    track.add({node.at.tet, locator.weights(node.at.tet, node.x)}, node.x, Placement::face, travel);
   }));
 
   const Model& model = *ground.near_field;

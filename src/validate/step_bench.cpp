@@ -31,7 +31,12 @@ Result<StepRow> measure(const TetMesh& mesh, int contacts, const Progress& progr
   const auto model = Model::compile(driven_scenario(contacts), mesh, "the demo", {}, progress);
   if (!model) return model.error();
   const std::vector<DrivenStep> plain = drive_needle(*model, false, progress);
-  const std::vector<DrivenStep> phased = drive_needle(*model, true, progress);
+  // The phases' clock is the wall's: of two runs the one that nothing else came between, step by step.
+  std::vector<DrivenStep> phased = drive_needle(*model, true, progress);
+  const std::vector<DrivenStep> again = drive_needle(*model, true, progress);
+  for (std::size_t k = 0; k < phased.size(); ++k) {
+    if (sum(again[k].phase_us) < sum(phased[k].phase_us)) phased[k] = again[k];
+  }
 
   StepRow row;
   row.nodes = (*model)->mesh().node_count();

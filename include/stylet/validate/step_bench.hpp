@@ -26,8 +26,8 @@ struct StepBenchOptions {
   Index nodes = 5000;
 };
 
-/// The insertion of bench_scale on one mesh, with 20, 40 and 60 contacts, each twice: once for the times of steps, once
-/// with the clock read at every change of phase. Both runs take the very same steps.
+/// The insertion of bench_scale on one mesh, with 20, 40 and 60 contacts, each three times: once for the times of
+/// steps, twice with the clock read at every change of phase. All runs take the very same steps.
 Result<std::vector<StepRow>> bench_step(const StepBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::validate
