@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "benches.hpp"
 #include "command.hpp"
 #include "table.hpp"
 #include "validators.hpp"
 
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/reproduce/needle_bench.hpp"
-#include "stylet/reproduce/remesh_bench.hpp"
 #include "stylet/validate/coupling_bench.hpp"
 #include "stylet/validate/scale_bench.hpp"
+#include "stylet/validate/step_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -17,31 +18,6 @@
 namespace stylet::cli {
 
 namespace {
-
-struct BenchArguments {
-  std::string what;
-  int nodes = 0;     ///< 0 = the default of what is measured
-  int contacts = 0;  ///< 0 = the default
-  long steps = 0;    ///< 0 = the default
-};
-
-constexpr int kRemeshNodes = 1331;
-
-/// Sizes of a cube, by its cells, up to a number of nodes.
-std::vector<int> sizes_up_to(int nodes) {
-  std::vector<int> cells;
-  for (int c = 4; (c + 1) * (c + 1) * (c + 1) <= nodes; c += c < 10 ? 1 : 2) cells.push_back(c);
-  return cells;
-}
-
-Json machine_json() {
-  const reproduce::Machine machine = reproduce::this_machine();
-  return {{"processor", machine.processor},
-          {"cores", machine.cores},
-          {"blas", machine.blas},
-          {"blas_threads", machine.blas_threads > 0 ? Json(machine.blas_threads) : Json(nullptr)},
-          {"compiler", machine.compiler}};
-}
 
 std::string percent(double share) { return fmt::format("{:.3f}", 100.0 * share); }
 
@@ -83,38 +59,6 @@ Result<> run_needle(Console& console) {
   return console.write_json(json);
 }
 
-Result<> run_remesh(const BenchArguments& arguments, Console& console) {
-  const int nodes = arguments.nodes > 0 ? arguments.nodes : kRemeshNodes;
-  constexpr int smallest = 125;
-  constexpr int largest = 4096;
-  if (nodes < smallest || nodes > largest)
-    return input_error("--nodes", fmt::format("remesh takes {} to {} nodes, not {}", smallest, largest, nodes),
-                       "The full inverse is what limits it");
-  const auto rows = reproduce::bench_remeshing(sizes_up_to(nodes), console.progress());
-  if (!rows) return rows.error();
-  const std::vector<std::string> methods{"shortcut", "bordered", "woodbury", "bcs", "inverse"};
-  std::vector<std::string> header{"nodes"};
-  for (const std::string& method : methods) header.push_back(method + " [µs]");
-  Table table(header);
-  Json json{{"rows", Json::array()}};
-  for (std::size_t i = 0; i + methods.size() <= rows->size(); i += methods.size()) {
-    std::vector<std::string> cells{std::to_string((*rows)[i].nodes)};
-    for (std::size_t k = 0; k < methods.size(); ++k) {
-      const reproduce::RemeshRow& row = (*rows)[i + k];
-      cells.push_back(fmt::format("{:.1f}", row.median_us));
-      json["rows"].push_back({{"nodes", row.nodes}, {"method", row.method}, {"median_us", row.median_us}});
-    }
-    table.row(cells);
-  }
-  json["machine"] = machine_json();
-  console.say("Processor time of one change of the mesh, everything included, median:");
-  console.say(table.text());
-  return console.write_json(json);
-}
-
-std::string number(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("-");
-}
 Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json coupling_json(const validate::CouplingRow& row) {
@@ -188,86 +132,33 @@ Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   return console.write_json(json);
 }
 
-Json times_json(const validate::StepTimes& times) {
-  return {{"p50", times.p50}, {"p99", times.p99}, {"p999", times.p999}, {"max", times.max}};
-}
-
-Result<> run_scale(const BenchArguments& arguments, Console& console) {
-  validate::ScaleBenchOptions options;
-  if (arguments.nodes > 0) options.largest = arguments.nodes;
-  constexpr int smallest = 570;
-  if (options.largest < smallest)
-    return input_error("--nodes", fmt::format("scale takes {} nodes or more, not {}", smallest, options.largest),
-                       "570 nodes is the mesh of Goksel et al. 2005");
-  if (arguments.contacts > 0) options.contacts = {arguments.contacts};
-  options.steps = arguments.steps;
-  const auto rows = validate::bench_scale(options, console.progress());
-  if (!rows) return rows.error();
-  Table table({"nodes",        "element",   "contacts",   "steps",      "events",    "flagged",       "iterations",
-               "p50 [µs]",     "p99 [µs]",  "p99.9 [µs]", "max [µs]",   "p99 / 570", "wall p99 [µs]", "all steps",
-               "longest [µs]", "over 1 ms", "mesh [s]",   "factor [s]", "store [s]", "memory [MB]"});
-  Json json{{"rows", Json::array()}};
-  for (const validate::ScaleRow& row : *rows) {
-    const auto coarsest = std::find_if(rows->begin(), rows->end(),
-                                       [&](const validate::ScaleRow& r) { return r.contacts == row.contacts; });
-    const double ratio = row.cpu_us.p99 / coarsest->cpu_us.p99;
-    table.row({std::to_string(row.nodes),
-               row.element,
-               std::to_string(row.contacts_max),
-               std::to_string(row.steps),
-               std::to_string(row.events),
-               std::to_string(row.flagged),
-               number(row.iterations, 2),
-               number(row.cpu_us.p50, 0),
-               number(row.cpu_us.p99, 0),
-               number(row.cpu_us.p999, 0),
-               number(row.cpu_us.max, 0),
-               number(ratio, 2),
-               number(row.wall_us.p99, 0),
-               std::to_string(row.all_steps),
-               number(row.all_longest_us, 0),
-               std::to_string(row.all_over_1ms),
-               number(row.mesh_s, 1),
-               number(row.factor_s, 1),
-               number(row.store_s, 1),
-               number(row.memory_mb, 0)});
-    json["rows"].push_back({{"nodes", row.nodes},
-                            {"element", row.element},
-                            {"contacts", row.contacts},
-                            {"contacts_max", row.contacts_max},
-                            {"spacing_mm", row.spacing_mm},
-                            {"steps", row.steps},
-                            {"events", row.events},
-                            {"flagged", row.flagged},
-                            {"iterations", row.iterations},
-                            {"step_cpu_us", times_json(row.cpu_us)},
-                            {"step_wall_us", times_json(row.wall_us)},
-                            {"step_cpu_p99_over_coarsest", ratio},
-                            {"all_steps", row.all_steps},
-                            {"all_longest_us", row.all_longest_us},
-                            {"all_over_1ms", row.all_over_1ms},
-                            {"offline_s", {{"mesh", row.mesh_s}, {"factor", row.factor_s}, {"store", row.store_s}}},
-                            {"memory_mb", row.memory_mb}});
-  }
-  json["machine"] = machine_json();
-  console.say(
-      "The demo's needle, 90 mm in, back and forth three times, and out: time of the steps with nearly all contacts.\n"
-      "p50 … max: processor time of the thread; p99 / 570: against the coarsest mesh with as many contacts; all "
-      "steps, longest, over 1 ms:\n"
-      "with however many contacts, processor time; before the first step: "
-      "mesh from contours, factor of the stiffness, store of compliances and all else; memory: resident then.");
-  console.say(table.text());
-  return console.write_json(json);
-}
-
 Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "needle") return run_needle(console);
   if (arguments.what == "coupling") return run_coupling(arguments, console);
-  if (arguments.what == "scale") return run_scale(arguments, console);
-  return run_remesh(arguments, console);
+  if (arguments.what == "scale") return bench_scale_command(arguments, console);
+  if (arguments.what == "step") return bench_step_command(arguments, console);
+  if (arguments.what == "display") return bench_display_command(arguments, console);
+  return bench_remesh_command(arguments, console);
 }
 
 }  // namespace
+
+Json machine_json() {
+  const reproduce::Machine machine = reproduce::this_machine();
+  return {{"processor", machine.processor},
+          {"cores", machine.cores},
+          {"blas", machine.blas},
+          {"blas_threads", machine.blas_threads > 0 ? Json(machine.blas_threads) : Json(nullptr)},
+          {"compiler", machine.compiler}};
+}
+
+std::string number(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("-");
+}
+
+Json times_json(const validate::StepTimes& times) {
+  return {{"p50", times.p50}, {"p99", times.p99}, {"p999", times.p999}, {"max", times.max}};
+}
 
 Command add_bench_command(CLI::App& program) {
   auto arguments = std::make_shared<BenchArguments>();
@@ -275,16 +166,18 @@ Command add_bench_command(CLI::App& program) {
   app->add_option(
          "WHAT", arguments->what,
          "remesh: time of one change of the mesh against the number of nodes, by the default's two rules, by "
-         "Woodbury, by boundary condition switches, by an inverse from scratch; coupling: force of one insertion over "
+         "Woodbury, by boundary condition switches, by an inverse from scratch; step: what a step spends its time on; "
+         "coupling: force of one insertion over "
          "mesh, spacing of contacts and time step, with the near field and with node addition; scale: time of a step "
-         "against the number of nodes and contacts; needle: accuracy of the needle models against their cost")
+         "against the number of nodes and contacts; display: time and error of a picture of the deformed patient; "
+         "needle: accuracy of the needle models against their cost")
       ->required()
-      ->check(one_of({"remesh", "coupling", "scale", "needle"}));
-  app->add_option(
-         "--nodes", arguments->nodes,
-         fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
-                     "scale: 570 or more (default {})",
-                     kRemeshNodes, validate::CouplingBenchOptions{}.largest, validate::ScaleBenchOptions{}.largest))
+      ->check(one_of({"remesh", "step", "coupling", "scale", "display", "needle"}));
+  app->add_option("--nodes", arguments->nodes,
+                  fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
+                              "scale and display: 570 or more (default {}); the mesh; step: 500 or more (default {})",
+                              kRemeshNodes, validate::CouplingBenchOptions{}.largest,
+                              validate::ScaleBenchOptions{}.largest, validate::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   app->add_option("--contacts", arguments->contacts, "scale: with about so many only (default 20, 40 and 60)")

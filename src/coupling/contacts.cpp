@@ -58,6 +58,7 @@ Placement Insertion::Parts::placement_of_contacts() const {
 
 /// Contacts along the piece of track just cut, from `from` at from_xi to track.end.
 void Insertion::Parts::lay_marks(const Vec3& from, double from_xi, const MaterialPoint& from_at, StepReport& report) {
+  const InPhase in_phase(phases, StepPhase::contacts);
   if (placement_of_contacts() == Placement::face) {
     lay_node_addition_on_faces(from, from_xi, from_at.tet, report);
     return;
@@ -118,6 +119,7 @@ void Insertion::Parts::lay_node_addition_on_faces(const Vec3& from, double from_
 /// Contacts the tip has passed come alive; contacts that slid off the tip are dropped. Grips are always the first
 /// marks.
 void Insertion::Parts::wake_and_drop(StepReport& report) {
+  const InPhase in_phase(phases, StepPhase::contacts);
   while (!grips.empty() && grips.back().s >= length()) grips.pop_back();
 
   const Vec3 tip_now = needle->point(length());

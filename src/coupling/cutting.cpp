@@ -27,6 +27,7 @@ bool Insertion::Parts::available(Index tet) const { return compliance.available(
 /// (the base moved sideways while the tip did not cut) the cut leads back to the axis. A bevelled tip leads it to a
 /// line beside the axis instead (bevel.cpp).
 void Insertion::Parts::aim_tip() {
+  const InPhase in_phase(phases, StepPhase::tip);
   gather_filtered_forces();
   const Vec3 t = needle->tangent(length());
   const Mat3 F = Mat3::Identity() + compliance.gradient_at_tip(forces.leftCols(compliance.points()));
@@ -46,6 +47,7 @@ void Insertion::Parts::aim_tip() {
 /// Puts the end of the track `advance` beyond where it was at the start of the sub-step, or on the first surface
 /// before.
 void Insertion::Parts::march(double advance) {
+  const InPhase in_phase(phases, StepPhase::tip);
   advance = std::min(advance, kReach_mm);
   const Vec3 target = tip.x_start + advance * tip.direction;
   MaterialPoint end;
@@ -129,6 +131,7 @@ void Insertion::Parts::cross_surface(StepReport& report) {
 /// After the sub-step's balance: the track grows by what was cut; a surface met becomes a membrane, a bone, or the way
 /// out.
 void Insertion::Parts::commit_tip(StepReport& report) {
+  const InPhase in_phase(phases, StepPhase::tip);
   if (tip.touching && tip.advance > 0.0) {
     const double from_xi = track.end_xi;
     const Vec3 from = tip.x_start;

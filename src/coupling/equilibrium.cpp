@@ -73,6 +73,7 @@ Vec3 Insertion::Parts::tissue_displacement(int point) const {
 }
 
 void Insertion::Parts::set_frames() {
+  const InPhase in_phase(phases, StepPhase::gather);
   for (int c = 0; c < load_count(); ++c) {
     const Vec3 t = needle->tangent(arc_of(c));
     // Any pair of normals will do: both lateral directions are treated alike.
@@ -93,6 +94,7 @@ void Insertion::Parts::fill_loads() {
 
 /// What each contact yields by itself in its present state, and what that adds to the right-hand side.
 void Insertion::Parts::soften_rows(double h) {
+  const InPhase in_phase(phases, StepPhase::gather);
   for (int c = 0; c < load_count(); ++c) {
     const Mat3& Q = frames[static_cast<std::size_t>(c)];
     Yield& yield = system.yield[static_cast<std::size_t>(c)];
@@ -145,6 +147,7 @@ int Insertion::Parts::renew_contacts() {
 
 /// A contact that has come alive goes into tangent and matrix, where they are there.
 void Insertion::Parts::append_contact(int load) {
+  const InPhase in_phase(phases, StepPhase::factorise);
   const int count = load + 1;
   const Eigen::Index before = 3 * static_cast<Eigen::Index>(load);
   auto rows = system.N.block(before, 0, 3, before + 3);
@@ -159,6 +162,7 @@ void Insertion::Parts::append_contact(int load) {
 /// What the linear equations are about: tissue's compliance among the contacts, their forces, and how far tissue and
 /// needle are apart.
 void Insertion::Parts::gather_system() {
+  const InPhase in_phase(phases, StepPhase::gather);
   const int count = load_count();
   const auto size = static_cast<Eigen::Index>(3 * count);
   const double share = memory.share();
@@ -187,6 +191,7 @@ void Insertion::Parts::gather_system() {
 
 /// The needle's tangent at its present shape, and the matrix made of it.
 void Insertion::Parts::linearise() {
+  const InPhase in_phase(phases, StepPhase::needle_tangent);
   const int count = load_count();
   const auto size = static_cast<Eigen::Index>(3 * count);
   auto compliance_of_needle = system.N.topLeftCorner(size, size);
@@ -210,6 +215,7 @@ void Insertion::Parts::linearise() {
 
 /// The needle's step with the tangent of before. False where that is another needle's.
 bool Insertion::Parts::relax_needle() {
+  const InPhase in_phase(phases, StepPhase::needle_relax);
   return tangent_fits && needle->relax(loads, system.free.head(static_cast<Eigen::Index>(3 * load_count())));
 }
 
@@ -325,6 +331,7 @@ void Insertion::Parts::change_and_tell(int load, StepReport& report) {
 /// @param changed whether a state has
 /// @return false when the matrix is singular
 bool Insertion::Parts::pivot(double h, StepReport& report, bool& changed) {
+  const InPhase in_phase(phases, StepPhase::solve);
   changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
     soften_rows(h);
@@ -383,6 +390,7 @@ double Insertion::Parts::equation_error() const {
 
 /// How far needle, tissue and laws are from balance: 1 is the tolerance.
 double Insertion::Parts::imbalance_over_tolerance() const {
+  const InPhase in_phase(phases, StepPhase::balance);
   double largest = 1.0;
   for (const PointLoad& load : loads) largest = std::max(largest, load.force.norm());
   const double allowed = settings.tolerance * largest;
@@ -494,8 +502,14 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       linearise();
       ++tangents;
     }
-    if (!matrix_fits) matrix_fits = system.factorise();
-    if (matrix_fits && (iteration == 0 || !old_matrix)) system.add_tip();
+    if (!matrix_fits) {
+      const InPhase in_phase(phases, StepPhase::factorise);
+      matrix_fits = system.factorise();
+    }
+    if (matrix_fits && (iteration == 0 || !old_matrix)) {
+      const InPhase in_phase(phases, StepPhase::solve);
+      system.add_tip();
+    }
     if (!matrix_fits || !pivot(h, report, changed)) {
       if (!old_matrix) {  // needle and tissue as they are have no balance nearby: they stay
         report.flags |= StepReport::not_converged;
@@ -509,7 +523,10 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       loads[static_cast<std::size_t>(c)].force = -system.push.segment<3>(3 * c);
       force_of(c).noalias() = frames[static_cast<std::size_t>(c)] * system.lambda.segment<3>(3 * c);
     }
-    needle->advance(loads);
+    {
+      const InPhase in_phase(phases, StepPhase::needle_advance);
+      needle->advance(loads);
+    }
     for (int c = 1; c < load_count(); ++c) slide(c);
     if (tip.touching && tip.state == Tip::State::cut) {
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);

@@ -321,6 +321,7 @@ void Insertion::prepare(double radius_mm) {
 const Needle& Insertion::needle() const { return *parts_->needle; }
 const ContactCompliance& Insertion::compliance() const { return parts_->compliance; }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }
+void Insertion::observe_phases(PhaseObserver* observer) { parts_->phases = observer; }
 const Track& Insertion::track() const { return parts_->track; }
 std::span<const Track> Insertion::old_tracks() const { return {parts_->old_tracks.data(), parts_->old_count}; }
 
@@ -365,15 +366,23 @@ VecX Insertion::mesh_displacement() const {
 }
 
 std::vector<TissueForce> Insertion::tissue_forces() const {
+  std::vector<TissueForce> result(static_cast<std::size_t>(parts_->compliance.points()));
+  result.resize(tissue_forces(result));
+  return result;
+}
+
+std::size_t Insertion::tissue_forces(std::span<TissueForce> out) const {
   Parts& p = *parts_;
   p.gather_filtered_forces();
-  std::vector<TissueForce> result;
   if (p.tip.at.tet >= 0) p.point_at[ContactCompliance::kTip] = p.tip.at;
+  std::size_t count = 0;
   for (int point = 0; point < p.compliance.points(); ++point) {
     const Vec3 force = p.forces.col(point);
-    if (!force.isZero(0.0)) result.push_back({p.point_at[static_cast<std::size_t>(point)], force});
+    if (force.isZero(0.0)) continue;
+    if (count < out.size()) out[count] = {p.point_at[static_cast<std::size_t>(point)], force};
+    ++count;
   }
-  return result;
+  return count;
 }
 
 double Insertion::compliance_condition() const {

@@ -85,6 +85,7 @@ struct Insertion::Parts {
   double expected_cut = 0.0;  ///< [mm] in this one
   double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
   Vec3 prepared_at = Vec3::Constant(1e30);
+  PhaseObserver* phases = nullptr;
 
   // Scratch of the equilibrium, sized once.
   std::vector<PointLoad> loads;  ///< tip first, then the grips: the needle's side, −force

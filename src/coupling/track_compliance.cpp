@@ -25,6 +25,7 @@ TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, c
   point_observable_.reserve(static_cast<std::size_t>(capacity) + 1);
   z_.resize(observables * static_cast<std::size_t>(capacity));
   hat_.assign(observables * static_cast<std::size_t>(capacity), 0.0);
+  through_.resize(static_cast<std::size_t>(capacity) * static_cast<std::size_t>(capacity));
   changes_.reserve(static_cast<std::size_t>(capacity));
   tip_node_rows_.resize(static_cast<std::size_t>(kMostElementNodes * (capacity + 1)));
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
@@ -87,10 +88,13 @@ void TrackCompliance::extend(int observable, int splits) {
   for (int p = o.known; p < splits; ++p) {
     const Split& split = splits_[static_cast<std::size_t>(p)];
     Mat3 value = hat(observable, p) * Mat3::Identity();
+    // Σ_j A_{p−1}(x,j) k_jp, the hats in A_{p−1} taken together.
     for (int j = 0; j < split.vertices; ++j) {
       const auto k = static_cast<std::size_t>(j);
-      value.noalias() -= compliance(observable, split.vertex[k], p) * split.border[k];
+      value.noalias() -= base_block(o, observables_[static_cast<std::size_t>(split.vertex[k])]) * split.border[k];
     }
+    for (int q = 0; split.vertices > 0 && q < p; ++q)
+      value.noalias() -= z(observable, q) * splits_[static_cast<std::size_t>(q)].flexibility * through(q, p);
     z(observable, p) = value;
   }
   o.known = std::max(o.known, splits);
@@ -232,13 +236,26 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   const int p = static_cast<int>(splits_.size());
   Mat3 reduced = stiffness;
   for (int i = 0; i < split.vertices; ++i) extend(split.vertex[static_cast<std::size_t>(i)], p);
+  // Σ_ij k_ipᵀ A_{p−1}(i,j) k_jp, again the hats taken together.
   for (int i = 0; i < split.vertices; ++i) {
+    const auto a = static_cast<std::size_t>(i);
+    Mat3 moved = Mat3::Zero();  // vertex i, by the base compliance
     for (int j = 0; j < split.vertices; ++j) {
-      const auto a = static_cast<std::size_t>(i);
       const auto b = static_cast<std::size_t>(j);
-      reduced.noalias() -=
-          split.border[a].transpose() * compliance(split.vertex[a], split.vertex[b], p) * split.border[b];
+      moved.noalias() += base_block(observables_[static_cast<std::size_t>(split.vertex[a])],
+                                    observables_[static_cast<std::size_t>(split.vertex[b])]) *
+                         split.border[b];
     }
+    reduced.noalias() -= split.border[a].transpose() * moved;
+  }
+  for (int q = 0; q < p; ++q) {
+    Mat3& sum = through(q, p);
+    sum.setZero();
+    for (int j = 0; j < split.vertices; ++j) {
+      const auto k = static_cast<std::size_t>(j);
+      sum.noalias() += z(split.vertex[k], q).transpose() * split.border[k];
+    }
+    reduced.noalias() -= sum.transpose() * splits_[static_cast<std::size_t>(q)].flexibility * sum;
   }
   split.flexibility = reduced.inverse();
   split.flexibility = 0.5 * (split.flexibility + split.flexibility.transpose()).eval();
@@ -265,8 +282,10 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   }
   for (int c = 0; c < points_; ++c) {
     const Mat3 left = z(point_observable_[static_cast<std::size_t>(c)], p) * splits_.back().flexibility;
-    for (int d = 0; d < points_; ++d) {
-      A_.block<3, 3>(3 * c, 3 * d).noalias() += left * z(point_observable_[static_cast<std::size_t>(d)], p).transpose();
+    for (int d = c; d < points_; ++d) {
+      const Mat3 more = left * z(point_observable_[static_cast<std::size_t>(d)], p).transpose();
+      A_.block<3, 3>(3 * c, 3 * d) += more;
+      if (d > c) A_.block<3, 3>(3 * d, 3 * c) += more.transpose();
     }
   }
   return {finish_point(observable), Refusal::none};
@@ -313,9 +332,10 @@ void TrackCompliance::write_row(int point) {
   const int splits = static_cast<int>(splits_.size());
   const int observable = point_observable_[static_cast<std::size_t>(point)];
   for (int d = 0; d < points_; ++d) {
-    const Mat3 block = compliance(observable, point_observable_[static_cast<std::size_t>(d)], splits);
-    A_.block<3, 3>(3 * point, 3 * d) = block;
-    A_.block<3, 3>(3 * d, 3 * point) = block.transpose();
+    // In this order the store is read along the columns of this point's few nodes.
+    const Mat3 block = compliance(point_observable_[static_cast<std::size_t>(d)], observable, splits);
+    A_.block<3, 3>(3 * d, 3 * point) = block;
+    A_.block<3, 3>(3 * point, 3 * d) = block.transpose();
   }
   // Rounding must not make the diagonal block unsymmetric.
   const Mat3 own = A_.block<3, 3>(3 * point, 3 * point);

@@ -12,8 +12,19 @@ constexpr unsigned kDistrusted = StepReport::not_converged | StepReport::invalid
 
 }  // namespace
 
+std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<TissueForce> out) {
+  const auto count = std::min(out.size(), static_cast<std::size_t>(snapshot.force_count));
+  for (std::size_t k = 0; k < count; ++k) {
+    const ForceSnapshot& f = snapshot.forces[k];
+    out[k] = {{f.tet, Vec4(f.weights.data())}, vec3(f.force)};
+  }
+  return out.first(count);
+}
+
 SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion)
-    : simulation_(model), contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1) {
+    : simulation_(model),
+      contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1),
+      forces_(Snapshot::kForces) {
   const PlannedInsertion& plan = model->insertions()[insertion];
   simulation_.place(plan.motion.at(0.0), plan.entry, plan.direction);
 }
@@ -47,6 +58,14 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   }
   out.contact_count = static_cast<int>(shown);
   out.contacts_left_out = static_cast<int>(found - shown);
+  const std::size_t forces = simulation_.insertion().tissue_forces(forces_);
+  const std::size_t kept = std::min(forces, Snapshot::kForces);
+  for (std::size_t k = 0; k < kept; ++k) {
+    const TissueForce& f = forces_[k];
+    out.forces[k] = {f.at.tet, {f.at.weights[0], f.at.weights[1], f.at.weights[2], f.at.weights[3]}, plain(f.force)};
+  }
+  out.force_count = static_cast<int>(kept);
+  out.forces_left_out = static_cast<int>(forces - kept);
   out.sticking = record.sticking;
   out.iterations = record.iterations;
   out.flags = report.flags;

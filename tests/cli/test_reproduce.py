@@ -79,6 +79,16 @@ class Bench(InFolder):
         methods = ("shortcut", "bordered", "woodbury", "bcs", "inverse")
         self.assertEqual(found, {(nodes, method) for nodes in (125, 216) for method in methods})
         self.assertTrue(all(row["median_us"] > 0 for row in result["rows"]))
+        self.assertEqual([event["rule"] for event in result["events"]], ["interior", "paper", "near-field"])
+        for event in result["events"]:
+            self.assertLess(abs(event["nodes"] - 570), 0.03 * 570)
+            self.assertGreater(event["events"], event["points"])
+            for times in (event["warm_us"], event["cold_us"]):
+                self.assertTrue(0 < times["p5"] <= times["p50"] <= times["p95"] <= times["max"])
+            ratios = result["event_ratios"][event["rule"]]
+            self.assertEqual(ratios["warm"]["finest_over_coarsest"], 1)
+            self.assertGreater(ratios["warm"]["woodbury_over_event"], 1)
+        self.assertEqual(result["event_woodbury"]["nodes"], result["events"][0]["nodes"])
 
     def test_needle_gives_every_model_with_its_errors_and_its_cost(self):
         result = self.json_of("bench", "needle")

@@ -4,6 +4,7 @@
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/laws.hpp"
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
+#include "stylet/coupling/step_phases.hpp"
 #include "stylet/coupling/track.hpp"
 #include "stylet/fem/compliance_store.hpp"
 #include "stylet/needle/needle.hpp"
@@ -137,6 +138,8 @@ class Insertion {
   /// Forces that hold the tissue where it is, on material points: contacts, and in viscous tissue what it remembers of
   /// them. Allocates.
   [[nodiscard]] std::vector<TissueForce> tissue_forces() const;
+  /// The same into room provided; does not allocate. @return how many there are, those that found no room included
+  std::size_t tissue_forces(std::span<TissueForce> out) const;
   /// Condition number of A among the contacts and the tip where it touches; 1 without any. Allocates.
   [[nodiscard]] double compliance_condition() const;
 
@@ -145,6 +148,9 @@ class Insertion {
 
   /// ½ fᵀ A f, elastic energy in the tissue [N mm]; of viscous tissue what it has stored.
   [[nodiscard]] double tissue_energy() const;
+
+  /// Who is told what a step is at (it must outlive the steps); null, the default, is nobody.
+  void observe_phases(PhaseObserver* observer);
 
   /// The current track, and those of earlier insertions.
   [[nodiscard]] const Track& track() const;

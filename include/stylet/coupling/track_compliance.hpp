@@ -69,6 +69,11 @@ class TrackCompliance final : public ContactCompliance {
   [[nodiscard]] const Mat3& z(int observable, int split) const {
     return z_[static_cast<std::size_t>(observable * capacity_ + split)];
   }
+  /// Σ_j z_q(j)ᵀ k_jp over the border of split p, for an earlier split q: what earlier hats do to it.
+  Mat3& through(int q, int p) { return through_[static_cast<std::size_t>(p * capacity_ + q)]; }
+  [[nodiscard]] const Mat3& through(int q, int p) const {
+    return through_[static_cast<std::size_t>(p * capacity_ + q)];
+  }
   double& hat(int observable, int split) { return hat_[static_cast<std::size_t>(observable * capacity_ + split)]; }
   [[nodiscard]] double hat(int observable, int split) const {
     return hat_[static_cast<std::size_t>(observable * capacity_ + split)];
@@ -104,6 +109,7 @@ class TrackCompliance final : public ContactCompliance {
   std::vector<int> node_point_;        ///< (splits) point that sits on an added node
   std::vector<Mat3> z_;
   std::vector<double> hat_;
+  std::vector<Mat3> through_;
   std::vector<RemeshEvent> changes_;
   MaterialPoint tip_;
   TipElement tip_element_;

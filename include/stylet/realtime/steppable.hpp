@@ -30,6 +30,10 @@ class Steppable {
   virtual std::size_t events(std::span<EventSnapshot> out) noexcept = 0;
 };
 
+/// The forces of a snapshot as a DisplayField takes them. @param out room for Snapshot::kForces
+/// @return those that are there
+std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<TissueForce> out);
+
 /// A Simulation in the loop. Simulation::prepare() allocates and solves, so the loop never calls it: where the tip
 /// leaves the compliance that is there, it is held and flagged (StepReport::compliance_missing) until somebody else has
 /// provided more.
@@ -49,6 +53,7 @@ class SimulationSteppable final : public Steppable {
  private:
   Simulation simulation_;
   std::vector<ContactState> contacts_;  ///< room
+  std::vector<TissueForce> forces_;     ///< room
 };
 
 }  // namespace stylet

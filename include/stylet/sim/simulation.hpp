@@ -42,6 +42,8 @@ class Simulation {
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const Insertion& insertion() const { return insertion_; }
+  /// Insertion::observe_phases().
+  void observe_phases(PhaseObserver* observer) { insertion_.observe_phases(observer); }
   [[nodiscard]] double time_s() const { return record_.time_s; }
 
  private:

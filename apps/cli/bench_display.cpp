@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benches.hpp"
+#include "table.hpp"
+
+#include "stylet/validate/display_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stylet::cli {
+
+Result<> bench_display_command(const BenchArguments& arguments, Console& console) {
+  validate::DisplayBenchOptions options;
+  if (arguments.nodes > 0) options.largest = arguments.nodes;
+  constexpr int smallest = 570;
+  if (options.largest < smallest)
+    return input_error("--nodes", fmt::format("display takes {} nodes or more, not {}", smallest, options.largest),
+                       "570 nodes is the coarsest mesh it is measured on");
+  const auto rows = validate::bench_display(options, console.progress());
+  if (!rows) return rows.error();
+  Table table({"nodes", "surface", "triangles", "zone", "columns", "surface [ms]", "max", "slice [ms]", "max",
+               "solve [ms]", "moved [mm]", "error [mm]", "stated [mm]", "coarse [mm]", "prepare [s]", "memory [MB]"});
+  Json json{{"rows", Json::array()}};
+  for (const validate::DisplayRow& row : *rows) {
+    table.row({std::to_string(row.nodes), std::to_string(row.surface_nodes), std::to_string(row.slice_triangles),
+               std::to_string(row.zone_dofs), std::to_string(row.columns), number(1e-3 * row.surface_us.p50, 2),
+               number(1e-3 * row.surface_us.max, 2), number(1e-3 * row.slice_us.p50, 2),
+               number(1e-3 * row.slice_us.max, 2), number(1e-3 * row.solve_us, 1), number(row.largest_mm, 2),
+               fmt::format("{:.1e}", row.error_mm), fmt::format("{:.1e}", row.stated_error_mm),
+               number(row.coarse_error_mm, 2), number(row.prepare_s, 1), number(row.megabytes, 0)});
+    json["rows"].push_back(
+        {{"nodes", row.nodes},
+         {"element", row.element},
+         {"surface_nodes", row.surface_nodes},
+         {"slice_triangles", row.slice_triangles},
+         {"zone_dofs", row.zone_dofs},
+         {"columns", row.columns},
+         {"frames", row.frames},
+         {"surface_us", times_json(row.surface_us)},
+         {"slice_us", times_json(row.slice_us)},
+         {"solve_us", row.solve_us},
+         {"largest_mm", row.largest_mm},
+         {"error_mm", row.error_mm},
+         {"stated_error_mm", row.stated_error_mm},
+         {"stated_error_mm_per_N", row.stated_error_mm_per_N},
+         {"left_out_N", row.left_out_N},
+         {"coarse_error_mm", std::isfinite(row.coarse_error_mm) ? Json(row.coarse_error_mm) : Json(nullptr)},
+         {"prepare_s", row.prepare_s},
+         {"memory_mb", row.megabytes}});
+  }
+  json["machine"] = machine_json();
+  console.say(
+      "Pictures of the deformed patient along an insertion: processor time of all surfaces and of a slice, median and "
+      "largest;\n"
+      "solve: of the same by the factor; moved: the largest displacement; error: of any node in any frame against the "
+      "factor's,\n"
+      "and what was stated for those forces; coarse: the error when the coarsest mesh's displacement is shown "
+      "instead.");
+  console.say(table.text());
+  return console.write_json(json);
+}
+
+}  // namespace stylet::cli

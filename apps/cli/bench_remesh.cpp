@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benches.hpp"
+#include "table.hpp"
+
+#include "stylet/reproduce/remesh_bench.hpp"
+#include "stylet/validate/event_bench.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::cli {
+
+namespace {
+
+/// Sizes of a cube, by its cells, up to a number of nodes.
+std::vector<int> sizes_up_to(int nodes) {
+  std::vector<int> cells;
+  for (int c = 4; (c + 1) * (c + 1) * (c + 1) <= nodes; c += c < 10 ? 1 : 2) cells.push_back(c);
+  return cells;
+}
+
+constexpr Index kCoarsest = 570;
+const std::vector<std::string> kRules{"interior", "paper", "near-field"};
+
+Json spread_json(const validate::Spread& spread) {
+  return {{"p5", spread.p5}, {"p50", spread.p50}, {"p95", spread.p95}, {"max", spread.max}};
+}
+
+/// How much cheaper than Woodbury a contact is on the same mesh, and how much dearer on the finest mesh.
+struct Ratios {
+  double woodbury_over_event = 0.0;
+  double finest_over_coarsest = 0.0;
+};
+Ratios ratios(const validate::EventBench& bench, const std::string& rule, bool cold) {
+  const auto median = [&](const validate::EventRow& row) { return cold ? row.cold_us.p50 : row.warm_us.p50; };
+  const double coarsest = median(*bench.coarsest(rule));
+  return {bench.woodbury_us.p50 / coarsest, median(*bench.finest(rule)) / coarsest};
+}
+
+void add_events(const validate::EventBench& bench, Json& json) {
+  json["events"] = Json::array();
+  for (const validate::EventRow& row : bench.rows) {
+    json["events"].push_back({{"nodes", row.nodes},
+                              {"rule", row.rule},
+                              {"points", row.points},
+                              {"events", row.events},
+                              {"warm_us", spread_json(row.warm_us)},
+                              {"cold_us", spread_json(row.cold_us)}});
+  }
+  json["event_woodbury"] = {{"nodes", bench.woodbury_nodes}, {"update_us", spread_json(bench.woodbury_us)}};
+  for (const std::string& rule : kRules) {
+    for (const bool cold : {false, true}) {
+      const Ratios r = ratios(bench, rule, cold);
+      json["event_ratios"][rule][cold ? "cold" : "warm"] = {{"woodbury_over_event", r.woodbury_over_event},
+                                                            {"finest_over_coarsest", r.finest_over_coarsest}};
+    }
+  }
+}
+
+void say_events(const validate::EventBench& bench, Console& console) {
+  Table table({"nodes", "rule", "points", "events", "warm p50 [µs]", "p95", "max", "cold p50 [µs]", "p95", "max"});
+  for (const validate::EventRow& row : bench.rows) {
+    table.row({std::to_string(row.nodes), row.rule, std::to_string(row.points), std::to_string(row.events),
+               number(row.warm_us.p50, 1), number(row.warm_us.p95, 1), number(row.warm_us.max, 1),
+               number(row.cold_us.p50, 1), number(row.cold_us.p95, 1), number(row.cold_us.max, 1)});
+  }
+  console.say(
+      "A contact laid in the demo patient, all that the loop does for it: search, border, compliances with all other "
+      "points.\n"
+      "interior, paper: node addition; near-field: the default, without a node; cold: nothing of it in the caches.");
+  console.say(table.text());
+  console.say(fmt::format("Woodbury's update of the full inverse at {} nodes: {:.0f} µs ({:.0f} … {:.0f}).",
+                          bench.woodbury_nodes, bench.woodbury_us.p50, bench.woodbury_us.p5, bench.woodbury_us.p95));
+  for (const std::string& rule : kRules) {
+    const Ratios warm = ratios(bench, rule, false);
+    const Ratios cold = ratios(bench, rule, true);
+    console.say(
+        fmt::format("{}: 1/{:.0f} of that, cold 1/{:.0f}; at {} nodes {:.2f} times what it is at {}, cold {:.2f}.",
+                    rule, warm.woodbury_over_event, cold.woodbury_over_event, bench.finest(rule)->nodes,
+                    warm.finest_over_coarsest, bench.woodbury_nodes, cold.finest_over_coarsest));
+  }
+}
+
+}  // namespace
+
+Result<> bench_remesh_command(const BenchArguments& arguments, Console& console) {
+  const int nodes = arguments.nodes > 0 ? arguments.nodes : kRemeshNodes;
+  constexpr int smallest = 125;
+  constexpr int largest = 4096;
+  if (nodes < smallest || nodes > largest)
+    return input_error("--nodes", fmt::format("remesh takes {} to {} nodes, not {}", smallest, largest, nodes),
+                       "The full inverse is what limits it");
+  const auto rows = reproduce::bench_remeshing(sizes_up_to(nodes), console.progress());
+  if (!rows) return rows.error();
+  const std::vector<std::string> methods{"shortcut", "bordered", "woodbury", "bcs", "inverse"};
+  std::vector<std::string> header{"nodes"};
+  for (const std::string& method : methods) header.push_back(method + " [µs]");
+  Table table(header);
+  Json json{{"rows", Json::array()}};
+  for (std::size_t i = 0; i + methods.size() <= rows->size(); i += methods.size()) {
+    std::vector<std::string> cells{std::to_string((*rows)[i].nodes)};
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      const reproduce::RemeshRow& row = (*rows)[i + k];
+      cells.push_back(fmt::format("{:.1f}", row.median_us));
+      json["rows"].push_back({{"nodes", row.nodes}, {"method", row.method}, {"median_us", row.median_us}});
+    }
+    table.row(cells);
+  }
+  validate::EventBenchOptions options;
+  if (arguments.nodes > 0) options.largest = kCoarsest;
+  const auto events = validate::bench_events(options, console.progress());
+  if (!events) return events.error();
+  add_events(*events, json);
+  json["machine"] = machine_json();
+  console.say("Processor time of one change of the mesh, everything included, median:");
+  console.say(table.text());
+  say_events(*events, console);
+  return console.write_json(json);
+}
+
+}  // namespace stylet::cli

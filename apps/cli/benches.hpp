@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "console.hpp"
+
+#include "stylet/validate/scale_bench.hpp"
+
+#include <string>
+#include <vector>
+
+namespace stylet::cli {
+
+/// `stylet bench WHAT`, one function a benchmark.
+struct BenchArguments {
+  std::string what;
+  int nodes = 0;     ///< 0 = the default of what is measured
+  int contacts = 0;  ///< 0 = the default
+  long steps = 0;    ///< 0 = the default
+};
+
+inline constexpr int kRemeshNodes = 1331;
+
+Result<> bench_remesh_command(const BenchArguments& arguments, Console& console);
+Result<> bench_scale_command(const BenchArguments& arguments, Console& console);
+Result<> bench_step_command(const BenchArguments& arguments, Console& console);
+Result<> bench_display_command(const BenchArguments& arguments, Console& console);
+
+/// The machine times are of.
+Json machine_json();
+
+Json times_json(const validate::StepTimes& times);
+
+/// A number with so many digits after the point; "-" where there is none.
+std::string number(double value, int digits);
+
+}  // namespace stylet::cli

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/display_field.hpp"
+
+#include "planning.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+
+namespace stylet {
+
+namespace {
+
+constexpr double kBeyond_mm = 10.0;       ///< of the planned depth
+constexpr Eigen::Index kBatch = 192;      ///< right-hand sides solved for at once
+constexpr Eigen::Index kOversample = 20;  ///< random rows more than columns
+constexpr Eigen::Index kChecks = 60;      ///< columns the error is measured on
+constexpr double kSafety = 2.0;  ///< over what was measured: columns are single degrees of freedom, not all of them
+constexpr unsigned kSeed = 20050101;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+/// Free displacement nodes near a planned way whose compliances are there.
+void DisplayField::find_zone(double reach_mm) {
+  const Tissue& tissue = model_->tissue();
+  const ComplianceStore& store = *model_->store();
+  slot_.assign(static_cast<std::size_t>(tissue.displacement_nodes()), -1);
+  for (const PlannedInsertion& plan : model_->insertions()) {
+    const Vec3 end = plan.entry + (plan.depth_mm + kBeyond_mm) * plan.direction;
+    for (const Index node : corridor_nodes(tissue, plan.entry, end, reach_mm)) {
+      Index& slot = slot_[static_cast<std::size_t>(node)];
+      if (slot >= 0 || tissue.is_fixed(node) || !store.has(node)) continue;
+      slot = static_cast<Index>(zone_.size());
+      zone_.push_back(node);
+    }
+  }
+  statistics_.zone_dofs = static_cast<int>(3 * zone_.size());
+}
+
+/// Columns of K⁻¹ [mm/N] (3 mesh nodes × dofs) of degrees of freedom of the zone.
+Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, const Progress& progress) const {
+  const Tissue& tissue = model_->tissue();
+  const auto all = static_cast<Eigen::Index>(dofs.size());
+  const Eigen::Index rows = 3 * Eigen::Index{tissue.mesh().node_count()};
+  Eigen::MatrixXf columns(rows, all);
+  for (Eigen::Index first = 0; first < all; first += kBatch) {
+    report(progress, "display: columns", static_cast<double>(first) / static_cast<double>(all));
+    const Eigen::Index count = std::min(kBatch, all - first);
+    MatX f = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const Eigen::Index dof = dofs[static_cast<std::size_t>(first + j)];
+      f(3 * Eigen::Index{zone_[static_cast<std::size_t>(dof / 3)]} + dof % 3, j) = 1.0;
+    }
+    columns.middleCols(first, count) = tissue.solve(f).topRows(rows).cast<float>();
+  }
+  return columns;
+}
+
+/// Every degree of freedom of the zone is in the skeleton: nothing is approximated.
+void DisplayField::keep_all(const Progress& progress) {
+  for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(zone_.size()); ++i) skeleton_.push_back(i);
+  columns_ = solve_columns(skeleton_, progress).transpose();
+}
+
+/// M = Ωᵀ K⁻¹(F,Z) (rows × 3Z): random combinations of the rows of the nodes that the store does not reach.
+MatX DisplayField::random_rows(Eigen::Index rows, const Progress& progress) const {
+  const Tissue& tissue = model_->tissue();
+  std::mt19937 random(kSeed);
+  std::normal_distribution<double> normal;
+  MatX M(rows, 3 * static_cast<Eigen::Index>(zone_.size()));
+  for (Eigen::Index first = 0; first < rows; first += kBatch) {
+    report(progress, "display: choosing columns", static_cast<double>(first) / static_cast<double>(rows));
+    const Eigen::Index count = std::min(kBatch, rows - first);
+    MatX f = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, count);
+    for (Index node = 0; node < tissue.mesh().node_count(); ++node) {
+      if (model_->store()->has(node)) continue;  // held, or exact anyway
+      for (double& value : f.middleRows<3>(3 * Eigen::Index{node}).reshaped()) value = normal(random);
+    }
+    const MatX u = tissue.solve(f);
+    for (std::size_t z = 0; z < zone_.size(); ++z) {
+      M.block(first, 3 * static_cast<Eigen::Index>(z), count, 3) =
+          u.middleRows<3>(3 * Eigen::Index{zone_[z]}).transpose();
+    }
+  }
+  return M;
+}
+
+/// S and T by a pivoted QR: M P = Q R, so K⁻¹(F, first k pivots) R₁₁⁻¹ R₁ Pᵀ ≈ K⁻¹(F,Z). What comes next in the order
+/// of the pivots is what k columns represent worst: its own columns tell the error.
+void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Progress& progress) {
+  const Eigen::Index zone = 3 * static_cast<Eigen::Index>(zone_.size());
+  const Eigen::Index solved = std::min<Eigen::Index>(zone, options.columns + kChecks);
+  const Eigen::ColPivHouseholderQR<MatX> qr(random_rows(solved + kOversample, progress));
+  const auto& order = qr.colsPermutation().indices();
+  std::vector<Eigen::Index> pivots;
+  for (Eigen::Index j = 0; j < solved; ++j) pivots.push_back(order[j]);
+  const MatX R = qr.matrixR().topRows(solved).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXf columns = solve_columns(pivots, progress);
+
+  const auto interpolation = [&](Eigen::Index k, Eigen::Index first, Eigen::Index count) -> MatX {
+    return R.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(R.block(0, first, k, count));
+  };
+  const auto error = [&](Eigen::Index k) {
+    const Eigen::Index count = std::min(kChecks, solved - k);
+    const Eigen::MatrixXf off =
+        columns.middleCols(k, count) - columns.leftCols(k) * interpolation(k, k, count).cast<float>();
+    float worst = 0.0F;
+    for (Index node = 0; node < model_->mesh().node_count(); ++node) {
+      if (!model_->store()->has(node))
+        worst = std::max(worst, off.middleRows<3>(3 * Eigen::Index{node}).colwise().norm().maxCoeff());
+    }
+    return kSafety * static_cast<double>(worst);
+  };
+  Eigen::Index k = options.columns;
+  statistics_.error_mm_per_N = error(k);
+  while (true) {  // fewer, as long as they do
+    const Eigen::Index fewer = 4 * k / 5;
+    const double with_fewer = fewer > 0 ? error(fewer) : options.tolerance_mm_per_N + 1.0;
+    if (with_fewer > options.tolerance_mm_per_N) break;
+    k = fewer;
+    statistics_.error_mm_per_N = with_fewer;
+  }
+
+  const MatX inner = interpolation(k, 0, zone);
+  to_skeleton_.resize(k, zone);
+  for (Eigen::Index j = 0; j < zone; ++j) to_skeleton_.col(order[j]) = inner.col(j).cast<float>();
+  for (Eigen::Index j = 0; j < k; ++j) {
+    skeleton_.push_back(order[j]);
+    to_skeleton_.col(order[j]) = Eigen::VectorXf::Unit(k, j);
+  }
+  columns_ = columns.leftCols(k).transpose();
+}
+
+/// Near the ways the skeleton would not do; what it gives is brought to what the store says.
+void DisplayField::keep_near_rows() {
+  if (to_skeleton_.size() == 0) return;
+  const ComplianceStore& store = *model_->store();
+  const Index nodes = model_->mesh().node_count();
+  near_slot_.assign(static_cast<std::size_t>(nodes), -1);
+  std::vector<Index> near;
+  for (Index node = 0; node < nodes; ++node) {
+    if (!store.has(node) || model_->tissue().is_fixed(node)) continue;
+    near_slot_[static_cast<std::size_t>(node)] = static_cast<Index>(near.size());
+    near.push_back(node);
+  }
+  near_rows_.resize(3 * static_cast<Eigen::Index>(zone_.size()), 3 * static_cast<Eigen::Index>(near.size()));
+  for (std::size_t r = 0; r < near.size(); ++r) {
+    auto rows = near_rows_.middleCols<3>(3 * static_cast<Eigen::Index>(r));
+    for (std::size_t z = 0; z < zone_.size(); ++z)
+      rows.middleRows<3>(3 * static_cast<Eigen::Index>(z)) = store.block(zone_[z], near[r]).cast<float>();
+    rows.noalias() -= to_skeleton_.transpose() * columns_.middleCols<3>(3 * Eigen::Index{near[r]});
+  }
+}
+
+Result<std::shared_ptr<const DisplayField>> DisplayField::prepare(std::shared_ptr<const Model> model,
+                                                                  const DisplayFieldOptions& options,
+                                                                  const Progress& progress) {
+  if (model->inverse()) {
+    return input_error("coupling.engine", "the display needs the compliances near the needles' ways",
+                       "Use coupling.engine = \"condensed\"");
+  }
+  const double started = seconds_now();
+  std::shared_ptr<DisplayField> field(new DisplayField(std::move(model)));
+  field->find_zone(options.reach_mm);
+  const auto& zone = field->statistics_.zone_dofs;
+  zone <= options.columns ? field->keep_all(progress) : field->choose_skeleton(options, progress);
+  report(progress, "display: columns", 1.0);
+  field->keep_near_rows();
+  Statistics& s = field->statistics_;
+  s.columns = static_cast<int>(field->skeleton_.size());
+  s.seconds = seconds_now() - started;
+  const auto floats = field->columns_.size() + field->to_skeleton_.size() + field->near_rows_.size();
+  s.megabytes = static_cast<double>(floats) * sizeof(float) / 1048576.0;
+  return std::shared_ptr<const DisplayField>(std::move(field));
+}
+
+bool DisplayField::exact_on(Index node) const {
+  const Eigen::Index slot = slot_[static_cast<std::size_t>(node)];
+  if (slot < 0) return model_->tissue().is_fixed(node);
+  for (Eigen::Index dof = 3 * slot; dof < 3 * slot + 3; ++dof) {
+    if (std::find(skeleton_.begin(), skeleton_.end(), dof) == skeleton_.end()) return false;
+  }
+  return true;
+}
+
+DisplayField::Load DisplayField::make_load() const {
+  Load load;
+  load.zone_ = Eigen::VectorXf::Zero(3 * static_cast<Eigen::Index>(zone_.size()));
+  load.loaded_.reserve(zone_.size());
+  load.skeleton_ = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(skeleton_.size()));
+  return load;
+}
+
+void DisplayField::set(std::span<const TissueForce> forces, Load& load) const {
+  const Tissue& tissue = model_->tissue();
+  for (const Index slot : load.loaded_) load.zone_.segment<3>(3 * Eigen::Index{slot}).setZero();
+  load.loaded_.clear();
+  load.left_out_N_ = load.shown_N_ = 0.0;
+  for (const TissueForce& force : forces) {
+    if (force.at.tet < 0) continue;
+    const Shape shape = tissue.shape(force.at.tet, force.at.weights);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
+      const Vec3 on_node = shape.weight[i] * force.force;
+      if (on_node.isZero(0.0) || tissue.is_fixed(shape.node[i])) continue;
+      const Index slot = slot_[static_cast<std::size_t>(shape.node[i])];
+      if (slot < 0) {
+        load.left_out_N_ += on_node.norm();
+        continue;
+      }
+      load.shown_N_ += on_node.norm();
+      auto there = load.zone_.segment<3>(3 * Eigen::Index{slot});
+      if (std::find(load.loaded_.begin(), load.loaded_.end(), slot) == load.loaded_.end()) load.loaded_.push_back(slot);
+      there += on_node.cast<float>();
+    }
+  }
+  if (to_skeleton_.size() == 0) {
+    load.skeleton_ = load.zone_;
+    return;
+  }
+  load.skeleton_.setZero();
+  for (const Index slot : load.loaded_)
+    load.skeleton_.noalias() +=
+        to_skeleton_.middleCols<3>(3 * Eigen::Index{slot}).lazyProduct(load.zone_.segment<3>(3 * Eigen::Index{slot}));
+}
+
+void DisplayField::displacement(std::span<const Index> nodes, const Load& load,
+                                Eigen::Ref<Eigen::Matrix3Xf> out) const {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Eigen::Index node = nodes[i];
+    Eigen::Vector3f u;
+    for (int axis = 0; axis < 3; ++axis) u[axis] = columns_.col(3 * node + axis).dot(load.skeleton_);
+    const Index near = near_slot_.empty() ? -1 : near_slot_[static_cast<std::size_t>(node)];
+    if (near >= 0) {
+      for (const Index slot : load.loaded_)
+        u.noalias() += near_rows_.block<3, 3>(3 * Eigen::Index{slot}, 3 * Eigen::Index{near}).transpose() *
+                       load.zone_.segment<3>(3 * Eigen::Index{slot});
+    }
+    out.col(static_cast<Eigen::Index>(i)) = u;
+  }
+}
+
+}  // namespace stylet

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "driven_needle.hpp"
+
+#include "stylet/reproduce/measure.hpp"
+#include "stylet/sim/simulation.hpp"
+#include "stylet/validate/context.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace stylet::validate {
+
+namespace {
+
+constexpr double kDepth_mm = 90.0;
+constexpr double kSpeed_mm_per_s = 20.0;
+constexpr double kDt_s = 1e-3;
+constexpr double kBackAndForth_mm = 15.0;
+constexpr double kFurther_mm = 1.0;
+constexpr int kCycles = 3;
+/// Steps with fewer of the most contacts are not of that number.
+constexpr double kShare = 0.85;
+
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Depth of the base at every step: in, back and forth, out.
+std::vector<double> depths(double start_mm) {
+  std::vector<double> turns{start_mm, kDepth_mm};
+  for (int cycle = 1; cycle <= kCycles; ++cycle) {
+    turns.push_back(turns.back() - kBackAndForth_mm);
+    turns.push_back(kDepth_mm + cycle * kFurther_mm);
+  }
+  turns.push_back(start_mm);
+  std::vector<double> result;
+  for (std::size_t k = 1; k < turns.size(); ++k) {
+    const double way = turns[k] - turns[k - 1];
+    const auto steps = std::lround(std::abs(way) / (kSpeed_mm_per_s * kDt_s));
+    for (long i = 1; i <= steps; ++i)
+      result.push_back(turns[k - 1] + way * static_cast<double>(i) / static_cast<double>(steps));
+  }
+  return result;
+}
+
+/// Time spent in each phase itself, not in phases within it.
+class PhaseClock final : public PhaseObserver {
+ public:
+  void start() {
+    us_.fill(0.0);
+    depth_ = 0;
+    stack_[0] = StepPhase::other;
+    last_ = Clock::now();
+  }
+  [[nodiscard]] const std::array<double, kStepPhases>& stop() {
+    book();
+    return us_;
+  }
+  void enter(StepPhase phase) noexcept override {
+    book();
+    if (depth_ + 1 < static_cast<int>(stack_.size())) stack_[static_cast<std::size_t>(++depth_)] = phase;
+  }
+  void leave() noexcept override {
+    book();
+    if (depth_ > 0) --depth_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void book() {
+    const Clock::time_point now = Clock::now();
+    us_[static_cast<std::size_t>(stack_[static_cast<std::size_t>(depth_)])] +=
+        std::chrono::duration<double, std::micro>(now - last_).count();
+    last_ = now;
+  }
+  std::array<double, kStepPhases> us_{};
+  std::array<StepPhase, 16> stack_{};
+  int depth_ = 0;
+  Clock::time_point last_;
+};
+
+/// Once in, back and forth, and out.
+void drive(Simulation& simulation, bool phases, long least, std::vector<DrivenStep>& steps, const Progress& progress) {
+  PhaseClock clock;
+  simulation.observe_phases(phases ? &clock : nullptr);
+  const PlannedInsertion& plan = simulation.model().insertions().front();
+  const Pose first = plan.motion.at(0.0);
+  simulation.place(first, plan.entry, plan.direction);
+  const double start = simulation.record().base_depth_mm;
+  const std::vector<double> way = depths(start);
+  const double wanted = static_cast<double>(std::max(least, static_cast<long>(way.size())));
+  steps.reserve(steps.size() + way.size());
+  for (const double depth : way) {
+    Pose base = first;
+    base.origin += (depth - start) * plan.direction;
+    simulation.prepare();
+    DrivenStep step;
+    const double wall = wall_s();
+    const double cpu = reproduce::thread_cpu_s();
+    if (phases) clock.start();
+    simulation.step(base, kDt_s);
+    if (phases) step.phase_us = clock.stop();
+    step.cpu_us = 1e6 * (reproduce::thread_cpu_s() - cpu);
+    step.wall_us = 1e6 * (wall_s() - wall);
+    step.contacts = simulation.record().contacts;
+    step.iterations = simulation.record().iterations;
+    step.events = static_cast<int>(simulation.new_events().size());
+    step.flagged = simulation.report().flags != 0;
+    steps.push_back(step);
+    if (steps.size() % 512 == 0) report(progress, "stepping", static_cast<double>(steps.size()) / wanted);
+  }
+  simulation.observe_phases(nullptr);
+}
+
+}  // namespace
+
+Scenario driven_scenario(int contacts) {
+  Scenario scenario = demo_scenario();
+  scenario.coupling.spacing_mm = (kDepth_mm + kCycles * kFurther_mm) / (contacts - 1);  // the tip is one of them
+  scenario.coupling.contacts = std::max(scenario.coupling.contacts, contacts + 20);
+  scenario.insertions.front().depth_mm = kDepth_mm + kCycles * kFurther_mm;
+  scenario.output.frames_per_s = 0.0;
+  return scenario;
+}
+
+std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
+                                     const Progress& progress) {
+  std::vector<DrivenStep> steps;
+  std::unique_ptr<Simulation> simulation;
+  for (int times = 0; times == 0 || static_cast<long>(steps.size()) < least; ++times) {
+    if (times % 2 == 0) simulation = std::make_unique<Simulation>(model);
+    drive(*simulation, phases, least, steps, progress);
+  }
+  return steps;
+}
+
+std::vector<std::size_t> full_steps(const std::vector<DrivenStep>& steps) {
+  int most = 0;
+  for (const DrivenStep& step : steps) most = std::max(most, step.contacts);
+  std::vector<std::size_t> full;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    if (steps[k].contacts >= kShare * most) full.push_back(k);
+  }
+  return full;
+}
+
+StepTimes quantiles(std::vector<double> us) {
+  if (us.empty()) return {};
+  std::sort(us.begin(), us.end());
+  const auto at = [&](double q) {
+    return us[std::min(us.size() - 1, static_cast<std::size_t>(q * static_cast<double>(us.size())))];
+  };
+  return {at(0.5), at(0.99), at(0.999), us.back()};
+}
+
+}  // namespace stylet::validate

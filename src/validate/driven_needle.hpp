@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/step_phases.hpp"
+#include "stylet/sim/model.hpp"
+#include "stylet/validate/scale_bench.hpp"
+
+#include <array>
+#include <vector>
+
+namespace stylet::validate {
+
+/// The insertion that steps are timed with: 90 mm in, back and forth by 15 mm at the deepest point, further in each
+/// time, and out. Steps with nearly all contacts are what a row of a benchmark is about.
+
+/// The default scenario with contacts as near each other as give so many of them.
+Scenario driven_scenario(int contacts);
+
+struct DrivenStep {
+  int contacts = 0;
+  int iterations = 0;
+  int events = 0;
+  bool flagged = false;
+  double cpu_us = 0.0;  ///< of the thread
+  double wall_us = 0.0;
+  std::array<double, kStepPhases> phase_us{};  ///< wall clock; of a run with phases
+};
+
+/// @param phases the clock is read whenever a step goes from one phase to another, which costs time itself
+/// @param least steps: the way is gone again until there are so many, by the same needle and a new one by turns
+std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
+                                     const Progress& progress);
+
+/// Which of the steps have nearly all contacts.
+std::vector<std::size_t> full_steps(const std::vector<DrivenStep>& steps);
+
+StepTimes quantiles(std::vector<double> us);
+
+}  // namespace stylet::validate

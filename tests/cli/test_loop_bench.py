@@ -1,0 +1,47 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet bench step and stylet bench display: what their rows hold, on the coarsest mesh. Times are the machine's."""
+import unittest
+
+from program import InFolder
+
+
+class StepBench(InFolder):
+    def test_divides_a_step_among_its_phases(self):
+        rows = self.json_of("bench", "step", "--nodes", "570")["rows"]
+        self.assertEqual([r["contacts"] for r in rows], [20, 40, 60])
+        for row in rows:
+            self.assertLess(abs(row["nodes"] - 570), 0.03 * 570)
+            self.assertGreater(row["steps"], 1000)
+            times = row["step_cpu_us"]
+            self.assertTrue(0 < times["p50"] <= times["p99"] <= times["p999"] <= times["max"])
+            for phases in (row["phase_us"], row["slow_phase_us"]):
+                self.assertEqual(len(phases), 10)
+                self.assertTrue(all(us >= 0 for us in phases.values()))
+                self.assertGreater(phases["solve"], 0)
+                self.assertGreater(phases["contacts"], 0)
+            self.assertGreater(sum(row["slow_phase_us"].values()), sum(row["phase_us"].values()))
+        self.refuse("bench", "step", "--nodes", "499", says=["--nodes", "499", "500"])
+
+
+class DisplayBench(InFolder):
+    def test_pictures_are_as_right_as_is_stated(self):
+        rows = self.json_of("bench", "display", "--nodes", "5000")["rows"]
+        self.assertEqual(len(rows), 2)
+        for row in rows:
+            self.assertGreater(row["frames"], 50)
+            self.assertGreater(row["surface_nodes"], 100)
+            self.assertGreater(row["slice_triangles"], 100)
+            self.assertGreater(row["surface_us"]["p50"], 0)
+            self.assertGreater(row["slice_us"]["p50"], 0)
+            self.assertGreater(row["largest_mm"], 0.1)
+            self.assertLess(row["error_mm"], row["stated_error_mm"] + 1e-4 * row["largest_mm"])
+            self.assertLessEqual(row["columns"], row["zone_dofs"])
+            self.assertEqual(row["left_out_N"], 0)
+        self.assertIsNone(rows[0]["coarse_error_mm"])
+        self.assertGreater(rows[1]["coarse_error_mm"], rows[1]["error_mm"])
+        self.refuse("bench", "display", "--nodes", "569", says=["--nodes", "569", "570"])
+
+
+if __name__ == "__main__":
+    unittest.main()
