@@ -20,6 +20,7 @@ struct Command {
 Command add_phantom_command(CLI::App& program);
 Command add_mesh_command(CLI::App& program);
 Command add_info_command(CLI::App& program);
+Command add_prepare_command(CLI::App& program);
 Command add_insert_command(CLI::App& program);
 Command add_reproduce_command(CLI::App& program);
 Command add_bench_command(CLI::App& program);

@@ -5,10 +5,6 @@
 
 #include "stylet/io/input.hpp"
 
-#include <array>
-#include <fstream>
-#include <string_view>
-
 namespace stylet::cli {
 
 namespace {
@@ -18,16 +14,13 @@ struct InfoArguments {
   double scale = 0;
 };
 
-/// Recordings are the only HDF5 files Stylet knows.
-bool is_hdf5(const std::string& file) {
-  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
-  std::array<char, signature.size()> begin{};
-  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == signature;
-}
-
 Result<Description> description_of(const InfoArguments& arguments) {
-  if (is_hdf5(arguments.file)) {
+  if (is_model_file(arguments.file)) {
+    const Result<ModelFile> model = read_model_file(arguments.file);
+    if (!model) return model.error();
+    return describe(*model);
+  }
+  if (is_hdf5_file(arguments.file)) {
     const Result<RunRecording> run = read_recording(arguments.file);
     if (!run) return run.error();
     return describe(*run);
@@ -50,7 +43,8 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
 
 Command add_info_command(CLI::App& program) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* app = program.add_subcommand("info", "Say what is in a contour set, mask, mesh, surface or recording");
+  CLI::App* app =
+      program.add_subcommand("info", "Say what is in a contour set, mask, mesh, surface, saved model or recording");
   app->add_option("FILE", arguments->file, "File, or folder with one DICOM RTSTRUCT in it")->required();
   app->add_option("--scale", arguments->scale,
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")

@@ -3,7 +3,7 @@
 #include "describe.hpp"
 #include "mesh_report.hpp"
 #include "output_path.hpp"
-#include "patient_model.hpp"
+#include "prepared_model.hpp"
 #include "table.hpp"
 
 #include "stylet/io/results_writer.hpp"
@@ -150,48 +150,34 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   }
   if (arguments.scenario.empty())
     return input_error("insert", "no scenario is given", "Name a scenario file, for example scenarios/demo.toml");
-  const Result<Scenario> scenario = read_scenario(arguments.scenario, arguments.settings);
-  if (!scenario) return scenario.error();
   const std::filesystem::path folder =
       arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
 
-  std::vector<std::vector<MotionSample>> motions;
-  for (const InsertionPlan& plan : scenario->insertions) {
-    motions.emplace_back();
-    if (plan.motion.empty()) continue;
-    Result<std::vector<MotionSample>> motion = read_motion_csv(plan.motion);
-    if (!motion) return motion.error();
-    motions.back() = std::move(*motion);
-  }
+  const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console);
+  if (!prepared) return prepared.error();
+  for (const std::string& note : prepared->notes) console.detail(note);
+  const std::shared_ptr<const Model>& model = prepared->model;
+  const Scenario& scenario = model->scenario();
+  for (const std::string& warning : model->warnings()) console.warn(warning);
 
-  const Progress progress = console.progress();
-  Result<MeshedAnatomy> patient = patient_model(*scenario, arguments.scenario, progress);
-  if (!patient) return patient.error();
-  for (const std::string& note : patient->report.notes) console.detail(note);
-
-  const Result<std::shared_ptr<const Model>> model =
-      Model::compile(*scenario, std::move(patient->mesh), arguments.scenario, motions, progress);
-  if (!model) return model.error();
-  for (const std::string& warning : (*model)->warnings()) console.warn(warning);
-
-  RunInfo info = (*model)->info();
-  info.scenario_text = to_toml(*scenario);
-  info.warnings.insert(info.warnings.end(), patient->report.notes.begin(), patient->report.notes.end());
-  const Tissue& tissue = (*model)->tissue();
+  RunInfo info = model->info();
+  info.scenario_text = to_toml(scenario);
+  info.warnings.insert(info.warnings.end(), prepared->notes.begin(), prepared->notes.end());
+  const Tissue& tissue = model->tissue();
   Result<std::unique_ptr<ResultsWriter>> writer =
-      ResultsWriter::open(folder, info, (*model)->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
+      ResultsWriter::open(folder, info, model->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
   if (!writer) return writer.error();
+  const Progress progress = console.progress();
   Recorder recorder(**writer);
-  const Result<Summary> summary = run(*model, recorder, progress);
+  const Result<Summary> summary = run(model, recorder, progress);
   if (!summary) return summary.error();
-  if (Result<> finished = (*writer)->finish(*summary, progress, scenario->output.pictures); !finished) return finished;
+  if (Result<> finished = (*writer)->finish(*summary, progress, scenario.output.pictures); !finished) return finished;
 
-  for (std::size_t i = (*model)->warnings().size(); i < summary->warnings.size(); ++i)
-    console.warn(summary->warnings[i]);
+  for (std::size_t i = model->warnings().size(); i < summary->warnings.size(); ++i) console.warn(summary->warnings[i]);
   console.say(
-      fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario->name, summary->nodes, summary->tets, info.method));
+      fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario.name, summary->nodes, summary->tets, info.method));
   console.say(summary_text(*summary));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
   const Result<Json> json = written_summary(folder);
@@ -204,7 +190,8 @@ Command add_insert_command(CLI::App& program) {
   auto arguments = std::make_shared<InsertArguments>();
   CLI::App* app =
       program.add_subcommand("insert", "Insert a needle: run a scenario and write forces, displacements and a report");
-  app->add_option("SCENARIO", arguments->scenario, "Scenario file (TOML); --print-schema lists its keys")
+  app->add_option("SCENARIO", arguments->scenario,
+                  "Scenario file (TOML; --print-schema lists its keys), or a model that `stylet prepare` saved")
       ->type_name("SCENARIO.toml");
   app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
   app->add_option("--set", arguments->settings,

@@ -8,6 +8,7 @@
 #include "stylet/geom/quality.hpp"
 #include "stylet/geom/surface.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/io/model_file.hpp"
 #include "stylet/io/recording_io.hpp"
 
 #include <Eigen/Geometry>
@@ -28,6 +29,7 @@ Description describe(const LabelImage& image);
 Description describe(const TetMesh& mesh);
 Description describe(const std::vector<Surface>& surfaces);
 Description describe(const RunRecording& run);
+Description describe(const ModelFile& file);
 
 /// Keys that every description of a mesh shares: nodes, tets, dihedral_deg, edge_mm, radius_ratio_min.
 Json quality_json(const MeshQuality& quality);

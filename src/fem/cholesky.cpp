@@ -2,7 +2,10 @@
 #include "cholesky.hpp"
 
 #include "blas_threads.hpp"
+#include "ordering.hpp"
+#include "spd_inverse.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <new>
@@ -17,24 +20,6 @@ constexpr double kTinyPivot = 1e-13;
 
 // Right-hand sides taken through the factor together: enough for matrix products to pay, few enough to stay in memory.
 constexpr Eigen::Index kBatch = 192;
-
-cholmod_sparse view(const Eigen::SparseMatrix<double>& A, int xtype) {
-  assert(A.isCompressed());
-  cholmod_sparse out{};
-  out.nrow = static_cast<size_t>(A.rows());
-  out.ncol = static_cast<size_t>(A.cols());
-  out.nzmax = static_cast<size_t>(A.nonZeros());
-  out.p = const_cast<int*>(A.outerIndexPtr());  // CHOLMOD's interface knows no const; it only reads
-  out.i = const_cast<int*>(A.innerIndexPtr());
-  out.x = xtype == CHOLMOD_PATTERN ? nullptr : const_cast<double*>(A.valuePtr());
-  out.stype = -1;  // symmetric, read the lower triangle
-  out.itype = CHOLMOD_INT;
-  out.xtype = xtype;
-  out.dtype = CHOLMOD_DOUBLE;
-  out.sorted = 1;
-  out.packed = 1;
-  return out;
-}
 
 void quiet(cholmod_common& common) {
   cholmod_start(&common);
@@ -70,7 +55,7 @@ Cholesky::Cholesky() {
   common_.final_ll = 1;
   common_.nmethods = 1;
   common_.method[0].ordering = CHOLMOD_GIVEN;
-  common_.postorder = 1;
+  common_.postorder = 0;  // elimination_order() has done it
 }
 
 Cholesky::~Cholesky() {
@@ -79,7 +64,7 @@ Cholesky::~Cholesky() {
 }
 
 Cholesky::Failure Cholesky::factorise(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& nodes,
-                                      const Progress& progress) {
+                                      std::span<const int> last, const Progress& progress) {
   const OneBlasThread one_thread;
   const auto failure = [this] {
     switch (common_.status) {
@@ -93,15 +78,16 @@ Cholesky::Failure Cholesky::factorise(const Eigen::SparseMatrix<double>& K, cons
   };
 
   report(progress, "ordering", 0.0);
-  std::vector<int> node_order(static_cast<size_t>(nodes.cols()));
-  cholmod_sparse pattern = view(nodes, CHOLMOD_PATTERN);
-  if (!cholmod_metis(&pattern, nullptr, 0, 1, node_order.data(), &common_)) return failure();
+  const std::vector<int> node_order = elimination_order(nodes, last, common_);
+  if (node_order.empty()) return failure();
   std::vector<int> order(3 * node_order.size());
   for (size_t i = 0; i < node_order.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) order[3 * i + axis] = 3 * node_order[i] + axis;
   }
+  last_ = 3 * last.size();
 
   cholmod_sparse matrix = view(K, CHOLMOD_REAL);
+  cholmod_free_factor(&factor_, &common_);  // of an attempt that failed
   factor_ = cholmod_analyze_p(&matrix, order.data(), nullptr, 0, &common_);
   if (factor_ == nullptr) return failure();
 
@@ -151,6 +137,26 @@ MatX Cholesky::solve(const MatX& b) const {
     x.middleCols(first, count) = Eigen::Map<const MatX>(static_cast<const double*>(work.X->x), b.rows(), count);
   }
   return x;
+}
+
+MatX Cholesky::inverse_of_last(const Progress& progress) const {
+  const auto size = static_cast<Eigen::Index>(last_);
+  const auto first = static_cast<int>(factor_->n - last_);
+  MatX block = MatX::Zero(size, size);
+  const auto* super = static_cast<const int*>(factor_->super);
+  const auto* begin_rows = static_cast<const int*>(factor_->pi);
+  const auto* begin_values = static_cast<const int*>(factor_->px);
+  const auto* rows = static_cast<const int*>(factor_->s);
+  const auto* values = static_cast<const double*>(factor_->x);
+  for (size_t s = 0; s < factor_->nsuper; ++s) {
+    const std::ptrdiff_t height = begin_rows[s + 1] - begin_rows[s];
+    for (int column = std::max(first, super[s]); column < super[s + 1]; ++column) {
+      const std::ptrdiff_t j = column - super[s];
+      const double* below = values + begin_values[s] + j * height;
+      for (std::ptrdiff_t i = j; i < height; ++i) block(rows[begin_rows[s] + i] - first, column - first) = below[i];
+    }
+  }
+  return inverse_from_factor(std::move(block), progress);
 }
 
 double Cholesky::megabytes() const {

@@ -9,10 +9,13 @@
 
 #include <cholmod.h>
 
+#include <span>
+
 namespace stylet::detail {
 
-/// Sparse Cholesky factor P K Pᵀ = L Lᵀ by CHOLMOD's supernodal method under a METIS ordering, on one thread, so that
-/// the same matrix gives the same bits. Solving is const and may run in several threads at once.
+/// Sparse Cholesky factor P K Pᵀ = L Lᵀ by CHOLMOD's supernodal method under a METIS ordering. Nodes may be named that
+/// are eliminated last: the trailing block of L is then the factor of the inverse of their compliance. Solving is const
+/// and may run in several threads at once.
 /// @cite Chen2008 CHOLMOD @cite Karypis1998 METIS
 class Cholesky {
  public:
@@ -28,8 +31,9 @@ class Cholesky {
   /// @param K symmetric, both triangles stored, compressed (3b × 3b)
   /// @param nodes pattern of K's 3×3 blocks, symmetric with diagonal, compressed (b × b); ordering it instead of K
   ///   costs a ninth
+  /// @param last columns of `nodes`, each once, to be eliminated last, in this order
   Failure factorise(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& nodes,
-                    const Progress& progress);
+                    std::span<const int> last, const Progress& progress);
 
   /// CHOLMOD's own status number, for messages.
   [[nodiscard]] int status() const { return common_.status; }
@@ -40,12 +44,17 @@ class Cholesky {
   /// x = K⁻¹ b (3b × k). Throws std::bad_alloc when memory runs out.
   [[nodiscard]] MatX solve(const MatX& b) const;
 
+  /// The block of K⁻¹ between the nodes that were eliminated last, in their order (3l × 3l), symmetric to the last bit:
+  /// (K⁻¹)_ll = (L_ll L_llᵀ)⁻¹. No solves, one dense inverse.
+  [[nodiscard]] MatX inverse_of_last(const Progress& progress) const;
+
   [[nodiscard]] double megabytes() const;
   [[nodiscard]] Index entries() const;  ///< stored numbers of L
 
  private:
   cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;
+  std::size_t last_ = 0;  // columns of K
   Index failed_column_ = -1;
 };
 

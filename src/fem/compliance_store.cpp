@@ -16,6 +16,14 @@ ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue)
   for (const Index a : tissue_->fixed_nodes()) slot_[a] = kFixed;
 }
 
+ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue, MatX blocks)
+    : ComplianceStore(std::move(tissue)) {
+  nodes_ = tissue_->corridor();
+  blocks_ = std::move(blocks);
+  assert(blocks_.rows() == static_cast<Eigen::Index>(3 * nodes_.size()) && blocks_.cols() == blocks_.rows());
+  for (std::size_t slot = 0; slot < nodes_.size(); ++slot) slot_[nodes_[slot]] = static_cast<Index>(slot);
+}
+
 void ComplianceStore::add_nodes(std::span<const Index> nodes, const Progress& progress) {
   const std::size_t old = nodes_.size();
   for (const Index a : nodes) {

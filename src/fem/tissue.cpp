@@ -6,9 +6,12 @@
 #include "supports.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
+#include <new>
 
 namespace stylet {
 
@@ -20,9 +23,23 @@ struct Tissue::Parts {
   std::vector<Index> fixed;      // sorted
   std::vector<Index> first_dof;  // (n), -1 fixed
   Index free_dofs = 0;
+  std::vector<Index> corridor;  // free displacement nodes
   Eigen::SparseMatrix<double> K;
   detail::Cholesky factor;
   Statistics statistics;
+  std::once_flag factor_made;
+  std::atomic<bool> has_factor = false;
+
+  /// Assembles K and factorises it.
+  Result<> factorise(const Progress& progress);
+
+  /// K and its factor are there afterwards. Several threads may come.
+  void need_factor() {
+    std::call_once(factor_made, [this] {
+      if (has_factor) return;
+      if (auto made = factorise({}); !made) throw std::bad_alloc();  // anything else was seen when it was first built
+    });
+  }
 
   [[nodiscard]] detail::Discretisation::MaterialOf material_of() const {
     return [this](Index tet) { return materials[mesh.tet_region[tet]]; };
@@ -80,8 +97,8 @@ Result<> check_usable(const TetMesh& mesh) {
 
 }  // namespace
 
-Result<Tissue> Tissue::build(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
-                             const Progress& progress, Element element) {
+Result<Tissue> Tissue::build_later(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
+                                   Element element, const std::vector<Index>& corridor) {
   if (auto result = check_usable(mesh); !result) return result.error();
   if (auto result = check_materials(mesh, materials); !result) return result.error();
 
@@ -120,40 +137,60 @@ Result<Tissue> Tissue::build(TetMesh mesh, std::vector<Material> materials, std:
     parts->free_dofs += 3;
   }
 
+  std::vector<char> near = is_fixed;  // held ends count as the store counts them
+  for (const Index a : corridor) {
+    if (a >= 0 && a < parts->mesh.node_count()) near[a] = 1;
+  }
+  for (Index a = 0; a < discretisation.nodes(); ++a) {
+    const auto [one, other] = discretisation.ends(a);
+    if (parts->first_dof[a] >= 0 && near[one] && near[other]) parts->corridor.push_back(a);
+  }
+  return Tissue(std::move(parts));
+}
+
+Result<> Tissue::Parts::factorise(const Progress& progress) {
   report(progress, "assembling", 0.0);
-  auto assembled = detail::assemble(discretisation, parts->mesh.tet_count(), parts->material_of(), parts->first_dof,
-                                    parts->free_dofs);
-  parts->K.swap(assembled.K);
+  auto assembled = detail::assemble(*discretisation, mesh.tet_count(), material_of(), first_dof, free_dofs);
+  K.swap(assembled.K);
+  std::vector<int> last;
+  for (const Index a : corridor) last.push_back(first_dof[a] / 3);
 
   const auto start = std::chrono::steady_clock::now();
-  const auto failed = parts->factor.factorise(parts->K, assembled.pattern, progress);
-  parts->statistics.factor_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto failed = factor.factorise(K, assembled.pattern, last, progress);
+  statistics.factor_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   switch (failed) {
     case detail::Cholesky::Failure::none:
       break;
     case detail::Cholesky::Failure::not_positive_definite: {
-      const Index column = parts->factor.failed_column() / 3 * 3;
-      const auto& dofs = parts->first_dof;
-      const auto loose = static_cast<Index>(std::find(dofs.begin(), dofs.end(), column) - dofs.begin());
-      const auto [one, other] = discretisation.ends(loose);
-      return detail::loose_part(parts->mesh, is_fixed[one] ? other : one);
+      const Index column = factor.failed_column() / 3 * 3;
+      const auto loose = static_cast<Index>(std::find(first_dof.begin(), first_dof.end(), column) - first_dof.begin());
+      const auto [one, other] = discretisation->ends(loose);
+      return detail::loose_part(mesh, std::binary_search(fixed.begin(), fixed.end(), one) ? other : one);
     }
     case detail::Cholesky::Failure::out_of_memory:
       return failure("stiffness matrix",
-                     "memory ran out while factorising " + std::to_string(parts->free_dofs) + " degrees of freedom",
+                     "memory ran out while factorising " + std::to_string(free_dofs) + " degrees of freedom",
                      "Use a coarser mesh or a machine with more memory.");
     case detail::Cholesky::Failure::too_large:
-      return failure(
-          "stiffness matrix",
-          "the factor of " + std::to_string(parts->free_dofs) + " degrees of freedom has more than 2³¹ entries",
-          "Use a coarser mesh.");
+      return failure("stiffness matrix",
+                     "the factor of " + std::to_string(free_dofs) + " degrees of freedom has more than 2³¹ entries",
+                     "Use a coarser mesh.");
     case detail::Cholesky::Failure::refused:
-      return failure("stiffness matrix", "CHOLMOD refused it with status " + std::to_string(parts->factor.status()),
+      return failure("stiffness matrix", "CHOLMOD refused it with status " + std::to_string(factor.status()),
                      "This is a fault of the program: please report it with the mesh.");
   }
-  parts->statistics.factor_mb = parts->factor.megabytes();
-  parts->statistics.factor_entries = parts->factor.entries();
-  return Tissue(std::move(parts));
+  statistics.factor_mb = factor.megabytes();
+  statistics.factor_entries = factor.entries();
+  has_factor = true;
+  return Ok{};
+}
+
+Result<Tissue> Tissue::build(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
+                             const Progress& progress, Element element, const std::vector<Index>& corridor) {
+  auto tissue = build_later(std::move(mesh), std::move(materials), std::move(fixed), element, corridor);
+  if (!tissue) return tissue.error();
+  if (auto made = tissue->parts_->factorise(progress); !made) return made.error();
+  return tissue;
 }
 
 Tissue::Tissue(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -182,11 +219,21 @@ bool Tissue::is_fixed(Index node) const { return parts_->first_dof[node] < 0; }
 const std::vector<Index>& Tissue::fixed_nodes() const { return parts_->fixed; }
 Index Tissue::free_dofs() const { return parts_->free_dofs; }
 Index Tissue::first_dof(Index node) const { return parts_->first_dof[node]; }
-const Eigen::SparseMatrix<double>& Tissue::stiffness() const { return parts_->K; }
+const Eigen::SparseMatrix<double>& Tissue::stiffness() const {
+  parts_->need_factor();
+  return parts_->K;
+}
+const std::vector<Index>& Tissue::corridor() const { return parts_->corridor; }
+bool Tissue::has_factor() const { return parts_->has_factor; }
+MatX Tissue::compliance_of_corridor(const Progress& progress) const {
+  parts_->need_factor();
+  return parts_->factor.inverse_of_last(progress);
+}
 const Tissue::Statistics& Tissue::statistics() const { return parts_->statistics; }
 
 MatX Tissue::solve(const MatX& f) const {
   assert(f.rows() == 3 * Eigen::Index{displacement_nodes()});
+  parts_->need_factor();
   const auto& first = parts_->first_dof;
   MatX free(parts_->free_dofs, f.cols());
   for (Index a = 0; a < displacement_nodes(); ++a) {

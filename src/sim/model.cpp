@@ -23,6 +23,8 @@ constexpr double kTentingMax_mm = 20.0;
 constexpr double kLagMax_mm = 5.0;
 /// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
 constexpr double kBeyond_mm = 15.0;
+/// Nodes up to which tissue.element = "auto" averages pressure.
+constexpr Index kMostAveraged = 45000;
 
 bool is_gland(const std::string& region) {
   return region == "prostate" || region == "peripheral_zone" || region == "transition_zone" ||
@@ -79,12 +81,14 @@ CouplingSettings coupling_settings(const Scenario& s) {
 }
 
 /// The methods of Goksel et al. 2005 are there to be compared: all on the same linear tetrahedra, which two of them
-/// need.
-Element element_of(const Scenario& s) {
+/// need. Averaged pressure couples two rings of nodes: beyond some size its factor does not fit into memory, and
+/// locking has become small (docs/theory/tissue.md).
+Element element_of(const Scenario& s, Index nodes) {
   const std::string& method = s.coupling.method;
   const bool of_the_paper = method == "node-addition" || method == "node-repositioning" || method == "embedded" ||
                             s.coupling.engine != "condensed";
-  return element_named(s.tissue_model.element).value_or(of_the_paper ? Element::p1 : Element::nodal_pressure);
+  const bool p1 = of_the_paper || nodes > kMostAveraged;
+  return element_named(s.tissue_model.element).value_or(p1 ? Element::p1 : Element::nodal_pressure);
 }
 
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
@@ -92,6 +96,8 @@ Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, in
   if (!section) return section.error();
   return make_needle(n.model, *section, n.elements, capacity + 2);  // the tip, and a guide
 }
+
+constexpr const char* kPrepareAgain = "Prepare the model again (stylet prepare)";
 
 /// Largest full inverse, kept twice, that an engine may ask for.
 constexpr double kLargestInverse_GB = 8.0;
@@ -104,6 +110,7 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
   PlannedInsertion recorded;
   recorded.name = fmt::format("recorded motion {}", number + 1);
   recorded.motion = BaseMotion(motion);
+  recorded.recorded = true;
   const Pose& first = motion.front().base;
   recorded.direction = first.rotation * Vec3::UnitZ();
   const Vec3 tip = tip_of(first);
@@ -129,6 +136,28 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
         "Use a longer needle (needle.length_mm), a smaller template.distance_mm, or template.guide = false");
   }
   return recorded;
+}
+
+/// Displacement nodes that elements have, ascending.
+std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& elements) {
+  std::vector<Index> nodes;
+  for (const Index t : elements) {
+    const auto of_element = tissue.nodes_of(t);
+    nodes.insert(nodes.end(), of_element.begin(), of_element.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+/// Around the ways of all needles.
+Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& insertions,
+                     const Scenario::Coupling& coupling) {
+  std::vector<std::array<Vec3, 2>> ways;
+  ways.reserve(insertions.size());
+  for (const PlannedInsertion& insertion : insertions)
+    ways.push_back({insertion.entry, insertion.entry + (insertion.depth_mm + kBeyond_mm) * insertion.direction});
+  return find_corridor(mesh, ways, coupling.corridor_mm, coupling.corridor_nodes);
 }
 
 /// The same message with the scenario's name in front of its place.
@@ -167,7 +196,7 @@ std::vector<std::string> tenting_warnings(const std::string& region, const Tissu
 
 Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, TetMesh mesh, const std::string& where,
                                                     const std::vector<std::vector<MotionSample>>& motions,
-                                                    const Progress& progress) {
+                                                    const Progress& progress, std::optional<ModelCompliance> known) {
   if (auto checked = check_scenario(scenario, where); !checked) return checked.error();
   if (auto checked = check_mesh(mesh, scenario.patient.source); !checked) return checked.error();
   for (const auto& [name, parameters] : scenario.tissue) {
@@ -234,16 +263,46 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
       model->warnings_.push_back(std::move(warning));
   }
 
+  const Corridor corridor = corridor_of(mesh, insertions, scenario.coupling);
+  model->corridor_mm_ = std::max(0.0, corridor.radius_mm);
+  const bool near_field = model->coupling_.method == CouplingSettings::Method::near_field;
+  const bool condensed = model->coupling_.engine == CouplingSettings::Engine::condensed;
+  if (condensed && corridor.radius_mm < scenario.coupling.corridor_mm) {
+    model->warnings_.push_back(fmt::format(
+        "Compliance is prepared within {:.1f} mm of the planned path instead of coupling.corridor_mm = {:g}: more "
+        "would be that of over {} nodes. Beyond, it takes a solve when the needle comes; coupling.corridor_nodes "
+        "raises the limit.",
+        model->corridor_mm_, scenario.coupling.corridor_mm, scenario.coupling.corridor_nodes));
+  }
+  const Element element = element_of(scenario, mesh.node_count());
+  if (element != element_of(scenario, 0)) {
+    model->warnings_.push_back(
+        fmt::format("Linear tetrahedra (tissue.element = \"p1\") are used on this mesh of {} nodes, more than {}: "
+                    "averaged pressure "
+                    "would need too much memory. They are somewhat stiff where Poisson's ratio is near 0.5.",
+                    mesh.node_count(), kMostAveraged));
+  }
+  const std::vector<Index> last = condensed ? corridor.nodes : std::vector<Index>{};
   report(progress, "factorising the tissue", 0.0);
   auto tissue =
-      Tissue::build(std::move(mesh), std::move(materials), model->supports_.nodes, progress, element_of(scenario));
+      known ? Tissue::build_later(std::move(mesh), std::move(materials), model->supports_.nodes, element, last)
+            : Tissue::build(std::move(mesh), std::move(materials), model->supports_.nodes, progress, element, last);
   if (!tissue) return named(tissue.error(), where);
   model->tissue_ = std::make_shared<const Tissue>(std::move(*tissue));
-  model->topology_ = std::make_unique<Topology>(model->tissue_->mesh());
+  const auto corridor_dofs = static_cast<Eigen::Index>(3 * model->tissue_->corridor().size());
+  if (known && (known->store.rows() != corridor_dofs || known->store.cols() != corridor_dofs)) {
+    return input_error(where,
+                       fmt::format("the compliance that comes with it is that of {} nodes, the corridor has {}",
+                                   known->store.rows() / 3, corridor_dofs / 3),
+                       kPrepareAgain);
+  }
+  model->topology_ = std::make_unique<Topology>(std::move(topology));
   model->locator_ = std::make_unique<Locator>(model->tissue_->mesh(), *model->topology_);
-  model->store_ = std::make_shared<ComplianceStore>(model->tissue_);
+  report(progress, "compliance", 0.0);
+  model->store_ = std::make_shared<ComplianceStore>(
+      model->tissue_, known ? std::move(known->store) : model->tissue_->compliance_of_corridor(progress));
   model->insertions_ = std::move(insertions);
-  if (model->coupling_.engine != CouplingSettings::Engine::condensed) {
+  if (!condensed) {
     const double dofs = model->tissue_->free_dofs() + 3.0 * model->coupling_.capacity;
     const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // as it was at first, and as it is
     if (gigabytes > kLargestInverse_GB) {
@@ -255,13 +314,14 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     }
     model->inverse_ = std::make_shared<const MatX>(paper::full_inverse(*model->tissue_, progress));
   }
-  const bool near_field = model->coupling_.method == CouplingSettings::Method::near_field;
-  if (near_field) model->kernel_ = std::make_shared<MeshKernel>(model->tissue_, *model->topology_);
-  for (const PlannedInsertion& insertion : model->insertions_) {
-    const Vec3 end = insertion.entry + (insertion.depth_mm + kBeyond_mm) * insertion.direction;
-    const auto nodes = corridor_nodes(*model->tissue_, insertion.entry, end, scenario.coupling.corridor_mm);
-    if (!model->inverse_) model->store_->add_nodes(nodes, progress);
-    if (near_field) model->kernel_->add_nodes(nodes, progress);
+  if (near_field) {
+    model->kernel_ = std::make_shared<MeshKernel>(model->tissue_, *model->topology_);
+    const std::vector<Index> nodes = nodes_of(*model->tissue_, corridor.elements);
+    if (!known) {
+      model->kernel_->add_nodes(nodes, progress);
+    } else if (!model->kernel_->add_nodes(nodes, known->kernel)) {
+      return input_error(where, "the near field that comes with it is not that of the corridor", kPrepareAgain);
+    }
   }
   return std::shared_ptr<const Model>(std::move(model));
 }

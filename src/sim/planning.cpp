@@ -118,27 +118,44 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   return result;
 }
 
-std::vector<Index> corridor_nodes(const Tissue& tissue, const Vec3& from, const Vec3& to, double radius_mm) {
-  const TetMesh& mesh = tissue.mesh();
-  const Vec3 way = to - from;
-  const double length2 = std::max(way.squaredNorm(), 1e-12);
-  std::vector<char> wanted(static_cast<std::size_t>(tissue.displacement_nodes()), 0);
+Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2>>& ways, double radius_mm,
+                       int most_nodes) {
+  std::vector<std::pair<double, Index>> near;  // distance of an element, element
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const auto& tet = mesh.tets[static_cast<std::size_t>(t)];
-    // An element counts when its bounding ball meets the corridor.
+    // An element's place is that of its bounding ball.
     Vec3 centre = Vec3::Zero();
     for (const Index node : tet) centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
     double ball = 0.0;
     for (const Index node : tet) ball = std::max(ball, (mesh.nodes[static_cast<std::size_t>(node)] - centre).norm());
-    const double f = std::clamp((centre - from).dot(way) / length2, 0.0, 1.0);
-    if ((centre - from - f * way).norm() > radius_mm + ball) continue;
-    for (const Index node : tissue.nodes_of(t)) wanted[static_cast<std::size_t>(node)] = 1;
+    double distance = std::numeric_limits<double>::infinity();
+    for (const auto& [from, to] : ways) {
+      const Vec3 way = to - from;
+      const double f = std::clamp((centre - from).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+      distance = std::min(distance, (centre - from - f * way).norm() - ball);
+    }
+    if (distance <= radius_mm) near.emplace_back(distance, t);
   }
-  std::vector<Index> nodes;
-  for (std::size_t node = 0; node < wanted.size(); ++node) {
-    if (wanted[node]) nodes.push_back(static_cast<Index>(node));
+  std::sort(near.begin(), near.end());
+  Corridor corridor;
+  corridor.radius_mm = radius_mm;
+  std::vector<char> taken(mesh.nodes.size(), 0);
+  int count = 0;
+  for (const auto& [distance, t] : near) {
+    const auto& tet = mesh.tets[static_cast<std::size_t>(t)];
+    for (const Index node : tet) count += taken[static_cast<std::size_t>(node)] ? 0 : 1;
+    if (count > most_nodes) {
+      corridor.radius_mm = distance;
+      break;
+    }
+    for (const Index node : tet) taken[static_cast<std::size_t>(node)] = 1;
+    corridor.elements.push_back(t);
   }
-  return nodes;
+  std::sort(corridor.elements.begin(), corridor.elements.end());
+  for (Index node = 0; node < mesh.node_count(); ++node) {
+    if (taken[static_cast<std::size_t>(node)]) corridor.nodes.push_back(node);
+  }
+  return corridor;
 }
 
 }  // namespace stylet

@@ -21,7 +21,17 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
                                         const Locator& locator, const std::vector<int>& target,
                                         const std::string& where);
 
-/// Displacement nodes of all elements within `radius` of the segment from `from` to `to`.
-std::vector<Index> corridor_nodes(const Tissue& tissue, const Vec3& from, const Vec3& to, double radius_mm);
+/// Where compliance is computed before the start.
+struct Corridor {
+  std::vector<Index> elements;  ///< ascending
+  std::vector<Index> nodes;     ///< of the mesh, those of the elements, ascending
+  double radius_mm = 0.0;       ///< around the needles' lines, every element it meets is there
+};
+
+/// The elements within a radius of straight ways, or as many of the nearest as have `most_nodes` nodes.
+/// @param ways [mm] LPS from, to
+/// @param radius_mm at most this
+Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2>>& ways, double radius_mm,
+                       int most_nodes);
 
 }  // namespace stylet

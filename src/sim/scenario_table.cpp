@@ -42,7 +42,8 @@ void describe_tissue(ScenarioEntries& keys) {
       "finite element; p1 = linear tetrahedra, stiffen as Poisson's ratio nears 0.5; nodal-pressure = linear "
       "tetrahedra with the change of volume averaged around nodes, do not; p2 = quadratic tetrahedra, nearly do "
       "not, eight times the nodes; auto = p1 with the coupling methods node-addition, "
-      "node-repositioning and embedded, else nodal-pressure",
+      "node-repositioning and embedded and on meshes of more than 45,000 nodes, where the factor of nodal-pressure "
+      "takes more than 6 GB, else nodal-pressure",
       [](auto& s, const Slot&) { return &s.tissue_model.element; });
   keys.number("tissue.relaxation_s", "s", 0, 100,
               "relaxation time of all tissue (Kelvin-Voigt): under a constant force it yields as 1 - exp(-t/time); 0 = "
@@ -186,6 +187,11 @@ void describe_coupling(ScenarioEntries& keys) {
   keys.number("coupling.corridor_mm", "mm", 1, 50,
               "radius around the planned path in which compliance is computed before the start",
               [](auto& s, const Slot&) { return &s.coupling.corridor_mm; });
+  keys.integer(
+      "coupling.corridor_nodes", 1, 20000,
+      "most nodes of the mesh in it, the nearest; n of them take 72 n² bytes. Elsewhere compliance is computed "
+      "when the needle comes",
+      [](auto& s, const Slot&) { return &s.coupling.corridor_nodes; });
   keys.integer("coupling.contacts", 8, 400, "largest number of contacts",
                [](auto& s, const Slot&) { return &s.coupling.contacts; });
   keys.number("coupling.tolerance", "", 1e-12, 1e-4,

@@ -9,6 +9,8 @@ namespace stylet {
 namespace {
 
 constexpr double kPrepare_mm = 6.0;
+/// Of the corridor's radius at most: a needle on its planned way must not ask for more than is there.
+constexpr double kPrepareShare = 0.75;
 constexpr int kNeedleSamples = 81;
 /// The base has turned back when it is this far from where it was furthest: a hand trembles.
 constexpr double kTurn_mm = 0.05;
@@ -91,7 +93,7 @@ void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& directio
   record_.tip_mm = insertion_.needle().point(insertion_.needle().length());
 }
 
-void Simulation::prepare() { insertion_.prepare(kPrepare_mm); }
+void Simulation::prepare() { insertion_.prepare(std::min(kPrepare_mm, kPrepareShare * model_->corridor_mm())); }
 
 void Simulation::add_event(EventKind kind, double force_N, int region) {
   if (event_count_ == static_cast<int>(events_.size())) return;

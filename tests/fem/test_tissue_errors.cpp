@@ -99,6 +99,14 @@ TEST(TissueErrors, APartThatHangsOnByAnEdgeIsFoundLoose) {
   const TetMesh corner =
       join(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}), box_mesh({40, 40, 40}, {60, 60, 60}, {2, 2, 2}), true);
   expect_refused(corner, {kSoft}, floor_nodes(corner), {"not held", "single node or edge"});
+  // Wherever its nodes come in the elimination.
+  const auto all = nodes_where(corner, [](const Vec3&) { return true; });
+  const auto upper = nodes_where(corner, [](const Vec3& x) { return x.z() > 40; });
+  for (const auto& corridor : {all, upper}) {
+    const auto tissue = Tissue::build(corner, {kSoft}, floor_nodes(corner), {}, Element::p1, corridor);
+    ASSERT_FALSE(tissue);
+    EXPECT_NE(tissue.error().message().find("single node or edge"), std::string::npos) << tissue.error().message();
+  }
 }
 
 TEST(TissueErrors, AllNodesFixedIsRefused) {

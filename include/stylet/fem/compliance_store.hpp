@@ -14,6 +14,10 @@ class ComplianceStore {
  public:
   explicit ComplianceStore(std::shared_ptr<const Tissue> tissue);
 
+  /// The blocks among the tissue's corridor(), known from elsewhere.
+  /// @param blocks [mm/N] (3c × 3c) as Tissue::compliance_of_corridor() gives them
+  ComplianceStore(std::shared_ptr<const Tissue> tissue, MatX blocks);
+
   /// Makes all blocks among `nodes` and those stored before available, and those of the nodes that the kind of element
   /// adds between two of them. Solves in batches; one call for many nodes costs less than many calls. Numbers outside
   /// the mesh are passed over. Not for the step.
@@ -31,6 +35,10 @@ class ComplianceStore {
     if (row < 0 || column < 0) return Mat3::Zero();
     return blocks_.block<3, 3>(3 * Eigen::Index{row}, 3 * Eigen::Index{column});
   }
+
+  /// All blocks (3 nodes × 3 nodes) [mm/N], in the order of stored().
+  [[nodiscard]] const MatX& blocks() const { return blocks_; }
+  [[nodiscard]] const std::vector<Index>& stored() const { return nodes_; }
 
   [[nodiscard]] Index stored_nodes() const { return static_cast<Index>(nodes_.size()); }
   [[nodiscard]] double megabytes() const { return static_cast<double>(blocks_.size()) * 8.0 / 1048576.0; }

@@ -27,8 +27,15 @@ class Tissue {
   /// @param materials one per region of the mesh
   /// @param fixed node numbers held at zero displacement; enough to exclude rigid motion, else an error says so. A
   ///   node that the kind of element adds between two of them is held as well.
+  /// @param corridor nodes of the mesh whose compliance will be asked for, see compliance_of_corridor()
   static Result<Tissue> build(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
-                              const Progress& progress = {}, Element element = Element::p1);
+                              const Progress& progress = {}, Element element = Element::p1,
+                              const std::vector<Index>& corridor = {});
+
+  /// The same without its factor, for a tissue whose compliance is known already: what needs the factor makes it when
+  /// first called, once, whichever thread comes first. Memory that runs out then is a std::bad_alloc.
+  static Result<Tissue> build_later(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
+                                    Element element, const std::vector<Index>& corridor);
 
   Tissue(Tissue&&) noexcept;
   Tissue& operator=(Tissue&&) noexcept;
@@ -65,6 +72,17 @@ class Tissue {
   /// @param f [N] (3n × k) over all nodes, rows of fixed nodes are ignored
   /// @return [mm] (3n × k), zero at fixed nodes
   [[nodiscard]] MatX solve(const MatX& f) const;
+
+  /// The corridor's nodes that can move, with those that the kind of element adds between two of them.
+  [[nodiscard]] const std::vector<Index>& corridor() const;
+
+  /// K⁻¹ between the nodes of corridor(), in their order [mm/N] (3c × 3c), symmetric to the last bit. They are
+  /// eliminated last, so this is the inverse of a dense block of the factor, without a solve for each of them
+  /// (docs/theory/tissue.md, Compliance). Allocates and takes O(c³); ask once.
+  [[nodiscard]] MatX compliance_of_corridor(const Progress& progress = {}) const;
+
+  /// Whether the factor is there.
+  [[nodiscard]] bool has_factor() const;
 
   /// Forces the supports exert on the tissue [N] (3n), non-zero at fixed nodes only: K_full u on their rows.
   [[nodiscard]] VecX support_forces(const VecX& u) const;

@@ -21,6 +21,10 @@ namespace stylet {
 ///        starts at the current folder or, where nothing is there, at the scenario file's.
 Result<Scenario> read_scenario(const std::filesystem::path& path, std::span<const std::string> settings = {});
 
+/// The same of a text, as if it were the content of the file `path`.
+Result<Scenario> parse_scenario(const std::string& text, const std::filesystem::path& path,
+                                std::span<const std::string> settings = {});
+
 /// The scenario in full, defaults included, as a TOML file with units as comments. Reading it back gives the same
 /// scenario, provided that patient.source and motions are absolute (as read_scenario() makes them).
 std::string to_toml(const Scenario& scenario);

@@ -9,6 +9,7 @@
 #include "stylet/sim/supports.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace stylet {
 
@@ -18,7 +19,14 @@ struct PlannedInsertion {
   Vec3 entry = Vec3::Zero();       ///< [mm] LPS skin point on the needle's line
   Vec3 direction = Vec3::UnitZ();  ///< unit, LPS
   double depth_mm = 0.0;           ///< of the base beyond skin contact
+  bool recorded = false;           ///< follows a motion that was given
   BaseMotion motion;
+};
+
+/// What takes long to compute of a model.
+struct ModelCompliance {
+  MatX store;                  ///< [mm/N] (3c × 3c) K⁻¹ among the nodes of Tissue::corridor()
+  std::vector<double> kernel;  ///< MeshKernel::numbers() of the corridor; empty without a near field
 };
 
 /// A scenario compiled: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable but for
@@ -28,9 +36,13 @@ class Model {
   /// @param mesh the patient's tetrahedra, regions by canonical names
   /// @param motions recorded base motions, one per insertion, empty where the plan is to be followed
   /// @param where what to call the scenario in messages
+  /// @param known what compile() computed for the same scenario and mesh before: the stiffness is then factorised only
+  ///   when something asks for what is not in it. Refused where the sizes do not fit; whether it belongs to the model
+  ///   is the caller's to know.
   static Result<std::shared_ptr<const Model>> compile(const Scenario& scenario, TetMesh mesh, const std::string& where,
                                                       const std::vector<std::vector<MotionSample>>& motions = {},
-                                                      const Progress& progress = {});
+                                                      const Progress& progress = {},
+                                                      std::optional<ModelCompliance> known = {});
 
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const TetMesh& mesh() const { return tissue_->mesh(); }
@@ -45,6 +57,9 @@ class Model {
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
+  /// Radius around the planned ways in which compliance is there from the start [mm]: coupling.corridor_mm, or less
+  /// where that has more than coupling.corridor_nodes.
+  [[nodiscard]] double corridor_mm() const { return corridor_mm_; }
   [[nodiscard]] const std::vector<int>& target_regions() const { return target_; }
   [[nodiscard]] const Supports& supports() const { return supports_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -68,6 +83,7 @@ class Model {
   std::vector<RegionLaws> laws_;
   std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;
+  double corridor_mm_ = 0.0;
   std::vector<PlannedInsertion> insertions_;
   std::vector<int> target_;
   Supports supports_;

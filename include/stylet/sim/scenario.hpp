@@ -130,6 +130,7 @@ struct Scenario {
     double tip_viscosity_Ns_per_m = 2.0;
     double grazing_deg = 80.0;
     double corridor_mm = 8.0;
+    int corridor_nodes = 3500;
     int contacts = 96;
     double tolerance = 1e-9;
     bool operator==(const Coupling&) const = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
 
+#include "stylet/core/parallel.hpp"
 #include "stylet/coupling/near_field/half_space.hpp"
 #include "stylet/fem/patch.hpp"
 
@@ -66,15 +67,41 @@ Medium MeshKernel::medium(int number) const {
   return {material.mu(), material.poisson};
 }
 
-MeshKernel::Row MeshKernel::make_row(Index node) const {
+MeshKernel::Patch MeshKernel::patch_of(Index node) const {
+  const Tissue& tissue = *tissue_;
+  const auto around = [&](Index of) -> const std::vector<Index>& { return node_tets_[static_cast<std::size_t>(of)]; };
+  const int rings = tissue.nodes_of(0).size() == 4 ? kRings : kRingsOfQuadratic;
+  Patch patch;
+  patch.nodes = {node};
+  for (int ring = 0; ring < rings; ++ring) {
+    patch.tets.clear();
+    for (const Index at : patch.nodes) patch.tets.insert(patch.tets.end(), around(at).begin(), around(at).end());
+    sort_unique(patch.tets);
+    patch.nodes.clear();
+    for (const Index tet : patch.tets) {
+      const auto nodes = tissue.nodes_of(tet);
+      patch.nodes.insert(patch.nodes.end(), nodes.begin(), nodes.end());
+    }
+    sort_unique(patch.nodes);
+  }
+  // Nodes with all their elements in the patch move; the others, and held ones, follow the kernel.
+  for (const Index at : patch.nodes) {
+    const bool inside = std::all_of(around(at).begin(), around(at).end(), [&](Index tet) {
+      return std::binary_search(patch.tets.begin(), patch.tets.end(), tet);
+    });
+    patch.moves.push_back(inside && !tissue.is_fixed(at));
+  }
+  return patch;
+}
+
+MeshKernel::Row MeshKernel::make_row(Index node, const Patch& patch) const {
   const Tissue& tissue = *tissue_;
   const Vec3 x = tissue.node_position(node);
   Row row;
   row.node = node;
-  const auto around = [&](Index of) -> const std::vector<Index>& { return node_tets_[static_cast<std::size_t>(of)]; };
   double length = 0.0;
   int edges = 0;
-  for (const Index tet : around(node)) {
+  for (const Index tet : node_tets_[static_cast<std::size_t>(node)]) {
     for (const Index corner : tissue.mesh().tets[static_cast<std::size_t>(tet)]) {
       if (corner == node) continue;
       length += (tissue.mesh().nodes[static_cast<std::size_t>(corner)] - x).norm();
@@ -84,59 +111,47 @@ MeshKernel::Row MeshKernel::make_row(Index node) const {
   row.edge = length / edges;
   row.skin = skin_.nearest(x);
   row.skin.share = fading(row.skin.depth / row.edge);
-
-  const int rings = tissue.nodes_of(0).size() == 4 ? kRings : kRingsOfQuadratic;
-  std::vector<Index> tets;
-  std::vector<Index> reached{node};
-  for (int ring = 0; ring < rings; ++ring) {
-    tets.clear();
-    for (const Index at : reached) tets.insert(tets.end(), around(at).begin(), around(at).end());
-    sort_unique(tets);
-    reached.clear();
-    for (const Index tet : tets) {
-      const auto nodes = tissue.nodes_of(tet);
-      reached.insert(reached.end(), nodes.begin(), nodes.end());
-    }
-    sort_unique(reached);
-  }
-
-  // Nodes with all their elements in the patch move; the others, and held ones, follow the kernel.
-  std::vector<Eigen::Index> moving;
-  std::vector<Eigen::Index> rim;
-  for (std::size_t k = 0; k < reached.size(); ++k) {
-    const auto& tets_there = around(reached[k]);
-    const bool inside = std::all_of(tets_there.begin(), tets_there.end(),
-                                    [&](Index tet) { return std::binary_search(tets.begin(), tets.end(), tet); });
-    const bool moves = inside && !tissue.is_fixed(reached[k]);
-    if (moves) row.near.push_back(reached[k]);
-    for (int axis = 0; axis < 3; ++axis) (moves ? moving : rim).push_back(3 * static_cast<Eigen::Index>(k) + axis);
+  for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
+    if (patch.moves[k]) row.near.push_back(patch.nodes[k]);
   }
   if (tissue.is_fixed(node)) row.near.clear();  // nothing to solve for: the kernel will do
+  row.blocks.assign(poisson_.size(), std::vector<Mat3>(row.near.size(), Mat3::Zero()));
+  return row;
+}
 
+void MeshKernel::solve(Row& row, const Patch& patch) const {
+  const Tissue& tissue = *tissue_;
+  if (tissue.is_fixed(row.node)) return;
+  const Vec3 x = tissue.node_position(row.node);
+  std::vector<Eigen::Index> moving;
+  std::vector<Eigen::Index> rim;
+  for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
+    for (int axis = 0; axis < 3; ++axis)
+      (patch.moves[k] ? moving : rim).push_back(3 * static_cast<Eigen::Index>(k) + axis);
+  }
+  const auto rim_node = [&](std::size_t k) { return patch.nodes[static_cast<std::size_t>(rim[k] / 3)]; };
   std::vector<NearSurface> at_rim;
   for (std::size_t k = 0; k < rim.size(); k += 3) {
-    at_rim.push_back(skin_.nearest(tissue.node_position(reached[static_cast<std::size_t>(rim[k] / 3)])));
+    at_rim.push_back(skin_.nearest(tissue.node_position(rim_node(k))));
     at_rim.back().share = row.skin.share;  // all around one source alike
   }
   for (int m = 0; m < static_cast<int>(poisson_.size()); ++m) {
-    std::vector<Mat3>& blocks = row.blocks.emplace_back(row.near.size(), Mat3::Zero());
-    if (tissue.is_fixed(node)) continue;
-    const PatchStiffness patch = patch_stiffness(tissue, tets, {kUnit_MPa, poisson_[static_cast<std::size_t>(m)]});
+    const PatchStiffness stiffness =
+        patch_stiffness(tissue, patch.tets, {kUnit_MPa, poisson_[static_cast<std::size_t>(m)]});
     MatX prescribed(static_cast<Eigen::Index>(rim.size()), 3);
     for (std::size_t k = 0; k < rim.size(); k += 3) {
-      const Vec3 r = tissue.node_position(reached[static_cast<std::size_t>(rim[k] / 3)]) - x;
+      const Vec3 r = tissue.node_position(rim_node(k)) - x;
       prescribed.middleRows<3>(static_cast<Eigen::Index>(k)) =
           kelvinlet(r, kPoint_mm, medium(m)) + surface_image(r, at_rim[k / 3], row.skin, kPoint_mm, medium(m));
     }
-    MatX f = -patch.K(moving, rim) * prescribed;
-    const auto own = std::lower_bound(reached.begin(), reached.end(), node) - reached.begin();
+    MatX f = -stiffness.K(moving, rim) * prescribed;
+    const auto own = std::lower_bound(patch.nodes.begin(), patch.nodes.end(), row.node) - patch.nodes.begin();
     const auto load = std::find(moving.begin(), moving.end(), 3 * own) - moving.begin();
     f.middleRows<3>(load) += Mat3::Identity();
-    const MatX u = patch.K(moving, moving).eval().llt().solve(f);
-    for (std::size_t k = 0; k < row.near.size(); ++k)
-      blocks[k] = u.middleRows<3>(3 * static_cast<Eigen::Index>(k));  // moving nodes, in this order
+    const MatX u = stiffness.K(moving, moving).eval().llt().solve(f);
+    for (std::size_t k = 0; k < row.near.size(); ++k)  // moving nodes, in this order
+      row.blocks[static_cast<std::size_t>(m)][k] = u.middleRows<3>(3 * static_cast<Eigen::Index>(k));
   }
-  return row;
 }
 
 const Mat3* MeshKernel::find(const Row& row, Index node, int medium) const {
@@ -145,17 +160,69 @@ const Mat3* MeshKernel::find(const Row& row, Index node, int medium) const {
   return &row.blocks[static_cast<std::size_t>(medium)][static_cast<std::size_t>(found - row.near.begin())];
 }
 
-void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progress) {
-  const std::size_t old = rows_.size();
-  std::size_t done = 0;
+std::vector<Index> MeshKernel::missing(std::span<const Index> nodes) const {
+  std::vector<Index> wanted;
   for (const Index node : nodes) {
-    if (done++ % 16 == 0) report(progress, "near field", static_cast<double>(done) / static_cast<double>(nodes.size()));
-    if (node < 0 || node >= tissue_->displacement_nodes() || has(node)) continue;
-    Row row = make_row(node);
-    slot_[static_cast<std::size_t>(node)] = static_cast<Index>(rows_.size());
+    if (node >= 0 && node < tissue_->displacement_nodes() && !has(node)) wanted.push_back(node);
+  }
+  sort_unique(wanted);
+  return wanted;
+}
+
+void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progress) {
+  const std::vector<Index> wanted = missing(nodes);
+  const std::size_t old = rows_.size();
+  rows_.resize(old + wanted.size());
+  constexpr std::size_t together = 16;
+  for_each_in_parallel((wanted.size() + together - 1) / together,
+                       [&](std::size_t piece) {
+                         const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
+                         for (std::size_t k = piece * together; k < end; ++k) {
+                           const Patch patch = patch_of(wanted[k]);
+                           rows_[old + k] = make_row(wanted[k], patch);
+                           solve(rows_[old + k], patch);
+                         }
+                       },
+                       progress, "near field");
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    slot_[static_cast<std::size_t>(wanted[k])] = static_cast<Index>(old + k);
+  make_symmetric(old);
+}
+
+std::vector<double> MeshKernel::numbers() const {
+  std::vector<double> all;
+  for (const Row& row : rows_) {
+    for (const auto& blocks : row.blocks) {
+      for (const Mat3& block : blocks) all.insert(all.end(), block.data(), block.data() + block.size());
+    }
+  }
+  return all;
+}
+
+bool MeshKernel::add_nodes(std::span<const Index> nodes, std::span<const double> numbers) {
+  const std::vector<Index> wanted = missing(nodes);
+  std::vector<Row> rows(wanted.size());
+  constexpr std::size_t together = 64;
+  for_each_in_parallel((wanted.size() + together - 1) / together, [&](std::size_t piece) {
+    const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
+    for (std::size_t k = piece * together; k < end; ++k) rows[k] = make_row(wanted[k], patch_of(wanted[k]));
+  });
+  std::size_t at = 0;
+  for (Row& row : rows) {
+    if (numbers.size() - at < 9 * poisson_.size() * row.near.size()) return false;
+    for (auto& blocks : row.blocks) {
+      for (Mat3& block : blocks) {
+        block = Eigen::Map<const Mat3>(numbers.data() + at);
+        at += 9;
+      }
+    }
+  }
+  if (at != numbers.size()) return false;
+  for (Row& row : rows) {
+    slot_[static_cast<std::size_t>(row.node)] = static_cast<Index>(rows_.size());
     rows_.push_back(std::move(row));
   }
-  make_symmetric(old);
+  return true;
 }
 
 /// Each patch gives its own answer for a pair of nodes; the mean of the two obeys action and reaction.

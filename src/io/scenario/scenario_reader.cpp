@@ -117,7 +117,7 @@ Result<> check_table(const std::string& pattern, const std::string& name, const 
                                   : fmt::format("Did you mean {}?", headers[at]));
 }
 
-Result<std::string> read_text(const fs::path& path) {
+Result<std::string> text_of(const fs::path& path) {
   const std::string where = path.string();
   const Result<FileKind> kind = identify(path);
   if (!kind) return input_error(where, kind.error().what, kHowTo);
@@ -146,9 +146,12 @@ Result<std::string> read_text(const fs::path& path) {
 ScenarioReader::ScenarioReader(const fs::path& file) : file_(file) {}
 
 Result<> ScenarioReader::read_file() {
-  const Result<std::string> text = read_text(file_);
-  if (!text) return text.error();
-  const auto items = parse_toml(*text, file_.string());
+  const Result<std::string> text = text_of(file_);
+  return text ? read_text(*text) : Result<>(text.error());
+}
+
+Result<> ScenarioReader::read_text(const std::string& text) {
+  const auto items = parse_toml(text, file_.string());
   if (!items) return items.error();
   for (const TomlItem& item : *items) {
     if (Result<> taken = take(item, fmt::format("{}, line {}", file_.string(), item.line)); !taken) return taken;
@@ -218,6 +221,15 @@ Result<Scenario> ScenarioReader::finish() && {
 Result<Scenario> read_scenario(const fs::path& path, std::span<const std::string> settings) {
   detail::ScenarioReader reader(path);
   if (Result<> read = reader.read_file(); !read) return read.error();
+  for (const std::string& setting : settings) {
+    if (Result<> applied = reader.apply_setting(setting); !applied) return applied.error();
+  }
+  return std::move(reader).finish();
+}
+
+Result<Scenario> parse_scenario(const std::string& text, const fs::path& path, std::span<const std::string> settings) {
+  detail::ScenarioReader reader(path);
+  if (Result<> read = reader.read_text(text); !read) return read.error();
   for (const std::string& setting : settings) {
     if (Result<> applied = reader.apply_setting(setting); !applied) return applied.error();
   }

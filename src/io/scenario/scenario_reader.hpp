@@ -16,6 +16,8 @@ class ScenarioReader {
 
   /// Everything in the file.
   Result<> read_file();
+  /// The same of a text that is as good as the file.
+  Result<> read_text(const std::string& text);
   /// One `--set key=value`.
   Result<> apply_setting(const std::string& setting);
   /// The whole, checked.

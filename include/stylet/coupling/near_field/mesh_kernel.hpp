@@ -29,6 +29,13 @@ class MeshKernel {
   /// Makes g among these nodes and those there already available. Not for the step.
   void add_nodes(std::span<const Index> nodes, const Progress& progress = {});
 
+  /// All that was solved for, in the order in which nodes were added (for one call of add_nodes(): ascending).
+  [[nodiscard]] std::vector<double> numbers() const;
+
+  /// The same with what numbers() gave for these nodes in this tissue, instead of solving.
+  /// @return false, with nothing changed, when there are not as many numbers as these nodes have
+  [[nodiscard]] bool add_nodes(std::span<const Index> nodes, std::span<const double> numbers);
+
   [[nodiscard]] bool has(Index node) const { return slot_[static_cast<std::size_t>(node)] >= 0; }
 
   /// g(p,q) for E = 1 MPa [mm/N]: displacement of p per force on q. Both must be there.
@@ -73,7 +80,15 @@ class MeshKernel {
     std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
     std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa
   };
-  [[nodiscard]] Row make_row(Index node) const;
+  struct Patch {
+    std::vector<Index> tets;   ///< ascending
+    std::vector<Index> nodes;  ///< of the elements, ascending
+    std::vector<char> moves;   ///< (nodes) neither held nor on the rim
+  };
+  [[nodiscard]] std::vector<Index> missing(std::span<const Index> nodes) const;
+  [[nodiscard]] Patch patch_of(Index node) const;
+  [[nodiscard]] Row make_row(Index node, const Patch& patch) const;  ///< all but what is solved for
+  void solve(Row& row, const Patch& patch) const;
   void make_symmetric(std::size_t first_new);
   [[nodiscard]] const Mat3* find(const Row& row, Index node, int medium) const;
 

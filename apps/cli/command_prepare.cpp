@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "output_path.hpp"
+#include "prepared_model.hpp"
+#include "table.hpp"
+
+#include "stylet/io/model_file.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <filesystem>
+
+namespace stylet::cli {
+
+namespace {
+
+struct PrepareArguments {
+  std::string scenario;
+  std::string output;
+  std::vector<std::string> settings;
+};
+
+/// Most memory this process ever had [MB].
+double peak_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
+  const std::filesystem::path output = arguments.output;
+  if (output.extension() != ".stylet") {
+    return input_error(arguments.output, "a saved model has the extension .stylet", "Give a name that ends in .stylet");
+  }
+  if (Result<> writable = check_output_file(output); !writable) return writable;
+  if (is_hdf5_file(arguments.scenario)) {
+    return input_error(arguments.scenario, "this is an HDF5 file, a scenario (TOML) is expected",
+                       "Name the scenario that the model is to be made of");
+  }
+  const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console);
+  if (!prepared) return prepared.error();
+  const Model& model = *prepared->model;
+  for (const std::string& note : prepared->notes) console.detail(note);
+  for (const std::string& warning : model.warnings()) console.warn(warning);
+
+  const auto start = std::chrono::steady_clock::now();
+  if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
+  if (Result<> saved = save_model(model, output, prepared->notes, console.progress()); !saved) return saved;
+  const double save_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  const double megabytes = static_cast<double>(std::filesystem::file_size(output)) / 1048576.0;
+  const auto& statistics = model.tissue().statistics();
+  Facts facts;
+  facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {}", model.mesh().node_count(), model.mesh().tet_count(),
+                                to_string(model.tissue().element())));
+  facts.add("corridor", fmt::format("{} nodes", model.tissue().corridor().size()));
+  facts.add("took", fmt::format("{:.1f} s to mesh, {:.1f} s to compile (factor {:.1f} s), {:.1f} s to save; {:.0f} MB "
+                                "of memory",
+                                prepared->mesh_s, prepared->model_s, statistics.factor_seconds, save_s, peak_mb()));
+  facts.add("file", fmt::format("{:.0f} MB", megabytes));
+  console.say(fmt::format("{} → {}", arguments.scenario, arguments.output));
+  console.say(facts.text());
+  return console.write_json({{"scenario", arguments.scenario},
+                             {"output", arguments.output},
+                             {"nodes", model.mesh().node_count()},
+                             {"tets", model.mesh().tet_count()},
+                             {"element", to_string(model.tissue().element())},
+                             {"corridor_nodes", model.tissue().corridor().size()},
+                             {"seconds",
+                              {{"mesh", prepared->mesh_s},
+                               {"model", prepared->model_s},
+                               {"factor", statistics.factor_seconds},
+                               {"save", save_s}}},
+                             {"factor_mb", statistics.factor_mb},
+                             {"peak_memory_mb", peak_mb()},
+                             {"file_mb", megabytes},
+                             {"warnings", model.warnings()}});
+}
+
+}  // namespace
+
+Command add_prepare_command(CLI::App& program) {
+  auto arguments = std::make_shared<PrepareArguments>();
+  CLI::App* app = program.add_subcommand(
+      "prepare", "Mesh and compile a scenario and save the model: from then on it starts in seconds");
+  app->add_option("SCENARIO", arguments->scenario, "Scenario file (TOML)")->type_name("SCENARIO.toml")->required();
+  app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.stylet")->required();
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenario, e.g. --set mesh.nodes=5000; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return {app, [arguments](Console& console) { return run_prepare(*arguments, console); }};
+}
+
+}  // namespace stylet::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "console.hpp"
+
+#include "stylet/sim/model.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stylet::cli {
+
+/// A model ready for its first step, and what the mesher had to say.
+struct PreparedModel {
+  std::shared_ptr<const Model> model;
+  std::vector<std::string> notes;
+  double mesh_s = 0.0;   ///< contours, mask or file to mesh
+  double model_s = 0.0;  ///< mesh to model, or a saved model to model
+};
+
+/// The model of a scenario file, meshed and compiled, or of a saved model.
+/// @param file SCENARIO.toml or MODEL.stylet
+/// @param settings of --set
+Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
+                                     Console& console);
+
+}  // namespace stylet::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/core/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace stylet {
+namespace {
+
+std::atomic<int> most_threads = 0;
+
+}  // namespace
+
+void set_worker_threads(int most) { most_threads = most; }
+
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work, const Progress& progress,
+                          std::string_view stage) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr thrown;
+  const auto go = [&](bool is_caller) {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        if (is_caller) report(progress, stage, static_cast<double>(i) / static_cast<double>(count));
+        work(i);
+      } catch (...) {
+        const std::scoped_lock lock(mutex);
+        if (!thrown) thrown = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  const auto cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t threads = most_threads > 0 ? static_cast<std::size_t>(most_threads) : cores;
+  {
+    std::vector<std::jthread> helpers;
+    for (std::size_t k = 1; k < std::min(threads, count); ++k) helpers.emplace_back([&go] { go(false); });
+    go(true);
+  }
+  if (thrown) std::rethrow_exception(thrown);
+  report(progress, stage, 1.0);
+}
+
+}  // namespace stylet

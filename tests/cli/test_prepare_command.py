@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet prepare: a saved model runs like its scenario, is described, and is refused when it is not whole."""
+import csv
+import unittest
+
+from insert_case import FAST, PHANTOM, SMALL
+from program import InFolder, run
+
+
+class Prepare(InFolder):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "case.toml").write_text(PHANTOM)
+
+    def prepare(self):
+        return self.json_of("prepare", "case.toml", "-o", "case.stylet", *SMALL)
+
+    def forces(self, folder):
+        with open(self.folder / folder / "forces.csv", newline="") as file:
+            return [{k: v for k, v in row.items() if k != "step_us"} for row in csv.DictReader(file)]
+
+    def test_runs_like_its_scenario(self):
+        made = self.prepare()
+        self.assertLess(abs(made["nodes"] - 800), 80)
+        self.assertEqual(made["element"], "nodal-pressure")
+        self.assertGreater(made["corridor_nodes"], 20)
+        self.assertGreater(made["peak_memory_mb"], 10)
+        self.assertAlmostEqual(made["file_mb"], (self.folder / "case.stylet").stat().st_size / 2**20, places=6)
+        info = self.json_of("info", "case.stylet")
+        self.assertEqual((info["kind"], info["nodes"], info["corridor_nodes"]),
+                         ("model", made["nodes"], made["corridor_nodes"]))
+        self.assertIn("prostate", info["regions"])
+        fresh = self.json_of("insert", "case.toml", "-o", "fresh", *SMALL)
+        saved = self.json_of("insert", "case.stylet", "-o", "saved")
+        self.assertEqual(self.forces("fresh"), self.forces("saved"))
+        for key in ("mesh", "events", "peak_force_N", "target_shift_mm", "warnings"):
+            self.assertEqual(fresh.get(key), saved.get(key), key)
+
+    def test_settings(self):
+        self.prepare()
+        self.succeed("insert", "case.stylet", "-o", "slow", "--set", "insertion.speed_mm_per_s=30", *FAST)
+        self.refuse("insert", "case.stylet", "--set", "mesh.nodes=900", says=["mesh.nodes", "stylet prepare"])
+        self.refuse("insert", "case.stylet", "--set", "tissue.prostate.young_kPa=50", says=["stylet prepare"])
+
+    def test_broken_files(self):
+        self.prepare()
+        whole = (self.folder / "case.stylet").read_bytes()
+        (self.folder / "cut.stylet").write_bytes(whole[:len(whole) // 2])
+        bad = bytearray(whole)
+        bad[len(bad) // 2] ^= 4
+        (self.folder / "bad.stylet").write_bytes(bad)
+        (self.folder / "text.stylet").write_text("nothing\n")
+        for command in ("insert", "info"):
+            for name in ("cut", "bad", "text"):
+                self.refuse(command, f"{name}.stylet", says=[f"{name}.stylet"])
+        self.refuse("insert", "bad.stylet", says=["damaged", "stylet prepare"])
+
+    def test_what_cannot_be_prepared(self):
+        self.refuse("prepare", "case.toml", "-o", "case.h5", says=["case.h5", ".stylet"])
+        self.refuse("prepare", "none.toml", "-o", "case.stylet", says=["none.toml"])
+        self.refuse("prepare", "case.toml", "-o", "case.stylet", "--set", "tissue.prostate.poisson=0.5", says=["poisson"])
+        self.refuse("prepare", "case.toml", "-o", "case.stylet", "--set", 'coupling.engine="woodbury"', *SMALL,
+                    says=["woodbury"])
+        self.prepare()
+        self.refuse("prepare", "case.stylet", "-o", "again.stylet", says=["scenario (TOML) is expected"])
+
+    def test_a_recording_is_no_model(self):
+        self.succeed("insert", "case.toml", "-o", "out", *SMALL)
+        done = run("insert", "out/run.h5", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("not a saved model", done.stderr)
+
+    def test_quiet(self):
+        done = self.succeed("prepare", "case.toml", "-o", "case.stylet", "--quiet", *SMALL)
+        self.assertEqual(done.stdout, "")
+
+
+if __name__ == "__main__":
+    unittest.main()

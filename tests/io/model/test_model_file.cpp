@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A saved model is the model, or is refused.
+#include "io/formats/files.hpp"
+#include "sim/box_patient.hpp"
+
+#include "h5.hpp"
+#include "stylet/io/model_file.hpp"
+#include "stylet/sim/simulation.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace stylet {
+namespace {
+
+using test::Folder;
+
+/// Every number of a run but the clock's, and the forces on the tissue at its end.
+std::vector<double> run_of(const std::shared_ptr<const Model>& model, bool grow = true) {
+  std::vector<double> numbers;
+  Simulation simulation(model);
+  for (const PlannedInsertion& plan : model->insertions()) {
+    simulation.place(plan.motion.at(0.0), plan.entry, plan.direction);
+    const double dt = 1e-3 * model->scenario().run.dt_ms;
+    for (int k = 1; k * dt < plan.motion.duration_s(); ++k) {
+      if (grow) simulation.prepare();
+      const StepRecord& r = simulation.step(plan.motion.at(k * dt), dt);
+      for (const double x : {r.time_s, r.force_axial_N, r.force_lateral_N, r.force_sagittal_N}) numbers.push_back(x);
+      for (int i = 0; i < 3; ++i) numbers.insert(numbers.end(), {r.tip_mm[i], r.torque_Nmm[i]});
+      numbers.push_back(r.contacts + 1000.0 * r.sticking + 1e6 * r.iterations);
+    }
+  }
+  return numbers;
+}
+
+std::shared_ptr<const Model> loaded(const std::filesystem::path& path, std::span<const std::string> settings = {}) {
+  auto model = load_model(path, {}, settings);
+  if (!model) throw std::runtime_error(model.error().message());
+  return *model;
+}
+
+/// The box; its mesh is given, and "phantom" is the one source that is not a path.
+Scenario box() {
+  Scenario scenario = test::box_scenario();
+  scenario.patient.source = "phantom";
+  return scenario;
+}
+
+/// Some nodes whose compliance is not there.
+std::vector<Index> beyond(const Model& model) {
+  std::vector<Index> nodes;
+  for (Index a = 0; a < model.mesh().node_count() && nodes.size() < 5; ++a) {
+    if (!model.store()->has(a)) nodes.push_back(a);
+  }
+  return nodes;
+}
+
+void save(const Model& model, const std::filesystem::path& path, std::span<const std::string> notes = {}) {
+  const auto saved = save_model(model, path, notes);
+  if (!saved) throw std::runtime_error(saved.error().message());
+}
+
+/// The message a file is refused with.
+std::string refusal(const std::filesystem::path& path, std::span<const std::string> settings = {}) {
+  const auto model = load_model(path, {}, settings);
+  if (model) return "not refused";
+  EXPECT_EQ(model.error().kind, ErrorKind::input);
+  EXPECT_NE(model.error().where.find(settings.empty() ? path.filename().string() : ""), std::string::npos);
+  EXPECT_FALSE(model.error().cure.empty());
+  return model.error().message();
+}
+
+class SavedModels : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Elements, SavedModels, testing::Values("p1", "nodal-pressure", "p2"), [](const auto& element) {
+  std::string name = element.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST_P(SavedModels, StepAsTheCompiledOneToTheLastBitWithoutAFactor) {
+  const Folder folder;
+  Scenario scenario = box();
+  scenario.tissue_model.element = GetParam();
+  const auto compiled = test::compiled(scenario, test::box_patient());
+  save(*compiled, folder / "box.stylet");
+  const auto model = loaded(folder / "box.stylet");
+  EXPECT_EQ(model->store()->blocks(), compiled->store()->blocks());
+  EXPECT_EQ(model->scenario(), compiled->scenario());
+  EXPECT_EQ(run_of(model), run_of(compiled));
+  EXPECT_FALSE(model->tissue().has_factor());
+  EXPECT_TRUE(compiled->tissue().has_factor());
+}
+
+TEST(SavedModel, MakesTheFactorForWhatIsNotInIt) {
+  const Folder folder;
+  Scenario scenario = box();
+  scenario.coupling.corridor_mm = 1.0;
+  const auto compiled = test::compiled(scenario);
+  save(*compiled, folder / "box.stylet");
+  const auto model = loaded(folder / "box.stylet");
+  const std::vector<Index> nodes = beyond(*model);
+  ASSERT_FALSE(nodes.empty());
+  model->store()->add_nodes(nodes);
+  compiled->store()->add_nodes(nodes);
+  EXPECT_TRUE(model->tissue().has_factor());
+  EXPECT_EQ(model->store()->blocks(), compiled->store()->blocks());
+}
+
+TEST(SavedModel, KeepsRecordedMotionsSeveralNeedlesAndNotes) {
+  const Folder folder;
+  Scenario scenario = box();
+  scenario.insertions.push_back(scenario.insertions.front());
+  scenario.insertions[1].entry_mm = {-5.0, 4.0, -20.0};
+  const auto straight = test::compiled(scenario);
+  const auto motion = straight->insertions()[1].motion.samples();
+  const auto compiled = test::compiled(scenario, test::box_patient(), {{}, motion});
+  save(*compiled, folder / "box.stylet", std::vector<std::string>{"one thing", "another"});
+  const auto model = loaded(folder / "box.stylet");
+  ASSERT_EQ(model->insertions().size(), 2u);
+  EXPECT_FALSE(model->insertions()[0].recorded);
+  EXPECT_TRUE(model->insertions()[1].recorded);
+  EXPECT_EQ(model->insertions()[1].motion.duration_s(), compiled->insertions()[1].motion.duration_s());
+  EXPECT_EQ(run_of(model), run_of(compiled));
+  EXPECT_FALSE(model->tissue().has_factor());
+  const auto file = read_model_file(folder / "box.stylet");
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->notes, (std::vector<std::string>{"one thing", "another"}));
+}
+
+TEST(SavedModel, TakesSettingsThatLeaveItsComplianceAsItIs) {
+  const Folder folder;
+  const Scenario scenario = box();
+  save(*test::compiled(scenario), folder / "box.stylet");
+  Scenario slower = scenario;
+  slower.insertions[0].speed_mm_per_s = 25.0;
+  const std::vector<std::string> speed{"insertion.speed_mm_per_s=25"};
+  EXPECT_EQ(run_of(loaded(folder / "box.stylet", speed)), run_of(test::compiled(slower)));
+  EXPECT_SAYS(refusal(folder / "box.stylet", std::vector<std::string>{"tissue.prostate.young_kPa=77"}),
+              "these settings");
+  EXPECT_SAYS(refusal(folder / "box.stylet", std::vector<std::string>{"coupling.corridor_mm=20"}), "corridor");
+  EXPECT_SAYS(refusal(folder / "box.stylet", std::vector<std::string>{"mesh.nodes=700"}), "mesh.nodes");
+  EXPECT_SAYS(refusal(folder / "box.stylet", std::vector<std::string>{"coupling.spacin_mm=3"}), "spacing_mm");
+}
+
+TEST(SavedModel, OfAnotherMeshOrMaterialIsRefused) {
+  const Folder folder;
+  save(*test::compiled(box()), folder / "box.stylet");
+  const auto file = read_model_file(folder / "box.stylet");
+  ASSERT_TRUE(file);
+  ModelFile moved = *file;
+  moved.mesh.nodes[171].x() += 1e-9;
+  ModelFile stiffer = *file;
+  stiffer.scenario_text = test::replaced(stiffer.scenario_text, "[run]", "[tissue.prostate]\nyoung_kPa = 41.5\n[run]");
+  for (const ModelFile& other : {moved, stiffer}) {
+    const auto model = compile_model(other, "box.stylet");
+    ASSERT_FALSE(model);
+    EXPECT_EQ(model.error().kind, ErrorKind::input);
+    EXPECT_SAYS(model.error().message(), "something else");
+    EXPECT_SAYS(model.error().message(), "stylet prepare");
+  }
+  ModelFile shorter = *file;
+  shorter.compliance.kernel.pop_back();
+  const auto model = compile_model(shorter, "box.stylet");
+  ASSERT_FALSE(model);
+  EXPECT_SAYS(model.error().message(), "near field");
+}
+
+TEST(SavedModel, DamageIsFoundWhereverItIs) {
+  const Folder folder;
+  Scenario scenario = box();
+  scenario.coupling.corridor_mm = 1.0;
+  const auto compiled = test::compiled(scenario);
+  save(*compiled, folder / "whole.stylet");
+  const std::string whole = test::content_of(folder / "whole.stylet");
+  const auto expected = read_model_file(folder / "whole.stylet");
+  ASSERT_TRUE(expected);
+  int refused = 0;
+  constexpr std::size_t flips = 120;
+  for (std::size_t k = 0; k < flips; ++k) {
+    std::string bytes = whole;
+    bytes[(k * k * 7919 + 3) % whole.size()] ^= static_cast<char>(1 << (k % 8));
+    test::write_file(folder / "flipped.stylet", bytes);
+    const auto file = read_model_file(folder / "flipped.stylet");
+    if (!file) {
+      EXPECT_EQ(file.error().kind, ErrorKind::input);
+      ++refused;
+      continue;
+    }
+    // The bit was one that means nothing.
+    EXPECT_EQ(file->compliance.store, expected->compliance.store) << k;
+    EXPECT_EQ(file->mesh.nodes, expected->mesh.nodes) << k;
+    EXPECT_EQ(file->scenario_text, expected->scenario_text) << k;
+  }
+  EXPECT_GT(refused, static_cast<int>(flips) / 2);
+  for (const double share : {0.0, 0.01, 0.3, 0.9, 0.9999}) {
+    test::write_file(folder / "cut.stylet", whole.substr(0, static_cast<std::size_t>(share * whole.size())));
+    EXPECT_SAYS(refusal(folder / "cut.stylet"), "cut.stylet");
+    EXPECT_FALSE(load_model(folder / "cut.stylet").ok());
+  }
+}
+
+TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
+  const Folder folder;
+  EXPECT_SAYS(refusal(folder / "none.stylet"), "no such file");
+  test::write_file(folder / "text.stylet", "[patient]\n");
+  EXPECT_SAYS(refusal(folder / "text.stylet"), "not a saved model");
+  {
+    const h5::Handle other(H5Fcreate((folder / "other.stylet").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Fclose);
+    h5::write_attribute(other, "format", std::string("stylet-run"));
+  }
+  EXPECT_SAYS(refusal(folder / "other.stylet"), "not a saved model");
+  EXPECT_FALSE(is_model_file(folder / "other.stylet"));
+  EXPECT_TRUE(is_hdf5_file(folder / "other.stylet"));
+  save(*test::compiled(box()), folder / "box.stylet");
+  EXPECT_TRUE(is_model_file(folder / "box.stylet"));
+  {
+    const h5::Handle file(H5Fopen((folder / "box.stylet").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    H5Adelete(file, "format_version");
+    h5::write_attribute(file, "format_version", std::array{2});
+  }
+  EXPECT_SAYS(refusal(folder / "box.stylet"), "version 2 of the format");
+}
+
+TEST(SavedModel, IsNotWrittenWhereItWouldNotBeWhole) {
+  const Folder folder;
+  Scenario scenario = box();
+  scenario.coupling.engine = "woodbury";
+  const auto full = save_model(*test::compiled(scenario), folder / "full.stylet");
+  ASSERT_FALSE(full);
+  EXPECT_SAYS(full.error().message(), "woodbury");
+  scenario = box();
+  scenario.coupling.corridor_mm = 1.0;
+  const auto used = test::compiled(scenario);
+  used->store()->add_nodes(beyond(*used));
+  ASSERT_GT(used->store()->stored_nodes(), static_cast<Index>(used->tissue().corridor().size()));
+  const auto grown = save_model(*used, folder / "used.stylet");
+  ASSERT_FALSE(grown);
+  EXPECT_SAYS(grown.error().message(), "before a simulation uses it");
+  const auto nowhere = save_model(*test::compiled(box()), folder / "none" / "box.stylet");
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
+}
+
+}  // namespace
+}  // namespace stylet
