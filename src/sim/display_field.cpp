@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace stylet {
@@ -32,9 +33,12 @@ void DisplayField::find_zone(double reach_mm) {
   const Tissue& tissue = model_->tissue();
   const ComplianceStore& store = *model_->store();
   slot_.assign(static_cast<std::size_t>(tissue.displacement_nodes()), -1);
-  for (const PlannedInsertion& plan : model_->insertions()) {
-    const Vec3 end = plan.entry + (plan.depth_mm + kBeyond_mm) * plan.direction;
-    for (const Index node : corridor_nodes(tissue, plan.entry, end, reach_mm)) {
+  std::vector<std::array<Vec3, 2>> ways;
+  for (const PlannedInsertion& plan : model_->insertions())
+    ways.push_back({plan.entry, plan.entry + (plan.depth_mm + kBeyond_mm) * plan.direction});
+  const Corridor near = find_corridor(tissue.mesh(), ways, reach_mm, std::numeric_limits<int>::max());
+  for (const Index tet : near.elements) {
+    for (const Index node : tissue.nodes_of(tet)) {
       Index& slot = slot_[static_cast<std::size_t>(node)];
       if (slot >= 0 || tissue.is_fixed(node) || !store.has(node)) continue;
       slot = static_cast<Index>(zone_.size());

@@ -193,7 +193,8 @@ TEST(SavedModel, DamageIsFoundWhereverItIs) {
   }
   EXPECT_GT(refused, static_cast<int>(flips) / 2);
   for (const double share : {0.0, 0.01, 0.3, 0.9, 0.9999}) {
-    test::write_file(folder / "cut.stylet", whole.substr(0, static_cast<std::size_t>(share * whole.size())));
+    test::write_file(folder / "cut.stylet",
+                     whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
     EXPECT_SAYS(refusal(folder / "cut.stylet"), "cut.stylet");
     EXPECT_FALSE(load_model(folder / "cut.stylet").ok());
   }
