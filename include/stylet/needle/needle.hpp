@@ -61,6 +61,7 @@ class Needle {
   /// @param loads (w) those of then, or the first of them, and the new one last
   /// @param compliance [mm/N] (3 × 3w), written: motion of the new load point by each load
   /// @return false, and nothing done, where that takes a linearise()
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): others write through the view
   virtual bool append(std::span<const PointLoad> /*loads*/, Eigen::Ref<MatX> /*compliance*/) { return false; }
 
   /// Takes the step of the last linearise() or relax() with these loads in place of those given there (same s, same
