@@ -13,9 +13,10 @@ namespace stylet::cli {
 /// `stylet bench WHAT`, one function a benchmark.
 struct BenchArguments {
   std::string what;
-  int nodes = 0;     ///< 0 = the default of what is measured
-  int contacts = 0;  ///< 0 = the default
-  long steps = 0;    ///< 0 = the default
+  int nodes = 0;         ///< 0 = the default of what is measured
+  int contacts = 0;      ///< 0 = the default
+  long steps = 0;        ///< 0 = the default
+  double seconds = 0.0;  ///< 0 = the default
 };
 
 inline constexpr int kRemeshNodes = 1331;
@@ -23,6 +24,7 @@ inline constexpr int kRemeshNodes = 1331;
 Result<> bench_remesh_command(const BenchArguments& arguments, Console& console);
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console);
 Result<> bench_step_command(const BenchArguments& arguments, Console& console);
+Result<> bench_loop_command(const BenchArguments& arguments, Console& console);
 Result<> bench_display_command(const BenchArguments& arguments, Console& console);
 
 /// The machine times are of.

@@ -137,6 +137,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "coupling") return run_coupling(arguments, console);
   if (arguments.what == "scale") return bench_scale_command(arguments, console);
   if (arguments.what == "step") return bench_step_command(arguments, console);
+  if (arguments.what == "loop") return bench_loop_command(arguments, console);
   if (arguments.what == "display") return bench_display_command(arguments, console);
   return bench_remesh_command(arguments, console);
 }
@@ -169,24 +170,31 @@ Command add_bench_command(CLI::App& program) {
          "Woodbury, by boundary condition switches, by an inverse from scratch; step: what a step spends its time on; "
          "coupling: force of one insertion over "
          "mesh, spacing of contacts and time step, with the near field and with node addition; scale: time of a step "
-         "against the number of nodes and contacts; display: time and error of a picture of the deformed patient; "
+         "against the number of nodes and contacts; loop: the real-time loop, how long its steps take and how late "
+         "they "
+         "are; display: time and error of a picture of the deformed patient; "
          "needle: accuracy of the needle models against their cost")
       ->required()
-      ->check(one_of({"remesh", "step", "coupling", "scale", "display", "needle"}));
-  app->add_option("--nodes", arguments->nodes,
-                  fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
-                              "scale and display: 570 or more (default {}); the mesh; step: 500 or more (default {})",
-                              kRemeshNodes, validate::CouplingBenchOptions{}.largest,
-                              validate::ScaleBenchOptions{}.largest, validate::StepBenchOptions{}.nodes))
+      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "display", "needle"}));
+  app->add_option(
+         "--nodes", arguments->nodes,
+         fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
+                     "scale and display: 570 or more (default {}); the mesh; step and loop: 500 or more (default {})",
+                     kRemeshNodes, validate::CouplingBenchOptions{}.largest, validate::ScaleBenchOptions{}.largest,
+                     validate::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
-  app->add_option("--contacts", arguments->contacts, "scale: with about so many only (default 20, 40 and 60)")
+  app->add_option("--contacts", arguments->contacts,
+                  "With about so many; scale: only (default 20, 40 and 60), loop (default 40)")
       ->type_name("N")
       ->check(whole_number_between(5, 200));
   app->add_option("--steps", arguments->steps,
                   "scale: repeat insertion and withdrawal until there are so many steps in each row (default: once)")
       ->type_name("N")
       ->check(whole_number_between(1, 100000000));
+  app->add_option("--seconds", arguments->seconds, "loop: how long, in seconds of the clock (default 30)")
+      ->type_name("S")
+      ->check(number_between(1.0, 86400.0));
   return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};
 }
 

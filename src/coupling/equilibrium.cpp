@@ -151,6 +151,8 @@ void Insertion::Parts::append_contact(int load) {
   const int count = load + 1;
   const Eigen::Index before = 3 * static_cast<Eigen::Index>(load);
   auto rows = system.N.block(before, 0, 3, before + 3);
+  // What was lent at the tip alone is not for a matrix with grips.
+  if (system.supported && !springs.front().isZero(0.0)) tangent_fits = false;
   tangent_fits = tangent_fits && needle->append({loads.data(), static_cast<std::size_t>(count)}, rows);
   if (!tangent_fits) return;
   system.N.block(0, before, before, 3) = rows.leftCols(before).transpose();
@@ -204,7 +206,7 @@ void Insertion::Parts::linearise() {
     // At a few contacts that is enough as a rule, and cheaper; at all of them always.
     const std::span<const Mat3> lent(springs.data(), static_cast<std::size_t>(count));
     lend_springs(kFewSprings);
-    if (!needle->linearise(loads, compliance_of_needle, motion, lent) && count > kFewSprings) {
+    if (!needle->linearise(loads, compliance_of_needle, motion, lent) && count > kFewSprings + 1) {
       lend_springs(count);
       needle->linearise(loads, compliance_of_needle, motion, lent);
     }
@@ -475,6 +477,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   };
   bool old_matrix_failed = false;
   int tangents = 0;
+  Index border_tet = -1;  // where the tip was when it was added to the matrix
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
     double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
@@ -506,7 +509,8 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       const InPhase in_phase(phases, StepPhase::factorise);
       matrix_fits = system.factorise();
     }
-    if (matrix_fits && (iteration == 0 || !old_matrix)) {
+    if (matrix_fits && (iteration == 0 || !old_matrix || border_tet != tip.at.tet)) {
+      border_tet = tip.at.tet;
       const InPhase in_phase(phases, StepPhase::solve);
       system.add_tip();
     }

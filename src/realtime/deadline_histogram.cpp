@@ -65,6 +65,12 @@ void DeadlineHistogram::merge(const DeadlineHistogram& other) {
   misses_ += other.misses_;
 }
 
+std::int64_t DeadlineHistogram::up_to(std::int64_t duration_ns) const {
+  std::int64_t seen = 0;
+  for (int bin = 0; bin < kBins - 1 && last_of(bin) <= duration_ns; ++bin) seen += bins_[static_cast<std::size_t>(bin)];
+  return duration_ns >= largest_ns_ ? count_ : seen;
+}
+
 std::int64_t DeadlineHistogram::quantile_ns(double q) const {
   if (count_ == 0) return 0;
   const auto wanted = static_cast<std::int64_t>(std::ceil(std::clamp(q, 0.0, 1.0) * static_cast<double>(count_)));

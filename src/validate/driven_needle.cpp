@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kDepth_mm = 90.0;
 constexpr double kSpeed_mm_per_s = 20.0;
-constexpr double kDt_s = 1e-3;
 constexpr double kBackAndForth_mm = 15.0;
 constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
@@ -23,24 +22,6 @@ constexpr int kCycles = 3;
 constexpr double kShare = 0.85;
 
 double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-/// Depth of the base at every step: in, back and forth, out.
-std::vector<double> depths(double start_mm) {
-  std::vector<double> turns{start_mm, kDepth_mm};
-  for (int cycle = 1; cycle <= kCycles; ++cycle) {
-    turns.push_back(turns.back() - kBackAndForth_mm);
-    turns.push_back(kDepth_mm + cycle * kFurther_mm);
-  }
-  turns.push_back(start_mm);
-  std::vector<double> result;
-  for (std::size_t k = 1; k < turns.size(); ++k) {
-    const double way = turns[k] - turns[k - 1];
-    const auto steps = std::lround(std::abs(way) / (kSpeed_mm_per_s * kDt_s));
-    for (long i = 1; i <= steps; ++i)
-      result.push_back(turns[k - 1] + way * static_cast<double>(i) / static_cast<double>(steps));
-  }
-  return result;
-}
 
 /// Time spent in each phase itself, not in phases within it.
 class PhaseClock final : public PhaseObserver {
@@ -86,7 +67,7 @@ void drive(Simulation& simulation, bool phases, long least, std::vector<DrivenSt
   const Pose first = plan.motion.at(0.0);
   simulation.place(first, plan.entry, plan.direction);
   const double start = simulation.record().base_depth_mm;
-  const std::vector<double> way = depths(start);
+  const std::vector<double> way = driven_depths(start);
   const double wanted = static_cast<double>(std::max(least, static_cast<long>(way.size())));
   steps.reserve(steps.size() + way.size());
   for (const double depth : way) {
@@ -97,7 +78,7 @@ void drive(Simulation& simulation, bool phases, long least, std::vector<DrivenSt
     const double wall = wall_s();
     const double cpu = reproduce::thread_cpu_s();
     if (phases) clock.start();
-    simulation.step(base, kDt_s);
+    simulation.step(base, kDrivenStep_s);
     if (phases) step.phase_us = clock.stop();
     step.cpu_us = 1e6 * (reproduce::thread_cpu_s() - cpu);
     step.wall_us = 1e6 * (wall_s() - wall);
@@ -112,6 +93,23 @@ void drive(Simulation& simulation, bool phases, long least, std::vector<DrivenSt
 }
 
 }  // namespace
+
+std::vector<double> driven_depths(double start_mm) {
+  std::vector<double> turns{start_mm, kDepth_mm};
+  for (int cycle = 1; cycle <= kCycles; ++cycle) {
+    turns.push_back(turns.back() - kBackAndForth_mm);
+    turns.push_back(kDepth_mm + cycle * kFurther_mm);
+  }
+  turns.push_back(start_mm);
+  std::vector<double> result;
+  for (std::size_t k = 1; k < turns.size(); ++k) {
+    const double way = turns[k] - turns[k - 1];
+    const auto steps = std::lround(std::abs(way) / (kSpeed_mm_per_s * kDrivenStep_s));
+    for (long i = 1; i <= steps; ++i)
+      result.push_back(turns[k - 1] + way * static_cast<double>(i) / static_cast<double>(steps));
+  }
+  return result;
+}
 
 Scenario driven_scenario(int contacts) {
   Scenario scenario = demo_scenario();

@@ -13,6 +13,11 @@ namespace stylet::validate {
 /// The insertion that steps are timed with: 90 mm in, back and forth by 15 mm at the deepest point, further in each
 /// time, and out. Steps with nearly all contacts are what a row of a benchmark is about.
 
+inline constexpr double kDrivenStep_s = 1e-3;
+
+/// Depth of the base after every step, from where the insertion starts.
+std::vector<double> driven_depths(double start_mm);
+
 /// The default scenario with contacts as near each other as give so many of them.
 Scenario driven_scenario(int contacts);
 

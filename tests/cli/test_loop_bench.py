@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench step and stylet bench display: what their rows hold, on the coarsest mesh. Times are the machine's."""
+"""stylet bench step, loop and display: what their rows hold, on the coarsest mesh. Times are the machine's."""
 import unittest
 
 from program import InFolder
@@ -22,6 +22,25 @@ class StepBench(InFolder):
                 self.assertGreater(phases["contacts"], 0)
             self.assertGreater(sum(row["slow_phase_us"].values()), sum(row["phase_us"].values()))
         self.refuse("bench", "step", "--nodes", "499", says=["--nodes", "499", "500"])
+
+
+class LoopBench(InFolder):
+    def test_counts_every_step_of_the_loop(self):
+        loop = self.json_of("bench", "loop", "--nodes", "570", "--contacts", "20", "--seconds", "3")
+        self.assertGreaterEqual(loop["seconds"], 3)
+        self.assertGreater(loop["steps"], 100)  # however busy the machine
+        self.assertGreater(loop["simulated_s"], 0.1)
+        for key in ("step_cpu_us", "step_wall_us"):
+            times = loop[key]
+            self.assertEqual(times["count"], loop["steps"])
+            self.assertTrue(0 < times["p50"] <= times["p99"] <= times["p999"] <= times["max"])
+            counts = list(times["up_to_us"].values())
+            self.assertEqual(counts, sorted(counts))
+            self.assertLessEqual(counts[-1], times["count"])
+        self.assertGreater(loop["device_wall_us"]["count"], 100)
+        self.assertTrue(loop["rights"])
+        self.refuse("bench", "loop", "--nodes", "499", says=["--nodes", "499", "500"])
+        self.refuse("bench", "loop", "--seconds", "0", says=["--seconds", "0"])
 
 
 class DisplayBench(InFolder):

@@ -64,6 +64,23 @@ TEST(DeadlineHistogram, quantiles_are_those_of_the_sorted_values_within_2_percen
   EXPECT_EQ(histogram.quantile_ns(1.0), *std::max_element(values.begin(), values.end()));
 }
 
+TEST(DeadlineHistogram, counts_what_does_not_exceed_a_duration_within_the_width_of_a_bin) {
+  const std::vector<std::int64_t> values = durations(5, 20'000);
+  DeadlineHistogram histogram;
+  for (const std::int64_t v : values) histogram.add(v);
+  for (const std::int64_t limit : {0L, 63L, 1000L, 50'000L, 1'000'000L}) {
+    const auto exact = [&](double factor) {
+      return std::count_if(values.begin(), values.end(), [&](std::int64_t v) {
+        return static_cast<double>(v) <= factor * static_cast<double>(limit);
+      });
+    };
+    EXPECT_LE(histogram.up_to(limit), exact(1.0)) << limit;
+    EXPECT_GE(histogram.up_to(limit), exact(0.98)) << limit;
+  }
+  EXPECT_EQ(histogram.up_to(histogram.largest_ns()), 20'000);
+  EXPECT_EQ(DeadlineHistogram().up_to(5), 0);
+}
+
 TEST(DeadlineHistogram, merging_is_adding_all_to_one) {
   DeadlineHistogram one(1000);
   DeadlineHistogram other(1000);

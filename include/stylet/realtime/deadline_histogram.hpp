@@ -39,6 +39,10 @@ class DeadlineHistogram {
   /// largest_ns(); 0 without any. @param q 0…1
   [[nodiscard]] std::int64_t quantile_ns(double q) const;
 
+  /// How many durations do not exceed `duration_ns`; those in the bin that it lies in count as longer unless it is the
+  /// bin's end.
+  [[nodiscard]] std::int64_t up_to(std::int64_t duration_ns) const;
+
  private:
   static constexpr int kBins = kBinsPerOctave * (kOctaves + 1);
   [[nodiscard]] static int bin_of(std::int64_t duration_ns);
