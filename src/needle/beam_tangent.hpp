@@ -24,8 +24,8 @@ class BeamTangent {
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
 
-  /// Adds a load after the first ones there: its column of Jᵀ for this shape, Hessian and the other columns as they
-  /// are.
+  /// Adds a load after the first ones there: its column of Jᵀ for where it is now, with the levers, the Hessian and the
+  /// other columns of assemble().
   /// @param loads (w) those there, or the first of them, and the new one last
   /// @param compliance [mm/N] (3 × 3w) LPS rows of J H⁻¹ Jᵀ, written
   /// @return false, and nothing done, when there is no room or there were fewer

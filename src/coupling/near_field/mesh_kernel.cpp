@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace stylet {
 
@@ -171,19 +172,20 @@ std::vector<Index> MeshKernel::missing(std::span<const Index> nodes) const {
 
 void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progress) {
   const std::vector<Index> wanted = missing(nodes);
-  const std::size_t old = rows_.size();
-  rows_.resize(old + wanted.size());
+  std::vector<Row> fresh(wanted.size());  // theirs only when all are done: progress may throw
   constexpr std::size_t together = 16;
   for_each_in_parallel((wanted.size() + together - 1) / together,
                        [&](std::size_t piece) {
                          const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
                          for (std::size_t k = piece * together; k < end; ++k) {
                            const Patch patch = patch_of(wanted[k]);
-                           rows_[old + k] = make_row(wanted[k], patch);
-                           solve(rows_[old + k], patch);
+                           fresh[k] = make_row(wanted[k], patch);
+                           solve(fresh[k], patch);
                          }
                        },
                        progress, "near field");
+  const std::size_t old = rows_.size();
+  rows_.insert(rows_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
   for (std::size_t k = 0; k < wanted.size(); ++k)
     slot_[static_cast<std::size_t>(wanted[k])] = static_cast<Index>(old + k);
   make_symmetric(old);
