@@ -33,7 +33,7 @@ declare -A about=(
   [tests]="all tests: unit, command line, real data, slow, installed library"
   [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit tests"
   [threads]="what runs in several threads under the thread sanitizer"
-  [lint]="clang-tidy on core to realtime"
+  [lint]="clang-tidy on core to realtime and stylet_rt"
 )
 
 times=()

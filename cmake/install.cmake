@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the library (core…realtime) with its headers for find_package(stylet), and the stylet program.
+# Installs the library (core…realtime) with its headers for find_package(stylet), the library for C (stylet_rt) with its
+# header, a pkg-config file and an example, and the stylet program.
 include(CMakePackageConfigHelpers)
 set(STYLET_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/stylet)
 
@@ -7,6 +8,15 @@ install(TARGETS stylet EXPORT stylet-targets)
 foreach(module core geom fem needle coupling sim realtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/stylet/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
 endforeach()
+if(TARGET stylet_rt)
+  install(TARGETS stylet_rt EXPORT stylet-targets)
+  install(FILES ${PROJECT_SOURCE_DIR}/include/stylet/stylet_rt.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
+  # Found from where the file itself is, so that an installed tree can be moved.
+  file(RELATIVE_PATH STYLET_PC_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/stylet_rt.pc.in ${PROJECT_BINARY_DIR}/stylet_rt.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/stylet_rt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  install(FILES ${PROJECT_SOURCE_DIR}/examples/rt_loop.c DESTINATION ${CMAKE_INSTALL_DATADIR}/stylet/examples)
+endif()
 if(TARGET stylet_cli)
   install(TARGETS stylet_cli)
 endif()

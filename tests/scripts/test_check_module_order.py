@@ -49,6 +49,16 @@ class ModuleOrder(unittest.TestCase):
         self.assertIn("mesher must not include sim", text)
         self.assertIn("mesher must not include io", text)
 
+    def test_header_in_c_belongs_to_the_module_of_its_name(self):
+        status, text = self.check({"src/stylet_rt/a.cpp": '#include "stylet/stylet_rt.h"\n#include "stylet/io/model_file.hpp"\n',
+                                   "include/stylet/stylet_rt.h": "#include <stdint.h>\n"})
+        self.assertEqual((status, text), (0, ""))
+        status, text = self.check({"src/sim/a.cpp": '#include "stylet/stylet_rt.h"\n',
+                                   "include/stylet/stylet_rt.h": '#include "stylet/mesher/mesher.hpp"\n'})
+        self.assertEqual(status, 1)
+        self.assertIn("sim must not include stylet_rt", text)
+        self.assertIn("stylet_rt must not include mesher", text)
+
     def test_realtime_sees_the_simulation_but_no_files_and_is_not_seen_by_it(self):
         status, text = self.check({"src/realtime/a.cpp": '#include "stylet/sim/simulation.hpp"\n#include <pthread.h>\n'})
         self.assertEqual((status, text), (0, ""))

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+#include "stylet/stylet_rt.h"
+
+#include <exception>
+#include <new>
+#include <string_view>
+
+namespace stylet::rt {
+
+/// Where a message for the caller goes: cut to fit, zero at its end, no half characters of UTF-8.
+class ErrorText {
+ public:
+  ErrorText(char* text, std::size_t size) noexcept : text_(size > 0 ? text : nullptr), size_(size) { say({}); }
+
+  void say(std::string_view message) noexcept;
+
+  [[nodiscard]] stylet_rt_status bad_argument(std::string_view message) noexcept {
+    say(message);
+    return STYLET_RT_BAD_ARGUMENT;
+  }
+  [[nodiscard]] stylet_rt_status of(const Error& error) {
+    say(error.message());
+    return error.kind == ErrorKind::input ? STYLET_RT_INPUT_ERROR : STYLET_RT_FAILED;
+  }
+
+ private:
+  char* text_;
+  std::size_t size_;
+};
+
+/// Calls `body`; what it throws ends here, as a status.
+template <class Body>
+stylet_rt_status guarded(ErrorText& error, const Body& body) noexcept {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    error.say("out of memory");
+    return STYLET_RT_OUT_OF_MEMORY;
+  } catch (const std::exception& e) {
+    error.say(e.what());
+    return STYLET_RT_FAILED;
+  } catch (...) {
+    error.say("failed for a reason that has no name");
+    return STYLET_RT_FAILED;
+  }
+}
+
+/// The same without words.
+template <class Body>
+stylet_rt_status guarded(const Body& body) noexcept {
+  ErrorText nowhere(nullptr, 0);
+  return guarded(nowhere, body);
+}
+
+}  // namespace stylet::rt

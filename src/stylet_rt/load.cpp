@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "boundary.hpp"
+#include "handles.hpp"
+#include "stylet/io/model_file.hpp"
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+extern "C" stylet_rt_status stylet_rt_model_load(const char* path, const char* const* settings, size_t settings_count,
+                                                 stylet_rt_model** model, char* error, size_t error_size) noexcept {
+  stylet::rt::ErrorText text(error, error_size);
+  if (model == nullptr) return text.bad_argument("stylet_rt_model_load: there is no place for the model");
+  *model = nullptr;
+  if (path == nullptr) return text.bad_argument("stylet_rt_model_load: the path is null");
+  if (settings == nullptr && settings_count > 0)
+    return text.bad_argument("stylet_rt_model_load: there are settings, but where is null");
+  return stylet::rt::guarded(text, [&]() -> stylet_rt_status {
+    std::vector<std::string> all;
+    for (size_t k = 0; k < settings_count; ++k) {
+      if (settings[k] == nullptr) return text.bad_argument("stylet_rt_model_load: one of the settings is null");
+      all.emplace_back(settings[k]);
+    }
+    // Debian's serial HDF5 is for one thread at a time.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
+    const auto loaded = stylet::load_model(path, {}, all);
+    if (!loaded) return text.of(loaded.error());
+    *model = stylet::rt::make_handle(*loaded);
+    return STYLET_RT_OK;
+  });
+}

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "boundary.hpp"
+#include "handles.hpp"
+#include "realtime/thread_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace stylet::rt {
+namespace {
+
+static_assert(sizeof(stylet_rt_options) == 16);
+static_assert(sizeof(stylet_rt_pose) == 56);
+static_assert(sizeof(stylet_rt_result) == 200);
+
+static_assert(STYLET_RT_NOT_CONVERGED == StepReport::not_converged);
+static_assert(STYLET_RT_CONTACT_CYCLING == StepReport::contact_cycling);
+static_assert(STYLET_RT_COMPLIANCE_MISSING == StepReport::compliance_missing);
+static_assert(STYLET_RT_OUT_OF_CONTACTS == StepReport::out_of_contacts);
+static_assert(STYLET_RT_TOO_FAST == StepReport::too_fast);
+static_assert(STYLET_RT_INVALID_INPUT == StepReport::invalid_input);
+
+static_assert(STYLET_RT_TIP_AIR == static_cast<int>(TipState::air));
+static_assert(STYLET_RT_TIP_PRESSING == static_cast<int>(TipState::pressing));
+static_assert(STYLET_RT_TIP_CUTTING == static_cast<int>(TipState::cutting));
+static_assert(STYLET_RT_TIP_IN_TRACK == static_cast<int>(TipState::in_track));
+static_assert(STYLET_RT_TIP_BONE == static_cast<int>(TipState::bone));
+static_assert(STYLET_RT_TIP_EXITED == static_cast<int>(TipState::exited));
+
+constexpr uint32_t kKnownFlags = STYLET_RT_KEEP_DENORMALS;
+constexpr double kShortest_s = 1e-9;
+constexpr double kLongest_s = 1.0;
+constexpr double kOffUnit = 1e-3;
+/// Quaternions as near as this to unit length are taken as they are, to the last bit.
+constexpr double kRounding = 1e-14;
+
+void copy(const Vec3& from, double* to) noexcept { std::copy_n(from.data(), 3, to); }
+
+/// The pose, or nothing where it is none.
+std::optional<Pose> pose_of(const stylet_rt_pose& given) noexcept {
+  Pose pose;
+  pose.origin = Vec3(given.position_mm);
+  pose.rotation = Eigen::Quaterniond(given.rotation[0], given.rotation[1], given.rotation[2], given.rotation[3]);
+  const double length = pose.rotation.norm();
+  // Comparisons with what is not a number are false.
+  if (!pose.origin.allFinite() || !(std::abs(length - 1.0) <= kOffUnit)) return std::nullopt;
+  if (std::abs(length - 1.0) > kRounding) pose.rotation.coeffs() /= length;
+  return pose;
+}
+
+void write(const stylet_rt_sim& sim, stylet_rt_result& out) noexcept {
+  const StepRecord& record = sim.simulation.record();
+  const StepReport& report = sim.simulation.report();
+  out.time_s = record.time_s;
+  out.base_depth_mm = record.base_depth_mm;
+  copy(report.hand_force, out.hand_force_N);
+  copy(report.hand_torque, out.hand_torque_Nmm);
+  out.force_axial_N = record.force_axial_N;
+  out.force_lateral_N = record.force_lateral_N;
+  out.force_sagittal_N = record.force_sagittal_N;
+  copy(report.guide_force, out.guide_force_N);
+  copy(sim.simulation.insertion().needle().base().origin, out.base_mm);
+  copy(record.tip_mm, out.tip_mm);
+  out.inserted_mm = report.inserted_mm;
+  out.sliding_share = report.sliding_share;
+  out.flags = report.flags;
+  out.tip_state = static_cast<int32_t>(record.tip_state);
+  out.contacts = record.contacts;
+  out.sticking = record.sticking;
+  out.iterations = record.iterations;
+  out.events = static_cast<int32_t>(sim.simulation.new_events().size());
+}
+
+void place(stylet_rt_sim& sim, std::size_t insertion) {
+  const PlannedInsertion& plan = sim.shared->model->insertions()[insertion];
+  sim.simulation.place(plan.motion.at(0.0), plan.entry, plan.direction);
+  sim.insertion = insertion;
+}
+
+bool planned(const Model& model, int32_t insertion) noexcept {
+  return insertion >= 0 && static_cast<std::size_t>(insertion) < model.insertions().size();
+}
+
+}  // namespace
+}  // namespace stylet::rt
+
+using namespace stylet::rt;
+
+stylet_rt_sim::stylet_rt_sim(std::shared_ptr<stylet::rt::SharedModel> model, std::uint32_t flags_)
+    : shared(std::move(model)),
+      simulation(shared->model),
+      flags(flags_),
+      contacts(static_cast<std::size_t>(shared->model->coupling().capacity) + 1) {}
+
+extern "C" {
+
+stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model, const stylet_rt_options* options,
+                                      stylet_rt_sim** sim, char* error, size_t error_size) noexcept {
+  ErrorText text(error, error_size);
+  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_create: there is no place for the simulation");
+  *sim = nullptr;
+  if (model == nullptr) return text.bad_argument("stylet_rt_sim_create: the model is null");
+  stylet_rt_options chosen = {};
+  if (options != nullptr) {
+    if (options->struct_size != sizeof chosen) {
+      return text.bad_argument(
+          "stylet_rt_sim_create: options.struct_size is none that this library knows; set it to "
+          "sizeof(stylet_rt_options), and use header and library of one version");
+    }
+    chosen = *options;
+  }
+  if ((chosen.flags & ~kKnownFlags) != 0 || chosen.reserved != 0)
+    return text.bad_argument("stylet_rt_sim_create: options ask for what this library does not know; zero them first");
+  if (!planned(*model->shared->model, chosen.insertion))
+    return text.bad_argument("stylet_rt_sim_create: options.insertion is none of the model's insertions");
+  const Reading reading(model->shared->gate);
+  if (!reading) {
+    text.say("stylet_rt_sim_create: a simulation of this model prepares; call again afterwards");
+    return STYLET_RT_BUSY;
+  }
+  return guarded(text, [&]() -> stylet_rt_status {
+    auto made = std::make_unique<stylet_rt_sim>(model->shared, chosen.flags);
+    place(*made, static_cast<std::size_t>(chosen.insertion));
+    *sim = made.release();
+    return STYLET_RT_OK;
+  });
+}
+
+void stylet_rt_sim_destroy(stylet_rt_sim* sim) noexcept { delete sim; }
+
+stylet_rt_status stylet_rt_sim_place(stylet_rt_sim* sim, int32_t insertion) noexcept {
+  if (sim == nullptr || !planned(*sim->shared->model, insertion)) return STYLET_RT_BAD_ARGUMENT;
+  const Reading reading(sim->shared->gate);
+  if (!reading) return STYLET_RT_BUSY;
+  return guarded([&]() -> stylet_rt_status {
+    place(*sim, static_cast<std::size_t>(insertion));
+    return STYLET_RT_OK;
+  });
+}
+
+stylet_rt_status stylet_rt_sim_planned_base(const stylet_rt_sim* sim, double time_s, stylet_rt_pose* base) noexcept {
+  if (sim == nullptr || base == nullptr || !std::isfinite(time_s)) return STYLET_RT_BAD_ARGUMENT;
+  const stylet::Pose pose = sim->shared->model->insertions()[sim->insertion].motion.at(time_s);
+  copy(pose.origin, base->position_mm);
+  base->rotation[0] = pose.rotation.w();
+  base->rotation[1] = pose.rotation.x();
+  base->rotation[2] = pose.rotation.y();
+  base->rotation[3] = pose.rotation.z();
+  return STYLET_RT_OK;
+}
+
+stylet_rt_status stylet_rt_sim_step(stylet_rt_sim* sim, const stylet_rt_pose* base, double dt_s,
+                                    stylet_rt_result* result) noexcept {
+  if (sim == nullptr || base == nullptr) return STYLET_RT_BAD_ARGUMENT;
+  const std::optional<stylet::Pose> pose = pose_of(*base);
+  if (!pose || !(dt_s >= kShortest_s && dt_s <= kLongest_s)) {
+    if (result != nullptr) {
+      write(*sim, *result);
+      result->flags |= STYLET_RT_INVALID_INPUT;
+      result->events = 0;
+    }
+    return STYLET_RT_BAD_ARGUMENT;
+  }
+  const Reading reading(sim->shared->gate);
+  if (!reading) return STYLET_RT_BUSY;
+  return guarded([&]() -> stylet_rt_status {
+    std::optional<stylet::FlushDenormals> flush;
+    if ((sim->flags & STYLET_RT_KEEP_DENORMALS) == 0) flush.emplace();
+    sim->simulation.step(*pose, dt_s);
+    if (result != nullptr) write(*sim, *result);
+    return STYLET_RT_OK;
+  });
+}
+
+stylet_rt_status stylet_rt_sim_read_result(const stylet_rt_sim* sim, stylet_rt_result* result) noexcept {
+  if (sim == nullptr || result == nullptr) return STYLET_RT_BAD_ARGUMENT;
+  write(*sim, *result);
+  return STYLET_RT_OK;
+}
+
+stylet_rt_status stylet_rt_sim_prepare(stylet_rt_sim* sim, char* error, size_t error_size) noexcept {
+  ErrorText text(error, error_size);
+  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_prepare: the simulation is null");
+  const Changing changing(sim->shared->gate);
+  if (!changing) {
+    text.say("stylet_rt_sim_prepare: a simulation of this model steps or prepares; call again afterwards");
+    return STYLET_RT_BUSY;
+  }
+  return guarded(text, [&]() -> stylet_rt_status {
+    sim->simulation.prepare();
+    return STYLET_RT_OK;
+  });
+}
+
+}  // extern "C"

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// AllocationCount for C: allocations of the thread so far, -1 where they cannot be counted.
+#include "support/count_allocations.hpp"
+
+extern "C" long allocations_so_far(void);
+
+long allocations_so_far(void) {
+  if (!stylet::test::AllocationCount::available()) return -1;
+  static const stylet::test::AllocationCount since_the_first_call;
+  return since_the_first_call.count();
+}
