@@ -132,8 +132,9 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   const Vec3 axis = base.rotation * Vec3::UnitZ();
   const double advance = (base.origin - base_.origin).dot(axis);
   report_ = insertion_.step(base, dt);
-  base_ = base;
   event_count_ = 0;
+  if ((report_.flags & StepReport::invalid_input) != 0) return record_;  // not taken
+  base_ = base;
 
   time_ns_ += std::llround(dt * 1e9);
   record_.time_s = static_cast<double>(time_ns_) / 1e9;

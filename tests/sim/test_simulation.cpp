@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace stylet;
 using namespace stylet::test;
@@ -415,6 +416,28 @@ TEST(Simulation, a_step_does_not_allocate) {
   }
   EXPECT_EQ(allocations, 0);
   EXPECT_EQ(hand.simulation.record().tip_state, TipState::air);
+}
+
+TEST(Simulation, a_step_to_nowhere_or_in_no_time_is_not_taken) {
+  const auto model = compiled(box_scenario());
+  const PlannedInsertion& plan = model->insertions()[0];
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Simulation disturbed(model), plain(model);
+  for (Simulation* s : {&disturbed, &plain}) s->place(plan.motion.at(0.0), plan.entry, plan.direction);
+  for (int k = 1; k <= 150; ++k) {
+    const Pose base = plan.motion.at(4e-3 * k);
+    Pose nowhere = base;
+    nowhere.origin[k % 3] = nan;
+    const StepRecord before = disturbed.record();
+    for (const StepRecord& record :
+         {disturbed.step(nowhere, 4e-3), disturbed.step(base, nan), disturbed.step(base, 0.0)})
+      expect_same_bits(record, before);
+    EXPECT_EQ(disturbed.report().flags, unsigned(StepReport::invalid_input));
+    EXPECT_TRUE(disturbed.new_events().empty());
+    expect_same_bits(disturbed.step(base, 4e-3), plain.step(base, 4e-3));
+    ASSERT_EQ(disturbed.new_events().size(), plain.new_events().size());
+  }
+  EXPECT_GT(plain.record().force_axial_N, 0.3);
 }
 
 TEST(Simulation, reports_the_bone_it_hits) {

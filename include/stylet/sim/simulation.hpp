@@ -16,7 +16,8 @@ class Simulation {
 
   /// Moves the base to `base`.
   /// @param dt [s] taken as a whole number of nanoseconds, so that times do not drift
-  /// @return the record of this step; step_us is left at 0 (the caller owns the clock)
+  /// @return the record of this step; step_us is left at 0 (the caller owns the clock). Of a step that is not taken
+  /// (StepReport::invalid_input) the last one
   const StepRecord& step(const Pose& base, double dt);
 
   /// Makes the compliance near the tip available; call between steps. Allocates when the tip has left the corridor.
