@@ -24,7 +24,7 @@ foreach(program rt_loop rt_loop_cmake)
   endif()
 endforeach()
 
-foreach(private io mesher phantom stylet_rt)
+foreach(private io mesher phantom)
   if(EXISTS ${WORK}/prefix/include/stylet/${private})
     message(FATAL_ERROR "headers of ${private} are installed, but not its library")
   endif()

@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -480,6 +481,39 @@ static int a_step_does_not_call_the_system(void) {
 #endif
 }
 
+typedef struct {
+  const stylet_rt_model* model;
+  stylet_rt_sim* sim;
+  double duration_s;
+  double most_N;
+} whole_insertion;
+
+static void* insert(void* argument) {
+  whole_insertion* it = argument;
+  it->most_N = all_real_time_calls(it->model, it->sim, it->duration_s);
+  return NULL;
+}
+
+/* The thread dies of it if not. */
+static int a_quarter_of_a_megabyte_of_stack_is_enough(void) {
+  whole_insertion it = {NULL, NULL, 0.0, 0.0};
+  stylet_rt_model* model = loaded();
+  pthread_attr_t attributes;
+  pthread_t thread;
+  it.model = model;
+  it.sim = created(model, 0);
+  it.duration_s = duration(model, 0);
+  CHECK(pthread_attr_init(&attributes) == 0);
+  CHECK(pthread_attr_setstacksize(&attributes, 256 * 1024) == 0);
+  CHECK(pthread_create(&thread, &attributes, insert, &it) == 0);
+  CHECK(pthread_join(thread, NULL) == 0);
+  CHECK(it.most_N > 0.3);
+  pthread_attr_destroy(&attributes);
+  stylet_rt_sim_destroy(it.sim);
+  stylet_rt_model_destroy(model);
+  return 0;
+}
+
 static int denormal_numbers_are_back_after_a_step(void) {
   stylet_rt_model* model = loaded();
   stylet_rt_sim* sim = created(model, 0);
@@ -506,6 +540,7 @@ static const struct {
               CLAIM(what_there_is_no_room_for_is_left_out),
               CLAIM(a_step_does_not_allocate),
               CLAIM(a_step_does_not_call_the_system),
+              CLAIM(a_quarter_of_a_megabyte_of_stack_is_enough),
               CLAIM(denormal_numbers_are_back_after_a_step)};
 
 int main(int argc, char** argv) {
