@@ -12,7 +12,8 @@ if(TARGET stylet_rt)
   install(TARGETS stylet_rt EXPORT stylet-targets)
   install(FILES ${PROJECT_SOURCE_DIR}/include/stylet/stylet_rt.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
   # Found from where the file itself is, so that an installed tree can be moved.
-  file(RELATIVE_PATH STYLET_PC_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+             OUTPUT_VARIABLE STYLET_PC_TO_PREFIX)
   configure_file(${CMAKE_CURRENT_LIST_DIR}/stylet_rt.pc.in ${PROJECT_BINARY_DIR}/stylet_rt.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/stylet_rt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
   install(FILES ${PROJECT_SOURCE_DIR}/examples/rt_loop.c DESTINATION ${CMAKE_INSTALL_DATADIR}/stylet/examples)
