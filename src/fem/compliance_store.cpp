@@ -4,71 +4,110 @@
 #include <algorithm>
 
 namespace stylet {
-namespace {
-
-// Nodes solved for at once: three right-hand sides each.
-constexpr std::size_t kBatchNodes = 64;
-
-}  // namespace
 
 ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue)
-    : tissue_(std::move(tissue)), slot_(static_cast<std::size_t>(tissue_->displacement_nodes()), kNotStored) {
-  for (const Index a : tissue_->fixed_nodes()) slot_[a] = kFixed;
+    : tissue_(std::move(tissue)), slots_(tissue_->displacement_nodes()) {}
+
+ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue, const MatX& blocks)
+    : ComplianceStore(std::move(tissue)) {
+  const std::vector<Index>& nodes = tissue_->corridor();
+  const std::size_t count = nodes.size();
+  assert(blocks.rows() == static_cast<Eigen::Index>(3 * count) && blocks.cols() == blocks.rows());
+  reserve(static_cast<Index>(count));
+  const std::shared_ptr<double[]> all(new double[9 * (count * (count + 1) / 2)]);
+  double* at = all.get();
+  for (std::size_t row = 0; row < count; ++row) {
+    slots_.occupy(static_cast<Index>(row), nodes[row]);
+    rows_[row] = {std::shared_ptr<const double[]>(all, at), static_cast<Index>(row) + 1, ++arrived_};
+    for (std::size_t column = 0; column <= row; ++column, at += 9) {
+      // Column by column, as the matrix lies in memory: the block above the diagonal, transposed.
+      Eigen::Map<Mat3>{at} =
+          blocks.block<3, 3>(static_cast<Eigen::Index>(3 * column), static_cast<Eigen::Index>(3 * row)).transpose();
+    }
+  }
+  stored_nodes_ = static_cast<Index>(count);
 }
 
-ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue, MatX blocks)
-    : ComplianceStore(std::move(tissue)) {
-  nodes_ = tissue_->corridor();
-  blocks_ = std::move(blocks);
-  assert(blocks_.rows() == static_cast<Eigen::Index>(3 * nodes_.size()) && blocks_.cols() == blocks_.rows());
-  for (std::size_t slot = 0; slot < nodes_.size(); ++slot) slot_[nodes_[slot]] = static_cast<Index>(slot);
+void ComplianceStore::reserve(Index more) {
+  slots_.resize(slots_.count() + more);
+  rows_.resize(static_cast<std::size_t>(slots_.count()));
+}
+
+void ComplianceStore::take(ComplianceRow& row) {
+  slots_.occupy(row.slot, row.node);
+  Row& place = rows_[static_cast<std::size_t>(row.slot)];
+  place.blocks.swap(row.blocks);
+  place.length = row.length;
+  place.order = ++arrived_;
+  ++stored_nodes_;
+}
+
+void ComplianceStore::release(Index slot, ComplianceRow& row) {
+  row.node = slots_.node(slot);
+  row.slot = slot;
+  Row& place = rows_[static_cast<std::size_t>(slot)];
+  row.blocks.swap(place.blocks);
+  row.length = place.length;
+  place.length = 0;
+  slots_.vacate(slot);
+  --stored_nodes_;
 }
 
 void ComplianceStore::add_nodes(std::span<const Index> nodes, const Progress& progress) {
-  const std::size_t old = nodes_.size();
-  for (const Index a : nodes) {
-    if (a < 0 || a >= tissue_->mesh().node_count() || slot_[a] != kNotStored) continue;
-    slot_[a] = static_cast<Index>(nodes_.size());
-    nodes_.push_back(a);
+  const Index corners = tissue_->mesh().node_count();
+  std::vector<char> wanted(static_cast<std::size_t>(tissue_->displacement_nodes()), 0);
+  std::vector<Index> fresh;
+  const auto want = [&](Index node) {
+    if (has(node) || wanted[static_cast<std::size_t>(node)] != 0) return;
+    wanted[static_cast<std::size_t>(node)] = 1;
+    fresh.push_back(node);
+  };
+  for (const Index node : nodes) {
+    if (node >= 0 && node < corners) want(node);
   }
   // Nodes in the middle of an edge go with its ends.
-  for (Index a = tissue_->mesh().node_count(); a < tissue_->displacement_nodes(); ++a) {
-    const auto [one, other] = tissue_->ends_of(a);
-    if (slot_[a] != kNotStored || !has(one) || !has(other)) continue;
-    slot_[a] = static_cast<Index>(nodes_.size());
-    nodes_.push_back(a);
+  const auto there = [&](Index node) { return has(node) || wanted[static_cast<std::size_t>(node)] != 0; };
+  for (Index node = corners; node < tissue_->displacement_nodes(); ++node) {
+    const auto [one, other] = tissue_->ends_of(node);
+    if (there(one) && there(other)) want(node);
   }
-  if (nodes_.size() == old) return;
+  if (fresh.empty()) return;
 
-  const auto total = static_cast<Eigen::Index>(3 * nodes_.size());
-  const auto kept = static_cast<Eigen::Index>(3 * old);
-  blocks_.conservativeResize(total, total);
-  const Eigen::Index rows = 3 * Eigen::Index{tissue_->displacement_nodes()};
-  for (std::size_t first = old; first < nodes_.size(); first += kBatchNodes) {
-    report(progress, "compliance", static_cast<double>(first - old) / static_cast<double>(nodes_.size() - old));
-    const std::size_t count = std::min(kBatchNodes, nodes_.size() - first);
-    MatX f = MatX::Zero(rows, static_cast<Eigen::Index>(3 * count));
-    for (std::size_t i = 0; i < count; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        f(3 * Eigen::Index{nodes_[first + i]} + axis, static_cast<Eigen::Index>(3 * i) + axis) = 1.0;
-      }
-    }
-    const MatX u = tissue_->solve(f);
-    for (std::size_t slot = 0; slot < nodes_.size(); ++slot) {
-      blocks_.block(static_cast<Eigen::Index>(3 * slot), static_cast<Eigen::Index>(3 * first), 3, u.cols()) =
-          u.middleRows<3>(3 * Eigen::Index{nodes_[slot]});
-    }
+  std::vector<Index> slots;
+  for (Index slot = 0; slot < slots_.count() && slots.size() < fresh.size(); ++slot) {
+    if (slots_.node(slot) < 0) slots.push_back(slot);
   }
+  const Index old = slots_.count();
+  reserve(static_cast<Index>(fresh.size() - slots.size()));
+  for (Index slot = old; slot < slots_.count(); ++slot) slots.push_back(slot);
+  for (ComplianceRow& row : solve_rows(*tissue_, slots_, fresh, slots, progress)) take(row);
+}
 
-  // K⁻¹ is symmetric, its columns from the factor only to rounding. Where both halves were solved for take the mean,
-  // elsewhere mirror, so that action equals reaction to the last bit.
-  for (Eigen::Index column = kept; column < total; ++column) {
-    for (Eigen::Index row = 0; row < column; ++row) {
-      if (row >= kept) blocks_(row, column) = 0.5 * (blocks_(row, column) + blocks_(column, row));
-      blocks_(column, row) = blocks_(row, column);
+MatX ComplianceStore::blocks() const {
+  const std::vector<Index> nodes = stored();
+  const auto count = static_cast<Eigen::Index>(nodes.size());
+  MatX all(3 * count, 3 * count);
+  for (Eigen::Index column = 0; column < count; ++column) {
+    for (Eigen::Index row = 0; row < count; ++row) {
+      all.block<3, 3>(3 * row, 3 * column) =
+          block(nodes[static_cast<std::size_t>(row)], nodes[static_cast<std::size_t>(column)]);
     }
   }
-  report(progress, "compliance", 1.0);
+  return all;
+}
+
+std::vector<Index> ComplianceStore::stored() const {
+  std::vector<Index> nodes;
+  for (Index slot = 0; slot < slots_.count(); ++slot) {
+    if (slots_.node(slot) >= 0) nodes.push_back(slots_.node(slot));
+  }
+  return nodes;
+}
+
+double ComplianceStore::megabytes() const {
+  double blocks = 0.0;
+  for (const Row& row : rows_) blocks += row.length;
+  return 9.0 * blocks * 8.0 / 1048576.0;
 }
 
 }  // namespace stylet

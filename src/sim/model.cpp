@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace stylet {
 
@@ -300,7 +301,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->locator_ = std::make_unique<Locator>(model->tissue_->mesh(), *model->topology_);
   report(progress, "compliance", 0.0);
   model->store_ = std::make_shared<ComplianceStore>(
-      model->tissue_, known ? std::move(known->store) : model->tissue_->compliance_of_corridor(progress));
+      model->tissue_, known ? std::exchange(known->store, {}) : model->tissue_->compliance_of_corridor(progress));
   model->insertions_ = std::move(insertions);
   if (!condensed) {
     const double dofs = model->tissue_->free_dofs() + 3.0 * model->coupling_.capacity;

@@ -49,28 +49,31 @@ void sort_unique(std::vector<Index>& list) {
 }  // namespace
 
 MeshKernel::MeshKernel(std::shared_ptr<const Tissue> tissue, const Topology& topology)
-    : tissue_(std::move(tissue)),
-      skin_(tissue_->mesh().nodes, free_faces(*tissue_, topology)),
-      node_tets_(static_cast<std::size_t>(tissue_->displacement_nodes())),
-      slot_(static_cast<std::size_t>(tissue_->displacement_nodes()), -1) {
+    : tissue_(std::move(tissue)), rows_(static_cast<std::size_t>(tissue_->displacement_nodes())) {
+  auto ground = std::make_shared<Ground>(
+      Ground{SurfaceDistance(tissue_->mesh().nodes, free_faces(*tissue_, topology)), {}, {}, {}});
   for (const Material& material : tissue_->materials()) {
-    const auto found = std::find(poisson_.begin(), poisson_.end(), material.poisson);
-    region_medium_.push_back(static_cast<int>(found - poisson_.begin()));
-    if (found == poisson_.end()) poisson_.push_back(material.poisson);
+    const auto found = std::find(ground->poisson.begin(), ground->poisson.end(), material.poisson);
+    ground->region_medium.push_back(static_cast<int>(found - ground->poisson.begin()));
+    if (found == ground->poisson.end()) ground->poisson.push_back(material.poisson);
   }
+  ground->node_tets.resize(rows_.size());
   for (Index tet = 0; tet < tissue_->mesh().tet_count(); ++tet) {
-    for (const Index node : tissue_->nodes_of(tet)) node_tets_[static_cast<std::size_t>(node)].push_back(tet);
+    for (const Index node : tissue_->nodes_of(tet)) ground->node_tets[static_cast<std::size_t>(node)].push_back(tet);
   }
+  ground_ = std::move(ground);
 }
 
 Medium MeshKernel::medium(int number) const {
-  const Material material{kUnit_MPa, poisson_[static_cast<std::size_t>(number)]};
+  const Material material{kUnit_MPa, ground_->poisson[static_cast<std::size_t>(number)]};
   return {material.mu(), material.poisson};
 }
 
 MeshKernel::Patch MeshKernel::patch_of(Index node) const {
   const Tissue& tissue = *tissue_;
-  const auto around = [&](Index of) -> const std::vector<Index>& { return node_tets_[static_cast<std::size_t>(of)]; };
+  const auto around = [&](Index of) -> const std::vector<Index>& {
+    return ground_->node_tets[static_cast<std::size_t>(of)];
+  };
   const int rings = tissue.nodes_of(0).size() == 4 ? kRings : kRingsOfQuadratic;
   Patch patch;
   patch.nodes = {node};
@@ -95,14 +98,14 @@ MeshKernel::Patch MeshKernel::patch_of(Index node) const {
   return patch;
 }
 
-MeshKernel::Row MeshKernel::make_row(Index node, const Patch& patch) const {
+MeshKernel::Row MeshKernel::unsolved_row(Index node, const Patch& patch) const {
   const Tissue& tissue = *tissue_;
   const Vec3 x = tissue.node_position(node);
   Row row;
   row.node = node;
   double length = 0.0;
   int edges = 0;
-  for (const Index tet : node_tets_[static_cast<std::size_t>(node)]) {
+  for (const Index tet : ground_->node_tets[static_cast<std::size_t>(node)]) {
     for (const Index corner : tissue.mesh().tets[static_cast<std::size_t>(tet)]) {
       if (corner == node) continue;
       length += (tissue.mesh().nodes[static_cast<std::size_t>(corner)] - x).norm();
@@ -110,13 +113,13 @@ MeshKernel::Row MeshKernel::make_row(Index node, const Patch& patch) const {
     }
   }
   row.edge = length / edges;
-  row.skin = skin_.nearest(x);
+  row.skin = ground_->skin.nearest(x);
   row.skin.share = fading(row.skin.depth / row.edge);
   for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
     if (patch.moves[k]) row.near.push_back(patch.nodes[k]);
   }
   if (tissue.is_fixed(node)) row.near.clear();  // nothing to solve for: the kernel will do
-  row.blocks.assign(poisson_.size(), std::vector<Mat3>(row.near.size(), Mat3::Zero()));
+  row.blocks.assign(ground_->poisson.size(), std::vector<Mat3>(row.near.size(), Mat3::Zero()));
   return row;
 }
 
@@ -133,12 +136,12 @@ void MeshKernel::solve(Row& row, const Patch& patch) const {
   const auto rim_node = [&](std::size_t k) { return patch.nodes[static_cast<std::size_t>(rim[k] / 3)]; };
   std::vector<NearSurface> at_rim;
   for (std::size_t k = 0; k < rim.size(); k += 3) {
-    at_rim.push_back(skin_.nearest(tissue.node_position(rim_node(k))));
+    at_rim.push_back(ground_->skin.nearest(tissue.node_position(rim_node(k))));
     at_rim.back().share = row.skin.share;  // all around one source alike
   }
-  for (int m = 0; m < static_cast<int>(poisson_.size()); ++m) {
+  for (int m = 0; m < static_cast<int>(ground_->poisson.size()); ++m) {
     const PatchStiffness stiffness =
-        patch_stiffness(tissue, patch.tets, {kUnit_MPa, poisson_[static_cast<std::size_t>(m)]});
+        patch_stiffness(tissue, patch.tets, {kUnit_MPa, ground_->poisson[static_cast<std::size_t>(m)]});
     MatX prescribed(static_cast<Eigen::Index>(rim.size()), 3);
     for (std::size_t k = 0; k < rim.size(); k += 3) {
       const Vec3 r = tissue.node_position(rim_node(k)) - x;
@@ -170,31 +173,31 @@ std::vector<Index> MeshKernel::missing(std::span<const Index> nodes) const {
   return wanted;
 }
 
+std::shared_ptr<const MeshKernel::Row> MeshKernel::make_row(Index node) const {
+  const Patch patch = patch_of(node);
+  auto row = std::make_shared<Row>(unsolved_row(node, patch));
+  solve(*row, patch);
+  return row;
+}
+
 void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progress) {
   const std::vector<Index> wanted = missing(nodes);
-  std::vector<Row> fresh(wanted.size());  // theirs only when all are done: progress may throw
+  std::vector<std::shared_ptr<const Row>> fresh(wanted.size());  // taken only when all are done: progress may throw
   constexpr std::size_t together = 16;
   for_each_in_parallel((wanted.size() + together - 1) / together,
                        [&](std::size_t piece) {
                          const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
-                         for (std::size_t k = piece * together; k < end; ++k) {
-                           const Patch patch = patch_of(wanted[k]);
-                           fresh[k] = make_row(wanted[k], patch);
-                           solve(fresh[k], patch);
-                         }
+                         for (std::size_t k = piece * together; k < end; ++k) fresh[k] = make_row(wanted[k]);
                        },
                        progress, "near field");
-  const std::size_t old = rows_.size();
-  rows_.insert(rows_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
-  for (std::size_t k = 0; k < wanted.size(); ++k)
-    slot_[static_cast<std::size_t>(wanted[k])] = static_cast<Index>(old + k);
-  make_symmetric(old);
+  for (std::size_t k = 0; k < wanted.size(); ++k) exchange(wanted[k], fresh[k]);
+  added_.insert(added_.end(), wanted.begin(), wanted.end());
 }
 
 std::vector<double> MeshKernel::numbers() const {
   std::vector<double> all;
-  for (const Row& row : rows_) {
-    for (const auto& blocks : row.blocks) {
+  for (const Index node : added_) {
+    for (const auto& blocks : row(node).blocks) {
       for (const Mat3& block : blocks) all.insert(all.end(), block.data(), block.data() + block.size());
     }
   }
@@ -203,16 +206,17 @@ std::vector<double> MeshKernel::numbers() const {
 
 bool MeshKernel::add_nodes(std::span<const Index> nodes, std::span<const double> numbers) {
   const std::vector<Index> wanted = missing(nodes);
-  std::vector<Row> rows(wanted.size());
+  std::vector<std::shared_ptr<Row>> rows(wanted.size());
   constexpr std::size_t together = 64;
   for_each_in_parallel((wanted.size() + together - 1) / together, [&](std::size_t piece) {
     const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
-    for (std::size_t k = piece * together; k < end; ++k) rows[k] = make_row(wanted[k], patch_of(wanted[k]));
+    for (std::size_t k = piece * together; k < end; ++k)
+      rows[k] = std::make_shared<Row>(unsolved_row(wanted[k], patch_of(wanted[k])));
   });
   std::size_t at = 0;
-  for (Row& row : rows) {
-    if (numbers.size() - at < 9 * poisson_.size() * row.near.size()) return false;
-    for (auto& blocks : row.blocks) {
+  for (const auto& row : rows) {
+    if (numbers.size() - at < 9 * media() * row->near.size()) return false;
+    for (auto& blocks : row->blocks) {
       for (Mat3& block : blocks) {
         block = Eigen::Map<const Mat3>(numbers.data() + at);
         at += 9;
@@ -220,50 +224,29 @@ bool MeshKernel::add_nodes(std::span<const Index> nodes, std::span<const double>
     }
   }
   if (at != numbers.size()) return false;
-  for (Row& row : rows) {
-    slot_[static_cast<std::size_t>(row.node)] = static_cast<Index>(rows_.size());
-    rows_.push_back(std::move(row));
-  }
+  for (std::size_t k = 0; k < wanted.size(); ++k) rows_[static_cast<std::size_t>(wanted[k])] = std::move(rows[k]);
+  added_.insert(added_.end(), wanted.begin(), wanted.end());
   return true;
 }
 
-/// Each patch gives its own answer for a pair of nodes; the mean of the two obeys action and reaction.
-void MeshKernel::make_symmetric(std::size_t first_new) {
-  for (std::size_t k = first_new; k < rows_.size(); ++k) {
-    Row& row = rows_[k];
-    for (std::size_t i = 0; i < row.near.size(); ++i) {
-      const Index other = row.near[i];
-      if (!has(other)) continue;
-      const auto slot = static_cast<std::size_t>(slot_[static_cast<std::size_t>(other)]);
-      if (slot >= first_new && slot > k) continue;  // that row sees to it
-      Row& opposite = rows_[slot];
-      const auto found = std::lower_bound(opposite.near.begin(), opposite.near.end(), row.node);
-      if (found == opposite.near.end() || *found != row.node) continue;
-      for (std::size_t m = 0; m < row.blocks.size(); ++m) {
-        Mat3& here = row.blocks[m][i];
-        Mat3& there = opposite.blocks[m][static_cast<std::size_t>(found - opposite.near.begin())];
-        const Mat3 mean = 0.5 * (here + there.transpose());
-        here = mean;
-        there = mean.transpose();
-      }
-    }
-  }
-}
-
 Mat3 MeshKernel::operator()(Index p, Index q, int medium_number) const {
-  const Row& row = rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(q)])];
-  if (const Mat3* block = find(row, p, medium_number)) return *block;
+  const Row& on = row(q);
+  if (const Mat3* there = find(on, p, medium_number)) {
+    const Mat3* back = find(row(p), q, medium_number);
+    return back != nullptr ? Mat3(0.5 * (*there + back->transpose())) : *there;  // p's patch may end before q
+  }
   if (p == q) return Mat3::Zero();  // held
   const Vec3 r = tissue_->node_position(p) - tissue_->node_position(q);
   const Medium unit = medium(medium_number);
-  return kelvinlet(r, kPoint_mm, unit) + surface_image(r, skin(p), row.skin, kPoint_mm, unit);
+  return kelvinlet(r, kPoint_mm, unit) + surface_image(r, skin(p), on.skin, kPoint_mm, unit);
 }
 
 MeshKernel::Blur MeshKernel::blur() const {
   std::vector<double> radii;
-  for (const Row& row : rows_) {
-    if (row.near.empty() || row.skin.share > 0.0) continue;  // held, or not the medium's alone
-    radii.push_back(3.0 * kelvinlet_self(medium(0)) / find(row, row.node, 0)->trace());
+  for (const Index node : added_) {
+    const Row& own = row(node);
+    if (own.near.empty() || own.skin.share > 0.0) continue;  // held, or not the medium's alone
+    radii.push_back(3.0 * kelvinlet_self(medium(0)) / find(own, node, 0)->trace());
   }
   if (radii.empty()) return {};
   std::sort(radii.begin(), radii.end());

@@ -19,9 +19,22 @@ namespace stylet {
 /// does, outer faces are free, and the kernel has their image. What comes out, g(p,q), has the singular part of the
 /// tissue's K⁻¹ and its discretisation error, and nothing else; K⁻¹ − g is smooth. docs/theory/near_field.md §3.
 ///
-/// Computed before the needle comes; reading neither solves nor allocates.
+/// Each of two nodes' patches has its own answer for the pair; g is the mean of the two, which obeys action and
+/// reaction.
+///
+/// Computed before the needle comes; reading neither solves nor allocates. A row is never changed, so a copy of a
+/// kernel shares its rows and grows on its own.
 class MeshKernel {
  public:
+  /// What the patch of one node makes of a unit force on it.
+  struct Row {
+    Index node = -1;
+    double edge = 0.0;
+    NearSurface skin;
+    std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
+    std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa
+  };
+
   /// @param tissue its mesh
   /// @param topology of that mesh; not kept
   MeshKernel(std::shared_ptr<const Tissue> tissue, const Topology& topology);
@@ -36,31 +49,31 @@ class MeshKernel {
   /// @return false, with nothing changed, when there are not as many numbers as these nodes have
   [[nodiscard]] bool add_nodes(std::span<const Index> nodes, std::span<const double> numbers);
 
-  [[nodiscard]] bool has(Index node) const { return slot_[static_cast<std::size_t>(node)] >= 0; }
+  /// Solves for one more node. const: any thread may.
+  [[nodiscard]] std::shared_ptr<const Row> make_row(Index node) const;
+  /// Takes over a row, or with a null pointer gives one up. Wait-free; neither allocates nor frees.
+  /// @param row gets what the node had before, to be freed elsewhere
+  void exchange(Index node, std::shared_ptr<const Row>& row) { rows_[static_cast<std::size_t>(node)].swap(row); }
+
+  [[nodiscard]] bool has(Index node) const { return rows_[static_cast<std::size_t>(node)] != nullptr; }
 
   /// g(p,q) for E = 1 MPa [mm/N]: displacement of p per force on q. Both must be there.
   /// @param medium number of the medium, medium_of()
   [[nodiscard]] Mat3 operator()(Index p, Index q, int medium) const;
 
   /// Whether two nodes are so near each other through the material that one's patch has the other inside.
-  [[nodiscard]] bool neighbours(Index p, Index q) const {
-    return find(rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(q)])], p, 0) != nullptr;
-  }
+  [[nodiscard]] bool neighbours(Index p, Index q) const { return find(row(q), p, 0) != nullptr; }
 
   /// Media differ by their Poisson ratio; E only scales.
-  [[nodiscard]] int medium_of(int region) const { return region_medium_[static_cast<std::size_t>(region)]; }
+  [[nodiscard]] int medium_of(int region) const { return ground_->region_medium[static_cast<std::size_t>(region)]; }
   [[nodiscard]] Medium medium(int number) const;  ///< with E = 1 MPa
-  [[nodiscard]] int media() const { return static_cast<int>(poisson_.size()); }
+  [[nodiscard]] int media() const { return static_cast<int>(ground_->poisson.size()); }
 
   /// The free surface near a node.
-  [[nodiscard]] const NearSurface& skin(Index node) const {
-    return rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(node)])].skin;
-  }
+  [[nodiscard]] const NearSurface& skin(Index node) const { return row(node).skin; }
 
   /// Mean length of the edges at a node [mm].
-  [[nodiscard]] double edge(Index node) const {
-    return rows_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(node)])].edge;
-  }
+  [[nodiscard]] double edge(Index node) const { return row(node).edge; }
 
   /// Radius over which the mesh smears a force on a node: the ε of the regularised kernel with the same
   /// self-compliance. Of nodes away from surfaces. For reports; no force depends on it.
@@ -73,12 +86,12 @@ class MeshKernel {
   [[nodiscard]] Blur blur() const;
 
  private:
-  struct Row {
-    Index node = -1;
-    double edge = 0.0;
-    NearSurface skin;
-    std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
-    std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa
+  /// What rows are made of; shared by copies.
+  struct Ground {
+    SurfaceDistance skin;
+    std::vector<double> poisson;                ///< (media)
+    std::vector<int> region_medium;             ///< (regions)
+    std::vector<std::vector<Index>> node_tets;  ///< (n) elements around a displacement node
   };
   struct Patch {
     std::vector<Index> tets;   ///< ascending
@@ -87,18 +100,15 @@ class MeshKernel {
   };
   [[nodiscard]] std::vector<Index> missing(std::span<const Index> nodes) const;
   [[nodiscard]] Patch patch_of(Index node) const;
-  [[nodiscard]] Row make_row(Index node, const Patch& patch) const;  ///< all but what is solved for
+  [[nodiscard]] Row unsolved_row(Index node, const Patch& patch) const;
   void solve(Row& row, const Patch& patch) const;
-  void make_symmetric(std::size_t first_new);
+  [[nodiscard]] const Row& row(Index node) const { return *rows_[static_cast<std::size_t>(node)]; }
   [[nodiscard]] const Mat3* find(const Row& row, Index node, int medium) const;
 
   std::shared_ptr<const Tissue> tissue_;
-  SurfaceDistance skin_;
-  std::vector<double> poisson_;                ///< (media)
-  std::vector<int> region_medium_;             ///< (regions)
-  std::vector<std::vector<Index>> node_tets_;  ///< (n) elements around a displacement node
-  std::vector<Index> slot_;                    ///< (n) row of a node, -1
-  std::vector<Row> rows_;
+  std::shared_ptr<const Ground> ground_;
+  std::vector<std::shared_ptr<const Row>> rows_;  ///< (n) null where there is none
+  std::vector<Index> added_;                      ///< by add_nodes(), in this order
 };
 
 }  // namespace stylet
