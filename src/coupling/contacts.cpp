@@ -24,7 +24,11 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
   }
   const ContactCompliance::Added added = compliance.add(at, x, placement, travel);
   if (added.refusal == ContactCompliance::Refusal::geometry) return false;
-  if (added.refusal == ContactCompliance::Refusal::missing) report.flags |= StepReport::compliance_missing;
+  if (added.refusal == ContactCompliance::Refusal::missing) {
+    report.flags |= StepReport::compliance_missing;
+    track.marks.push_back({xi, x, at, region_of(at.tet), -1});  // wake_and_drop() lays it when it can
+    return true;
+  }
   if (added.refusal == ContactCompliance::Refusal::capacity) report.flags |= StepReport::out_of_contacts;
   if (added.point < 0) return true;
 
@@ -126,7 +130,7 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
   const Vec3 t = needle->tangent(length());
   while (grips.size() < track.marks.size()) {
     Track::Mark& mark = track.marks[grips.size()];
-    if (mark.point < 0) {  // on an old track: the tissue model has forgotten it since
+    if (mark.point < 0) {  // on an old track, which the tissue model has forgotten, or laid ahead of the compliance
       if (t.dot(mark.x - tip_now) > settings.spacing_mm) break;
       auto added = compliance.add(mark.at, mark.x, placement_of_contacts(), t);
       if (added.refusal == ContactCompliance::Refusal::geometry)

@@ -20,8 +20,6 @@ int Insertion::Parts::region_of(Index tet) const {
   return tet < 0 ? -1 : tissue.locator->mesh().tet_region[static_cast<std::size_t>(tet)];
 }
 
-bool Insertion::Parts::available(Index tet) const { return compliance.available(tet); }
-
 /// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; tissue
 /// turned by the deformation gradient F = I + ∇u is cut along F⁻¹ t. Where the track's end has drifted off the axis
 /// (the base moved sideways while the tip did not cut) the cut leads back to the axis. A bevelled tip leads it to a
@@ -61,15 +59,16 @@ void Insertion::Parts::march(double advance) {
   } else {
     tip.x = target;
   }
-  if (!available(end.tet)) {  // the row of that element is not there: hold the tip where it was
-    tip.x = tip.x_start;
-    end = tip.at_start;
-    tip.blocked = false;
-    tip.held = true;
-  }
   tip.at = end;
   tip.advance = (tip.x - tip.x_start).norm();
-  compliance.move_tip(tip.at, tip.x);
+  tip.stale = !compliance.move_tip(tip.at, tip.x);  // then that of the last place stands in for it
+}
+
+/// The tip's compliance becomes that of where it is, if it is there by now; the tissue does not move by that.
+void Insertion::Parts::take_compliance() {
+  const Vec3 there = memory.displacement(compliance, ContactCompliance::kTip);
+  tip.stale = !compliance.move_tip(tip.at, tip.x);
+  if (!tip.stale) memory.keep_displacement(compliance, ContactCompliance::kTip, there);
 }
 
 /// Axial force of the hand when the tip's force reaches its limit, the shaft's being those of the trial solution.
@@ -107,18 +106,10 @@ void Insertion::Parts::cross_surface(StepReport& report) {
     add_event(report, InsertionEventKind::exited, before);
     return;
   }
-  if (tip.next_tet != tip.at.tet && !available(tip.next_tet)) {  // wait at the surface until the rows are there
-    tip.at_membrane = true;
-    tip.held = true;
-    tip.state = Tip::State::stick;
-    return;
-  }
   if (tip.next_tet != tip.at.tet) {
     tip.at.tet = tip.next_tet;
     tip.at.weights = tissue.locator->weights(tip.at.tet, tip.x);
-    const Vec3 there = memory.displacement(compliance, ContactCompliance::kTip);
-    compliance.move_tip(tip.at, tip.x);
-    memory.keep_displacement(compliance, ContactCompliance::kTip, there);
+    take_compliance();
   }
   tip.at_start = tip.at;
   tip.x_start = tip.x;
@@ -160,11 +151,8 @@ void Insertion::Parts::commit_tip(StepReport& report) {
       }
     }
   }
-  if (tip.held) {
-    tip.held = false;
-    report.flags |= StepReport::compliance_missing;
-  }
   if (!tip.touching) return;
+  if (tip.stale) report.flags |= StepReport::compliance_missing;
   switch (tip.state) {
     case Tip::State::open:
       phase = TipPhase::in_track;
@@ -179,22 +167,24 @@ void Insertion::Parts::commit_tip(StepReport& report) {
 }
 
 /// The tip is in the air and moved from `from` to `to`: does it meet the outer surface?
-void Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& report) {
+/// @return false when it does where no compliance is there: it has yet to enter
+bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& report) {
   const auto crossing = tissue.locator->first_entry(from, to);
-  if (!crossing) return;
+  if (!crossing) return true;
   const Vec3 x = from + crossing->t * (to - from);
   const Vec3 inwards = -tissue.locator->face_normal(crossing->tet, crossing->local);
   const int region = region_of(crossing->tet);
   if (inwards.dot(needle->tangent(length())) < settings.grazing_cos) {
     add_event(report, InsertionEventKind::grazed, region);
-    return;
+    return true;
   }
-  if (!available(crossing->tet)) {
+  if (!compliance.available(crossing->tet)) {
     report.flags |= StepReport::compliance_missing;
-    return;
+    return false;
   }
   touch_surface(*crossing, x, report,
                 phase == TipPhase::exited ? InsertionEventKind::re_entered : InsertionEventKind::skin_contact);
+  return true;
 }
 
 /// Starts a track at a surface point, or joins an old one that begins there.
@@ -263,7 +253,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
   memory.forget(ContactCompliance::kTip);
   memory_xi = track.end_xi;
   relaxing = false;
-  if (!compliance.move_tip(tip.at, tip.x)) report.flags |= StepReport::compliance_missing;
+  tip.stale = !compliance.move_tip(tip.at, tip.x);
 }
 
 }  // namespace stylet

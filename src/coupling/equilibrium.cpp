@@ -257,7 +257,7 @@ double Insertion::Parts::contradiction(int load, const Trial& trial) const {
       case Tip::State::open:
         return trial.opening;
       case Tip::State::stick:
-        return std::max(-axial, tip.blocked || tip.held ? 0.0 : axial - tip.limit);
+        return std::max(-axial, tip.blocked ? 0.0 : axial - tip.limit);
       case Tip::State::cut:
         return tip.advance > 0.0 ? 0.0 : tip.cutting - axial;
     }
@@ -450,7 +450,8 @@ void Insertion::Parts::begin_balance(int most_toggles) {
   toggle_limit = most_toggles;
   for (Grip& grip : grips) grip.toggles = 0;
   tip.toggles = 0;
-  tip.blocked = tip.held = false;
+  tip.blocked = false;
+  if (tip.touching && tip.stale) take_compliance();
   tip.x_start = tip.x;
   tip.at_start = tip.at;
   tip.advance = 0.0;
@@ -461,8 +462,8 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
   if (tip.touching && tip.state == Tip::State::cut && expected_cut > 0.0) {
     march(expected_cut);
-    if (tip.blocked || tip.held) march(0.0);  // left to the balance
-    tip.blocked = tip.held = false;
+    if (tip.blocked) march(0.0);  // left to the balance
+    tip.blocked = false;
   }
 
   bool changed = true;
@@ -536,7 +537,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
       const double proposed = std::max(0.0, slip * (system.lambda[2] - tip.cutting));
       march(tip.advance + damping_of_cut(iteration) * (proposed - tip.advance));
-      if (tip.blocked || tip.held) {
+      if (tip.blocked) {
         tip.state = Tip::State::stick;
         changed = true;
       }

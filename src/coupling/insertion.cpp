@@ -57,6 +57,9 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
       settings(settings_),
       owned_compliance(make_compliance(tissue, settings_, most_points(settings_))),
       compliance(*owned_compliance),
+      supply(tissue.store->shared_tissue(),
+             settings_.engine == CouplingSettings::Engine::condensed ? tissue.store : nullptr,
+             settings_.method == CouplingSettings::Method::near_field ? tissue.kernel : nullptr, *tissue.locator),
       memory(settings_.relaxation_s, most_points(settings_) + 1),
       system(settings_.capacity + 1) {
   const auto capacity = static_cast<std::size_t>(settings.capacity);
@@ -132,10 +135,10 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
   if (phase == TipPhase::air) {
     settle_in_air(report);
     const Vec3 now = needle->point(length());
-    enter(air_tip, now, report);
+    const bool settled = enter(air_tip, now, report);
     if (phase == TipPhase::air) {
       relax();
-      air_tip = now;
+      if (settled) air_tip = now;
       return;
     }
     share_length();
@@ -178,10 +181,8 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     } else if (ahead <= 0.0 && phase == TipPhase::in_track) {
       phase = TipPhase::exited;
       add_event(report, InsertionEventKind::exited, region_of(track.end_at.tet));
-    } else if (phase == TipPhase::exited) {
-      enter(air_tip, now, report);
     }
-    air_tip = now;
+    if (phase != TipPhase::exited || enter(air_tip, now, report)) air_tip = now;
   }
   remember();
   if (grips.empty() && (!tip.touching || tip.state == Tip::State::open) && t.dot(track.entry - tip_now) > 0.0) {
@@ -244,6 +245,7 @@ StepReport Insertion::step(const Pose& base, double dt) {
     p.summarise(report);
     return report;
   }
+  if (p.supply.awaits_step()) p.supply.serve(p.compliance, p.whereabouts());
   const Pose from = p.base;
   // How far the shaft's points go: tilting swings the whole needle, rolling only what is bent.
   const double turn = 2.0 * std::acos(std::min(1.0, std::abs(from.rotation.dot(base.rotation))));
@@ -273,51 +275,28 @@ StepReport Insertion::step(const Pose& base, double dt) {
   return report;
 }
 
-void Insertion::prepare(double radius_mm) {
-  Parts& p = *parts_;
-  const bool condensed = p.settings.engine == CouplingSettings::Engine::condensed;
-  const bool near_field = p.settings.method == CouplingSettings::Method::near_field;
-  if (!condensed && !near_field) return;  // everything is there
-  const Locator& locator = *p.tissue.locator;
-  const Vec3 tip = p.needle->point(p.length());
-  if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
-  Index start = p.tip.at.tet;
-  Vec3 centre = p.tip.x;
-  if (p.phase == TipPhase::air || p.phase == TipPhase::exited) {
-    const Vec3 ahead = p.air_tip + radius_mm * p.needle->tangent(p.length());
-    const auto entry = locator.first_entry(p.air_tip, ahead);
-    if (!entry) return;
-    start = entry->tet;
-    centre = p.air_tip + entry->t * (ahead - p.air_tip);
+/// Where compliance is needed next: at the tip, then at contacts that wait for it behind the tip.
+NeedleWhereabouts Insertion::Parts::whereabouts() const {
+  const Vec3 tangent = needle->tangent(length());
+  if (phase == TipPhase::air || phase == TipPhase::exited) return {air_tip, tangent, -1};
+  if (!tip.stale && grips.size() < track.marks.size() && track.marks[grips.size()].point < 0) {
+    const Track::Mark& next = track.marks[grips.size()];
+    return {next.x, tangent, next.at.tet};
   }
-  if (start < 0) return;
-  p.prepared_at = tip;
-  // Elements that touch the ball around the tip, by flooding from the tip's own.
-  std::vector<Index> queue{start};
-  std::vector<char> seen(static_cast<std::size_t>(locator.mesh().tet_count()), 0);
-  seen[static_cast<std::size_t>(start)] = 1;
-  std::vector<Index> nodes;
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const auto tet = static_cast<std::size_t>(queue[head]);
-    for (const Index node : p.tissue.store->tissue().nodes_of(queue[head])) nodes.push_back(node);
-    for (const Index next : locator.topology().neighbour[tet]) {
-      if (next < 0 || seen[static_cast<std::size_t>(next)]) continue;
-      // An element counts when its bounding ball meets the ball around the tip.
-      const auto& corners = locator.mesh().tets[static_cast<std::size_t>(next)];
-      Vec3 middle = Vec3::Zero();
-      for (const Index node : corners) middle += 0.25 * locator.mesh().nodes[static_cast<std::size_t>(node)];
-      double reach = radius_mm;
-      for (const Index node : corners)
-        reach = std::max(reach, radius_mm + (locator.mesh().nodes[static_cast<std::size_t>(node)] - middle).norm());
-      if ((middle - centre).norm() > reach) continue;
-      seen[static_cast<std::size_t>(next)] = 1;
-      queue.push_back(next);
-    }
-  }
-  if (condensed) p.tissue.store->add_nodes(nodes);
-  if (near_field) p.tissue.kernel->add_nodes(nodes);
+  return {tip.x, tip.state == Tip::State::cut ? tip.direction : tangent, tip.at.tet};
 }
 
+void Insertion::prepare(double radius_mm) {
+  Parts& p = *parts_;
+  const Vec3 tip = p.needle->point(p.length());
+  if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
+  p.supply.work_through(p.compliance, p.whereabouts(),
+                        {.radius_mm = radius_mm, .ahead_mm = 0.0, .spare_nodes = p.settings.spare_nodes});
+  p.prepared_at = tip;
+}
+
+const ComplianceStore& Insertion::store() const { return *parts_->tissue.store; }
+ComplianceSupply& Insertion::supply() { return parts_->supply; }
 const Needle& Insertion::needle() const { return *parts_->needle; }
 const ContactCompliance& Insertion::compliance() const { return parts_->compliance; }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }

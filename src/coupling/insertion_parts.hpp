@@ -50,7 +50,7 @@ struct Tip {
   double advance = 0.0;            ///< [mm] cut in this sub-step
   bool blocked = false;            ///< the cut met a surface in this sub-step
   Crossing crossing;               ///< that surface
-  bool held = false;               ///< the compliance ahead is missing: no cut in this sub-step
+  bool stale = false;              ///< its compliance is that of an earlier place, none is there where it is
   bool at_membrane = false;        ///< x lies on a surface that has not been broken
   Index next_tet = -1;             ///< element behind that surface, -1 = outside the patient
   double limit = 0.0;              ///< [N] force that starts the cut
@@ -68,6 +68,7 @@ struct Insertion::Parts {
   CouplingSettings settings;
   std::unique_ptr<ContactCompliance> owned_compliance;
   ContactCompliance& compliance;
+  ComplianceSupply supply;
   TissueMemory memory;
   double memory_xi = 0.0;  ///< [mm] along the track, where the tip's share of the memory is
   bool relaxing = false;   ///< the needle is out, the tissue not yet at rest
@@ -189,10 +190,11 @@ struct Insertion::Parts {
   void start_cut(StepReport& report);
   void commit_tip(StepReport& report);
   void cross_surface(StepReport& report);
-  void enter(const Vec3& from, const Vec3& to, StepReport& report);
+  bool enter(const Vec3& from, const Vec3& to, StepReport& report);
+  void take_compliance();
+  [[nodiscard]] NeedleWhereabouts whereabouts() const;
   void touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report, InsertionEventKind kind);
   [[nodiscard]] int region_of(Index tet) const;
-  [[nodiscard]] bool available(Index tet) const;
 
   // contacts.cpp: laying, waking and dropping of shaft contacts.
   [[nodiscard]] Placement placement_of_contacts() const;

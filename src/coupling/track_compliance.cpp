@@ -367,6 +367,13 @@ bool TrackCompliance::move_tip(const MaterialPoint& at, const Vec3& /*x*/) {
   return true;
 }
 
+void TrackCompliance::mark_nodes(std::span<unsigned> stamps, unsigned stamp) const {
+  for (const Observable& observable : observables_) {
+    for (int i = 0; i < observable.shape.count; ++i)
+      stamps[static_cast<std::size_t>(observable.shape.node[static_cast<std::size_t>(i)])] = stamp;
+  }
+}
+
 void TrackCompliance::remove_last_embedded() {
   observables_.pop_back();
   vertex_of_.pop_back();

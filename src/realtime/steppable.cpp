@@ -27,6 +27,8 @@ SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& mod
       forces_(Snapshot::kForces) {
   const PlannedInsertion& plan = model->insertions()[insertion];
   simulation_.place(plan.motion.at(0.0), plan.entry, plan.direction);
+  simulation_.prepare();
+  worker_ = std::make_unique<ComplianceWorker>(simulation_.supply(), simulation_.supply_settings());
 }
 
 Pose SimulationSteppable::base() const noexcept { return simulation_.insertion().needle().base(); }

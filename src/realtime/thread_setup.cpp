@@ -94,6 +94,13 @@ void prepare_thread() {
 #endif
 }
 
+void yield_to_others() {
+#if defined(__linux__)
+  constexpr int nice = 10;
+  setpriority(PRIO_PROCESS, 0, nice);  // 0: of this thread alone, on Linux
+#endif
+}
+
 std::string ThreadRights::describe() const {
   const auto refusal = [](int error) {
     // strerror is not safe among threads; the two refusals there are have their own words.

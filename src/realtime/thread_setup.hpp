@@ -44,4 +44,7 @@ void request_realtime_scheduling(int priority, ThreadRights& rights);
 /// Touches the stack a loop may use, so that its pages are there; asks for exact timers.
 void prepare_thread();
 
+/// The calling thread gets processor time after ordinary ones that want it, where the system has that (Linux).
+void yield_to_others();
+
 }  // namespace stylet

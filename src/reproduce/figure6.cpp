@@ -31,7 +31,7 @@ class Recorder {
       }
     }
     const auto* full = dynamic_cast<const paper::InverseCompliance*>(&simulation_.insertion().compliance());
-    run_.compliance_mb = full != nullptr ? full->inverse().megabytes() : model_->store()->megabytes();
+    run_.compliance_mb = full != nullptr ? full->inverse().megabytes() : simulation_.insertion().store().megabytes();
     return std::move(run_);
   }
 

@@ -76,6 +76,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
   c.relaxation_s = s.tissue_model.relaxation_s;
   c.capacity = s.coupling.contacts;
+  c.spare_nodes = s.coupling.spare_nodes;
   c.tolerance = s.coupling.tolerance;
   c.axial_compliance_mm_per_N = axial_compliance(s.needle);
   return c;
@@ -316,13 +317,14 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     model->inverse_ = std::make_shared<const MatX>(paper::full_inverse(*model->tissue_, progress));
   }
   if (near_field) {
-    model->kernel_ = std::make_shared<MeshKernel>(model->tissue_, *model->topology_);
+    auto kernel = std::make_shared<MeshKernel>(model->tissue_, *model->topology_);
     const std::vector<Index> nodes = nodes_of(*model->tissue_, corridor.elements);
     if (!known) {
-      model->kernel_->add_nodes(nodes, progress);
-    } else if (!model->kernel_->add_nodes(nodes, known->kernel)) {
+      kernel->add_nodes(nodes, progress);
+    } else if (!kernel->add_nodes(nodes, known->kernel)) {
       return input_error(where, "the near field that comes with it is not that of the corridor", kPrepareAgain);
     }
+    model->kernel_ = std::move(kernel);
   }
   return std::shared_ptr<const Model>(std::move(model));
 }

@@ -189,9 +189,13 @@ void describe_coupling(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.coupling.corridor_mm; });
   keys.integer(
       "coupling.corridor_nodes", 1, 20000,
-      "most nodes of the mesh in it, the nearest; n of them take 72 n² bytes. Elsewhere compliance is computed "
+      "most nodes of the mesh in it, the nearest; n of them take 36 n² bytes. Elsewhere compliance is computed "
       "when the needle comes",
       [](auto& s, const Slot&) { return &s.coupling.corridor_nodes; });
+  keys.integer("coupling.spare_nodes", 50, 20000,
+               "most nodes elsewhere whose compliance is kept; those far from the tip, which no contact needs, are "
+               "forgotten first",
+               [](auto& s, const Slot&) { return &s.coupling.spare_nodes; });
   keys.integer("coupling.contacts", 8, 400, "largest number of contacts",
                [](auto& s, const Slot&) { return &s.coupling.contacts; });
   keys.number("coupling.tolerance", "", 1e-12, 1e-4,

@@ -11,6 +11,8 @@ namespace {
 constexpr double kPrepare_mm = 6.0;
 /// Of the corridor's radius at most: a needle on its planned way must not ask for more than is there.
 constexpr double kPrepareShare = 0.75;
+/// A worker has compliance ready so far ahead of the tip.
+constexpr double kAhead_mm = 10.0;
 constexpr int kNeedleSamples = 81;
 /// The base has turned back when it is this far from where it was furthest: a hand trembles.
 constexpr double kTurn_mm = 0.05;
@@ -55,8 +57,10 @@ EventKind event_kind(InsertionEventKind kind) {
   return EventKind::skin_contact;
 }
 
+/// Compliance in copies, which share what the model has and grow on their own.
 InsertionTissue tissue_of(const Model& model) {
-  return {model.store(), &model.locator(), model.laws(), model.inverse(), model.kernel()};
+  return {std::make_shared<ComplianceStore>(*model.store()), &model.locator(), model.laws(), model.inverse(),
+          model.kernel() ? std::make_shared<MeshKernel>(*model.kernel()) : nullptr};
 }
 
 }  // namespace
@@ -91,6 +95,12 @@ void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& directio
   record_.time_s = now;
   record_.base_depth_mm = base_depth_mm(base);
   record_.tip_mm = insertion_.needle().point(insertion_.needle().length());
+}
+
+ComplianceSupply::Settings Simulation::supply_settings() const {
+  return {.radius_mm = std::min(kPrepare_mm, kPrepareShare * model_->corridor_mm()),
+          .ahead_mm = kAhead_mm,
+          .spare_nodes = model_->coupling().spare_nodes};
 }
 
 void Simulation::prepare() { insertion_.prepare(std::min(kPrepare_mm, kPrepareShare * model_->corridor_mm())); }

@@ -290,20 +290,6 @@ TEST(Situation, a_full_contact_list_is_flagged_and_the_run_goes_on) {
   EXPECT_EQ(run.count(Kind::withdrawn), 1);
 }
 
-TEST(Situation, missing_compliance_holds_the_tip_and_is_flagged) {
-  NeedleInBlock run;
-  run.aim({3, 2, 0});
-  run.go(20);
-  for (int k = 0; k < 1500; ++k) {  // on without prepare()
-    run.depth += 0.02;
-    run.report = run.insertion->step(run.pose(), 1e-3);
-    run.flags |= run.report.flags;
-  }
-  EXPECT_TRUE(run.flags & StepReport::compliance_missing);
-  EXPECT_FALSE(run.flags & StepReport::not_converged);
-  EXPECT_LT(run.insertion->track().end_xi, 49.0);
-}
-
 TEST(Situation, a_pose_that_is_not_finite_is_refused_and_the_last_state_kept) {
   NeedleInBlock run;
   run.aim({3, 2, 0});

@@ -77,8 +77,13 @@ class ContactCompliance {
   /// is told, and after reset(), through none.
   virtual void enter_by(double /*force*/, const Vec3& /*direction*/) {}
 
-  /// Whether the compliance of a base tetrahedron's nodes is there.
+  /// Whether the compliance of a base tetrahedron's nodes is there. Where it is not, nothing can be added and the tip
+  /// stays where it was last.
   [[nodiscard]] virtual bool available(Index base_tet) const = 0;
+
+  /// Writes `stamp` at each displacement node whose compliance the points need.
+  /// @param stamps (displacement nodes)
+  virtual void mark_nodes(std::span<unsigned> /*stamps*/, unsigned /*stamp*/) const {}
 
   /// Takes back the point added last, which must have been embedded.
   virtual void remove_last_embedded() = 0;

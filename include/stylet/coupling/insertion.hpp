@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/coupling/compliance_supply.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/laws.hpp"
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
@@ -47,7 +48,8 @@ struct StepReport {
   enum Flag : unsigned {
     not_converged = 1u << 0,       ///< the last iterate was kept; use a smaller time step
     contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step
-    compliance_missing = 1u << 2,  ///< the tip was held: call prepare() between steps
+    compliance_missing = 1u << 2,  ///< not there yet where the needle is: that of the tip's last place stood in, and
+                                   ///< contacts wait; prepare() between steps, or let a worker (supply()) keep ahead
     out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
     too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
     invalid_input = 1u << 5        ///< a pose that is not finite, or dt ≤ 0: the step was not taken
@@ -115,8 +117,14 @@ class Insertion {
   StepReport step(const Pose& base, double dt);
 
   /// Makes the compliance of all elements within `radius` of the tip available. Call between steps; returns at once
-  /// when the tip has not moved far. Allocates and solves.
+  /// when the tip has not moved far. Allocates and solves, or waits for the worker that does.
   void prepare(double radius_mm);
+
+  /// The compliance there is now.
+  [[nodiscard]] const ComplianceStore& store() const;
+
+  /// What brings compliance to the needle; a worker's side of it may be another thread's.
+  [[nodiscard]] ComplianceSupply& supply();
 
   [[nodiscard]] const Needle& needle() const;
   [[nodiscard]] const ContactCompliance& compliance() const;

@@ -32,6 +32,7 @@ class TrackCompliance final : public ContactCompliance {
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
   [[nodiscard]] bool available(Index base_tet) const override { return stored(base_tet); }
+  void mark_nodes(std::span<unsigned> stamps, unsigned stamp) const override;
   void remove_last_embedded() override;
   void reset() override;
   [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const override;

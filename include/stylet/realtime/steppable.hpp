@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/realtime/compliance_worker.hpp"
 #include "stylet/realtime/snapshot.hpp"
 #include "stylet/sim/simulation.hpp"
 
@@ -34,12 +35,12 @@ class Steppable {
 /// @return those that are there
 std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<TissueForce> out);
 
-/// A Simulation in the loop. Simulation::prepare() allocates and solves, so the loop never calls it: where the tip
-/// leaves the compliance that is there, it is held and flagged (StepReport::compliance_missing) until somebody else has
-/// provided more.
+/// A Simulation in the loop, with a worker that keeps compliance ahead of the tip. Where the tip outruns it, the steps
+/// are flagged (StepReport::compliance_missing).
 class SimulationSteppable final : public Steppable {
  public:
   /// Places the needle at the start of one of the model's insertions.
+  /// What the first steps need is there afterwards: solves if need be.
   explicit SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion = 0);
 
   /// Not while the loop runs.
@@ -52,6 +53,7 @@ class SimulationSteppable final : public Steppable {
 
  private:
   Simulation simulation_;
+  std::unique_ptr<ComplianceWorker> worker_;
   std::vector<ContactState> contacts_;  ///< room
   std::vector<TissueForce> forces_;     ///< room
 };

@@ -29,8 +29,9 @@ struct ModelCompliance {
   std::vector<double> kernel;  ///< MeshKernel::numbers() of the corridor; empty without a near field
 };
 
-/// A scenario compiled: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable but for
-/// the compliance store, which grows between steps where a needle leaves the planned corridor.
+/// A scenario compiled: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable:
+/// simulations in any threads may share it, and where a needle leaves the planned corridor its own copy of the
+/// compliance grows.
 class Model {
  public:
   /// @param mesh the patient's tetrahedra, regions by canonical names
@@ -49,11 +50,12 @@ class Model {
   [[nodiscard]] const Tissue& tissue() const { return *tissue_; }
   [[nodiscard]] const Topology& topology() const { return *topology_; }
   [[nodiscard]] const Locator& locator() const { return *locator_; }
-  [[nodiscard]] const std::shared_ptr<ComplianceStore>& store() const { return store_; }
+  /// Of the corridor.
+  [[nodiscard]] const std::shared_ptr<const ComplianceStore>& store() const { return store_; }
   /// The full K⁻¹, for engines that keep it; else empty.
   [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
   /// Kernel of the mesh near the needles' ways, where coupling.method = "near-field"; empty otherwise.
-  [[nodiscard]] const std::shared_ptr<MeshKernel>& kernel() const { return kernel_; }
+  [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return kernel_; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
@@ -77,9 +79,9 @@ class Model {
   std::shared_ptr<const Tissue> tissue_;
   std::unique_ptr<Topology> topology_;
   std::unique_ptr<Locator> locator_;
-  std::shared_ptr<ComplianceStore> store_;
+  std::shared_ptr<const ComplianceStore> store_;
   std::shared_ptr<const MatX> inverse_;
-  std::shared_ptr<MeshKernel> kernel_;
+  std::shared_ptr<const MeshKernel> kernel_;
   std::vector<RegionLaws> laws_;
   std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;

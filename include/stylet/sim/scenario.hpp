@@ -131,6 +131,7 @@ struct Scenario {
     double grazing_deg = 80.0;
     double corridor_mm = 8.0;
     int corridor_nodes = 3500;
+    int spare_nodes = 1500;
     int contacts = 96;
     double tolerance = 1e-9;
     bool operator==(const Coupling&) const = default;

@@ -43,6 +43,9 @@ class Simulation {
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const Insertion& insertion() const { return insertion_; }
+  /// What brings compliance to the needle, and around what a worker should have it ahead of the tip.
+  [[nodiscard]] ComplianceSupply& supply() { return insertion_.supply(); }
+  [[nodiscard]] ComplianceSupply::Settings supply_settings() const;
   /// Insertion::observe_phases().
   void observe_phases(PhaseObserver* observer) { insertion_.observe_phases(observer); }
   [[nodiscard]] double time_s() const { return record_.time_s; }

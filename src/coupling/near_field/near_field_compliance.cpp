@@ -199,6 +199,14 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   return true;
 }
 
+void NearFieldCompliance::mark_nodes(std::span<unsigned> stamps, unsigned stamp) const {
+  far_->mark_nodes(stamps, stamp);
+  for (const Place& place : places_) {
+    for (int i = 0; i < place.shape.count; ++i)
+      stamps[static_cast<std::size_t>(place.shape.node[static_cast<std::size_t>(i)])] = stamp;
+  }
+}
+
 void NearFieldCompliance::remove_last_embedded() {
   far_->remove_last_embedded();
   places_.pop_back();

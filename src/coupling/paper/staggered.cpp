@@ -231,7 +231,7 @@ double Insertion::Parts::imbalance() const {
 bool Insertion::Parts::cut(bool nearly) {
   if (!tip.touching || tip.state != Tip::State::cut) return true;
   march(std::max(0.0, staggered->advance));
-  if (!nearly || (!tip.blocked && !tip.held)) return true;
+  if (!nearly || !tip.blocked) return true;
   tip.state = Tip::State::stick;
   return false;
 }

@@ -84,10 +84,6 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
                        "Use coupling.engine = \"condensed\"");
   }
   const Tissue& tissue = model.tissue();
-  if (model.store()->stored() != tissue.corridor()) {
-    return failure(where, "the model has been used, and its compliance is no longer that of its corridor alone",
-                   "Save a model before a simulation uses it");
-  }
   ModelFile file;
   file.version = version();
   file.scenario_text = to_toml(model.scenario());

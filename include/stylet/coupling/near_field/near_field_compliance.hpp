@@ -33,6 +33,7 @@ class NearFieldCompliance final : public ContactCompliance {
     entry_ = direction;
   }
   [[nodiscard]] bool available(Index base_tet) const override;
+  void mark_nodes(std::span<unsigned> stamps, unsigned stamp) const override;
   void remove_last_embedded() override;
   void reset() override;
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/realtime/compliance_worker.hpp"
+
+#include "thread_setup.hpp"
+
+#include <chrono>
+
+namespace stylet {
+namespace {
+
+/// Nodes solved for at once: more would cost less each, but the first would wait for the last.
+constexpr std::size_t kAtOnce = 16;
+constexpr auto kLook = std::chrono::milliseconds(1);
+constexpr int kLooksAfterFailure = 1000;
+
+}  // namespace
+
+ComplianceWorker::ComplianceWorker(ComplianceSupply& supply, const ComplianceSupply::Settings& settings)
+    : supply_(supply) {
+  supply_.open(settings);
+  try {
+    thread_ = std::thread([this] { run(); });
+  } catch (...) {
+    supply_.close();
+    throw;
+  }
+}
+
+ComplianceWorker::~ComplianceWorker() {
+  stop_.store(true, std::memory_order_relaxed);
+  thread_.join();
+  supply_.close();
+}
+
+void ComplianceWorker::run() noexcept {
+  yield_to_others();
+  while (!stop_.load(std::memory_order_relaxed)) {
+    using Work = ComplianceSupply::Work;
+    const Work done = supply_.work(kAtOnce);
+    if (done == Work::done) continue;
+    const int looks = done == Work::failed ? kLooksAfterFailure : 1;  // memory may be there again later
+    for (int k = 0; k < looks && !stop_.load(std::memory_order_relaxed); ++k) std::this_thread::sleep_for(kLook);
+  }
+}
+
+}  // namespace stylet

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compliance that comes while the needle moves: the same numbers, in bounded memory, and what is done without it.
+#include "needle_in_block.hpp"
+#include "support/count_allocations.hpp"
+
+using namespace stylet;
+using namespace stylet::test;
+using Work = ComplianceSupply::Work;
+using Kind = InsertionEventKind;
+
+namespace {
+
+constexpr std::size_t kAtOnce = 8;
+
+ComplianceSupply::Settings near_the_tip(Index spare_nodes = 1500) {
+  return {.radius_mm = 8.0, .ahead_mm = 4.0, .spare_nodes = spare_nodes};
+}
+
+/// Steps without prepare(); a worker of our own has a round after each `rounds_every`-th.
+struct WithWorker : NeedleInBlock {
+  int rounds_every = 1;
+  int flagged = 0;
+  long taken = 0;
+
+  explicit WithWorker(const BlockOptions& options = {}, const ComplianceSupply::Settings& settings = near_the_tip())
+      : NeedleInBlock(options) {
+    insertion->supply().open(settings);
+  }
+
+  void go_on(double to, double speed = 20.0, double dt = 1e-3) {
+    const double way = to - depth;
+    const double from = depth;
+    const auto steps = std::max<long>(1, std::lround(std::abs(way) / (speed * dt)));
+    for (long k = 1; k <= steps; ++k) {
+      depth = from + way * static_cast<double>(k) / static_cast<double>(steps);
+      one_step(dt);
+    }
+  }
+
+  void one_step(double dt = 1e-3) {
+    report = insertion->step(pose(), dt);
+    forces.push_back(report.hand_force.dot(axis));
+    flags |= report.flags;
+    flagged += (report.flags & StepReport::compliance_missing) != 0 ? 1 : 0;
+    for (int e = 0; e < report.events; ++e) {
+      const InsertionEvent& event = report.event[static_cast<std::size_t>(e)];
+      happened.push_back({event.kind, event.region, depth, event.force_N});
+    }
+    if (rounds_every > 0 && ++taken % rounds_every == 0) insertion->supply().work(kAtOnce);
+  }
+
+  /// Rounds until nothing is wanted; the needle stays where it is.
+  void rest() {
+    const int as_before = std::exchange(rounds_every, 0);
+    Work last = Work::done;
+    int idle = 0;  // after the step that took the last rows it may look elsewhere
+    for (int k = 0; k < 1000 && idle < 2; ++k) {
+      one_step();
+      last = insertion->supply().work(kAtOnce);
+      idle = last == Work::idle ? idle + 1 : 0;
+    }
+    EXPECT_EQ(last, Work::idle);
+    one_step();
+    rounds_every = as_before;
+  }
+};
+
+}  // namespace
+
+TEST(ComplianceSupply, rows_that_came_in_parcels_are_those_of_the_factor) {
+  WithWorker run;
+  run.aim({3, 2, 0});
+  run.go_on(60);
+  const std::vector<Index> stored = run.store->stored();
+  ASSERT_GT(stored.size(), 40u);
+  ComplianceStore direct(run.tissue);
+  direct.add_nodes(stored);
+  for (const Index a : stored) {
+    for (const Index b : stored) {
+      const double scale = direct.block(a, a).norm() + direct.block(b, b).norm();
+      EXPECT_LE((run.store->block(a, b) - direct.block(a, b)).norm(), 1e-12 * scale);
+      EXPECT_EQ(run.store->block(a, b), run.store->block(b, a).transpose());
+    }
+  }
+}
+
+TEST(ComplianceSupply, a_worker_that_keeps_ahead_gives_the_same_forces) {
+  WithWorker run;
+  run.aim({3, 2, 0}, {0.05, 0.02, 1.0});
+  run.rest();
+  NeedleInBlock prepared;
+  prepared.aim({3, 2, 0}, {0.05, 0.02, 1.0});
+  prepared.wait(1e-3 * static_cast<double>(run.forces.size()));
+  run.go_on(60, 5.0);
+  prepared.go(60, 5.0);
+  EXPECT_EQ(run.flags, 0u);
+  ASSERT_EQ(run.forces.size(), prepared.forces.size());
+  for (std::size_t k = 0; k < run.forces.size(); ++k) ASSERT_NEAR(run.forces[k], prepared.forces[k], 1e-7) << k;
+}
+
+TEST(ComplianceSupply, memory_is_bounded_and_no_contact_loses_its_compliance) {
+  constexpr Index spare = 150;
+  ComplianceSupply::Settings settings = near_the_tip(spare);
+  settings.radius_mm = 3.0;
+  BlockOptions options;
+  options.cells = {12, 12, 12};
+  WithWorker run(options, settings);
+  // In and out at places far from each other: far more nodes than there is room for.
+  for (const Vec3& through : {Vec3(3, 2, 0), Vec3(-25, 20, 0), Vec3(24, -22, 0)}) {
+    run.aim(through);
+    run.rest();
+    Index most = 0;
+    for (const double depth : {30.0, 55.0, 20.0, 45.0}) {
+      run.go_on(depth, 10.0, 2e-3);
+      most = std::max(most, run.store->stored_nodes());
+      for (const ContactState& contact : run.insertion->contacts()) EXPECT_TRUE(contact.force.allFinite());
+    }
+    EXPECT_LE(most, spare);
+    run.go_on(-1.0, 20.0, 2e-3);
+    EXPECT_EQ(run.flags, 0u);
+  }
+  EXPECT_EQ(run.count(Kind::withdrawn), 3);
+}
+
+TEST(ComplianceSupply, what_was_forgotten_comes_back_with_the_same_numbers) {
+  constexpr Index spare = 150;
+  ComplianceSupply::Settings settings = near_the_tip(spare);
+  settings.radius_mm = 3.0;
+  BlockOptions options;
+  options.cells = {12, 12, 12};
+  WithWorker run(options, settings);
+  const auto insertion_at = [&](const Vec3& through) {
+    run.aim(through);
+    run.rest();
+    run.go_on(40.0, 10.0, 2e-3);
+    const double force = run.forces.back();
+    run.go_on(-1.0, 20.0, 2e-3);
+    return force;
+  };
+  EXPECT_GT(insertion_at({3, 2, 0}), 0.5);
+  const auto of_the_first = run.store->stored();
+  insertion_at({-25, 20, 0});
+  insertion_at({24, -22, 0});
+  EXPECT_TRUE(std::any_of(of_the_first.begin(), of_the_first.end(), [&](Index node) { return !run.store->has(node); }));
+  // Beside the first track, so as not to run in it, and then once more in a block that never forgot.
+  const double again = insertion_at({3, 6, 0});
+  WithWorker fresh(options, near_the_tip());
+  fresh.aim({3, 6, 0});
+  fresh.rest();
+  fresh.go_on(40.0, 10.0, 2e-3);
+  EXPECT_NEAR(again, fresh.forces.back(), 1e-6);
+}
+
+TEST(ComplianceSupply, an_outrun_needle_goes_on_with_the_last_row_is_flagged_and_recovers) {
+  for (const auto method : {CouplingSettings::Method::near_field, CouplingSettings::Method::node_addition}) {
+    BlockOptions options;
+    options.coupling.method = method;
+    NeedleInBlock prepared(options);
+    prepared.aim({3, 2, 0});
+    prepared.wait(0.1);
+    prepared.go(60);
+
+    WithWorker run(options);
+    run.aim({3, 2, 0});
+    run.rest();
+    run.go_on(20);
+    EXPECT_EQ(run.flags, 0u);
+    run.rounds_every = 0;  // the worker stands still
+    run.go_on(60);
+    EXPECT_EQ(run.flags, static_cast<unsigned>(StepReport::compliance_missing));
+    EXPECT_NE(run.report.flags, 0u);
+    EXPECT_EQ(run.report.tip, TipPhase::cutting) << "it is not held";
+    EXPECT_GT(run.insertion->track().end_xi, 50.0);
+    // Neither jump nor wall: the last contact carries the friction of those that wait.
+    const auto largest_jump = [](const std::vector<double>& forces) {
+      double largest = 0.0;
+      for (std::size_t k = 1; k < forces.size(); ++k) largest = std::max(largest, std::abs(forces[k] - forces[k - 1]));
+      return largest;
+    };
+    EXPECT_LE(largest_jump(run.forces), 1.05 * largest_jump(prepared.forces));
+    EXPECT_LE(run.peak(), 1.1 * prepared.peak());
+    EXPECT_NEAR(run.forces.back(), prepared.forces.back(), 0.1 * prepared.forces.back());
+
+    run.flags = 0;
+    run.rest();
+    EXPECT_EQ(run.report.flags, 0u);
+    EXPECT_EQ(run.insertion->contacts().size(), prepared.insertion->contacts().size());
+    run.flags = 0;
+    run.rounds_every = 1;
+    run.go_on(65);
+    prepared.go(65);
+    EXPECT_EQ(run.flags, 0u);
+    EXPECT_NEAR(run.forces.back(), prepared.forces.back(), 0.05 * prepared.forces.back());
+  }
+}
+
+TEST(ComplianceSupply, a_surface_met_without_compliance_is_entered_when_it_has_come) {
+  WithWorker run;
+  run.rounds_every = 0;
+  run.aim({3, 2, 0});
+  run.go_on(2.0);
+  EXPECT_TRUE(run.report.flags & StepReport::compliance_missing);
+  EXPECT_EQ(run.report.tip, TipPhase::air);
+  EXPECT_EQ(run.peak(), 0.0);
+  EXPECT_EQ(run.count(Kind::skin_contact), 0);
+  run.rest();
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_EQ(run.count(Kind::skin_contact), 1);
+  EXPECT_GT(run.forces.back(), 0.1) << "pressed in by as much as the needle is beyond the surface";
+  run.rounds_every = 1;
+  run.go_on(30);
+  EXPECT_EQ(run.count(Kind::puncture, 0), 1);
+}
+
+TEST(ComplianceSupply, a_needle_that_turns_away_before_it_entered_has_touched_nothing) {
+  WithWorker run;
+  run.rounds_every = 0;
+  run.aim({3, 2, 0});
+  run.go_on(2.0);
+  run.go_on(-2.0);
+  run.rest();
+  EXPECT_EQ(run.count(Kind::skin_contact), 0);
+  EXPECT_EQ(run.peak(), 0.0);
+  EXPECT_EQ(run.report.flags, 0u);
+}
+
+TEST(ComplianceSupply, a_step_that_takes_rows_over_neither_allocates_nor_frees) {
+  if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
+  constexpr Index spare = 150;
+  ComplianceSupply::Settings settings = near_the_tip(spare);
+  settings.radius_mm = 3.0;
+  BlockOptions options;
+  options.cells = {12, 12, 12};
+  WithWorker run(options, settings);
+  run.aim({3, 2, 0});
+  long allocations = 0;
+  int parcels = 0;
+  for (int k = 0; k < 6000; ++k) {
+    run.depth += k < 3000 ? 0.02 : -0.02;
+    const Pose pose = run.pose();
+    parcels += run.insertion->supply().awaits_step() ? 1 : 0;
+    {
+      const AllocationCount counter;
+      run.insertion->step(pose, 1e-3);
+      allocations += counter.count();
+    }
+    run.insertion->supply().work(kAtOnce);
+  }
+  EXPECT_GT(parcels, 100);
+  EXPECT_EQ(allocations, 0);
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compliance that another thread brings while the needle moves.
+#include "sim/box_patient.hpp"
+#include "stylet/realtime/compliance_worker.hpp"
+#include "stylet/realtime/steppable.hpp"
+
+#include <thread>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+/// A model whose corridor is far from where its needle is going to be led.
+std::shared_ptr<const Model> narrow() {
+  static const std::shared_ptr<const Model> model = [] {
+    Scenario s = box_scenario();
+    s.coupling.corridor_mm = 2.0;
+    s.coupling.spare_nodes = 100;
+    return compiled(s);
+  }();
+  return model;
+}
+
+/// Where the base of the planned insertion is, moved sideways.
+Pose beside(double depth_mm) {
+  const PlannedInsertion& plan = narrow()->insertions()[0];
+  Pose pose = plan.motion.at(0.0);
+  const Vec3 tip = pose.origin + narrow()->scenario().needle.length_mm * plan.direction;
+  pose.origin += (depth_mm - (tip - plan.entry).dot(plan.direction)) * plan.direction + Vec3(-14.0, 6.0, 0.0);
+  return pose;
+}
+
+void place_beside(Simulation& simulation) {
+  const PlannedInsertion& plan = narrow()->insertions()[0];
+  simulation.place(beside(-1.0), plan.entry, plan.direction);
+}
+
+constexpr int kSteps = 150;
+constexpr double kStep_mm = 0.2;
+constexpr double kStep_s = 4e-3;
+
+}  // namespace
+
+TEST(ComplianceWorker, brings_what_prepare_would_have) {
+  Simulation alone(narrow());
+  place_beside(alone);
+  Simulation helped(narrow());
+  place_beside(helped);
+  const ComplianceWorker worker(helped.supply(), helped.supply_settings());
+  for (int k = 0; k < kSteps; ++k) {
+    const Pose base = beside(-1.0 + k * kStep_mm);
+    alone.prepare();
+    alone.step(base, kStep_s);
+    helped.prepare();  // waits for the worker
+    helped.step(base, kStep_s);
+    ASSERT_EQ(helped.report().flags, 0u) << k;
+    ASSERT_NEAR(helped.record().force_axial_N, alone.record().force_axial_N, 1e-7) << k;
+  }
+  EXPECT_GT(alone.record().force_axial_N, 0.2);
+}
+
+TEST(ComplianceWorker, may_be_outrun_and_catches_up) {
+  SimulationSteppable body(narrow());
+  place_beside(body.simulation());
+  int flagged = 0;
+  for (int k = 0; k < kSteps; ++k) {  // as fast as it goes
+    const StepOutcome outcome = body.step(beside(-1.0 + k * kStep_mm), kStep_s);
+    ASSERT_TRUE(outcome.hand.finite());
+    const unsigned flags = body.simulation().report().flags;
+    ASSERT_EQ(flags & ~static_cast<unsigned>(StepReport::compliance_missing), 0u);
+    flagged += flags != 0 ? 1 : 0;
+  }
+  EXPECT_GT(flagged, 0);
+  const Pose last = beside(-1.0 + kSteps * kStep_mm);
+  bool caught_up = false;
+  for (int k = 0; k < 20000 && !caught_up; ++k) {
+    body.step(last, kStep_s);
+    caught_up = body.simulation().report().flags == 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(caught_up);
+  EXPECT_GT(body.simulation().report().contacts, 3);
+  const ComplianceStore& store = body.simulation().insertion().store();
+  EXPECT_LE(store.stored_nodes(), narrow()->store()->stored_nodes() + narrow()->scenario().coupling.spare_nodes);
+}
+
+TEST(ComplianceWorker, simulations_of_one_model_grow_apart_from_each_other) {
+  const Index before = narrow()->store()->stored_nodes();
+  SimulationSteppable one(narrow());
+  SimulationSteppable other(narrow());
+  place_beside(one.simulation());
+  std::thread thread([&] {
+    for (int k = 0; k < kSteps; ++k) one.step(beside(-1.0 + k * kStep_mm), kStep_s);
+  });
+  const PlannedInsertion& plan = narrow()->insertions()[0];
+  for (int k = 0; k < kSteps; ++k) other.step(plan.motion.at(k * kStep_s), kStep_s);
+  thread.join();
+  one.simulation().prepare();
+  EXPECT_GT(one.simulation().insertion().store().stored_nodes(), before);
+  EXPECT_EQ(narrow()->store()->stored_nodes(), before);
+}
