@@ -60,27 +60,24 @@ TEST(ComplianceWorker, brings_what_prepare_would_have) {
   EXPECT_GT(alone.record().force_axial_N, 0.2);
 }
 
-TEST(ComplianceWorker, may_be_outrun_and_catches_up) {
+TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
   SimulationSteppable body(narrow());
   place_beside(body.simulation());
-  int flagged = 0;
   for (int k = 0; k < kSteps; ++k) {  // as fast as it goes
     const StepOutcome outcome = body.step(beside(-1.0 + k * kStep_mm), kStep_s);
     ASSERT_TRUE(outcome.hand.finite());
     const unsigned flags = body.simulation().report().flags;
     ASSERT_EQ(flags & ~static_cast<unsigned>(StepReport::compliance_missing), 0u);
-    flagged += flags != 0 ? 1 : 0;
   }
-  EXPECT_GT(flagged, 0);
   const Pose last = beside(-1.0 + kSteps * kStep_mm);
-  bool caught_up = false;
-  for (int k = 0; k < 20000 && !caught_up; ++k) {
+  int in_a_row = 0;
+  for (int k = 0; k < 20000 && in_a_row < 100; ++k) {
     body.step(last, kStep_s);
-    caught_up = body.simulation().report().flags == 0;
+    in_a_row = body.simulation().report().flags == 0 ? in_a_row + 1 : 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  EXPECT_TRUE(caught_up);
-  EXPECT_GT(body.simulation().report().contacts, 3);
+  EXPECT_EQ(in_a_row, 100);
+  EXPECT_GT(body.simulation().report().contacts, 4);
   const ComplianceStore& store = body.simulation().insertion().store();
   EXPECT_LE(store.stored_nodes(), narrow()->store()->stored_nodes() + narrow()->scenario().coupling.spare_nodes);
 }
