@@ -138,6 +138,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "scale") return bench_scale_command(arguments, console);
   if (arguments.what == "step") return bench_step_command(arguments, console);
   if (arguments.what == "loop") return bench_loop_command(arguments, console);
+  if (arguments.what == "supply") return bench_supply_command(arguments, console);
   if (arguments.what == "display") return bench_display_command(arguments, console);
   return bench_remesh_command(arguments, console);
 }
@@ -172,16 +173,18 @@ Command add_bench_command(CLI::App& program) {
          "mesh, spacing of contacts and time step, with the near field and with node addition; scale: time of a step "
          "against the number of nodes and contacts; loop: the real-time loop, how long its steps take and how late "
          "they "
-         "are; display: time and error of a picture of the deformed patient; "
+         "are; supply: which speeds a needle may have where no compliance was prepared; display: time and error of a "
+         "picture of the deformed patient; "
          "needle: accuracy of the needle models against their cost")
       ->required()
-      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "display", "needle"}));
+      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "needle"}));
   app->add_option(
          "--nodes", arguments->nodes,
-         fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
-                     "scale and display: 570 or more (default {}); the mesh; step and loop: 500 or more (default {})",
-                     kRemeshNodes, validate::CouplingBenchOptions{}.largest, validate::ScaleBenchOptions{}.largest,
-                     validate::StepBenchOptions{}.nodes))
+         fmt::format(
+             "Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
+             "scale, supply and display: 570 or more (default {}); the mesh; step and loop: 500 or more (default {})",
+             kRemeshNodes, validate::CouplingBenchOptions{}.largest, validate::ScaleBenchOptions{}.largest,
+             validate::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   app->add_option("--contacts", arguments->contacts,

@@ -60,7 +60,9 @@ class PhaseClock final : public PhaseObserver {
 };
 
 /// Once in, back and forth, and out.
-void drive(Simulation& simulation, bool phases, long least, std::vector<DrivenStep>& steps, const Progress& progress) {
+/// @param place number of the first step, DrivenStep::place
+void drive(Simulation& simulation, bool phases, long least, long place, std::vector<DrivenStep>& steps,
+           const Progress& progress) {
   PhaseClock clock;
   simulation.observe_phases(phases ? &clock : nullptr);
   const PlannedInsertion& plan = simulation.model().insertions().front();
@@ -75,6 +77,7 @@ void drive(Simulation& simulation, bool phases, long least, std::vector<DrivenSt
     base.origin += (depth - start) * plan.direction;
     simulation.prepare();
     DrivenStep step;
+    step.place = place++;
     const double wall = wall_s();
     const double cpu = reproduce::thread_cpu_s();
     if (phases) clock.start();
@@ -125,8 +128,9 @@ std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, 
   std::vector<DrivenStep> steps;
   std::unique_ptr<Simulation> simulation;
   for (int times = 0; times == 0 || static_cast<long>(steps.size()) < least; ++times) {
-    if (times % 2 == 0) simulation = std::make_unique<Simulation>(model);
-    drive(*simulation, phases, least, steps, progress);
+    const bool fresh = times % 2 == 0;
+    if (fresh) simulation = std::make_unique<Simulation>(model);
+    drive(*simulation, phases, least, fresh ? 0 : steps.back().place + 1, steps, progress);
   }
   return steps;
 }

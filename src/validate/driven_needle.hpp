@@ -22,6 +22,7 @@ std::vector<double> driven_depths(double start_mm);
 Scenario driven_scenario(int contacts);
 
 struct DrivenStep {
+  long place = 0;  ///< in the way there and back of a needle that is new and then goes again: the same work each time
   int contacts = 0;
   int iterations = 0;
   int events = 0;

@@ -54,6 +54,8 @@ class ComplianceStore {
   void release(Index slot, ComplianceRow& row);
   [[nodiscard]] const NodeSlots& slots() const { return slots_; }
 
+  /// Rows that have come since the store was made.
+  [[nodiscard]] std::uint64_t arrived() const { return arrived_; }
   [[nodiscard]] Index stored_nodes() const { return stored_nodes_; }
   /// What the rows take if no other store shares them.
   [[nodiscard]] double megabytes() const;

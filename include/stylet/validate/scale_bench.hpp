@@ -5,6 +5,7 @@
 #include "stylet/core/result.hpp"
 #include "stylet/core/types.hpp"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,13 @@ struct ScaleRow {
   long all_steps = 0;           ///< with however many contacts
   double all_longest_us = 0.0;  ///< of those, thread CPU time
   long all_over_1ms = 0;        ///< of those, above a millisecond of it
-  double mesh_s = 0.0;          ///< from contours, wall clock
-  double factor_s = 0.0;        ///< of the stiffness
-  double store_s = 0.0;         ///< compliance and kernel of the corridor, and everything else before the first step
-  double memory_mb = 0.0;       ///< resident in the process with the model ready
+  /// The longest of all steps when each is given the median of its repeats, which do the same work: what is left
+  /// without the system's interruptions, which count as the thread's time too. NaN with fewer than three repeats.
+  double all_longest_median_us = std::numeric_limits<double>::quiet_NaN();
+  double mesh_s = 0.0;     ///< from contours, wall clock
+  double factor_s = 0.0;   ///< of the stiffness
+  double store_s = 0.0;    ///< compliance and kernel of the corridor, and everything else before the first step
+  double memory_mb = 0.0;  ///< resident in the process with the model ready
 };
 
 struct ScaleBenchOptions {
