@@ -62,8 +62,7 @@ enum {
   STYLET_RT_FAILED = 1,       /* the input may be right, but it could not be done */
   STYLET_RT_INPUT_ERROR = 2,  /* a file or a setting is wrong: the message names the place, the value and the cure */
   STYLET_RT_BAD_ARGUMENT = 3, /* null, out of range, not finite, or a structure of unknown size */
-  STYLET_RT_OUT_OF_MEMORY = 4,
-  STYLET_RT_BUSY = 5 /* not now: somebody steps or prepares a simulation of the same model, see stylet_rt_sim_prepare */
+  STYLET_RT_OUT_OF_MEMORY = 4
 };
 
 /* A few words for a status. [real time] */
@@ -131,13 +130,18 @@ typedef struct stylet_rt_sim stylet_rt_sim;
 typedef struct stylet_rt_options {
   uint32_t struct_size; /* sizeof(stylet_rt_options) */
   int32_t insertion;    /* planned insertion to start at */
-  uint32_t flags;       /* of STYLET_RT_KEEP_DENORMALS */
+  uint32_t flags;       /* STYLET_RT_KEEP_DENORMALS, STYLET_RT_WORKER */
   uint32_t reserved;    /* 0 */
 } stylet_rt_options;
 
 /* A step leaves the processor's treatment of denormal numbers alone. Without it a step sets them to count as zero and
  * puts the former mode back at its end (x86, 64-bit ARM); with them a step can take many times as long. */
 #define STYLET_RT_KEEP_DENORMALS UINT32_C(1)
+
+/* A thread of the library's own, with ordinary scheduling, lives as long as the simulation and keeps compliance ahead
+ * of the tip where the needle leaves the prepared corridor. Steps stay what they are: they find there what it has made.
+ * The first time it factorises the tissue, which takes as long as that took `stylet prepare`, and as much memory. */
+#define STYLET_RT_WORKER UINT32_C(2)
 
 /* Creates a needle at the start of a planned insertion, outside the patient. All memory its steps use is taken here.
  * @param options null for the defaults
@@ -167,7 +171,7 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_planned_base(const stylet_rt_sim* s
 /* What a step has to say of itself (stylet_rt_result.flags), and what to do. */
 #define STYLET_RT_NOT_CONVERGED UINT32_C(0x01)      /* no balance found, the force is not the model's: smaller dt */
 #define STYLET_RT_CONTACT_CYCLING UINT32_C(0x02)    /* a contact was kept as it was for one sub-step: nothing to do */
-#define STYLET_RT_COMPLIANCE_MISSING UINT32_C(0x04) /* the tip left the prepared corridor and is held: prepare */
+#define STYLET_RT_COMPLIANCE_MISSING UINT32_C(0x04) /* the tip left the prepared corridor: prepare */
 #define STYLET_RT_OUT_OF_CONTACTS UINT32_C(0x08)    /* forces miss a piece of shaft: raise coupling.contacts */
 #define STYLET_RT_TOO_FAST UINT32_C(0x10)           /* the base moved too far for one step: smaller dt, or slower */
 #define STYLET_RT_INVALID_INPUT UINT32_C(0x20)      /* the step was not taken: pose or dt are no good */
@@ -211,8 +215,7 @@ typedef struct stylet_rt_result {
  * @param dt_s at least 1e-9, at most 1; taken as a whole number of nanoseconds
  * @param result written, may be null. Of a pose or dt that is no good (STYLET_RT_BAD_ARGUMENT): what the last step came
  *        to, with STYLET_RT_INVALID_INPUT and no events. Not written otherwise where a status is returned
- * @return STYLET_RT_OK whatever the flags say; STYLET_RT_BUSY, and nothing done, while a simulation of the same model
- *         prepares */
+ * @return STYLET_RT_OK whatever the flags say */
 STYLET_RT_API stylet_rt_status stylet_rt_sim_step(stylet_rt_sim* sim, const stylet_rt_pose* base, double dt_s,
                                                   stylet_rt_result* result) STYLET_RT_NOEXCEPT;
 
@@ -222,8 +225,8 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_read_result(const stylet_rt_sim* si
 
 /* Makes compliance around the tip available where the needle has left the prepared corridor, and returns at once where
  * it has not. Allocates and solves; the first time it factorises the tissue, which takes as long as that took `stylet
- * prepare`. Between steps, and not from a loop that has a deadline. Simulations of one model share what this changes:
- * @return STYLET_RT_BUSY, and nothing done, while another of them steps or prepares */
+ * prepare`. With STYLET_RT_WORKER it waits for the worker instead. Between steps, and not from a loop that has a
+ * deadline. */
 STYLET_RT_API stylet_rt_status stylet_rt_sim_prepare(stylet_rt_sim* sim, char* error,
                                                      size_t error_size) STYLET_RT_NOEXCEPT;
 

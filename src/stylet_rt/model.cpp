@@ -8,15 +8,13 @@ namespace stylet::rt {
 static_assert(sizeof(stylet_rt_model_info) == 64);
 static_assert(sizeof(stylet_rt_insertion) == 64);
 
-stylet_rt_model* make_handle(std::shared_ptr<const Model> model) {
-  return new stylet_rt_model{std::make_shared<SharedModel>(std::move(model))};
-}
+stylet_rt_model* make_handle(std::shared_ptr<const Model> model) { return new stylet_rt_model{std::move(model)}; }
 
 namespace {
 
 const PlannedInsertion* planned(const stylet_rt_model* model, int32_t index) noexcept {
   if (model == nullptr || index < 0) return nullptr;
-  const std::vector<PlannedInsertion>& all = model->shared->model->insertions();
+  const std::vector<PlannedInsertion>& all = model->model->insertions();
   return static_cast<std::size_t>(index) < all.size() ? &all[static_cast<std::size_t>(index)] : nullptr;
 }
 
@@ -31,7 +29,7 @@ void stylet_rt_model_destroy(stylet_rt_model* model) noexcept { delete model; }
 
 stylet_rt_status stylet_rt_model_read_info(const stylet_rt_model* model, stylet_rt_model_info* info) noexcept {
   if (model == nullptr || info == nullptr) return STYLET_RT_BAD_ARGUMENT;
-  const stylet::Model& m = *model->shared->model;
+  const stylet::Model& m = *model->model;
   *info = {};
   info->needle_length_mm = m.scenario().needle.length_mm;
   info->needle_diameter_mm = m.scenario().needle.diameter_mm;
@@ -47,7 +45,7 @@ stylet_rt_status stylet_rt_model_read_info(const stylet_rt_model* model, stylet_
 
 const char* stylet_rt_model_region(const stylet_rt_model* model, int32_t region) noexcept {
   if (model == nullptr || region < 0) return nullptr;
-  const std::vector<std::string>& names = model->shared->model->mesh().regions;
+  const std::vector<std::string>& names = model->model->mesh().regions;
   return static_cast<std::size_t>(region) < names.size() ? names[static_cast<std::size_t>(region)].c_str() : nullptr;
 }
 

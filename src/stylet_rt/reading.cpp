@@ -36,8 +36,6 @@ extern "C" {
 stylet_rt_status stylet_rt_sim_read_contacts(stylet_rt_sim* sim, stylet_rt_contact* contacts, size_t room,
                                              size_t* count) noexcept {
   if (sim == nullptr || count == nullptr || (contacts == nullptr && room > 0)) return STYLET_RT_BAD_ARGUMENT;
-  const stylet::rt::Reading reading(sim->shared->gate);
-  if (!reading) return STYLET_RT_BUSY;
   return guarded([&]() -> stylet_rt_status {
     const std::size_t found = sim->simulation.insertion().contacts(sim->contacts);
     for (std::size_t k = 0; k < std::min(found, room); ++k) {
@@ -70,7 +68,7 @@ stylet_rt_status stylet_rt_sim_read_needle(const stylet_rt_sim* sim, double* poi
 stylet_rt_status stylet_rt_sim_read_events(const stylet_rt_sim* sim, stylet_rt_event* events, size_t room,
                                            size_t* count) noexcept {
   if (sim == nullptr || count == nullptr || (events == nullptr && room > 0)) return STYLET_RT_BAD_ARGUMENT;
-  const std::vector<std::string>& regions = sim->shared->model->mesh().regions;
+  const std::vector<std::string>& regions = sim->model->mesh().regions;
   const auto found = sim->simulation.new_events();
   for (std::size_t k = 0; k < std::min(found.size(), room); ++k) {
     const stylet::Event& event = found[k];

@@ -28,7 +28,7 @@ static_assert(STYLET_RT_TIP_IN_TRACK == static_cast<int>(TipState::in_track));
 static_assert(STYLET_RT_TIP_BONE == static_cast<int>(TipState::bone));
 static_assert(STYLET_RT_TIP_EXITED == static_cast<int>(TipState::exited));
 
-constexpr uint32_t kKnownFlags = STYLET_RT_KEEP_DENORMALS;
+constexpr uint32_t kKnownFlags = STYLET_RT_KEEP_DENORMALS | STYLET_RT_WORKER;
 constexpr double kShortest_s = 1e-9;
 constexpr double kLongest_s = 1.0;
 constexpr double kOffUnit = 1e-3;
@@ -73,7 +73,7 @@ void write(const stylet_rt_sim& sim, stylet_rt_result& out) noexcept {
 }
 
 void place(stylet_rt_sim& sim, std::size_t insertion) {
-  const PlannedInsertion& plan = sim.shared->model->insertions()[insertion];
+  const PlannedInsertion& plan = sim.model->insertions()[insertion];
   sim.simulation.place(plan.motion.at(0.0), plan.entry, plan.direction);
   sim.insertion = insertion;
 }
@@ -87,11 +87,11 @@ bool planned(const Model& model, int32_t insertion) noexcept {
 
 using namespace stylet::rt;
 
-stylet_rt_sim::stylet_rt_sim(std::shared_ptr<stylet::rt::SharedModel> model, std::uint32_t flags_)
-    : shared(std::move(model)),
-      simulation(shared->model),
+stylet_rt_sim::stylet_rt_sim(std::shared_ptr<const stylet::Model> model_, std::uint32_t flags_)
+    : model(std::move(model_)),
+      simulation(model),
       flags(flags_),
-      contacts(static_cast<std::size_t>(shared->model->coupling().capacity) + 1) {}
+      contacts(static_cast<std::size_t>(model->coupling().capacity) + 1) {}
 
 extern "C" {
 
@@ -112,16 +112,15 @@ stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model, const stylet
   }
   if ((chosen.flags & ~kKnownFlags) != 0 || chosen.reserved != 0)
     return text.bad_argument("stylet_rt_sim_create: options ask for what this library does not know; zero them first");
-  if (!planned(*model->shared->model, chosen.insertion))
+  if (!planned(*model->model, chosen.insertion))
     return text.bad_argument("stylet_rt_sim_create: options.insertion is none of the model's insertions");
-  const Reading reading(model->shared->gate);
-  if (!reading) {
-    text.say("stylet_rt_sim_create: a simulation of this model prepares; call again afterwards");
-    return STYLET_RT_BUSY;
-  }
   return guarded(text, [&]() -> stylet_rt_status {
-    auto made = std::make_unique<stylet_rt_sim>(model->shared, chosen.flags);
+    auto made = std::make_unique<stylet_rt_sim>(model->model, chosen.flags);
     place(*made, static_cast<std::size_t>(chosen.insertion));
+    if ((chosen.flags & STYLET_RT_WORKER) != 0) {
+      made->worker =
+          std::make_unique<stylet::ComplianceWorker>(made->simulation.supply(), made->simulation.supply_settings());
+    }
     *sim = made.release();
     return STYLET_RT_OK;
   });
@@ -130,9 +129,7 @@ stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model, const stylet
 void stylet_rt_sim_destroy(stylet_rt_sim* sim) noexcept { delete sim; }
 
 stylet_rt_status stylet_rt_sim_place(stylet_rt_sim* sim, int32_t insertion) noexcept {
-  if (sim == nullptr || !planned(*sim->shared->model, insertion)) return STYLET_RT_BAD_ARGUMENT;
-  const Reading reading(sim->shared->gate);
-  if (!reading) return STYLET_RT_BUSY;
+  if (sim == nullptr || !planned(*sim->model, insertion)) return STYLET_RT_BAD_ARGUMENT;
   return guarded([&]() -> stylet_rt_status {
     place(*sim, static_cast<std::size_t>(insertion));
     return STYLET_RT_OK;
@@ -141,7 +138,7 @@ stylet_rt_status stylet_rt_sim_place(stylet_rt_sim* sim, int32_t insertion) noex
 
 stylet_rt_status stylet_rt_sim_planned_base(const stylet_rt_sim* sim, double time_s, stylet_rt_pose* base) noexcept {
   if (sim == nullptr || base == nullptr || !std::isfinite(time_s)) return STYLET_RT_BAD_ARGUMENT;
-  const stylet::Pose pose = sim->shared->model->insertions()[sim->insertion].motion.at(time_s);
+  const stylet::Pose pose = sim->model->insertions()[sim->insertion].motion.at(time_s);
   copy(pose.origin, base->position_mm);
   base->rotation[0] = pose.rotation.w();
   base->rotation[1] = pose.rotation.x();
@@ -162,8 +159,6 @@ stylet_rt_status stylet_rt_sim_step(stylet_rt_sim* sim, const stylet_rt_pose* ba
     }
     return STYLET_RT_BAD_ARGUMENT;
   }
-  const Reading reading(sim->shared->gate);
-  if (!reading) return STYLET_RT_BUSY;
   return guarded([&]() -> stylet_rt_status {
     std::optional<stylet::FlushDenormals> flush;
     if ((sim->flags & STYLET_RT_KEEP_DENORMALS) == 0) flush.emplace();
@@ -182,11 +177,6 @@ stylet_rt_status stylet_rt_sim_read_result(const stylet_rt_sim* sim, stylet_rt_r
 stylet_rt_status stylet_rt_sim_prepare(stylet_rt_sim* sim, char* error, size_t error_size) noexcept {
   ErrorText text(error, error_size);
   if (sim == nullptr) return text.bad_argument("stylet_rt_sim_prepare: the simulation is null");
-  const Changing changing(sim->shared->gate);
-  if (!changing) {
-    text.say("stylet_rt_sim_prepare: a simulation of this model steps or prepares; call again afterwards");
-    return STYLET_RT_BUSY;
-  }
   return guarded(text, [&]() -> stylet_rt_status {
     sim->simulation.prepare();
     return STYLET_RT_OK;

@@ -38,8 +38,6 @@ const char* stylet_rt_status_text(stylet_rt_status status) noexcept {
       return "bad argument";
     case STYLET_RT_OUT_OF_MEMORY:
       return "out of memory";
-    case STYLET_RT_BUSY:
-      return "busy";
     default:
       return "unknown status";
   }

@@ -4,7 +4,7 @@
 #include "stylet_rt/handles.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <thread>
 
 using namespace stylet;
@@ -64,39 +64,10 @@ TEST(SimulationsInC, of_one_model_step_in_two_threads_as_in_one) {
   EXPECT_EQ(of_two, expected);
 }
 
-TEST(SimulationsInC, are_told_when_one_of_them_prepares) {
-  const ModelHandle model = box();
-  const SimHandle sim = created(model);
-  stylet_rt_pose base{};
-  stylet_rt_result result{};
-  std::size_t count = 0;
-  stylet_rt_sim* another = nullptr;
-  ASSERT_EQ(stylet_rt_sim_planned_base(sim.get(), kStep_s, &base), STYLET_RT_OK);
-  {
-    const rt::Changing prepares(model->shared->gate);
-    ASSERT_TRUE(prepares);
-    EXPECT_EQ(stylet_rt_sim_step(sim.get(), &base, kStep_s, &result), STYLET_RT_BUSY);
-    EXPECT_EQ(stylet_rt_sim_place(sim.get(), 0), STYLET_RT_BUSY);
-    EXPECT_EQ(stylet_rt_sim_prepare(sim.get(), nullptr, 0), STYLET_RT_BUSY);
-    EXPECT_EQ(stylet_rt_sim_read_contacts(sim.get(), nullptr, 0, &count), STYLET_RT_BUSY);
-    EXPECT_EQ(stylet_rt_sim_create(model.get(), nullptr, &another, nullptr, 0), STYLET_RT_BUSY);
-    EXPECT_EQ(stylet_rt_sim_read_result(sim.get(), &result), STYLET_RT_OK);
-    EXPECT_EQ(result.time_s, 0.0) << "no step was taken";
-  }
-  EXPECT_EQ(stylet_rt_sim_step(sim.get(), &base, kStep_s, &result), STYLET_RT_OK);
-  {
-    const rt::Reading steps(model->shared->gate);
-    EXPECT_EQ(stylet_rt_sim_prepare(sim.get(), nullptr, 0), STYLET_RT_BUSY);
-    EXPECT_EQ(stylet_rt_sim_step(sim.get(), &base, kStep_s, &result), STYLET_RT_OK);
-  }
-  EXPECT_EQ(stylet_rt_sim_prepare(sim.get(), nullptr, 0), STYLET_RT_OK);
-}
-
 TEST(SimulationsInC, go_beyond_the_corridor_once_prepared) {
   const ModelHandle model = box(1.0);
   const SimHandle sim = created(model);
-  const auto stored = [&] { return model->shared->model->store()->stored_nodes(); };
-  const Index before = stored();
+  const Index before = model->model->store()->stored_nodes();
   stylet_rt_result result{};
   double most_N = 0.0;
   for (int k = 1; k <= kSteps; ++k) {
@@ -111,43 +82,52 @@ TEST(SimulationsInC, go_beyond_the_corridor_once_prepared) {
     EXPECT_EQ(result.flags & STYLET_RT_COMPLIANCE_MISSING, 0u) << "step " << k;
     most_N = std::max(most_N, result.force_axial_N);
   }
-  EXPECT_GT(stored(), before);
+  EXPECT_GT(sim->simulation.insertion().store().stored_nodes(), before);
   EXPECT_GT(most_N, 0.3);
 }
 
-TEST(SimulationsInC, step_while_another_prepares_or_are_told) {
+TEST(SimulationsInC, step_while_another_goes_beyond_the_corridor) {
   const ModelHandle model = box(1.0);
+  const Index before = model->model->store()->stored_nodes();
+  const std::vector<double> expected = forces(created(model).get());
   const SimHandle steps = created(model), prepares = created(model);
-  const auto stored = [&] { return model->shared->model->store()->stored_nodes(); };
-  const Index before = stored();
-  std::thread stepping([&] {
-    for (int taken = 0; taken < kSteps;) {
-      stylet_rt_pose base{};
-      stylet_rt_result result{};
-      stylet_rt_sim_planned_base(steps.get(), (taken + 1) * kStep_s, &base);
-      const stylet_rt_status status = stylet_rt_sim_step(steps.get(), &base, kStep_s, &result);
-      if (status == STYLET_RT_OK) {
-        ++taken;
-        EXPECT_TRUE(std::isfinite(result.force_axial_N));
-      } else {
-        EXPECT_EQ(status, STYLET_RT_BUSY);
-      }
-      std::this_thread::yield();
-    }
-  });
-  for (int prepared = 0; prepared < kSteps;) {
-    const stylet_rt_status status = stylet_rt_sim_prepare(prepares.get(), nullptr, 0);
-    if (status == STYLET_RT_OK) {
-      ++prepared;
-      stylet_rt_pose base{};
-      stylet_rt_sim_planned_base(prepares.get(), prepared * kStep_s, &base);
-      base.position_mm[0] -= 9.0;
-      EXPECT_EQ(stylet_rt_sim_step(prepares.get(), &base, kStep_s, nullptr), STYLET_RT_OK);
-    } else {
-      EXPECT_EQ(status, STYLET_RT_BUSY);
-      std::this_thread::yield();
-    }
+  std::vector<double> meanwhile;
+  std::thread stepping([&] { meanwhile = forces(steps.get()); });
+  for (int k = 1; k <= kSteps; ++k) {
+    EXPECT_EQ(stylet_rt_sim_prepare(prepares.get(), nullptr, 0), STYLET_RT_OK);
+    stylet_rt_pose base{};
+    EXPECT_EQ(stylet_rt_sim_planned_base(prepares.get(), k * kStep_s, &base), STYLET_RT_OK);
+    base.position_mm[0] -= 9.0;
+    EXPECT_EQ(stylet_rt_sim_step(prepares.get(), &base, kStep_s, nullptr), STYLET_RT_OK);
   }
   stepping.join();
-  EXPECT_GT(stored(), before);
+  EXPECT_EQ(meanwhile, expected);
+  EXPECT_GT(prepares->simulation.insertion().store().stored_nodes(), before);
+  EXPECT_EQ(model->model->store()->stored_nodes(), before);
+}
+
+TEST(SimulationsInC, have_a_worker_bring_what_lies_beyond_the_corridor) {
+  const ModelHandle model = box(1.0);
+  stylet_rt_options options{};
+  options.struct_size = sizeof options;
+  options.flags = STYLET_RT_WORKER;
+  stylet_rt_sim* made = nullptr;
+  ASSERT_EQ(stylet_rt_sim_create(model.get(), &options, &made, nullptr, 0), STYLET_RT_OK);
+  const SimHandle sim(made);
+  stylet_rt_pose base{};
+  stylet_rt_result result{};
+  for (int k = 1; k <= kSteps; ++k) {
+    ASSERT_EQ(stylet_rt_sim_planned_base(sim.get(), k * kStep_s, &base), STYLET_RT_OK);
+    base.position_mm[0] -= 9.0;
+    ASSERT_EQ(stylet_rt_sim_step(sim.get(), &base, kStep_s, &result), STYLET_RT_OK);
+    EXPECT_EQ(result.flags & ~STYLET_RT_COMPLIANCE_MISSING, 0u) << "step " << k;
+  }
+  int in_a_row = 0;
+  for (int k = 0; k < 20000 && in_a_row < 100; ++k) {
+    ASSERT_EQ(stylet_rt_sim_step(sim.get(), &base, kStep_s, &result), STYLET_RT_OK);
+    in_a_row = result.flags == 0 ? in_a_row + 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(in_a_row, 100);
+  EXPECT_GT(result.contacts, 3);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/whole_file.hpp"
 #include "h5.hpp"
+#include "h5_mesh.hpp"
 #include "model/model_format.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/scenario_io.hpp"
@@ -16,15 +17,6 @@ using namespace detail;
 namespace {
 
 constexpr hsize_t kChunk = 1 << 16;  // numbers
-
-void write_mesh(hid_t file, const TetMesh& mesh) {
-  const h5::Handle group = h5::group(file, "mesh");
-  const std::array<hsize_t, 2> nodes{mesh.nodes.size(), 3}, tets{mesh.tets.size(), 4};
-  h5::write_array(group, "nodes_mm", H5T_NATIVE_DOUBLE, nodes, mesh.nodes.data());
-  h5::write_array(group, "tets", H5T_NATIVE_INT32, tets, mesh.tets.data());
-  h5::write_array(group, "tet_region", H5T_NATIVE_INT, {tets.data(), 1}, mesh.tet_region.data());
-  h5::write_texts(group, "regions", mesh.regions);
-}
 
 /// The lower triangle, column by column.
 void write_store(hid_t group, const MatX& store, const Progress& progress) {
@@ -52,7 +44,7 @@ void write(const fs::path& path, const ModelFile& content, const Progress& progr
   h5::write_attribute(file, "sha256", content_digest(content));
   h5::write_text(file, "scenario", content.scenario_text);
   h5::write_texts(file, "notes", content.notes);
-  write_mesh(file, content.mesh);
+  h5::write_mesh(file, content.mesh);
   {
     const h5::Handle motions = h5::group(file, "motions");
     for (std::size_t i = 0; i < content.motions.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_file_writer.hpp"
 
+#include "h5_mesh.hpp"
 #include "output_folder.hpp"
 #include "run_file_format.hpp"
 #include "summary_json.hpp"
@@ -16,15 +17,6 @@ namespace {
 // Rows per chunk: some 100 kB for steps; one frame per chunk for displacements, so that a frame is read with one
 // access.
 constexpr hsize_t kStepChunk = 1024, kTableChunk = 64, kPointChunk = 2048, kTextChunk = 4096;
-
-void write_mesh(hid_t file, const TetMesh& mesh) {
-  const h5::Handle group = h5::group(file, "mesh");
-  const std::array<hsize_t, 2> nodes{mesh.nodes.size(), 3}, tets{mesh.tets.size(), 4};
-  h5::write_array(group, "nodes_mm", H5T_NATIVE_DOUBLE, nodes, mesh.nodes.data());
-  h5::write_array(group, "tets", H5T_NATIVE_INT32, tets, mesh.tets.data());
-  h5::write_array(group, "tet_region", H5T_NATIVE_INT, {tets.data(), 1}, mesh.tet_region.data());
-  h5::write_texts(group, "regions", mesh.regions);
-}
 
 void write_info(hid_t file, const RunInfo& info) {
   h5::write_attribute(file, "format", std::string(kRunFileFormat));
@@ -72,7 +64,7 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     const h5::Handle access(h5::check(H5Pcreate(H5P_FILE_ACCESS), "create file"), H5Pclose);
     h5::check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "create file");
     w.file_ = {h5::check(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access), "create file"), H5Fclose};
-    write_mesh(w.file_, mesh);
+    h5::write_mesh(w.file_, mesh);
     write_info(w.file_, info);
 
     w.step_type_ = step_row_type();

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "h5.hpp"
+#include "stylet/geom/tet_mesh.hpp"
+
+namespace stylet::h5 {
+
+/// Group "mesh": nodes_mm (n, 3), tets (m, 4), tet_region (m), regions.
+void write_mesh(hid_t file, const TetMesh& mesh);
+
+}  // namespace stylet::h5
