@@ -139,9 +139,11 @@ Result<Tissue> Tissue::build_later(TetMesh mesh, std::vector<Material> materials
 
   std::vector<char> near = is_fixed;  // held ends count as the store counts them
   for (const Index a : corridor) {
-    if (a >= 0 && a < parts->mesh.node_count()) near[a] = 1;
+    if (a < 0 || a >= parts->mesh.node_count() || near[a]) continue;
+    near[a] = 1;
+    parts->corridor.push_back(a);
   }
-  for (Index a = 0; a < discretisation.nodes(); ++a) {
+  for (Index a = parts->mesh.node_count(); a < discretisation.nodes(); ++a) {
     const auto [one, other] = discretisation.ends(a);
     if (parts->first_dof[a] >= 0 && near[one] && near[other]) parts->corridor.push_back(a);
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 namespace stylet {
 
@@ -24,6 +25,25 @@ Eigen::AlignedBox3d extent(const TetMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : mesh.nodes) box.extend(x);
   return box;
+}
+
+/// Where a point is, seen from the nearest of some ways.
+struct OnWay {
+  std::size_t way = 0;
+  double along_mm = 0.0;
+  double distance_mm = std::numeric_limits<double>::infinity();
+};
+
+OnWay nearest_way(const std::vector<std::array<Vec3, 2>>& ways, const Vec3& x) {
+  OnWay nearest;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const auto& [from, to] = ways[k];
+    const Vec3 way = to - from;
+    const double f = std::clamp((x - from).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+    const double distance = (x - from - f * way).norm();
+    if (distance < nearest.distance_mm) nearest = {k, f * way.norm(), distance};
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -128,12 +148,7 @@ Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2
     for (const Index node : tet) centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
     double ball = 0.0;
     for (const Index node : tet) ball = std::max(ball, (mesh.nodes[static_cast<std::size_t>(node)] - centre).norm());
-    double distance = std::numeric_limits<double>::infinity();
-    for (const auto& [from, to] : ways) {
-      const Vec3 way = to - from;
-      const double f = std::clamp((centre - from).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
-      distance = std::min(distance, (centre - from - f * way).norm() - ball);
-    }
+    const double distance = nearest_way(ways, centre).distance_mm - ball;
     if (distance <= radius_mm) near.emplace_back(distance, t);
   }
   std::sort(near.begin(), near.end());
@@ -152,9 +167,15 @@ Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2
     corridor.elements.push_back(t);
   }
   std::sort(corridor.elements.begin(), corridor.elements.end());
+  std::vector<std::pair<OnWay, Index>> nodes;
   for (Index node = 0; node < mesh.node_count(); ++node) {
-    if (taken[static_cast<std::size_t>(node)]) corridor.nodes.push_back(node);
+    if (taken[static_cast<std::size_t>(node)])
+      nodes.emplace_back(nearest_way(ways, mesh.nodes[static_cast<std::size_t>(node)]), node);
   }
+  std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first.way, a.first.along_mm, a.second) < std::tie(b.first.way, b.first.along_mm, b.second);
+  });
+  for (const auto& [place, node] : nodes) corridor.nodes.push_back(node);
   return corridor;
 }
 

@@ -24,7 +24,7 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
 /// Where compliance is computed before the start.
 struct Corridor {
   std::vector<Index> elements;  ///< ascending
-  std::vector<Index> nodes;     ///< of the mesh, those of the elements, ascending
+  std::vector<Index> nodes;     ///< of the mesh, those of the elements, way by way, each from its start to its end
   double radius_mm = 0.0;       ///< around the needles' lines, every element it meets is there
 };
 

@@ -73,7 +73,8 @@ class Tissue {
   /// @return [mm] (3n × k), zero at fixed nodes
   [[nodiscard]] MatX solve(const MatX& f) const;
 
-  /// The corridor's nodes that can move, with those that the kind of element adds between two of them.
+  /// The corridor's nodes that can move, in the order given, and those that the kind of element adds between two of
+  /// them. Nodes that are read together had better be neighbours in it.
   [[nodiscard]] const std::vector<Index>& corridor() const;
 
   /// K⁻¹ between the nodes of corridor(), in their order [mm/N] (3c × 3c), symmetric to the last bit. They are
