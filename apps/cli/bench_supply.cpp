@@ -11,6 +11,7 @@ namespace stylet::cli {
 Result<> bench_supply_command(const BenchArguments& arguments, Console& console) {
   validate::SupplyBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
+  if (arguments.speed > 0.0) options.speeds_mm_per_s = {arguments.speed};
   constexpr int smallest = 570;
   if (options.largest < smallest)
     return input_error("--nodes", fmt::format("supply takes {} nodes or more, not {}", smallest, options.largest),

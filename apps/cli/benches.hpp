@@ -17,6 +17,7 @@ struct BenchArguments {
   int contacts = 0;      ///< 0 = the default
   long steps = 0;        ///< 0 = the default
   double seconds = 0.0;  ///< 0 = the default
+  double speed = 0.0;    ///< [mm/s], 0 = the default
 };
 
 inline constexpr int kRemeshNodes = 1331;

@@ -198,6 +198,9 @@ Command add_bench_command(CLI::App& program) {
   app->add_option("--seconds", arguments->seconds, "loop: how long, in seconds of the clock (default 30)")
       ->type_name("S")
       ->check(number_between(1.0, 86400.0));
+  app->add_option("--speed", arguments->speed, "supply: of the base, in mm/s (default 2, 5, 10, 20 and 50)")
+      ->type_name("V")
+      ->check(number_between(0.5, 100.0));
   return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};
 }
 

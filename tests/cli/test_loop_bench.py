@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench step, loop and display: what their rows hold, on the coarsest mesh. Times are the machine's."""
+"""stylet bench step, loop, supply and display: what their rows hold, on the coarsest mesh. Times are the machine's."""
 import unittest
 
 from program import InFolder
@@ -41,6 +41,19 @@ class LoopBench(InFolder):
         self.assertTrue(loop["rights"])
         self.refuse("bench", "loop", "--nodes", "499", says=["--nodes", "499", "500"])
         self.refuse("bench", "loop", "--seconds", "0", says=["--seconds", "0"])
+
+
+class SupplyBench(InFolder):
+    def test_leads_a_needle_where_nothing_was_prepared(self):
+        (row,) = self.json_of("bench", "supply", "--nodes", "570", "--speed", "20")["rows"]
+        self.assertEqual(row["speed_mm_per_s"], 20)
+        self.assertGreater(row["rows"], 10)
+        self.assertGreater(row["steps"], 1000)
+        self.assertLessEqual(row["flagged"], row["steps"])
+        self.assertGreater(row["force_peak_N"], 0.3)
+        self.assertLess(row["force_off_N"], row["force_peak_N"])
+        self.refuse("bench", "supply", "--nodes", "569", says=["--nodes", "569", "570"])
+        self.refuse("bench", "supply", "--speed", "0", says=["--speed", "0"])
 
 
 class DisplayBench(InFolder):

@@ -26,6 +26,7 @@ class ScaleBench(InFolder):
         self.assertLess(again[0]["steps"], again[0]["all_steps"])
         self.assertGreaterEqual(again[0]["all_longest_us"], again[0]["step_cpu_us"]["max"])
         self.assertEqual(again[0]["flagged"], 0)
+        self.assertIsNone(again[0]["all_longest_median_us"])  # too few repeats for a median
         self.refuse("bench", "scale", "--nodes", "570", "--contacts", "3", says=["--contacts", "'3'"])
         self.refuse("bench", "scale", "--nodes", "569", says=["--nodes", "569", "570"])
 
