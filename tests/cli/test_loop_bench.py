@@ -47,7 +47,7 @@ class SupplyBench(InFolder):
     def test_leads_a_needle_where_nothing_was_prepared(self):
         (row,) = self.json_of("bench", "supply", "--nodes", "570", "--speed", "20")["rows"]
         self.assertEqual(row["speed_mm_per_s"], 20)
-        self.assertGreater(row["rows"], 10)
+        self.assertGreater(row["rows"], 0)
         self.assertGreater(row["steps"], 1000)
         self.assertLessEqual(row["flagged"], row["steps"])
         self.assertGreater(row["force_peak_N"], 0.3)
