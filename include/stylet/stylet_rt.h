@@ -150,7 +150,7 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model
                                                     stylet_rt_sim** sim, char* error,
                                                     size_t error_size) STYLET_RT_NOEXCEPT;
 
-/* Null is allowed. */
+/* Null is allowed. With STYLET_RT_WORKER it waits until that has ended what it is at, were it the factor. */
 STYLET_RT_API void stylet_rt_sim_destroy(stylet_rt_sim* sim) STYLET_RT_NOEXCEPT;
 
 /* Where the base is. 56 bytes. */

@@ -47,6 +47,7 @@ struct ComplianceSupply::Parts {
   Parcel parcel;                          ///< belongs to …
   std::atomic<bool> with_worker = false;  ///< … this side
   std::atomic<bool> open = false;
+  std::atomic<bool> failed = false;    ///< the last round
   std::atomic<unsigned> answered = 0;  ///< last call after which nothing more was to be done
 
   // The step's side.
@@ -227,12 +228,13 @@ ComplianceSupply::Work ComplianceSupply::work(std::size_t most) noexcept {
   Work done = Work::failed;
   try {
     done = p.go(most);
-  } catch (const std::bad_alloc&) {
+  } catch (...) {  // memory, or threads, ran out
     p.parcel.leavers.clear();
     p.parcel.rows.clear();
     p.parcel.kernel_rows.clear();
   }
   const unsigned call = p.parcel.call;
+  p.failed.store(done == Work::failed, std::memory_order_relaxed);
   if (done != Work::done && done != Work::waiting) p.answered.store(call, std::memory_order_release);
   p.with_worker.store(false, std::memory_order_release);
   return done;
@@ -247,6 +249,7 @@ void ComplianceSupply::work_through(const ContactCompliance& user, const NeedleW
       serve(user, needle);
       std::this_thread::sleep_for(kLook);
     }
+    if (p.failed.load(std::memory_order_relaxed)) throw std::bad_alloc();
     return;
   }
   serve(user, needle);  // nothing stays under way

@@ -33,16 +33,7 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
   if (added.point < 0) return true;
 
   if (placement == Placement::embedded) {
-    // Interpolated contacts in one element follow from each other as soon as there are more than the element can tell
-    // apart: such a contact is not laid, and its neighbours share its length.
-    std::array<int, ContactCompliance::kNeighbours> neighbours{};
-    int count = 0;
-    for (auto mark = track.marks.rbegin(); mark != track.marks.rend() && count < ContactCompliance::kNeighbours;
-         ++mark) {
-      if (mark->point >= 0) neighbours[static_cast<std::size_t>(count++)] = mark->point;
-    }
-    if (compliance.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)}) <
-        settings.independence) {
+    if (follows_from(added.point, track.marks.size())) {
       compliance.remove_last_embedded();
       return false;
     }
@@ -50,6 +41,18 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
   track.marks.push_back({xi, x, at, region_of(at.tet), added.point});
   point_at[static_cast<std::size_t>(added.point)] = at;
   return true;
+}
+
+/// Interpolated contacts in one element follow from each other as soon as there are more than the element can tell
+/// apart: such a contact is not laid, and its neighbours share its length.
+/// @param marks so many of the track come before it
+bool Insertion::Parts::follows_from(int point, std::size_t marks) const {
+  std::array<int, ContactCompliance::kNeighbours> neighbours{};
+  std::size_t count = 0;
+  for (std::size_t k = marks; k > 0 && count < neighbours.size(); --k) {
+    if (track.marks[k - 1].point >= 0) neighbours[count++] = track.marks[k - 1].point;
+  }
+  return compliance.independence(point, std::span(neighbours).first(count)) < settings.independence;
 }
 
 /// Where nodes for contacts go. A node that is moved may go anywhere, so faces concern added ones only.
@@ -132,13 +135,21 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
     Track::Mark& mark = track.marks[grips.size()];
     if (mark.point < 0) {  // on an old track, which the tissue model has forgotten, or laid ahead of the compliance
       if (t.dot(mark.x - tip_now) > settings.spacing_mm) break;
-      auto added = compliance.add(mark.at, mark.x, placement_of_contacts(), t);
-      if (added.refusal == ContactCompliance::Refusal::geometry)
-        added = compliance.add(mark.at, mark.x, Placement::embedded);
+      Placement placement = placement_of_contacts();
+      auto added = compliance.add(mark.at, mark.x, placement, t);
+      if (added.refusal == ContactCompliance::Refusal::geometry) {
+        placement = Placement::embedded;
+        added = compliance.add(mark.at, mark.x, placement);
+      }
       if (added.point < 0) {
         report.flags |= added.refusal == ContactCompliance::Refusal::missing ? StepReport::compliance_missing
                                                                              : StepReport::out_of_contacts;
         break;
+      }
+      if (placement == Placement::embedded && follows_from(added.point, grips.size())) {
+        compliance.remove_last_embedded();
+        track.marks.erase(track.marks.begin() + static_cast<std::ptrdiff_t>(grips.size()));
+        continue;
       }
       mark.point = added.point;
       point_at[static_cast<std::size_t>(added.point)] = mark.at;

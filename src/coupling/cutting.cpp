@@ -169,6 +169,7 @@ void Insertion::Parts::commit_tip(StepReport& report) {
 /// The tip is in the air and moved from `from` to `to`: does it meet the outer surface?
 /// @return false when it does where no compliance is there: it has yet to enter
 bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& report) {
+  awaited_entry.reset();
   const auto crossing = tissue.locator->first_entry(from, to);
   if (!crossing) return true;
   const Vec3 x = from + crossing->t * (to - from);
@@ -180,6 +181,7 @@ bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& repor
   }
   if (!compliance.available(crossing->tet)) {
     report.flags |= StepReport::compliance_missing;
+    awaited_entry = {x, needle->tangent(length()), crossing->tet};
     return false;
   }
   touch_surface(*crossing, x, report,
@@ -254,6 +256,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
   memory_xi = track.end_xi;
   relaxing = false;
   tip.stale = !compliance.move_tip(tip.at, tip.x);
+  if (tip.stale) compliance.move_tip({crossing.tet, tissue.locator->weights(crossing.tet, x)}, x);  // for want of any
 }
 
 }  // namespace stylet

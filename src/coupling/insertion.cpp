@@ -227,6 +227,7 @@ void Insertion::place(const Pose& base) {
   if (parts_->phase != TipPhase::air) parts_->finish_insertion(unused);
   if (parts_->relaxing) parts_->forget_tissue();
   parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
+  parts_->awaited_entry.reset();
   parts_->tangent_fits = false;
   parts_->last_way = parts_->last_cut = 0.0;
   parts_->base = base;
@@ -275,24 +276,35 @@ StepReport Insertion::step(const Pose& base, double dt) {
   return report;
 }
 
+/// The contact that comes next cannot be laid before its compliance has come.
+bool Insertion::Parts::contact_waits() const {
+  if (grips.size() >= track.marks.size()) return false;
+  const Track::Mark& next = track.marks[grips.size()];
+  return next.point < 0 && !compliance.available(next.at.tet);
+}
+
 /// Where compliance is needed next: at the tip, then at contacts that wait for it behind the tip.
 NeedleWhereabouts Insertion::Parts::whereabouts() const {
   const Vec3 tangent = needle->tangent(length());
-  if (phase == TipPhase::air || phase == TipPhase::exited) return {air_tip, tangent, -1};
-  if (!tip.stale && grips.size() < track.marks.size() && track.marks[grips.size()].point < 0) {
+  if (!tip_waits() && contact_waits()) {
     const Track::Mark& next = track.marks[grips.size()];
     return {next.x, tangent, next.at.tet};
   }
+  if (awaited_entry) return *awaited_entry;
+  if (phase == TipPhase::air || phase == TipPhase::exited) return {air_tip, tangent, -1};
   return {tip.x, tip.state == Tip::State::cut ? tip.direction : tangent, tip.at.tet};
 }
 
 void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;
   const Vec3 tip = p.needle->point(p.length());
-  if ((tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
+  const bool waits = p.tip_waits() || p.contact_waits() || p.awaited_entry.has_value();
+  const bool as_left = p.tissue.store->arrived() == p.rows_prepared;
+  if (!waits && as_left && (tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
   p.supply.work_through(p.compliance, p.whereabouts(),
                         {.radius_mm = radius_mm, .ahead_mm = 0.0, .spare_nodes = p.settings.spare_nodes});
   p.prepared_at = tip;
+  p.rows_prepared = p.tissue.store->arrived();
 }
 
 const ComplianceStore& Insertion::store() const { return *parts_->tissue.store; }

@@ -7,6 +7,7 @@
 #include "tissue_memory.hpp"
 
 #include <deque>
+#include <optional>
 
 namespace stylet {
 
@@ -86,6 +87,8 @@ struct Insertion::Parts {
   double expected_cut = 0.0;  ///< [mm] in this one
   double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
   Vec3 prepared_at = Vec3::Constant(1e30);
+  std::uint64_t rows_prepared = 0;                 ///< ComplianceStore::arrived() then
+  std::optional<NeedleWhereabouts> awaited_entry;  ///< surface met where no compliance is there yet
   PhaseObserver* phases = nullptr;
 
   // Scratch of the equilibrium, sized once.
@@ -192,6 +195,8 @@ struct Insertion::Parts {
   void cross_surface(StepReport& report);
   bool enter(const Vec3& from, const Vec3& to, StepReport& report);
   void take_compliance();
+  [[nodiscard]] bool tip_waits() const { return tip.touching && tip.stale; }
+  [[nodiscard]] bool contact_waits() const;
   [[nodiscard]] NeedleWhereabouts whereabouts() const;
   void touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report, InsertionEventKind kind);
   [[nodiscard]] int region_of(Index tet) const;
@@ -202,6 +207,7 @@ struct Insertion::Parts {
   void lay_node_addition_on_faces(const Vec3& from, double from_xi, Index tet, StepReport& report);
   bool lay_mark(double xi, const Vec3& x, const MaterialPoint& at, Placement placement, const Vec3& travel,
                 StepReport& report);
+  [[nodiscard]] bool follows_from(int point, std::size_t marks) const;
   void wake_and_drop(StepReport& report);
   [[nodiscard]] double passed_by(const Grip& grip) const;
   void share_length();

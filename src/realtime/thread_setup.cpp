@@ -96,6 +96,8 @@ void prepare_thread() {
 
 void yield_to_others() {
 #if defined(__linux__)
+  const sched_param ordinary{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // it may have been started by a real-time thread
   constexpr int nice = 10;
   setpriority(PRIO_PROCESS, 0, nice);  // 0: of this thread alone, on Linux
 #endif

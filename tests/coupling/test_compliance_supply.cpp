@@ -67,8 +67,15 @@ struct WithWorker : NeedleInBlock {
 
 }  // namespace
 
-TEST(ComplianceSupply, rows_that_came_in_parcels_are_those_of_the_factor) {
-  WithWorker run;
+class ComplianceSupplyOf : public testing::TestWithParam<Element> {};
+INSTANTIATE_TEST_SUITE_P(Elements, ComplianceSupplyOf,
+                         testing::Values(Element::p1, Element::nodal_pressure, Element::p2));
+
+TEST_P(ComplianceSupplyOf, rows_that_came_in_parcels_are_those_of_the_factor) {
+  BlockOptions options;
+  options.cells = {5, 5, 5};
+  options.element = GetParam();
+  WithWorker run(options);
   run.aim({3, 2, 0});
   run.go_on(60);
   const std::vector<Index> stored = run.store->stored();
@@ -184,7 +191,8 @@ TEST(ComplianceSupply, an_outrun_needle_goes_on_with_the_last_row_is_flagged_and
     run.flags = 0;
     run.rest();
     EXPECT_EQ(run.report.flags, 0u);
-    EXPECT_EQ(run.insertion->contacts().size(), prepared.insertion->contacts().size());
+    // One that could have no node where it was marked, and follows from its neighbours, is left to them.
+    EXPECT_GE(run.insertion->contacts().size() + 1, prepared.insertion->contacts().size());
     run.flags = 0;
     run.rounds_every = 1;
     run.go_on(65);
@@ -192,6 +200,68 @@ TEST(ComplianceSupply, an_outrun_needle_goes_on_with_the_last_row_is_flagged_and
     EXPECT_EQ(run.flags, 0u);
     EXPECT_NEAR(run.forces.back(), prepared.forces.back(), 0.05 * prepared.forces.back());
   }
+}
+
+TEST(ComplianceSupply, an_outrun_needle_at_rest_gets_what_it_lacks_from_prepare) {
+  NeedleInBlock run;
+  run.aim({3, 2, 0});
+  run.go(20);
+  while (run.depth < 60.0) {
+    run.depth += 0.02;
+    run.report = run.insertion->step(run.pose(), 1e-3);
+  }
+  ASSERT_EQ(run.report.flags, static_cast<unsigned>(StepReport::compliance_missing));
+  for (int k = 0; k < 50 && run.report.flags != 0; ++k) run.step(1e-3);  // prepares, then steps
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_GT(run.insertion->contacts().size(), 12u);
+}
+
+TEST(ComplianceSupply, an_outrun_needle_that_left_through_the_far_side_gets_its_contacts) {
+  BlockOptions options;
+  options.hi = Vec3(50, 50, 40);
+  options.cells = {8, 8, 4};
+  options.held = [](const Vec3& x) { return std::abs(x.x()) > 49.9 || std::abs(x.y()) > 49.9; };
+  options.region_at = [](const Vec3&) { return 0; };
+  WithWorker run(options);
+  run.aim({3, 2, 0});
+  run.rest();
+  run.go_on(8);
+  run.rounds_every = 0;
+  run.go_on(60);
+  ASSERT_EQ(run.report.tip, TipPhase::exited);
+  ASSERT_NE(run.report.flags, 0u);
+  run.rest();
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_GE(run.insertion->contacts().size(), 9u);
+  run.rounds_every = 1;
+  run.go_on(-1);
+  EXPECT_EQ(run.count(Kind::withdrawn), 1);
+}
+
+TEST(ComplianceSupply, an_old_track_that_was_forgotten_is_joined_all_the_same) {
+  ComplianceSupply::Settings settings = near_the_tip(150);
+  settings.radius_mm = 3.0;
+  BlockOptions options;
+  options.cells = {12, 12, 12};
+  WithWorker run(options, settings);
+  const auto in_and_out = [&](const Vec3& through) {
+    run.aim(through);
+    run.rest();
+    run.go_on(45.0, 20.0, 2e-3);
+    run.go_on(-1.0, 20.0, 2e-3);
+  };
+  for (const Vec3& through : {Vec3(3, 2, 0), Vec3(-25, 20, 0), Vec3(24, -22, 0)}) in_and_out(through);
+  ASSERT_EQ(run.flags, 0u);
+  run.aim({3, 2, 0});
+  run.rest();
+  run.rounds_every = 0;
+  run.go_on(50.0, 20.0, 2e-3);  // through the old track and on
+  EXPECT_EQ(run.flags, static_cast<unsigned>(StepReport::compliance_missing));
+  for (const double force : run.forces) ASSERT_TRUE(std::isfinite(force));
+  run.rest();
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_GE(run.insertion->contacts().size(), 11u);
+  EXPECT_EQ(run.count(Kind::puncture, 0), 3) << "not again";
 }
 
 TEST(ComplianceSupply, a_surface_met_without_compliance_is_entered_when_it_has_come) {

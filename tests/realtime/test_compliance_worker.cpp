@@ -63,7 +63,9 @@ TEST(ComplianceWorker, brings_what_prepare_would_have) {
 TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
   SimulationSteppable body(narrow());
   place_beside(body.simulation());
-  for (int k = 0; k < kSteps; ++k) {  // as fast as it goes
+  for (int k = 0; k < kSteps; ++k) {
+    if (k < kSteps / 3) body.simulation().prepare();              // waits, so that it gets in
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // some rows come, some do not
     const StepOutcome outcome = body.step(beside(-1.0 + k * kStep_mm), kStep_s);
     ASSERT_TRUE(outcome.hand.finite());
     const unsigned flags = body.simulation().report().flags;
@@ -96,4 +98,23 @@ TEST(ComplianceWorker, simulations_of_one_model_grow_apart_from_each_other) {
   one.simulation().prepare();
   EXPECT_GT(one.simulation().insertion().store().stored_nodes(), before);
   EXPECT_EQ(narrow()->store()->stored_nodes(), before);
+}
+
+TEST(ComplianceWorker, may_stop_whatever_is_under_way_and_another_may_go_on) {
+  Simulation simulation(narrow());
+  place_beside(simulation);
+  for (int k = 0; k < kSteps; ++k) {
+    const Pose base = beside(-1.0 + k * kStep_mm);
+    const ComplianceWorker worker(simulation.supply(), simulation.supply_settings());
+    simulation.step(base, kStep_s);
+    simulation.step(base, kStep_s);
+  }
+  simulation.prepare();  // on this thread
+  const Pose last = beside(-1.0 + kSteps * kStep_mm);
+  for (int k = 0; k < 200; ++k) {
+    simulation.prepare();
+    simulation.step(last, kStep_s);
+  }
+  EXPECT_EQ(simulation.report().flags, 0u);
+  EXPECT_GT(simulation.report().contacts, 4);
 }

@@ -61,7 +61,7 @@ class ComplianceSupply {
     idle,     ///< nothing is wanted
     full,     ///< something is, but nothing can be given up for it
     done,     ///< rows are on their way
-    failed    ///< memory ran out; nothing has changed
+    failed    ///< memory, or threads, ran out; nothing has changed
   };
   /// One round. One thread at a time.
   /// @param most nodes solved for at once
