@@ -73,12 +73,16 @@ std::string Context::no_data(const std::string& file) const {
       (data_ / file).string());
 }
 
+Result<MeshedAnatomy> mesh_demo(Index nodes, const Progress& progress) {
+  MeshOptions options;
+  options.nodes = nodes;
+  options.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
+  return mesh_contours(demo_patient(), options, progress);
+}
+
 Result<TetMesh> Context::demo_mesh() {
   if (!demo_mesh_) {
-    MeshOptions options;
-    options.nodes = demo_scenario().mesh.nodes;
-    options.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-    auto meshed = mesh_contours(demo_patient(), options, progress_);
+    auto meshed = mesh_demo(demo_scenario().mesh.nodes, progress_);
     if (!meshed) return meshed.error();
     demo_mesh_ = std::move(meshed->mesh);
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/validate/coupling_bench.hpp"
 
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/validate/context.hpp"
 
 #include <fmt/format.h>
@@ -146,16 +144,13 @@ const char* to_string(CouplingStudy study) {
 }
 
 Result<std::vector<CouplingRow>> bench_coupling(const CouplingBenchOptions& options, const Progress& progress) {
-  const ContourSet patient = demo_patient();
   std::vector<CouplingRow> rows;
   Index meshed = 0;
   MeshedAnatomy anatomy;
   for (const Case& one : cases(options.largest, options.mesh_only)) {
     if (one.nodes != meshed) {
-      MeshOptions mesh;
-      mesh.nodes = meshed = one.nodes;
-      mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-      auto made = mesh_contours(patient, mesh, progress);
+      meshed = one.nodes;
+      auto made = mesh_demo(one.nodes, progress);
       if (!made) return made.error();
       anatomy = std::move(*made);
     }

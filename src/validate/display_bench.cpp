@@ -3,8 +3,6 @@
 
 #include "driven_needle.hpp"
 #include "stylet/geom/slice.hpp"
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/sim/display_field.hpp"
 #include "stylet/sim/simulation.hpp"
@@ -203,15 +201,11 @@ DisplayRow measure(const std::shared_ptr<const Model>& model, const DisplayField
 }  // namespace
 
 Result<std::vector<DisplayRow>> bench_display(const DisplayBenchOptions& options, const Progress& progress) {
-  const ContourSet patient = demo_patient();
   std::vector<DisplayRow> rows;
   std::shared_ptr<const Model> coarsest;
   for (const Index nodes : {570, 5000, 20000, 100000}) {
     if (nodes > options.largest) continue;
-    MeshOptions mesh;
-    mesh.nodes = nodes;
-    mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-    auto anatomy = mesh_contours(patient, mesh, progress);
+    auto anatomy = mesh_demo(nodes, progress);
     if (!anatomy) return anatomy.error();
     Scenario scenario = driven_scenario(kContacts);
     if (nodes > kNodalPressureFits) scenario.tissue_model.element = "p1";

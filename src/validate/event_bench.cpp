@@ -6,8 +6,6 @@
 #include "stylet/coupling/near_field/near_field_compliance.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
 #include "stylet/coupling/track_compliance.hpp"
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/validate/context.hpp"
 
@@ -212,14 +210,10 @@ const EventRow* EventBench::finest(const std::string& rule) const {
 
 Result<EventBench> bench_events(const EventBenchOptions& options, const Progress& progress) {
   const detail::OneBlasThread one_thread;
-  const ContourSet patient = demo_patient();
   std::vector<Ground> grounds;
   for (const Index nodes : {570, 5000, 20000}) {
     if (nodes > options.largest) continue;
-    MeshOptions mesh;
-    mesh.nodes = nodes;
-    mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-    const auto anatomy = mesh_contours(patient, mesh, progress);
+    const auto anatomy = mesh_demo(nodes, progress);
     if (!anatomy) return anatomy.error();
     auto ground = ground_of(anatomy->mesh, progress);
     if (!ground) return ground.error();

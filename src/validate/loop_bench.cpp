@@ -2,8 +2,6 @@
 #include "stylet/validate/loop_bench.hpp"
 
 #include "driven_needle.hpp"
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/realtime/scripted_device.hpp"
 #include "stylet/validate/context.hpp"
 
@@ -34,10 +32,7 @@ BaseMotion hand(const PlannedInsertion& plan, double start_mm, double seconds) {
 }  // namespace
 
 Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& progress) {
-  MeshOptions mesh;
-  mesh.nodes = options.nodes;
-  mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-  const auto anatomy = mesh_contours(demo_patient(), mesh, progress);
+  const auto anatomy = mesh_demo(options.nodes, progress);
   if (!anatomy) return anatomy.error();
   const auto model = Model::compile(driven_scenario(options.contacts), anatomy->mesh, "the demo", {}, progress);
   if (!model) return model.error();

@@ -2,8 +2,6 @@
 #include "stylet/validate/scale_bench.hpp"
 
 #include "driven_needle.hpp"
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/validate/context.hpp"
 
 #include <unistd.h>
@@ -85,14 +83,10 @@ Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least,
 }  // namespace
 
 Result<std::vector<ScaleRow>> bench_scale(const ScaleBenchOptions& options, const Progress& progress) {
-  const ContourSet patient = demo_patient();
   std::vector<ScaleRow> rows;
   for (const Index nodes : {570, 5000, 20000, 100000}) {
     if (nodes > options.largest) continue;
-    MeshOptions mesh;
-    mesh.nodes = nodes;
-    mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-    const auto anatomy = mesh_contours(patient, mesh, progress);
+    const auto anatomy = mesh_demo(nodes, progress);
     if (!anatomy) return anatomy.error();
     for (const int contacts : options.contacts) {
       auto row = measure(*anatomy, contacts, options.steps, progress);

@@ -2,8 +2,6 @@
 #include "stylet/validate/step_bench.hpp"
 
 #include "driven_needle.hpp"
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/validate/context.hpp"
 
 #include <algorithm>
@@ -65,10 +63,7 @@ Result<StepRow> measure(const TetMesh& mesh, int contacts, const Progress& progr
 }  // namespace
 
 Result<std::vector<StepRow>> bench_step(const StepBenchOptions& options, const Progress& progress) {
-  MeshOptions mesh;
-  mesh.nodes = options.nodes;
-  mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-  const auto anatomy = mesh_contours(demo_patient(), mesh, progress);
+  const auto anatomy = mesh_demo(options.nodes, progress);
   if (!anatomy) return anatomy.error();
   std::vector<StepRow> rows;
   for (const int contacts : {20, 40, 60}) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/validate/supply_bench.hpp"
 
-#include "stylet/mesher/mesher.hpp"
-#include "stylet/phantom/phantom.hpp"
 #include "stylet/realtime/steppable.hpp"
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/validate/context.hpp"
@@ -93,14 +91,10 @@ SupplyRow measure(const std::shared_ptr<const Model>& model, double speed_mm_per
 
 Result<std::vector<SupplyRow>> bench_supply(const SupplyBenchOptions& options, const Progress& progress) {
   static_assert(kStep_s == 1e-3, "the clock's milliseconds");
-  const ContourSet patient = demo_patient();
   std::vector<SupplyRow> rows;
   for (const Index nodes : {570, 5000, 20000, 100000}) {
     if (nodes > options.largest) continue;
-    MeshOptions mesh;
-    mesh.nodes = nodes;
-    mesh.cull_tolerance_mm = demo_scenario().mesh.cull_mm;
-    const auto anatomy = mesh_contours(patient, mesh, progress);
+    const auto anatomy = mesh_demo(nodes, progress);
     if (!anatomy) return anatomy.error();
     const auto model = Model::compile(demo_scenario(), anatomy->mesh, "the demo", {}, progress);
     if (!model) return model.error();

@@ -12,8 +12,15 @@ namespace {
 
 constexpr std::size_t kAtOnce = 8;
 
-ComplianceSupply::Settings near_the_tip(Index spare_nodes = 1500) {
-  return {.radius_mm = 8.0, .ahead_mm = 4.0, .spare_nodes = spare_nodes};
+ComplianceSupply::Settings near_the_tip() { return {.radius_mm = 8.0, .ahead_mm = 4.0}; }
+
+/// So few nodes that a needle in another place takes them.
+constexpr Index kLittle = 150;
+ComplianceSupply::Settings little_room() { return {.radius_mm = 3.0, .ahead_mm = 4.0, .spare_nodes = kLittle}; }
+BlockOptions fine_block() {
+  BlockOptions options;
+  options.cells = {12, 12, 12};
+  return options;
 }
 
 /// Steps without prepare(); a worker of our own has a round after each `rounds_every`-th.
@@ -106,12 +113,7 @@ TEST(ComplianceSupply, a_worker_that_keeps_ahead_gives_the_same_forces) {
 }
 
 TEST(ComplianceSupply, memory_is_bounded_and_no_contact_loses_its_compliance) {
-  constexpr Index spare = 150;
-  ComplianceSupply::Settings settings = near_the_tip(spare);
-  settings.radius_mm = 3.0;
-  BlockOptions options;
-  options.cells = {12, 12, 12};
-  WithWorker run(options, settings);
+  WithWorker run(fine_block(), little_room());
   // In and out at places far from each other: far more nodes than there is room for.
   for (const Vec3& through : {Vec3(3, 2, 0), Vec3(-25, 20, 0), Vec3(24, -22, 0)}) {
     run.aim(through);
@@ -122,7 +124,7 @@ TEST(ComplianceSupply, memory_is_bounded_and_no_contact_loses_its_compliance) {
       most = std::max(most, run.store->stored_nodes());
       for (const ContactState& contact : run.insertion->contacts()) EXPECT_TRUE(contact.force.allFinite());
     }
-    EXPECT_LE(most, spare);
+    EXPECT_LE(most, kLittle);
     run.go_on(-1.0, 20.0, 2e-3);
     EXPECT_EQ(run.flags, 0u);
   }
@@ -130,12 +132,7 @@ TEST(ComplianceSupply, memory_is_bounded_and_no_contact_loses_its_compliance) {
 }
 
 TEST(ComplianceSupply, what_was_forgotten_comes_back_with_the_same_numbers) {
-  constexpr Index spare = 150;
-  ComplianceSupply::Settings settings = near_the_tip(spare);
-  settings.radius_mm = 3.0;
-  BlockOptions options;
-  options.cells = {12, 12, 12};
-  WithWorker run(options, settings);
+  WithWorker run(fine_block(), little_room());
   const auto insertion_at = [&](const Vec3& through) {
     run.aim(through);
     run.rest();
@@ -151,7 +148,7 @@ TEST(ComplianceSupply, what_was_forgotten_comes_back_with_the_same_numbers) {
   EXPECT_TRUE(std::any_of(of_the_first.begin(), of_the_first.end(), [&](Index node) { return !run.store->has(node); }));
   // Beside the first track, so as not to run in it, and then once more in a block that never forgot.
   const double again = insertion_at({3, 6, 0});
-  WithWorker fresh(options, near_the_tip());
+  WithWorker fresh(fine_block());
   fresh.aim({3, 6, 0});
   fresh.rest();
   fresh.go_on(40.0, 10.0, 2e-3);
@@ -239,11 +236,7 @@ TEST(ComplianceSupply, an_outrun_needle_that_left_through_the_far_side_gets_its_
 }
 
 TEST(ComplianceSupply, an_old_track_that_was_forgotten_is_joined_all_the_same) {
-  ComplianceSupply::Settings settings = near_the_tip(150);
-  settings.radius_mm = 3.0;
-  BlockOptions options;
-  options.cells = {12, 12, 12};
-  WithWorker run(options, settings);
+  WithWorker run(fine_block(), little_room());
   const auto in_and_out = [&](const Vec3& through) {
     run.aim(through);
     run.rest();
@@ -296,12 +289,7 @@ TEST(ComplianceSupply, a_needle_that_turns_away_before_it_entered_has_touched_no
 
 TEST(ComplianceSupply, a_step_that_takes_rows_over_neither_allocates_nor_frees) {
   if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
-  constexpr Index spare = 150;
-  ComplianceSupply::Settings settings = near_the_tip(spare);
-  settings.radius_mm = 3.0;
-  BlockOptions options;
-  options.cells = {12, 12, 12};
-  WithWorker run(options, settings);
+  WithWorker run(fine_block(), little_room());
   run.aim({3, 2, 0});
   long allocations = 0;
   int parcels = 0;

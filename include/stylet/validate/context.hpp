@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
+#include "stylet/mesher/mesher.hpp"
 #include "stylet/sim/model.hpp"
 #include "stylet/sim/run.hpp"
 #include "stylet/validate/coupling_bench.hpp"
@@ -12,6 +13,9 @@
 #include <vector>
 
 namespace stylet::validate {
+
+/// The demo patient meshed as the demo scenario does it, with about so many nodes.
+Result<MeshedAnatomy> mesh_demo(Index nodes, const Progress& progress);
 
 /// An insertion, carried out, with every step.
 struct RecordedRun {
