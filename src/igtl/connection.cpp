@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "connection.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/write.hpp>
+
+namespace stylet::igtl {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+/// Small messages leave at once, little waits in the kernel for a slow reader, and a machine that vanished without a
+/// word is noticed.
+void set_options(Connection::Socket& socket) {
+  using Timeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
+  constexpr int timeout_ms = 10'000;
+  constexpr int send_bytes = 1 << 18;
+  error_code ignored;
+  socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+  socket.set_option(asio::socket_base::keep_alive(true), ignored);
+  socket.set_option(asio::socket_base::send_buffer_size(send_bytes), ignored);
+  socket.set_option(Timeout(timeout_ms), ignored);
+}
+
+}  // namespace
+
+Connection::Connection(Socket socket, Events events) : socket_(std::move(socket)), events_(std::move(events)) {
+  set_options(socket_);
+}
+
+void Connection::start() { read(); }
+
+void Connection::read() {
+  socket_.async_read_some(asio::buffer(room_), [self = shared_from_this()](const error_code& error, std::size_t n) {
+    if (self->closed_) return;
+    if (error) return self->close();
+    const auto ok = self->reader_.take(std::span(self->room_).first(n), self->events_.message);
+    if (!ok) return self->close(ok.error().what);
+    self->read();
+  });
+}
+
+bool Connection::offer(Content content, Shared bytes) {
+  if (closed_) return true;
+  Shared& place = waiting_.at(content);
+  const bool free = place == nullptr;
+  place = std::move(bytes);
+  send();
+  return free;
+}
+
+void Connection::send() {
+  if (sending_ || closed_) return;
+  std::vector<asio::const_buffer> buffers;
+  for (std::size_t k = 0; k < kContents; ++k) {
+    under_way_[k] = std::move(waiting_[k]);
+    waiting_[k] = nullptr;
+    if (under_way_[k]) buffers.push_back(asio::buffer(*under_way_[k]));
+  }
+  if (buffers.empty()) return;
+  sending_ = true;
+  sending_start_ = Clock::now();
+  asio::async_write(socket_, buffers, [self = shared_from_this()](const error_code& error, std::size_t) {
+    self->sending_ = false;
+    self->under_way_ = {};
+    if (self->closed_) return;
+    if (error) return self->close();
+    self->send();
+  });
+}
+
+void Connection::close(const std::string& garbage) {
+  if (closed_) return;
+  closed_ = true;
+  waiting_ = {};
+  error_code ignored;
+  socket_.shutdown(Socket::shutdown_both, ignored);
+  socket_.close(ignored);
+  events_.closed(garbage);
+}
+
+bool Connection::sending_since(Clock::time_point& start) const {
+  if (sending_) start = sending_start_;
+  return sending_;
+}
+
+}  // namespace stylet::igtl

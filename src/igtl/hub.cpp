@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hub.hpp"
+
+namespace stylet::igtl {
+
+Hub::Hub(const LinkSettings& settings) : settings_(settings), input_(cut_name(settings.input)) {}
+
+void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
+  const ConnectionId id = ++last_id_;
+  auto connection = std::make_shared<Connection>(
+      std::move(socket), Connection::Events{
+                             .message = [this, id](const Incoming& m) { input_.hear(id, m, PoseInput::Clock::now()); },
+                             .closed =
+                                 [this, id, on_end = std::move(on_end)](const std::string& garbage) {
+                                   ended(id, garbage);
+                                   if (on_end) on_end();
+                                 },
+                         });
+  connections_.emplace(id, connection);
+  ++counted_.connected;
+  for (std::size_t k = 0; k < Connection::kContents; ++k)
+    if (greeting_[k]) offer(*connection, static_cast<Connection::Content>(k), greeting_[k]);
+  connection->start();
+}
+
+void Hub::turn_away() {
+  ++counted_.turned_away;
+  counted_.problem = "more connections than max_connections; the last one was turned away";
+}
+
+void Hub::ended(ConnectionId id, const std::string& garbage) {
+  input_.closed(id);
+  connections_.erase(id);
+  if (garbage.empty()) return;
+  ++counted_.garbage;
+  counted_.problem = "a connection sent " + garbage + " and was closed";
+}
+
+void Hub::offer(Connection& to, Connection::Content content, const Connection::Shared& bytes) {
+  ++counted_.sent;
+  if (!to.offer(content, bytes)) ++counted_.dropped;
+}
+
+void Hub::send(Connection::Content content, Connection::Shared bytes) {
+  for (const auto& [id, connection] : connections_) offer(*connection, content, bytes);
+}
+
+void Hub::give_up(Connection::Clock::time_point now) {
+  const std::chrono::duration<double> limit(settings_.give_up_s);
+  std::vector<std::shared_ptr<Connection>> stuck;
+  for (const auto& [id, connection] : connections_) {
+    Connection::Clock::time_point since;
+    if (connection->sending_since(since) && now - since > limit) stuck.push_back(connection);
+  }
+  for (const auto& connection : stuck) {
+    ++counted_.given_up;
+    counted_.problem = "a connection took nothing for longer than give_up_s and was closed";
+    connection->close();
+  }
+}
+
+void Hub::close() {
+  while (!connections_.empty()) std::shared_ptr<Connection>(connections_.begin()->second)->close();
+}
+
+void Hub::set_port(int port) {
+  counted_.port = port;
+  show_state();
+}
+
+void Hub::show_state() {
+  const PoseInput::Counts& c = input_.counts();
+  counted_.connections = static_cast<int>(connections_.size());
+  counted_.tracked = input_.tracked();
+  counted_.poses = c.poses;
+  counted_.unusable = c.unusable;
+  counted_.of_others = c.of_others;
+  counted_.other_messages = c.other_messages;
+  const std::scoped_lock lock(mutex_);
+  shown_ = counted_;
+}
+
+LinkState Hub::state() const {
+  const std::scoped_lock lock(mutex_);
+  return shown_;
+}
+
+}  // namespace stylet::igtl

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "connection.hpp"
+#include "pose_input.hpp"
+#include "stylet/igtl/link.hpp"
+
+#include <map>
+#include <mutex>
+
+namespace stylet::igtl {
+
+/// All connections of a link and what they have come to. Everything but state() belongs to the link's thread.
+class Hub {
+ public:
+  explicit Hub(const LinkSettings& settings);
+
+  /// Takes a connection over. @param ended called once when it is over; may be empty
+  void add(Connection::Socket socket, std::function<void()> ended);
+  [[nodiscard]] bool full() const { return connections_.size() >= static_cast<std::size_t>(settings_.max_connections); }
+  [[nodiscard]] bool empty() const { return connections_.empty(); }
+  void turn_away();
+
+  void send(Connection::Content content, Connection::Shared bytes);
+  /// What a connection gets when it is made, besides what follows.
+  void greet_with(Connection::Content content, Connection::Shared bytes) { greeting_.at(content) = std::move(bytes); }
+  /// Closes those that have taken nothing for too long.
+  void give_up(Connection::Clock::time_point now);
+
+  /// Where the handle's poses go from now on.
+  void feed(std::shared_ptr<PoseChannel> channel) { input_.feed(std::move(channel)); }
+  /// Closes all.
+  void close();
+
+  void set_port(int port);
+  void set_problem(const std::string& problem) { counted_.problem = problem; }
+  /// Makes the present counts the ones that state() tells.
+  void show_state();
+  [[nodiscard]] LinkState state() const;
+
+ private:
+  void offer(Connection& to, Connection::Content content, const Connection::Shared& bytes);
+  void ended(ConnectionId id, const std::string& garbage);
+
+  const LinkSettings& settings_;
+  PoseInput input_;
+  std::map<ConnectionId, std::shared_ptr<Connection>> connections_;
+  std::array<Connection::Shared, Connection::kContents> greeting_;
+  ConnectionId last_id_ = 0;
+  LinkState counted_;
+  mutable std::mutex mutex_;
+  LinkState shown_;  ///< under the mutex
+};
+
+}  // namespace stylet::igtl

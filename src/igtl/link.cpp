@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/igtl/link.hpp"
+
+#include "check_settings.hpp"
+#include "sender.hpp"
+#include "tracked_device.hpp"
+#include "transport.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/post.hpp>
+
+#include <algorithm>
+#include <system_error>
+#include <thread>
+
+namespace stylet::igtl {
+
+/// The context goes last of what uses it: what still waits in it holds sockets.
+struct Link::Parts {
+  explicit Parts(const LinkSettings& s) : settings(s), hub(settings), sender(io, settings, hub) {}
+
+  const LinkSettings settings;
+  boost::asio::io_context io{1};
+  Hub hub;
+  Sender sender;
+  std::unique_ptr<Transport> transport;
+  std::thread thread;
+};
+
+Link::Link(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Result<std::unique_ptr<Link>> Link::open(const LinkSettings& settings) {
+  if (auto ok = check(settings); !ok) return ok.error();
+  auto parts = std::make_unique<Parts>(settings);
+  Parts& p = *parts;
+  auto transport = settings.role == Role::server ? listen(p.io, p.settings, p.hub) : dial(p.io, p.settings, p.hub);
+  if (!transport) return transport.error();
+  p.transport = std::move(*transport);
+  p.sender.start();
+  p.transport->start();
+  try {
+    p.thread = std::thread([&io = p.io] { io.run(); });
+  } catch (const std::system_error& error) {
+    return failure("OpenIGTLink", fmt::format("no thread to be had: {}", error.what()), "end other programs");
+  }
+  return std::unique_ptr<Link>(new Link(std::move(parts)));
+}
+
+Link::~Link() {
+  Parts& p = *parts_;
+  // In the thread itself, which owns the sockets; it ends there, whatever is still under way.
+  boost::asio::post(p.io, [&p] {
+    p.transport->stop();
+    p.sender.stop();
+    p.hub.close();
+    p.io.stop();
+  });
+  p.thread.join();
+}
+
+std::unique_ptr<Device> Link::device() {
+  auto channel = std::make_shared<PoseChannel>();
+  boost::asio::post(parts_->io, [&hub = parts_->hub, channel] { hub.feed(channel); });
+  return std::make_unique<TrackedDevice>("OpenIGTLink " + parts_->settings.input, std::move(channel));
+}
+
+void Link::publish(const Picture& picture) { parts_->sender.publish(picture); }
+
+Result<> Link::publish_surface(Surface surface) {
+  constexpr std::size_t most = std::size_t{1} << 26;
+  const std::size_t triangles = surface.triangles ? surface.triangles->size() : 0;
+  const std::size_t bytes = 12 * surface.points.size() + 16 * triangles;
+  if (bytes > most)
+    return input_error("OpenIGTLink, surface",
+                       fmt::format("{} points and {} triangles", surface.points.size(), triangles),
+                       "send a coarser surface, or fewer regions");
+  if (triangles > 0) {
+    std::uint32_t last = 0;
+    for (const auto& t : *surface.triangles) last = std::max({last, t[0], t[1], t[2]});
+    if (last >= surface.points.size())
+      return input_error("OpenIGTLink, surface",
+                         fmt::format("a triangle names point {} of {}", last, surface.points.size()),
+                         "number the points from 0");
+  }
+  parts_->sender.publish(std::move(surface));
+  return Ok{};
+}
+
+LinkState Link::state() const { return parts_->hub.state(); }
+
+}  // namespace stylet::igtl

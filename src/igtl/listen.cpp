@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "transport.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::igtl {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+class Listener final : public Transport {
+ public:
+  Listener(tcp::acceptor acceptor, asio::io_context& io, Hub& hub)
+      : acceptor_(std::move(acceptor)), pause_(io), hub_(hub) {}
+
+  void start() override {
+    acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
+      if (!acceptor_.is_open()) return;
+      if (error) return rest(error.message());
+      if (hub_.full()) {
+        hub_.turn_away();  // the socket closes here
+      } else {
+        hub_.add(std::move(socket), {});
+      }
+      start();
+    });
+  }
+  void stop() override {
+    error_code ignored;
+    acceptor_.close(ignored);
+    pause_.cancel();
+  }
+
+ private:
+  /// Out of file descriptors, say: asking again at once would spin.
+  void rest(const std::string& problem) {
+    hub_.set_problem("accepting a connection: " + problem);
+    pause_.expires_after(std::chrono::milliseconds(200));
+    pause_.async_wait([this](const error_code& error) {
+      if (!error && acceptor_.is_open()) start();
+    });
+  }
+
+  tcp::acceptor acceptor_;
+  asio::steady_timer pause_;
+  Hub& hub_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Transport>> listen(asio::io_context& io, const LinkSettings& settings, Hub& hub) {
+  auto endpoints = look_up(io, settings);
+  if (!endpoints) return endpoints.error();
+  const tcp::endpoint at = endpoints->front();
+  tcp::acceptor acceptor(io);
+  error_code error;
+  acceptor.open(at.protocol(), error);
+  // Without it the port stays taken for a minute after the last connection.
+  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(at, error);
+  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) {
+    const std::string where = fmt::format("OpenIGTLink, {} port {}", settings.host, settings.port);
+    if (error == asio::error::address_in_use)
+      return input_error(where, "another program listens there", "end it, or give another port");
+    return input_error(where, error.message(), "give an address of this machine and a port that its user may open");
+  }
+  hub.set_port(acceptor.local_endpoint(error).port());
+  return std::unique_ptr<Transport>(std::make_unique<Listener>(std::move(acceptor), io, hub));
+}
+
+}  // namespace stylet::igtl

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "message_reader.hpp"
+
+#include <fmt/format.h>
+#include <igtl_header.h>
+#include <igtl_transform.h>
+#include <igtl_util.h>
+
+#include <boost/endian/conversion.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+namespace stylet::igtl {
+
+namespace {
+
+static_assert(sizeof(igtl_header) == IGTL_HEADER_SIZE);
+
+Error garbage(std::string what) {
+  return input_error("OpenIGTLink message", std::move(what), "let the other side send OpenIGTLink, version 1 to 3");
+}
+
+/// Text up to its zero or the field's end.
+std::string_view text(const char* field, std::size_t room) { return {field, strnlen(field, room)}; }
+
+bool is_type(std::string_view type) {
+  return !type.empty() && std::all_of(type.begin(), type.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+bool is_name(std::string_view name) {
+  return std::all_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x20; });
+}
+
+std::size_t big16(const std::uint8_t* at) { return boost::endian::load_big_u16(at); }
+std::size_t big32(const std::uint8_t* at) { return boost::endian::load_big_u32(at); }
+
+}  // namespace
+
+Result<> MessageReader::read_header() {
+  igtl_header h;
+  std::memcpy(&h, header_.data(), sizeof h);
+  igtl_header_convert_byte_order(&h);
+  const std::string_view type = text(h.name, sizeof h.name);
+  const std::string_view name = text(h.device_name, sizeof h.device_name);
+  if (h.version != 1 && h.version != 2)
+    return garbage(fmt::format("a header of version {}", static_cast<unsigned>(h.version)));
+  if (!is_type(type) || !is_name(name)) return garbage("a header whose type or name is no text");
+  if (h.body_size > longest_) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
+  message_ = {};
+  if (type == "TRANSFORM") message_.kind = Incoming::Kind::transform;
+  if (type == "STATUS") message_.kind = Incoming::Kind::status;
+  message_.name = name;
+  keep_ = message_.kind != Incoming::Kind::other;
+  if (keep_ && h.body_size > kKept) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
+  version_ = h.version;
+  crc_ = h.crc;
+  body_left_ = h.body_size;
+  body_.clear();
+  return Ok{};
+}
+
+Result<> MessageReader::read_body(Incoming& message) {
+  if (crc64(body_.data(), body_.size(), 0) != crc_) return garbage("a body that does not match its checksum");
+  std::span<const std::uint8_t> content(body_);
+  if (version_ == 2) {
+    // Extended header: its own length, the lengths of the metadata's two parts at the end, a number.
+    if (body_.size() < 12) return garbage("a body shorter than its extended header");
+    const std::size_t before = big16(body_.data());
+    const std::size_t after = big16(body_.data() + 2) + big32(body_.data() + 4);
+    if (before < 12 || before + after > body_.size()) return garbage("an extended header with wrong lengths");
+    content = content.subspan(before, body_.size() - before - after);
+  }
+  if (message.kind == Incoming::Kind::transform) {
+    if (content.size() != IGTL_TRANSFORM_SIZE)
+      return garbage(fmt::format("a TRANSFORM of {} bytes instead of {}", content.size(), IGTL_TRANSFORM_SIZE));
+    std::memcpy(message.matrix.data(), content.data(), IGTL_TRANSFORM_SIZE);
+    igtl_transform_convert_byte_order(message.matrix.data());
+  } else {
+    if (content.size() < 30) return garbage(fmt::format("a STATUS of {} bytes", content.size()));
+    message.code = static_cast<std::uint16_t>(big16(content.data()));
+  }
+  return Ok{};
+}
+
+Result<> MessageReader::take(std::span<const std::uint8_t> bytes, const std::function<void(const Incoming&)>& sink) {
+  while (!bytes.empty()) {
+    if (header_filled_ < header_.size()) {
+      const std::size_t n = std::min(bytes.size(), header_.size() - header_filled_);
+      std::copy_n(bytes.begin(), n, header_.begin() + static_cast<std::ptrdiff_t>(header_filled_));
+      header_filled_ += n;
+      bytes = bytes.subspan(n);
+      if (header_filled_ < header_.size()) break;
+      if (auto ok = read_header(); !ok) return ok;
+    }
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), body_left_));
+    if (keep_) body_.insert(body_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
+    body_left_ -= n;
+    bytes = bytes.subspan(n);
+    if (body_left_ > 0) break;
+    header_filled_ = 0;
+    if (keep_)
+      if (auto ok = read_body(message_); !ok) return ok;
+    sink(message_);
+  }
+  return Ok{};
+}
+
+}  // namespace stylet::igtl

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "message_writer.hpp"
+
+#include "ras.hpp"
+
+#include <fmt/format.h>
+#include <igtl_header.h>
+#include <igtl_ndarray.h>
+#include <igtl_point.h>
+#include <igtl_polydata.h>
+#include <igtl_string.h>
+#include <igtl_transform.h>
+#include <igtl_util.h>
+
+#include <boost/endian/conversion.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+// The library's C functions, not its message classes: those of 1.11 free an NDARRAY's memory with the wrong delete, and
+// allocate a list for every triangle.
+
+namespace stylet::igtl {
+
+namespace {
+
+void copy_text(char* to, std::size_t room, const std::string& text) {
+  std::memcpy(to, text.data(), std::min(room, text.size()));
+}
+
+/// Seconds since 1970 and a binary fraction, 32 bits each.
+std::uint64_t now_stamp() {
+  using namespace std::chrono;
+  const auto ns = duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
+  const auto seconds = static_cast<std::uint64_t>(ns / 1'000'000'000);
+  const auto rest = static_cast<std::uint64_t>(ns % 1'000'000'000);
+  return (seconds << 32) | ((rest << 32) / 1'000'000'000);
+}
+
+/// Grows `out` by a message whose body is still empty. @return the body's place
+std::size_t begin(Bytes& out, std::size_t body_bytes) {
+  out.resize(out.size() + IGTL_HEADER_SIZE + body_bytes);
+  return out.size() - body_bytes;
+}
+
+/// Writes the header in front of a finished body, which goes to the end.
+void finish(Bytes& out, std::size_t body, const char* type, const std::string& name) {
+  igtl_header header{};
+  header.version = 1;
+  copy_text(header.name, sizeof header.name, type);
+  copy_text(header.device_name, sizeof header.device_name, name);
+  header.timestamp = now_stamp();
+  header.body_size = out.size() - body;
+  header.crc = crc64(out.data() + body, header.body_size, 0);
+  igtl_header_convert_byte_order(&header);
+  std::memcpy(out.data() + body - IGTL_HEADER_SIZE, &header, IGTL_HEADER_SIZE);
+}
+
+}  // namespace
+
+void add_transform(Bytes& out, const std::string& name, const Pose& lps) {
+  RasMatrix m = ras_matrix(lps);
+  igtl_transform_convert_byte_order(m.data());
+  const std::size_t body = begin(out, IGTL_TRANSFORM_SIZE);
+  std::memcpy(out.data() + body, m.data(), IGTL_TRANSFORM_SIZE);
+  finish(out, body, "TRANSFORM", name);
+}
+
+void add_wrench(Bytes& out, const std::string& name, const Wrench& lps) {
+  const Vec3 force = ras(lps.force);
+  const Vec3 torque = ras(lps.torque);
+  std::array<double, 6> values{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()};
+  igtl_uint16 size = values.size();
+  igtl_ndarray_info info{};
+  info.type = IGTL_NDARRAY_STYPE_TYPE_FLOAT64;
+  info.dim = 1;
+  info.size = &size;
+  info.array = values.data();
+  const std::size_t body = begin(out, igtl_ndarray_get_size(&info, IGTL_TYPE_PREFIX_NONE));
+  igtl_ndarray_pack(&info, out.data() + body, IGTL_TYPE_PREFIX_NONE);
+  finish(out, body, "NDARRAY", name);
+}
+
+void add_string(Bytes& out, const std::string& name, const std::string& text) {
+  constexpr igtl_uint16 ascii = 3;
+  const std::size_t length = std::min<std::size_t>(text.size(), 65535);
+  igtl_string_header header{ascii, static_cast<igtl_uint16>(length)};
+  igtl_string_convert_byte_order(&header);
+  const std::size_t body = begin(out, sizeof header + length);
+  std::memcpy(out.data() + body, &header, sizeof header);
+  std::memcpy(out.data() + body + sizeof header, text.data(), length);
+  finish(out, body, "STRING", name);
+}
+
+void add_points(Bytes& out, const std::string& name, std::span<const Triple> lps) {
+  const std::size_t body = begin(out, lps.size() * sizeof(igtl_point_element));
+  for (std::size_t k = 0; k < lps.size(); ++k) {
+    igtl_point_element point{};
+    copy_text(point.name, sizeof point.name - 1, fmt::format("{}-{}", name, k));
+    copy_text(point.group_name, sizeof point.group_name - 1, "Fiducial");
+    std::fill(std::begin(point.rgba), std::end(point.rgba), igtl_uint8{255});
+    const Vec3 at = ras(vec3(lps[k]));
+    for (int i = 0; i < 3; ++i) point.position[i] = static_cast<float>(at[i]);
+    igtl_point_convert_byte_order(&point, 1);
+    std::memcpy(out.data() + body + k * sizeof point, &point, sizeof point);
+  }
+  finish(out, body, "POINT", name);
+}
+
+void add_surface(Bytes& out, const std::string& name, const Surface& surface) {
+  static const Surface::Triangles none;
+  const Surface::Triangles& triangles = surface.triangles ? *surface.triangles : none;
+  std::vector<float> points;
+  points.reserve(3 * surface.points.size());
+  for (const auto& p : surface.points) points.insert(points.end(), {-p[0], -p[1], p[2]});
+  std::vector<igtl_uint32> cells;
+  cells.reserve(4 * triangles.size());
+  // Half a turn about z is no mirror: triangles stay counter-clockwise seen from outside.
+  for (const auto& t : triangles) cells.insert(cells.end(), {3, t[0], t[1], t[2]});
+  igtl_polydata_info info{};
+  info.header.npoints = static_cast<igtl_uint32>(surface.points.size());
+  info.header.npolygons = static_cast<igtl_uint32>(triangles.size());
+  info.header.size_polygons = static_cast<igtl_uint32>(cells.size() * sizeof(igtl_uint32));
+  info.points = points.data();
+  info.polygons = cells.data();
+  const std::size_t body = begin(out, igtl_polydata_get_size(&info, IGTL_TYPE_PREFIX_NONE));
+  igtl_polydata_pack(&info, out.data() + body, IGTL_TYPE_PREFIX_NONE);
+  finish(out, body, "POLYDATA", name);
+}
+
+void add_status(Bytes& out, const std::string& name, StatusCode code, const std::string& text) {
+  // Code (16 bits), sub-code (64 bits), name of the error (20 bytes), text with its zero.
+  constexpr std::size_t fixed = 30;
+  const std::size_t body = begin(out, fixed + text.size() + 1);
+  const std::uint16_t wire = boost::endian::native_to_big(static_cast<std::uint16_t>(code));
+  std::memcpy(out.data() + body, &wire, sizeof wire);
+  std::memcpy(out.data() + body + fixed, text.data(), text.size());
+  finish(out, body, "STATUS", name);
+}
+
+}  // namespace stylet::igtl

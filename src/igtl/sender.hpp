@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hub.hpp"
+#include "stylet/realtime/latest_value.hpp"
+
+#include <boost/asio/steady_timer.hpp>
+
+#include <mutex>
+#include <optional>
+
+namespace stylet::igtl {
+
+/// Turns pictures into messages, on a timer of the link's thread.
+class Sender {
+ public:
+  Sender(boost::asio::io_context& io, const LinkSettings& settings, Hub& hub)
+      : settings_(settings), hub_(hub), timer_(io) {}
+
+  void start();
+  void stop() { timer_.cancel(); }
+
+  /// The publishing thread.
+  void publish(const Picture& picture) { picture_.write(picture); }
+  /// Any thread.
+  void publish(Surface surface);
+
+ private:
+  using Clock = Connection::Clock;
+  void wait();
+  void turn(Clock::time_point now);
+  [[nodiscard]] Bytes poses(bool fresh) const;
+  [[nodiscard]] Bytes heartbeat(bool fresh) const;
+
+  const LinkSettings& settings_;
+  Hub& hub_;
+  boost::asio::steady_timer timer_;
+  LatestValue<Picture> picture_;
+  bool have_picture_ = false;
+  Clock::time_point picture_time_;
+  Clock::time_point surface_due_;
+  Clock::time_point heartbeat_due_;
+  std::mutex mutex_;
+  std::optional<Surface> surface_;  ///< under the mutex: the newest not sent yet
+};
+
+}  // namespace stylet::igtl

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "igtl/message_reader.hpp"
+
+#include "library_messages.hpp"
+
+#include <gtest/gtest.h>
+#include <igtlStringMessage.h>
+#include <igtl_util.h>
+
+#include <random>
+
+using namespace stylet;
+using namespace stylet::igtl;
+using namespace stylet::test;
+using Kind = Incoming::Kind;
+
+namespace {
+
+void put(Raw& to, std::size_t at, std::uint64_t value, std::size_t bytes) {
+  for (std::size_t k = 0; k < bytes; ++k) to.at(at + k) = static_cast<std::uint8_t>(value >> (8 * (bytes - 1 - k)));
+}
+
+/// Puts length and checksum of the body into the header.
+void seal(Raw& message) {
+  put(message, 42, message.size() - 58, 8);
+  put(message, 50, crc64(message.data() + 58, message.size() - 58, 0), 8);
+}
+
+struct Read {
+  std::vector<Incoming> messages;
+  Result<> result = Ok{};
+};
+
+/// In pieces of so many bytes, until the first error; each piece is its own allocation, so that nothing beside it is
+/// read.
+Read read(const Raw& bytes, std::size_t piece = 1 << 20, MessageReader reader = MessageReader{}) {
+  Read r;
+  for (std::size_t first = 0; first < bytes.size() && r.result; first += piece) {
+    const Raw part(bytes.begin() + static_cast<std::ptrdiff_t>(first),
+                   bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), first + piece)));
+    r.result = reader.take(part, [&](const Incoming& m) { r.messages.push_back(m); });
+  }
+  return r;
+}
+
+Raw operator+(Raw a, const Raw& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Raw library_string(const char* name) {
+  auto message = ::igtl::StringMessage::New();
+  message->SetDeviceName(name);
+  message->SetString("some text");
+  return packed(*message);
+}
+
+/// Header version 2: an extended header of 12 bytes before the content, metadata after it.
+Raw version_2(const Raw& message, std::size_t metadata) {
+  Raw m(message.begin(), message.begin() + 58);
+  put(m, 0, 2, 2);
+  m.resize(70);
+  put(m, 58, 12, 2);
+  put(m, 60, 2, 2);
+  put(m, 62, metadata, 4);
+  m.insert(m.end(), message.begin() + 58, message.end());
+  m.resize(m.size() + 2 + metadata, 'x');
+  seal(m);
+  return m;
+}
+
+const std::array<float, 12> kMatrix{0, -1, 0, 0, 0, 1, -1, 0, 0, 1.5F, -2.5F, 3.5F};
+
+}  // namespace
+
+TEST(MessageReader, reads_what_the_library_sends_however_it_is_cut) {
+  const Raw bytes = library_transform("HandleToReference", kMatrix) + library_string("Greeting") +
+                    library_status("Tracker", 13) + library_transform("NeedleTipToReference", kMatrix);
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{57}, std::size_t{106}, bytes.size()}) {
+    const Read r = read(bytes, piece);
+    ASSERT_TRUE(r.result) << r.result.error().message();
+    ASSERT_EQ(r.messages.size(), 4U) << piece;
+    EXPECT_EQ(r.messages[0].kind, Kind::transform);
+    EXPECT_EQ(r.messages[0].name, "HandleToReference");
+    EXPECT_EQ(r.messages[0].matrix, kMatrix);
+    EXPECT_EQ(r.messages[1].kind, Kind::other);
+    EXPECT_EQ(r.messages[2].kind, Kind::status);
+    EXPECT_EQ(r.messages[2].name, "Tracker");
+    EXPECT_EQ(r.messages[2].code, 13);
+    EXPECT_EQ(r.messages[3].name, "NeedleTipToReference") << "twenty bytes, without a zero";
+  }
+}
+
+TEST(MessageReader, reads_version_2_headers_past_their_metadata) {
+  for (const std::size_t metadata : {0, 1, 100}) {
+    const Read r = read(version_2(library_transform("Handle", kMatrix), metadata));
+    ASSERT_TRUE(r.result) << r.result.error().message();
+    ASSERT_EQ(r.messages.size(), 1U);
+    EXPECT_EQ(r.messages[0].matrix, kMatrix);
+  }
+  Raw wrong = version_2(library_transform("Handle", kMatrix), 4);
+  put(wrong, 62, 0xFFFFFFFF, 4);
+  seal(wrong);
+  EXPECT_FALSE(read(wrong).result) << "more metadata than body";
+  wrong = version_2(library_transform("Handle", kMatrix), 4);
+  put(wrong, 58, 3, 2);
+  seal(wrong);
+  EXPECT_FALSE(read(wrong).result) << "an extended header shorter than itself";
+}
+
+TEST(MessageReader, messages_without_a_body_pass) {
+  Raw request = library_string("Anything");
+  request.resize(58);
+  std::copy_n("GET_STATUS\0\0", 12, request.begin() + 2);
+  seal(request);
+  const Read r = read(request + request + library_transform("Handle", kMatrix), 13);
+  ASSERT_TRUE(r.result);
+  EXPECT_EQ(r.messages.size(), 3U);
+}
+
+TEST(MessageReader, a_length_beyond_the_limit_is_refused_before_anything_is_kept) {
+  for (const std::uint64_t length : {~std::uint64_t{0}, std::uint64_t{1} << 63, std::uint64_t{1} << 40}) {
+    for (const Raw& message : {library_string("Text"), library_transform("Handle", kMatrix)}) {
+      Raw header(message.begin(), message.begin() + 58);
+      put(header, 42, length, 8);
+      EXPECT_FALSE(read(header).result) << length;
+    }
+  }
+  Raw transform = library_transform("Handle", kMatrix);
+  put(transform, 42, MessageReader::kKept + 1, 8);
+  EXPECT_FALSE(read(transform).result) << "an image may be that long, a matrix may not";
+  Raw image = library_string("Image");
+  put(image, 42, 1000, 8);
+  EXPECT_TRUE(read(image, 1 << 20, MessageReader(1000)).result);
+  EXPECT_FALSE(read(image, 1 << 20, MessageReader(999)).result);
+}
+
+TEST(MessageReader, any_wrong_bit_of_a_body_is_seen) {
+  const Raw good = library_transform("Handle", kMatrix);
+  for (std::size_t bit = 58 * 8; bit < good.size() * 8; ++bit) {
+    Raw bad = good;
+    bad[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+    const Read r = read(bad);
+    ASSERT_FALSE(r.result) << "bit " << bit;
+    ASSERT_TRUE(r.messages.empty());
+  }
+}
+
+TEST(MessageReader, bodies_of_the_wrong_length_are_refused) {
+  for (const std::size_t length : {std::size_t{0}, std::size_t{47}, std::size_t{49}, std::size_t{100}}) {
+    Raw transform = library_transform("Handle", kMatrix);
+    transform.resize(58 + length);
+    seal(transform);
+    EXPECT_FALSE(read(transform).result) << length;
+  }
+  for (const std::size_t length : {0, 1, 29}) {
+    Raw status = library_status("Tracker", 1);
+    status.resize(58 + length);
+    seal(status);
+    EXPECT_FALSE(read(status).result) << length;
+  }
+}
+
+TEST(MessageReader, other_protocols_are_seen_at_once) {
+  const std::string web = "GET / HTTP/1.1\r\nHost: 127.0.0.1:18944\r\nUser-Agent: something\r\nAccept: */*\r\n\r\n";
+  EXPECT_FALSE(read(Raw(web.begin(), web.end())).result);
+  EXPECT_FALSE(read(Raw(58, 0)).result);
+  EXPECT_FALSE(read(Raw(58, 255)).result);
+}
+
+TEST(MessageReader, a_message_cut_short_is_no_message) {
+  const Raw whole = library_transform("Handle", kMatrix);
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const Read r = read(Raw(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
+    ASSERT_TRUE(r.result) << "the rest may still come";
+    ASSERT_TRUE(r.messages.empty());
+  }
+}
+
+TEST(MessageReader, no_bytes_whatever_do_harm) {
+  std::mt19937 random(7);
+  const auto number = [&random](std::size_t below) {
+    return std::uniform_int_distribution<std::size_t>(0, below - 1)(random);
+  };
+  const Raw good = library_transform("Handle", kMatrix) + library_status("Tracker", 1) + library_string("Text") +
+                   version_2(library_transform("Handle", kMatrix), 20);
+  int refused = 0;
+  for (int round = 0; round < 5000; ++round) {
+    Raw bytes = good;
+    const bool sealed = round % 3 == 0;
+    if (round % 10 == 9) {
+      bytes.resize(number(400));
+      for (auto& b : bytes) b = static_cast<std::uint8_t>(number(256));
+    } else {
+      for (std::size_t k = 0, changes = 1 + number(4); k < changes; ++k)
+        bytes[number(sealed ? 106 : bytes.size())] = static_cast<std::uint8_t>(number(256));
+    }
+    if (sealed && bytes.size() >= 106) put(bytes, 50, crc64(bytes.data() + 58, 48, 0), 8);
+    const Read r = read(bytes, 1 + number(200));
+    if (!r.result) ++refused;
+    for (const Incoming& m : r.messages) {
+      ASSERT_LE(m.name.size(), 20U);
+      (void)pose_of(m.matrix);
+    }
+  }
+  EXPECT_GT(refused, 1000);
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is written, read by the library, which checks the checksums.
+#include "igtl/message_writer.hpp"
+
+#include "library_messages.hpp"
+
+#include <gtest/gtest.h>
+#include <igtlPointMessage.h>
+#include <igtlPolyDataMessage.h>
+#include <igtlStringMessage.h>
+#include <igtl_header.h>
+#include <igtl_ndarray.h>
+
+#include <chrono>
+#include <cstring>
+
+using namespace stylet;
+using namespace stylet::igtl;
+using namespace stylet::test;
+
+namespace {
+
+/// One whole message in `bytes`, as the library reads it.
+template <class Message>
+typename Message::Pointer unpacked(const Bytes& bytes, const std::string& type, const std::string& name) {
+  auto header = ::igtl::MessageHeader::New();
+  header->InitPack();
+  EXPECT_GE(bytes.size(), static_cast<std::size_t>(header->GetPackSize()));
+  std::memcpy(header->GetPackPointer(), bytes.data(), static_cast<std::size_t>(header->GetPackSize()));
+  header->Unpack();
+  EXPECT_EQ(header->GetDeviceType(), type);
+  EXPECT_EQ(header->GetDeviceName(), name);
+  EXPECT_EQ(static_cast<std::size_t>(header->GetBodySizeToRead()) + 58, bytes.size());
+  auto stamp = ::igtl::TimeStamp::New();
+  header->GetTimeStamp(stamp);
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  EXPECT_NEAR(stamp->GetTimeStamp(), std::chrono::duration<double>(now).count(), 60.0);
+  auto message = Message::New();
+  message->SetMessageHeader(header);
+  message->AllocatePack();
+  std::memcpy(message->GetPackBodyPointer(), bytes.data() + 58, bytes.size() - 58);
+  EXPECT_NE(message->Unpack(1) & ::igtl::MessageBase::UNPACK_BODY, 0) << "checksum";
+  return message;
+}
+
+}  // namespace
+
+TEST(MessageWriter, transform) {
+  Bytes bytes;
+  add_transform(bytes, "NeedleTipToReference", {{10, 20, 30}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)});
+  const auto message = unpacked<::igtl::TransformMessage>(bytes, "TRANSFORM", "NeedleTipToReference");
+  ::igtl::Matrix4x4 m;
+  message->GetMatrix(m);
+  // x to posterior, y to superior, z to the left: in RAS −y, z, −x.
+  const float expected[4][4] = {{0, 0, -1, -10}, {-1, 0, 0, -20}, {0, 1, 0, 30}, {0, 0, 0, 1}};
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(m[i][j], expected[i][j], 1e-6) << i << ' ' << j;
+}
+
+TEST(MessageWriter, names_of_more_than_twenty_bytes_are_cut) {
+  Bytes bytes;
+  add_transform(bytes, "NeedleBaseToReference", Pose{});
+  unpacked<::igtl::TransformMessage>(bytes, "TRANSFORM", "NeedleBaseToReferenc");
+  EXPECT_EQ(cut_name("NeedleBaseToReference"), "NeedleBaseToReferenc");
+}
+
+TEST(MessageWriter, force_and_torque) {
+  Bytes bytes;
+  add_wrench(bytes, "BaseForce", {{1, 2, 3}, {40, 50, 60}});
+  // The library's class for it frees memory with the wrong delete; its functions do not.
+  unpacked<::igtl::MessageBase>(bytes, "NDARRAY", "BaseForce");
+  igtl_ndarray_info info;
+  igtl_ndarray_init_info(&info);
+  Bytes body(bytes.begin() + 58, bytes.end());
+  ASSERT_EQ(igtl_ndarray_unpack(IGTL_TYPE_PREFIX_NONE, body.data(), &info, body.size()), 1);
+  EXPECT_EQ(info.type, IGTL_NDARRAY_STYPE_TYPE_FLOAT64);
+  ASSERT_EQ(info.dim, 1);
+  ASSERT_EQ(info.size[0], 6);
+  std::array<double, 6> values{};
+  std::memcpy(values.data(), info.array, sizeof values);
+  EXPECT_EQ(values, (std::array<double, 6>{-1, -2, 3, -40, -50, 60}));
+  igtl_ndarray_free_info(&info);
+}
+
+TEST(MessageWriter, text) {
+  Bytes bytes;
+  add_string(bytes, "BaseForce", R"({"fresh": true})");
+  EXPECT_STREQ(unpacked<::igtl::StringMessage>(bytes, "STRING", "BaseForce")->GetString(), R"({"fresh": true})");
+}
+
+TEST(MessageWriter, points) {
+  Bytes bytes;
+  const std::array<Triple, 3> shaft{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
+  add_points(bytes, "NeedleShaft", shaft);
+  const auto message = unpacked<::igtl::PointMessage>(bytes, "POINT", "NeedleShaft");
+  ASSERT_EQ(message->GetNumberOfPointElement(), 3);
+  ::igtl::PointElement::Pointer point;
+  message->GetPointElement(2, point);
+  float x = 0;
+  float y = 0;
+  float z = 0;
+  point->GetPosition(x, y, z);
+  EXPECT_EQ((std::array{x, y, z}), (std::array{-7.0F, -8.0F, 9.0F}));
+  EXPECT_STREQ(point->GetName(), "NeedleShaft-2");
+}
+
+TEST(MessageWriter, surface) {
+  Surface surface;
+  surface.points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+  surface.triangles = std::make_shared<const Surface::Triangles>(Surface::Triangles{{0, 2, 1}, {0, 1, 3}});
+  Bytes bytes;
+  add_surface(bytes, "TissueSurface", surface);
+  const auto message = unpacked<::igtl::PolyDataMessage>(bytes, "POLYDATA", "TissueSurface");
+  ASSERT_EQ(message->GetPoints()->GetNumberOfPoints(), 4);
+  float p[3];
+  message->GetPoints()->GetPoint(2, p);
+  EXPECT_EQ((std::array{p[0], p[1], p[2]}), (std::array{0.0F, -2.0F, 0.0F}));
+  message->GetPoints()->GetPoint(3, p);
+  EXPECT_EQ(p[2], 3.0F);
+  ASSERT_EQ(message->GetPolygons()->GetNumberOfCells(), 2U);
+  igtlUint32 corners[3];
+  ASSERT_EQ(message->GetPolygons()->GetCellSize(1), 3U);
+  message->GetPolygons()->GetCell(1, corners);
+  EXPECT_EQ((std::array{corners[0], corners[1], corners[2]}), (std::array<igtlUint32, 3>{0, 1, 3}));
+}
+
+TEST(MessageWriter, heartbeat) {
+  Bytes bytes;
+  add_status(bytes, "Stylet", StatusCode::not_ready, "no picture");
+  const auto message = unpacked<::igtl::StatusMessage>(bytes, "STATUS", "Stylet");
+  EXPECT_EQ(message->GetCode(), ::igtl::StatusMessage::STATUS_NOT_READY);
+  EXPECT_STREQ(message->GetStatusString(), "no picture");
+  bytes.clear();
+  add_status(bytes, "Stylet", StatusCode::ok, "");
+  EXPECT_EQ(unpacked<::igtl::StatusMessage>(bytes, "STATUS", "Stylet")->GetCode(), ::igtl::StatusMessage::STATUS_OK);
+}
