@@ -77,7 +77,7 @@ class Link {
   /// real-time one. Refuses triangles that name no point, and surfaces of more than 64 MiB.
   Result<> publish_surface(Surface surface);
 
-  /// Any thread but a real-time one.
+  /// As of the last turn of the link's thread, one in 1/poses_hz. Any thread but a real-time one.
   [[nodiscard]] LinkState state() const;
 
  private:
