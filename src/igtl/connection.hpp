@@ -42,7 +42,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Socket socket_;
   Events events_;
   MessageReader reader_;
-  std::array<std::uint8_t, 65536> room_;
+  std::array<std::uint8_t, 65536> room_{};
   std::array<Shared, kContents> waiting_;
   std::array<Shared, kContents> under_way_;
   bool sending_ = false;

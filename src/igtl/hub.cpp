@@ -41,7 +41,7 @@ void Hub::offer(Connection& to, Connection::Content content, const Connection::S
   if (!to.offer(content, bytes)) ++counted_.dropped;
 }
 
-void Hub::send(Connection::Content content, Connection::Shared bytes) {
+void Hub::send(Connection::Content content, const Connection::Shared& bytes) {
   for (const auto& [id, connection] : connections_) offer(*connection, content, bytes);
 }
 

@@ -21,7 +21,7 @@ class Hub {
   [[nodiscard]] bool empty() const { return connections_.empty(); }
   void turn_away();
 
-  void send(Connection::Content content, Connection::Shared bytes);
+  void send(Connection::Content content, const Connection::Shared& bytes);
   /// What a connection gets when it is made, besides what follows.
   void greet_with(Connection::Content content, Connection::Shared bytes) { greeting_.at(content) = std::move(bytes); }
   /// Closes those that have taken nothing for too long.

@@ -26,7 +26,7 @@ namespace stylet::igtl {
 namespace {
 
 void copy_text(char* to, std::size_t room, const std::string& text) {
-  std::memcpy(to, text.data(), std::min(room, text.size()));
+  std::copy_n(text.data(), std::min(room, text.size()), to);
 }
 
 /// Seconds since 1970 and a binary fraction, 32 bits each.
