@@ -26,12 +26,14 @@ struct StepResult {
 /// of writers. Nothing here waits.
 struct Exchange {
   static constexpr std::size_t kEvents = 1024;
+  static constexpr std::size_t kSteps = 4096;
 
   LatestValue<DeviceInput> input;             ///< device → step
   LatestValue<StepResult> result;             ///< step → device
   LatestValue<Snapshot> snapshot;             ///< step → reader
   LatestValue<DeviceSnapshot> device;         ///< device → reader
   EventQueue<EventSnapshot, kEvents> events;  ///< step → reader
+  EventQueue<StepSnapshot, kSteps> steps;     ///< step → reader; RunnerSettings::keep_steps
 
   std::atomic<bool> stop{false};
   std::atomic<bool> paused{false};

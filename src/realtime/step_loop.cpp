@@ -46,7 +46,8 @@ void StepLoop::step(double dt, double now_s) {
   const std::int64_t wall = monotonic_ns();
   const std::int64_t cpu = thread_cpu_ns();
   outcome_ = body_.step(follower_.base(), dt);
-  times_.step_cpu.add(thread_cpu_ns() - cpu);
+  const std::int64_t took = thread_cpu_ns() - cpu;
+  times_.step_cpu.add(took);
   times_.step_wall.add(monotonic_ns() - wall);
   ++counters_.steps;
   if (!outcome_.trusted || !outcome_.hand.finite()) {
@@ -57,6 +58,12 @@ void StepLoop::step(double dt, double now_s) {
   const std::size_t count = body_.events(events);
   for (std::size_t k = 0; k < count; ++k) exchange_.events.push(events[k]);
   counters_.dropped_events = exchange_.events.dropped();
+  if (!settings_.keep_steps) return;
+  StepSnapshot taken;
+  if (!body_.record(taken)) return;
+  taken.step_us = 1e-3 * static_cast<double>(took);
+  exchange_.steps.push(taken);
+  counters_.dropped_steps = exchange_.steps.dropped();
 }
 
 void StepLoop::publish(bool paused) {

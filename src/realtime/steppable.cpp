@@ -21,6 +21,43 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   return out.first(count);
 }
 
+StepSnapshot plain(const StepRecord& r, unsigned flags) {
+  return {.time_s = r.time_s,
+          .dt_s = r.dt_s,
+          .base = plain(r.base),
+          .base_depth_mm = r.base_depth_mm,
+          .force_axial_N = r.force_axial_N,
+          .force_sagittal_N = r.force_sagittal_N,
+          .force_lateral_N = r.force_lateral_N,
+          .torque_Nmm = plain(r.torque_Nmm),
+          .tip_mm = plain(r.tip_mm),
+          .tip_state = r.tip_state,
+          .contacts = r.contacts,
+          .sticking = r.sticking,
+          .iterations = r.iterations,
+          .flags = flags,
+          .step_us = r.step_us};
+}
+
+StepRecord step_record(const StepSnapshot& s) {
+  StepRecord r;
+  r.time_s = s.time_s;
+  r.dt_s = s.dt_s;
+  r.base = pose(s.base);
+  r.base_depth_mm = s.base_depth_mm;
+  r.force_axial_N = s.force_axial_N;
+  r.force_sagittal_N = s.force_sagittal_N;
+  r.force_lateral_N = s.force_lateral_N;
+  r.torque_Nmm = vec3(s.torque_Nmm);
+  r.tip_mm = vec3(s.tip_mm);
+  r.tip_state = s.tip_state;
+  r.contacts = s.contacts;
+  r.sticking = s.sticking;
+  r.iterations = s.iterations;
+  r.step_us = s.step_us;
+  return r;
+}
+
 SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion)
     : simulation_(model),
       contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1),
@@ -71,6 +108,13 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   out.sticking = record.sticking;
   out.iterations = record.iterations;
   out.flags = report.flags;
+}
+
+bool SimulationSteppable::record(StepSnapshot& out) noexcept {
+  const unsigned flags = simulation_.report().flags;
+  if ((flags & StepReport::invalid_input) != 0) return false;
+  out = plain(simulation_.record(), flags);
+  return true;
 }
 
 std::size_t SimulationSteppable::events(std::span<EventSnapshot> out) noexcept {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "planning.hpp"
 
+#include "stylet/sim/plan.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,21 +52,6 @@ OnWay nearest_way(const std::vector<std::array<Vec3, 2>>& ways, const Vec3& x) {
 
 double deepest_mm(const Scenario& scenario) {
   return scenario.needle.length_mm - kNeedleOutside_mm - (scenario.grid.guide ? scenario.grid.distance_mm : 0.0);
-}
-
-Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions) {
-  Vec3 sum = Vec3::Zero();
-  double volume = 0.0;
-  for (Index t = 0; t < mesh.tet_count(); ++t) {
-    if (!regions.empty() && !contains(regions, mesh.tet_region[static_cast<std::size_t>(t)])) continue;
-    const double v = tet_volume(mesh, t);
-    Vec3 centre = Vec3::Zero();
-    for (const Index node : mesh.tets[static_cast<std::size_t>(t)])
-      centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
-    sum += v * centre;
-    volume += v;
-  }
-  return volume > 0.0 ? Vec3(sum / volume) : Vec3(Vec3::Zero());
 }
 
 Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t number, const Scenario& scenario,
@@ -136,6 +123,10 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
                                        result.depth_mm, plan.speed_mm_per_s, plan.dwell_s, plan.retract,
                                        plan.retract_speed_mm_per_s, plan.roll_deg * std::numbers::pi / 180.0);
   return result;
+}
+
+Result<PlannedInsertion> plan_insertion(const Model& model, const InsertionPlan& plan, const std::string& where) {
+  return plan_insertion(plan, 0, model.scenario(), model.locator(), model.target_regions(), where);
 }
 
 Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2>>& ways, double radius_mm,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/geom/centroid.hpp"
 #include "stylet/geom/locator.hpp"
 #include "stylet/sim/model.hpp"
 
@@ -11,9 +12,6 @@ inline constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out o
 /// Largest depth [mm] of the base: what is left of the needle outside is held by the hand, and by the template if that
 /// guides it.
 double deepest_mm(const Scenario& scenario);
-
-/// Centroid of a set of regions by volume [mm] LPS; the whole mesh when the set is empty.
-Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions);
 
 /// The line of a planned insertion: where it meets the skin and how deep it goes. A line that misses the patient is
 /// refused.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/run.hpp"
 
+#include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/sim/target_motion.hpp"
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -28,6 +30,14 @@ double quantile(const std::vector<double>& sorted, double q) {
   return sorted[std::min(at, sorted.size() - 1)];
 }
 
+/// What the base does in an insertion, step by step from 1 on.
+struct BaseSteps {
+  long count = 0;
+  double duration_s = 0.0;
+  std::function<Pose(long k)> base;
+  std::function<double(long k)> dt_s;
+};
+
 class Runner {
  public:
   Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress)
@@ -36,10 +46,6 @@ class Runner {
         observer_(observer),
         progress_(progress),
         step_ns_(std::max(1L, std::lround(model->scenario().run.dt_ms * 1e6))) {
-    for (const PlannedInsertion& insertion : model->insertions()) total_s_ += insertion.motion.duration_s();
-    const auto& output = model->scenario().output;
-    const double by_count = total_s_ / std::max(1, output.max_frames);
-    frame_every_s_ = output.frames_per_s > 0.0 ? std::max(1.0 / output.frames_per_s, by_count) : 1e30;
     summary_.version = version();
     summary_.scenario = model->scenario().name;
     summary_.nodes = model->mesh().node_count();
@@ -49,14 +55,39 @@ class Runner {
 
   Result<Summary> all() {
     const auto& insertions = model_->insertions();
+    for (const PlannedInsertion& insertion : insertions) total_s_ += insertion.motion.duration_s();
+    choose_frames();
     for (std::size_t i = 0; i < insertions.size(); ++i) {
-      if (auto done = one(insertions[i]); !done) return done.error();
+      if (auto done = one(insertions[i], planned(insertions[i])); !done) return done.error();
       if (i + 1 < insertions.size() && simulation_.record().tip_state != TipState::air) {
         return input_error(fmt::format("insertion[{}]", i),
                            "the needle is still in the tissue when the next one is to start",
                            "Pull it out further: a larger approach_mm, or a longer recorded motion");
       }
     }
+    return sum_up();
+  }
+
+  Result<Summary> recorded(std::span<const StepRecord> steps) {
+    BaseSteps motion;
+    motion.count = static_cast<long>(steps.size());
+    motion.duration_s = steps.back().time_s;
+    motion.base = [steps](long k) { return steps[static_cast<std::size_t>(k - 1)].base; };
+    motion.dt_s = [steps](long k) { return steps[static_cast<std::size_t>(k - 1)].dt_s; };
+    total_s_ = motion.duration_s;
+    choose_frames();
+    if (auto done = one(model_->insertions().front(), motion); !done) return done.error();
+    return sum_up();
+  }
+
+ private:
+  void choose_frames() {
+    const auto& output = model_->scenario().output;
+    const double by_count = total_s_ / std::max(1, output.max_frames);
+    frame_every_s_ = output.frames_per_s > 0.0 ? std::max(1.0 / output.frames_per_s, by_count) : 1e30;
+  }
+
+  Summary sum_up() {
     if (peak_N_ > 0.0) {
       summary_.residual_force_balance /= peak_N_;
       summary_.residual_torque_balance /= peak_N_;
@@ -75,19 +106,28 @@ class Runner {
     return summary_;
   }
 
- private:
-  Result<> one(const PlannedInsertion& insertion) {
+  [[nodiscard]] BaseSteps planned(const PlannedInsertion& insertion) const {
+    BaseSteps motion;
+    motion.count = static_cast<long>(std::ceil(insertion.motion.duration_s() / seconds(1) - 1e-9));
+    motion.duration_s = insertion.motion.duration_s();
+    motion.base = [this, &insertion](long k) { return insertion.motion.at(seconds(k)); };
+    motion.dt_s = [this](long /*k*/) { return seconds(1); };
+    return motion;
+  }
+
+  Result<> one(const PlannedInsertion& insertion, const BaseSteps& motion) {
+    const FlushDenormals flush;  // as the real-time loop does
     const double start = simulation_.time_s();
-    const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / seconds(1) - 1e-9));
-    const long deepest = deepest_step(insertion, steps);
+    const long deepest = deepest_step(insertion, motion);
     simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
     if (auto r = take_frame("before"); !r) return r;
     double next_frame = start + frame_every_s_;  // the first of the series is "before"
-    for (long k = 1; k <= steps; ++k) {
-      const Pose base = insertion.motion.at(seconds(k));
+    for (long k = 1; k <= motion.count; ++k) {
+      const Pose base = motion.base(k);
+      const double dt = motion.dt_s(k);
       simulation_.prepare();
       const double before = thread_cpu_us();
-      simulation_.step(base, seconds(1));
+      simulation_.step(base, dt);
       StepRecord record = simulation_.record();
       record.step_us = thread_cpu_us() - before;
       if (auto r = account(record, insertion); !r) return r;
@@ -113,11 +153,11 @@ class Runner {
   [[nodiscard]] double seconds(long k) const { return static_cast<double>(k * step_ns_) / 1e9; }
 
   /// The step after which the base is furthest in; of several the last, just before it goes out.
-  [[nodiscard]] long deepest_step(const PlannedInsertion& insertion, long steps) const {
-    long deepest = steps;
+  [[nodiscard]] long deepest_step(const PlannedInsertion& insertion, const BaseSteps& motion) const {
+    long deepest = motion.count;
     double most = -std::numeric_limits<double>::infinity();
-    for (long k = 1; k <= steps; ++k) {
-      const Pose base = insertion.motion.at(seconds(k));
+    for (long k = 1; k <= motion.count; ++k) {
+      const Pose base = motion.base(k);
       const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
       const double depth = (tip - insertion.entry).dot(insertion.direction);
       if (depth < most - 1e-9) continue;
@@ -226,6 +266,21 @@ class Runner {
 
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress) {
   return Runner(model, observer, progress).all();
+}
+
+Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const StepRecord> steps,
+                             RunObserver& observer, const Progress& progress) {
+  if (steps.empty()) return input_error("recording", "it has no steps", "Record one with `stylet serve`");
+  if (model->insertions().size() != 1)
+    return input_error("recording", fmt::format("its scenario has {} insertions", model->insertions().size()),
+                       "Run the scenario itself; what is repeated step by step is a single insertion");
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    if (!steps[k].base.origin.allFinite() || !steps[k].base.rotation.coeffs().allFinite() || !(steps[k].dt_s > 0.0))
+      return input_error(fmt::format("recording, step {}", k),
+                         "it does not say where the base was: the file was written by an earlier version",
+                         "Record it again, or run its scenario");
+  }
+  return Runner(model, observer, progress).recorded(steps);
 }
 
 }  // namespace stylet

@@ -93,6 +93,7 @@ void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& directio
   const double now = record_.time_s;
   record_ = {};
   record_.time_s = now;
+  record_.base = base;
   record_.base_depth_mm = base_depth_mm(base);
   record_.tip_mm = insertion_.needle().point(insertion_.needle().length());
 }
@@ -148,6 +149,8 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
 
   time_ns_ += std::llround(dt * 1e9);
   record_.time_s = static_cast<double>(time_ns_) / 1e9;
+  record_.dt_s = dt;
+  record_.base = base;
   record_.base_depth_mm = base_depth_mm(base);
   // Axial, lateral towards patient left, sagittal = axial × lateral.
   Vec3 lateral = Vec3::UnitX() - axis.x() * axis;

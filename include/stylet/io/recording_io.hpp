@@ -16,8 +16,9 @@ struct RunRecording {
   RunInfo info;
   TetMesh mesh;
   std::vector<StepRecord> steps;
-  std::vector<Frame> frames;       ///< displacements were stored with single precision
+  std::vector<Frame> frames;  ///< displacements were stored with single precision
   std::optional<Summary> summary;  ///< empty while the run goes on, or when it was killed
+  std::vector<Event> events{};     ///< of a live session also when it was killed
 };
 
 /// Reads a run.h5, also one that is being written or whose writer was killed: what had reached the disk is returned.

@@ -23,6 +23,7 @@ struct RunnerSettings {
   std::optional<VirtualCouplingSettings> coupling;
   bool realtime_scheduling = true;  ///< asked for; ThreadRights tells what was granted
   int priority = 80;                ///< of SCHED_FIFO, 1…98; the device's thread has one more
+  bool keep_steps = false;          ///< every step is kept for take_steps()
   bool lock_memory = true;          ///< asked for, for the whole process while the runner runs
 };
 
@@ -70,6 +71,10 @@ class RealtimeRunner {
   [[nodiscard]] const DeviceSnapshot& device_snapshot() const;
   /// Takes the oldest events not yet taken. @return how many
   std::size_t take_events(std::span<EventSnapshot> out);
+
+  /// With keep_steps: takes the oldest steps not yet taken. Room is for four thousand; what comes beyond is dropped and
+  /// counted (LoopCounters::dropped_steps). @return how many
+  std::size_t take_steps(std::span<StepSnapshot> out);
 
   /// Any thread, any time; about 95 kB.
   [[nodiscard]] std::unique_ptr<RunnerTimes> times() const;

@@ -19,6 +19,7 @@ struct LoopCounters {
   std::int64_t distrusted = 0;        ///< steps whose force was not let through
   std::int64_t without_input = 0;     ///< steps with an invalid or old sample of the device: the base stayed
   std::int64_t dropped_events = 0;    ///< the queue was full
+  std::int64_t dropped_steps = 0;     ///< RunnerSettings::keep_steps: the queue was full
 };
 
 /// A place where shaft or tip holds the tissue.
@@ -79,6 +80,27 @@ struct DeviceSnapshot {
   std::int64_t damped = 0;             ///< periods in which the passivity control added damping
   std::int64_t damped_too_little = 0;  ///< of those, with less than was owed
 };
+
+/// A step that was taken: StepRecord as plain data, and its flags.
+struct StepSnapshot {
+  double time_s = 0.0;
+  double dt_s = 0.0;
+  PlainPose base;
+  double base_depth_mm = 0.0;
+  double force_axial_N = 0.0;
+  double force_sagittal_N = 0.0;
+  double force_lateral_N = 0.0;
+  Triple torque_Nmm{};
+  Triple tip_mm{};
+  TipState tip_state = TipState::air;
+  std::int32_t contacts = 0;
+  std::int32_t sticking = 0;
+  std::int32_t iterations = 0;
+  unsigned flags = 0;    ///< StepReport::Flag
+  double step_us = 0.0;  ///< thread CPU time of the step [µs]
+};
+[[nodiscard]] StepSnapshot plain(const StepRecord& record, unsigned flags);
+[[nodiscard]] StepRecord step_record(const StepSnapshot& snapshot);
 
 /// Event of a step, plain data.
 struct EventSnapshot {

@@ -29,6 +29,8 @@ class Steppable {
   virtual void describe(Snapshot& out) noexcept = 0;
   /// Copies the last step's events. @return how many; those beyond out.size() are left out
   virtual std::size_t events(std::span<EventSnapshot> out) noexcept = 0;
+  /// The last step as it is recorded; step_us is the loop's own. @return false: there is none, or it was not taken
+  virtual bool record(StepSnapshot& /*out*/) noexcept { return false; }
 };
 
 /// The forces of a snapshot as a DisplayField takes them. @param out room for Snapshot::kForces
@@ -50,6 +52,7 @@ class SimulationSteppable final : public Steppable {
   StepOutcome step(const Pose& base, double dt) noexcept override;
   void describe(Snapshot& out) noexcept override;
   std::size_t events(std::span<EventSnapshot> out) noexcept override;
+  bool record(StepSnapshot& out) noexcept override;
 
  private:
   Simulation simulation_;

@@ -19,11 +19,14 @@ enum class TipState {
 };
 const char* to_string(TipState state);
 
-/// One line of forces.csv. Force and torque are what the hand exerts on the needle's base: axial along the base's axis,
-/// positive when pushing in; lateral towards the patient's left, sagittal = axial × lateral (towards posterior for a
-/// needle going superior). Torque about the base point, in patient axes.
+/// A step: what went in and what came out; but for dt_s and base a line of forces.csv. Force and torque are what the
+/// hand exerts on the needle's base: axial along the base's axis, positive when pushing in; lateral towards the
+/// patient's left, sagittal = axial × lateral (towards posterior for a needle going superior). Torque about the base
+/// point, in patient axes.
 struct StepRecord {
   double time_s = 0;
+  double dt_s = 0;           ///< as it was given: steps of the same dt and base from the same start give the same bits
+  Pose base;                 ///< [mm] LPS, where the hand brought the needle's base
   double base_depth_mm = 0;  ///< how far a rigid straight needle's tip would be beyond the entry point
   double force_axial_N = 0;
   double force_sagittal_N = 0;

@@ -143,7 +143,7 @@ bool is_hdf5_file(const fs::path& path) {
 
 bool is_model_file(const fs::path& path) {
   if (!is_hdf5_file(path)) return false;
-  const h5::QuietErrors quiet;
+  const h5::LibraryTurn turn;
   try {
     return says_model(open(path));
   } catch (const h5::Failure&) {
@@ -156,7 +156,7 @@ Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress
   std::error_code code;
   if (!fs::is_regular_file(path, code)) return refuse("no such file");
   if (!is_hdf5_file(path)) return refuse("this is not a saved model");
-  const h5::QuietErrors quiet;
+  const h5::LibraryTurn turn;
   try {
     const h5::Handle file = open(path);
     if (!says_model(file)) return refuse("this is an HDF5 file, but not a saved model");

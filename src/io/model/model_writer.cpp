@@ -89,7 +89,7 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
   if (model.kernel()) file.compliance.kernel = model.kernel()->numbers();
   file.belongs_to = compliance_origin(tissue);
   return write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const h5::QuietErrors quiet;
+    const h5::LibraryTurn turn;
     try {
       write(temporary, file, progress);
       return Ok{};

@@ -44,11 +44,18 @@ std::string take(char* text) {
 
 }  // namespace
 
-QuietErrors::QuietErrors() {
+namespace {
+std::recursive_mutex& library() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+}  // namespace
+
+LibraryTurn::LibraryTurn() : alone_(library()) {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
-QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+LibraryTurn::~LibraryTurn() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 void fail(const char* action) {
   std::string reason;

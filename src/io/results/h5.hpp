@@ -4,6 +4,7 @@
 #include <hdf5.h>
 
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,15 +20,17 @@ struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps HDF5 from printing to stderr for as long as it lives (this thread).
-class QuietErrors {
+/// A thread's turn with HDF5, which is not safe for several at once (Debian builds it so): others wait for as long as
+/// it lives. Nor does HDF5 print to stderr meanwhile. Turns may be nested.
+class LibraryTurn {
  public:
-  QuietErrors();
-  ~QuietErrors();
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
+  LibraryTurn();
+  ~LibraryTurn();
+  LibraryTurn(const LibraryTurn&) = delete;
+  LibraryTurn& operator=(const LibraryTurn&) = delete;
 
  private:
+  std::unique_lock<std::recursive_mutex> alone_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

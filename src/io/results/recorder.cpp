@@ -32,18 +32,30 @@ Result<> Recorder::add_frame(StoredFrame frame) {
   return Ok{};
 }
 
+Result<> Recorder::add_event(const Event& event) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return *error_;
+  events_.push_back(event);
+  return Ok{};
+}
+
 Result<> Recorder::write_pending() {
   std::vector<StepRecord> steps;
   std::vector<StoredFrame> frames;
+  std::vector<Event> events;
   {
     const std::lock_guard lock(mutex_);
     steps.swap(steps_);
     frames.swap(frames_);
+    events.swap(events_);
   }
-  if (steps.empty() && frames.empty()) return Ok{};
+  if (steps.empty() && frames.empty() && events.empty()) return Ok{};
   if (auto done = writer_.append_steps(steps); !done) return done;
   for (const StoredFrame& frame : frames) {
     if (auto done = writer_.append_frame(frame); !done) return done;
+  }
+  if (!events.empty()) {
+    if (auto done = writer_.append_events(events); !done) return done;
   }
   return writer_.flush();
 }

@@ -18,9 +18,10 @@ class Recorder {
   explicit Recorder(RunFileWriter writer);
   ~Recorder();
 
-  /// Both return the thread's first error, if there was one.
+  /// All return the thread's first error, if there was one.
   Result<> add_step(const StepRecord& step);
   Result<> add_frame(StoredFrame frame);
+  Result<> add_event(const Event& event);
 
   /// Writes what is left, the summary if given, and closes the file. Nothing can be added afterwards.
   Result<> close(const Summary* summary);
@@ -34,6 +35,7 @@ class Recorder {
   std::condition_variable_any wake_;
   std::vector<StepRecord> steps_;    ///< not yet written
   std::vector<StoredFrame> frames_;  ///< not yet written
+  std::vector<Event> events_;        ///< not yet written
   std::optional<Error> error_;       ///< first failure of the thread
   bool closed_ = false;
   std::jthread thread_;  ///< last member: starts when the others exist

@@ -35,6 +35,14 @@ h5::Handle bool_type() {
 StepRow to_row(const StepRecord& s) {
   StepRow row;
   row.time_s = s.time_s;
+  row.dt_s = s.dt_s;
+  row.base_x_mm = s.base.origin.x();
+  row.base_y_mm = s.base.origin.y();
+  row.base_z_mm = s.base.origin.z();
+  row.base_qw = s.base.rotation.w();
+  row.base_qx = s.base.rotation.x();
+  row.base_qy = s.base.rotation.y();
+  row.base_qz = s.base.rotation.z();
   row.base_depth_mm = s.base_depth_mm;
   row.force_axial_N = s.force_axial_N;
   row.force_sagittal_N = s.force_sagittal_N;
@@ -56,6 +64,9 @@ StepRow to_row(const StepRecord& s) {
 StepRecord from_row(const StepRow& row) {
   StepRecord s;
   s.time_s = row.time_s;
+  s.dt_s = row.dt_s;
+  s.base.origin = {row.base_x_mm, row.base_y_mm, row.base_z_mm};
+  s.base.rotation = Eigen::Quaterniond(row.base_qw, row.base_qx, row.base_qy, row.base_qz);
   s.base_depth_mm = row.base_depth_mm;
   s.force_axial_N = row.force_axial_N;
   s.force_sagittal_N = row.force_sagittal_N;
@@ -73,6 +84,14 @@ StepRecord from_row(const StepRow& row) {
 h5::Handle step_row_type() {
   h5::Handle type = compound(sizeof(StepRow));
   insert(type, "time_s", offsetof(StepRow, time_s), H5T_NATIVE_DOUBLE);
+  insert(type, "dt_s", offsetof(StepRow, dt_s), H5T_NATIVE_DOUBLE);
+  insert(type, "base_x_mm", offsetof(StepRow, base_x_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "base_y_mm", offsetof(StepRow, base_y_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "base_z_mm", offsetof(StepRow, base_z_mm), H5T_NATIVE_DOUBLE);
+  insert(type, "base_qw", offsetof(StepRow, base_qw), H5T_NATIVE_DOUBLE);
+  insert(type, "base_qx", offsetof(StepRow, base_qx), H5T_NATIVE_DOUBLE);
+  insert(type, "base_qy", offsetof(StepRow, base_qy), H5T_NATIVE_DOUBLE);
+  insert(type, "base_qz", offsetof(StepRow, base_qz), H5T_NATIVE_DOUBLE);
   insert(type, "base_depth_mm", offsetof(StepRow, base_depth_mm), H5T_NATIVE_DOUBLE);
   insert(type, "force_axial_N", offsetof(StepRow, force_axial_N), H5T_NATIVE_DOUBLE);
   insert(type, "force_sagittal_N", offsetof(StepRow, force_sagittal_N), H5T_NATIVE_DOUBLE);
@@ -144,6 +163,10 @@ EventRow to_row(const Event& event) {
   row.force_N = event.force_N;
   put_text(row.region, event.region);
   return row;
+}
+
+Event from_row(const EventRow& row) {
+  return {static_cast<EventKind>(row.kind), row.time_s, row.depth_mm, row.force_N, get_text(row.region)};
 }
 
 h5::Handle event_row_type() {

@@ -10,13 +10,16 @@
 /// What run.h5 looks like inside (docs/results.md): row types shared by its writer and its reader.
 namespace stylet::results {
 
-inline constexpr int kRunFileVersion = 1;
+inline constexpr int kRunFileVersion = 2;
 inline constexpr const char* kRunFileFormat = "stylet-run";
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  ///< fill value of rows not yet on disk
 
-/// A row of /steps; the columns of forces.csv.
+/// A row of /steps: the columns of forces.csv, and what the step was given. Files of version 1 have no dt_s and no
+/// base.
 struct StepRow {
-  double time_s = kMissing, base_depth_mm = kMissing;
+  double time_s = kMissing, dt_s = kMissing, base_depth_mm = kMissing;
+  double base_x_mm = kMissing, base_y_mm = kMissing, base_z_mm = kMissing;
+  double base_qw = kMissing, base_qx = kMissing, base_qy = kMissing, base_qz = kMissing;
   double force_axial_N = kMissing, force_sagittal_N = kMissing, force_lateral_N = kMissing;
   double torque_x_Nmm = kMissing, torque_y_Nmm = kMissing, torque_z_Nmm = kMissing;
   double tip_x_mm = kMissing, tip_y_mm = kMissing, tip_z_mm = kMissing;
@@ -55,6 +58,7 @@ struct EventRow {
   std::array<char, 128> region{};
 };
 EventRow to_row(const Event& event);
+Event from_row(const EventRow& row);
 h5::Handle event_row_type();
 
 /// A row of /parameters.

@@ -134,6 +134,19 @@ std::vector<Frame> read_frames(hid_t file, hsize_t node_count) {
   return frames;
 }
 
+std::vector<Event> read_events(hid_t file) {
+  const h5::Handle set = h5::dataset(file, "events");
+  std::vector<EventRow> rows(h5::extents(set).at(0));
+  h5::read_rows(set, event_row_type(), 0, rows.size(), rows.data());
+  std::vector<Event> events;
+  for (const EventRow& row : rows) {
+    if (std::isnan(row.time_s)) break;  // had not reached the disk
+    demand(row.kind >= 0 && row.kind <= static_cast<std::int8_t>(EventKind::grazed), "/events: kind");
+    events.push_back(from_row(row));
+  }
+  return events;
+}
+
 std::string read_summary_text(hid_t file) {
   const h5::Handle set = h5::dataset(file, "summary_json");
   std::string text(h5::extents(set).at(0), '\0');
@@ -149,7 +162,7 @@ Result<RunRecording> read_recording(const fs::path& path) {
   };
   std::error_code code;
   if (!fs::is_regular_file(path, code)) return refuse("no such file");
-  const h5::QuietErrors quiet;
+  const h5::LibraryTurn turn;
   try {
     const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), "open"),
                           H5Fclose);
@@ -166,6 +179,7 @@ Result<RunRecording> read_recording(const fs::path& path) {
     }
     run.steps = read_steps(file);
     run.frames = read_frames(file, run.mesh.nodes.size());
+    run.events = read_events(file);
     const std::string summary = read_summary_text(file);
     if (!summary.empty()) {
       // A writer killed between two flushes of its last words leaves a summary that is not whole: no summary.

@@ -46,7 +46,7 @@ void write_info(hid_t file, const RunInfo& info) {
 
 template <class Action>
 Result<> RunFileWriter::guarded(Action action) const {
-  const h5::QuietErrors quiet;
+  const h5::LibraryTurn turn;
   try {
     action();
     return Ok{};
@@ -74,6 +74,7 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     const StepRow no_step;
     const FrameRow no_frame;
     const ContactRow no_contact;
+    const EventRow no_event;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::array<hsize_t, 2> per_node{mesh.nodes.size(), 3};
     const std::array<hsize_t, 1> point{3};
@@ -83,7 +84,7 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     w.displacement_ = h5::growing_dataset(frames, "displacement_mm", H5T_NATIVE_FLOAT, per_node, 1, &nan);
     w.needle_ = h5::growing_dataset(frames, "needle_mm", H5T_NATIVE_DOUBLE, point, kPointChunk, &kMissing);
     w.contacts_ = h5::growing_dataset(frames, "contacts", w.contact_type_, {}, kPointChunk, &no_contact);
-    w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, nullptr);
+    w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, &no_event);
     w.summary_ = h5::growing_dataset(w.file_, "summary_json", H5T_NATIVE_UINT8, {}, kTextChunk, nullptr);
     h5::check(H5Fstart_swmr_write(w.file_), "start recording");
   });
@@ -124,14 +125,20 @@ Result<> RunFileWriter::append_frame(const StoredFrame& stored) {
   });
 }
 
-Result<> RunFileWriter::append_summary(const Summary& summary) {
-  std::vector<EventRow> events;
-  for (const Event& e : summary.events) events.push_back(to_row(e));
-  const std::string text = summary_json(summary);
+Result<> RunFileWriter::append_events(std::span<const Event> events) {
+  std::vector<EventRow> rows;
+  for (const Event& e : events) rows.push_back(to_row(e));
   return guarded([&] {
-    h5::append_rows(events_, event_type_, events.size(), events.data());
-    h5::append_rows(summary_, H5T_NATIVE_UINT8, text.size(), text.data());
+    h5::append_rows(events_, event_type_, rows.size(), rows.data());
+    event_count_ += rows.size();
   });
+}
+
+Result<> RunFileWriter::append_summary(const Summary& summary) {
+  const std::size_t there = std::min(event_count_, summary.events.size());
+  if (auto done = append_events(std::span(summary.events).subspan(there)); !done) return done;
+  const std::string text = summary_json(summary);
+  return guarded([&] { h5::append_rows(summary_, H5T_NATIVE_UINT8, text.size(), text.data()); });
 }
 
 Result<> RunFileWriter::flush() {

@@ -26,8 +26,10 @@ class RunFileWriter {
 
   Result<> append_steps(std::span<const StepRecord> steps);
   Result<> append_frame(const StoredFrame& stored);
-  Result<> append_summary(const Summary& summary);  ///< events and summary, once, at the end
-  Result<> flush();                                 ///< everything appended so far reaches the file
+  Result<> append_events(std::span<const Event> events);
+  Result<> append_summary(
+      const Summary& summary);  ///< and those of its events that are not there yet; once, at the end
+  Result<> flush();             ///< everything appended so far reaches the file
   Result<> close();
 
  private:
@@ -42,6 +44,7 @@ class RunFileWriter {
   h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, summary_;
   std::int64_t needle_points_ = 0;
   std::int64_t contact_count_ = 0;
+  std::size_t event_count_ = 0;
 };
 
 }  // namespace stylet::results

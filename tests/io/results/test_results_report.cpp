@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // report.html: what it says, what its scripts get, and that it loads nothing from anywhere.
-#include "report/anatomy.hpp"
 #include "report/narrative.hpp"
 #include "report/parameter_tables.hpp"
 #include "report/report_data.hpp"
 #include "report/report_html.hpp"
 #include "report/text.hpp"
 #include "report_page.hpp"
+#include "stylet/io/region_views.hpp"
 #include "synthetic_run.hpp"
 
 #include <gtest/gtest.h>

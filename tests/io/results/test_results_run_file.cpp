@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // run.h5: what is written is read back, also when the writer is still at work or was killed.
 #include "results/recorder.hpp"
+#include "results/run_file_format.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "synthetic_run.hpp"
 
@@ -9,7 +10,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <random>
@@ -32,6 +35,9 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 
 void expect_same_step(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.dt_s, b.dt_s);
+  EXPECT_EQ(a.base.origin, b.base.origin);
+  EXPECT_EQ(a.base.rotation.coeffs(), b.base.rotation.coeffs());
   EXPECT_EQ(a.base_depth_mm, b.base_depth_mm);
   EXPECT_EQ(a.force_axial_N, b.force_axial_N);
   EXPECT_EQ(a.force_sagittal_N, b.force_sagittal_N);
@@ -111,6 +117,50 @@ TEST(RunFile, holds_everything_that_was_written) {
   ASSERT_TRUE(back->summary.has_value());
   EXPECT_EQ(back->summary->peak_axial_N, run.summary.peak_axial_N);
   EXPECT_EQ(back->summary->events.size(), run.summary.events.size());
+}
+
+TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  {
+    auto writer = RunFileWriter::create(path, run.info, run.mesh);
+    ASSERT_TRUE(writer.ok()) << writer.error().message();
+    Recorder recorder(std::move(*writer));
+    ASSERT_TRUE(recorder.close(nullptr).ok());
+  }
+  {  // its table of steps had no columns dt_s and base_x_mm … base_qz
+    const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
+    const h5::Handle now = step_row_type();
+    const h5::Handle then(h5::check(H5Tcreate(H5T_COMPOUND, sizeof(StepRow)), "type"), H5Tclose);
+    int left_out = 0;
+    for (unsigned k = 0; k < static_cast<unsigned>(H5Tget_nmembers(now)); ++k) {
+      char* text = H5Tget_member_name(now, k);
+      const std::string name = text;
+      H5free_memory(text);
+      if (name == "dt_s" || (name.rfind("base_", 0) == 0 && name != "base_depth_mm")) {
+        ++left_out;
+        continue;
+      }
+      const h5::Handle type(H5Tget_member_type(now, k), H5Tclose);
+      h5::check(H5Tinsert(then, name.c_str(), H5Tget_member_offset(now, k), type), "insert");
+    }
+    ASSERT_EQ(left_out, 8);
+    h5::check(H5Ldelete(file, "steps", H5P_DEFAULT), "delete");
+    h5::check(H5Adelete(file, "format_version"), "delete");
+    h5::write_attribute(file, "format_version", std::array{1});
+    std::vector<StepRow> rows;
+    for (const StepRecord& step : run.steps) rows.push_back(to_row(step));
+    const h5::Handle steps = h5::growing_dataset(file, "steps", then, {}, 1024, nullptr);
+    h5::append_rows(steps, then, rows.size(), rows.data());
+  }
+  const auto back = read_recording(path);
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  ASSERT_EQ(back->steps.size(), run.steps.size());
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    EXPECT_EQ(back->steps[k].force_axial_N, run.steps[k].force_axial_N);
+    EXPECT_TRUE(std::isnan(back->steps[k].dt_s) && std::isnan(back->steps[k].base.origin.x()));
+  }
 }
 
 TEST(RunFile, an_empty_run_without_parameters_is_readable) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "report/anatomy.hpp"
 #include "report/moments.hpp"
 #include "stylet/core/progress.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "stylet/io/region_views.hpp"
 
 #include <map>
 #include <span>

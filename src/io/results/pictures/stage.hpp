@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "report/anatomy.hpp"
 #include "stylet/core/types.hpp"
+#include "stylet/io/region_views.hpp"
 
 #include <vtkSmartPointer.h>
 

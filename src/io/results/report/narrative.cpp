@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/narrative.hpp"
 
-#include "report/anatomy.hpp"
+#include "stylet/io/region_views.hpp"
 
 #include <fmt/format.h>
 

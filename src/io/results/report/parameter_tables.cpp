@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/parameter_tables.hpp"
 
-#include "report/anatomy.hpp"
 #include "report/text.hpp"
+#include "stylet/io/region_views.hpp"
 #include "stylet/sim/scenario.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "report/anatomy.hpp"
 #include "report/moments.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "stylet/io/region_views.hpp"
 
 #include <span>
 #include <string>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "pictures/pictures.hpp"
-#include "report/anatomy.hpp"
 #include "report/moments.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "stylet/io/region_views.hpp"
 
 #include <span>
 #include <string>

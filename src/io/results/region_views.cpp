@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/anatomy.hpp"
+#include "stylet/io/region_views.hpp"
 
 #include "stylet/geom/topology.hpp"
 

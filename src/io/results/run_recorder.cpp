@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/io/run_recorder.hpp"
+
+#include "forces_csv.hpp"
+#include "recorder.hpp"
+
+namespace stylet {
+
+struct RunRecorder::Parts {
+  explicit Parts(results::RunFileWriter writer) : recorder(std::move(writer)) {}
+  results::Recorder recorder;
+};
+
+Result<std::unique_ptr<RunRecorder>> RunRecorder::open(const std::filesystem::path& file, const RunInfo& info,
+                                                       const TetMesh& mesh) {
+  auto writer = results::RunFileWriter::create(file, info, mesh);
+  if (!writer) return writer.error();
+  return std::unique_ptr<RunRecorder>(new RunRecorder(std::make_unique<Parts>(std::move(*writer))));
+}
+
+RunRecorder::RunRecorder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+RunRecorder::~RunRecorder() = default;
+
+Result<> RunRecorder::add_step(const StepRecord& step) { return parts_->recorder.add_step(step); }
+Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add_event(event); }
+Result<> RunRecorder::add_frame(const Frame& frame) {
+  results::StoredFrame stored;
+  stored.displacement.reserve(static_cast<std::size_t>(frame.displacement.size()));
+  for (const double value : frame.displacement) stored.displacement.push_back(static_cast<float>(value));
+  stored.frame = frame;
+  stored.frame.displacement.resize(0);
+  return parts_->recorder.add_frame(std::move(stored));
+}
+
+std::string forces_csv_text(std::span<const StepRecord> steps) { return results::forces_csv(steps); }
+
+}  // namespace stylet
