@@ -4,10 +4,10 @@
 import uPlot from 'uplot';
 import { nearestStep, turningStep, type ReportData, type Steps } from '../data';
 import type { Moment } from '../moment';
-import { drawEvents, labelsHeight, type PlacedEvent } from './event_labels';
+import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import type { CurveChoice } from './legend';
 import { Readout } from './readout';
-import { axis, CURVES, followWidth, fontSize, INK, lineScale, type CurveKey } from './style';
+import { axis, CURVES, followWidth, fontSize, INK, lineScale, type CurveKey } from '../../../shared/plot_style';
 
 export interface ForcePlotOptions {
   box: HTMLElement;

@@ -3,7 +3,7 @@
 import uPlot from 'uplot';
 import type { ReportData } from '../data';
 import { marksAt, roundNumbers } from './round_numbers';
-import { axis, CURVES, followWidth, fontSize } from './style';
+import { axis, CURVES, followWidth, fontSize } from '../../../shared/plot_style';
 
 export function buildHistogram(data: ReportData, box: HTMLElement): void {
   const { edges_us: edges, counts } = data.histogram;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One legend for both force plots: which curves are shown, and what solid and dashed mean.
-import { CURVES, type CurveKey } from './style';
+import { CURVES, type CurveKey } from '../../../shared/plot_style';
 
 export class CurveChoice {
   private readonly shown = new Set<CurveKey>(CURVES.map((c) => c.key));

@@ -2,7 +2,7 @@
 // Curves on linear or logarithmic scales, named at their right ends.
 import uPlot from 'uplot';
 import { marksAt, roundNumbers } from './round_numbers';
-import { axis, font, fontSize, followWidth, lineScale, SOFT } from './style';
+import { axis, font, fontSize, followWidth, lineScale, SOFT } from '../../../shared/plot_style';
 
 const BAND = '#f0f1f3';
 const LEVEL = '#e3f0f8';

@@ -2,7 +2,7 @@
 // What the pointer is at: a dot on the curve and a small box with the numbers of that step.
 import type uPlot from 'uplot';
 import type { Steps } from '../data';
-import { newtons } from './style';
+import { newtons } from '../../../shared/plot_style';
 
 export class Readout {
   private readonly box = document.createElement('div');

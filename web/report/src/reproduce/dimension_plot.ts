@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Order of ΔK of every change of the mesh: one mark each.
 import uPlot from 'uplot';
-import { axis, followWidth, fontSize, lineScale } from '../plots/style';
+import { axis, followWidth, fontSize, lineScale } from '../../../shared/plot_style';
 import type { Remeshing, Run } from './data';
 import { colorOf } from './colors';
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Three components of the force on the base over iterations, with every event marked.
 import uPlot from 'uplot';
-import { drawEvents, labelsHeight, type PlacedEvent } from '../plots/event_labels';
-import { axis, CURVES, followWidth, fontSize, lineScale, newtons } from '../plots/style';
+import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
+import { axis, CURVES, followWidth, fontSize, lineScale, newtons } from '../../../shared/plot_style';
 import type { Curves, Run } from './data';
 
 const COLUMNS = { axial: 'axial_N', sagittal: 'sagittal_N', lateral: 'lateral_N' } as const;

@@ -3,7 +3,7 @@ import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import './style.css';
 import { roundNumbers } from '../plots/round_numbers';
-import { SOFT } from '../plots/style';
+import { SOFT } from '../../../shared/plot_style';
 import { BLUE, colorOf, SKY, VERMILION } from './colors';
 import { decode, type ReproductionData, type Run } from './data';
 import { buildDimensionPlot } from './dimension_plot';

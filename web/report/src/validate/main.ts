@@ -4,7 +4,7 @@ import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import './style.css';
 import { buildLinePlot, type Line } from '../plots/line_plot';
-import { INK } from '../plots/style';
+import { INK } from '../../../shared/plot_style';
 import { build } from '../page_part';
 
 interface Curve {

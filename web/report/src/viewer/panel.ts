@@ -2,39 +2,10 @@
 // The interactive view: stage, time slider, and what is shown how.
 import type { ReportData } from '../data';
 import type { Moment } from '../moment';
-import { roundDown, viridisGradient } from './colors';
-import { SLIP_COLOR, STICK_COLOR, TIP_COLOR } from './contact_marks';
-import { Stage, VIEWS } from './stage';
-
-function element<K extends keyof HTMLElementTagNameMap>(tag: K, className = '', text = ''): HTMLElementTagNameMap[K] {
-  const e = document.createElement(tag);
-  if (className) e.className = className;
-  if (text) e.textContent = text;
-  return e;
-}
-
-function button(text: string, action: () => void): HTMLButtonElement {
-  const b = element('button', '', text);
-  b.type = 'button';
-  b.addEventListener('click', action);
-  return b;
-}
-
-/** Marks of the colour scale [mm], round numbers from 0 to at least the largest displacement. */
-function scaleMarks(most: number): number[] {
-  const step = roundDown(Math.max(most, 0.01) / 4);
-  return Array.from({ length: Math.ceil(most / step - 1e-9) + 1 }, (_, i) => Number((i * step).toPrecision(6)));
-}
-
-function colorBar(marks: number[]): HTMLElement {
-  const box = element('div', 'colorbar');
-  const strip = element('div', 'strip');
-  strip.style.background = viridisGradient('to right');
-  const ticks = element('div', 'ticks');
-  for (const mark of marks) ticks.append(element('span', '', String(mark)));
-  box.append(element('div', 'title', 'moved by [mm]'), strip, ticks);
-  return box;
-}
+import { button, element } from '../../../shared/dom';
+import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
+import { VIEWS } from '../../../shared/views';
+import { Stage } from './stage';
 
 function regionList(stage: Stage): HTMLElement {
   const list = element('div', 'regions');
@@ -81,15 +52,7 @@ function contactList(stage: Stage): HTMLElement {
     stage.draw();
   });
   label.append(box, 'Contact points');
-  const key = element('div', 'contact-key');
-  for (const [color, shape, text] of [[STICK_COLOR, 'ball', 'sticking'], [SLIP_COLOR, 'ring', 'slipping'], [TIP_COLOR, 'diamond', 'tip']]) {
-    const item = element('span');
-    const mark = element('i', shape);
-    mark.style.setProperty('--mark', color);
-    item.append(mark, text);
-    key.append(item);
-  }
-  row.append(label, key);
+  row.append(label, contactKey());
   return row;
 }
 

@@ -2,18 +2,8 @@
 // The surface of one region, moved and coloured frame by frame.
 import * as THREE from 'three';
 import type { Frame, Region, ReportData } from '../data';
-import { toLinear, viridis } from './colors';
-
-/** Makes a translucent surface denser towards its rim, where one looks along it: shapes stay readable through another. */
-function densenRim(material: THREE.MeshStandardMaterial, strength: number): void {
-  material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace(
-      '#include <opaque_fragment>',
-      `float rim = pow(1.0 - abs(dot(normalize(vViewPosition), normal)), 2.5);
-       diffuseColor.a = mix(diffuseColor.a, 1.0, ${strength.toFixed(2)} * rim);
-       #include <opaque_fragment>`);
-  };
-}
+import { toLinear, viridis } from '../../../shared/colors';
+import { densenRim } from '../../../shared/rim';
 
 export class RegionMesh {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;

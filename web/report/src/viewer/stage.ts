@@ -3,18 +3,13 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Frame, ReportData } from '../data';
-import { roundDown } from './colors';
-import { ContactMarks } from './contact_marks';
-import { NeedleMesh } from './needle_mesh';
-import { OrientationCube } from './orientation_cube';
+import { roundDown } from '../../../shared/colors';
+import { ContactMarks } from '../../../shared/contact_marks';
+import { NeedleMesh } from '../../../shared/needle_mesh';
+import { OrientationCube } from '../../../shared/orientation_cube';
+import { VIEWS } from '../../../shared/views';
 import { RegionMesh } from './region_mesh';
 
-export const VIEWS: { name: string; from: [number, number, number] }[] = [
-  { name: 'Oblique', from: [0.8, -0.56, 0.2] },
-  { name: 'From the left', from: [1, 0, 0] },
-  { name: 'From the front', from: [0, -1, 0] },
-  { name: 'From the feet', from: [0, 0, -1] },
-];
 
 export class Stage {
   readonly regions: RegionMesh[];
@@ -58,8 +53,8 @@ export class Stage {
 
   show(frame: Frame, most: number): void {
     for (const region of this.regions) region.show(frame, most);
-    this.needle.show(frame);
-    this.contacts.show(frame);
+    this.needle.show(frame.needle);
+    this.contacts.show(frame.needle, frame.contacts);
     this.draw();
   }
 

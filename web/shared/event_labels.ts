@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Names of events above a plot, in as many lanes as needed so that none covers another, each with a line to its place.
 import type uPlot from 'uplot';
-import type { EventMark } from '../data';
-import { font, fontSize, INK, lineScale, PALE } from './style';
+import { font, fontSize, INK, lineScale, PALE } from './plot_style';
 
 export interface PlacedEvent {
-  event: EventMark;
+  event: { label: string };
   x: number;  // value on the x scale
   y: number;  // value on the y scale: where the dot goes
 }
@@ -37,11 +36,21 @@ function arrange(events: PlacedEvent[], position: (x: number) => number, width: 
     });
 }
 
+const widths = new Map<string, number>();
+let measuring: CanvasRenderingContext2D | null = null;
+
+/** Width of a text [CSS px]; the names of events are few and come often. */
 function measure(text: string): number {
-  const context = document.createElement('canvas').getContext('2d');
-  if (!context) return text.length * fontSize() * 0.55;
-  context.font = font();
-  return context.measureText(text).width;
+  measuring ??= document.createElement('canvas').getContext('2d');
+  if (!measuring) return text.length * fontSize() * 0.55;
+  const key = `${font()} ${text}`;
+  let width = widths.get(key);
+  if (width === undefined) {
+    if (widths.size > 500) widths.clear();
+    measuring.font = font();
+    widths.set(key, (width = measuring.measureText(text).width));
+  }
+  return width;
 }
 
 export function laneHeight(): number {

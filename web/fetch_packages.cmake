@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Brings the exact packages of web/report/package-lock.json into the build folder.
+# Brings the exact packages of web/package-lock.json into the build folder.
 # Called with -DNPM= -DSOURCE= -DBUILD=
 file(MAKE_DIRECTORY ${BUILD})
 file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json ${SOURCE}/.npmrc DESTINATION ${BUILD})
@@ -12,7 +12,7 @@ execute_process(
 if(NOT status EQUAL 0)
   message("${output}")
   message(FATAL_ERROR
-    "npm could not fetch the packages of the report's front end (web/report/package-lock.json); its words are above.\n"
+    "npm could not fetch the packages of the pages (web/package-lock.json); its words are above.\n"
     "They come from the npm registry, once: connect this machine to the network, or name your mirror with\n"
     "  npm config set registry ADDRESS\n"
     "and build again. Without them only the library can be built: cmake -DSTYLET_APPS=OFF")

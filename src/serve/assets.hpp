@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+
+/// The live page (web/live/), which the build puts into the library.
+namespace stylet::serve {
+
+std::string_view page();    ///< index.html, which asks for /live.js and /live.css
+std::string_view script();  ///< live.js
+std::string_view style();   ///< live.css
+
+}  // namespace stylet::serve

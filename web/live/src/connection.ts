@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The WebSocket, opened again whenever it closes, after a wait that doubles up to a few seconds.
+import { decode, SUBPROTOCOL, WireError, type Message } from './wire';
+
+/** What a page talks through: the server, or a made-up one. */
+export interface Transport {
+  open(listener: TransportListener): void;
+  send(data: ArrayBuffer): void;
+}
+
+export interface TransportListener {
+  opened(): void;
+  message(data: ArrayBuffer): void;
+  closed(retryInMs: number): void;
+}
+
+const FIRST_WAIT_MS = 250;
+const LONGEST_WAIT_MS = 5000;
+const MOST_UNSENT_BYTES = 4096;  // a hand that moved long ago is not worth sending
+
+export class WebSocketTransport implements Transport {
+  private socket: WebSocket | null = null;
+  private wait = FIRST_WAIT_MS;
+
+  constructor(private readonly address: string) {}
+
+  open(listener: TransportListener): void {
+    const socket = new WebSocket(this.address, SUBPROTOCOL);
+    socket.binaryType = 'arraybuffer';
+    socket.addEventListener('open', () => {
+      this.wait = FIRST_WAIT_MS;
+      listener.opened();
+    });
+    socket.addEventListener('message', (e) => {
+      if (e.data instanceof ArrayBuffer) listener.message(e.data);
+    });
+    socket.addEventListener('close', () => {
+      const wait = this.wait;
+      this.wait = Math.min(2 * wait, LONGEST_WAIT_MS);
+      listener.closed(wait);
+      setTimeout(() => this.open(listener), wait);
+    });
+    this.socket = socket;
+  }
+
+  send(data: ArrayBuffer): void {
+    if (this.socket?.readyState === WebSocket.OPEN && this.socket.bufferedAmount < MOST_UNSENT_BYTES) this.socket.send(data);
+  }
+}
+
+/** The address of a path of this server, with the token of the page's own address. */
+export function serverAddress(path: string, webSocket = false): string {
+  const token = new URLSearchParams(location.search).get('token');
+  const address = new URL(path, location.href);
+  address.search = token ? `?token=${encodeURIComponent(token)}` : '';
+  if (webSocket) address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
+  return address.href;
+}
+
+/** Decodes a message; one that is malformed is told to the console and otherwise ignored. */
+export function understood(data: ArrayBuffer): Message | null {
+  try {
+    return decode(data);
+  } catch (error) {
+    if (!(error instanceof WireError)) throw error;
+    console.warn(`The server sent ${error.message}.`);
+    return null;
+  }
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// States in which there is nothing to steer: connecting, loading, failed; and what is said when pictures are old.
+import { element } from '../../../shared/dom';
+import { serverAddress } from '../connection';
+import type { Session } from '../session';
+
+export class Cover {
+  private readonly card = element('div', 'card');
+  private readonly title = element('h2');
+  private readonly text = element('p');
+  private readonly cure = element('p', 'cure');
+  private readonly bar = element('progress');
+  private timer = 0;
+  private refusal = '';  // in the server's words
+
+  constructor(private readonly root: HTMLElement, private readonly session: Session) {
+    this.card.append(this.title, this.bar, this.text, this.cure);
+    this.card.setAttribute('role', 'status');
+    root.append(this.card);
+    this.bar.max = 1;
+    for (const topic of ['link', 'status', 'scene'] as const) session.on(topic, () => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const { session } = this;
+    const { connected, status, scene } = session;
+    const old = !connected && scene !== null;
+    window.clearTimeout(this.timer);
+    this.root.classList.toggle('over', scene !== null && !old);
+    const steerable = connected && status?.state === 'ready' && scene !== null;
+    for (const part of document.querySelectorAll<HTMLElement>('main, .push, .replay')) part.inert = !steerable && !old;
+    this.root.classList.toggle('old', old);
+    document.body.classList.toggle('is-old', old);
+    if (old) {
+      const seconds = Math.max(0, Math.round((Date.now() - session.lostAt) / 1000));
+      this.show('Connection lost', `The pictures are from ${new Date(session.lostAt).toLocaleTimeString()}, ${seconds} s ago. Connecting again…`,
+                seconds > 8 ? 'If this lasts: is stylet serve still running?' : '', false);
+      this.timer = window.setTimeout(() => this.update(), 1000);
+    } else if (!connected) {
+      if (session.attempts > 1) void this.askWhy();
+      const why = session.attempts > 2 ? this.refusal || 'The server does not answer.' : 'Waiting for the simulation…';
+      this.show('Connecting', why, session.attempts > 2 && !this.refusal ? 'Is stylet serve still running?' : '', session.attempts <= 2);
+    } else if (status?.state === 'failed') {
+      this.show('This case could not be loaded', status.message ?? '', status.cure ?? '', false);
+    } else if (status?.state === 'loading' || !scene) {
+      const fraction = status?.fraction;
+      this.show('Preparing the patient', sentence(status?.stage ?? 'waiting for the server'), '', true,
+                typeof fraction === 'number' ? fraction : null);
+    } else {
+      this.root.hidden = true;
+    }
+  }
+
+  /** A WebSocket that is refused does not say why; a page of the same server does. */
+  private async askWhy(): Promise<void> {
+    try {
+      const answer = await fetch(serverAddress('recordings'));
+      this.refusal = answer.status === 401 || answer.status === 403 ? (await answer.text()).trim() : '';
+    } catch {
+      this.refusal = '';
+    }
+  }
+
+  private show(title: string, text: string, cure: string, busy: boolean, fraction: number | null = null): void {
+    this.root.hidden = false;
+    this.title.textContent = title;
+    this.text.textContent = text;
+    this.cure.textContent = cure;
+    this.cure.hidden = cure === '';
+    this.bar.hidden = !busy;
+    if (fraction === null) this.bar.removeAttribute('value');
+    else this.bar.value = fraction;
+    this.bar.setAttribute('aria-label', title);
+  }
+}
+
+function sentence(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys. Those of a focused control stay with it; everything else moves the needle.
+import { SPEEDS, type HandControl } from '../hand';
+import type { Session } from '../session';
+
+export const KEYS: [string, string][] = [
+  ['↑ or W, ↓ or S', 'push, pull, as long as held'],
+  ['Page up, page down', '5 mm deeper, 5 mm back'],
+  ['Wheel', '1 mm; with Shift 0.1 mm; with Ctrl zooms the 3D view'],
+  ['1, 2, 3', `speed ${SPEEDS.join(', ')} mm/s`],
+  ['Q, E', 'turn the bevel'],
+  ['A, D or Shift ← →', 'tilt the hub to the patient’s right, left'],
+  ['Shift ↑ ↓', 'tilt the hub to anterior, posterior'],
+  ['Home', 'tilt back to straight'],
+  ['Space', 'pause, resume'],
+  ['.', 'a single step while paused'],
+  ['R', 'back to the start of this insertion'],
+  ['?', 'this list'],
+];
+const ROLL_DEG_PER_S = 90;
+const TILT_DEG_PER_S = 4;
+const LONGEST_TURN_S = 0.25;  // where pictures are slow
+
+type Held = (hand: HandControl, seconds: number) => void;
+const HELD: Record<string, Held> = {
+  KeyW: (hand, s) => hand.hold(1, s), ArrowUp: (hand, s) => hand.hold(1, s),
+  KeyS: (hand, s) => hand.hold(-1, s), ArrowDown: (hand, s) => hand.hold(-1, s),
+  KeyQ: (hand, s) => hand.roll(-ROLL_DEG_PER_S * s), KeyE: (hand, s) => hand.roll(ROLL_DEG_PER_S * s),
+  KeyA: (hand, s) => hand.tilt(-TILT_DEG_PER_S * s, 0), KeyD: (hand, s) => hand.tilt(TILT_DEG_PER_S * s, 0),
+  'Shift+ArrowLeft': (hand, s) => hand.tilt(-TILT_DEG_PER_S * s, 0), 'Shift+ArrowRight': (hand, s) => hand.tilt(TILT_DEG_PER_S * s, 0),
+  'Shift+ArrowUp': (hand, s) => hand.tilt(0, TILT_DEG_PER_S * s), 'Shift+ArrowDown': (hand, s) => hand.tilt(0, -TILT_DEG_PER_S * s),
+};
+const PUSHES = new Set(['KeyW', 'KeyS', 'ArrowUp', 'ArrowDown']);
+
+export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => void): void {
+  const held = new Map<string, Held>();  // by code of the key
+  let last = 0;
+  const turn = (now: number) => {
+    if (held.size === 0) return;
+    const seconds = Math.min(LONGEST_TURN_S, Math.max(0, (now - last) / 1000));
+    last = now;
+    for (const action of held.values()) action(hand, seconds);
+    requestAnimationFrame(turn);
+  };
+  const release = (code: string) => {
+    if (held.delete(code) && PUSHES.has(code)) hand.stop();
+  };
+  const once: Record<string, () => void> = {
+    PageUp: () => hand.push(5), PageDown: () => hand.push(-5), Home: () => hand.straighten(),
+    Digit1: () => hand.setSpeed(SPEEDS[0]), Digit2: () => hand.setSpeed(SPEEDS[1]), Digit3: () => hand.setSpeed(SPEEDS[2]),
+    Space: () => togglePause(session), Period: () => session.command({ do: 'step', count: 1 }), KeyR: () => reset(session, hand),
+  };
+
+  document.addEventListener('keydown', (e) => {
+    if (e.ctrlKey || e.altKey || e.metaKey || e.defaultPrevented) return;
+    if (e.key === '?') return toggleHelp();
+    if (usesKey(e.target as HTMLElement, e.code) || document.querySelector('dialog[open]')) return;
+    const action = HELD[`${e.shiftKey ? 'Shift+' : ''}${e.code}`] ?? (e.shiftKey && e.code.startsWith('Key') ? HELD[e.code] : undefined);
+    if (action) {
+      e.preventDefault();
+      if (held.has(e.code)) return;
+      held.set(e.code, action);
+      if (held.size > 1) return;
+      last = performance.now();
+      requestAnimationFrame(turn);
+    } else if (once[e.code] && !e.shiftKey) {
+      e.preventDefault();
+      if (!e.repeat || e.code.startsWith('Page') || e.code === 'Period') once[e.code]();
+    }
+  });
+  document.addEventListener('keyup', (e) => release(e.code));
+  // Who clicks with a mouse goes on with the needle's keys; who came with the tab key stays at the control.
+  document.addEventListener('click', (e) => {
+    const control = (e.target as HTMLElement).closest<HTMLElement>('button, summary, input, .hole');
+    if (e.detail > 0 && control && !control.closest('dialog')) control.blur();
+  });
+  window.addEventListener('blur', () => [...held.keys()].forEach(release));
+}
+
+export function togglePause(session: Session): void {
+  const { status } = session;
+  if (status?.mode === 'replay') session.command({ do: 'play', rate: status.replay?.playing ? 0 : status.replay?.rate || 1 });
+  else session.command({ do: status?.paused ? 'resume' : 'pause' });
+}
+
+export function reset(session: Session, hand: HandControl): void {
+  hand.rest();
+  session.command({ do: 'reset' });
+}
+
+/** Whether the focused control itself does something with a key. */
+function usesKey(target: HTMLElement, code: string): boolean {
+  if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement) return true;
+  if (target instanceof HTMLInputElement) return target.type === 'checkbox' ? code === 'Space' : /^(Arrow|Page|Home|End|Space)/.test(code);
+  const button = target instanceof HTMLButtonElement || target.tagName === 'SUMMARY' || target instanceof HTMLAnchorElement;
+  return button && (code === 'Space' || code === 'Enter');
+}

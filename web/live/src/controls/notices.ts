@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Why something was not done, and what to do instead; gone after a while.
+import { button, element } from '../../../shared/dom';
+import { eventLabel } from '../event_names';
+import type { Session } from '../session';
+
+const SHOWN_MS = 9000;
+const MOST = 3;
+
+/** Says events to who cannot see the chart. */
+export function speakEvents(root: HTMLElement, session: Session): void {
+  const spoken = element('p', 'spoken');
+  spoken.setAttribute('aria-live', 'polite');
+  root.append(spoken);
+  session.on('event', (event) => {
+    spoken.textContent = `${eventLabel(event)}, ${event.depth_mm.toFixed(0)} mm, ${event.force_N.toFixed(1)} N`;
+  });
+}
+
+export function showNotices(root: HTMLElement, session: Session): void {
+  session.on('notice', ({ text, cure }) => {
+    const known = [...root.children].find((c) => c.firstElementChild?.textContent === text);
+    known?.remove();
+    const note = element('div', 'notice');
+    const close = button('×', () => note.remove());
+    close.setAttribute('aria-label', 'Close this notice');
+    note.append(element('p', '', text));
+    if (cure) note.append(element('p', 'cure', cure));
+    note.append(close);
+    root.append(note);
+    while (root.children.length > MOST) root.firstElementChild?.remove();
+    setTimeout(() => note.remove(), SHOWN_MS);
+  });
+}

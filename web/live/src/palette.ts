@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+export { INK, PALE, SOFT } from '../../shared/plot_style';
+export const ACCENT = '#0072b2';
+export const WARN = '#b34700';

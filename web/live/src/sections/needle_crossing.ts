@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+/** Where a line crosses the plane in which coordinate `axis` is `value`: written to `out` (3); false if it does not. */
+export function crossing(line: Float32Array, axis: number, value: number, out: Float32Array): boolean {
+  for (let i = 3; i < line.length; i += 3) {
+    const a = line[i - 3 + axis];
+    const b = line[i + axis];
+    if ((a - value) * (b - value) > 0 || a === b) continue;
+    const share = (value - a) / (b - a);
+    for (let k = 0; k < 3; k++) out[k] = line[i - 3 + k] + share * (line[i + k] - line[i - 3 + k]);
+    return true;
+  }
+  return false;
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The two planes of the sections: where they are, and whether they follow the needle.
+import { clamp } from '../hand';
+import { holes, organBounds, regionTriangles, type Scene } from '../scene';
+import type { Session } from '../session';
+
+export type PlaneName = 'transverse' | 'sagittal';
+
+export class Plane {
+  value = 0;            // [mm] of the coordinate
+  follows = true;
+  low = -50;
+  high = 50;
+  private near = -Infinity;  // a plane that follows the tip waits here until the tip comes
+  private holeOf: [Scene, string, number | undefined] | null = null;
+  private readonly listeners: (() => void)[] = [];
+
+  constructor(readonly name: PlaneName, private readonly session: Session) {
+    session.on('scene', (scene) => this.setRange(scene));
+    session.on('frame', () => this.update());
+    session.on('status', () => this.update());
+  }
+
+  /** Axis across the plane. */
+  get axis(): 0 | 2 {
+    return this.name === 'transverse' ? 2 : 0;
+  }
+
+  onChange(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
+  set(value: number): void {
+    this.follows = false;
+    this.move(value);
+  }
+
+  follow(on: boolean): void {
+    this.follows = on;
+    this.update();
+    this.tell();
+  }
+
+  private update(): void {
+    if (!this.follows) return;
+    const wanted = this.name === 'transverse' ? this.session.frame?.tip[2] : this.holeX();
+    if (wanted !== undefined) this.move(Math.max(this.near, wanted));
+  }
+
+  private holeX(): number | undefined {
+    const { scene, status, frame } = this.session;
+    if (scene?.template && status?.hole && (this.holeOf?.[0] !== scene || this.holeOf[1] !== status.hole)) {
+      this.holeOf = [scene, status.hole, holes(scene.template).find((h) => h.name === status.hole)?.x];
+    }
+    return (status?.hole ? this.holeOf?.[2] : undefined)
+      ?? scene?.insertions.find((i) => i.name === status?.insertion)?.entry_mm[0] ?? frame?.base[0];
+  }
+
+  private move(value: number): void {
+    const valid = clamp(value, this.low, this.high);
+    if (valid === this.value) return;
+    this.value = valid;
+    this.tell();
+  }
+
+  private tell(): void {
+    for (const listener of this.listeners) listener();
+  }
+
+  /** From the target's near end on: before the needle comes there, its apex is the picture worth having. */
+  private setRange(scene: Scene): void {
+    const [low, high] = organBounds(scene)[this.axis];
+    this.low = low;
+    this.high = high;
+    const target = scene.regions.findIndex((r) => r.target);
+    if (target >= 0 && this.name === 'transverse') {
+      let first = Infinity;
+      for (const node of regionTriangles(scene, target)) first = Math.min(first, scene.points[3 * node + 2]);
+      this.near = first + 2;
+    } else this.near = -Infinity;
+    this.follows = true;
+    this.value = (low + high) / 2;
+    this.update();
+    this.tell();
+  }
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A section with its title, where its plane is, and what moves it.
+import { button, element } from '../../../shared/dom';
+import type { Session } from '../session';
+import { onRepaint } from '../repaint';
+import type { Plane } from './plane';
+import { SectionView } from './section_view';
+
+const NOTCH_MM = 1;
+
+export class SectionPanel {
+  readonly view: SectionView;
+  private readonly slider = element('input');
+  private readonly place = element('output');
+  private readonly follow: HTMLButtonElement;
+
+  constructor(root: HTMLElement, session: Session, private readonly plane: Plane, other: Plane) {
+    const transverse = plane.name === 'transverse';
+    const head = element('div', 'section-head');
+    const picture = element('div', 'canvas');
+    head.append(element('h2', '', this.title), this.place);
+    this.slider.type = 'range';
+    this.slider.step = '0.5';
+    this.slider.setAttribute('aria-label', `Place of the ${plane.name} plane`);
+    this.slider.addEventListener('input', () => plane.set(this.slider.valueAsNumber));
+    this.follow = button(transverse ? 'Follow tip' : 'Follow hole', () => plane.follow(!plane.follows));
+    head.append(this.slider, this.follow);
+    root.append(head, picture);
+    this.view = new SectionView(picture, session, plane, other);
+    picture.addEventListener('wheel', (e) => {
+      if (e.ctrlKey) return;
+      e.preventDefault();
+      plane.set(plane.value - Math.sign(e.deltaY || e.deltaX) * (e.shiftKey ? 0.1 : NOTCH_MM));
+    }, { passive: false });
+    plane.onChange(onRepaint(() => this.update()));
+    this.update();
+  }
+
+  get title(): string {
+    return this.plane.name === 'transverse' ? 'Transverse' : 'Sagittal';
+  }
+
+  private update(): void {
+    const { plane } = this;
+    this.slider.min = plane.low.toFixed(1);
+    this.slider.max = plane.high.toFixed(1);
+    this.slider.value = String(plane.value);
+    this.place.textContent = `${plane.axis === 2 ? 'z' : 'x'} = ${plane.value.toFixed(1).replace('-', '−')} mm`;
+    this.follow.setAttribute('aria-pressed', String(plane.follows));
+  }
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface of one region. Its buffers are made once; each frame writes positions, normals and, if asked for, colours.
+import * as THREE from 'three';
+import { toLinear, viridis } from '../../../shared/colors';
+import { densenRim } from '../../../shared/rim';
+import type { Anatomy } from '../anatomy';
+import { regionTriangles, type Region } from '../scene';
+
+export class RegionSurface {
+  readonly region: Region;
+  readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
+  readonly centre = new THREE.Vector3();
+  visible = true;
+  opacity: number;
+  private readonly box = new THREE.Box3();  // undeformed
+  private readonly nodes: Uint32Array;      // of the scene
+  private readonly index: Uint32Array;      // into `nodes`
+  private readonly position: THREE.BufferAttribute;
+  private readonly normal: THREE.BufferAttribute;
+  private readonly color: THREE.BufferAttribute;
+  private byDisplacement = false;
+
+  constructor(private readonly anatomy: Anatomy, readonly number: number, clipping: THREE.Plane[]) {
+    this.region = anatomy.scene.regions[number];
+    const triangles = regionTriangles(anatomy.scene, number);
+    const local = new Map<number, number>();
+    this.index = triangles.map((node) => {
+      const known = local.get(node);
+      if (known !== undefined) return known;
+      local.set(node, local.size);
+      return local.size - 1;
+    });
+    this.nodes = Uint32Array.from(local.keys());
+    const attribute = () => new THREE.BufferAttribute(new Float32Array(3 * this.nodes.length), 3).setUsage(THREE.DynamicDrawUsage);
+    this.position = attribute();
+    this.normal = attribute();
+    this.color = attribute();
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(new THREE.BufferAttribute(this.index, 1));
+    geometry.setAttribute('position', this.position);
+    geometry.setAttribute('normal', this.normal);
+    geometry.setAttribute('color', this.color);
+    const material = new THREE.MeshStandardMaterial({ color: this.region.color, roughness: 0.7, metalness: 0 });
+    material.clippingPlanes = clipping;
+    densenRim(material, this.region.background ? 0.06 : 0.6);
+    this.object = new THREE.Mesh(geometry, material);
+    this.object.frustumCulled = false;
+    const p = new THREE.Vector3();
+    for (const node of this.nodes) this.box.expandByPoint(p.fromArray(anatomy.scene.points, 3 * node));
+    this.box.getCenter(this.centre);
+    this.opacity = this.region.opacity;
+    this.applyLook();
+  }
+
+  /** Whether the other region lies inside this one, by their boxes. */
+  holds(other: RegionSurface): boolean {
+    return other !== this && this.box.containsBox(other.box);
+  }
+
+  get shown(): boolean {
+    return this.visible && this.opacity > 0.005;
+  }
+
+  copyLook(other: RegionSurface): void {
+    this.visible = other.visible;
+    this.opacity = other.opacity;
+    this.applyLook();
+  }
+
+  applyLook(): void {
+    const { material } = this.object;
+    const opaque = this.opacity > 0.99;
+    if (material.transparent === opaque) material.needsUpdate = true;
+    // Colours that stand for numbers must not fade into what lies behind: denser than tissue colours.
+    material.opacity = this.byDisplacement && !this.region.background ? 1 - (1 - this.opacity) ** 2 : this.opacity;
+    material.transparent = !opaque;
+    material.depthWrite = opaque;
+    this.object.visible = this.shown;
+  }
+
+  colorByDisplacement(on: boolean): void {
+    const { material } = this.object;
+    this.byDisplacement = on;
+    this.applyLook();
+    material.vertexColors = on;
+    material.color.set(on ? '#ffffff' : this.region.color);
+    material.needsUpdate = true;
+  }
+
+  /** @param most displacement [mm] at the end of the colour scale */
+  update(most: number): void {
+    if (!this.shown) return;
+    const { position } = this.anatomy;
+    const to = this.position.array;
+    for (let i = 0; i < this.nodes.length; i++) {
+      const from = 3 * this.nodes[i];
+      to[3 * i] = position[from];
+      to[3 * i + 1] = position[from + 1];
+      to[3 * i + 2] = position[from + 2];
+    }
+    this.position.needsUpdate = true;
+    this.updateNormals();
+    if (this.byDisplacement) this.updateColors(most);
+  }
+
+  dispose(): void {
+    this.object.geometry.dispose();
+    this.object.material.dispose();
+  }
+
+  /** Sums of the triangles' normals, each as long as twice its area; the shader makes them unit. */
+  private updateNormals(): void {
+    const p = this.position.array;
+    const n = this.normal.array;
+    n.fill(0);
+    for (let t = 0; t < this.index.length; t += 3) {
+      const [a, b, c] = [3 * this.index[t], 3 * this.index[t + 1], 3 * this.index[t + 2]];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+      n[a] += x; n[a + 1] += y; n[a + 2] += z;
+      n[b] += x; n[b + 1] += y; n[b + 2] += z;
+      n[c] += x; n[c + 1] += y; n[c + 2] += z;
+    }
+    this.normal.needsUpdate = true;
+  }
+
+  private updateColors(most: number): void {
+    const c = this.color.array as Float32Array;
+    for (let i = 0; i < this.nodes.length; i++) {
+      viridis(this.anatomy.displacement[this.nodes[i]] / most, c, 3 * i);
+      for (let k = 0; k < 3; k++) c[3 * i + k] = toLinear(c[3 * i + k]);
+    }
+    this.color.needsUpdate = true;
+  }
+}

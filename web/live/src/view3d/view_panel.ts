@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The 3D view with its controls: what is shown, how it is coloured, where it is cut, where one looks from.
+import { contactKey, colorBar, scaleMarks } from '../../../shared/keys';
+import { button, element } from '../../../shared/dom';
+import { VIEWS } from '../../../shared/views';
+import { Anatomy } from '../anatomy';
+import type { Session } from '../session';
+import type { HandControl } from '../hand';
+import { samePatient } from '../scene';
+import { CutControl } from './cut_control';
+import { Stage } from './stage';
+
+const SMALLEST_SCALE_MM = 2;
+
+export class ViewPanel {
+  readonly stage: Stage | null;
+  onVisibility: (region: number, visible: boolean) => void = () => {};
+  private anatomy: Anatomy | null = null;
+  private byDisplacement = false;
+  private most = SMALLEST_SCALE_MM;  // [mm] end of the colour scale
+  private readonly settings = element('details', 'settings');
+  private readonly list = element('div', 'regions');
+  private readonly scale = element('div', 'view-scale');
+  private readonly note = element('p', 'view-note');
+  private cutControl: CutControl | null = null;
+
+  constructor(private readonly root: HTMLElement, private readonly session: Session, hand: HandControl) {
+    const picture = element('div', 'canvas');
+    const bar = element('div', 'scale-bar');
+    root.append(picture, bar, this.scale, this.note);
+    this.note.hidden = true;
+    this.scale.hidden = true;
+    this.stage = this.makeStage(picture, bar);
+    // The wheel pushes the needle, with Ctrl it zooms.
+    root.addEventListener('wheel', (e) => {
+      if (e.ctrlKey || this.settings.contains(e.target as Node)) return;
+      e.preventDefault();
+      e.stopPropagation();
+      hand.push(-Math.sign(e.deltaY || e.deltaX) * (e.shiftKey ? 0.1 : 1));
+    }, { capture: true, passive: false });
+    if (!this.stage) return;
+    this.buildSettings(this.stage);
+    session.on('frame', () => this.update());
+    session.on('restart', () => this.setScale(SMALLEST_SCALE_MM));
+    session.on('status', (status) => {
+      this.stage?.template.mark(status.hole ?? '');
+    });
+  }
+
+  /** [mm] at the end of the colour scale; null while colours are the tissues'. */
+  get largestColored(): number | null {
+    return this.byDisplacement ? this.most : null;
+  }
+
+  setAnatomy(anatomy: Anatomy): void {
+    const again = this.anatomy !== null && samePatient(this.anatomy.scene, anatomy.scene);
+    this.anatomy = anatomy;
+    if (!this.stage) return;
+    this.stage.setAnatomy(anatomy, again);
+    if (!again) this.cutControl?.setScene(anatomy.scene);
+    this.list.replaceChildren(...this.stage.surfaces.map((_, i) => this.regionRow(i)));
+    for (const surface of this.stage.surfaces) surface.colorByDisplacement(this.byDisplacement);
+    this.stage.showTissue(this.most);
+  }
+
+  private makeStage(picture: HTMLElement, bar: HTMLElement): Stage | null {
+    try {
+      return new Stage(picture, (mm, px) => {
+        const text = `${mm} mm`;
+        if (bar.textContent !== text) bar.textContent = text;
+        bar.style.width = `${px.toFixed(0)}px`;
+      });
+    } catch {
+      picture.replaceChildren(element('p', 'no-webgl',
+        'This browser offers no WebGL, which the 3D view needs. The sections and the curves work without it. Cure: a current browser with hardware acceleration switched on.'));
+      bar.hidden = true;
+      return null;
+    }
+  }
+
+  private update(): void {
+    const { frame } = this.session;
+    if (!frame || !this.anatomy || !this.stage) return;
+    if (this.anatomy.tissueMoved) {
+      if (this.anatomy.largest > this.most) this.setScale(this.anatomy.largest);
+      this.tissueChanged();
+    }
+    if (this.anatomy.needleMoved) this.stage.showNeedle(frame);
+    const hidden = frame.hidden > 0.05 ? `The displacement shown leaves out forces of ${frame.hidden.toFixed(1)} N.` : '';
+    if (this.note.textContent !== hidden) {
+      this.note.textContent = hidden;
+      this.note.hidden = hidden === '';
+    }
+  }
+
+  private tissueChanged(): void {
+    this.stage?.showTissue(this.most);
+  }
+
+  private setScale(largest: number): void {
+    const marks = scaleMarks(largest);
+    this.most = marks[marks.length - 1];
+    this.scale.replaceChildren(colorBar(marks));
+    this.tissueChanged();
+  }
+
+  private buildSettings(stage: Stage): void {
+    const summary = element('summary', '', 'View');
+    summary.title = 'What the 3D view shows';
+    const colors = element('div', 'choice');
+    for (const [text, on] of [['Tissue', false], ['Displacement', true]] as const) {
+      const label = element('label');
+      const input = element('input');
+      input.type = 'radio';
+      input.name = 'colors';
+      input.checked = !on;
+      input.addEventListener('change', () => {
+        this.byDisplacement = on;
+        this.scale.hidden = !on;
+        for (const surface of stage.surfaces) surface.colorByDisplacement(on);
+        stage.showTissue(this.most);
+      });
+      label.append(input, text);
+      colors.append(label);
+    }
+    const contacts = element('label');
+    const box = element('input');
+    box.type = 'checkbox';
+    box.checked = true;
+    box.addEventListener('change', () => {
+      stage.contacts.object.visible = box.checked;
+      stage.draw();
+    });
+    contacts.append(box, 'Contact points');
+    this.cutControl = new CutControl(stage);
+    const body = element('div', 'settings-body');
+    body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,
+                element('h3', '', 'Shown'), this.list, contacts, contactKey());
+    this.settings.append(summary, body);
+    const views = element('div', 'views');
+    const names = ['Oblique', 'Left', 'Front', 'Feet'];
+    VIEWS.forEach((view, i) => {
+      const b = button(names[i], () => stage.look(view.from));
+      b.title = i === 0 ? 'Reset the view' : view.name;
+      views.append(b);
+    });
+    const closer = button('+', () => stage.zoom(1.25));
+    closer.setAttribute('aria-label', 'Closer');
+    const farther = button('−', () => stage.zoom(0.8));
+    farther.setAttribute('aria-label', 'Farther away');
+    views.append(closer, farther);
+    this.root.append(views, this.settings);
+  }
+
+  private regionRow(i: number): HTMLElement {
+    const stage = this.stage as Stage;
+    const surface = stage.surfaces[i];
+    const row = element('div', 'region');
+    const label = element('label');
+    const box = element('input');
+    box.type = 'checkbox';
+    box.checked = surface.visible;
+    const apply = () => {
+      surface.applyLook();
+      surface.update(this.most);  // it was left out while it was hidden
+      stage.cut.refresh();
+      stage.draw();
+    };
+    box.addEventListener('change', () => {
+      surface.visible = box.checked;
+      this.onVisibility(i, box.checked);
+      apply();
+    });
+    const swatch = element('span', 'swatch');
+    swatch.style.background = surface.region.color;
+    label.append(box, swatch, surface.region.label + (surface.region.target ? ' (target)' : ''));
+    const slider = element('input');
+    slider.type = 'range';
+    slider.min = '0';
+    slider.max = '1';
+    slider.step = '0.01';
+    slider.value = String(surface.opacity);
+    slider.setAttribute('aria-label', `Opacity of ${surface.region.label}`);
+    slider.addEventListener('input', () => {
+      surface.opacity = slider.valueAsNumber;
+      apply();
+    });
+    row.append(label, slider);
+    return row;
+  }
+}

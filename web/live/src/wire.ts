@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The messages of docs/live_protocol.md. Decoding checks every length before it reads and returns what is wrong as text.
+import type { Scene, SceneText } from './scene';
+
+export const SUBPROTOCOL = 'stylet-live-1';
+export const PROTOCOL = 1;
+
+export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, hand = 16, command = 17 }
+export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
+export const SAMPLE_WORDS = 8;  // time, depth, axial, sagittal, lateral force, CPU time [µs], tip state, flags
+
+/** Vectors are views into the message, LPS, [mm] or [N]. */
+export interface Frame {
+  time: number;              // [s] simulated
+  paused: boolean;
+  replayed: boolean;
+  trusted: boolean;          // the force
+  shown: boolean;            // displacement follows
+  whole: boolean;            // the samples are the whole curve: forget those before
+  approximate: boolean;      // compliance is missing: the force is about right
+  flags: number;
+  tipState: number;
+  sticking: number;
+  iterations: number;
+  steps: number;
+  missed: number;            // deadlines so far
+  depth: number;             // [mm] of the base beyond the skin point
+  force: Float32Array;       // [N] axial, sagittal, lateral
+  torque: Float32Array;      // [N·mm] LPS
+  tip: Float32Array;
+  base: Float32Array;
+  orientation: Float32Array; // w x y z
+  hand: Float32Array;        // [degrees] roll, tilt to the left, tilt to anterior
+  hidden: number;            // [N] whose displacement is not shown
+  unit: number;              // [mm] of a unit of displacement
+  line: Float32Array;        // (3 × points) base to tip
+  contacts: Float32Array;    // (4 × contacts) x y z, state 0 slipping, 1 sticking, 2 tip
+  contactForces: Float32Array;  // (3 × contacts) on the tissue
+  samples: Float32Array;     // (8 × steps) times less the frame's
+  displacement: Int16Array;  // (3 × nodes of the scene), or empty
+}
+
+export interface Status {
+  state: 'loading' | 'ready' | 'failed';
+  stage?: string; fraction?: number | null; message?: string; cure?: string;
+  mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string;
+  you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string;
+  recording?: { name: string; seconds: number; problem?: string } | null;
+  replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
+  loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;
+  dropped_messages?: number; skipped_frames?: number;
+}
+
+export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string }
+export interface Notice { text: string; cure: string }
+
+export type Command =
+  | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' }
+  | { do: 'hole'; hole: string } | { do: 'insertion' | 'case'; index: number } | { do: 'step'; count: number }
+  | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number };
+
+export interface Hand { depth: number; speed: number; roll: number; tiltLeft: number; tiltAnterior: number }
+
+export type Message =
+  | { kind: Kind.scene; scene: Scene } | { kind: Kind.frame; frame: Frame } | { kind: Kind.status; status: Status }
+  | { kind: Kind.event; event: Event } | { kind: Kind.notice; notice: Notice };
+
+export class WireError extends Error {}
+
+const COMPLIANCE_MISSING = 1 << 2;  // of StepReport
+const HEADER = 8;
+const FRAME_HEADER = 148;
+const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000 };
+
+function must(holds: boolean, what: string): asserts holds {
+  if (!holds) throw new WireError(what);
+}
+
+function json(buffer: ArrayBuffer, from: number, length: number): unknown {
+  try {
+    return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(new Uint8Array(buffer, from, length)));
+  } catch {
+    throw new WireError('a text that is not JSON');
+  }
+}
+
+function decodeScene(buffer: ArrayBuffer, view: DataView): Scene {
+  must(buffer.byteLength >= HEADER + 12, 'a scene without its header');
+  const bytes = view.getUint32(8, true);
+  const nodes = view.getUint32(12, true);
+  const triangles = view.getUint32(16, true);
+  must(nodes <= LIMITS.nodes && triangles <= LIMITS.triangles, `a scene of ${nodes} nodes and ${triangles} triangles`);
+  must(bytes % 4 === 0 && buffer.byteLength === 20 + bytes + 12 * nodes + 12 * triangles, 'a scene of the wrong length');
+  const text = json(buffer, 20, bytes) as SceneText;
+  must(text.protocol === PROTOCOL, `a scene of protocol ${text.protocol}; this page speaks ${PROTOCOL}`);
+  const points = new Float32Array(buffer, 20 + bytes, 3 * nodes);
+  const corners = new Uint32Array(buffer, 20 + bytes + 12 * nodes, 3 * triangles);
+  must(corners.every((c) => c < nodes), 'a triangle whose corner does not exist');
+  must(points.every(Number.isFinite), 'a position that is not a number');
+  for (const patch of text.patches) {
+    must(patch.first >= 0 && patch.count >= 0 && patch.first + patch.count <= triangles, 'a patch beyond the last triangle');
+    must(patch.inside >= 0 && patch.inside < text.regions.length && patch.outside < text.regions.length, 'a patch of no region');
+  }
+  return { ...text, points, corners };
+}
+
+function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
+  must(buffer.byteLength >= FRAME_HEADER, 'a frame without its header');
+  const u = (word: number) => view.getUint32(16 + 4 * word, true);
+  const floats = (offset: number, count: number) => new Float32Array(buffer, offset, count);
+  const bits = u(0);
+  const [p, c, s, n] = [132, 136, 140, 144].map((offset) => view.getUint32(offset, true));
+  must(p <= LIMITS.points && c <= LIMITS.contacts && s <= LIMITS.samples && n <= LIMITS.nodes, 'a frame of impossible size');
+  const atContacts = FRAME_HEADER + 12 * p;
+  const atSamples = atContacts + 32 * c;
+  const atNodes = atSamples + 4 * SAMPLE_WORDS * s;
+  must(buffer.byteLength === atNodes + 6 * n, 'a frame of the wrong length');
+  const contacts = new Float32Array(4 * c);
+  const contactForces = new Float32Array(3 * c);
+  const raw = floats(atContacts, 8 * c);
+  for (let i = 0; i < c; i++) {
+    const state = view.getUint32(atContacts + 32 * i + 28, true);
+    for (let k = 0; k < 3; k++) {
+      contacts[4 * i + k] = raw[8 * i + k];
+      contactForces[3 * i + k] = raw[8 * i + 3 + k];
+    }
+    contacts[4 * i + 3] = state & 2 ? 2 : state & 1;
+  }
+  return {
+    time: view.getFloat64(8, true),
+    paused: (bits & 1) !== 0, replayed: (bits & 2) !== 0, trusted: (bits & 4) !== 0, shown: (bits & 8) !== 0, whole: (bits & 16) !== 0,
+    approximate: (u(1) & COMPLIANCE_MISSING) !== 0, flags: u(1), tipState: u(2), sticking: u(3), iterations: u(4), steps: u(5), missed: u(6),
+    depth: view.getFloat32(44, true),
+    force: floats(48, 3), torque: floats(60, 3), tip: floats(72, 3), base: floats(84, 3), orientation: floats(96, 4), hand: floats(112, 3),
+    hidden: view.getFloat32(124, true), unit: view.getFloat32(128, true),
+    line: floats(FRAME_HEADER, 3 * p),
+    contacts, contactForces,
+    samples: floats(atSamples, SAMPLE_WORDS * s),
+    displacement: new Int16Array(buffer, atNodes, 3 * n),
+  };
+}
+
+/** What a message says; null for a kind this page does not know. Throws a WireError for one that is malformed. */
+export function decode(buffer: ArrayBuffer): Message | null {
+  must(buffer.byteLength >= HEADER, 'a message without its header');
+  const view = new DataView(buffer);
+  const rest = () => json(buffer, HEADER, buffer.byteLength - HEADER);
+  switch (view.getUint32(0, true)) {
+    case Kind.scene: return { kind: Kind.scene, scene: decodeScene(buffer, view) };
+    case Kind.frame: return { kind: Kind.frame, frame: decodeFrame(buffer, view) };
+    case Kind.status: return { kind: Kind.status, status: rest() as Status };
+    case Kind.event: return { kind: Kind.event, event: rest() as Event };
+    case Kind.notice: return { kind: Kind.notice, notice: rest() as Notice };
+    default: return null;
+  }
+}
+
+export function encodeHand(hand: Hand): ArrayBuffer {
+  const view = new DataView(new ArrayBuffer(HEADER + 20));
+  view.setUint32(0, Kind.hand, true);
+  [hand.depth, hand.speed, hand.roll, hand.tiltLeft, hand.tiltAnterior].forEach((value, i) => view.setFloat32(HEADER + 4 * i, value, true));
+  return view.buffer as ArrayBuffer;
+}
+
+export function encodeCommand(command: Command): ArrayBuffer {
+  const text = new TextEncoder().encode(JSON.stringify(command));
+  const buffer = new ArrayBuffer(HEADER + text.length);
+  new DataView(buffer).setUint32(0, Kind.command, true);
+  new Uint8Array(buffer, HEADER).set(text);
+  return buffer;
+}

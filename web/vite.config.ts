@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One script and one style sheet for each page, which the stylet program carries inside:
+//   vite build --mode live          the page of stylet serve
+//   vite build --mode live-fake     the same, with a made-up server inside: open it with ?fake
+//   vite build --mode report        the report of an insertion
+//   vite build --mode reproduce     the page of stylet reproduce
+//   vite build --mode validate      the page of stylet validate
+import { defineConfig } from 'vite';
+
+const ENTRIES: Record<string, string> = {
+  live: 'live/src/main.ts',
+  'live-fake': 'live/src/main.ts',
+  report: 'report/src/main.ts',
+  reproduce: 'report/src/reproduce/main.ts',
+  validate: 'report/src/validate/main.ts',
+};
+
+export default defineConfig(({ mode }) => {
+  const entry = ENTRIES[mode];
+  if (!entry) throw new Error(`There is no page "${mode}": --mode takes ${Object.keys(ENTRIES).join(', ')}`);
+  return {
+    define: { __FAKE_SERVER__: JSON.stringify(mode === 'live-fake') },
+    build: {
+      target: 'es2020',
+      cssCodeSplit: false,
+      emptyOutDir: false,
+      lib: { entry, formats: ['iife'], name: 'stylet', fileName: () => `${mode}.js` },
+      rollupOptions: { output: { assetFileNames: `${mode}[extname]` } },
+    },
+  };
+});
