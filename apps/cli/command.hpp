@@ -25,5 +25,6 @@ Command add_insert_command(CLI::App& program);
 Command add_reproduce_command(CLI::App& program);
 Command add_bench_command(CLI::App& program);
 Command add_validate_command(CLI::App& program);
+Command add_serve_command(CLI::App& program);
 
 }  // namespace stylet::cli

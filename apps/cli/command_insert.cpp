@@ -4,8 +4,10 @@
 #include "mesh_report.hpp"
 #include "output_path.hpp"
 #include "prepared_model.hpp"
+#include "recorded_run.hpp"
 #include "table.hpp"
 
+#include "stylet/io/model_file.hpp"
 #include "stylet/io/results_writer.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/sim/run.hpp"
@@ -72,11 +74,17 @@ std::string mesh_changes_text(const Summary& summary) {
 class Recorder final : public RunObserver {
  public:
   explicit Recorder(ResultsWriter& writer) : writer_(writer) {}
-  Result<> on_step(const StepRecord& step) override { return writer_.add_step(step); }
+  Result<> on_step(const StepRecord& step) override {
+    steps_.push_back(step);
+    return writer_.add_step(step);
+  }
   Result<> on_frame(const Frame& frame) override { return writer_.add_frame(frame); }
+
+  [[nodiscard]] const std::vector<StepRecord>& steps() const { return steps_; }
 
  private:
   ResultsWriter& writer_;
+  std::vector<StepRecord> steps_;
 };
 
 std::string title(EventKind kind, const std::string& region) {
@@ -139,6 +147,22 @@ Result<Json> written_summary(const std::filesystem::path& folder) {
   return json;
 }
 
+/// A recording with its steps, or a scenario or saved model without any.
+Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress& progress) {
+  if (is_hdf5_file(arguments.scenario) && !is_model_file(arguments.scenario))
+    return recorded_run(arguments.scenario, arguments.settings, progress);
+  auto prepared = prepared_model(arguments.scenario, arguments.settings, progress);
+  if (!prepared) return prepared.error();
+  RecordedRun run;
+  run.prepared = std::move(*prepared);
+  return run;
+}
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code code;
+  return std::filesystem::equivalent(a, b, code);
+}
+
 Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (arguments.print_schema) {
     console.say(schema_text());
@@ -155,23 +179,29 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
 
-  const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console);
-  if (!prepared) return prepared.error();
-  for (const std::string& note : prepared->notes) console.detail(note);
-  const std::shared_ptr<const Model>& model = prepared->model;
+  Result<RecordedRun> source = what_to_run(arguments, console.progress());
+  if (!source) return source.error();
+  const PreparedModel& prepared = source->prepared;
+  const bool repeats = !source->steps.empty();
+  if (repeats && same_file(folder / "run.h5", arguments.scenario))
+    return input_error(folder.string(), "the recording would be replaced by its repetition",
+                       "Name another folder (-o)");
+  for (const std::string& note : prepared.notes) console.detail(note);
+  const std::shared_ptr<const Model>& model = prepared.model;
   const Scenario& scenario = model->scenario();
   for (const std::string& warning : model->warnings()) console.warn(warning);
 
   RunInfo info = model->info();
   info.scenario_text = to_toml(scenario);
-  info.warnings.insert(info.warnings.end(), prepared->notes.begin(), prepared->notes.end());
+  info.warnings.insert(info.warnings.end(), prepared.notes.begin(), prepared.notes.end());
   const Tissue& tissue = model->tissue();
   Result<std::unique_ptr<ResultsWriter>> writer =
       ResultsWriter::open(folder, info, model->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
   if (!writer) return writer.error();
   const Progress progress = console.progress();
   Recorder recorder(**writer);
-  const Result<Summary> summary = run(model, recorder, progress);
+  const Result<Summary> summary =
+      repeats ? run_recorded(model, source->steps, recorder, progress) : run(model, recorder, progress);
   if (!summary) return summary.error();
   if (Result<> finished = (*writer)->finish(*summary, progress, scenario.output.pictures); !finished) return finished;
 
@@ -179,6 +209,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   console.say(
       fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario.name, summary->nodes, summary->tets, info.method));
   console.say(summary_text(*summary));
+  if (repeats) console.say("Repeated: " + compare_forces(source->steps, recorder.steps()) + ".");
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
   const Result<Json> json = written_summary(folder);
   return json ? console.write_json(*json) : Result<>(json.error());
@@ -190,8 +221,10 @@ Command add_insert_command(CLI::App& program) {
   auto arguments = std::make_shared<InsertArguments>();
   CLI::App* app =
       program.add_subcommand("insert", "Insert a needle: run a scenario and write forces, displacements and a report");
-  app->add_option("SCENARIO", arguments->scenario,
-                  "Scenario file (TOML; --print-schema lists its keys), or a model that `stylet prepare` saved")
+  app->add_option(
+         "SCENARIO", arguments->scenario,
+         "Scenario file (TOML; --print-schema lists its keys), a model that `stylet prepare` saved, or the run.h5 of "
+         "a recording, whose base motion is then repeated step by step")
       ->type_name("SCENARIO.toml");
   app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
   app->add_option("--set", arguments->settings,

@@ -39,7 +39,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
     return input_error(arguments.scenario, "this is an HDF5 file, a scenario (TOML) is expected",
                        "Name the scenario that the model is to be made of");
   }
-  const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console);
+  const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console.progress());
   if (!prepared) return prepared.error();
   const Model& model = *prepared->model;
   for (const std::string& note : prepared->notes) console.detail(note);

@@ -51,9 +51,9 @@ int run(int argc, char** argv, Console& console) {
   program.footer("Exit status: 0 done, 1 the run failed, 2 the input or the command line was wrong.");
 
   CommonOptions common;
-  const std::array commands{add_phantom_command(program), add_mesh_command(program),    add_info_command(program),
-                            add_prepare_command(program), add_insert_command(program),  add_reproduce_command(program),
-                            add_bench_command(program),   add_validate_command(program)};
+  const std::array commands{add_phantom_command(program), add_mesh_command(program),     add_info_command(program),
+                            add_prepare_command(program), add_insert_command(program),   add_reproduce_command(program),
+                            add_bench_command(program),   add_validate_command(program), add_serve_command(program)};
   add_common_options(program, common);  // they may stand before the command and behind it
   for (const Command& command : commands) add_common_options(*command.app, common);
 

@@ -31,8 +31,7 @@ Result<PreparedModel> saved(const std::string& file, const std::vector<std::stri
 }  // namespace
 
 Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
-                                     Console& console) {
-  const Progress progress = console.progress();
+                                     const Progress& progress) {
   if (is_hdf5_file(file)) return saved(file, settings, progress);
   const Result<Scenario> scenario = read_scenario(file, settings);
   if (!scenario) return scenario.error();

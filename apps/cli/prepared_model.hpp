@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "console.hpp"
-
+#include "stylet/core/progress.hpp"
 #include "stylet/sim/model.hpp"
 
 #include <memory>
@@ -23,6 +22,6 @@ struct PreparedModel {
 /// @param file SCENARIO.toml or MODEL.stylet
 /// @param settings of --set
 Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
-                                     Console& console);
+                                     const Progress& progress);
 
 }  // namespace stylet::cli

@@ -16,7 +16,7 @@ struct RunRecording {
   RunInfo info;
   TetMesh mesh;
   std::vector<StepRecord> steps;
-  std::vector<Frame> frames;  ///< displacements were stored with single precision
+  std::vector<Frame> frames;       ///< displacements were stored with single precision
   std::optional<Summary> summary;  ///< empty while the run goes on, or when it was killed
   std::vector<Event> events{};     ///< of a live session also when it was killed
 };

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "prepared_model.hpp"
+#include "validators.hpp"
+
+#include "stylet/io/model_file.hpp"
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/serve/server.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+
+namespace stylet::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeArguments {
+  std::vector<std::string> inputs;
+  std::string address = "127.0.0.1";
+  int port = 8080;
+  std::string token;
+  std::string recordings = "out/live";
+  std::vector<std::string> settings;
+};
+
+/// A scenario or a saved model as a case of the page. A scenario is read now, so that what is wrong with it is said
+/// before anything is opened.
+Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments) {
+  std::string title = file.stem().string();
+  if (!is_hdf5_file(file)) {
+    const Result<Scenario> scenario = read_scenario(file, arguments.settings);
+    if (!scenario) return scenario.error();
+    title = scenario->name;
+  }
+  return serve::CaseSource{
+      title, [file, settings = arguments.settings](const Progress& progress) -> Result<std::shared_ptr<const Model>> {
+        auto prepared = prepared_model(file.string(), settings, progress);
+        if (!prepared) return prepared.error();
+        return prepared->model;
+      }};
+}
+
+/// All scenarios and saved models in a folder, by name; those that cannot be read are left out and said.
+std::vector<serve::CaseSource> cases_in(const fs::path& folder, const ServeArguments& arguments, Console& console) {
+  std::vector<fs::path> files;
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(folder, code)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".toml" || extension == ".stylet") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<serve::CaseSource> cases;
+  for (const fs::path& file : files) {
+    if (auto source = case_of(file, arguments)) {
+      cases.push_back(std::move(*source));
+    } else {
+      console.warn(source.error().message());
+    }
+  }
+  return cases;
+}
+
+Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& session, Console& console) {
+  for (const std::string& input : arguments.inputs) {
+    std::error_code code;
+    if (fs::is_directory(input, code)) {
+      auto cases = cases_in(input, arguments, console);
+      if (cases.empty())
+        return input_error(input, "there is no scenario (.toml) and no saved model (.stylet) in this folder",
+                           "Name a folder with some, or a file");
+      std::move(cases.begin(), cases.end(), std::back_inserter(session.cases));
+    } else if (is_hdf5_file(input) && !is_model_file(input)) {
+      const fs::path file = fs::absolute(input);
+      if (file.filename() != "run.h5")
+        return input_error(input, "a recording is a folder with a run.h5", "Name the run.h5 in its folder");
+      session.recordings = file.parent_path().parent_path();
+      session.replay = file.parent_path().filename().string();
+    } else {
+      auto source = case_of(input, arguments);
+      if (!source) return source.error();
+      session.cases.push_back(std::move(*source));
+    }
+  }
+  return Ok{};
+}
+
+/// Waits until the user or the system wants the program to end.
+class EndSignal {
+ public:
+  /// Before any other thread starts, so that none of them gets it.
+  EndSignal() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+  void wait() {
+    int signal = 0;
+    sigwait(&signals_, &signal);
+    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // a second one ends the program at once
+  }
+
+ private:
+  sigset_t signals_{};
+};
+
+Result<> run_serve(const ServeArguments& arguments, Console& console) {
+  serve::ServerSettings settings;
+  settings.address = arguments.address;
+  settings.port = static_cast<std::uint16_t>(arguments.port);
+  settings.token = arguments.token;
+  settings.session.recordings = arguments.recordings;
+  if (auto added = add_inputs(arguments, settings.session, console); !added) return added;
+  EndSignal end;
+  auto server = serve::Server::open(std::move(settings));
+  if (!server) return server.error();
+  (*server)->start();
+  console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
+  if (auto said = console.write_json({{"url", (*server)->url()}, {"port", (*server)->port()}}); !said) return said;
+  end.wait();
+  console.say("Ending; the recording is being closed.");
+  (*server)->stop();
+  return Ok{};
+}
+
+}  // namespace
+
+Command add_serve_command(CLI::App& program) {
+  auto arguments = std::make_shared<ServeArguments>();
+  CLI::App* app = program.add_subcommand(
+      "serve", "Take the needle in your hand: a live simulation that a browser shows. Not a medical device");
+  app->add_option(
+         "INPUT", arguments->inputs,
+         "Scenario files (TOML), models that `stylet prepare` saved, folders of such files, or the run.h5 of a "
+         "recording to replay")
+      ->type_name("SCENARIO.toml")
+      ->required();
+  app->add_option("--port", arguments->port, "Port to listen on; 0: any that is free")
+      ->capture_default_str()
+      ->type_name("P")
+      ->check(whole_number_between(0, 65535));
+  app->add_option("--address", arguments->address,
+                  "Address to listen on. By default this machine only; 0.0.0.0: every network it is in, with a token")
+      ->capture_default_str()
+      ->type_name("IP");
+  app->add_option("--token", arguments->token, "Token that viewers must know; made at random where one is needed")
+      ->type_name("TEXT");
+  app->add_option("-o,--output", arguments->recordings, "Folder for the recordings, one for each insertion")
+      ->capture_default_str()
+      ->type_name("OUT/");
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenarios, e.g. --set mesh.nodes=5000; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return {app, [arguments](Console& console) { return run_serve(*arguments, console); }};
+}
+
+}  // namespace stylet::cli

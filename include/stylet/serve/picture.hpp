@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/realtime/snapshot.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// What viewers are shown (docs/live_protocol.md).
+namespace stylet::serve {
+
+/// A case as it lies undeformed.
+struct Scene {
+  std::string text;                      ///< JSON
+  std::vector<float> positions;          ///< (3 n) [mm] LPS of the nodes of surfaces
+  std::vector<std::uint32_t> triangles;  ///< (3 t) corners, patch by patch
+};
+
+/// A step on the force curve.
+struct Sample {
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  double axial_N = 0.0, sagittal_N = 0.0, lateral_N = 0.0;
+  double step_us = 0.0;
+  TipState tip_state = TipState::air;
+  unsigned flags = 0;  ///< StepReport::Flag
+};
+
+/// One moment.
+struct LiveFrame {
+  enum Bit : std::uint32_t { paused = 1, replayed = 2, trusted = 4, displaced = 8, whole_curve = 16 };
+
+  double time_s = 0.0;  ///< simulated
+  std::uint32_t bits = 0;
+  std::uint32_t flags = 0;  ///< StepReport::Flag
+  TipState tip_state = TipState::air;
+  std::uint32_t sticking = 0;
+  std::uint32_t iterations = 0;
+  std::uint32_t steps = 0;
+  std::uint32_t missed = 0;  ///< deadlines
+  double depth_mm = 0.0;
+  double force_axial_N = 0.0, force_sagittal_N = 0.0, force_lateral_N = 0.0;  ///< as StepRecord
+  Vec3 torque_Nmm = Vec3::Zero();
+  Vec3 tip_mm = Vec3::Zero();
+  Pose base;
+  double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< of the hand
+  double left_out_N = 0.0;                                              ///< DisplayField::Load::left_out_N()
+  std::vector<float> centreline;                                        ///< (3 p) [mm] LPS, base to tip
+  std::vector<ContactSnapshot> contacts;
+  std::vector<Sample> samples;             ///< steps since the last frame; with whole_curve all
+  double unit_mm = 0.0;                    ///< of `displacement`
+  std::vector<std::int16_t> displacement;  ///< (3 n) of the scene's nodes; may be empty
+};
+
+/// Puts displacements into a frame, in the finest unit that holds them.
+/// @param u [mm] (3 × n) LPS
+void set_displacement(LiveFrame& frame, const Eigen::Ref<const Eigen::Matrix3Xf>& u);
+
+/// Something that happened, or "started" with the insertion's name for the region.
+struct LiveEvent {
+  std::string kind;
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  double force_N = 0.0;
+  std::string region;
+};
+
+/// Why a request was not carried out.
+struct Notice {
+  std::string text;
+  std::string cure;
+};
+
+/// How a session is doing, but for what differs from viewer to viewer.
+struct SessionStatus {
+  enum class State { loading, ready, failed };
+  State state = State::loading;
+  std::string stage;       ///< of loading
+  double fraction = -1.0;  ///< of loading, −1 where it is not known
+  Notice failure;
+  bool paused = false;
+  std::string insertion;  ///< its name
+  std::string hole;       ///< empty where it is none
+  std::string device;
+  struct Recording {
+    std::string name;
+    double seconds = 0.0;
+    std::string problem;
+  } recording;
+  struct Replay {
+    std::string name;  ///< empty: live
+    double time_s = 0.0;
+    double duration_s = 0.0;
+    double rate = 0.0;  ///< 0: stands
+  } replay;
+  struct Loop {
+    std::int64_t steps = 0;
+    std::int64_t missed = 0;
+    double p50_us = 0.0, p99_us = 0.0, max_us = 0.0;  ///< thread CPU time of a step
+    std::string rights;
+  } loop;
+};
+
+}  // namespace stylet::serve

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/realtime/runner.hpp"
+#include "stylet/serve/picture.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stylet::serve {
+
+struct HandTarget;
+
+/// A case that can be opened: a scenario file, a saved model.
+struct CaseSource {
+  std::string title;
+  std::function<Result<std::shared_ptr<const Model>>(const Progress&)> load;
+};
+
+struct SessionSettings {
+  std::vector<CaseSource> cases;      ///< the first is opened; there must be one unless something is replayed
+  std::filesystem::path recordings;   ///< folder; every insertion makes a folder in it, with its run.h5
+  std::string replay;                 ///< name of a recording to start with; empty: live
+  RunnerSettings runner;              ///< keep_steps is set
+  double pictures_per_s = 60.0;       ///< at most
+  double recorded_frames_per_s = 10;  ///< at most; fewer where a mesh makes them expensive
+};
+
+/// Who watches a session. Called from the session's thread; returns at once.
+class Audience {
+ public:
+  virtual ~Audience() = default;
+  virtual void show(std::shared_ptr<const Scene> scene) = 0;
+  virtual void show(std::shared_ptr<const LiveFrame> frame) = 0;
+  virtual void tell(const SessionStatus& status) = 0;
+  virtual void tell(const LiveEvent& event) = 0;
+  /// @param viewer who asked for what is refused
+  virtual void refuse(std::uint64_t viewer, const Notice& why) = 0;
+};
+
+/// What viewers can ask a session for.
+struct Request {
+  enum class Kind {
+    hole,       ///< text: another hole of the template
+    insertion,  ///< number: one that the scenario plans
+    reset,      ///< back to the start of this one
+    pause,
+    resume,
+    step,       ///< number: while paused
+    open_case,  ///< number
+    replay,     ///< text: a recording
+    live,       ///< back from it
+    seek,       ///< number [s]
+    play,       ///< number: rate, 0 stands
+    greet       ///< somebody has come: the whole curve again
+  };
+  Kind kind{};
+  std::uint64_t viewer = 0;
+  std::string text;
+  double number = 0.0;
+};
+
+/// A live simulation that people watch: opens cases, runs the real-time loop, makes pictures of it, records it, and
+/// replays recordings. One thread of its own; the loop has its own two.
+class Session {
+ public:
+  Session(SessionSettings settings, Audience& audience);
+  ~Session();  ///< stop()
+
+  void start();
+  /// Ends the loop; the recording is whole afterwards.
+  void stop();
+  /// Any thread. @return false: too many are waiting
+  bool ask(Request request);
+  /// Where the hand that holds the needle wants the base. From one thread.
+  void aim(const HandTarget& target);
+  /// Nobody holds the needle any more. From the same thread.
+  void let_go();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace stylet::serve

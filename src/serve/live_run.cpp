@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "live_run.hpp"
+
+#include "wire.hpp"
+
+#include "stylet/io/scenario_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <numeric>
+
+namespace stylet::serve {
+
+namespace {
+
+constexpr std::size_t kCurve = 8000;      ///< samples kept for who comes later
+constexpr double kShareOfTime = 0.3;      ///< of this thread's time goes into displacements for pages
+constexpr double kShareForFrames = 0.05;  ///< … and for the recording
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
+
+LiveRun::LiveRun(const OpenModel& open, double recorded_frames_per_s)
+    : open_(open),
+      load_(open.field->make_load()),
+      shown_(3, static_cast<Eigen::Index>(open.scene_nodes.size())),
+      all_nodes_(static_cast<std::size_t>(open.model->mesh().node_count())),
+      room_(Snapshot::kForces),
+      step_room_(1024),
+      frame_every_s_(1.0 / recorded_frames_per_s) {
+  std::iota(all_nodes_.begin(), all_nodes_.end(), Index{0});
+}
+
+Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
+                                                const std::filesystem::path& folder, const RunnerSettings& settings,
+                                                double recorded_frames_per_s) {
+  const PlannedInsertion& plan = open.model->insertions()[insertion];
+  std::unique_ptr<LiveRun> run(new LiveRun(open, recorded_frames_per_s));
+  run->hand_ = std::make_shared<PageDevice>(plan, open.model->scenario());
+  RunnerSettings kept = settings;
+  kept.keep_steps = true;
+  auto runner = RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion),
+                                       std::make_unique<SharedDevice>(run->hand_), kept);
+  if (!runner) return runner.error();
+  run->runner_ = std::move(*runner);
+
+  RunInfo info = open.model->info(insertion);
+  Scenario scenario = open.model->scenario();
+  scenario.insertions = {scenario.insertions[insertion]};  // the one that this recording is of
+  info.scenario_text = to_toml(scenario);
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh());
+  if (recorder) {
+    run->recorder_ = std::move(*recorder);
+  } else {
+    run->problem_ = recorder.error().message();
+  }
+  if (auto started = run->runner_->start(); !started) return started.error();
+  return run;
+}
+
+void LiveRun::record(const Result<>& done) {
+  if (done.ok()) return;
+  problem_ = done.error().message();
+  recorder_.reset();
+}
+
+void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
+  while (const std::size_t count = runner_->take_steps(step_room_)) {
+    for (const StepSnapshot& step : std::span(step_room_).first(count)) {
+      if (recorder_) record(recorder_->add_step(step_record(step)));
+      const Sample sample{step.time_s,          step.base_depth_mm, step.force_axial_N, step.force_sagittal_N,
+                          step.force_lateral_N, step.step_us,       step.tip_state,     step.flags};
+      unsent_.push_back(sample);
+      curve_.push_back(sample);
+    }
+    last_step_ = step_room_[count - 1];
+    time_s_ = last_step_.time_s;
+  }
+  if (curve_.size() > 2 * kCurve) wire::thin(curve_, kCurve);
+  if (unsent_.size() > 2 * kCurve) wire::thin(unsent_, kCurve);
+
+  const std::vector<std::string>& regions = open_.model->mesh().regions;
+  std::array<EventSnapshot, 32> events;
+  while (const std::size_t count = runner_->take_events(events)) {
+    for (const EventSnapshot& e : std::span(events).first(count)) {
+      const std::string region = e.region < 0 ? std::string() : regions[static_cast<std::size_t>(e.region)];
+      if (recorder_) record(recorder_->add_event({e.kind, e.time_s, e.depth_mm, e.force_N, region}));
+      tell({to_string(e.kind), e.time_s, e.depth_mm, e.force_N, region});
+      next_frame_s_ = 0.0;  // a picture of it
+    }
+  }
+}
+
+void LiveRun::put_displacement(LiveFrame& frame) {
+  const double before = now_s();
+  frame.left_out_N = load_.left_out_N();
+  if (before < picture_after_s_) return;
+  open_.field->displacement(open_.scene_nodes, load_, shown_);
+  set_displacement(frame, shown_);
+  const double after = now_s();
+  picture_after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
+}
+
+void LiveRun::record_frame(const Snapshot& snapshot, const std::string& label) {
+  const double before = now_s();
+  Frame frame;
+  frame.time_s = snapshot.time_s;
+  frame.base_depth_mm = snapshot.base_depth_mm;
+  frame.label = label;
+  Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(all_nodes_.size()));
+  open_.field->displacement(all_nodes_, load_, u);
+  frame.displacement = u.reshaped().cast<double>();
+  for (const Triple& point : snapshot.centreline) frame.needle.push_back(vec3(point));
+  for (const ContactSnapshot& c : std::span(snapshot.contacts).first(static_cast<std::size_t>(snapshot.contact_count)))
+    frame.contacts.push_back({vec3(c.position), vec3(c.force), c.s, c.sticking, c.tip});
+  record(recorder_->add_frame(frame));
+  next_frame_s_ = snapshot.time_s + std::max(frame_every_s_, (now_s() - before) / kShareForFrames);
+}
+
+std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
+  const bool fresh = runner_->fetch_snapshot();
+  if (!fresh && !whole_curve) return nullptr;
+  const Snapshot& s = runner_->snapshot();
+  open_.field->set(tissue_forces(s, room_), load_);
+  if (recorder_ && fresh && s.time_s > 0.0 && s.time_s >= next_frame_s_) record_frame(s, {});
+
+  auto frame = std::make_shared<LiveFrame>();
+  frame->time_s = s.time_s;
+  frame->bits = (s.paused ? LiveFrame::paused : 0U) | (s.trusted ? LiveFrame::trusted : 0U) |
+                (whole_curve ? LiveFrame::whole_curve : 0U);
+  frame->flags = s.flags;
+  frame->tip_state = s.tip_state;
+  frame->sticking = static_cast<std::uint32_t>(s.sticking);
+  frame->iterations = static_cast<std::uint32_t>(s.iterations);
+  frame->steps = static_cast<std::uint32_t>(s.counters.steps);
+  frame->missed = static_cast<std::uint32_t>(s.counters.missed_deadlines);
+  frame->depth_mm = s.base_depth_mm;
+  frame->force_axial_N = s.force_axial_N;
+  frame->force_sagittal_N = last_step_.force_sagittal_N;
+  frame->force_lateral_N = last_step_.force_lateral_N;
+  frame->torque_Nmm = vec3(s.hand.torque);
+  frame->tip_mm = vec3(s.tip);
+  frame->base = pose(s.base);
+  const HandTarget& hand = hand_->place();
+  frame->roll_deg = hand.roll_deg;
+  frame->tilt_left_deg = hand.tilt_left_deg;
+  frame->tilt_anterior_deg = hand.tilt_anterior_deg;
+  for (const Triple& point : s.centreline)
+    for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
+  frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
+  put_displacement(*frame);
+  if (whole_curve) {
+    frame->samples = curve_;
+    unsent_.clear();
+  } else {
+    frame->samples = std::exchange(unsent_, {});
+  }
+  lost_steps_ = s.counters.dropped_steps;
+  if (lost_steps_ > 0 && problem_.empty())
+    problem_ = fmt::format("{} steps were not recorded: the disk or this machine is too slow", lost_steps_);
+  return frame;
+}
+
+SessionStatus::Loop LiveRun::loop() const {
+  const auto times = runner_->times();
+  const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+  const Snapshot& s = runner_->snapshot();
+  return {.steps = s.counters.steps,
+          .missed = s.counters.missed_deadlines,
+          .p50_us = us(times->step_cpu.quantile_ns(0.5)),
+          .p99_us = us(times->step_cpu.quantile_ns(0.99)),
+          .max_us = us(times->step_cpu.largest_ns()),
+          .rights = runner_->rights().describe()};
+}
+
+}  // namespace stylet::serve

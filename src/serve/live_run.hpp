@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hand.hpp"
+#include "stylet/io/run_recorder.hpp"
+#include "stylet/realtime/runner.hpp"
+#include "stylet/serve/picture.hpp"
+#include "stylet/sim/display_field.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stylet::serve {
+
+/// A model that can be shown.
+struct OpenModel {
+  std::shared_ptr<const Model> model;
+  std::shared_ptr<const DisplayField> field;
+  std::vector<Index> scene_nodes;  ///< of the mesh
+};
+
+/// One insertion at a page: the real-time loop from a needle before the skin until the next one starts, and its
+/// recording. All calls from one thread.
+class LiveRun {
+ public:
+  /// @param folder of this recording; made. A disk that refuses does not keep anybody from inserting:
+  /// recording_problem() says so.
+  static Result<std::unique_ptr<LiveRun>> start(const OpenModel& open, std::size_t insertion,
+                                                const std::filesystem::path& folder, const RunnerSettings& settings,
+                                                double recorded_frames_per_s);
+
+  /// Passes on what has happened since: to the recording, and the events to `tell`. Often enough that no step is lost.
+  void pump(const std::function<void(const LiveEvent&)>& tell);
+  /// The newest picture, if there is one that was not fetched yet.
+  /// @param whole_curve with all samples instead of the new ones
+  std::shared_ptr<const LiveFrame> picture(bool whole_curve);
+
+  [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
+  [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
+  [[nodiscard]] SessionStatus::Loop loop() const;
+  [[nodiscard]] const std::string& recording_problem() const { return problem_; }
+  [[nodiscard]] double time_s() const { return time_s_; }
+
+ private:
+  LiveRun(const OpenModel& open, double recorded_frames_per_s);
+  void record(const Result<>& done);
+  void record_frame(const Snapshot& snapshot, const std::string& label);
+  void put_displacement(LiveFrame& frame);
+
+  OpenModel open_;
+  std::shared_ptr<PageDevice> hand_;
+  std::unique_ptr<RealtimeRunner> runner_;
+  std::unique_ptr<RunRecorder> recorder_;
+  std::string problem_;  ///< of the recording
+  DisplayField::Load load_;
+  Eigen::Matrix3Xf shown_;         ///< (3 × scene nodes)
+  std::vector<Index> all_nodes_;   ///< of the mesh
+  std::vector<TissueForce> room_;  ///< for forces
+  std::vector<StepSnapshot> step_room_;
+  std::vector<Sample> unsent_;  ///< since the last picture
+  std::vector<Sample> curve_;   ///< since the start, thinned
+  StepSnapshot last_step_;
+  double time_s_ = 0.0;
+  double frame_every_s_;          ///< of the recording, at least
+  double next_frame_s_ = 0.0;     ///< simulated time
+  double picture_after_s_ = 0.0;  ///< wall: the next displacement for the page
+  std::int64_t lost_steps_ = 0;
+};
+
+}  // namespace stylet::serve

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "access.hpp"
+#include "shelf.hpp"
+
+#include <boost/beast/http.hpp>
+
+namespace stylet::serve {
+
+using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
+using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
+
+/// Target and headers of a request.
+std::string_view target(const HttpRequest& request);
+
+/// What the server has beside the live connection: the page, and the recordings.
+class Pages {
+ public:
+  Pages(const Access& access, std::filesystem::path recordings) : access_(access), shelf_(std::move(recordings)) {}
+
+  [[nodiscard]] HttpResponse answer(const HttpRequest& request) const;
+  [[nodiscard]] Access::Verdict verdict(const HttpRequest& request) const;
+  [[nodiscard]] static HttpResponse refusal(const HttpRequest& request, boost::beast::http::status status,
+                                            const std::string& why);
+
+ private:
+  [[nodiscard]] HttpResponse recordings(const HttpRequest& request) const;
+  [[nodiscard]] HttpResponse recording(const HttpRequest& request, std::string_view path) const;
+
+  const Access& access_;
+  Shelf shelf_;
+};
+
+}  // namespace stylet::serve

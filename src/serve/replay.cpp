@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::serve {
+
+namespace {
+
+ContactSnapshot plain_contact(const ContactView& c) {
+  return {plain(c.position), plain(c.force), c.s, c.sticking, c.tip};
+}
+
+}  // namespace
+
+Replay::Replay(RunRecording recording, std::vector<Index> scene_nodes)
+    : recording_(std::move(recording)), scene_nodes_(std::move(scene_nodes)) {}
+
+double Replay::duration_s() const {
+  const double steps = recording_.steps.empty() ? 0.0 : recording_.steps.back().time_s;
+  return recording_.frames.empty() ? steps : std::max(steps, recording_.frames.back().time_s);
+}
+
+void Replay::seek(double time_s) {
+  const double to = std::clamp(time_s, 0.0, duration_s());
+  changed_ = changed_ || to != time_s_;
+  time_s_ = to;
+}
+
+void Replay::play(double rate) {
+  rate_ = std::clamp(rate, 0.0, 20.0);
+  if (rate_ > 0.0 && time_s_ >= duration_s()) seek(0.0);
+}
+
+void Replay::advance(double dt_s) {
+  if (rate_ == 0.0) return;
+  seek(time_s_ + rate_ * dt_s);
+  if (time_s_ >= duration_s()) rate_ = 0.0;
+}
+
+/// The last one at or before now; null before the first.
+const StepRecord* Replay::step() const {
+  const auto& steps = recording_.steps;
+  const auto after =
+      std::upper_bound(steps.begin(), steps.end(), time_s_, [](double t, const StepRecord& s) { return t < s.time_s; });
+  return after == steps.begin() ? nullptr : &*(after - 1);
+}
+
+/// Needle, contacts and displacement of now.
+void Replay::put_frame(LiveFrame& out) const {
+  const auto& frames = recording_.frames;
+  if (frames.empty()) return;
+  const auto after =
+      std::upper_bound(frames.begin(), frames.end(), time_s_, [](double t, const Frame& f) { return t < f.time_s; });
+  const Frame& a = after == frames.begin() ? frames.front() : *(after - 1);
+  const Frame& b = after == frames.end() ? frames.back() : *after;
+  const double span = b.time_s - a.time_s;
+  const double share = span > 0.0 ? std::clamp((time_s_ - a.time_s) / span, 0.0, 1.0) : 0.0;
+  for (std::size_t k = 0; k < a.needle.size(); ++k) {
+    const Vec3& from = a.needle[k];
+    const Vec3 point = k < b.needle.size() ? Vec3(from + share * (b.needle[k] - from)) : from;
+    for (const double value : point) out.centreline.push_back(static_cast<float>(value));
+  }
+  if (!a.needle.empty()) out.tip_mm = a.needle.back();  // until the first step says it exactly
+  for (const ContactView& c : (share < 0.5 ? a : b).contacts) out.contacts.push_back(plain_contact(c));
+  Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(scene_nodes_.size()));
+  for (std::size_t k = 0; k < scene_nodes_.size(); ++k) {
+    const Eigen::Index at = 3 * Eigen::Index{scene_nodes_[k]};
+    u.col(static_cast<Eigen::Index>(k)) =
+        ((1.0 - share) * a.displacement.segment<3>(at) + share * b.displacement.segment<3>(at)).cast<float>();
+  }
+  set_displacement(out, u);
+}
+
+std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
+  if (!changed_ && !whole_curve) return nullptr;
+  changed_ = false;
+  auto frame = std::make_shared<LiveFrame>();
+  frame->time_s = time_s_;
+  frame->bits = LiveFrame::replayed | LiveFrame::trusted | (rate_ == 0.0 ? LiveFrame::paused : 0U) |
+                (whole_curve ? LiveFrame::whole_curve : 0U);
+  put_frame(*frame);
+  if (const StepRecord* s = step()) {
+    frame->tip_state = s->tip_state;
+    frame->sticking = static_cast<std::uint32_t>(s->sticking);
+    frame->iterations = static_cast<std::uint32_t>(s->iterations);
+    frame->steps = static_cast<std::uint32_t>(s - recording_.steps.data()) + 1;
+    frame->depth_mm = s->base_depth_mm;
+    frame->force_axial_N = s->force_axial_N;
+    frame->force_sagittal_N = s->force_sagittal_N;
+    frame->force_lateral_N = s->force_lateral_N;
+    frame->torque_Nmm = s->torque_Nmm;
+    frame->tip_mm = s->tip_mm;
+    if (s->base.origin.allFinite()) frame->base = s->base;  // not in recordings of the first version
+  }
+  if (whole_curve) {
+    for (const StepRecord& s : recording_.steps)
+      frame->samples.push_back({s.time_s, s.base_depth_mm, s.force_axial_N, s.force_sagittal_N, s.force_lateral_N,
+                                s.step_us, s.tip_state, 0});
+  }
+  return frame;
+}
+
+}  // namespace stylet::serve

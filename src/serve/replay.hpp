@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/io/recording_io.hpp"
+#include "stylet/serve/picture.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace stylet::serve {
+
+/// A recording that is shown again: pictures of any of its moments, between recorded frames by interpolation. Forces
+/// and positions of the base and the tip are those of the step nearest before.
+class Replay {
+ public:
+  /// @param scene_nodes of the mesh, those of the scene
+  Replay(RunRecording recording, std::vector<Index> scene_nodes);
+
+  [[nodiscard]] double duration_s() const;
+  [[nodiscard]] double time_s() const { return time_s_; }
+  [[nodiscard]] double rate() const { return rate_; }
+  [[nodiscard]] const RunRecording& recording() const { return recording_; }
+
+  void seek(double time_s);
+  void play(double rate);  ///< times as fast as it was; from the start again where it has ended; 0 stands
+  /// Goes on with playing. @param dt_s [s] on the wall
+  void advance(double dt_s);
+
+  /// The picture of now, if it has changed since the last one.
+  std::shared_ptr<const LiveFrame> picture(bool whole_curve);
+
+ private:
+  [[nodiscard]] const StepRecord* step() const;
+  void put_frame(LiveFrame& out) const;
+
+  RunRecording recording_;
+  std::vector<Index> scene_nodes_;
+  double time_s_ = 0.0;
+  double rate_ = 0.0;
+  bool changed_ = true;
+};
+
+}  // namespace stylet::serve

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene.hpp"
+
+#include "hand.hpp"
+#include "stylet/core/version.hpp"
+#include "stylet/geom/centroid.hpp"
+#include "stylet/geom/topology.hpp"
+#include "stylet/io/region_views.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace stylet::serve {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMm3PerCc = 1000.0;
+
+Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+std::string hex(const results::Colour& colour) {
+  const auto byte = [](double share) { return static_cast<int>(std::lround(255.0 * share)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
+}
+
+/// Surface triangles by the two regions they part, in the numbers of the scene's nodes.
+struct Surfaces {
+  std::map<std::pair<int, int>, std::vector<std::array<std::uint32_t, 3>>> patches;  ///< (inside, outside)
+  std::vector<Index> nodes;
+
+  explicit Surfaces(const TetMesh& mesh) : slot_(mesh.nodes.size(), -1) {
+    const Topology topology(mesh);
+    const auto region = [&](Index tet) { return tet < 0 ? -1 : mesh.tet_region[static_cast<std::size_t>(tet)]; };
+    for (const Face& face : topology.boundary) add(region(face.tet), -1, face);
+    for (const Face& face : topology.interfaces) add(region(face.tet), region(face.neighbour), face);
+  }
+
+ private:
+  void add(int inside, int outside, const Face& face) {
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      Index& slot = slot_[static_cast<std::size_t>(face.nodes[k])];
+      if (slot < 0) {
+        slot = static_cast<Index>(nodes.size());
+        nodes.push_back(face.nodes[k]);
+      }
+      triangle[k] = static_cast<std::uint32_t>(slot);
+    }
+    patches[{inside, outside}].push_back(triangle);
+  }
+  std::vector<Index> slot_;
+};
+
+Json regions_json(const TetMesh& mesh, const std::vector<int>& targets) {
+  std::vector<double> volume(mesh.regions.size(), 0.0);
+  for (Index t = 0; t < mesh.tet_count(); ++t)
+    volume[static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(t)])] += tet_volume(mesh, t);
+  Json regions = Json::array();
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r)
+    regions.push_back({{"name", mesh.regions[r]},
+                       {"label", results::readable_name(mesh.regions[r])},
+                       {"color", "#999999"},
+                       {"opacity", 0.5},
+                       {"target", false},
+                       {"background", false},
+                       {"volume_cc", volume[r] / kMm3PerCc}});
+  for (const results::RegionView& view : results::region_views(mesh, targets)) {
+    Json& region = regions[static_cast<std::size_t>(view.region)];
+    region["color"] = hex(view.colour);
+    region["opacity"] = view.opacity;
+    region["target"] = view.target;
+    region["background"] = view.background;
+  }
+  return regions;
+}
+
+/// Middle of the template [mm] LPS x and y: as in the scenario, else the target's centroid.
+std::array<double, 2> template_centre(const TetMesh& mesh, const std::vector<int>& targets, const TemplateGrid& grid) {
+  if (grid.centre_mm) return *grid.centre_mm;
+  const Vec3 centre = centroid(mesh, targets);
+  return {centre.x(), centre.y()};
+}
+
+}  // namespace
+
+MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const Scenario& scenario,
+                     const std::vector<PlannedInsertion>& insertions, const std::vector<std::string>& warnings,
+                     const CaseList& cases) {
+  Surfaces surfaces(mesh);
+  auto scene = std::make_shared<Scene>();
+  scene->positions.reserve(3 * surfaces.nodes.size());
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Index node : surfaces.nodes) {
+    const Vec3& x = mesh.nodes[static_cast<std::size_t>(node)];
+    for (const double value : x) scene->positions.push_back(static_cast<float>(value));
+    lowest = std::min(lowest, x.z());
+  }
+  Json patches = Json::array();
+  std::size_t first = 0;
+  for (const auto& [sides, triangles] : surfaces.patches) {
+    patches.push_back(
+        {{"inside", sides.first}, {"outside", sides.second}, {"first", first}, {"count", triangles.size()}});
+    for (const auto& triangle : triangles)
+      scene->triangles.insert(scene->triangles.end(), triangle.begin(), triangle.end());
+    first += triangles.size();
+  }
+
+  Json planned = Json::array();
+  for (std::size_t i = 0; i < insertions.size(); ++i) {
+    const PlannedInsertion& p = insertions[i];
+    const bool known = i < scenario.insertions.size();
+    const auto hole = known ? scenario.insertions[i].hole : std::nullopt;
+    planned.push_back({{"name", p.name},
+                       {"hole", hole.value_or("")},
+                       {"entry_mm", numbers(p.entry)},
+                       {"direction", numbers(p.direction)},
+                       {"depth_mm", p.depth_mm},
+                       {"speed_mm_per_s", known ? scenario.insertions[i].speed_mm_per_s : 20.0}});
+  }
+  const auto centre = template_centre(mesh, targets, scenario.grid);
+  const HandLimits limits = hand_limits(scenario);
+  const Json text{
+      {"protocol", 1},
+      {"version", version()},
+      {"name", scenario.name},
+      {"case", cases.open},
+      {"cases", cases.titles},
+      {"regions", regions_json(mesh, targets)},
+      {"patches", patches},
+      {"template",
+       {{"pitch_mm", scenario.grid.pitch_mm},
+        {"columns", scenario.grid.columns},
+        {"rows", scenario.grid.rows},
+        {"centre_mm", centre},
+        {"z_mm", lowest - scenario.grid.distance_mm}}},
+      {"insertions", planned},
+      {"needle",
+       {{"length_mm", scenario.needle.length_mm},
+        {"diameter_mm", scenario.needle.diameter_mm},
+        {"bevel_deg", scenario.needle.bevel_deg},
+        {"model", scenario.needle.model}}},
+      {"limits",
+       {{"depth_mm", limits.depth_mm},
+        {"behind_mm", limits.behind_mm},
+        {"speed_mm_per_s", limits.speed_mm_per_s},
+        {"tilt_deg", limits.tilt_deg}}},
+      {"mesh", {{"nodes", mesh.node_count()}, {"tets", mesh.tet_count()}}},
+      {"dt_ms", cases.dt_ms},
+      {"warnings", warnings},
+      {"notice", "Not a medical device. For research and training; not for planning or treating patients."}};
+  // Names come from files of all sorts: what is not UTF-8 is replaced, not refused.
+  scene->text = text.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return {scene, std::move(surfaces.nodes)};
+}
+
+}  // namespace stylet::serve

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/serve/session.hpp"
+
+#include "live_run.hpp"
+#include "replay.hpp"
+#include "scene.hpp"
+#include "shelf.hpp"
+
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/sim/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace stylet::serve {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kRequests = 256;
+constexpr auto kStatusEvery = std::chrono::milliseconds(500);
+constexpr auto kProgressEvery = std::chrono::milliseconds(50);
+
+}  // namespace
+
+struct Session::Parts {
+  Parts(SessionSettings settings_, Audience& audience_)
+      : settings(std::move(settings_)), audience(audience_), shelf(settings.recordings) {}
+
+  // What other threads reach.
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::deque<Request> requests;
+  std::shared_ptr<PageDevice> hand;  ///< of the run that goes on
+  std::optional<HandTarget> wanted;  ///< before there is one
+
+  // The session thread's own.
+  SessionSettings settings;
+  Audience& audience;
+  Shelf shelf;
+  std::size_t open_case = 0;
+  OpenModel open;  ///< without a model: none could be opened
+  /// What the case itself plans; the model that is open may be of another hole.
+  struct Planned {
+    Scenario scenario;
+    std::vector<PlannedInsertion> insertions;
+  } planned;
+  std::size_t insertion = 0;
+  std::unique_ptr<LiveRun> live;
+  std::unique_ptr<Replay> replay;
+  SessionStatus status;
+  bool whole_curve = true;
+  Clock::time_point next_status;
+  Clock::time_point last_progress;
+
+  std::jthread thread;  ///< last: starts when the others exist
+
+  void run(const std::stop_token& stop);
+  void carry_out(const Request& request);
+  void tick(double dt_s);
+  void say_status();
+  Progress progress();
+  void refuse(const Request& request, const Error& error) {
+    audience.refuse(request.viewer, {error.where + ": " + error.what, error.cure});
+  }
+
+  void open_model(const Request& request, std::size_t case_number,
+                  const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load);
+  Result<> show_model();
+  void choose_hole(const Request& request);
+  void choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
+  void place(const Request& request, std::size_t which);
+  void start_replay(const Request& request);
+  void end_live();
+  void set_hand(std::shared_ptr<PageDevice> device);
+  [[nodiscard]] CaseList cases() const;
+};
+
+Session::Session(SessionSettings settings, Audience& audience)
+    : parts_(std::make_unique<Parts>(std::move(settings), audience)) {}
+
+Session::~Session() { stop(); }
+
+void Session::stop() {
+  if (!parts_->thread.joinable()) return;
+  parts_->thread.request_stop();
+  parts_->thread.join();
+}
+
+void Session::start() {
+  parts_->thread = std::jthread([p = parts_.get()](const std::stop_token& stop) { p->run(stop); });
+}
+
+bool Session::ask(Request request) {
+  {
+    const std::lock_guard lock(parts_->mutex);
+    if (parts_->requests.size() >= kRequests) return false;
+    parts_->requests.push_back(std::move(request));
+  }
+  parts_->wake.notify_all();
+  return true;
+}
+
+void Session::aim(const HandTarget& target) {
+  const std::lock_guard lock(parts_->mutex);
+  if (parts_->hand) parts_->hand->aim(target);
+}
+
+void Session::let_go() {
+  HandTarget rest;
+  rest.rest = true;
+  aim(rest);
+}
+
+CaseList Session::Parts::cases() const {
+  CaseList list;
+  for (const CaseSource& source : settings.cases) list.titles.push_back(source.title);
+  list.open = open_case;
+  list.dt_ms = 1e3 * settings.runner.period_s;
+  return list;
+}
+
+void Session::Parts::set_hand(std::shared_ptr<PageDevice> device) {
+  const std::lock_guard lock(mutex);
+  hand = std::move(device);
+}
+
+/// The loop ends, its recording is whole.
+void Session::Parts::end_live() {
+  set_hand(nullptr);
+  if (live) live->pump([this](const LiveEvent& event) { audience.tell(event); });
+  live.reset();
+  status.recording = {};
+}
+
+Progress Session::Parts::progress() {
+  return [this](std::string_view stage, double fraction) {
+    const auto now = Clock::now();
+    if (now < last_progress + kProgressEvery && stage == status.stage) return;
+    last_progress = now;
+    status.stage = stage;
+    status.fraction = fraction;
+    audience.tell(status);
+  };
+}
+
+void Session::Parts::say_status() {
+  if (live) {
+    status.loop = live->loop();
+    status.recording.seconds = live->time_s();
+    status.recording.problem = live->recording_problem();
+  }
+  if (replay) {
+    status.replay.time_s = replay->time_s();
+    status.replay.rate = replay->rate();
+  }
+  audience.tell(status);
+  next_status = Clock::now() + kStatusEvery;
+}
+
+/// The loop with the needle before the skin of one of the model's insertions.
+void Session::Parts::place(const Request& request, std::size_t which) {
+  const bool paused = false;
+  end_live();
+  replay.reset();
+  status.replay = {};
+  insertion = which;
+  const PlannedInsertion& plan = open.model->insertions()[which];
+  const std::string name = shelf.new_name(plan.name);
+  auto run = LiveRun::start(open, which, shelf.folder(name), settings.runner, settings.recorded_frames_per_s);
+  if (!run) {
+    refuse(request, run.error());
+    status.state = SessionStatus::State::failed;
+    status.failure = {run.error().where + ": " + run.error().what, run.error().cure};
+    return;
+  }
+  live = std::move(*run);
+  set_hand(live->hand());
+  status.state = SessionStatus::State::ready;
+  status.paused = paused;
+  status.insertion = plan.name;
+  status.hole = open.model->scenario().insertions[which].hole.value_or("");
+  status.device = "page";
+  status.recording.name = name;
+  whole_curve = true;
+  audience.tell(LiveEvent{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan.name});
+}
+
+/// Scene and displacement field of the model that is open.
+Result<> Session::Parts::show_model() {
+  const Model& model = *open.model;
+  MadeScene made =
+      make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions, model.warnings(), cases());
+  open.scene_nodes = std::move(made.nodes);
+  audience.show(made.scene);
+  auto field = DisplayField::prepare(open.model, {}, progress());
+  if (!field) return field.error();
+  open.field = std::move(*field);
+  return Ok{};
+}
+
+/// Opens a model in the place of the one that is open; that one goes on if it cannot be had.
+void Session::Parts::open_model(const Request& request, std::size_t case_number,
+                                const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load) {
+  end_live();
+  status.state = SessionStatus::State::loading;
+  status.fraction = -1.0;
+  status.stage = "reading";
+  say_status();
+  const OpenModel before = open;
+  const std::size_t case_before = open_case;
+  const Planned planned_before = planned;
+  auto model = load(progress());
+  Result<> shown = model ? Result<>(Ok{}) : Result<>(model.error());
+  if (model) {
+    open = {.model = *model, .field = nullptr, .scene_nodes = {}};
+    if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
+      planned = {(*model)->scenario(), (*model)->insertions()};
+    open_case = case_number;
+    shown = show_model();
+  }
+  if (shown.ok()) {
+    place(request, 0);
+    return;
+  }
+  if (before.model) {
+    refuse(request, shown.error());
+    const bool scene_changed = open.model != before.model;
+    open = before;
+    open_case = case_before;
+    planned = planned_before;
+    if (scene_changed) (void)show_model();
+    place(request, insertion);
+    return;
+  }
+  status.state = SessionStatus::State::failed;
+  status.failure = {shown.error().where + ": " + shown.error().what, shown.error().cure};
+}
+
+/// A needle through a hole: as the case plans it, or like its first one otherwise.
+void Session::Parts::choose_hole(const Request& request) {
+  const auto& plans = planned.scenario.insertions;
+  const auto known = std::find_if(plans.begin(), plans.end(), [&](const auto& p) { return p.hole == request.text; });
+  if (known != plans.end()) return choose_plan(request, *known, "hole " + request.text);
+  InsertionPlan plan = plans.front();
+  plan.entry_mm.reset();
+  plan.direction.reset();
+  plan.target_mm.reset();
+  plan.motion.clear();
+  plan.depth_mm = 0.0;
+  plan.hole = request.text;
+  choose_plan(request, plan, "hole " + request.text);
+}
+
+/// The same patient with the needle where a plan has it. What its way needs is computed, unless the model that is open
+/// has it.
+void Session::Parts::choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where) {
+  const auto& there = open.model->scenario().insertions;
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    if (there[i] == plan) return place(request, i);
+  }
+  Scenario scenario = planned.scenario;
+  scenario.insertions = {plan};
+  // What cannot be is refused before the needle that is there is taken away.
+  if (auto good = check_scenario(scenario, where); !good) return refuse(request, good.error());
+  if (auto good = plan_insertion(*open.model, plan, where); !good) return refuse(request, good.error());
+  open_model(request, open_case, [this, &scenario, &where](const Progress& progress) {
+    return Model::compile(scenario, open.model->mesh(), where, {}, progress);
+  });
+}
+
+void Session::Parts::start_replay(const Request& request) {
+  auto recording = shelf.read(request.text);
+  if (!recording) return refuse(request, recording.error());
+  auto scenario = parse_scenario(recording->info.scenario_text, request.text);
+  if (!scenario) return refuse(request, scenario.error());
+  if (recording->frames.empty())
+    return refuse(request, failure(request.text, "the recording ends before its first picture", "Choose another one"));
+  end_live();
+  PlannedInsertion plan;
+  plan.entry = recording->info.entry_mm;
+  plan.direction = recording->info.direction;
+  plan.name = request.text;
+  for (const StepRecord& step : recording->steps) plan.depth_mm = std::max(plan.depth_mm, step.base_depth_mm);
+  MadeScene made =
+      make_scene(recording->mesh, recording->info.target_regions, *scenario, {plan}, recording->info.warnings, cases());
+  audience.show(made.scene);
+  for (const Event& e : recording->events)
+    audience.tell(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
+  replay = std::make_unique<Replay>(std::move(*recording), std::move(made.nodes));
+  status.state = SessionStatus::State::ready;
+  status.replay = {.name = request.text, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
+  status.insertion = request.text;
+  status.hole = scenario->insertions.front().hole.value_or("");
+  status.loop = {};
+  whole_curve = true;
+}
+
+void Session::Parts::carry_out(const Request& request) {
+  using Kind = Request::Kind;
+  const auto number = static_cast<std::size_t>(std::max(0.0, request.number));
+  const auto missing = [&](const char* what, std::size_t count) {
+    refuse(request, input_error(what, fmt::format("there is no number {}, only {}", number, count), "Choose another"));
+  };
+  switch (request.kind) {
+    case Kind::greet:
+      whole_curve = true;
+      break;
+    case Kind::open_case:
+      if (number >= settings.cases.size()) return missing("case", settings.cases.size());
+      open_model(request, number, settings.cases[number].load);
+      break;
+    case Kind::replay:
+      start_replay(request);
+      break;
+    case Kind::live:
+      if (!replay) break;
+      if (settings.cases.empty()) return missing("case", 0);
+      if (!open.model) return open_model(request, open_case, settings.cases[open_case].load);
+      replay.reset();
+      if (auto shown = show_model(); !shown) refuse(request, shown.error());
+      place(request, insertion);
+      break;
+    case Kind::seek:
+      if (replay) replay->seek(request.number);
+      break;
+    case Kind::play:
+      if (replay) replay->play(request.number);
+      break;
+    case Kind::hole:
+      if (live) choose_hole(request);
+      break;
+    case Kind::insertion:
+      if (!live) break;
+      if (number >= planned.insertions.size()) return missing("insertion", planned.insertions.size());
+      choose_plan(request, planned.scenario.insertions[number], planned.insertions[number].name);
+      break;
+    case Kind::reset:
+      if (live) place(request, insertion);
+      break;
+    case Kind::pause:
+    case Kind::resume:
+      if (!live) break;
+      status.paused = request.kind == Kind::pause;
+      status.paused ? live->runner().pause() : live->runner().resume();
+      break;
+    case Kind::step:
+      if (live && status.paused) live->runner().single_step(static_cast<int>(std::clamp(request.number, 1.0, 100.0)));
+      break;
+  }
+  say_status();
+}
+
+void Session::Parts::tick(double dt_s) {
+  std::shared_ptr<const LiveFrame> frame;
+  if (live) {
+    live->pump([this](const LiveEvent& event) { audience.tell(event); });
+    frame = live->picture(whole_curve);
+  } else if (replay) {
+    const bool playing = replay->rate() > 0.0;
+    replay->advance(dt_s);
+    frame = replay->picture(whole_curve);
+    if (playing && replay->rate() == 0.0) next_status = {};  // it has come to its end
+  }
+  if (frame) {
+    whole_curve = false;
+    audience.show(std::move(frame));
+  }
+  if (Clock::now() >= next_status) say_status();
+}
+
+void Session::Parts::run(const std::stop_token& stop) {
+  if (settings.replay.empty()) {
+    open_model({.kind = Request::Kind::open_case, .viewer = 0, .text = {}, .number = 0.0}, 0,
+               settings.cases.front().load);
+  } else {
+    start_replay({.kind = Request::Kind::replay, .viewer = 0, .text = settings.replay, .number = 0.0});
+  }
+  say_status();
+  const auto period =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / settings.pictures_per_s));
+  auto before = Clock::now();
+  while (!stop.stop_requested()) {
+    std::deque<Request> waiting;
+    {
+      std::unique_lock lock(mutex);
+      wake.wait_until(lock, stop, before + period, [&] { return !requests.empty(); });
+      waiting.swap(requests);
+    }
+    for (const Request& request : waiting) {
+      if (!stop.stop_requested()) carry_out(request);
+    }
+    const auto now = Clock::now();
+    if (now < before + period) continue;
+    tick(std::chrono::duration<double>(now - before).count());
+    before = now;
+  }
+  end_live();
+}
+
+}  // namespace stylet::serve

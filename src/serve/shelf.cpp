@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shelf.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+namespace stylet::serve {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Letters, digits, points and dashes of a name; anything else becomes a dash.
+std::string tame(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.';
+    if (plain || (!out.empty() && out.back() != '-')) out += plain ? c : '-';
+  }
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
+}
+
+}  // namespace
+
+std::string Shelf::new_name(const std::string& of) const {
+  const std::string base = fmt::format("{:%Y-%m-%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), tame(of));
+  std::string name = base;
+  for (int k = 2; fs::exists(folder_ / name); ++k) name = fmt::format("{}-{}", base, k);
+  return name;
+}
+
+std::vector<std::string> Shelf::names() const {
+  std::vector<std::string> names;
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(folder_, code)) {
+    if (fs::is_regular_file(entry.path() / "run.h5", code)) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.rbegin(), names.rend());
+  return names;
+}
+
+Result<RunRecording> Shelf::read(const std::string& name) const {
+  const auto all = names();
+  if (std::find(all.begin(), all.end(), name) == all.end())
+    return input_error(fmt::format("recording '{}'", name), fmt::format("not among those in {}", folder_.string()),
+                       "Choose one of the list");
+  return read_recording(folder_ / name / "run.h5");
+}
+
+}  // namespace stylet::serve

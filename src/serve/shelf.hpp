@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+#include "stylet/io/recording_io.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace stylet::serve {
+
+/// The folder with the recordings: one folder for each, with its run.h5.
+class Shelf {
+ public:
+  explicit Shelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// A name that nothing has yet: local date and time, and what it is of.
+  [[nodiscard]] std::string new_name(const std::string& of) const;
+  [[nodiscard]] std::filesystem::path folder(const std::string& name) const { return folder_ / name; }
+  /// Newest first.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// Errors: no such recording (a name is never a path), and those of read_recording().
+  [[nodiscard]] Result<RunRecording> read(const std::string& name) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace stylet::serve

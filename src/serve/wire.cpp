@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "wire.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+namespace stylet::serve::wire {
+
+static_assert(std::endian::native == std::endian::little, "numbers go out as they lie in memory");
+
+namespace {
+
+class Writer {
+ public:
+  Writer(Kind kind, std::uint32_t number, std::size_t room) {
+    bytes_.reserve(room);
+    put(static_cast<std::uint32_t>(kind));
+    put(number);
+  }
+  template <class T>
+  void put(const T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    append(&value, sizeof value);
+  }
+  template <class T>
+  void put_all(std::span<const T> values) {
+    static_assert(std::is_arithmetic_v<T>);
+    append(values.data(), values.size_bytes());
+  }
+  template <class... T>
+  void put_floats(T... values) {
+    (put(static_cast<float>(values)), ...);
+  }
+  void put_counts(std::initializer_list<std::size_t> counts) {
+    for (const std::size_t count : counts) put(static_cast<std::uint32_t>(count));
+  }
+  void text(std::string_view text) { append(text.data(), text.size()); }
+  [[nodiscard]] Bytes take() { return std::move(bytes_); }
+
+ private:
+  void append(const void* data, std::size_t size) {
+    const auto* from = static_cast<const std::byte*>(data);
+    bytes_.insert(bytes_.end(), from, from + size);
+  }
+  Bytes bytes_;
+};
+
+constexpr std::size_t kHeader = 8;
+
+float read_float(std::span<const std::byte> message, std::size_t at) {
+  float value = 0.0F;
+  std::memcpy(&value, message.data() + at, sizeof value);
+  return value;
+}
+
+std::optional<HandTarget> decode_hand(std::span<const std::byte> message) {
+  std::array<double, 5> v{};
+  if (message.size() != kHeader + 4 * v.size()) return std::nullopt;
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    v[k] = read_float(message, kHeader + 4 * k);
+    if (!std::isfinite(v[k])) return std::nullopt;
+  }
+  if (v[1] < 0.0) return std::nullopt;
+  return HandTarget{
+      .depth_mm = v[0], .speed_mm_per_s = v[1], .roll_deg = v[2], .tilt_left_deg = v[3], .tilt_anterior_deg = v[4]};
+}
+
+/// What a command needs beside its name.
+struct Need {
+  Command::Do what;
+  const char* key;  ///< empty: nothing
+  bool text;
+};
+
+const std::map<std::string, Need>& commands() {
+  using enum Command::Do;
+  static const std::map<std::string, Need> all{
+      {"take", {take, "", false}},           {"release", {release, "", false}},
+      {"hole", {hole, "hole", true}},        {"insertion", {insertion, "index", false}},
+      {"reset", {reset, "", false}},         {"pause", {pause, "", false}},
+      {"resume", {resume, "", false}},       {"step", {step, "count", false}},
+      {"case", {open_case, "index", false}}, {"replay", {replay, "name", true}},
+      {"live", {live, "", false}},           {"seek", {seek, "time_s", false}},
+      {"play", {play, "rate", false}}};
+  return all;
+}
+
+std::optional<Command> decode_command(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("do") || !json["do"].is_string()) return std::nullopt;
+  const auto found = commands().find(json["do"].get<std::string>());
+  if (found == commands().end()) return std::nullopt;
+  const Need& need = found->second;
+  Command command{need.what, {}, 0.0};
+  if (*need.key == '\0') return command;
+  if (!json.contains(need.key)) return std::nullopt;
+  const auto& value = json[need.key];
+  if (need.text ? !value.is_string() : !value.is_number()) return std::nullopt;
+  if (need.text) {
+    command.text = value.get<std::string>();
+  } else {
+    command.number = value.get<double>();
+    if (!(std::abs(command.number) <= 1e6)) return std::nullopt;
+  }
+  return command;
+}
+
+}  // namespace
+
+Bytes encode(const Scene& scene, std::uint32_t number) {
+  const std::size_t padded = (scene.text.size() + 3) / 4 * 4;
+  Writer out(Kind::scene, number, 20 + padded + 4 * (scene.positions.size() + scene.triangles.size()));
+  out.put_counts({padded, scene.positions.size() / 3, scene.triangles.size() / 3});
+  out.text(scene.text);
+  out.text(std::string(padded - scene.text.size(), ' '));
+  out.put_all(std::span<const float>(scene.positions));
+  out.put_all(std::span<const std::uint32_t>(scene.triangles));
+  return out.take();
+}
+
+Bytes encode(const LiveFrame& f, std::span<const Sample> samples, bool whole_curve, std::uint32_t number) {
+  Writer out(Kind::frame, number,
+             256 + 4 * f.centreline.size() + 32 * f.contacts.size() + 32 * samples.size() + 2 * f.displacement.size());
+  out.put(f.time_s);
+  std::uint32_t bits = f.bits & ~static_cast<std::uint32_t>(LiveFrame::whole_curve);
+  if (!f.displacement.empty()) bits |= LiveFrame::displaced;
+  if (whole_curve) bits |= LiveFrame::whole_curve;
+  const auto tip_state = static_cast<std::uint32_t>(f.tip_state);
+  for (const std::uint32_t value : {bits, f.flags, tip_state, f.sticking, f.iterations, f.steps, f.missed})
+    out.put(value);
+  out.put_floats(f.depth_mm, f.force_axial_N, f.force_sagittal_N, f.force_lateral_N);
+  for (const Vec3& v : {f.torque_Nmm, f.tip_mm, f.base.origin}) out.put_floats(v.x(), v.y(), v.z());
+  const Eigen::Quaterniond& q = f.base.rotation;
+  out.put_floats(q.w(), q.x(), q.y(), q.z());
+  out.put_floats(f.roll_deg, f.tilt_left_deg, f.tilt_anterior_deg, f.left_out_N, f.unit_mm);
+  out.put_counts({f.centreline.size() / 3, f.contacts.size(), samples.size(), f.displacement.size() / 3});
+  out.put_all(std::span<const float>(f.centreline));
+  for (const ContactSnapshot& c : f.contacts) {
+    out.put_floats(c.position[0], c.position[1], c.position[2], c.force[0], c.force[1], c.force[2], c.s);
+    out.put((c.sticking ? 1U : 0U) | (c.tip ? 2U : 0U));
+  }
+  for (const Sample& s : samples) {
+    out.put_floats(s.time_s - f.time_s, s.depth_mm, s.axial_N, s.sagittal_N, s.lateral_N, s.step_us,
+                   static_cast<int>(s.tip_state), s.flags);
+  }
+  out.put_all(std::span<const std::int16_t>(f.displacement));
+  return out.take();
+}
+
+Bytes encode(Kind kind, std::string_view json, std::uint32_t number) {
+  Writer out(kind, number, kHeader + json.size());
+  out.text(json);
+  return out.take();
+}
+
+std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byte> message) {
+  if (message.size() < kHeader || message.size() > kLongestMessage) return std::nullopt;
+  std::uint32_t kind = 0;
+  std::memcpy(&kind, message.data(), sizeof kind);
+  if (kind == static_cast<std::uint32_t>(Kind::hand)) {
+    if (const auto hand = decode_hand(message)) return *hand;
+  } else if (kind == static_cast<std::uint32_t>(Kind::command)) {
+    const auto text = message.subspan(kHeader);
+    if (auto command = decode_command({reinterpret_cast<const char*>(text.data()), text.size()})) return *command;
+  }
+  return std::nullopt;
+}
+
+void thin(std::vector<Sample>& samples, std::size_t most) {
+  if (samples.size() <= most) return;
+  const std::size_t runs = std::max<std::size_t>(1, most / 2);
+  std::vector<Sample> kept;
+  kept.reserve(2 * runs);
+  const auto by_force = [](const Sample& a, const Sample& b) { return a.axial_N < b.axial_N; };
+  for (std::size_t k = 0; k < runs; ++k) {
+    const auto from = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * k / runs);
+    const auto to = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * (k + 1) / runs);
+    if (from == to) continue;
+    auto [least, largest] = std::minmax_element(from, to, by_force);
+    if (largest < least) std::swap(least, largest);
+    kept.push_back(*least);
+    if (largest != least) kept.push_back(*largest);
+  }
+  samples = std::move(kept);
+}
+
+}  // namespace stylet::serve::wire

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""stylet serve: says where it listens, serves the page, ends when asked to, refuses what is wrong; its recordings, also of a killed
+server, are repeated by stylet insert to the last bit."""
+import json
+import os
+import signal
+import subprocess
+import time
+import unittest
+import urllib.error
+import urllib.request
+
+from insert_case import PHANTOM, SMALL
+from program import InFolder
+
+PATIENCE_S = 120
+
+
+class Serve(InFolder):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "case.toml").write_text(PHANTOM)
+
+    def start(self, *arguments):
+        """A server on a port that is free, and its address."""
+        server = subprocess.Popen([os.environ["STYLET"], "serve", *arguments, "--port", "0", "--json", "-"], cwd=self.folder,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(server.stdout.close)
+        self.addCleanup(server.stderr.close)
+        self.addCleanup(server.wait)
+        self.addCleanup(server.kill)
+        text = ""
+        while not text.rstrip().endswith("}"):
+            line = server.stdout.readline()
+            self.assertTrue(line, server.stderr.read() if server.poll() is not None else "no address")
+            text += line
+        return server, json.loads(text)["url"]
+
+    def until(self, true):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            if true():
+                return
+            time.sleep(0.05)
+        self.fail("waited in vain")
+
+    def recordings(self):
+        return sorted((self.folder / "out" / "live").glob("*/run.h5"))
+
+    def steps(self):
+        """Number of steps that are in the recording now."""
+        try:
+            return self.json_of("info", str(self.recordings()[-1]))["steps"]
+        except (AssertionError, KeyError, IndexError):
+            return 0
+
+    def test_serves_the_page_and_ends_when_asked_to(self):
+        for end in (signal.SIGINT, signal.SIGTERM):
+            server, url = self.start("case.toml", *SMALL)
+            with urllib.request.urlopen(url) as page:
+                self.assertIn("text/html", page.headers["Content-Type"])
+                self.assertIn('src="live.js"', page.read().decode())
+            with urllib.request.urlopen(url + "live.js") as script:
+                self.assertGreater(len(script.read()), 100_000)
+            self.until(self.recordings)
+            server.send_signal(end)
+            self.assertEqual(server.wait(PATIENCE_S), 0)
+
+    def test_a_killed_server_leaves_a_recording_that_repeats(self):
+        server, _ = self.start("case.toml", *SMALL)
+        self.until(lambda: self.steps() > 500)
+        server.kill()
+        server.wait(PATIENCE_S)
+        recording = str(self.recordings()[-1])
+        said = self.succeed("insert", recording, "-o", "again").stdout
+        self.assertIn("to the last bit", said)
+        self.refuse("insert", recording, "-o", str(self.recordings()[-1].parent), says=["replaced", "-o"])
+
+    def test_refuses_what_is_wrong(self):
+        self.refuse("serve", "nothing.toml", says=["nothing.toml"])
+        self.refuse("serve", "case.toml", "--address", "nowhere", says=["nowhere", "IP address"])
+        self.refuse("serve", "case.toml", "--port", "70000", says=["70000"])
+        self.refuse("serve", "case.toml", "--set", "mesh.nods=1", says=["mesh.nods", "mesh.nodes"])
+        (self.folder / "empty").mkdir()
+        self.refuse("serve", "empty", says=["empty", "scenario"])
+
+    def test_a_port_that_is_taken(self):
+        _, url = self.start("case.toml", *SMALL)
+        port = url.rstrip("/").rsplit(":", 1)[1]
+        done = subprocess.run([os.environ["STYLET"], "serve", "case.toml", "--port", port], cwd=self.folder, capture_output=True,
+                              text=True, timeout=PATIENCE_S, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("another port", done.stderr)
+
+    def test_beyond_this_machine_there_is_a_token(self):
+        _, url = self.start("case.toml", "--address", "0.0.0.0", *SMALL)
+        self.assertRegex(url, r"/\?token=[0-9a-f]{32}$")
+        port = url.split("/")[2].rsplit(":", 1)[1]
+        with self.assertRaises(urllib.error.HTTPError) as refused:
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/recordings")
+        refused.exception.close()
+        self.assertEqual(refused.exception.code, 401)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "wire.hpp"
+
+#include <gtest/gtest.h>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <string>
+
+namespace stylet::test {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+using boost::asio::ip::tcp;
+
+inline tcp::socket connected(boost::asio::io_context& io, std::uint16_t port) {
+  tcp::socket socket(io);
+  socket.connect({boost::asio::ip::make_address("127.0.0.1"), port});
+  return socket;
+}
+
+/// A GET, as a browser would send it.
+inline http::response<http::string_body> get(std::uint16_t port, const std::string& target,
+                                             const std::string& host = "localhost", const std::string& origin = {}) {
+  boost::asio::io_context io;
+  beast::tcp_stream stream(connected(io, port));
+  http::request<http::string_body> request(http::verb::get, target, 11);
+  request.set(http::field::host, host);
+  if (!origin.empty()) request.set(http::field::origin, origin);
+  http::write(stream, request);
+  beast::flat_buffer buffer;
+  http::response<http::string_body> response;
+  http::read(stream, buffer, response);
+  return response;
+}
+
+/// A viewer without a browser: keeps the newest message of each kind.
+class LiveClient {
+ public:
+  explicit LiveClient(std::uint16_t port) : socket_(connected(io_, port)) {
+    socket_.set_option(beast::websocket::stream_base::decorator([](beast::websocket::request_type& request) {
+      request.set(http::field::sec_websocket_protocol, serve::wire::kSubprotocol);
+    }));
+    socket_.handshake("localhost:" + std::to_string(port), "/live");
+    socket_.binary(true);
+  }
+
+  void send(const void* data, std::size_t size) { socket_.write(boost::asio::buffer(data, size)); }
+  void command(const std::string& json) {
+    std::string bytes("\x11\0\0\0\0\0\0\0", 8);
+    bytes += json;
+    send(bytes.data(), bytes.size());
+  }
+  void hand(float depth, float speed) {
+    struct {
+      std::uint32_t kind = 16, number = 0;
+      float values[5]{};
+    } message;
+    message.values[0] = depth;
+    message.values[1] = speed;
+    send(&message, sizeof message);
+  }
+
+  /// Reads messages until something is true of them. @return false: not within a minute
+  bool until(const std::function<bool()>& is_true) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!is_true()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      read();
+    }
+    return true;
+  }
+  void read() {
+    beast::flat_buffer buffer;
+    socket_.read(buffer);
+    const auto* bytes = static_cast<const char*>(buffer.cdata().data());
+    const std::size_t size = buffer.size();
+    ASSERT_GE(size, 8u);
+    const auto kind = at<std::uint32_t>(bytes, 0);
+    EXPECT_EQ(at<std::uint32_t>(bytes, 4), received++) << "messages are numbered";
+    if (kind == 1) {
+      scene = nlohmann::json::parse(bytes + 20, bytes + 20 + at<std::uint32_t>(bytes, 8));
+      scene_nodes = at<std::uint32_t>(bytes, 12);
+      ++scenes;
+    } else if (kind == 2) {
+      time_s = at<double>(bytes, 8);
+      bits = at<std::uint32_t>(bytes, 16);
+      depth_mm = at<float>(bytes, 44);
+      force_N = at<float>(bytes, 48);
+      most_N = std::max(most_N, force_N);
+      samples = at<std::uint32_t>(bytes, 140);
+      displaced_nodes = at<std::uint32_t>(bytes, 144);
+      ++frames;
+    } else if (kind == 3) {
+      status = nlohmann::json::parse(bytes + 8, bytes + size);
+    } else if (kind == 4) {
+      events.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
+    } else if (kind == 5) {
+      notices.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
+    }
+  }
+  [[nodiscard]] bool ready() const { return status.value("state", "") == "ready" && frames > 0; }
+  [[nodiscard]] bool has_event(const std::string& kind) const {
+    return std::any_of(events.begin(), events.end(), [&](const auto& e) { return e["kind"] == kind; });
+  }
+
+  nlohmann::json scene = nlohmann::json::object();
+  nlohmann::json status = nlohmann::json::object();
+  std::vector<nlohmann::json> events, notices;
+  std::uint32_t received = 0, scenes = 0, frames = 0, bits = 0, samples = 0, displaced_nodes = 0, scene_nodes = 0;
+  double time_s = 0.0;
+  float depth_mm = 0.0F, force_N = 0.0F, most_N = 0.0F;
+
+ private:
+  template <class T>
+  static T at(const char* bytes, std::size_t place) {
+    T value{};
+    std::memcpy(&value, bytes + place, sizeof value);
+    return value;
+  }
+  boost::asio::io_context io_;
+  beast::websocket::stream<tcp::socket> socket_;
+};
+
+}  // namespace stylet::test

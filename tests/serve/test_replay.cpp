@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "replay.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace stylet;
+using namespace stylet::serve;
+
+namespace {
+
+/// Four nodes; ten steps of 0.1 s; frames at 0 and 1 s, between which everything moves evenly.
+RunRecording recording() {
+  RunRecording run;
+  run.mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int k = 1; k <= 10; ++k) {
+    StepRecord step;
+    step.time_s = 0.1 * k;
+    step.base_depth_mm = k;
+    step.force_axial_N = 0.5 * k;
+    run.steps.push_back(step);
+  }
+  for (const double t : {0.0, 1.0}) {
+    Frame frame;
+    frame.time_s = t;
+    frame.displacement = VecX::Constant(12, t);
+    frame.needle = {{0, 0, t}, {0, 0, 10.0 + t}};
+    run.frames.push_back(frame);
+  }
+  return run;
+}
+
+double moved(const LiveFrame& frame, std::size_t k) { return frame.displacement[k] * frame.unit_mm; }
+
+}  // namespace
+
+TEST(Replay, shows_any_moment_between_its_frames) {
+  Replay replay(recording(), {3, 1});
+  replay.seek(0.45);
+  const auto frame = replay.picture(false);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->time_s, 0.45);
+  EXPECT_EQ(frame->depth_mm, 4.0) << "of the step before";
+  EXPECT_EQ(frame->force_axial_N, 2.0);
+  ASSERT_EQ(frame->displacement.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(moved(*frame, k), 0.45, 1e-3);
+  ASSERT_EQ(frame->centreline.size(), 6u);
+  EXPECT_NEAR(frame->centreline[5], 10.45, 1e-6);
+  EXPECT_TRUE(frame->bits & LiveFrame::replayed);
+  EXPECT_EQ(replay.picture(false), nullptr) << "nothing new";
+}
+
+TEST(Replay, plays_to_its_end_and_stands_there) {
+  Replay replay(recording(), {0});
+  replay.play(2.0);
+  replay.advance(0.2);
+  EXPECT_NEAR(replay.time_s(), 0.4, 1e-12);
+  replay.advance(5.0);
+  EXPECT_EQ(replay.time_s(), 1.0);
+  EXPECT_EQ(replay.rate(), 0.0);
+  replay.play(1.0);  // once more from the start
+  EXPECT_EQ(replay.time_s(), 0.0);
+}
+
+TEST(Replay, stays_within_the_recording) {
+  Replay replay(recording(), {0});
+  replay.seek(-3.0);
+  EXPECT_EQ(replay.time_s(), 0.0);
+  const auto before = replay.picture(false);
+  EXPECT_EQ(before->steps, 0u);
+  EXPECT_EQ(before->tip_mm.z(), 10.0) << "the needle's end, though there was no step yet";
+  replay.seek(99.0);
+  EXPECT_EQ(replay.time_s(), 1.0);
+  EXPECT_EQ(replay.picture(false)->steps, 10u);
+}
+
+TEST(Replay, gives_the_whole_curve_when_asked) {
+  Replay replay(recording(), {0});
+  const auto frame = replay.picture(true);
+  ASSERT_EQ(frame->samples.size(), 10u);
+  EXPECT_TRUE(frame->bits & LiveFrame::whole_curve);
+  EXPECT_EQ(frame->samples[9].axial_N, 5.0);
+}

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The server with real connections over the loopback interface: what docs/live_protocol.md promises.
+#include "live_client.hpp"
+
+#include "sim/box_patient.hpp"
+#include "stylet/io/recording_io.hpp"
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/serve/server.hpp"
+
+#include <bit>
+#include <filesystem>
+#include <thread>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes with the test.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("stylet-serve-" + std::to_string(::getpid()));
+  Folder() { fs::remove_all(path); }
+  ~Folder() { fs::remove_all(path); }
+};
+
+Scenario hole_scenario() {
+  Scenario s = box_scenario();
+  s.insertions[0].entry_mm.reset();
+  s.insertions[0].hole = "D4";
+  s.insertions[0].depth_mm = 30.0;
+  return s;
+}
+
+serve::CaseSource box_case(const std::string& title) {
+  return {title, [](const Progress& progress) {
+            return Model::compile(hole_scenario(), box_patient(), "case.toml", {}, progress);
+          }};
+}
+
+/// A server on a port that is free, with two cases; slow enough for sanitizers.
+struct Serving {
+  Folder folder;
+  std::unique_ptr<serve::Server> server;
+
+  explicit Serving(const std::function<void(serve::ServerSettings&)>& change = {}) {
+    serve::ServerSettings s;
+    s.port = 0;
+    s.session.cases = {box_case("first"), box_case("second")};
+    s.session.recordings = folder.path;
+    s.session.runner.period_s = 4e-3;
+    s.session.runner.late_after_s = 0.5;
+    s.session.runner.realtime_scheduling = false;
+    s.session.runner.lock_memory = false;
+    if (change) change(s);
+    auto opened = serve::Server::open(std::move(s));
+    if (!opened) throw std::runtime_error(opened.error().message());
+    server = std::move(*opened);
+    server->start();
+  }
+  [[nodiscard]] std::uint16_t port() const { return server->port(); }
+};
+
+std::unique_ptr<LiveClient> ready_client(const Serving& serving) {
+  auto client = std::make_unique<LiveClient>(serving.port());
+  EXPECT_TRUE(client->until([&] { return client->ready(); }));
+  return client;
+}
+
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+}  // namespace
+
+TEST(Server, a_hand_at_a_page_pushes_the_needle_in_and_sees_force_and_events) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  EXPECT_EQ(client->scene["protocol"], 1);
+  EXPECT_EQ(client->scene["cases"], nlohmann::json({"first", "second"}));
+  EXPECT_EQ(client->scene["insertions"][0]["hole"], "D4");
+  EXPECT_LT(client->depth_mm, 0.0F) << "before the skin";
+  client->command(R"({"do":"take"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("you_hold", false); }));
+  client->hand(28.0F, 60.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 27.9F; }));
+  EXPECT_TRUE(client->has_event("skin_contact"));
+  EXPECT_TRUE(client->has_event("puncture"));
+  EXPECT_GT(client->most_N, 0.1F);
+  ASSERT_TRUE(client->until([&] { return client->displaced_nodes > 0; }));
+  EXPECT_EQ(client->displaced_nodes, client->scene_nodes);
+  client->hand(-5.0F, 100.0F);
+  ASSERT_TRUE(client->until([&] { return client->has_event("withdrawn"); }));
+}
+
+TEST(Server, only_who_holds_the_needle_moves_it_and_it_changes_hands) {
+  const Serving serving;
+  const auto first = ready_client(serving);
+  const auto second = ready_client(serving);
+  first->command(R"({"do":"take"})");
+  ASSERT_TRUE(first->until([&] { return first->status.value("you_hold", false); }));
+  second->hand(20.0F, 100.0F);
+  second->command(R"({"do":"pause"})");
+  ASSERT_TRUE(second->until([&] { return !second->notices.empty(); })) << "is told why not";
+  const double then = second->time_s;
+  ASSERT_TRUE(second->until([&] { return second->time_s > then + 0.2; })) << "no pause";
+  EXPECT_LT(second->depth_mm, 0.0F);
+  second->command(R"({"do":"take"})");
+  ASSERT_TRUE(first->until([&] { return first->status.value("asking", 0) == 1; }));
+  first->command(R"({"do":"release"})");
+  ASSERT_TRUE(second->until([&] { return second->status.value("you_hold", false); }));
+  second->hand(5.0F, 100.0F);
+  ASSERT_TRUE(second->until([&] { return second->depth_mm > 4.9F; }));
+}
+
+TEST(Server, the_needle_rests_when_its_holder_goes) {
+  const Serving serving;
+  auto holder = ready_client(serving);
+  const auto watcher = ready_client(serving);
+  holder->command(R"({"do":"take"})");
+  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  ASSERT_TRUE(watcher->until([&] { return watcher->status.value("held", false); }));
+  holder->hand(100.0F, 5.0F);
+  ASSERT_TRUE(holder->until([&] { return holder->depth_mm > 0.0F; }));
+  holder.reset();
+  ASSERT_TRUE(watcher->until([&] { return !watcher->status.value("held", true); }));
+  double then = watcher->time_s;
+  ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.1; }));
+  const float there = watcher->depth_mm;
+  then = watcher->time_s;
+  ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.3; }));
+  EXPECT_EQ(watcher->depth_mm, there);
+}
+
+TEST(Server, pauses_steps_and_goes_on) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  client->command(R"({"do":"pause"})");
+  ASSERT_TRUE(client->until([&] { return (client->bits & 1U) != 0; }));
+  const double stands = client->time_s;
+  client->command(R"({"do":"step","count":3})");
+  ASSERT_TRUE(client->until([&] { return client->time_s > stands + 0.0119; }));
+  EXPECT_NEAR(client->time_s, stands + 3 * 4e-3, 1e-9);
+  client->command(R"({"do":"resume"})");
+  ASSERT_TRUE(client->until([&] { return client->time_s > stands + 0.1; }));
+}
+
+TEST(Server, another_hole_another_case_and_back_to_the_start) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  client->command(R"({"do":"hole","hole":"E3.5"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("hole", "") == "E3.5" && client->ready(); }));
+  EXPECT_EQ(client->scene["insertions"][0]["hole"], "D4") << "what the case plans stays known";
+  client->command(R"({"do":"hole","hole":"Z9"})");
+  ASSERT_TRUE(client->until([&] { return client->notices.size() == 1; })) << "no such hole";
+  EXPECT_NE(client->notices[0]["text"].get<std::string>().find("Z9"), std::string::npos);
+  client->command(R"({"do":"hole","hole":"A1"})");
+  ASSERT_TRUE(client->until([&] { return client->notices.size() == 2; })) << "it misses the patient";
+  client->hand(10.0F, 100.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 9.9F; })) << "the one before goes on";
+  client->command(R"({"do":"reset"})");
+  ASSERT_TRUE(client->until([&] { return client->depth_mm < 0.0F; }));
+  client->command(R"({"do":"case","index":1})");
+  ASSERT_TRUE(client->until([&] { return client->scene["case"] == 1; }));
+  client->command(R"({"do":"case","index":7})");
+  ASSERT_TRUE(client->until([&] { return client->notices.size() == 3; }));
+}
+
+TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
+  Serving serving;
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  client->hand(25.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 24.9F; }));
+  client->hand(10.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm < 10.1F; }));
+  const std::string name = client->status["recording"]["name"];
+  client->command(R"({"do":"reset"})");  // that recording is whole now
+  ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != name; }));
+
+  const auto csv = get(serving.port(), "/recordings/" + name + "/forces.csv");
+  EXPECT_EQ(csv.result(), http::status::ok);
+  EXPECT_EQ(csv.body().substr(0, 6), "time_s");
+
+  client->command(R"({"do":"replay","name":")" + name + "\"}");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
+  EXPECT_GT(client->samples, 100u) << "the whole curve";
+  const double duration = client->status["replay"]["duration_s"];
+  client->command(R"({"do":"seek","time_s":)" + std::to_string(0.5 * duration) + "}");
+  ASSERT_TRUE(client->until([&] { return std::abs(client->time_s - 0.5 * duration) < 1e-5; }));
+  client->command(R"({"do":"play","rate":20})");
+  ASSERT_TRUE(client->until([&] { return client->time_s >= duration - 1e-9; }));
+  client->command(R"({"do":"live"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
+  serving.server->stop();
+
+  const auto run = read_recording(serving.folder.path / name / "run.h5");
+  ASSERT_TRUE(run.ok()) << run.error().message();
+  ASSERT_GT(run->steps.size(), 100u);
+  EXPECT_FALSE(run->frames.empty());
+  EXPECT_FALSE(run->events.empty());
+  const auto scenario = parse_scenario(run->info.scenario_text, "recording");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+  Kept kept;
+  const auto again = run_recorded(compiled(*scenario, run->mesh), run->steps, kept);
+  ASSERT_TRUE(again.ok()) << again.error().message();
+  ASSERT_EQ(kept.steps.size(), run->steps.size());
+  for (std::size_t k = 0; k < kept.steps.size(); ++k) {
+    const StepRecord& a = run->steps[k];
+    const StepRecord& b = kept.steps[k];
+    ASSERT_TRUE(same_bits(a.force_axial_N, b.force_axial_N) && same_bits(a.force_lateral_N, b.force_lateral_N) &&
+                same_bits(a.force_sagittal_N, b.force_sagittal_N) && same_bits(a.torque_Nmm.x(), b.torque_Nmm.x()) &&
+                same_bits(a.torque_Nmm.y(), b.torque_Nmm.y()) && same_bits(a.torque_Nmm.z(), b.torque_Nmm.z()))
+        << "step " << k << " of " << kept.steps.size();
+  }
+}
+
+TEST(Server, malformed_messages_are_dropped_and_counted) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  for (int k = 0; k < 10; ++k) client->send("nonsense", 8);
+  client->command("{");
+  ASSERT_TRUE(client->until([&] { return client->status.value("dropped_messages", 0) == 11; }));
+  client->command(R"({"do":"take"})");
+  EXPECT_TRUE(client->until([&] { return client->status.value("you_hold", false); })) << "still heard";
+}
+
+TEST(Server, a_message_too_long_or_a_flood_ends_the_connection_and_nothing_else) {
+  const Serving serving;
+  const auto good = ready_client(serving);
+  const auto ends = [](const std::function<void()>& talk) {
+    try {
+      talk();
+    } catch (const boost::system::system_error&) {
+      return true;
+    }
+    return false;
+  };
+  LiveClient wordy(serving.port());
+  const std::string much(2000, 'x');
+  EXPECT_TRUE(ends([&] {
+    wordy.send(much.data(), much.size());
+    for (int k = 0; k < 100000; ++k) wordy.read();
+  }));
+  LiveClient flood(serving.port());
+  EXPECT_TRUE(ends([&] {
+    for (int k = 0; k < 1'000'000; ++k) flood.send("nonsense", 8);
+  }));
+  const double then = good->time_s;
+  EXPECT_TRUE(good->until([&] { return good->time_s > then + 0.2; }));
+}
+
+TEST(Server, a_viewer_that_does_not_read_loses_pictures_and_keeps_nobody_waiting) {
+  const Serving serving;
+  const auto reader = ready_client(serving);
+  LiveClient sleeper(serving.port());  // reads nothing for a while
+  const std::uint32_t before = reader->frames;
+  ASSERT_TRUE(reader->until([&] { return reader->frames > before + 100; }));
+  ASSERT_TRUE(sleeper.until([&] { return sleeper.ready(); }));
+  const double now = reader->time_s;
+  EXPECT_TRUE(sleeper.until([&] { return sleeper.time_s >= now; }));
+}
+
+TEST(Server, the_page_is_for_this_machine_and_its_own_origin) {
+  const Serving serving;
+  const std::string host = "localhost:" + std::to_string(serving.port());
+  EXPECT_EQ(get(serving.port(), "/", host).result(), http::status::ok);
+  EXPECT_EQ(get(serving.port(), "/live.js", host).result(), http::status::ok);
+  EXPECT_EQ(get(serving.port(), "/live.css", host).result(), http::status::ok);
+  EXPECT_EQ(get(serving.port(), "/", "evil.example").result(), http::status::forbidden);
+  EXPECT_EQ(get(serving.port(), "/recordings", host, "http://evil.example").result(), http::status::forbidden);
+  EXPECT_EQ(get(serving.port(), "/recordings", host, "http://" + host).result(), http::status::ok);
+  EXPECT_EQ(get(serving.port(), "/recordings/../../etc/passwd", host).result(), http::status::not_found);
+  EXPECT_EQ(get(serving.port(), "/recordings/..%2f/forces.csv", host).result(), http::status::not_found);
+  EXPECT_EQ(get(serving.port(), "/nothing", host).result(), http::status::not_found);
+}
+
+TEST(Server, beyond_this_machine_it_asks_for_the_token) {
+  const Serving serving([](serve::ServerSettings& s) { s.token = "0123"; });
+  EXPECT_EQ(get(serving.port(), "/recordings").result(), http::status::unauthorized);
+  EXPECT_EQ(get(serving.port(), "/recordings?token=0124").result(), http::status::unauthorized);
+  EXPECT_EQ(get(serving.port(), "/recordings?token=0123").result(), http::status::ok);
+  EXPECT_THROW(LiveClient client(serving.port()), boost::system::system_error);
+  EXPECT_NE(serving.server->url().find("token=0123"), std::string::npos);
+}
+
+TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
+  serve::ServerSettings s;
+  s.session.cases = {box_case("first")};
+  s.address = "nowhere";
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "nowhere");
+  const Serving serving;
+  s.address = "127.0.0.1";
+  s.port = serving.port();
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "another port");
+
+  const Serving broken([](serve::ServerSettings& settings) {
+    settings.session.cases[0].load = [](const Progress&) {
+      return Result<std::shared_ptr<const Model>>(input_error("case.toml", "it is broken", "Mend it"));
+    };
+  });
+  LiveClient client(broken.port());
+  ASSERT_TRUE(client.until([&] { return client.status.value("state", "") == "failed"; }));
+  EXPECT_SAYS(client.status["message"].get<std::string>(), "it is broken");
+  EXPECT_EQ(client.status["cure"], "Mend it");
+  client.command(R"({"do":"take"})");
+  client.command(R"({"do":"case","index":1})");
+  EXPECT_TRUE(client.until([&] { return client.ready(); })) << "another case can be opened";
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "wire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+using namespace stylet;
+using namespace stylet::serve;
+
+namespace {
+
+/// Reads what was encoded, in order.
+struct Reader {
+  const wire::Bytes& bytes;
+  std::size_t at = 0;
+  template <class T>
+  T take() {
+    T value{};
+    EXPECT_LE(at + sizeof value, bytes.size());
+    if (at + sizeof value <= bytes.size()) std::memcpy(&value, bytes.data() + at, sizeof value);
+    at += sizeof value;
+    return value;
+  }
+  std::uint32_t count() { return take<std::uint32_t>(); }
+  float number() { return take<float>(); }
+  [[nodiscard]] bool at_end() const { return at == bytes.size(); }
+};
+
+wire::Bytes message(std::uint32_t kind, const void* data, std::size_t size) {
+  wire::Bytes bytes(8 + size);
+  std::memcpy(bytes.data(), &kind, 4);
+  if (size > 0) std::memcpy(bytes.data() + 8, data, size);
+  return bytes;
+}
+wire::Bytes hand(std::array<float, 5> values) { return message(16, values.data(), sizeof values); }
+wire::Bytes command(const std::string& text) { return message(17, text.data(), text.size()); }
+
+const wire::Command* as_command(const std::optional<std::variant<HandTarget, wire::Command>>& decoded) {
+  return decoded ? std::get_if<wire::Command>(&*decoded) : nullptr;
+}
+
+}  // namespace
+
+TEST(Wire, a_scene_is_its_text_padded_and_its_surfaces) {
+  const Scene scene{"{\"a\": 1}x", {1, 2, 3, 4, 5, 6}, {0, 1, 0}};
+  const wire::Bytes bytes = wire::encode(scene, 5);
+  Reader r{bytes};
+  EXPECT_EQ(r.count(), 1u);
+  EXPECT_EQ(r.count(), 5u);
+  EXPECT_EQ(r.count(), 12u);
+  EXPECT_EQ(r.count(), 2u);
+  EXPECT_EQ(r.count(), 1u);
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()) + r.at, 12), "{\"a\": 1}x   ");
+  r.at += 12;
+  for (const float x : {1.F, 2.F, 3.F, 4.F, 5.F, 6.F}) EXPECT_EQ(r.number(), x);
+  for (const std::uint32_t k : {0U, 1U, 0U}) EXPECT_EQ(r.count(), k);
+  EXPECT_TRUE(r.at_end());
+}
+
+TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
+  LiveFrame f;
+  f.time_s = 1.25;
+  f.bits = LiveFrame::paused | LiveFrame::trusted;
+  f.flags = 9;
+  f.tip_state = TipState::cutting;
+  f.sticking = 3;
+  f.iterations = 4;
+  f.steps = 1250;
+  f.missed = 2;
+  f.depth_mm = 31.5;
+  f.force_axial_N = 1.5;
+  f.force_sagittal_N = -0.25;
+  f.force_lateral_N = 0.125;
+  f.torque_Nmm = {1, 2, 3};
+  f.tip_mm = {4, 5, 6};
+  f.base.origin = {7, 8, 9};
+  f.base.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);
+  f.roll_deg = 10;
+  f.tilt_left_deg = 11;
+  f.tilt_anterior_deg = 12;
+  f.left_out_N = 0.75;
+  f.centreline = {1, 1, 1, 2, 2, 2};
+  f.contacts.push_back({{1, 2, 3}, {4, 5, 6}, 7.0, true, true});
+  Eigen::Matrix3Xf u(3, 2);
+  u << 0.5F, -1.F, 0.F, 2.F, 0.001F, 0.F;
+  set_displacement(f, u);
+  const std::vector<Sample> samples{{1.0, 30.0, 1.25, 0.5, 0.25, 60.0, TipState::pressing, 1}};
+
+  const wire::Bytes bytes = wire::encode(f, samples, true, 77);
+  Reader r{bytes};
+  EXPECT_EQ(r.count(), 2u);
+  EXPECT_EQ(r.count(), 77u);
+  EXPECT_EQ(r.take<double>(), 1.25);
+  EXPECT_EQ(r.count(), 1u + 4u + 8u + 16u);  // paused, trusted, displaced, the whole curve
+  for (const std::uint32_t value : {9U, 2U, 3U, 4U, 1250U, 2U}) EXPECT_EQ(r.count(), value);
+  for (const float value : {31.5F, 1.5F, -0.25F, 0.125F, 1.F,  2.F,   3.F,  4.F,  5.F,  6.F,  7.F,
+                            8.F,   9.F,  0.5F,   -0.5F,  0.5F, -0.5F, 10.F, 11.F, 12.F, 0.75F})
+    EXPECT_EQ(r.number(), value);
+  const float unit = r.number();
+  for (const std::uint32_t value : {2U, 1U, 1U, 2U}) EXPECT_EQ(r.count(), value);
+  for (const float value : {1.F, 1.F, 1.F, 2.F, 2.F, 2.F}) EXPECT_EQ(r.number(), value);
+  for (const float value : {1.F, 2.F, 3.F, 4.F, 5.F, 6.F, 7.F}) EXPECT_EQ(r.number(), value);
+  EXPECT_EQ(r.count(), 3u);
+  for (const float value : {-0.25F, 30.F, 1.25F, 0.5F, 0.25F, 60.F, 1.F, 1.F}) EXPECT_EQ(r.number(), value);
+  for (Eigen::Index k = 0; k < 2; ++k)
+    for (Eigen::Index c = 0; c < 3; ++c)
+      EXPECT_NEAR(unit * static_cast<float>(r.take<std::int16_t>()), u(c, k), 0.5F * unit);
+  EXPECT_TRUE(r.at_end());
+}
+
+TEST(Wire, displacements_of_any_size_fit_and_those_that_are_no_numbers_are_not_shown) {
+  LiveFrame f;
+  Eigen::Matrix3Xf u = Eigen::Matrix3Xf::Zero(3, 2);
+  u(1, 1) = -250.0F;  // mm
+  set_displacement(f, u);
+  ASSERT_EQ(f.displacement.size(), 6u);
+  EXPECT_NEAR(f.displacement[4] * f.unit_mm, -250.0, 0.01);
+  u(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  set_displacement(f, u);
+  EXPECT_TRUE(f.displacement.empty());
+}
+
+TEST(Wire, a_hand_is_taken_as_it_is_said) {
+  const auto decoded = wire::decode(hand({12.5F, 20.F, 90.F, -1.F, 2.F}));
+  ASSERT_TRUE(decoded);
+  const auto* target = std::get_if<HandTarget>(&*decoded);
+  ASSERT_NE(target, nullptr);
+  EXPECT_EQ(target->depth_mm, 12.5);
+  EXPECT_EQ(target->speed_mm_per_s, 20.0);
+  EXPECT_EQ(target->roll_deg, 90.0);
+  EXPECT_EQ(target->tilt_left_deg, -1.0);
+  EXPECT_EQ(target->tilt_anterior_deg, 2.0);
+  EXPECT_FALSE(target->rest);
+}
+
+TEST(Wire, commands_carry_what_they_need) {
+  const auto hole = wire::decode(command(R"({"do":"hole","hole":"d3.5"})"));
+  ASSERT_NE(as_command(hole), nullptr);
+  EXPECT_EQ(as_command(hole)->what, wire::Command::Do::hole);
+  EXPECT_EQ(as_command(hole)->text, "d3.5");
+  const auto seek = wire::decode(command(R"({"do":"seek","time_s":1.5})"));
+  ASSERT_NE(as_command(seek), nullptr);
+  EXPECT_EQ(as_command(seek)->number, 1.5);
+  for (const char* name : {"take", "release", "reset", "pause", "resume", "live"})
+    EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;
+}
+
+TEST(Wire, what_is_malformed_is_nothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(wire::decode({}));
+  EXPECT_FALSE(wire::decode(wire::Bytes(7)));
+  EXPECT_FALSE(wire::decode(message(0, nullptr, 0)));
+  EXPECT_FALSE(wire::decode(message(16, nullptr, 0)));
+  EXPECT_FALSE(wire::decode(message(2, nullptr, 0))) << "only servers send these";
+  EXPECT_FALSE(wire::decode(hand({nan, 20, 0, 0, 0})));
+  EXPECT_FALSE(wire::decode(hand({1, inf, 0, 0, 0})));
+  EXPECT_FALSE(wire::decode(hand({1, -20, 0, 0, 0}))) << "a speed below zero";
+  wire::Bytes longer = hand({1, 20, 0, 0, 0});
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(wire::decode(longer));
+  for (const char* text :
+       {"", "{", "[]", "null", "{}", R"({"do":1})", R"({"do":"fly"})", R"({"do":"hole"})", R"({"do":"hole","hole":4})",
+        R"({"do":"seek","time_s":"now"})", R"({"do":"step"})", R"({"do":"seek","time_s":1e300})", R"({"do":"take")"})
+    EXPECT_FALSE(wire::decode(command(text))) << text;
+  EXPECT_FALSE(wire::decode(command(R"({"do":"hole","hole":")" + std::string(2000, 'x') + "\"}")));
+}
+
+TEST(Wire, noise_is_never_taken_for_a_number_that_is_none) {
+  std::mt19937 random(1);
+  int taken = 0;
+  for (int k = 0; k < 20000; ++k) {
+    wire::Bytes bytes(std::uniform_int_distribution<std::size_t>(0, 64)(random));
+    for (std::byte& b : bytes) b = static_cast<std::byte>(random());
+    const std::uint32_t kind = k % 2 == 0 ? 16 : 17;
+    if (bytes.size() >= 4) std::memcpy(bytes.data(), &kind, 4);
+    if (k % 4 == 0) bytes.resize(28);  // the length of a hand
+    const auto decoded = wire::decode(bytes);
+    if (!decoded) continue;
+    ++taken;
+    const auto* target = std::get_if<HandTarget>(&*decoded);
+    ASSERT_NE(target, nullptr) << "noise is no command";
+    ASSERT_TRUE(std::isfinite(target->depth_mm) && std::isfinite(target->roll_deg) && target->speed_mm_per_s >= 0.0);
+  }
+  EXPECT_GT(taken, 0);
+}
+
+TEST(Wire, thinning_keeps_the_largest_and_the_least_force_and_the_order) {
+  std::vector<Sample> samples(10'000);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_s = 1e-3 * static_cast<double>(k);
+    samples[k].axial_N = std::sin(0.01 * static_cast<double>(k));
+  }
+  samples[4321].axial_N = 9.0;
+  samples[8765].axial_N = -9.0;
+  wire::thin(samples, 500);
+  EXPECT_LE(samples.size(), 500u);
+  EXPECT_GE(samples.size(), 250u);
+  double most = 0.0;
+  double least = 0.0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    most = std::max(most, samples[k].axial_N);
+    least = std::min(least, samples[k].axial_N);
+    if (k > 0) {
+      ASSERT_GT(samples[k].time_s, samples[k - 1].time_s);
+    }
+  }
+  EXPECT_EQ(most, 9.0);
+  EXPECT_EQ(least, -9.0);
+  std::vector<Sample> few(3);
+  wire::thin(few, 500);
+  EXPECT_EQ(few.size(), 3u);
+}
