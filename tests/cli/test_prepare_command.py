@@ -5,7 +5,7 @@ import csv
 import unittest
 
 from insert_case import FAST, PHANTOM, SMALL
-from program import InFolder, run
+from program import InFolder
 
 
 class Prepare(InFolder):
@@ -65,11 +65,13 @@ class Prepare(InFolder):
         self.prepare()
         self.refuse("prepare", "case.stylet", "-o", "again.stylet", says=["scenario (TOML) is expected"])
 
-    def test_a_recording_is_no_model(self):
+    def test_a_recording_is_no_model_but_can_be_repeated(self):
         self.succeed("insert", "case.toml", "-o", "out", *SMALL)
-        done = run("insert", "out/run.h5", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("not a saved model", done.stderr)
+        again = self.succeed("insert", "out/run.h5", "-o", "again").stdout
+        self.assertIn("to the last bit", again)
+        self.assertEqual(self.forces("out"), self.forces("again"))
+        slower = self.succeed("insert", "out/run.h5", "-o", "other", "--set", "tissue.prostate.young_kPa=90").stdout
+        self.assertIn("differ from the recording's", slower)
 
     def test_quiet(self):
         done = self.succeed("prepare", "case.toml", "-o", "case.stylet", "--quiet", *SMALL)
