@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 
 namespace stylet::serve {
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::size_t kCurve = 8000;      ///< samples kept for who comes later
 constexpr double kShareOfTime = 0.3;      ///< of this thread's time goes into displacements for pages
+constexpr double kStill_N = 1e-4;         ///< a force that changes less has not changed
 constexpr double kShareForFrames = 0.05;  ///< … and for the recording
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -107,12 +109,22 @@ void LiveRun::put_displacement(LiveFrame& frame) {
   picture_after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
 }
 
-void LiveRun::record_frame(const Snapshot& snapshot, const std::string& label) {
+/// A needle at rest makes no frames; when it moves again, first its last one at the time until which it rested.
+void LiveRun::record_frame(const Snapshot& snapshot) {
+  if (last_frame_ && snapshot.base.origin == last_base_.origin && snapshot.base.rotation == last_base_.rotation &&
+      std::abs(snapshot.force_axial_N - last_force_N_) < kStill_N) {
+    resting_until_s_ = snapshot.time_s;
+    return;
+  }
+  if (last_frame_ && resting_until_s_ > last_frame_->time_s) {
+    last_frame_->time_s = resting_until_s_;
+    record(recorder_->add_frame(*last_frame_));
+    if (!recorder_) return;
+  }
   const double before = now_s();
   Frame frame;
   frame.time_s = snapshot.time_s;
   frame.base_depth_mm = snapshot.base_depth_mm;
-  frame.label = label;
   Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(all_nodes_.size()));
   open_.field->displacement(all_nodes_, load_, u);
   frame.displacement = u.reshaped().cast<double>();
@@ -120,6 +132,9 @@ void LiveRun::record_frame(const Snapshot& snapshot, const std::string& label) {
   for (const ContactSnapshot& c : std::span(snapshot.contacts).first(static_cast<std::size_t>(snapshot.contact_count)))
     frame.contacts.push_back({vec3(c.position), vec3(c.force), c.s, c.sticking, c.tip});
   record(recorder_->add_frame(frame));
+  last_frame_ = std::move(frame);
+  last_base_ = snapshot.base;
+  last_force_N_ = snapshot.force_axial_N;
   next_frame_s_ = snapshot.time_s + std::max(frame_every_s_, (now_s() - before) / kShareForFrames);
 }
 
@@ -128,7 +143,7 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   if (!fresh && !whole_curve) return nullptr;
   const Snapshot& s = runner_->snapshot();
   open_.field->set(tissue_forces(s, room_), load_);
-  if (recorder_ && fresh && s.time_s > 0.0 && s.time_s >= next_frame_s_) record_frame(s, {});
+  if (recorder_ && fresh && s.time_s > 0.0 && s.time_s >= next_frame_s_) record_frame(s);
 
   auto frame = std::make_shared<LiveFrame>();
   frame->time_s = s.time_s;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ class LiveRun {
  private:
   LiveRun(const OpenModel& open, double recorded_frames_per_s);
   void record(const Result<>& done);
-  void record_frame(const Snapshot& snapshot, const std::string& label);
+  void record_frame(const Snapshot& snapshot);
   void put_displacement(LiveFrame& frame);
 
   OpenModel open_;
@@ -64,9 +65,13 @@ class LiveRun {
   std::vector<Sample> curve_;   ///< since the start, thinned
   StepSnapshot last_step_;
   double time_s_ = 0.0;
-  double frame_every_s_;          ///< of the recording, at least
-  double next_frame_s_ = 0.0;     ///< simulated time
-  double picture_after_s_ = 0.0;  ///< wall: the next displacement for the page
+  double frame_every_s_;             ///< of the recording, at least
+  double next_frame_s_ = 0.0;        ///< simulated time
+  std::optional<Frame> last_frame_;  ///< recorded
+  PlainPose last_base_;              ///< of it
+  double last_force_N_ = 0.0;        ///< of it, axial
+  double resting_until_s_ = 0.0;     ///< nothing has moved since it
+  double picture_after_s_ = 0.0;     ///< wall: the next displacement for the page
   std::int64_t lost_steps_ = 0;
 };
 

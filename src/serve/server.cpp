@@ -11,6 +11,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <nlohmann/json.hpp>
 
 #include <map>
@@ -28,6 +30,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr auto kRequestTime = std::chrono::seconds(20);
+constexpr auto kAcceptAgain = std::chrono::milliseconds(200);
 constexpr std::size_t kRequestBytes = 16 * 1024;
 constexpr std::size_t kKeptEvents = 1000;
 
@@ -85,6 +88,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       : settings(std::move(settings_)),
         access(std::move(token)),
         acceptor(io),
+        retry(io),
         pages(access, settings.session.recordings),
         session(settings.session, *this) {}
 
@@ -92,6 +96,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   Access access;
   asio::io_context io{1};
   tcp::acceptor acceptor;
+  asio::steady_timer retry;
   Pages pages;
   Holding holding;
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers;
@@ -101,6 +106,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   std::deque<std::string> events;  ///< since the start of the insertion
   Session session;
   std::thread thread;
+  asio::thread_pool readers{1};  ///< last: ended before what its work needs
 
   // Audience: from the session's thread.
   void show(std::shared_ptr<const Scene> made) override {
@@ -222,12 +228,18 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error) {
-        beast::error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        read_request(std::make_shared<beast::tcp_stream>(std::move(socket)));
-      }
+      if (error) return accept_later();
+      beast::error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      read_request(std::make_shared<beast::tcp_stream>(std::move(socket)));
       accept();
+    });
+  }
+  /// After an error that would come again at once, such as too many open files.
+  void accept_later() {
+    retry.expires_after(kAcceptAgain);
+    retry.async_wait([this](beast::error_code error) {
+      if (!error) accept();
     });
   }
   struct Reading {
@@ -249,9 +261,17 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       std::make_shared<Viewer>(++last_id, std::move(*stream), *this)->accept(request);
       return;
     }
-    auto response = std::make_shared<http::response<http::string_body>>(pages.answer(request));
     if (beast::websocket::is_upgrade(request) && viewers.size() >= settings.viewers)
-      *response = Pages::refusal(request, http::status::service_unavailable, "There are too many viewers already.");
+      return write(stream,
+                   Pages::refusal(request, http::status::service_unavailable, "There are too many viewers already."));
+    // Reading a recording takes a while: not here, where all viewers would wait.
+    stream->expires_never();
+    asio::post(readers, [this, stream, request] {
+      asio::post(io, [this, stream, response = pages.answer(request)] { write(stream, response); });
+    });
+  }
+  void write(const std::shared_ptr<beast::tcp_stream>& stream, HttpResponse made) {
+    auto response = std::make_shared<HttpResponse>(std::move(made));
     const bool again = response->keep_alive();
     stream->expires_after(kRequestTime);
     http::async_write(*stream, *response, [this, stream, response, again](beast::error_code error, std::size_t /*n*/) {
@@ -319,9 +339,11 @@ void Server::stop() {
   Parts& p = *parts_;
   if (!p.thread.joinable()) return;
   p.session.stop();
+  p.readers.join();
   asio::post(p.io, [&p] {
     beast::error_code ignored;
     p.acceptor.close(ignored);
+    p.retry.cancel();
     for (const auto& [id, viewer] : p.each()) viewer->close();
     p.io.stop();
   });

@@ -175,6 +175,10 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   ASSERT_TRUE(client->until([&] { return client->depth_mm > 24.9F; }));
   client->hand(10.0F, 80.0F);
   ASSERT_TRUE(client->until([&] { return client->depth_mm < 10.1F; }));
+  const double rests_from = client->time_s + 0.2;
+  ASSERT_TRUE(client->until([&] { return client->time_s > rests_from + 1.0; }));
+  client->hand(8.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm < 8.1F; }));
   const std::string name = client->status["recording"]["name"];
   client->command(R"({"do":"reset"})");  // that recording is whole now
   ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != name; }));
@@ -200,6 +204,11 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   ASSERT_GT(run->steps.size(), 100u);
   EXPECT_FALSE(run->frames.empty());
   EXPECT_FALSE(run->events.empty());
+  // At rest nothing is recorded but where it ends.
+  int at_rest = 0;
+  for (const Frame& frame : run->frames)
+    at_rest += frame.time_s > rests_from && frame.time_s < rests_from + 0.9 ? 1 : 0;
+  EXPECT_LE(at_rest, 1);
   const auto scenario = parse_scenario(run->info.scenario_text, "recording");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message();
   Kept kept;
