@@ -97,6 +97,8 @@ export class Session implements TransportListener {
   }
 
   private takeStatus(status: Status): void {
+    // A replay is of the hole of its scene, whatever the live needle was in.
+    if (status.mode === 'replay') status.hole = this.scene?.insertions[0]?.hole ?? '';
     this.status = status;
     // A page that finds the needle free takes it, so that a first visitor need not know about holding it.
     const free = status.state === 'ready' && status.held === false && !status.you_hold;

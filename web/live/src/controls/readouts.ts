@@ -60,9 +60,9 @@ export class Readouts {
     const loop = status?.loop;
     const missed = frame?.missed ?? loop?.missed ?? 0;
     const steps = frame?.steps ?? loop?.steps ?? 0;
-    this.step.set(loop ? `${loop.p50_us.toFixed(0)} · ${loop.p99_us.toFixed(0)} · ${loop.max_us.toFixed(0)}` : '–');
-    const words = steps === 0 ? 'No steps yet' : missed === 0 ? 'Every step in time' : `${missed.toLocaleString('en')} of ${steps.toLocaleString('en')} steps late`;
-    this.deadline.className = `deadline ${steps === 0 ? '' : missed === 0 ? 'kept' : 'missed'}`;
+    this.step.set(loop && loop.steps > 0 ? `${loop.p50_us.toFixed(0)} · ${loop.p99_us.toFixed(0)} · ${loop.max_us.toFixed(0)}` : '–');
+    const words = frame?.replayed ? 'A replay' : steps === 0 ? 'No steps yet' : missed === 0 ? 'Every step in time' : `${missed.toLocaleString('en')} of ${steps.toLocaleString('en')} steps late`;
+    this.deadline.className = `deadline ${steps === 0 || frame?.replayed ? '' : missed === 0 ? 'kept' : 'missed'}`;
     if (this.deadline.textContent !== words) this.deadline.textContent = words;
     this.deadline.title = loop?.rights ?? '';
   }

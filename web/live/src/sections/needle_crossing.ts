@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+/** Writes the end of the needle's centreline to `out` (3); without a centreline, the tip of the frame. */
+export function tipOf(frame: { line: Float32Array; tip: Float32Array }, out: Float32Array): Float32Array {
+  const { line, tip } = frame;
+  for (let k = 0; k < 3; k++) out[k] = line.length >= 3 ? line[line.length - 3 + k] : tip[k];
+  return out;
+}
+
 /** Where a line crosses the plane in which coordinate `axis` is `value`: written to `out` (3); false if it does not. */
 export function crossing(line: Float32Array, axis: number, value: number, out: Float32Array): boolean {
   for (let i = 3; i < line.length; i += 3) {

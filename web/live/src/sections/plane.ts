@@ -3,6 +3,9 @@
 import { clamp } from '../hand';
 import { holes, organBounds, regionTriangles, type Scene } from '../scene';
 import type { Session } from '../session';
+import { tipOf } from './needle_crossing';
+
+const TIP = new Float32Array(3);
 
 export type PlaneName = 'transverse' | 'sagittal';
 
@@ -43,8 +46,13 @@ export class Plane {
 
   private update(): void {
     if (!this.follows) return;
-    const wanted = this.name === 'transverse' ? this.session.frame?.tip[2] : this.holeX();
+    const wanted = this.name === 'transverse' ? this.tipZ() : this.holeX();
     if (wanted !== undefined) this.move(Math.max(this.near, wanted));
+  }
+
+  private tipZ(): number | undefined {
+    const { frame } = this.session;
+    return frame ? tipOf(frame, TIP)[2] : undefined;
   }
 
   private holeX(): number | undefined {

@@ -8,7 +8,7 @@ import { CanvasBox } from '../canvas_box';
 import { focusBounds, holes, regionTriangles, samePatient, type Hole, type Scene } from '../scene';
 import type { Session } from '../session';
 import { ContourCutter } from './contour_cutter';
-import { crossing } from './needle_crossing';
+import { crossing, tipOf } from './needle_crossing';
 import type { Plane } from './plane';
 import { drawTemplate, drawTemplateEdge } from './template_overlay';
 
@@ -19,6 +19,7 @@ interface Section {
 }
 
 const HIT = new Float32Array(3);
+const TIP = new Float32Array(3);
 
 export class SectionView {
   readonly box: CanvasBox;
@@ -180,6 +181,7 @@ export class SectionView {
     if (!frame || !scene || frame.line.length < 6) return;
     const { context, text } = this.box;
     const { line } = frame;
+    const tip = tipOf(frame, TIP);
     const r = Math.max(text * 0.34, (scene.needle.diameter_mm / 2) * this.pixels);
     const path = () => {
       context.beginPath();
@@ -194,7 +196,7 @@ export class SectionView {
       path();
       context.stroke();
       context.strokeStyle = INK;
-      context.globalAlpha = Math.abs(frame.tip[0] - this.plane.value) < 3 ? 1 : 0.45;  // out of this plane
+      context.globalAlpha = Math.abs(tip[0] - this.plane.value) < 3 ? 1 : 0.45;  // out of this plane
       context.lineWidth = width;
       path();
       context.stroke();
@@ -208,7 +210,7 @@ export class SectionView {
     context.globalAlpha = 1;
     const crosses = crossing(line, this.plane.axis, this.plane.value, HIT);
     if (this.plane.axis === 2) {
-      const at = crosses ? HIT : frame.tip;
+      const at = crosses ? HIT : tip;
       context.beginPath();
       context.arc(this.u(at[0], at[2]), this.v(at[1]), r, 0, 2 * Math.PI);
       context.fillStyle = crosses ? INK : '#fff';
@@ -218,7 +220,7 @@ export class SectionView {
       context.stroke();
     } else {
       context.beginPath();
-      context.arc(this.u(frame.tip[0], frame.tip[2]), this.v(frame.tip[1]), r, 0, 2 * Math.PI);
+      context.arc(this.u(tip[0], tip[2]), this.v(tip[1]), r, 0, 2 * Math.PI);
       context.fillStyle = '#f0e442';
       context.strokeStyle = INK;
       context.lineWidth = 1.5;

@@ -10,7 +10,7 @@ import { samePatient } from '../scene';
 import { CutControl } from './cut_control';
 import { Stage } from './stage';
 
-const SMALLEST_SCALE_MM = 2;
+const SMALLEST_SCALE_MM = 0.5;
 
 export class ViewPanel {
   readonly stage: Stage | null;
