@@ -5,6 +5,7 @@
 #include "table.hpp"
 
 #include "stylet/io/model_file.hpp"
+#include "stylet/io/scenario_io.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -29,16 +30,31 @@ double peak_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
+/// The file to write; in a folder it is named by what the model is of.
+Result<std::filesystem::path> output_file(const PrepareArguments& arguments) {
   const std::filesystem::path output = arguments.output;
-  if (output.extension() != ".stylet") {
-    return input_error(arguments.output, "a saved model has the extension .stylet", "Give a name that ends in .stylet");
+  std::error_code code;
+  if (!output.has_filename() || std::filesystem::is_directory(output, code)) {
+    const auto scenario = read_scenario(arguments.scenario, arguments.settings);
+    if (!scenario) return scenario.error();
+    const auto key = model_key(*scenario);
+    if (!key) return key.error();
+    return output / (*key + ".stylet");
   }
-  if (Result<> writable = check_output_file(output); !writable) return writable;
+  if (output.extension() == ".stylet") return output;
+  return input_error(arguments.output, "a saved model has the extension .stylet",
+                     "Give a name that ends in .stylet, or a folder (with / at the end)");
+}
+
+Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   if (is_hdf5_file(arguments.scenario)) {
     return input_error(arguments.scenario, "this is an HDF5 file, a scenario (TOML) is expected",
                        "Name the scenario that the model is to be made of");
   }
+  const auto file = output_file(arguments);
+  if (!file) return file.error();
+  const std::filesystem::path& output = *file;
+  if (Result<> writable = check_output_file(output); !writable) return writable;
   const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console.progress());
   if (!prepared) return prepared.error();
   const Model& model = *prepared->model;
@@ -60,10 +76,10 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
                                 "of memory",
                                 prepared->mesh_s, prepared->model_s, statistics.factor_seconds, save_s, peak_mb()));
   facts.add("file", fmt::format("{:.0f} MB", megabytes));
-  console.say(fmt::format("{} → {}", arguments.scenario, arguments.output));
+  console.say(fmt::format("{} → {}", arguments.scenario, output.string()));
   console.say(facts.text());
   return console.write_json({{"scenario", arguments.scenario},
-                             {"output", arguments.output},
+                             {"output", output.string()},
                              {"nodes", model.mesh().node_count()},
                              {"tets", model.mesh().tet_count()},
                              {"element", to_string(model.tissue().element())},
@@ -86,7 +102,10 @@ Command add_prepare_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "prepare", "Mesh and compile a scenario and save the model: from then on it starts in seconds");
   app->add_option("SCENARIO", arguments->scenario, "Scenario file (TOML)")->type_name("SCENARIO.toml")->required();
-  app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.stylet")->required();
+  app->add_option("-o,--output", arguments->output,
+                  "Model to write, or a folder: `stylet serve --models` finds it there")
+      ->type_name("MODEL.stylet")
+      ->required();
   app->add_option("--set", arguments->settings,
                   "Set a key of the scenario, e.g. --set mesh.nodes=5000; may be repeated")
       ->type_name("KEY=VALUE")

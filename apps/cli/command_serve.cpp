@@ -25,8 +25,16 @@ struct ServeArguments {
   int port = 8080;
   std::string token;
   std::string recordings = "out/live";
+  std::string models = ModelCache::users_folder().string();
   std::vector<std::string> settings;
 };
+
+/// Models that came with the program or were made when it was built.
+fs::path models_beside_program() {
+  std::error_code code;
+  const fs::path program = fs::read_symlink("/proc/self/exe", code);
+  return program.parent_path().parent_path() / "share" / "stylet" / "models";
+}
 
 /// A scenario or a saved model as a case of the page. A scenario is read now, so that what is wrong with it is said
 /// before anything is opened.
@@ -38,8 +46,10 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
     title = scenario->name;
   }
   return serve::CaseSource{
-      title, [file, settings = arguments.settings](const Progress& progress) -> Result<std::shared_ptr<const Model>> {
-        auto prepared = prepared_model(file.string(), settings, progress);
+      title,
+      [file, settings = arguments.settings, cache = ModelCache(arguments.models, {models_beside_program()})](
+          const Progress& progress) -> Result<std::shared_ptr<const Model>> {
+        auto prepared = prepared_model(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
         return prepared->model;
       }};
@@ -153,6 +163,10 @@ Command add_serve_command(CLI::App& program) {
   app->add_option("-o,--output", arguments->recordings, "Folder for the recordings, one for each insertion")
       ->capture_default_str()
       ->type_name("OUT/");
+  app->add_option("--models", arguments->models,
+                  "Folder in which compiled models are kept, so that a case opens at once the next time (default: "
+                  "~/.cache/stylet/models); \"\": nowhere")
+      ->type_name("MODELS/");
   app->add_option("--set", arguments->settings,
                   "Set a key of the scenarios, e.g. --set mesh.nodes=5000; may be repeated")
       ->type_name("KEY=VALUE")

@@ -28,15 +28,10 @@ Result<PreparedModel> saved(const std::string& file, const std::vector<std::stri
   return prepared;
 }
 
-}  // namespace
-
-Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
-                                     const Progress& progress) {
-  if (is_hdf5_file(file)) return saved(file, settings, progress);
-  const Result<Scenario> scenario = read_scenario(file, settings);
-  if (!scenario) return scenario.error();
+/// A scenario, meshed and compiled.
+Result<PreparedModel> compiled(const std::string& file, const Scenario& scenario, const Progress& progress) {
   std::vector<std::vector<MotionSample>> motions;
-  for (const InsertionPlan& plan : scenario->insertions) {
+  for (const InsertionPlan& plan : scenario.insertions) {
     motions.emplace_back();
     if (plan.motion.empty()) continue;
     Result<std::vector<MotionSample>> motion = read_motion_csv(plan.motion);
@@ -45,15 +40,36 @@ Result<PreparedModel> prepared_model(const std::string& file, const std::vector<
   }
   PreparedModel prepared;
   const double start = now_s();
-  Result<MeshedAnatomy> patient = patient_model(*scenario, file, progress);
+  Result<MeshedAnatomy> patient = patient_model(scenario, file, progress);
   if (!patient) return patient.error();
   prepared.notes = patient->report.notes;
   const double meshed = now_s();
   prepared.mesh_s = meshed - start;
-  auto model = Model::compile(*scenario, std::move(patient->mesh), file, motions, progress);
+  auto model = Model::compile(scenario, std::move(patient->mesh), file, motions, progress);
   if (!model) return model.error();
   prepared.model = std::move(*model);
   prepared.model_s = now_s() - meshed;
+  return prepared;
+}
+
+}  // namespace
+
+Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
+                                     const Progress& progress, const ModelCache* cache) {
+  if (is_hdf5_file(file)) return saved(file, settings, progress);
+  const Result<Scenario> scenario = read_scenario(file, settings);
+  if (!scenario) return scenario.error();
+  if (cache == nullptr) return compiled(file, *scenario, progress);
+  report(progress, "looking for a model kept before", -1.0);
+  const Result<std::string> key = model_key(*scenario);
+  if (!key) return compiled(file, *scenario, progress);  // which says better what is wrong with a patient's file
+  if (const auto kept = cache->find(*key)) {
+    if (auto prepared = saved(kept->string(), {}, progress)) return prepared;
+  }
+  auto prepared = compiled(file, *scenario, progress);
+  if (!prepared) return prepared;
+  if (auto done = cache->keep(*prepared->model, *key, prepared->notes, progress); !done)
+    prepared->notes.push_back("The model was not kept for the next time: " + done.error().message());
   return prepared;
 }
 

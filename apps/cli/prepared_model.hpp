@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
+#include "stylet/io/model_cache.hpp"
 #include "stylet/sim/model.hpp"
 
 #include <memory>
@@ -21,7 +22,9 @@ struct PreparedModel {
 /// The model of a scenario file, meshed and compiled, or of a saved model.
 /// @param file SCENARIO.toml or MODEL.stylet
 /// @param settings of --set
+/// @param cache where the model of a scenario is looked for first, and kept; may be null. A folder that refuses delays
+///   nobody: the model is there, and notes say what was wrong.
 Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
-                                     const Progress& progress);
+                                     const Progress& progress, const ModelCache* cache = nullptr);
 
 }  // namespace stylet::cli

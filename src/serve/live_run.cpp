@@ -28,13 +28,18 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 
 LiveRun::LiveRun(const OpenModel& open, double recorded_frames_per_s)
     : open_(open),
-      load_(open.field->make_load()),
       shown_(3, static_cast<Eigen::Index>(open.scene_nodes.size())),
       all_nodes_(static_cast<std::size_t>(open.model->mesh().node_count())),
       room_(Snapshot::kForces),
       step_room_(1024),
       frame_every_s_(1.0 / recorded_frames_per_s) {
   std::iota(all_nodes_.begin(), all_nodes_.end(), Index{0});
+  if (open_.field) load_ = open_.field->make_load();
+}
+
+void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
+  open_.field = std::move(field);
+  load_ = open_.field->make_load();
 }
 
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
@@ -101,9 +106,9 @@ void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
 
 void LiveRun::put_displacement(LiveFrame& frame) {
   const double before = now_s();
-  frame.left_out_N = load_.left_out_N();
+  frame.left_out_N = load_->left_out_N();
   if (before < picture_after_s_) return;
-  open_.field->displacement(open_.scene_nodes, load_, shown_);
+  open_.field->displacement(open_.scene_nodes, *load_, shown_);
   set_displacement(frame, shown_);
   const double after = now_s();
   picture_after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
@@ -126,7 +131,7 @@ void LiveRun::record_frame(const Snapshot& snapshot) {
   frame.time_s = snapshot.time_s;
   frame.base_depth_mm = snapshot.base_depth_mm;
   Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(all_nodes_.size()));
-  open_.field->displacement(all_nodes_, load_, u);
+  open_.field->displacement(all_nodes_, *load_, u);
   frame.displacement = u.reshaped().cast<double>();
   for (const Triple& point : snapshot.centreline) frame.needle.push_back(vec3(point));
   for (const ContactSnapshot& c : std::span(snapshot.contacts).first(static_cast<std::size_t>(snapshot.contact_count)))
@@ -142,8 +147,10 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const bool fresh = runner_->fetch_snapshot();
   if (!fresh && !whole_curve) return nullptr;
   const Snapshot& s = runner_->snapshot();
-  open_.field->set(tissue_forces(s, room_), load_);
-  if (recorder_ && fresh && s.time_s > 0.0 && s.time_s >= next_frame_s_) record_frame(s);
+  if (load_) {
+    open_.field->set(tissue_forces(s, room_), *load_);
+    if (recorder_ && fresh && s.time_s > 0.0 && s.time_s >= next_frame_s_) record_frame(s);
+  }
 
   auto frame = std::make_shared<LiveFrame>();
   frame->time_s = s.time_s;
@@ -169,7 +176,7 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
-  put_displacement(*frame);
+  if (load_) put_displacement(*frame);
   if (whole_curve) {
     frame->samples = curve_;
     unsent_.clear();

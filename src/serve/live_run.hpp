@@ -19,8 +19,8 @@ namespace stylet::serve {
 /// A model that can be shown.
 struct OpenModel {
   std::shared_ptr<const Model> model;
-  std::shared_ptr<const DisplayField> field;
-  std::vector<Index> scene_nodes;  ///< of the mesh
+  std::shared_ptr<const DisplayField> field;  ///< empty until it is prepared
+  std::vector<Index> scene_nodes;             ///< of the mesh
 };
 
 /// One insertion at a page: the real-time loop from a needle before the skin until the next one starts, and its
@@ -33,6 +33,8 @@ class LiveRun {
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s);
 
+  /// From here on pictures show how the tissue moves, and the recording has frames.
+  void set_field(std::shared_ptr<const DisplayField> field);
   /// Passes on what has happened since: to the recording, and the events to `tell`. Often enough that no step is lost.
   void pump(const std::function<void(const LiveEvent&)>& tell);
   /// The newest picture, if there is one that was not fetched yet.
@@ -55,11 +57,11 @@ class LiveRun {
   std::shared_ptr<PageDevice> hand_;
   std::unique_ptr<RealtimeRunner> runner_;
   std::unique_ptr<RunRecorder> recorder_;
-  std::string problem_;  ///< of the recording
-  DisplayField::Load load_;
-  Eigen::Matrix3Xf shown_;         ///< (3 × scene nodes)
-  std::vector<Index> all_nodes_;   ///< of the mesh
-  std::vector<TissueForce> room_;  ///< for forces
+  std::string problem_;                     ///< of the recording
+  std::optional<DisplayField::Load> load_;  ///< with a field
+  Eigen::Matrix3Xf shown_;                  ///< (3 × scene nodes)
+  std::vector<Index> all_nodes_;            ///< of the mesh
+  std::vector<TissueForce> room_;           ///< for forces
   std::vector<StepSnapshot> step_room_;
   std::vector<Sample> unsent_;  ///< since the last picture
   std::vector<Sample> curve_;   ///< since the start, thinned

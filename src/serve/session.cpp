@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/serve/session.hpp"
 
+#include "field_maker.hpp"
 #include "live_run.hpp"
 #include "replay.hpp"
 #include "scene.hpp"
@@ -28,6 +29,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kRequests = 256;
 constexpr auto kStatusEvery = std::chrono::milliseconds(500);
 constexpr auto kProgressEvery = std::chrono::milliseconds(50);
+// What is missing while it is ready.
+constexpr const char* kFieldStage = "the picture of the tissue's motion";
+constexpr const char* kNoField = "there is too little memory to show how the tissue moves";
 
 }  // namespace
 
@@ -47,7 +51,8 @@ struct Session::Parts {
   Audience& audience;
   Shelf shelf;
   std::size_t open_case = 0;
-  OpenModel open;  ///< without a model: none could be opened
+  OpenModel open;                           ///< without a model: none could be opened
+  std::unique_ptr<FieldMaker> field_maker;  ///< of the model that is open, until its field is there
   /// What the case itself plans; the model that is open may be of another hole.
   struct Planned {
     Scenario scenario;
@@ -74,7 +79,8 @@ struct Session::Parts {
 
   void open_model(const Request& request, std::size_t case_number,
                   const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load);
-  Result<> show_model();
+  void show_model();
+  void take_field();
   void choose_hole(const Request& request);
   void choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
   void place(const Request& request, std::size_t which);
@@ -168,7 +174,6 @@ void Session::Parts::say_status() {
 
 /// The loop with the needle before the skin of one of the model's insertions.
 void Session::Parts::place(const Request& request, std::size_t which) {
-  const bool paused = false;
   end_live();
   replay.reset();
   status.replay = {};
@@ -185,7 +190,8 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   live = std::move(*run);
   set_hand(live->hand());
   status.state = SessionStatus::State::ready;
-  status.paused = paused;
+  status.stage = field_maker ? kFieldStage : "";
+  status.paused = false;
   status.insertion = plan.name;
   status.hole = open.model->scenario().insertions[which].hole.value_or("");
   status.device = "page";
@@ -194,17 +200,26 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   audience.tell(LiveEvent{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan.name});
 }
 
-/// Scene and displacement field of the model that is open.
-Result<> Session::Parts::show_model() {
+/// Scene of the model that is open.
+void Session::Parts::show_model() {
   const Model& model = *open.model;
   MadeScene made =
       make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions, model.warnings(), cases());
   open.scene_nodes = std::move(made.nodes);
   audience.show(made.scene);
-  auto field = DisplayField::prepare(open.model, {}, progress());
-  if (!field) return field.error();
-  open.field = std::move(*field);
-  return Ok{};
+}
+
+/// The displacement field, once it is there; until then how much of it is.
+void Session::Parts::take_field() {
+  if (!field_maker) return;
+  status.fraction = field_maker->fraction();
+  if (!field_maker->done()) return;
+  open.field = field_maker->field();
+  field_maker.reset();
+  status.stage = open.field ? "" : kNoField;
+  status.fraction = -1.0;
+  next_status = {};
+  if (live && open.field) live->set_field(open.field);
 }
 
 /// Opens a model in the place of the one that is open; that one goes on if it cannot be had.
@@ -215,34 +230,24 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
   status.fraction = -1.0;
   status.stage = "reading";
   say_status();
-  const OpenModel before = open;
-  const std::size_t case_before = open_case;
-  const Planned planned_before = planned;
   auto model = load(progress());
-  Result<> shown = model ? Result<>(Ok{}) : Result<>(model.error());
-  if (model) {
+  const Result<> usable = model ? DisplayField::check(**model) : Result<>(model.error());
+  if (usable.ok()) {
+    field_maker.reset();
     open = {.model = *model, .field = nullptr, .scene_nodes = {}};
     if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
       planned = {(*model)->scenario(), (*model)->insertions()};
     open_case = case_number;
-    shown = show_model();
+    show_model();
+    field_maker = std::make_unique<FieldMaker>(open.model);
+    return place(request, 0);
   }
-  if (shown.ok()) {
-    place(request, 0);
-    return;
-  }
-  if (before.model) {
-    refuse(request, shown.error());
-    const bool scene_changed = open.model != before.model;
-    open = before;
-    open_case = case_before;
-    planned = planned_before;
-    if (scene_changed) (void)show_model();
-    place(request, insertion);
-    return;
+  if (open.model) {
+    refuse(request, usable.error());
+    return place(request, insertion);
   }
   status.state = SessionStatus::State::failed;
-  status.failure = {shown.error().where + ": " + shown.error().what, shown.error().cure};
+  status.failure = {usable.error().where + ": " + usable.error().what, usable.error().cure};
 }
 
 /// A needle through a hole: as the case plans it, or like its first one otherwise.
@@ -326,7 +331,7 @@ void Session::Parts::carry_out(const Request& request) {
       if (settings.cases.empty()) return missing("case", 0);
       if (!open.model) return open_model(request, open_case, settings.cases[open_case].load);
       replay.reset();
-      if (auto shown = show_model(); !shown) refuse(request, shown.error());
+      show_model();
       place(request, insertion);
       break;
     case Kind::seek:
@@ -360,6 +365,7 @@ void Session::Parts::carry_out(const Request& request) {
 }
 
 void Session::Parts::tick(double dt_s) {
+  take_field();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {
     live->pump([this](const LiveEvent& event) { audience.tell(event); });

@@ -163,13 +163,16 @@ void DisplayField::keep_near_rows() {
   }
 }
 
+Result<> DisplayField::check(const Model& model) {
+  if (!model.inverse()) return Ok{};
+  return input_error("coupling.engine", "the display needs the compliances near the needles' ways",
+                     "Use coupling.engine = \"condensed\"");
+}
+
 Result<std::shared_ptr<const DisplayField>> DisplayField::prepare(std::shared_ptr<const Model> model,
                                                                   const DisplayFieldOptions& options,
                                                                   const Progress& progress) {
-  if (model->inverse()) {
-    return input_error("coupling.engine", "the display needs the compliances near the needles' ways",
-                       "Use coupling.engine = \"condensed\"");
-  }
+  if (auto good = check(*model); !good) return good.error();
   const double started = seconds_now();
   std::shared_ptr<DisplayField> field(new DisplayField(std::move(model)));
   field->find_zone(options.reach_mm);

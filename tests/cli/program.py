@@ -9,6 +9,9 @@ import unittest
 from pathlib import Path
 
 STYLET = os.environ["STYLET"]
+# Models are kept here instead of in the user's cache.
+CACHE = tempfile.TemporaryDirectory(prefix="stylet-cache-")
+os.environ["XDG_CACHE_HOME"] = CACHE.name
 
 
 def run(*arguments, cwd=None):

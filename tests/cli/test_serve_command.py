@@ -77,6 +77,40 @@ class Serve(InFolder):
         self.assertIn("to the last bit", said)
         self.refuse("insert", recording, "-o", str(self.recordings()[-1].parent), says=["replaced", "-o"])
 
+    def opened(self, *arguments):
+        """Starts a server, waits until the needle moves, and ends it."""
+        before = len(self.recordings())
+        server, _ = self.start("case.toml", *SMALL, *arguments)
+        self.until(lambda: len(self.recordings()) > before)
+        server.terminate()
+        self.assertEqual(server.wait(PATIENCE_S), 0)
+
+    def test_models_are_kept_for_the_next_time(self):
+        models = self.folder / "models"
+        self.opened("--models", "models")
+        kept = list(models.iterdir())
+        self.assertEqual([file.suffix for file in kept], [".stylet"])
+        made = kept[0].stat().st_ino
+        self.opened("--models", "models")
+        self.assertEqual(kept[0].stat().st_ino, made, "it was made again")
+        kept[0].write_bytes(kept[0].read_bytes()[:-1000])  # damaged: not used, and made again
+        self.opened("--models", "models")
+        self.assertNotEqual(kept[0].stat().st_ino, made)
+        self.assertEqual(list(models.iterdir()), kept)
+
+    def test_finds_a_model_that_was_prepared_in_the_folder(self):
+        self.succeed("prepare", "case.toml", *SMALL, "-o", "models/")
+        kept = list((self.folder / "models").iterdir())
+        made = kept[0].stat().st_ino
+        self.opened("--models", "models")
+        self.assertEqual(list((self.folder / "models").iterdir()), kept)
+        self.assertEqual(kept[0].stat().st_ino, made)
+
+    def test_a_folder_for_models_that_refuses_keeps_nobody_from_opening(self):
+        (self.folder / "models").write_text("a file")
+        self.opened("--models", "models")
+        self.opened("--models", "")
+
     def test_refuses_what_is_wrong(self):
         self.refuse("serve", "nothing.toml", says=["nothing.toml"])
         self.refuse("serve", "case.toml", "--address", "nowhere", says=["nowhere", "IP address"])

@@ -76,8 +76,8 @@ struct Notice {
 struct SessionStatus {
   enum class State { loading, ready, failed };
   State state = State::loading;
-  std::string stage;       ///< of loading
-  double fraction = -1.0;  ///< of loading, −1 where it is not known
+  std::string stage;       ///< of loading; when ready: what is still missing of the picture
+  double fraction = -1.0;  ///< of it, −1 where it is not known
   Notice failure;
   bool paused = false;
   std::string insertion;  ///< its name

@@ -26,7 +26,9 @@ struct DisplayFieldOptions {
 /// Immutable once prepared: any number of threads may read, each with a Load of its own. Reading does not allocate.
 class DisplayField {
  public:
-  /// Solves for the columns. Not for the loop. Errors: a model whose engine keeps the full inverse and no store.
+  /// Refuses a model whose engine keeps the full inverse and no store: it has no field.
+  static Result<> check(const Model& model);
+  /// Solves for the columns. Not for the loop. Errors: those of check().
   static Result<std::shared_ptr<const DisplayField>> prepare(std::shared_ptr<const Model> model,
                                                              const DisplayFieldOptions& options = {},
                                                              const Progress& progress = {});

@@ -86,11 +86,21 @@ export class ViewPanel {
       this.tissueChanged();
     }
     if (this.anatomy.needleMoved) this.stage.showNeedle(frame);
-    const hidden = frame.hidden > 0.05 ? `The displacement shown leaves out forces of ${frame.hidden.toFixed(1)} N.` : '';
-    if (this.note.textContent !== hidden) {
-      this.note.textContent = hidden;
-      this.note.hidden = hidden === '';
+    const note = this.notShown(frame.hidden);
+    if (this.note.textContent !== note) {
+      this.note.textContent = note;
+      this.note.hidden = note === '';
     }
+  }
+
+  /** What of the tissue's motion the picture lacks. */
+  private notShown(hidden_N: number): string {
+    const { status } = this.session;
+    if (status?.mode !== 'replay' && status?.stage) {
+      const done = status.fraction == null ? '' : ` is being prepared: ${Math.round(100 * status.fraction)} %`;
+      return `${status.stage[0].toUpperCase()}${status.stage.slice(1)}${done}.`;
+    }
+    return hidden_N > 0.05 ? `The displacement shown leaves out forces of ${hidden_N.toFixed(1)} N.` : '';
   }
 
   private tissueChanged(): void {

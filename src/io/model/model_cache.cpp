@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/io/model_cache.hpp"
+
+#include "model/digest.hpp"
+#include "stylet/io/model_file.hpp"
+#include "stylet/io/scenario_io.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+
+namespace stylet {
+namespace fs = std::filesystem;
+using detail::Digest;
+
+namespace {
+
+constexpr const char* kExtension = ".stylet";
+constexpr std::size_t kPiece = 1 << 20;
+
+Result<> add_file(Digest& digest, const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> piece(kPiece);
+  while (file) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    digest.add(std::span<const char>(piece).first(static_cast<std::size_t>(file.gcount())));
+  }
+  if (file.eof()) return Ok{};
+  return failure(path.string(), "cannot be read", "Check the file and its permissions");
+}
+
+/// A file, or all files of a folder in the order of their names.
+Result<> add_input(Digest& digest, const fs::path& path) {
+  std::error_code code;
+  if (!fs::is_directory(path, code)) return add_file(digest, path);
+  std::vector<fs::path> files;
+  for (fs::recursive_directory_iterator entry(path, code), end; !code && entry != end; entry.increment(code)) {
+    if (entry->is_regular_file(code)) files.push_back(entry->path());
+  }
+  if (code) return failure(path.string(), "cannot be read: " + code.message(), "Check the folder and its permissions");
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    digest.add(file.lexically_relative(path).string());
+    if (auto added = add_file(digest, file); !added) return added;
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<std::string> model_key(const Scenario& scenario) {
+  Digest digest;
+  digest.add(to_toml(scenario));
+  std::vector<fs::path> inputs{"/proc/self/exe"};
+  if (scenario.patient.source != "phantom") inputs.emplace_back(scenario.patient.source);
+  for (const InsertionPlan& plan : scenario.insertions) {
+    if (!plan.motion.empty()) inputs.emplace_back(plan.motion);
+  }
+  for (const fs::path& input : inputs) {
+    if (auto added = add_input(digest, input); !added) return added.error();
+  }
+  return digest.finish();
+}
+
+ModelCache::ModelCache(fs::path folder, std::vector<fs::path> others, std::uintmax_t most_bytes)
+    : folder_(std::move(folder)), others_(std::move(others)), most_bytes_(most_bytes) {}
+
+fs::path ModelCache::users_folder() {
+  const auto folder = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    const fs::path path = value == nullptr ? "" : value;
+    return path.is_absolute() ? path : fs::path();
+  };
+  if (const fs::path cache = folder("XDG_CACHE_HOME"); !cache.empty()) return cache / "stylet" / "models";
+  if (const fs::path home = folder("HOME"); !home.empty()) return home / ".cache" / "stylet" / "models";
+  return {};
+}
+
+std::optional<fs::path> ModelCache::find(const std::string& key) const {
+  std::vector<fs::path> places = others_;
+  if (!folder_.empty()) places.insert(places.begin(), folder_);
+  for (const fs::path& place : places) {
+    const fs::path file = place / (key + kExtension);
+    if (!is_model_file(file)) continue;
+    std::error_code ignored;  // a folder that is only to be read has no times to keep
+    fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+    return file;
+  }
+  return std::nullopt;
+}
+
+Result<> ModelCache::keep(const Model& model, const std::string& key, std::span<const std::string> notes,
+                          const Progress& progress) const {
+  if (folder_.empty() || model.inverse()) return Ok{};
+  const Eigen::Index entries = model.store()->blocks().size();
+  if (static_cast<std::uintmax_t>(entries) / 2 * sizeof(double) > most_bytes_)
+    return Ok{};  // a triangle of it is saved
+  std::error_code code;
+  fs::create_directories(folder_, code);
+  if (code)
+    return failure(folder_.string(), "cannot be made: " + code.message(), "Check the permissions, or choose another");
+  const fs::path file = folder_ / (key + kExtension);
+  if (auto saved = save_model(model, file, notes, progress); !saved) return saved;
+  forget_oldest(file);
+  return Ok{};
+}
+
+void ModelCache::forget_oldest(const fs::path& newest) const {
+  struct Kept {
+    fs::file_time_type used;
+    fs::path file;
+    std::uintmax_t bytes = 0;
+  };
+  std::vector<Kept> kept;
+  std::uintmax_t total = 0;
+  std::error_code code;  // what somebody else has removed meanwhile is passed over
+  for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
+    std::error_code gone;
+    const Kept one{entry->last_write_time(gone), entry->path(), entry->file_size(gone)};
+    if (gone || one.file.extension() != kExtension) continue;
+    total += one.bytes;
+    if (one.file != newest) kept.push_back(one);
+  }
+  std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
+  for (const Kept& one : kept) {
+    if (total <= most_bytes_) return;
+    fs::remove(one.file, code);
+    total -= one.bytes;
+  }
+}
+
+}  // namespace stylet

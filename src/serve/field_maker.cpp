@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "field_maker.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <new>
+#include <utility>
+
+namespace stylet::serve {
+
+namespace {
+
+constexpr int kNice = 10;  ///< the loop and the pictures come first
+/// The field is prepared in two stages, which take about as long.
+constexpr double kStages = 2.0;
+
+struct GivenUp {};
+
+}  // namespace
+
+FieldMaker::FieldMaker(std::shared_ptr<const Model> model)
+    : thread_([this, model = std::move(model)]() mutable { make(std::move(model)); }) {}
+
+FieldMaker::~FieldMaker() { given_up_ = true; }
+
+void FieldMaker::make(std::shared_ptr<const Model> model) {
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  const Progress progress = [this](std::string_view stage, double fraction) {
+    if (given_up_) throw GivenUp();
+    const bool first = stage == "display: choosing columns";
+    fraction_.store((first ? fraction : 1.0 + fraction) / kStages, std::memory_order_relaxed);
+  };
+  try {
+    if (auto field = DisplayField::prepare(std::move(model), {}, progress)) made_ = std::move(*field);
+  } catch (const GivenUp&) {  // nobody waits for it
+  } catch (const std::bad_alloc&) {
+  }
+  done_.store(true, std::memory_order_release);
+}
+
+}  // namespace stylet::serve

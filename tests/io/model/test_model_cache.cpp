@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled models kept from one start to the next: found by what they are of, and not too many.
+#include "io/formats/files.hpp"
+#include "sim/box_patient.hpp"
+
+#include "stylet/io/model_cache.hpp"
+#include "stylet/io/model_file.hpp"
+
+#include <fstream>
+
+namespace stylet {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Folder;
+
+Scenario box() {
+  Scenario scenario = test::box_scenario();
+  scenario.patient.source = "phantom";
+  return scenario;
+}
+
+std::shared_ptr<const Model> box_model() {
+  auto model = Model::compile(box(), test::box_patient(), "box");
+  if (!model) throw std::runtime_error(model.error().message());
+  return *model;
+}
+
+void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::string key(const Scenario& scenario) {
+  const auto made = model_key(scenario);
+  if (!made) throw std::runtime_error(made.error().message());
+  return *made;
+}
+
+void keep(const ModelCache& cache, const std::string& name) {
+  const auto kept = cache.keep(*box_model(), name, std::vector<std::string>{"a note"});
+  ASSERT_TRUE(kept) << kept.error().message();
+}
+
+std::uintmax_t size_of_one() {
+  const Folder folder;
+  keep(ModelCache(folder.path()), "one");
+  return fs::file_size(folder.path() / "one.stylet");
+}
+
+}  // namespace
+
+TEST(ModelCache, AKeyFollowsFromEverythingAModelIsMadeOf) {
+  const Folder folder;
+  const fs::path patient = folder.path() / "patient.json";
+  const fs::path motion = folder.path() / "motion.csv";
+  write(patient, "{}");
+  write(motion, "time_s\n");
+  Scenario s = box();
+  s.patient.source = patient.string();
+  s.insertions[0].motion = motion.string();
+  const std::string first = key(s);
+  EXPECT_EQ(first, key(s));
+
+  Scenario other = s;
+  other.needle.length_mm += 1.0;
+  EXPECT_NE(key(other), first);
+  write(patient, "{ }");
+  EXPECT_NE(key(s), first);
+  write(patient, "{}");
+  EXPECT_EQ(key(s), first);
+  write(motion, "time_s \n");
+  EXPECT_NE(key(s), first);
+}
+
+TEST(ModelCache, AKeyOfAFolderKnowsItsFilesByNameAndContent) {
+  const Folder folder;
+  fs::create_directories(folder.path() / "slices" / "more");
+  write(folder.path() / "slices" / "1.dcm", "one");
+  write(folder.path() / "slices" / "more" / "2.dcm", "two");
+  Scenario s = box();
+  s.patient.source = (folder.path() / "slices").string();
+  const std::string first = key(s);
+  write(folder.path() / "slices" / "more" / "2.dcm", "2");
+  EXPECT_NE(key(s), first);
+  write(folder.path() / "slices" / "more" / "2.dcm", "two");
+  EXPECT_EQ(key(s), first);
+  fs::rename(folder.path() / "slices" / "1.dcm", folder.path() / "slices" / "0.dcm");
+  EXPECT_NE(key(s), first);
+}
+
+TEST(ModelCache, APatientThatIsNotThereHasNoKey) {
+  Scenario s = box();
+  s.patient.source = "/nowhere/patient.json";
+  const auto made = model_key(s);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message().find("/nowhere/patient.json"), std::string::npos);
+}
+
+TEST(ModelCache, FindsWhatWasKept) {
+  const Folder folder;
+  const ModelCache cache(folder.path() / "new" / "models");
+  EXPECT_FALSE(cache.find("box"));
+  keep(cache, "box");
+  const auto file = cache.find("box");
+  ASSERT_TRUE(file);
+  EXPECT_FALSE(cache.find("other"));
+  const auto content = read_model_file(*file);
+  ASSERT_TRUE(content) << content.error().message();
+  EXPECT_EQ(content->notes, std::vector<std::string>{"a note"});
+  EXPECT_EQ(content->mesh.nodes.size(), box_model()->mesh().nodes.size());
+}
+
+TEST(ModelCache, LooksIntoOtherFoldersToo) {
+  const Folder folder;
+  keep(ModelCache(folder.path() / "given"), "box");
+  EXPECT_EQ(ModelCache({}, {folder.path() / "given"}).find("box"), folder.path() / "given" / "box.stylet");
+  EXPECT_FALSE(ModelCache({}, {folder.path()}).find("box"));
+}
+
+TEST(ModelCache, ForgetsTheOneNotUsedForLongest) {
+  const Folder folder;
+  const ModelCache cache(folder.path(), {}, 2 * size_of_one() + 1000);
+  keep(cache, "first");
+  keep(cache, "second");
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
+  for (const char* name : {"first.stylet", "second.stylet"}) fs::last_write_time(folder.path() / name, long_ago);
+  EXPECT_TRUE(cache.find("first"));  // used now
+  write(folder.path() / "notes.txt", "not a model: stays");
+  keep(cache, "third");
+  EXPECT_TRUE(cache.find("first"));
+  EXPECT_FALSE(cache.find("second"));
+  EXPECT_TRUE(cache.find("third"));
+  EXPECT_TRUE(fs::exists(folder.path() / "notes.txt"));
+}
+
+TEST(ModelCache, KeepsNoneThatIsLargerThanAllMayBe) {
+  const Folder folder;
+  const ModelCache cache(folder.path(), {}, 1000);
+  keep(cache, "box");
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(ModelCache, WithoutAFolderNothingIsKept) {
+  keep(ModelCache({}), "box");
+  EXPECT_FALSE(ModelCache({}).find("box"));
+}
+
+TEST(ModelCache, SaysWhichFolderRefuses) {
+  const Folder folder;
+  write(folder.path() / "taken", "a file");
+  const auto kept = ModelCache(folder.path() / "taken").keep(*box_model(), "box");
+  ASSERT_FALSE(kept);
+  EXPECT_NE(kept.error().message().find((folder.path() / "taken").string()), std::string::npos);
+}
+
+}  // namespace stylet
