@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "live_client.hpp"
+
+#include "sim/box_patient.hpp"
+#include "stylet/serve/server.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace stylet::test {
+
+/// A folder that goes with the test.
+struct Folder {
+  static std::filesystem::path of(pid_t process) {
+    return std::filesystem::temp_directory_path() / ("stylet-serve-" + std::to_string(process));
+  }
+  std::filesystem::path path = of(::getpid());
+  Folder() { std::filesystem::remove_all(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
+inline Scenario hole_scenario() {
+  Scenario s = box_scenario();
+  s.insertions[0].entry_mm.reset();
+  s.insertions[0].hole = "D4";
+  s.insertions[0].depth_mm = 30.0;
+  return s;
+}
+
+inline serve::CaseSource box_case(const std::string& title) {
+  return {title, [](const Progress& progress) {
+            return Model::compile(hole_scenario(), box_patient(), "case.toml", {}, progress);
+          }};
+}
+
+/// A server on a port that is free, with two cases; slow enough for sanitizers.
+struct Serving {
+  Folder folder;
+  std::unique_ptr<serve::Server> server;
+
+  explicit Serving(const std::function<void(serve::ServerSettings&)>& change = {}) {
+    serve::ServerSettings s;
+    s.port = 0;
+    s.session.cases = {box_case("first"), box_case("second")};
+    s.session.recordings = folder.path;
+    s.session.runner.period_s = 4e-3;
+    s.session.runner.late_after_s = 0.5;
+    s.session.runner.realtime_scheduling = false;
+    s.session.runner.lock_memory = false;
+    if (change) change(s);
+    auto opened = serve::Server::open(std::move(s));
+    if (!opened) throw std::runtime_error(opened.error().message());
+    server = std::move(*opened);
+    server->start();
+  }
+  [[nodiscard]] std::uint16_t port() const { return server->port(); }
+};
+
+}  // namespace stylet::test
