@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hand.hpp"
 
+#include "stylet/sim/plan.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,7 +11,6 @@ namespace stylet::serve {
 
 namespace {
 
-constexpr double kOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
 constexpr double kRadians = std::numbers::pi / 180.0;
 
 double towards(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
@@ -31,7 +32,7 @@ double roll_of(const Pose& base, const Vec3& direction) {
 
 HandLimits hand_limits(const Scenario& scenario) {
   HandLimits limits;
-  limits.depth_mm = scenario.needle.length_mm - kOutside_mm - (scenario.grid.guide ? scenario.grid.distance_mm : 0.0);
+  limits.depth_mm = deepest_mm(scenario);
   return limits;
 }
 

@@ -3,15 +3,11 @@
 
 #include "stylet/geom/centroid.hpp"
 #include "stylet/geom/locator.hpp"
-#include "stylet/sim/model.hpp"
+#include "stylet/sim/plan.hpp"
 
 namespace stylet {
 
 inline constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
-
-/// Largest depth [mm] of the base: what is left of the needle outside is held by the hand, and by the template if that
-/// guides it.
-double deepest_mm(const Scenario& scenario);
 
 /// The line of a planned insertion: where it meets the skin and how deep it goes. A line that misses the patient is
 /// refused.
