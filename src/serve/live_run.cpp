@@ -183,9 +183,8 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   } else {
     frame->samples = std::exchange(unsent_, {});
   }
-  lost_steps_ = s.counters.dropped_steps;
-  if (lost_steps_ > 0 && problem_.empty())
-    problem_ = fmt::format("{} steps were not recorded: the disk or this machine is too slow", lost_steps_);
+  if (const std::int64_t lost = s.counters.dropped_steps; lost > 0 && problem_.empty())
+    problem_ = fmt::format("{} steps were not recorded: the disk or this machine is too slow", lost);
   return frame;
 }
 

@@ -74,7 +74,6 @@ class LiveRun {
   double last_force_N_ = 0.0;        ///< of it, axial
   double resting_until_s_ = 0.0;     ///< nothing has moved since it
   double picture_after_s_ = 0.0;     ///< wall: the next displacement for the page
-  std::int64_t lost_steps_ = 0;
 };
 
 }  // namespace stylet::serve
