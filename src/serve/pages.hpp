@@ -2,14 +2,10 @@
 #pragma once
 
 #include "access.hpp"
+#include "http.hpp"
 #include "shelf.hpp"
 
-#include <boost/beast/http.hpp>
-
 namespace stylet::serve {
-
-using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
-using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
 
 /// Target and headers of a request.
 std::string_view target(const HttpRequest& request);

@@ -255,7 +255,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
                        if (!error) answer(stream, reading->parser.get());
                      });
   }
-  void answer(const std::shared_ptr<beast::tcp_stream>& stream, const Viewer::HttpRequest& request) {
+  void answer(const std::shared_ptr<beast::tcp_stream>& stream, const HttpRequest& request) {
     if (beast::websocket::is_upgrade(request) && path_of(target(request)) == "/live" &&
         pages.verdict(request) == Access::Verdict::granted && viewers.size() < settings.viewers) {
       std::make_shared<Viewer>(++last_id, std::move(*stream), *this)->accept(request);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "http.hpp"
 #include "wire.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include <chrono>
@@ -31,8 +31,6 @@ class ViewerDesk {
 /// queue, of pictures and states only the newest.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
-
   Viewer(std::uint64_t id, boost::beast::tcp_stream stream, ViewerDesk& desk);
   void accept(const HttpRequest& request);
   void close();
