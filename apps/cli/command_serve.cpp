@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
+#include "igtl_companion.hpp"
 #include "prepared_model.hpp"
 #include "validators.hpp"
 
@@ -27,6 +28,7 @@ struct ServeArguments {
   std::string recordings = "out/live";
   std::string models = ModelCache::users_folder().string();
   std::vector<std::string> settings;
+  IgtlArguments igtl;
 };
 
 /// Models that came with the program or were made when it was built.
@@ -127,11 +129,19 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.session.recordings = arguments.recordings;
   if (auto added = add_inputs(arguments, settings.session, console); !added) return added;
   EndSignal end;
+  auto igtl = open_igtl(arguments.igtl);
+  if (!igtl) return igtl.error();
+  settings.session.companion = igtl->companion;
+  if (arguments.igtl.hand == "igtl") settings.session.runner.late_after_s = kIgtlLateAfter_s;
   auto server = serve::Server::open(std::move(settings));
   if (!server) return server.error();
   (*server)->start();
   console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
-  if (auto said = console.write_json({{"url", (*server)->url()}, {"port", (*server)->port()}}); !said) return said;
+  if (!igtl->warning.empty()) console.warn(igtl->warning);
+  if (igtl->companion) console.say(igtl->said);
+  Json json{{"url", (*server)->url()}, {"port", (*server)->port()}};
+  if (igtl->companion) json["igtl"] = igtl->json;
+  if (auto said = console.write_json(json); !said) return said;
   end.wait();
   console.say("Ending; the recording is being closed.");
   (*server)->stop();
@@ -172,6 +182,7 @@ Command add_serve_command(CLI::App& program) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_igtl_options(*app, arguments->igtl);
   return {app, [arguments](Console& console) { return run_serve(*arguments, console); }};
 }
 

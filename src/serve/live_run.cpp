@@ -44,14 +44,17 @@ void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
 
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
-                                                double recorded_frames_per_s) {
-  const PlannedInsertion& plan = open.model->insertions()[insertion];
+                                                double recorded_frames_per_s, std::unique_ptr<Device> other) {
   std::unique_ptr<LiveRun> run(new LiveRun(open, recorded_frames_per_s));
-  run->hand_ = std::make_shared<PageDevice>(plan, open.model->scenario());
+  std::unique_ptr<Device> device = std::move(other);
+  if (!device) {
+    run->hand_ = std::make_shared<PageDevice>(open.model->insertions()[insertion], open.model->scenario());
+    device = std::make_unique<SharedDevice>(run->hand_);
+  }
   RunnerSettings kept = settings;
   kept.keep_steps = true;
-  auto runner = RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion),
-                                       std::make_unique<SharedDevice>(run->hand_), kept);
+  auto runner =
+      RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion), std::move(device), kept);
   if (!runner) return runner.error();
   run->runner_ = std::move(*runner);
 
@@ -110,6 +113,7 @@ void LiveRun::put_displacement(LiveFrame& frame) {
   if (before < picture_after_s_) return;
   open_.field->displacement(open_.scene_nodes, *load_, shown_);
   set_displacement(frame, shown_);
+  shown_anew_ = true;
   const double after = now_s();
   picture_after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
 }
@@ -145,6 +149,7 @@ void LiveRun::record_frame(const Snapshot& snapshot) {
 
 std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const bool fresh = runner_->fetch_snapshot();
+  seen_ = seen_ || fresh;
   if (!fresh && !whole_curve) return nullptr;
   const Snapshot& s = runner_->snapshot();
   if (load_) {
@@ -169,10 +174,12 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   frame->torque_Nmm = vec3(s.hand.torque);
   frame->tip_mm = vec3(s.tip);
   frame->base = pose(s.base);
-  const HandTarget& hand = hand_->place();
-  frame->roll_deg = hand.roll_deg;
-  frame->tilt_left_deg = hand.tilt_left_deg;
-  frame->tilt_anterior_deg = hand.tilt_anterior_deg;
+  if (hand_) {
+    const HandTarget& hand = hand_->place();
+    frame->roll_deg = hand.roll_deg;
+    frame->tilt_left_deg = hand.tilt_left_deg;
+    frame->tilt_anterior_deg = hand.tilt_anterior_deg;
+  }
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
@@ -186,6 +193,18 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   if (const std::int64_t lost = s.counters.dropped_steps; lost > 0 && problem_.empty())
     problem_ = fmt::format("{} steps were not recorded: the disk or this machine is too slow", lost);
   return frame;
+}
+
+void LiveRun::show_to(Companion& companion) {
+  runner_->fetch_device();
+  if (!seen_) return;
+  companion.show(runner_->snapshot(), runner_->device_snapshot());
+  if (std::exchange(shown_anew_, false)) companion.show(shown_);
+}
+
+bool LiveRun::has_pose() const {
+  const DeviceSnapshot& d = runner_->device_snapshot();
+  return d.input.valid && d.clock_s - d.input.time_s <= runner_->settings().late_after_s;
 }
 
 SessionStatus::Loop LiveRun::loop() const {

@@ -4,6 +4,7 @@
 #include "hand.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
+#include "stylet/serve/companion.hpp"
 #include "stylet/serve/picture.hpp"
 #include "stylet/sim/display_field.hpp"
 
@@ -29,9 +30,10 @@ class LiveRun {
  public:
   /// @param folder of this recording; made. A disk that refuses does not keep anybody from inserting:
   /// recording_problem() says so.
+  /// @param other moves the needle; null: a hand at a page does
   static Result<std::unique_ptr<LiveRun>> start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
-                                                double recorded_frames_per_s);
+                                                double recorded_frames_per_s, std::unique_ptr<Device> other);
 
   /// From here on pictures show how the tissue moves, and the recording has frames.
   void set_field(std::shared_ptr<const DisplayField> field);
@@ -40,9 +42,14 @@ class LiveRun {
   /// The newest picture, if there is one that was not fetched yet.
   /// @param whole_curve with all samples instead of the new ones
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
+  /// What the last picture shows, and its displacement where that was computed.
+  void show_to(Companion& companion);
 
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
+  /// Null: another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
+  /// Whether the device says where it wants the needle, as of the last show_to().
+  [[nodiscard]] bool has_pose() const;
   [[nodiscard]] SessionStatus::Loop loop() const;
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
@@ -60,6 +67,8 @@ class LiveRun {
   std::string problem_;                     ///< of the recording
   std::optional<DisplayField::Load> load_;  ///< with a field
   Eigen::Matrix3Xf shown_;                  ///< (3 × scene nodes)
+  bool seen_ = false;                       ///< there has been a snapshot
+  bool shown_anew_ = false;                 ///< since show_to()
   std::vector<Index> all_nodes_;            ///< of the mesh
   std::vector<TissueForce> room_;           ///< for forces
   std::vector<StepSnapshot> step_room_;

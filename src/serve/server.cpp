@@ -201,6 +201,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
         {"asking", holding.asking()},
         {"viewers", viewers.size()},
         {"device", s.device},
+        {"device_problem", s.device_problem},
         {"recording", {{"name", s.recording.name}, {"seconds", s.recording.seconds}, {"problem", s.recording.problem}}},
         {"replay",
          {{"name", s.replay.name},

@@ -71,6 +71,7 @@ struct Session::Parts {
   void run(const std::stop_token& stop);
   void carry_out(const Request& request);
   void tick(double dt_s);
+  void show_companion();
   void say_status();
   Progress progress();
   void refuse(const Request& request, const Error& error) {
@@ -145,6 +146,7 @@ void Session::Parts::end_live() {
   if (live) live->pump([this](const LiveEvent& event) { audience.tell(event); });
   live.reset();
   status.recording = {};
+  status.device_problem.clear();
 }
 
 Progress Session::Parts::progress() {
@@ -180,7 +182,10 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   insertion = which;
   const PlannedInsertion& plan = open.model->insertions()[which];
   const std::string name = shelf.new_name(plan.name);
-  auto run = LiveRun::start(open, which, shelf.folder(name), settings.runner, settings.recorded_frames_per_s);
+  std::unique_ptr<Device> other = settings.companion ? settings.companion->device() : nullptr;
+  status.device = other ? settings.companion->name() : "page";
+  auto run = LiveRun::start(open, which, shelf.folder(name), settings.runner, settings.recorded_frames_per_s,
+                            std::move(other));
   if (!run) {
     refuse(request, run.error());
     status.state = SessionStatus::State::failed;
@@ -194,7 +199,6 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   status.paused = false;
   status.insertion = plan.name;
   status.hole = open.model->scenario().insertions[which].hole.value_or("");
-  status.device = "page";
   status.recording.name = name;
   whole_curve = true;
   audience.tell(LiveEvent{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan.name});
@@ -207,6 +211,7 @@ void Session::Parts::show_model() {
       make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions, model.warnings(), cases());
   open.scene_nodes = std::move(made.nodes);
   audience.show(made.scene);
+  if (settings.companion) settings.companion->show(*made.scene);
 }
 
 /// The displacement field, once it is there; until then how much of it is.
@@ -364,12 +369,22 @@ void Session::Parts::carry_out(const Request& request) {
   say_status();
 }
 
+void Session::Parts::show_companion() {
+  live->show_to(*settings.companion);
+  if (live->hand()) return;
+  std::string problem = live->has_pose() ? "" : settings.companion->why_no_pose();
+  if (problem == status.device_problem) return;
+  status.device_problem = std::move(problem);
+  next_status = {};
+}
+
 void Session::Parts::tick(double dt_s) {
   take_field();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {
     live->pump([this](const LiveEvent& event) { audience.tell(event); });
     frame = live->picture(whole_curve);
+    if (settings.companion) show_companion();
   } else if (replay) {
     const bool playing = replay->rate() > 0.0;
     replay->advance(dt_s);

@@ -3,6 +3,7 @@
 
 #include "stylet/core/progress.hpp"
 #include "stylet/realtime/runner.hpp"
+#include "stylet/serve/companion.hpp"
 #include "stylet/serve/picture.hpp"
 
 #include <filesystem>
@@ -22,12 +23,13 @@ struct CaseSource {
 };
 
 struct SessionSettings {
-  std::vector<CaseSource> cases;      ///< the first is opened; there must be one unless something is replayed
-  std::filesystem::path recordings;   ///< folder; every insertion makes a folder in it, with its run.h5
-  std::string replay;                 ///< name of a recording to start with; empty: live
-  RunnerSettings runner;              ///< keep_steps is set
-  double pictures_per_s = 60.0;       ///< at most
-  double recorded_frames_per_s = 10;  ///< at most; fewer where a mesh makes them expensive
+  std::vector<CaseSource> cases;         ///< the first is opened; there must be one unless something is replayed
+  std::filesystem::path recordings;      ///< folder; every insertion makes a folder in it, with its run.h5
+  std::string replay;                    ///< name of a recording to start with; empty: live
+  RunnerSettings runner;                 ///< keep_steps is set
+  double pictures_per_s = 60.0;          ///< at most
+  double recorded_frames_per_s = 10;     ///< at most; fewer where a mesh makes them expensive
+  std::shared_ptr<Companion> companion;  ///< may be null
 };
 
 /// Who watches a session. Called from the session's thread; returns at once.

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "igtl_companion.hpp"
+
+#include "stylet/igtl/link.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <utility>
+
+namespace stylet::cli {
+
+namespace {
+
+/// As it is written in front of a port.
+std::string bracketed(const std::string& host) { return host.find(':') == std::string::npos ? host : "[" + host + "]"; }
+
+/// A link as a session sees it.
+class LinkCompanion final : public serve::Companion {
+ public:
+  LinkCompanion(std::unique_ptr<igtl::Link> link, igtl::LinkSettings settings, bool has_hand)
+      : link_(std::move(link)), settings_(std::move(settings)), has_hand_(has_hand) {}
+
+  [[nodiscard]] std::string name() const override { return "OpenIGTLink"; }
+  [[nodiscard]] std::unique_ptr<Device> device() override { return has_hand_ ? link_->device() : nullptr; }
+  [[nodiscard]] std::string why_no_pose() const override;
+
+  void show(const serve::Scene& scene) override;
+  void show(const Snapshot& snapshot, const DeviceSnapshot& device) override {
+    link_->publish(igtl::picture_of(snapshot, device));
+  }
+  void show(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement) override;
+
+  [[nodiscard]] int port() const { return link_->state().port; }
+
+ private:
+  void publish_surface();
+
+  std::unique_ptr<igtl::Link> link_;
+  igtl::LinkSettings settings_;
+  bool has_hand_;
+  Eigen::Matrix3Xf at_rest_;    ///< [mm] LPS
+  Eigen::Matrix3Xf displaced_;  ///< [mm] as published last
+  std::shared_ptr<const igtl::Surface::Triangles> triangles_;
+};
+
+std::string LinkCompanion::why_no_pose() const {
+  const igtl::LinkState state = link_->state();
+  if (state.connections == 0)
+    return settings_.role == igtl::Role::server
+               ? fmt::format("nobody is connected to port {}", state.port)
+               : fmt::format("no connection to {}:{}", bracketed(settings_.host), state.port);
+  if (state.poses + state.unusable == 0) return fmt::format("no {} has come yet", settings_.input);
+  if (!state.tracked) return fmt::format("no {} comes that can be used", settings_.input);
+  return fmt::format("no new {} comes", settings_.input);
+}
+
+void LinkCompanion::show(const serve::Scene& scene) {
+  at_rest_ = Eigen::Map<const Eigen::Matrix3Xf>(scene.positions.data(), 3,
+                                                static_cast<Eigen::Index>(scene.positions.size() / 3));
+  displaced_ = Eigen::Matrix3Xf::Zero(3, at_rest_.cols());
+  igtl::Surface::Triangles triangles(scene.triangles.size() / 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    triangles[t] = {scene.triangles[3 * t], scene.triangles[3 * t + 1], scene.triangles[3 * t + 2]};
+  triangles_ = std::make_shared<const igtl::Surface::Triangles>(std::move(triangles));
+  publish_surface();
+}
+
+/// What has not changed is not sent again; how often the rest is, is the link's business.
+void LinkCompanion::show(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement) {
+  if (displacement.cols() != at_rest_.cols() || displacement == displaced_) return;
+  displaced_ = displacement;
+  publish_surface();
+}
+
+void LinkCompanion::publish_surface() {
+  igtl::Surface surface;
+  surface.triangles = triangles_;
+  surface.points.resize(static_cast<std::size_t>(at_rest_.cols()));
+  for (std::size_t k = 0; k < surface.points.size(); ++k) {
+    const Eigen::Vector3f x = at_rest_.col(static_cast<Eigen::Index>(k)) + displaced_.col(static_cast<Eigen::Index>(k));
+    surface.points[k] = {x.x(), x.y(), x.z()};
+  }
+  (void)link_->publish_surface(std::move(surface));  // refuses one beyond all bounds: the rest is still shown
+}
+
+bool only_digits(const std::string& text) { return text.find_first_not_of("0123456789") == std::string::npos; }
+
+/// "PORT", "HOST", "HOST:PORT" or "[IPv6]:PORT" into host and port. A server needs the port, a client the host.
+Result<> read_place(const std::string& option, const std::string& text, igtl::LinkSettings& into) {
+  const bool server = into.role == igtl::Role::server;
+  const auto wrong = [&](const std::string& what) {
+    return input_error(option + " " + text, what,
+                       server ? "Give a port such as 18944, or an address and a port such as 0.0.0.0:18944"
+                              : "Give a host such as 192.168.0.7, or a host and a port such as 192.168.0.7:18944");
+  };
+  std::string host = text;
+  std::string port;
+  const auto colon = text.rfind(':');
+  if (only_digits(text)) {
+    std::swap(host, port);
+  } else if (colon != std::string::npos && text.back() != ']') {
+    host = text.substr(0, colon);
+    port = text.substr(colon + 1);
+    if (host.empty() || port.empty()) return wrong("there is nothing on one side of the colon");
+  }
+  if (host.empty() && !server) return wrong("there is no host");
+  if (port.empty() && server) return wrong("there is no port");
+  if (host.size() > 1 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find(':') != std::string::npos) {
+    return wrong("an IPv6 address has to be in brackets");
+  }
+  if (!host.empty()) into.host = host;
+  if (port.empty()) return Ok{};
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), into.port);
+  const int lowest = server ? 0 : 1;
+  if (error != std::errc{} || end != port.data() + port.size() || into.port < lowest || into.port > 65535)
+    return wrong(fmt::format("'{}' is no port from {} to 65535", port, lowest));
+  return Ok{};
+}
+
+bool this_machine_only(const std::string& host) {
+  return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+}  // namespace
+
+Result<IgtlCompanion> open_igtl(const IgtlArguments& arguments) {
+  const bool listens = !arguments.listen.empty();
+  const bool has_hand = arguments.hand == "igtl";
+  if (!listens && arguments.connect.empty()) {
+    if (!has_hand) return IgtlCompanion{};
+    return input_error("--hand igtl", "there is no OpenIGTLink to take the hand from",
+                       "Give --igtl PORT (18944 is usual) or --igtl-connect HOST as well");
+  }
+  igtl::LinkSettings settings;
+  settings.role = listens ? igtl::Role::server : igtl::Role::client;
+  const auto read = listens ? read_place("--igtl", arguments.listen, settings)
+                            : read_place("--igtl-connect", arguments.connect, settings);
+  if (!read) return read.error();
+  auto link = igtl::Link::open(settings);
+  if (!link) return link.error();
+  auto companion = std::make_shared<LinkCompanion>(std::move(*link), settings, has_hand);
+  const std::string place = fmt::format("{}:{}", bracketed(settings.host), companion->port());
+  IgtlCompanion made;
+  made.json = {{"role", listens ? "server" : "client"},
+               {"host", settings.host},
+               {"port", companion->port()},
+               {"hand", has_hand}};
+  made.said = fmt::format("OpenIGTLink: {} {}{}.", listens ? "listening at" : "connecting to", place,
+                          has_hand ? "; the needle follows " + settings.input : "");
+  if (listens && !this_machine_only(settings.host))
+    made.warning = fmt::format("OpenIGTLink has no password: whoever reaches {} sees the simulation{}", place,
+                               has_hand ? " and can move the needle" : "");
+  made.companion = std::move(companion);
+  return made;
+}
+
+}  // namespace stylet::cli
