@@ -46,15 +46,17 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other) {
   std::unique_ptr<LiveRun> run(new LiveRun(open, recorded_frames_per_s));
-  std::unique_ptr<Device> device = std::move(other);
-  if (!device) {
-    run->hand_ = std::make_shared<PageDevice>(open.model->insertions()[insertion], open.model->scenario());
-    device = std::make_unique<SharedDevice>(run->hand_);
+  const PlannedInsertion& plan = open.model->insertions()[insertion];
+  std::shared_ptr<Device> device;
+  if (other) {
+    device = run->other_ = std::make_shared<PickUp>(std::move(other), plan.motion.at(0.0));
+  } else {
+    device = run->hand_ = std::make_shared<PageDevice>(plan, open.model->scenario());
   }
   RunnerSettings kept = settings;
   kept.keep_steps = true;
-  auto runner =
-      RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion), std::move(device), kept);
+  auto runner = RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion),
+                                       std::make_unique<SharedDevice>(std::move(device)), kept);
   if (!runner) return runner.error();
   run->runner_ = std::move(*runner);
 
@@ -202,9 +204,13 @@ void LiveRun::show_to(Companion& companion) {
   if (std::exchange(shown_anew_, false)) companion.show(shown_);
 }
 
-bool LiveRun::has_pose() const {
+std::string LiveRun::device_problem(const Companion& companion) const {
   const DeviceSnapshot& d = runner_->device_snapshot();
-  return d.input.valid && d.clock_s - d.input.time_s <= runner_->settings().late_after_s;
+  const bool has_pose = d.input.valid && d.clock_s - d.input.time_s <= runner_->settings().late_after_s;
+  if (!other_ || has_pose) return {};
+  const auto away = other_->away();
+  if (!away) return companion.why_no_pose();
+  return fmt::format("the handle is {:.0f} mm and {:.0f} degrees from the needle: bring it there", away->mm, away->deg);
 }
 
 SessionStatus::Loop LiveRun::loop() const {

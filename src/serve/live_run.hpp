@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hand.hpp"
+#include "pick_up.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
@@ -48,8 +49,8 @@ class LiveRun {
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
   /// Null: another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
-  /// Whether the device says where it wants the needle, as of the last show_to().
-  [[nodiscard]] bool has_pose() const;
+  /// Why the companion's device does not move the needle, as of the last show_to(); empty: it does, or a page.
+  [[nodiscard]] std::string device_problem(const Companion& companion) const;
   [[nodiscard]] SessionStatus::Loop loop() const;
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
@@ -62,6 +63,7 @@ class LiveRun {
 
   OpenModel open_;
   std::shared_ptr<PageDevice> hand_;
+  std::shared_ptr<PickUp> other_;  ///< the one of the two that is there moves the needle
   std::unique_ptr<RealtimeRunner> runner_;
   std::unique_ptr<RunRecorder> recorder_;
   std::string problem_;                     ///< of the recording

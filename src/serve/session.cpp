@@ -371,8 +371,7 @@ void Session::Parts::carry_out(const Request& request) {
 
 void Session::Parts::show_companion() {
   live->show_to(*settings.companion);
-  if (live->hand()) return;
-  std::string problem = live->has_pose() ? "" : settings.companion->why_no_pose();
+  std::string problem = live->device_problem(*settings.companion);
   if (problem == status.device_problem) return;
   status.device_problem = std::move(problem);
   next_status = {};

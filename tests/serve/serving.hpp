@@ -59,4 +59,10 @@ struct Serving {
   [[nodiscard]] std::uint16_t port() const { return server->port(); }
 };
 
+inline std::unique_ptr<LiveClient> ready_client(const Serving& serving) {
+  auto client = std::make_unique<LiveClient>(serving.port());
+  EXPECT_TRUE(client->until([&] { return client->ready(); }));
+  return client;
+}
+
 }  // namespace stylet::test

@@ -17,12 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::unique_ptr<LiveClient> ready_client(const Serving& serving) {
-  auto client = std::make_unique<LiveClient>(serving.port());
-  EXPECT_TRUE(client->until([&] { return client->ready(); }));
-  return client;
-}
-
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 }  // namespace
