@@ -2,59 +2,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet serve: says where it listens, serves the page, ends when asked to, refuses what is wrong; its recordings, also of a killed
 server, are repeated by stylet insert to the last bit."""
-import json
 import os
 import signal
 import subprocess
-import time
 import unittest
 import urllib.error
 import urllib.request
 
-from insert_case import PHANTOM, SMALL
-from program import InFolder
-
-PATIENCE_S = 120
+from insert_case import SMALL
+from live_server import PATIENCE_S, Serve
 
 
-class Serve(InFolder):
-    def setUp(self):
-        super().setUp()
-        (self.folder / "case.toml").write_text(PHANTOM)
-
-    def start(self, *arguments):
-        """A server on a port that is free, and its address."""
-        server = subprocess.Popen([os.environ["STYLET"], "serve", *arguments, "--port", "0", "--json", "-"], cwd=self.folder,
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(server.stdout.close)
-        self.addCleanup(server.stderr.close)
-        self.addCleanup(server.wait)
-        self.addCleanup(server.kill)
-        text = ""
-        while not text.rstrip().endswith("}"):
-            line = server.stdout.readline()
-            self.assertTrue(line, server.stderr.read() if server.poll() is not None else "no address")
-            text += line
-        return server, json.loads(text)["url"]
-
-    def until(self, true):
-        end = time.monotonic() + PATIENCE_S
-        while time.monotonic() < end:
-            if true():
-                return
-            time.sleep(0.05)
-        self.fail("waited in vain")
-
-    def recordings(self):
-        return sorted((self.folder / "out" / "live").glob("*/run.h5"))
-
-    def steps(self):
-        """Number of steps that are in the recording now."""
-        try:
-            return self.json_of("info", str(self.recordings()[-1]))["steps"]
-        except (AssertionError, KeyError, IndexError):
-            return 0
-
+class ServeCommand(Serve):
     def test_serves_the_page_and_ends_when_asked_to(self):
         for end in (signal.SIGINT, signal.SIGTERM):
             server, url = self.start("case.toml", *SMALL)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The other side of an OpenIGTLink, as the protocol's header version 1 describes it: a tracker or a display for tests."""
+import json
+import socket
+import struct
+
+HEADER = struct.Struct(">H12s20sQQQ")  # version, type, name, time stamp, bytes of the body, checksum of the body
+POLYNOMIAL = 0x42F0E1EBA9EA3693        # CRC-64 of ECMA-182, most significant bit first
+
+
+def crc64(data):
+    value = 0
+    for byte in data:
+        value ^= byte << 56
+        for _ in range(8):
+            value = (value << 1 ^ (POLYNOMIAL if value >> 63 else 0)) & (1 << 64) - 1
+    return value
+
+
+def message(kind, name, body):
+    return HEADER.pack(1, kind.encode(), name.encode(), 0, len(body), crc64(body)) + body
+
+
+class Client:
+    """One connection; positions in mm, RAS."""
+
+    def __init__(self, connection):
+        self.connection = connection
+        self.connection.settimeout(120)
+
+    @classmethod
+    def to(cls, port):
+        return cls(socket.create_connection(("127.0.0.1", port)))
+
+    def close(self):
+        self.connection.close()
+
+    def send_transform(self, name, columns):
+        """@param columns: three axes and the origin, three numbers each."""
+        body = struct.pack(">12f", *(value for column in columns for value in column))
+        self.connection.sendall(message("TRANSFORM", name, body))
+
+    def read(self, count):
+        data = bytearray()
+        while len(data) < count:
+            part = self.connection.recv(count - len(data))
+            if not part:
+                raise ConnectionError("the other side has closed")
+            data += part
+        return bytes(data)
+
+    def next(self, kind, name):
+        """Body of the next message of this type and name."""
+        while True:
+            _, its_kind, its_name, _, size, checksum = HEADER.unpack(self.read(HEADER.size))
+            body = self.read(size)
+            if (its_kind.rstrip(b"\0").decode(), its_name.rstrip(b"\0").decode()) != (kind, name):
+                continue
+            if size < 1000 and crc64(body) != checksum:
+                raise ValueError(f"{kind} {name} with a wrong checksum")
+            return body
+
+    def transform(self, name):
+        """Three axes and the origin."""
+        numbers = struct.unpack(">12f", self.next("TRANSFORM", name))
+        return [numbers[3 * k:3 * k + 3] for k in range(4)]
+
+    def force(self):
+        """What BaseForce says, as JSON."""
+        return json.loads(self.next("STRING", "BaseForce")[4:].decode())
+
+    def status(self):
+        """Code of the next heartbeat: 1 OK, 13 not ready."""
+        return struct.unpack(">H", self.next("STATUS", "Stylet")[:2])[0]
+
+    def surface(self):
+        """Points of the next surface as they come, three big-endian floats each, and its number of triangles."""
+        body = self.next("POLYDATA", "TissueSurface")
+        header = struct.unpack(">10I", body[:40])
+        return body[40:40 + 12 * header[0]], header[5]

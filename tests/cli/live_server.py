@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A running stylet serve, for tests."""
+import json
+import os
+import subprocess
+import time
+
+from insert_case import PHANTOM
+from program import InFolder
+
+PATIENCE_S = 120
+
+
+class Serve(InFolder):
+    """A folder with case.toml, and servers in it that end with the test."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "case.toml").write_text(PHANTOM)
+
+    def start(self, *arguments):
+        """A server on a port that is free, and its address."""
+        server = subprocess.Popen([os.environ["STYLET"], "serve", *arguments, "--port", "0", "--json", "-"], cwd=self.folder,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(server.stdout.close)
+        self.addCleanup(server.stderr.close)
+        self.addCleanup(server.wait)
+        self.addCleanup(server.kill)
+        text = ""
+        while not text.endswith("\n}\n"):
+            line = server.stdout.readline()
+            self.assertTrue(line, server.stderr.read() if server.poll() is not None else "no address")
+            text += line
+        self.said = json.loads(text)
+        return server, self.said["url"]
+
+    def until(self, true):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            if true():
+                return
+            time.sleep(0.05)
+        self.fail("waited in vain")
+
+    def recordings(self):
+        return sorted((self.folder / "out" / "live").glob("*/run.h5"))
+
+    def steps(self):
+        """Number of steps that are in the recording now."""
+        try:
+            return self.json_of("info", str(self.recordings()[-1]))["steps"]
+        except (AssertionError, KeyError, IndexError):
+            return 0
