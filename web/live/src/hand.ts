@@ -15,7 +15,7 @@ export class HandControl {
   private changed = false;
   private sentAt = 0;
   private timer = 0;
-  private toldPausedAt = 0;
+  private toldAt = 0;            // [ms] that the needle cannot be pushed now
   private readonly listeners: (() => void)[] = [];
 
   constructor(private readonly session: Session) {
@@ -99,9 +99,12 @@ export class HandControl {
   private begin(): boolean {
     const { session } = this;
     if (!session.steering || !session.frame) return false;
-    if (session.frame.paused) {
-      if (Date.now() - this.toldPausedAt > 4000) session.notify('The simulation is paused.', 'Press Space or "Resume" and push again.');
-      this.toldPausedAt = Date.now();
+    if (session.guest || session.frame.paused) {
+      if (Date.now() - this.toldAt > 4000) {
+        if (session.guest) session.notify(`The needle follows ${session.guest}, not this page.`, 'Start stylet serve without --hand to push it here.');
+        else session.notify('The simulation is paused.', 'Press Space or "Resume" and push again.');
+      }
+      this.toldAt = Date.now();
       return false;
     }
     this.active = true;

@@ -44,6 +44,12 @@ export class Session implements TransportListener {
     return this.connected && this.status?.state === 'ready' && this.status.you_hold === true && this.status.mode !== 'replay';
   }
 
+  /** What moves the needle in the pages' place now; empty: nothing does. */
+  get guest(): string {
+    const { device, mode } = this.status ?? {};
+    return device && device !== 'page' && mode !== 'replay' ? device : '';
+  }
+
   command(command: Command): void {
     if (command.do === 'release') this.letGo = true;
     if (command.do === 'take') this.letGo = false;

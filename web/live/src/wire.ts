@@ -44,7 +44,7 @@ export interface Status {
   state: 'loading' | 'ready' | 'failed';
   stage?: string; fraction?: number | null; message?: string; cure?: string;
   mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string;
-  you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string;
+  you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
   recording?: { name: string; seconds: number; problem?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
   loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;

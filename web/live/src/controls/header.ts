@@ -54,14 +54,15 @@ export class Header {
     this.cases.disabled = !connected || !holds;
     this.cases.hidden = !scene;
     if (scene && status?.state === 'ready') this.cases.selectedIndex = scene.case;
-    const device = status?.device && status.device !== 'page' ? ` with ${status.device}` : '';
+    const problem = status?.device_problem ? ` (${status.device_problem})` : '';
+    const follows = this.session.guest && `The needle follows ${this.session.guest}${problem}`;
     const viewers = others === 0 ? '' : others === 1 ? ' · 1 other viewer' : ` · ${others} other viewers`;
     let text = '';
     if (!connected || status?.state !== 'ready') text = '';
     else if (holds && asking > 0) text = asking === 1 ? 'Somebody asks for the needle' : `${asking} ask for the needle`;
-    else if (holds) text = `You hold the needle${device}${viewers}`;
-    else if (status.held) text = status.you_ask ? `You have asked for the needle${viewers}` : `You are watching${viewers}`;
-    else text = `Nobody holds the needle${viewers}`;
+    else if (holds) text = `${follows || 'You hold the needle'}${viewers}`;
+    else if (status.held) text = status.you_ask ? `You have asked for the needle${viewers}` : `${follows || 'You are watching'}${viewers}`;
+    else text = `${follows || 'Nobody holds the needle'}${viewers}`;
     this.write(this.holderText, text);
     this.holder.className = `holder ${holds ? 'mine' : 'watching'} ${holds && asking > 0 ? 'asked' : ''}`;
     this.holder.hidden = text === '';
@@ -69,10 +70,10 @@ export class Header {
     this.write(this.take, status?.you_ask ? 'Ask no longer' : status?.held ? 'Ask for the needle' : 'Take the needle');
     this.release.hidden = !holds || others === 0;
     const recording = status?.recording;
-    const problem = recording?.problem;
+    const unrecorded = recording?.problem;
     this.recording.hidden = !connected || !recording || status?.mode === 'replay';
-    this.recording.classList.toggle('problem', !!problem);
-    this.write(this.recording, problem ? `Not recording: ${problem}` : recording ? `Recording ${recording.seconds.toFixed(0)} s` : '');
+    this.recording.classList.toggle('problem', !!unrecorded);
+    this.write(this.recording, unrecorded ? `Not recording: ${unrecorded}` : recording ? `Recording ${recording.seconds.toFixed(0)} s` : '');
     this.recording.title = recording?.name ?? '';
   }
 

@@ -212,7 +212,7 @@ export class PushBar {
     }
     context.stroke();
     const depth = this.session.frame?.depth ?? 0;
-    if (steering && depth < 1 && this.grabbed === null) {
+    if (steering && !this.session.guest && depth < 1 && this.grabbed === null) {
       context.font = this.box.font(0.95, 600);
       context.fillStyle = ACCENT;
       context.textAlign = 'left';
