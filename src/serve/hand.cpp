@@ -22,10 +22,20 @@ double start_depth(const PlannedInsertion& plan, double needle_length_mm) {
   return (tip - plan.entry).dot(plan.direction);
 }
 
-/// Roll of a pose against pose_along() [degrees].
-double roll_of(const Pose& base, const Vec3& direction) {
-  const Vec3 x = pose_along(base.origin, direction).rotation.conjugate() * (base.rotation * Vec3::UnitX());
-  return std::atan2(x.y(), x.x()) / kRadians;
+/// Unit vectors across a needle, towards where a hub is tilted.
+struct Sides {
+  Vec3 left, anterior;
+  explicit Sides(const Vec3& along)
+      : left(across(along, std::abs(along.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitZ())),
+        anterior(across(along, std::abs(along.y()) < 0.9 ? Vec3(-Vec3::UnitY()) : Vec3::UnitZ())) {}
+
+ private:
+  static Vec3 across(const Vec3& along, const Vec3& side) { return (side - side.dot(along) * along).normalized(); }
+};
+
+/// Orientation of a needle that was planned along one axis and is tilted to another one, without roll.
+Eigen::Quaterniond tilted(const Vec3& along, const Vec3& axis) {
+  return Eigen::Quaterniond::FromTwoVectors(along, axis) * pose_along(Vec3::Zero(), along).rotation;
 }
 
 }  // namespace
@@ -38,23 +48,39 @@ HandLimits hand_limits(const Scenario& scenario) {
 
 Pose hand_pose(const HandTarget& hand, const PlannedInsertion& plan, double needle_length_mm) {
   const Vec3& along = plan.direction;
-  const auto across = [&](const Vec3& side) { return Vec3(side - side.dot(along) * along).normalized(); };
+  const Sides sides(along);
   // The tip's end goes the other way than the hub.
-  const Vec3 left = across(std::abs(along.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitZ());
-  const Vec3 anterior = across(std::abs(along.y()) < 0.9 ? Vec3(-Vec3::UnitY()) : Vec3::UnitZ());
-  const Vec3 axis =
-      (along - std::tan(hand.tilt_left_deg * kRadians) * left - std::tan(hand.tilt_anterior_deg * kRadians) * anterior)
-          .normalized();
-  Pose pose = pose_along(plan.entry + (hand.depth_mm - needle_length_mm) * axis, along);
+  const Vec3 axis = (along - std::tan(hand.tilt_left_deg * kRadians) * sides.left -
+                     std::tan(hand.tilt_anterior_deg * kRadians) * sides.anterior)
+                        .normalized();
   const Eigen::Quaterniond roll(Eigen::AngleAxisd(hand.roll_deg * kRadians, Vec3::UnitZ()));
-  pose.rotation = (Eigen::Quaterniond::FromTwoVectors(along, axis) * pose.rotation * roll).normalized();
-  return pose;
+  return {plan.entry + (hand.depth_mm - needle_length_mm) * axis, (tilted(along, axis) * roll).normalized()};
+}
+
+HandTarget hand_angles(const Pose& base, const PlannedInsertion& plan) {
+  const Vec3& along = plan.direction;
+  const Vec3 axis = base.rotation * Vec3::UnitZ();
+  const double forward = axis.dot(along);
+  HandTarget hand;
+  if (forward > 0.0) {
+    // The axis is along − a left − b anterior, but for its length; the two sides need not be at right angles.
+    const Sides sides(along);
+    const double both = sides.left.dot(sides.anterior);
+    const double left = -axis.dot(sides.left) / forward;
+    const double anterior = -axis.dot(sides.anterior) / forward;
+    const double apart = 1.0 - both * both;
+    hand.tilt_left_deg = std::atan((left - both * anterior) / apart) / kRadians;
+    hand.tilt_anterior_deg = std::atan((anterior - both * left) / apart) / kRadians;
+  }
+  const Eigen::Quaterniond roll = tilted(along, axis).conjugate() * base.rotation;
+  hand.roll_deg = std::remainder(2.0 * std::atan2(roll.z(), roll.w()) / kRadians, 360.0);
+  return hand;
 }
 
 PageDevice::PageDevice(const PlannedInsertion& plan, const Scenario& scenario)
     : plan_(plan), needle_length_mm_(scenario.needle.length_mm), limits_(hand_limits(scenario)) {
   now_.depth_mm = start_depth(plan, needle_length_mm_);
-  now_.roll_deg = roll_of(plan.motion.at(0.0), plan.direction);
+  now_.roll_deg = hand_angles(plan.motion.at(0.0), plan).roll_deg;
   now_.rest = true;
   target_.write(now_);
   shown_.write(now_);

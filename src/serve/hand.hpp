@@ -33,6 +33,9 @@ HandLimits hand_limits(const Scenario& scenario);
 /// The pose of the base for a place of the hand.
 /// @param plan its skin point and direction
 Pose hand_pose(const HandTarget& hand, const PlannedInsertion& plan, double needle_length_mm);
+/// Roll and tilts of a base that is anywhere: those of the place whose pose has this orientation.
+/// @return the roll in −180…180 degrees; no tilt where the base points back
+HandTarget hand_angles(const Pose& base, const PlannedInsertion& plan);
 
 /// A mouse, keyboard or gamepad at a page, seen as a device: it goes from where it is to the newest target, no faster
 /// than that asks for and the limits allow, in simulated time. So a page that sends sixty targets a second makes a

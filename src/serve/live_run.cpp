@@ -26,8 +26,9 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 
 }  // namespace
 
-LiveRun::LiveRun(const OpenModel& open, double recorded_frames_per_s)
+LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s)
     : open_(open),
+      plan_(open.model->insertions()[insertion]),
       shown_(3, static_cast<Eigen::Index>(open.scene_nodes.size())),
       all_nodes_(static_cast<std::size_t>(open.model->mesh().node_count())),
       room_(Snapshot::kForces),
@@ -45,8 +46,8 @@ void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other) {
-  std::unique_ptr<LiveRun> run(new LiveRun(open, recorded_frames_per_s));
-  const PlannedInsertion& plan = open.model->insertions()[insertion];
+  std::unique_ptr<LiveRun> run(new LiveRun(open, insertion, recorded_frames_per_s));
+  const PlannedInsertion& plan = run->plan_;
   std::shared_ptr<Device> device;
   if (other) {
     device = run->other_ = std::make_shared<PickUp>(std::move(other), plan.motion.at(0.0));
@@ -176,12 +177,10 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   frame->torque_Nmm = vec3(s.hand.torque);
   frame->tip_mm = vec3(s.tip);
   frame->base = pose(s.base);
-  if (hand_) {
-    const HandTarget& hand = hand_->place();
-    frame->roll_deg = hand.roll_deg;
-    frame->tilt_left_deg = hand.tilt_left_deg;
-    frame->tilt_anterior_deg = hand.tilt_anterior_deg;
-  }
+  const HandTarget hand = hand_ ? hand_->place() : hand_angles(frame->base, plan_);
+  frame->roll_deg = hand.roll_deg;
+  frame->tilt_left_deg = hand.tilt_left_deg;
+  frame->tilt_anterior_deg = hand.tilt_anterior_deg;
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);

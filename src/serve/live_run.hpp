@@ -56,12 +56,13 @@ class LiveRun {
   [[nodiscard]] double time_s() const { return time_s_; }
 
  private:
-  LiveRun(const OpenModel& open, double recorded_frames_per_s);
+  LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
   void record(const Result<>& done);
   void record_frame(const Snapshot& snapshot);
   void put_displacement(LiveFrame& frame);
 
   OpenModel open_;
+  const PlannedInsertion& plan_;  ///< of the model
   std::shared_ptr<PageDevice> hand_;
   std::shared_ptr<PickUp> other_;  ///< the one of the two that is there moves the needle
   std::unique_ptr<RealtimeRunner> runner_;

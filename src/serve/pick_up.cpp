@@ -9,20 +9,20 @@ namespace stylet::serve {
 
 DeviceInput PickUp::read(const DeviceTime& time) noexcept {
   DeviceInput input = handle_->read(time);
-  is_away_ = false;
-  if (!input.valid) return input;
-  const Pose now = pose(input.pose);
-  const double mm = (now.origin - last_.origin).norm();
-  const double cosine = (now.rotation * Vec3::UnitZ()).dot(last_.rotation * Vec3::UnitZ());
-  const double deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
-  input.valid = mm <= kNear_mm && deg <= kNear_deg;
-  if (!input.valid) {
+  bool is_away = false;
+  if (input.valid) {
+    const Pose now = pose(input.pose);
+    const double mm = (now.origin - last_.origin).norm();
+    const double cosine = (now.rotation * Vec3::UnitZ()).dot(last_.rotation * Vec3::UnitZ());
+    const double deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    is_away = mm > kNear_mm || deg > kNear_deg;
     away_mm_ = mm;
     away_deg_ = deg;
-    is_away_ = true;
-  } else if (time.simulated_s > last_s_) {  // while paused the needle stays, and so does where it has to be taken up
-    last_ = now;
+    input.valid = !is_away;
+    // While paused the needle stays, and so does where it has to be taken up.
+    if (input.valid && time.simulated_s > last_s_) last_ = now;
   }
+  is_away_ = is_away;
   last_s_ = time.simulated_s;
   return input;
 }

@@ -72,6 +72,19 @@ TEST(Hand, rolls_about_the_axis_alone) {
   EXPECT_LT((base.rotation * Vec3::UnitX() - zero.rotation * Vec3::UnitY()).norm(), 1e-9);
 }
 
+TEST(Hand, angles_of_a_base_are_those_it_was_placed_with) {
+  for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(0.2, -0.3, 1), Vec3(1, 0.2, 0.1), Vec3(0.1, -1, 0)}) {
+    const PlannedInsertion plan = plan_along(direction);
+    const HandTarget placed{.depth_mm = 30.0, .roll_deg = -130.0, .tilt_left_deg = 7.0, .tilt_anterior_deg = -4.0};
+    Pose base = hand_pose(placed, plan, kLength_mm);
+    base.origin += Vec3(50, -20, 10);  // wherever it is
+    const HandTarget found = hand_angles(base, plan);
+    EXPECT_NEAR(found.roll_deg, placed.roll_deg, 1e-9);
+    EXPECT_NEAR(found.tilt_left_deg, placed.tilt_left_deg, 1e-9);
+    EXPECT_NEAR(found.tilt_anterior_deg, placed.tilt_anterior_deg, 1e-9);
+  }
+}
+
 TEST(PageDevice, starts_where_the_plan_does_and_waits_for_a_target) {
   const Scenario scenario = test::box_scenario();
   PlannedInsertion plan = plan_along({0, 0, 1});

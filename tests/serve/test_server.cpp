@@ -4,18 +4,14 @@
 
 #include "stylet/io/recording_io.hpp"
 #include "stylet/io/scenario_io.hpp"
-#include "stylet/serve/server.hpp"
 
 #include <bit>
-#include <filesystem>
 #include <thread>
 
 using namespace stylet;
 using namespace stylet::test;
 
 namespace {
-
-namespace fs = std::filesystem;
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
