@@ -140,6 +140,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "loop") return bench_loop_command(arguments, console);
   if (arguments.what == "supply") return bench_supply_command(arguments, console);
   if (arguments.what == "display") return bench_display_command(arguments, console);
+  if (arguments.what == "viewers") return bench_viewers_command(arguments, console);
   return bench_remesh_command(arguments, console);
 }
 
@@ -174,28 +175,28 @@ Command add_bench_command(CLI::App& program) {
          "against the number of nodes and contacts; loop: the real-time loop, how long its steps take and how late "
          "they "
          "are; supply: which speeds a needle may have where no compliance was prepared; display: time and error of a "
-         "picture of the deformed patient; "
+         "picture of the deformed patient; viewers: steps of a live session with nobody watching and with two viewers; "
          "needle: accuracy of the needle models against their cost")
       ->required()
-      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "needle"}));
-  app->add_option(
-         "--nodes", arguments->nodes,
-         fmt::format(
-             "Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
-             "scale, supply and display: 570 or more (default {}); the mesh; step and loop: 500 or more (default {})",
-             kRemeshNodes, validate::CouplingBenchOptions{}.largest, validate::ScaleBenchOptions{}.largest,
-             validate::StepBenchOptions{}.nodes))
+      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle"}));
+  app->add_option("--nodes", arguments->nodes,
+                  fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
+                              "scale, supply and display: 570 or more (default {}); the mesh; step, loop and viewers: "
+                              "500 or more (default {})",
+                              kRemeshNodes, validate::CouplingBenchOptions{}.largest,
+                              validate::ScaleBenchOptions{}.largest, validate::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   app->add_option("--contacts", arguments->contacts,
-                  "With about so many; scale: only (default 20, 40 and 60), loop (default 40)")
+                  "With about so many; scale: only (default 20, 40 and 60), loop and viewers (default 40)")
       ->type_name("N")
       ->check(whole_number_between(5, 200));
   app->add_option("--steps", arguments->steps,
                   "scale: repeat insertion and withdrawal until there are so many steps in each row (default: once)")
       ->type_name("N")
       ->check(whole_number_between(1, 100000000));
-  app->add_option("--seconds", arguments->seconds, "loop: how long, in seconds of the clock (default 30)")
+  app->add_option("--seconds", arguments->seconds,
+                  "loop and viewers: how long, in seconds of the clock (default 30 and 120)")
       ->type_name("S")
       ->check(number_between(1.0, 86400.0));
   app->add_option("--speed", arguments->speed, "supply: of the base, in mm/s (default 2, 5, 10, 20 and 50)")

@@ -114,6 +114,21 @@ std::vector<double> driven_depths(double start_mm) {
   return result;
 }
 
+BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double seconds) {
+  const std::vector<double> way = driven_depths(start_mm);
+  const Pose first = plan.motion.at(0.0);
+  std::vector<MotionSample> samples{{0.0, first}};
+  for (double time_s = 0.0; time_s < seconds;) {
+    for (const double depth : way) {
+      Pose base = first;
+      base.origin += (depth - start_mm) * plan.direction;
+      time_s += kDrivenStep_s;
+      samples.push_back({time_s, base});
+    }
+  }
+  return BaseMotion(std::move(samples));
+}
+
 Scenario driven_scenario(int contacts) {
   Scenario scenario = demo_scenario();
   scenario.coupling.spacing_mm = (kDepth_mm + kCycles * kFurther_mm) / (contacts - 1);  // the tip is one of them

@@ -18,6 +18,9 @@ inline constexpr double kDrivenStep_s = 1e-3;
 /// Depth of the base after every step, from where the insertion starts.
 std::vector<double> driven_depths(double start_mm);
 
+/// The same again and again for so long, as a motion of the base.
+BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double seconds);
+
 /// The default scenario with contacts as near each other as give so many of them.
 Scenario driven_scenario(int contacts);
 

@@ -11,26 +11,6 @@
 
 namespace stylet::validate {
 
-namespace {
-
-/// The way of the needle, again and again for so long.
-BaseMotion hand(const PlannedInsertion& plan, double start_mm, double seconds) {
-  const std::vector<double> way = driven_depths(start_mm);
-  const Pose first = plan.motion.at(0.0);
-  std::vector<MotionSample> samples{{0.0, first}};
-  for (double time_s = 0.0; time_s < seconds;) {
-    for (const double depth : way) {
-      Pose base = first;
-      base.origin += (depth - start_mm) * plan.direction;
-      time_s += kDrivenStep_s;
-      samples.push_back({time_s, base});
-    }
-  }
-  return BaseMotion(std::move(samples));
-}
-
-}  // namespace
-
 Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& progress) {
   const auto anatomy = mesh_demo(options.nodes, progress);
   if (!anatomy) return anatomy.error();
@@ -39,7 +19,8 @@ Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& p
 
   auto body = std::make_unique<SimulationSteppable>(*model);
   const double start_mm = body->simulation().record().base_depth_mm;
-  auto device = std::make_unique<ScriptedDevice>(hand((*model)->insertions().front(), start_mm, options.seconds + 1.0));
+  auto device =
+      std::make_unique<ScriptedDevice>(driven_motion((*model)->insertions().front(), start_mm, options.seconds + 1.0));
   auto runner = RealtimeRunner::create(std::move(body), std::move(device), RunnerSettings{});
   if (!runner) return runner.error();
 
