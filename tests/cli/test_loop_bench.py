@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench step, loop, supply and display: what their rows hold, on the coarsest mesh. Times are the machine's."""
+"""stylet bench step, loop, viewers, supply and display: what their rows hold, on the coarsest mesh. Times are the machine's."""
 import unittest
 
 from program import InFolder
@@ -41,6 +41,21 @@ class LoopBench(InFolder):
         self.assertTrue(loop["rights"])
         self.refuse("bench", "loop", "--nodes", "499", says=["--nodes", "499", "500"])
         self.refuse("bench", "loop", "--seconds", "0", says=["--seconds", "0"])
+
+
+class ViewersBench(InFolder):
+    def test_compares_the_steps_with_viewers_to_those_without(self):
+        found = self.json_of("bench", "viewers", "--nodes", "570", "--contacts", "20", "--seconds", "1")
+        self.assertEqual(found["viewers"], 2)
+        self.assertGreater(found["pictures_per_s"], 1)  # however busy the machine
+        self.assertGreater(found["megabytes_per_s"], 0)
+        for key in ("without_us", "with_us"):
+            times = found[key]
+            self.assertGreater(times["count"], 1000)
+            self.assertTrue(0 < times["p50"] <= times["p99"] <= times["p999"] <= times["max"])
+            self.assertEqual(len(times["p99_of_turns"]), 1)
+        self.assertAlmostEqual(found["p99_ratio"], found["with_us"]["p99"] / found["without_us"]["p99"])
+        self.refuse("bench", "viewers", "--nodes", "499", says=["--nodes", "499", "500"])
 
 
 class SupplyBench(InFolder):

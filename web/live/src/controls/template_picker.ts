@@ -27,10 +27,14 @@ export class TemplatePicker {
       item.append(element('i', kind), text);
       key.append(item);
     }
-    root.append(this.title, this.grid, key, element('p', 'picker-hint',
-      'Wheel over the 3D view or hold ↑ to push. Click a hole for another way in. ? lists all keys.'));
+    const hint = element('p', 'picker-hint',
+      'Wheel over the 3D view or hold ↑ to push. Click a hole for another way in. ? lists all keys.');
+    root.append(this.title, this.grid, key, hint);
     session.on('scene', (scene) => this.build(scene));
-    session.on('status', () => this.mark());
+    session.on('status', () => {
+      hint.hidden = session.guest !== '';  // pushing would only be refused
+      this.mark();
+    });
     this.mark();
   }
 
