@@ -1,38 +1,72 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Opens a page in the Chromium of the machine, drawing in software, and says what a user would see.
-import { existsSync } from 'node:fs';
+import assert from 'node:assert/strict';
+import { existsSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
 
 const PLACES = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const WEB = process.env.STYLET_WEB ?? path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../../build/web');
+const SKIPPED = 77;
+const SOFTWARE_GL = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+const NO_GL_SAID = /Error creating WebGL context|WebGL context could not be created/;  // three.js tells the console as well
+const NO_GL = ['--disable-gpu', '--disable-3d-apis'];
+/** Pictures in software on a busy machine come seconds apart. */
+export const PATIENCE_MS = 120_000;
 
 /** Path of a Chromium, or null. */
 export function findChromium() {
   return [process.env.CHROMIUM, ...PLACES].find((p) => p && existsSync(p)) ?? null;
 }
 
+/** Ends a test, as one that was skipped, where there is no browser. */
+export function skipWithoutChromium() {
+  if (findChromium()) return;
+  console.log('Skipped: no Chromium. Install the package chromium, or set CHROMIUM to its path.');
+  process.exit(SKIPPED);
+}
+
 /**
  * @param web folder whose node_modules has playwright-core: web/ of a build
- * @returns page, problems (what the page's scripts complained of), close()
+ * @param webgl false: without the 3D view, which in software takes most of the time
+ * @param pictures whether pictures are kept, if any are: they have the 3D view all the same
  */
-export async function openPage(web, address, { width = 1366, height = 768 } = {}) {
+export async function openBrowser({ web = WEB, webgl = true, pictures = true, options = [] } = {}) {
   const executablePath = findChromium();
   if (!executablePath) throw new Error('No Chromium was found: install the package chromium, or set CHROMIUM to its path.');
   const { chromium } = createRequire(path.join(path.resolve(web), 'package.json'))('playwright-core');
-  const browser = await chromium.launch({
+  return chromium.launch({
     executablePath,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    args: ['--no-sandbox', ...(webgl || (pictures && process.env.STYLET_SCREENSHOTS) ? SOFTWARE_GL : NO_GL), ...options],
   });
+}
+
+/**
+ * A page of its own, as another visitor has it.
+ * @param prepare done to the page before it is opened
+ * @returns page, and problems: what the page's scripts complained of
+ */
+export async function openVisitor(browser, address, { width = 1366, height = 768, prepare = async () => {} } = {}) {
   const page = await browser.newPage({ viewport: { width, height } });
+  page.setDefaultTimeout(PATIENCE_MS);
   const problems = [];
   page.on('pageerror', (error) => problems.push(error.message));
-  page.on('console', (message) => message.type() === 'error' && problems.push(message.text()));
+  page.on('console', (message) => message.type() === 'error' && !NO_GL_SAID.test(message.text()) && problems.push(message.text()));
+  await prepare(page);
   await page.goto(address);
-  return { page, problems, close: () => browser.close() };
+  return { page, problems };
+}
+
+/** A browser with one page. @returns page, problems, close() */
+export async function openPage(web, address, size = {}) {
+  const browser = await openBrowser({ web });
+  return { ...(await openVisitor(browser, address, size)), close: () => browser.close() };
 }
 
 /** Waits until there is a patient and nothing covers it. */
-export async function waitUntilReady(page, timeout = 120_000) {
+export async function waitUntilReady(page, timeout = PATIENCE_MS) {
   await page.locator('#cover').waitFor({ state: 'hidden', timeout });
   await page.locator('.readouts b').first().filter({ hasText: /\d/ }).waitFor({ timeout });
 }
@@ -41,6 +75,23 @@ export async function waitUntilReady(page, timeout = 120_000) {
 export async function readout(page, label) {
   const text = await page.locator('.readouts .value', { has: page.locator('.name', { hasText: new RegExp(`^${label}$`) }) }).locator('b').textContent();
   return Number(text.replace('−', '-'));
+}
+
+/** Waits until what `ask` brings satisfies `good`, and returns it; fails with what it was last. */
+export async function until(what, ask, good, timeout = PATIENCE_MS) {
+  const end = Date.now() + timeout;
+  let value;
+  do {
+    value = await ask();
+    if (good(value)) return value;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  } while (Date.now() < end);
+  assert.fail(`waited in vain for ${what}; last was ${JSON.stringify(value)}`);
+}
+
+/** Waits until a read-out satisfies `good`, and returns it. */
+export function untilReadout(page, label, good) {
+  return until(`${label} ${good}`, () => readout(page, label), good);
 }
 
 /** Names of the events, as marks of the chart have them, in the order in which they happened: what a reader of screens hears. */
@@ -57,5 +108,27 @@ export async function listenToEvents(page) {
 export async function turnWheel(page, notches) {
   const box = await page.locator('#view3d').boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-  for (let i = 0; i < Math.abs(notches); i++) await page.mouse.wheel(0, notches > 0 ? -100 : 100);
+  for (let left = Math.abs(notches); left > 0; left -= 5) await page.mouse.wheel(0, -100 * Math.sign(notches) * Math.min(left, 5));
+}
+
+/** Tests that go on from where the one before ended: after one that failed the others are skipped. */
+export function inOrder() {
+  let failed = false;
+  return (name, action) => test(name, async (t) => {
+    if (failed) return t.skip('the one before failed');
+    try {
+      await action(t);
+    } catch (error) {
+      failed = true;
+      throw error;
+    }
+  });
+}
+
+/** Keeps a picture of a state of the page in the folder named by STYLET_SCREENSHOTS; without one nothing is kept. */
+export async function keepPicture(page, name) {
+  const folder = process.env.STYLET_SCREENSHOTS;
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: path.join(folder, `live-${name}.png`) });
 }

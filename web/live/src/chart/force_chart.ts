@@ -121,7 +121,7 @@ export class ForceChart {
       legend: { show: false },
       cursor: { show: false },
       scales: { x: { time: false, range: () => this.range.x }, y: { range: () => this.range.y } },
-      axes: [axis(this.byDepth ? 'Depth of the base [mm]' : 'Simulated time [s]', size * 1.9), { ...axis('Force [N]', size * 3), space: 1.7 * size }],
+      axes: [axis(this.byDepth ? 'Depth of the base [mm]' : 'Simulated time [s]', size * 1.9), { ...axis('Force [N]', size * 3), space: 1.3 * size }],
       series: [{}, { facets: [{ scale: 'x', auto: false }, { scale: 'y', auto: false }], paths: () => null }],
       hooks: { draw: [(u: uPlot) => this.drawCurves(u), (u: uPlot) => drawEvents(u, this.inRange())] },
     } as unknown as uPlot.Options, [null, [[0, 1], [0, 1]]] as unknown as uPlot.AlignedData, this.box);

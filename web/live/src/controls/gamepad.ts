@@ -16,8 +16,9 @@ export function bindGamepad(hand: HandControl): void {
   };
   const turn = (now: number) => {
     const pad = navigator.getGamepads().find((p) => p?.connected);
-    if (!pad) {
-      running = false;
+    if (!pad) {  // pulled out
+      if (pushing) hand.stop();
+      running = pushing = false;
       return;
     }
     const seconds = Math.min(0.25, (now - last) / 1000);

@@ -71,7 +71,7 @@ export class Header {
     this.release.hidden = !holds || others === 0;
     const recording = status?.recording;
     const unrecorded = recording?.problem;
-    this.recording.hidden = !connected || !recording || status?.mode === 'replay';
+    this.recording.hidden = !connected || !recording || status?.state !== 'ready' || status.mode === 'replay';
     this.recording.classList.toggle('problem', !!unrecorded);
     this.write(this.recording, unrecorded ? `Not recording: ${unrecorded}` : recording ? `Recording ${recording.seconds.toFixed(0)} s` : '');
     this.recording.title = recording?.name ?? '';

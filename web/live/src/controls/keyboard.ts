@@ -19,6 +19,7 @@ export const KEYS: [string, string][] = [
 ];
 const ROLL_DEG_PER_S = 90;
 const TILT_DEG_PER_S = 4;
+const TAP_S = 1 / 60;
 const LONGEST_TURN_S = 0.25;  // where pictures are slow
 
 type Held = (hand: HandControl, seconds: number) => void;
@@ -60,6 +61,7 @@ export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => 
       e.preventDefault();
       if (held.has(e.code)) return;
       held.set(e.code, action);
+      action(hand, TAP_S);  // a tap may be over before the next repaint
       if (held.size > 1) return;
       last = performance.now();
       requestAnimationFrame(turn);

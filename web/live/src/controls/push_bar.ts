@@ -7,6 +7,7 @@ import { CanvasBox } from '../canvas_box';
 import { eventLabel } from '../event_names';
 import { clamp, type HandControl } from '../hand';
 import type { Session } from '../session';
+import { wheelNotches } from '../wheel';
 
 const MARKED = new Set(['skin_contact', 'puncture', 'bone_contact']);
 
@@ -35,15 +36,18 @@ export class PushBar {
     });
     root.addEventListener('wheel', (e) => {
       e.preventDefault();
-      hand.push(-Math.sign(e.deltaY || e.deltaX) * (e.shiftKey ? 0.1 : 1));
+      hand.push(wheelNotches(e));
     }, { passive: false });
     for (const topic of ['frame', 'event', 'restart', 'scene'] as const) session.on(topic, this.box.request);
-    session.on('status', () => {
-      for (const b of this.buttons) b.disabled = !session.steering;
-      this.track.setAttribute('aria-disabled', String(!session.steering));
-      this.box.request();
-    });
+    for (const topic of ['status', 'link'] as const) session.on(topic, () => this.update());
     hand.onChange(this.box.request);
+  }
+
+  private update(): void {
+    const { steering } = this.session;
+    for (const b of this.buttons) b.disabled = !steering;
+    this.track.setAttribute('aria-disabled', String(!steering));
+    this.box.request();
   }
 
   private holdButton(text: string, direction: number): HTMLButtonElement {

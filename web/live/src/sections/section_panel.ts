@@ -5,6 +5,7 @@ import type { Session } from '../session';
 import { onRepaint } from '../repaint';
 import type { Plane } from './plane';
 import { SectionView } from './section_view';
+import { wheelNotches } from '../wheel';
 
 const NOTCH_MM = 1;
 
@@ -30,7 +31,7 @@ export class SectionPanel {
     picture.addEventListener('wheel', (e) => {
       if (e.ctrlKey) return;
       e.preventDefault();
-      plane.set(plane.value - Math.sign(e.deltaY || e.deltaX) * (e.shiftKey ? 0.1 : NOTCH_MM));
+      plane.set(plane.value + wheelNotches(e) * NOTCH_MM);
     }, { passive: false });
     plane.onChange(onRepaint(() => this.update()));
     this.update();

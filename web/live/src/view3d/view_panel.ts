@@ -7,6 +7,7 @@ import { Anatomy } from '../anatomy';
 import type { Session } from '../session';
 import type { HandControl } from '../hand';
 import { samePatient } from '../scene';
+import { wheelNotches } from '../wheel';
 import { CutControl } from './cut_control';
 import { Stage } from './stage';
 
@@ -36,7 +37,7 @@ export class ViewPanel {
       if (e.ctrlKey || this.settings.contains(e.target as Node)) return;
       e.preventDefault();
       e.stopPropagation();
-      hand.push(-Math.sign(e.deltaY || e.deltaX) * (e.shiftKey ? 0.1 : 1));
+      hand.push(wheelNotches(e));
     }, { capture: true, passive: false });
     if (!this.stage) return;
     this.buildSettings(this.stage);

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Somebody who has never seen the page: turns the wheel, clicks a hole, drags what can be dragged.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before } from 'node:test';
+import {
+  inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
+} from './browser.mjs';
+import { shadesOf } from './png.mjs';
+import { makeFolder, startServer } from './server.mjs';
+
+const FORCES_HEADER = 'time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,'
+  + 'tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us';
+const LONGEST_STEP_S = 0.0041;  // a step makes good for three missed ones at most
+
+skipWithoutChromium();
+const test = inOrder();
+const { folder, remove } = makeFolder();
+let server, browser, page, problems, heard;
+
+before(async () => {
+  server = await startServer(folder);
+  browser = await openBrowser();
+  ({ page, problems } = await openVisitor(browser, server.url));
+});
+after(async () => {
+  await browser?.close();
+  await server?.kill();
+  remove();
+});
+
+/** What a download of the page brought. */
+async function download(action) {
+  const [file] = await Promise.all([page.waitForEvent('download'), action()]);
+  return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
+}
+
+/** Turns the wheel until something has happened. */
+async function turnUntil(notches, what, happened) {
+  for (let turns = 0; turns < 60 && !(await happened()); turns++) await turnWheel(page, notches);
+  await until(what, happened, Boolean);
+}
+
+test('the page says what it waits for', async () => {
+  await page.getByText('Preparing the patient').waitFor();
+  assert.equal(await page.locator('.recording').isVisible(), false, 'nothing is recorded yet');
+  await keepPicture(page, 'loading');
+  await waitUntilReady(page);
+  assert.equal(await readout(page, 'Axial'), 0);
+  assert.ok((await readout(page, 'Depth')) < 0, 'the needle is before the skin');
+  heard = await listenToEvents(page);
+  await keepPicture(page, 'start');
+});
+
+test('the wheel pushes the needle: skin and capsule resist, then give way', async () => {
+  const said = async (word) => (await heard()).find((text) => text.startsWith(word));
+  const before = [];
+  await turnUntil(3, 'the capsule to be punctured', async () => {
+    before.push(await readout(page, 'Axial'));
+    return said('Punctured prostate');
+  });
+  assert.ok(await said('Skin touched') && await said('Punctured body'));
+  const peak = Number(/([\d.]+) N$/.exec(await said('Punctured prostate'))[1]);
+  const first = before.findIndex((force) => force > 0.02);
+  assert.ok(first > 0 && Math.max(...before.slice(first)) > 3 * before[first], `the force rises: ${before}`);
+  await untilReadout(page, 'Axial', (force) => force < 0.9 * peak && force > 0);
+});
+
+test('the gland moves with the needle', async () => {
+  await turnUntil(3, 'the tip within the gland', async () => (await readout(page, 'Depth')) > 55);
+  await keepPicture(page, 'inserted');
+  await page.getByText('View', { exact: true }).click();
+  await page.getByLabel('Displacement').check();
+  const most = await page.locator('.view-scale .ticks span').last().textContent();
+  assert.ok(Number(most) > 0.5, `the scale ends at ${most} mm`);
+  await keepPicture(page, 'displacement');
+  await page.getByLabel('Tissue').check();
+  await page.getByText('View', { exact: true }).click();
+});
+
+test('a picture can be kept', async () => {
+  const { name, bytes } = await download(() => page.getByRole('button', { name: 'Picture' }).click());
+  assert.match(name, /^stylet-.*\.png$/);
+  const { width, height, shades } = shadesOf(bytes);
+  assert.deepEqual([width, height], [1920, 1200]);
+  // A quarter of the picture each: 3D view, sections; below, the curve.
+  for (const [part, count] of Object.entries(shades)) assert.ok(count > 40, `${part} of the picture has ${count} shades`);
+});
+
+test('withdrawing turns the force round, until the needle is out', async () => {
+  await page.getByRole('button', { name: '50', exact: true }).click();
+  await turnWheel(page, -6);
+  await untilReadout(page, 'Axial', (force) => force < 0);
+  await turnUntil(-20, 'the tip before the skin', async () => (await readout(page, 'Depth')) < 0);
+  await until('the last event', async () => (await heard()).join('; '), (said) => /Retraction.*Slips.*Out/.test(said));
+  await until('a needle in the air', () => page.locator('.readouts').textContent(), (text) => text.includes('in air'));
+  await untilReadout(page, 'Axial', (force) => force === 0);
+});
+
+test('a click on another hole puts the needle there', async () => {
+  await page.getByLabel('Hole c3.5', { exact: true }).click();
+  await page.getByText('Template, needle in c3.5').waitFor();
+  await waitUntilReady(page);
+  await untilReadout(page, 'Depth', (depth) => depth < 0);
+});
+
+test('the insertion can be replayed, its time slider dragged, and its curve saved', async () => {
+  await page.getByRole('button', { name: 'Recordings' }).click();
+  await page.locator('dialog tr').first().waitFor();
+  const rows = page.locator('dialog tr');
+  assert.equal(await rows.count(), 2, 'one recording for each hole');
+  await rows.filter({ hasText: 'e3.5' }).getByRole('button', { name: 'Replay' }).click();
+  await page.locator('#replay').waitFor();
+  await until('the curve', () => page.locator('#replay output').textContent(), (text) => /of \d/.test(text));
+  const slider = page.getByLabel('Time of the recording');
+  const box = await slider.boundingBox();
+  const depths = new Set();
+  await page.mouse.move(box.x + 8, box.y + box.height / 2);
+  await page.mouse.down();
+  for (let k = 1; k <= 12; k++) {
+    await page.mouse.move(box.x + 8 + (0.7 * box.width * k) / 12, box.y + box.height / 2);
+    depths.add(await readout(page, 'Depth'));
+  }
+  await page.mouse.up();
+  await untilReadout(page, 'Depth', (depth) => depth > 10);
+  assert.ok(depths.size > 3, `the needle follows the slider: ${[...depths]}`);
+  await keepPicture(page, 'replay');
+
+  const { name, bytes } = await download(() => page.locator('#replay').getByText('CSV').click());
+  assert.match(name, /e3\.5.*\.csv$/);
+  const lines = bytes.toString().trimEnd().split('\n');
+  assert.equal(lines[0], FORCES_HEADER);
+  assert.ok(lines.every((line) => line.split(',').length === 16));
+  // Every step from the first to the last; one that comes late stands for the milliseconds it missed.
+  const seconds = Number(await slider.getAttribute('max'));
+  const times = lines.slice(1).map((line) => Number(line.split(',')[0]));
+  assert.ok(times[0] <= LONGEST_STEP_S && Math.abs(times.at(-1) - seconds) < 1e-3, `from ${times[0]} to ${times.at(-1)} of ${seconds} s`);
+  const gap = times.findIndex((time, i) => i > 0 && !(time > times[i - 1] && time < times[i - 1] + LONGEST_STEP_S));
+  assert.equal(gap, -1, `a gap after ${times[gap - 1]} s`);
+});
+
+test('back to the live needle', async () => {
+  await page.getByRole('button', { name: 'Back to the live needle' }).click();
+  await page.locator('#push').waitFor();
+  await waitUntilReady(page);
+  await page.getByText('Template, needle in c3.5').waitFor();
+  await turnUntil(3, 'the skin to be touched', async () => (await readout(page, 'Depth')) > 1);
+  assert.deepEqual(problems, []);
+});

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A server that is killed and started again: the page says so, and goes on by itself.
+import assert from 'node:assert/strict';
+import { after, before } from 'node:test';
+import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, untilReadout, waitUntilReady } from './browser.mjs';
+import { makeFolder, SMALL, startServer } from './server.mjs';
+
+skipWithoutChromium();
+const test = inOrder();
+const { folder, remove } = makeFolder();
+let server, browser, page, problems;
+
+before(async () => {
+  server = await startServer(folder, { options: SMALL });
+  browser = await openBrowser({ webgl: false });
+  ({ page, problems } = await openVisitor(browser, server.url));
+});
+after(async () => {
+  await browser?.close();
+  await server?.kill();
+  remove();
+});
+
+test('the page says that it has lost the server, and shows the last pictures as old ones', async () => {
+  await waitUntilReady(page);
+  await turnWheel(page, 15);
+  await untilReadout(page, 'Depth', (depth) => depth === 12);
+  await server.kill('SIGKILL');
+  await page.getByText('Connection lost').waitFor();
+  await page.getByText('is stylet serve still running?').waitFor();
+  assert.match(await page.locator('body').getAttribute('class'), /is-old/);
+  assert.ok(await page.getByRole('button', { name: 'Push' }).isDisabled());
+  await keepPicture(page, 'lost');
+});
+
+test('it goes on when there is a server again', async () => {
+  server = await startServer(folder, { options: SMALL, port: server.port });
+  await waitUntilReady(page);
+  await page.getByText('You hold the needle').waitFor();
+  await untilReadout(page, 'Depth', (depth) => depth === -3);
+  await turnWheel(page, 10);
+  await untilReadout(page, 'Depth', (depth) => depth === 7);
+  // What a browser itself says of a server that does not answer is no fault of the page.
+  assert.deepEqual(problems.filter((text) => !/ERR_CONNECTION|WebSocket connection/.test(text)), []);
+});

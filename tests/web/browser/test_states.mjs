@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// States that a visitor seldom sees: a case that cannot be had, a browser without 3D, a server that asks for a token.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, untilReadout, waitUntilReady } from './browser.mjs';
+import { DEMO, makeFolder, SMALL, startServer } from './server.mjs';
+
+skipWithoutChromium();
+const { folder, remove } = makeFolder();
+let server, browser, withoutGl;
+
+before(async () => {
+  browser = await openBrowser();
+  withoutGl = await openBrowser({ webgl: false, pictures: false });
+});
+afterEach(() => server?.kill());
+after(async () => {
+  await browser?.close();
+  await withoutGl?.close();
+  remove();
+});
+
+test('a case that cannot be meshed: what is wrong, where, and what to do', async () => {
+  const scenario = path.join(folder, 'broken.toml');
+  writeFileSync(scenario, '[patient]\nsource = "phantom"\n[fixed]\nouter = "sides"\n[[insertion]]\nhole = "A1"\n');
+  server = await startServer(folder, { scenario, options: SMALL });
+  const { page, problems } = await openVisitor(browser, server.url);
+  await page.getByText('This case could not be loaded').waitFor();
+  const card = await page.locator('.card').innerText();
+  assert.match(card, /broken\.toml/);
+  assert.ok((await page.locator('.card .cure').innerText()).length > 10, card);
+  await keepPicture(page, 'failed');
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('a second case that cannot be had leaves the first one as it is', async () => {
+  const broken = path.join(folder, 'broken.toml');
+  server = await startServer(folder, { scenario: DEMO, options: [broken, ...SMALL] });
+  const { page, problems } = await openVisitor(withoutGl, server.url);
+  await waitUntilReady(page);
+  await page.getByLabel('Case').selectOption({ index: 1 });
+  await page.locator('.notice').filter({ hasText: 'broken.toml' }).waitFor();
+  await waitUntilReady(page);
+  assert.equal(await page.getByLabel('Case').evaluate((select) => select.selectedIndex), 0);
+  await turnWheel(page, 10);
+  await untilReadout(page, 'Depth', (depth) => depth === 7);
+  await page.getByLabel('Hole A1', { exact: true }).click();
+  await page.locator('.notice').filter({ hasText: 'A1' }).waitFor();
+  await untilReadout(page, 'Depth', (depth) => depth === 7);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('a browser without 3D: sections, curve and hand work all the same', async () => {
+  server = await startServer(folder, { options: SMALL });
+  const { page, problems } = await openVisitor(withoutGl, server.url);
+  await waitUntilReady(page);
+  await page.getByText('This browser offers no WebGL').waitFor();
+  await turnWheel(page, 20);
+  await untilReadout(page, 'Depth', (depth) => depth === 17);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('a server beyond this machine: without its token it says where the address is', async () => {
+  server = await startServer(folder, { options: ['--address', '0.0.0.0', ...SMALL] });
+  const { page } = await openVisitor(withoutGl, `http://localhost:${server.port}/`);
+  await page.getByText('open the address that stylet serve printed').waitFor();
+  await page.goto(`http://localhost:${server.port}/${new URL(server.url).search}`);
+  await waitUntilReady(page);
+  await page.close();
+});

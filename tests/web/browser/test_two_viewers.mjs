@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two visitors of one patient: one holds the needle, the other watches, asks for it and gets it.
+import assert from 'node:assert/strict';
+import { after, before } from 'node:test';
+import {
+  inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
+} from './browser.mjs';
+import { makeFolder, SMALL, startServer } from './server.mjs';
+
+skipWithoutChromium();
+const test = inOrder();
+const { folder, remove } = makeFolder();
+let server, browser, first, second;
+
+before(async () => {
+  server = await startServer(folder, { options: SMALL });
+  browser = await openBrowser({ webgl: false });
+  first = await openVisitor(browser, server.url);
+  await waitUntilReady(first.page);
+  await first.page.getByText('You hold the needle').waitFor();
+  second = await openVisitor(browser, server.url);
+  await waitUntilReady(second.page);
+});
+after(async () => {
+  await browser?.close();
+  await server?.kill();
+  remove();
+});
+
+test('the second watches', async () => {
+  await second.page.getByText('You are watching · 1 other viewer').waitFor();
+  await first.page.getByText('You hold the needle · 1 other viewer').waitFor();
+  const heard = await listenToEvents(second.page);
+  await turnWheel(first.page, 15);
+  await untilReadout(first.page, 'Depth', (depth) => depth === 12);
+  await untilReadout(second.page, 'Depth', (depth) => depth === 12);
+  assert.equal(await readout(second.page, 'Axial'), await readout(first.page, 'Axial'));
+  assert.ok((await heard()).some((text) => text.startsWith('Skin touched')));
+});
+
+test('who watches cannot push', async () => {
+  assert.ok(await second.page.getByRole('button', { name: 'Push' }).isDisabled());
+  await turnWheel(second.page, 10);
+  await second.page.getByLabel('Hole D4', { exact: true }).click();
+  await second.page.getByText('You do not hold the needle.').waitFor();
+  assert.equal(await readout(second.page, 'Depth'), 12);
+  await keepPicture(second.page, 'watching');
+});
+
+test('the second asks, the first hands over', async () => {
+  await second.page.getByRole('button', { name: 'Ask for the needle' }).click();
+  await second.page.getByText('You have asked for the needle').waitFor();
+  await first.page.getByText('Somebody asks for the needle').waitFor();
+  await keepPicture(first.page, 'asked');
+  await first.page.getByRole('button', { name: 'Hand over' }).click();
+  await second.page.getByText('You hold the needle').waitFor();
+  await first.page.getByText('You are watching').waitFor();
+  await turnWheel(second.page, 5);
+  await untilReadout(first.page, 'Depth', (depth) => depth === 17);
+});
+
+test('who comes in the middle gets the whole curve and what has happened', async () => {
+  const third = await openVisitor(browser, server.url);
+  await waitUntilReady(third.page);
+  await untilReadout(third.page, 'Depth', (depth) => depth === 17);
+  assert.deepEqual(third.problems, []);
+  await third.page.close();
+});
+
+test('when the holder closes the page the needle is free, and the other page takes it', async () => {
+  await second.page.close();
+  await until('the needle to be offered', () => first.page.locator('.holder').textContent(), (text) => /Nobody holds|You hold/.test(text));
+  const take = first.page.getByRole('button', { name: 'Take the needle' });
+  if (await take.isVisible()) await take.click();
+  await first.page.getByText('You hold the needle').waitFor();
+  assert.deepEqual([...first.problems, ...second.problems], []);
+});
