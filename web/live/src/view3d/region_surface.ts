@@ -2,11 +2,12 @@
 // The surface of one region. Its buffers are made once; each frame writes positions, normals and, if asked for, colours.
 import * as THREE from 'three';
 import { toLinear, viridis } from '../../../shared/colors';
+import { applyColors, applyLook, isShown, type RegionLook } from '../../../shared/region_look';
 import { densenRim } from '../../../shared/rim';
 import type { Anatomy } from '../anatomy';
 import { regionTriangles, type Region } from '../scene';
 
-export class RegionSurface {
+export class RegionSurface implements RegionLook {
   readonly region: Region;
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
   readonly centre = new THREE.Vector3();
@@ -58,7 +59,7 @@ export class RegionSurface {
   }
 
   get shown(): boolean {
-    return this.visible && this.opacity > 0.005;
+    return isShown(this);
   }
 
   copyLook(other: RegionSurface): void {
@@ -68,23 +69,12 @@ export class RegionSurface {
   }
 
   applyLook(): void {
-    const { material } = this.object;
-    const opaque = this.opacity > 0.99;
-    if (material.transparent === opaque) material.needsUpdate = true;
-    // Colours that stand for numbers must not fade into what lies behind: denser than tissue colours.
-    material.opacity = this.byDisplacement && !this.region.background ? 1 - (1 - this.opacity) ** 2 : this.opacity;
-    material.transparent = !opaque;
-    material.depthWrite = opaque;
-    this.object.visible = this.shown;
+    applyLook(this, this.byDisplacement);
   }
 
   colorByDisplacement(on: boolean): void {
-    const { material } = this.object;
     this.byDisplacement = on;
-    this.applyLook();
-    material.vertexColors = on;
-    material.color.set(on ? '#ffffff' : this.region.color);
-    material.needsUpdate = true;
+    applyColors(this, on);
   }
 
   /** @param most displacement [mm] at the end of the colour scale */

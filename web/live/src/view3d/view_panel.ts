@@ -2,6 +2,7 @@
 // The 3D view with its controls: what is shown, how it is coloured, where it is cut, where one looks from.
 import { contactKey, colorBar, scaleMarks } from '../../../shared/keys';
 import { button, element } from '../../../shared/dom';
+import { regionRow } from '../../../shared/region_look';
 import { VIEWS } from '../../../shared/views';
 import { Anatomy } from '../anatomy';
 import type { Session } from '../session';
@@ -9,6 +10,7 @@ import type { HandControl } from '../hand';
 import { samePatient } from '../scene';
 import { wheelNotches } from '../wheel';
 import { CutControl } from './cut_control';
+import type { RegionSurface } from './region_surface';
 import { Stage } from './stage';
 
 const SMALLEST_SCALE_MM = 0.5;
@@ -59,7 +61,8 @@ export class ViewPanel {
     if (!this.stage) return;
     this.stage.setAnatomy(anatomy, again);
     if (!again) this.cutControl?.setScene(anatomy.scene);
-    this.list.replaceChildren(...this.stage.surfaces.map((_, i) => this.regionRow(i)));
+    const { stage } = this;
+    this.list.replaceChildren(...stage.surfaces.map((surface, i) => this.rowOf(stage, surface, i)));
     for (const surface of this.stage.surfaces) surface.colorByDisplacement(this.byDisplacement);
     this.stage.showTissue(this.most);
   }
@@ -163,40 +166,14 @@ export class ViewPanel {
     this.root.append(views, this.settings);
   }
 
-  private regionRow(i: number): HTMLElement {
-    const stage = this.stage as Stage;
-    const surface = stage.surfaces[i];
-    const row = element('div', 'region');
-    const label = element('label');
-    const box = element('input');
-    box.type = 'checkbox';
-    box.checked = surface.visible;
-    const apply = () => {
+  private rowOf(stage: Stage, surface: RegionSurface, i: number): HTMLElement {
+    let visible = surface.visible;
+    return regionRow(surface, () => {
+      if (surface.visible !== visible) this.onVisibility(i, (visible = surface.visible));
       surface.applyLook();
       surface.update(this.most);  // it was left out while it was hidden
       stage.cut.refresh();
       stage.draw();
-    };
-    box.addEventListener('change', () => {
-      surface.visible = box.checked;
-      this.onVisibility(i, box.checked);
-      apply();
     });
-    const swatch = element('span', 'swatch');
-    swatch.style.background = surface.region.color;
-    label.append(box, swatch, surface.region.label + (surface.region.target ? ' (target)' : ''));
-    const slider = element('input');
-    slider.type = 'range';
-    slider.min = '0';
-    slider.max = '1';
-    slider.step = '0.01';
-    slider.value = String(surface.opacity);
-    slider.setAttribute('aria-label', `Opacity of ${surface.region.label}`);
-    slider.addEventListener('input', () => {
-      surface.opacity = slider.valueAsNumber;
-      apply();
-    });
-    row.append(label, slider);
-    return row;
   }
 }

@@ -4,39 +4,17 @@ import type { ReportData } from '../data';
 import type { Moment } from '../moment';
 import { button, element } from '../../../shared/dom';
 import { colorBar, contactKey, scaleMarks } from '../../../shared/keys';
+import { regionRow } from '../../../shared/region_look';
 import { VIEWS } from '../../../shared/views';
 import { Stage } from './stage';
 
 function regionList(stage: Stage): HTMLElement {
   const list = element('div', 'regions');
   for (const mesh of stage.regions) {
-    const row = element('div', 'region');
-    const label = element('label');
-    const box = element('input');
-    box.type = 'checkbox';
-    box.checked = mesh.visible;
-    box.addEventListener('change', () => {
-      mesh.visible = box.checked;
+    list.append(regionRow(mesh, () => {
       mesh.applyLook();
       stage.draw();
-    });
-    const swatch = element('span', 'swatch');
-    swatch.style.background = mesh.region.color;
-    label.append(box, swatch, mesh.region.label + (mesh.region.target ? ' (target)' : ''));
-    const slider = element('input');
-    slider.type = 'range';
-    slider.min = '0';
-    slider.max = '1';
-    slider.step = '0.01';
-    slider.value = String(mesh.opacity);
-    slider.setAttribute('aria-label', `Opacity of ${mesh.region.label}`);
-    slider.addEventListener('input', () => {
-      mesh.opacity = slider.valueAsNumber;
-      mesh.applyLook();
-      stage.draw();
-    });
-    row.append(label, slider);
-    list.append(row);
+    }));
   }
   return list;
 }

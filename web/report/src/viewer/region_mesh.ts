@@ -3,9 +3,10 @@
 import * as THREE from 'three';
 import type { Frame, Region, ReportData } from '../data';
 import { toLinear, viridis } from '../../../shared/colors';
+import { applyColors, applyLook, type RegionLook } from '../../../shared/region_look';
 import { densenRim } from '../../../shared/rim';
 
-export class RegionMesh {
+export class RegionMesh implements RegionLook {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
   readonly centre: THREE.Vector3;  // [mm] LPS
   visible: boolean;
@@ -50,23 +51,12 @@ export class RegionMesh {
   }
 
   applyLook(): void {
-    const { material } = this.object;
-    const opaque = this.opacity > 0.99;
-    if (material.transparent === opaque) material.needsUpdate = true;
-    // Colours that stand for numbers must not fade into what lies behind: denser than tissue colours.
-    material.opacity = this.byDisplacement && !this.region.background ? 1 - (1 - this.opacity) ** 2 : this.opacity;
-    material.transparent = !opaque;
-    material.depthWrite = opaque;
-    this.object.visible = this.visible && this.opacity > 0.005;
+    applyLook(this, this.byDisplacement);
   }
 
   colorByDisplacement(on: boolean): void {
-    const { material } = this.object;
     this.byDisplacement = on;
-    this.applyLook();
-    material.vertexColors = on;
-    material.color.set(on ? '#ffffff' : this.region.color);
-    material.needsUpdate = true;
+    applyColors(this, on);
   }
 
   /** Moves the nodes to where they are in a frame. @param most displacement [mm] at the end of the colour scale */

@@ -3,13 +3,13 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Frame, ReportData } from '../data';
+import { fitPicture, lookFrom } from '../../../shared/camera';
 import { roundDown } from '../../../shared/colors';
 import { ContactMarks } from '../../../shared/contact_marks';
 import { NeedleMesh } from '../../../shared/needle_mesh';
 import { OrientationCube } from '../../../shared/orientation_cube';
 import { VIEWS } from '../../../shared/views';
 import { RegionMesh } from './region_mesh';
-
 
 export class Stage {
   readonly regions: RegionMesh[];
@@ -60,14 +60,7 @@ export class Stage {
 
   /** Puts the camera in a standard place. @param from direction from the anatomy to the observer, LPS */
   look(from: [number, number, number]): void {
-    const direction = new THREE.Vector3(...from).normalize();
-    // OrbitControls cannot look exactly along its up axis: a hair beside it, with the front of the patient upwards.
-    if (Math.abs(direction.z) > 0.99) direction.add(new THREE.Vector3(0, 1e-3 * Math.sign(direction.z) * -1, 0)).normalize();
-    this.controls.target.copy(this.centre);
-    this.camera.position.copy(this.centre).addScaledVector(direction, 12 * this.halfSize);
-    this.camera.zoom = 1;
-    this.camera.updateProjectionMatrix();
-    this.controls.update();
+    lookFrom(this.camera, this.controls, from, this.centre, this.halfSize);
     this.draw();
   }
 
@@ -110,14 +103,7 @@ export class Stage {
     const { clientWidth: width, clientHeight: height } = this.box;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
-    const aspect = width / height;
-    this.camera.left = -this.halfSize * aspect;
-    this.camera.right = this.halfSize * aspect;
-    this.camera.top = this.halfSize;
-    this.camera.bottom = -this.halfSize;
-    this.camera.near = 0;
-    this.camera.far = 40 * this.halfSize;
-    this.camera.updateProjectionMatrix();
+    fitPicture(this.camera, width / height, this.halfSize);
     this.draw();
   }
 
