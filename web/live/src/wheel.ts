@@ -8,7 +8,7 @@ export interface WheelTurn { deltaX: number; deltaY: number; deltaMode: number; 
 
 /** Notches, positive away from the hand; with Shift tenths of them. */
 export function wheelNotches(e: WheelTurn): number {
-  const turned = -(e.deltaY || e.deltaX);  // with Shift some browsers turn the wheel sideways
+  const turned = 0 - (e.deltaY || e.deltaX);  // with Shift some browsers turn the wheel sideways
   const notches = turned / (e.deltaMode === 0 ? NOTCH_PX : e.deltaMode === 1 ? NOTCH_LINES : 1);
   const counted = Math.abs(notches) < 0.5 ? notches : Math.round(notches);
   return counted * (e.shiftKey ? 0.1 : 1);
