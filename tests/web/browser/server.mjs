@@ -17,13 +17,14 @@ export function makeFolder() {
 }
 
 /**
- * @param folder for the recordings
+ * @param folder for the recordings, and for models that are kept
  * @param options arguments after the scenario; the port is a free one unless they name another
  * @returns url, port, memory() of the process [bytes], kill(signal)
  */
 export async function startServer(folder, { scenario = DEMO, options = [], port = 0 } = {}) {
   const program = process.env.STYLET ?? path.join(REPOSITORY, 'build/bin/stylet');
-  const server = spawn(program, ['serve', scenario, '--port', String(port), '--json', '-', '-o', folder, ...options]);
+  const server = spawn(program, ['serve', scenario, '--port', String(port), '--json', '-', '-o', path.join(folder, 'live'), ...options],
+    { env: { ...process.env, XDG_CACHE_HOME: path.join(folder, 'cache') } });
   const ended = new Promise((resolve) => server.once('exit', resolve));
   let said = '';
   let complaint = '';

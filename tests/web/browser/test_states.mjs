@@ -22,7 +22,19 @@ after(async () => {
   remove();
 });
 
-test('a case that cannot be meshed: what is wrong, where, and what to do', async () => {
+test('a case that has never been open: the page says what it waits for', async () => {
+  server = await startServer(folder, { options: ['--set', 'mesh.nodes=5000'] });
+  const { page, problems } = await openVisitor(browser, server.url);
+  await page.getByText('Preparing the patient').waitFor();
+  assert.equal(await page.locator('.recording').isVisible(), false, 'nothing is recorded yet');
+  await page.locator('.card progress[value]').waitFor();
+  await keepPicture(page, 'loading');
+  await waitUntilReady(page);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('a case that cannot be read: what is wrong, where, and what to do', async () => {
   const scenario = path.join(folder, 'broken.toml');
   writeFileSync(scenario, '[patient]\nsource = "contours.dcm"\n[[insertion]]\nhole = "e3.5"\n');
   writeFileSync(path.join(folder, 'contours.dcm'), 'no contours');

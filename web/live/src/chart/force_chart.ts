@@ -18,6 +18,7 @@ export class ForceChart {
   seconds = 20;           // of time that are shown
   private byDepth = false;
   private plot: uPlot | null = null;
+  private textSize = 0;  // [px] that the plot was made with
   private events: PlacedEvent[] = [];
   private readonly ends: [number, number] = [0, 0];
   private range = { x: [0, 1] as [number, number], y: [-0.2, 1] as [number, number] };
@@ -102,8 +103,13 @@ export class ForceChart {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.box;
     if (width === 0 || height === 0) return;
-    if (this.plot) this.plot.setSize({ width, height });
-    else this.plot = this.makePlot(width, height);
+    if (this.plot && this.textSize === fontSize()) {
+      this.plot.setSize({ width, height });
+    } else {  // another screen, or zoom
+      this.plot?.destroy();
+      this.textSize = fontSize();
+      this.plot = this.makePlot(width, height);
+    }
     this.draw();
   }
 
