@@ -34,6 +34,7 @@ export class Stage {
   private sorted: { surface: RegionSurface; distance: number }[] = [];
   private readonly pace = new Pace(Math.min(devicePixelRatio, 2));
   private halfSize = 60;  // [mm] half height of the view at zoom 1
+  private compiled = false;  // the shaders of the anatomy: waiting for them would hold up all of the page
 
   /** Throws where the browser has no WebGL. @param scaleBar [mm] and width [CSS px] of a bar that fits the zoom */
   constructor(private readonly box: HTMLElement, private readonly scaleBar: (mm: number, px: number) => void) {
@@ -77,6 +78,10 @@ export class Stage {
     this.template.setTemplate(scene.template);
     if (!again) this.look(VIEWS[0].from);
     this.resize();
+    void this.renderer.compileAsync(this.scene, this.camera).then(() => {
+      this.compiled = true;
+      this.draw();
+    });
   }
 
   /** @param most displacement [mm] at the end of the colour scale */
@@ -110,7 +115,7 @@ export class Stage {
 
   render(): void {
     const { clientWidth: width, clientHeight: height } = this.box;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || !this.compiled) return;
     this.renderer.setViewport(0, 0, width, height);
     this.sortSurfaces();
     this.renderer.render(this.scene, this.camera);
@@ -137,7 +142,8 @@ export class Stage {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.box;
     if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height);
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height);
     fitPicture(this.camera, width / height, this.halfSize);
     this.render();
   }
