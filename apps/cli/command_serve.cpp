@@ -40,7 +40,7 @@ fs::path models_beside_program() {
 
 /// A scenario or a saved model as a case of the page. A scenario is read now, so that what is wrong with it is said
 /// before anything is opened.
-Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments) {
+Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments, Console& console) {
   std::string title = file.stem().string();
   if (!is_hdf5_file(file)) {
     const Result<Scenario> scenario = read_scenario(file, arguments.settings);
@@ -49,10 +49,12 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
   }
   return serve::CaseSource{
       title,
-      [file, settings = arguments.settings, cache = ModelCache(arguments.models, {models_beside_program()})](
+      [file, &console, settings = arguments.settings, cache = ModelCache(arguments.models, {models_beside_program()})](
           const Progress& progress) -> Result<std::shared_ptr<const Model>> {
         auto prepared = prepared_model(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
+        if (!prepared->not_kept.empty())
+          console.warn("The model was not kept for the next time: " + prepared->not_kept);
         return prepared->model;
       }};
 }
@@ -68,7 +70,7 @@ std::vector<serve::CaseSource> cases_in(const fs::path& folder, const ServeArgum
   std::sort(files.begin(), files.end());
   std::vector<serve::CaseSource> cases;
   for (const fs::path& file : files) {
-    if (auto source = case_of(file, arguments)) {
+    if (auto source = case_of(file, arguments, console)) {
       cases.push_back(std::move(*source));
     } else {
       console.warn(source.error().message());
@@ -93,7 +95,7 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
       session.recordings = file.parent_path().parent_path();
       session.replay = file.parent_path().filename().string();
     } else {
-      auto source = case_of(input, arguments);
+      auto source = case_of(input, arguments, console);
       if (!source) return source.error();
       session.cases.push_back(std::move(*source));
     }

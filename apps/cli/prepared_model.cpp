@@ -68,8 +68,10 @@ Result<PreparedModel> prepared_model(const std::string& file, const std::vector<
   }
   auto prepared = compiled(file, *scenario, progress);
   if (!prepared) return prepared;
+  const Result<std::string> now = model_key(*scenario);
+  if (!now || *now != *key) return prepared;  // somebody has changed a file meanwhile
   if (auto done = cache->keep(*prepared->model, *key, prepared->notes, progress); !done)
-    prepared->notes.push_back("The model was not kept for the next time: " + done.error().message());
+    prepared->not_kept = done.error().message();
   return prepared;
 }
 

@@ -15,6 +15,7 @@ namespace stylet::cli {
 struct PreparedModel {
   std::shared_ptr<const Model> model;
   std::vector<std::string> notes;
+  std::string not_kept;  ///< why the cache has it not for the next time; empty: it has, or there is none
   double mesh_s = 0.0;   ///< contours, mask or file to mesh
   double model_s = 0.0;  ///< mesh to model, or a saved model to model
 };
@@ -22,8 +23,8 @@ struct PreparedModel {
 /// The model of a scenario file, meshed and compiled, or of a saved model.
 /// @param file SCENARIO.toml or MODEL.stylet
 /// @param settings of --set
-/// @param cache where the model of a scenario is looked for first, and kept; may be null. A folder that refuses delays
-///   nobody: the model is there, and notes say what was wrong.
+/// @param cache where the model of a scenario is looked for first, and kept; may be null. A folder that refuses is no
+///   error.
 Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
                                      const Progress& progress, const ModelCache* cache = nullptr);
 

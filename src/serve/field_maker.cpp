@@ -22,7 +22,7 @@ struct GivenUp {};
 FieldMaker::FieldMaker(std::shared_ptr<const Model> model)
     : thread_([this, model = std::move(model)]() mutable { make(std::move(model)); }) {}
 
-FieldMaker::~FieldMaker() { given_up_ = true; }
+FieldMaker::~FieldMaker() { give_up(); }
 
 void FieldMaker::make(std::shared_ptr<const Model> model) {
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);

@@ -14,14 +14,16 @@ namespace stylet::serve {
 class FieldMaker {
  public:
   explicit FieldMaker(std::shared_ptr<const Model> model);
-  ~FieldMaker();  ///< gives up
+  ~FieldMaker();  ///< gives up, and waits until the thread has seen it
+  /// Ends at the next report of progress; done() then, without a field.
+  void give_up() { given_up_ = true; }
   FieldMaker(const FieldMaker&) = delete;
   FieldMaker& operator=(const FieldMaker&) = delete;
 
   /// 0…1, of how much is done.
   [[nodiscard]] double fraction() const { return fraction_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool done() const { return done_.load(std::memory_order_acquire); }
-  /// When it is done. Empty: there was too little memory.
+  /// When it is done. Empty: given up, or there was too little memory.
   [[nodiscard]] const std::shared_ptr<const DisplayField>& field() const { return made_; }
 
  private:

@@ -69,8 +69,9 @@ HandTarget hand_angles(const Pose& base, const PlannedInsertion& plan) {
     const double left = -axis.dot(sides.left) / forward;
     const double anterior = -axis.dot(sides.anterior) / forward;
     const double apart = 1.0 - both * both;
-    hand.tilt_left_deg = std::atan((left - both * anterior) / apart) / kRadians;
-    hand.tilt_anterior_deg = std::atan((anterior - both * left) / apart) / kRadians;
+    constexpr double kOneSide = 1e-6;  // left and anterior are the same: all of a tilt is called left
+    hand.tilt_left_deg = std::atan(apart < kOneSide ? left : (left - both * anterior) / apart) / kRadians;
+    hand.tilt_anterior_deg = std::atan(apart < kOneSide ? 0.0 : (anterior - both * left) / apart) / kRadians;
   }
   const Eigen::Quaterniond roll = tilted(along, axis).conjugate() * base.rotation;
   hand.roll_deg = std::remainder(2.0 * std::atan2(roll.z(), roll.w()) / kRadians, 360.0);

@@ -47,10 +47,22 @@ const StepRecord* Replay::step() const {
   return after == steps.begin() ? nullptr : &*(after - 1);
 }
 
+/// Before the first frame: a straight needle, and tissue that was not recorded.
+void Replay::put_needle(LiveFrame& out) const {
+  set_displacement(out, Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(scene_nodes_.size())));
+  if (recording_.steps.empty()) return;
+  const StepRecord& s = step() != nullptr ? *step() : recording_.steps.front();
+  if (!s.base.origin.allFinite()) return;
+  for (const Vec3& point : {s.base.origin, s.tip_mm})
+    for (const double value : point) out.centreline.push_back(static_cast<float>(value));
+  out.tip_mm = s.tip_mm;
+  out.left_out_N = Vec3(s.force_axial_N, s.force_sagittal_N, s.force_lateral_N).norm();
+}
+
 /// Needle, contacts and displacement of now.
 void Replay::put_frame(LiveFrame& out) const {
   const auto& frames = recording_.frames;
-  if (frames.empty()) return;
+  if (frames.empty() || time_s_ < frames.front().time_s) return put_needle(out);
   const auto after =
       std::upper_bound(frames.begin(), frames.end(), time_s_, [](double t, const Frame& f) { return t < f.time_s; });
   const Frame& a = after == frames.begin() ? frames.front() : *(after - 1);

@@ -32,6 +32,7 @@ class Replay {
  private:
   [[nodiscard]] const StepRecord* step() const;
   void put_frame(LiveFrame& out) const;
+  void put_needle(LiveFrame& out) const;
 
   RunRecording recording_;
   std::vector<Index> scene_nodes_;

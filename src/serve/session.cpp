@@ -51,8 +51,9 @@ struct Session::Parts {
   Audience& audience;
   Shelf shelf;
   std::size_t open_case = 0;
-  OpenModel open;                           ///< without a model: none could be opened
-  std::unique_ptr<FieldMaker> field_maker;  ///< of the model that is open, until its field is there
+  OpenModel open;                                      ///< without a model: none could be opened
+  std::unique_ptr<FieldMaker> field_maker;             ///< of the model that is open, until its field is there
+  std::vector<std::unique_ptr<FieldMaker>> abandoned;  ///< of others, which have not ended yet
   /// What the case itself plans; the model that is open may be of another hole.
   struct Planned {
     Scenario scenario;
@@ -74,6 +75,10 @@ struct Session::Parts {
   void show_companion();
   void say_status();
   Progress progress();
+  void fail(const Error& error) {
+    status.state = SessionStatus::State::failed;
+    status.failure = {error.where + ": " + error.what, error.cure};
+  }
   void refuse(const Request& request, const Error& error) {
     audience.refuse(request.viewer, {error.where + ": " + error.what, error.cure});
   }
@@ -82,10 +87,11 @@ struct Session::Parts {
                   const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load);
   void show_model();
   void take_field();
+  void abandon_field();
   void choose_hole(const Request& request);
   void choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
   void place(const Request& request, std::size_t which);
-  void start_replay(const Request& request);
+  Result<> start_replay(const std::string& name);
   void end_live();
   void set_hand(std::shared_ptr<PageDevice> device);
   [[nodiscard]] CaseList cases() const;
@@ -188,14 +194,13 @@ void Session::Parts::place(const Request& request, std::size_t which) {
                             std::move(other));
   if (!run) {
     refuse(request, run.error());
-    status.state = SessionStatus::State::failed;
-    status.failure = {run.error().where + ": " + run.error().what, run.error().cure};
-    return;
+    return fail(run.error());
   }
   live = std::move(*run);
   set_hand(live->hand());
   status.state = SessionStatus::State::ready;
-  status.stage = field_maker ? kFieldStage : "";
+  status.stage = field_maker ? kFieldStage : open.field ? "" : kNoField;
+  status.fraction = -1.0;
   status.paused = false;
   status.insertion = plan.name;
   status.hole = open.model->scenario().insertions[which].hole.value_or("");
@@ -216,6 +221,7 @@ void Session::Parts::show_model() {
 
 /// The displacement field, once it is there; until then how much of it is.
 void Session::Parts::take_field() {
+  std::erase_if(abandoned, [](const auto& maker) { return maker->done(); });
   if (!field_maker) return;
   status.fraction = field_maker->fraction();
   if (!field_maker->done()) return;
@@ -227,7 +233,14 @@ void Session::Parts::take_field() {
   if (live && open.field) live->set_field(open.field);
 }
 
-/// Opens a model in the place of the one that is open; that one goes on if it cannot be had.
+/// Nobody waits for a field any more: what is being made of it may be a whole factor, which takes long.
+void Session::Parts::abandon_field() {
+  if (!field_maker) return;
+  field_maker->give_up();
+  abandoned.push_back(std::move(field_maker));
+}
+
+/// Opens a model in the place of the one that is open; that one starts again if it cannot be had.
 void Session::Parts::open_model(const Request& request, std::size_t case_number,
                                 const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load) {
   end_live();
@@ -238,7 +251,7 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
   auto model = load(progress());
   const Result<> usable = model ? DisplayField::check(**model) : Result<>(model.error());
   if (usable.ok()) {
-    field_maker.reset();
+    abandon_field();
     open = {.model = *model, .field = nullptr, .scene_nodes = {}};
     if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
       planned = {(*model)->scenario(), (*model)->insertions()};
@@ -248,11 +261,11 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
     return place(request, 0);
   }
   if (open.model) {
+    if (replay) show_model();  // instead of what was replayed
     refuse(request, usable.error());
     return place(request, insertion);
   }
-  status.state = SessionStatus::State::failed;
-  status.failure = {usable.error().where + ": " + usable.error().what, usable.error().cure};
+  fail(usable.error());
 }
 
 /// A needle through a hole: as the case plans it, or like its first one otherwise.
@@ -287,18 +300,18 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
   });
 }
 
-void Session::Parts::start_replay(const Request& request) {
-  auto recording = shelf.read(request.text);
-  if (!recording) return refuse(request, recording.error());
-  auto scenario = parse_scenario(recording->info.scenario_text, request.text);
-  if (!scenario) return refuse(request, scenario.error());
-  if (recording->frames.empty())
-    return refuse(request, failure(request.text, "the recording ends before its first picture", "Choose another one"));
+Result<> Session::Parts::start_replay(const std::string& name) {
+  auto recording = shelf.read(name);
+  if (!recording) return recording.error();
+  auto scenario = parse_scenario(recording->info.scenario_text, name);
+  if (!scenario) return scenario.error();
+  if (recording->frames.empty() && recording->steps.empty())
+    return failure(name, "the recording ends before its first step", "Choose another one");
   end_live();
   PlannedInsertion plan;
   plan.entry = recording->info.entry_mm;
   plan.direction = recording->info.direction;
-  plan.name = request.text;
+  plan.name = name;
   for (const StepRecord& step : recording->steps) plan.depth_mm = std::max(plan.depth_mm, step.base_depth_mm);
   MadeScene made =
       make_scene(recording->mesh, recording->info.target_regions, *scenario, {plan}, recording->info.warnings, cases());
@@ -307,11 +320,12 @@ void Session::Parts::start_replay(const Request& request) {
     audience.tell(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
   replay = std::make_unique<Replay>(std::move(*recording), std::move(made.nodes));
   status.state = SessionStatus::State::ready;
-  status.replay = {.name = request.text, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
-  status.insertion = request.text;
+  status.replay = {.name = name, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
+  status.insertion = name;
   status.hole = scenario->insertions.front().hole.value_or("");
   status.loop = {};
   whole_curve = true;
+  return Ok{};
 }
 
 void Session::Parts::carry_out(const Request& request) {
@@ -329,7 +343,7 @@ void Session::Parts::carry_out(const Request& request) {
       open_model(request, number, settings.cases[number].load);
       break;
     case Kind::replay:
-      start_replay(request);
+      if (auto started = start_replay(request.text); !started) refuse(request, started.error());
       break;
     case Kind::live:
       if (!replay) break;
@@ -402,7 +416,7 @@ void Session::Parts::run(const std::stop_token& stop) {
     open_model({.kind = Request::Kind::open_case, .viewer = 0, .text = {}, .number = 0.0}, 0,
                settings.cases.front().load);
   } else {
-    start_replay({.kind = Request::Kind::replay, .viewer = 0, .text = settings.replay, .number = 0.0});
+    if (auto started = start_replay(settings.replay); !started) fail(started.error());
   }
   say_status();
   const auto period =

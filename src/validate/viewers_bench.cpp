@@ -17,9 +17,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 namespace stylet::validate {
 
@@ -29,7 +31,8 @@ namespace fs = std::filesystem;
 namespace beast = boost::beast;
 using boost::asio::ip::tcp;
 
-constexpr double kChange_s = 0.5;  ///< after viewers came or went, not counted
+constexpr double kChange_s = 0.5;     ///< after viewers came or went, not counted
+constexpr double kPatience_s = 60.0;  ///< for a loop that does not go on
 
 /// Moves the needle by a script, and knows what time it is in the simulation.
 class Script final : public serve::Companion {
@@ -52,25 +55,29 @@ class Script final : public serve::Companion {
 /// A viewer that reads all there is, as fast as it comes.
 class Viewer {
  public:
-  explicit Viewer(std::uint16_t port) : socket_(io_) {
-    tcp::socket& lowest = beast::get_lowest_layer(socket_);
-    lowest.connect({boost::asio::ip::make_address("127.0.0.1"), port});
-    socket_.set_option(beast::websocket::stream_base::decorator([](beast::websocket::request_type& request) {
+  static Result<std::unique_ptr<Viewer>> open(std::uint16_t port) {
+    std::unique_ptr<Viewer> viewer(new Viewer);
+    auto& socket = viewer->socket_;
+    beast::error_code error;
+    beast::get_lowest_layer(socket).connect({boost::asio::ip::address_v4::loopback(), port}, error);
+    socket.set_option(beast::websocket::stream_base::decorator([](beast::websocket::request_type& request) {
       request.set(beast::http::field::sec_websocket_protocol, "stylet-live-1");
     }));
-    socket_.handshake("localhost:" + std::to_string(port), "/live");
-    thread_ = std::thread([this] { read(); });
+    if (!error) socket.handshake("localhost:" + std::to_string(port), "/live", error);
+    if (error)
+      return failure("viewer of the live session", "cannot connect: " + error.message(),
+                     "See whether something forbids connections to 127.0.0.1");
+    viewer->thread_ = std::jthread([v = viewer.get()] { v->read(); });
+    return viewer;
   }
-  ~Viewer() {
-    ::shutdown(beast::get_lowest_layer(socket_).native_handle(), SHUT_RDWR);
-    thread_.join();
-  }
+  ~Viewer() { ::shutdown(beast::get_lowest_layer(socket_).native_handle(), SHUT_RDWR); }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
   [[nodiscard]] std::int64_t pictures() const { return pictures_; }
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }
 
  private:
+  Viewer() : socket_(io_) {}
   void read() {
     beast::flat_buffer buffer;
     beast::error_code error;
@@ -87,7 +94,7 @@ class Viewer {
   beast::websocket::stream<tcp::socket> socket_;
   std::atomic<std::int64_t> pictures_ = 0;
   std::atomic<std::int64_t> bytes_ = 0;
-  std::thread thread_;
+  std::jthread thread_;  ///< last: joined while the others exist
 };
 
 /// A part of the session in simulated time.
@@ -147,11 +154,17 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   auto server = serve::Server::open(std::move(settings));
   if (!server) return server.error();
   (*server)->start();
-  const auto wait_until = [&](double time_s) {
-    while (script->time_s() < time_s) {
+  const auto wait_until = [&](double time_s) -> Result<> {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point moved = Clock::now();
+    for (double last_s = script->time_s(); last_s < time_s;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      report(progress, "real time", script->time_s() / all_s);
+      if (std::exchange(last_s, script->time_s()) != last_s) moved = Clock::now();
+      report(progress, "real time", last_s / all_s);
+      if (std::chrono::duration<double>(Clock::now() - moved).count() > kPatience_s)
+        return failure("live session", "its loop does not go on", "See whether stylet serve runs on this machine");
     }
+    return Ok{};
   };
 
   ViewersReport result;
@@ -159,12 +172,17 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   result.viewers = options.viewers;
   std::vector<Turn> turns;
   double watched_s = 0.0;
-  wait_until(turn_s);  // the skin breaks once only, and the tissue's picture is being prepared
+  // Not the first one: the skin breaks once only, and the tissue's picture is being prepared.
+  if (auto waited = wait_until(turn_s); !waited) return waited.error();
   for (int turn = 0; turn < 2 * pairs; ++turn) {
     const bool watched = turn % 2 == 1;
     std::vector<std::unique_ptr<Viewer>> viewers;
-    for (int k = 0; watched && k < options.viewers; ++k) viewers.push_back(std::make_unique<Viewer>((*server)->port()));
-    wait_until(script->time_s() + kChange_s);
+    for (int k = 0; watched && k < options.viewers; ++k) {
+      auto viewer = Viewer::open((*server)->port());
+      if (!viewer) return viewer.error();
+      viewers.push_back(std::move(*viewer));
+    }
+    if (auto waited = wait_until(script->time_s() + kChange_s); !waited) return waited.error();
     const double from_s = script->time_s();
     turns.push_back({from_s, from_s + turn_s, watched});
     std::vector<std::int64_t> pictures;
@@ -173,7 +191,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
       pictures.push_back(viewer->pictures());
       bytes.push_back(viewer->bytes());
     }
-    wait_until(from_s + turn_s);
+    if (auto waited = wait_until(from_s + turn_s); !waited) return waited.error();
     for (std::size_t k = 0; k < viewers.size(); ++k) {
       result.pictures_per_s += static_cast<double>(viewers[k]->pictures() - pictures[k]);
       result.megabytes_per_s += 1e-6 * static_cast<double>(viewers[k]->bytes() - bytes[k]);

@@ -43,6 +43,7 @@ class ServeCommand(Serve):
         self.until(lambda: len(self.recordings()) > before)
         server.terminate()
         self.assertEqual(server.wait(PATIENCE_S), 0)
+        return server
 
     def test_models_are_kept_for_the_next_time(self):
         models = self.folder / "models"
@@ -67,7 +68,8 @@ class ServeCommand(Serve):
 
     def test_a_folder_for_models_that_refuses_keeps_nobody_from_opening(self):
         (self.folder / "models").write_text("a file")
-        self.opened("--models", "models")
+        server = self.opened("--models", "models")
+        self.assertIn("not kept for the next time", server.stderr.read())
         self.opened("--models", "")
 
     def test_refuses_what_is_wrong(self):

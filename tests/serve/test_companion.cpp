@@ -101,12 +101,11 @@ struct WithFriend {
     return pose(companion->locked([](const Friend& f) { return f.base; }));
   }
   [[nodiscard]] std::string problem() const { return client->status.value("device_problem", "?"); }
-  /// Until the base is so far along its axis from `start`; the handle leads in small steps.
+  /// Until the base is so far along its axis from `start`; the handle leads by a millimetre.
   bool push(const Pose& start, double from_mm, double to_mm) {
     const Vec3 axis = start.rotation * Vec3::UnitZ();
-    double at_mm = from_mm;
     return client->until([&] {
-      at_mm = std::min(to_mm, at_mm + 0.5);
+      const double at_mm = std::min(to_mm, std::max(from_mm, (base().origin - start.origin).dot(axis)) + 1.0);
       companion->hand(Pose{start.origin + at_mm * axis, start.rotation});
       return (base().origin - start.origin - to_mm * axis).norm() < 1e-6;
     });

@@ -85,6 +85,16 @@ TEST(Hand, angles_of_a_base_are_those_it_was_placed_with) {
   }
 }
 
+TEST(Hand, a_needle_between_left_and_anterior_has_one_way_to_tilt) {
+  const PlannedInsertion plan = plan_along({1, -1, 0});
+  const auto tangent = [](double degrees) { return std::tan(degrees * std::numbers::pi / 180.0); };
+  const HandTarget placed{.depth_mm = 30.0, .roll_deg = 20.0, .tilt_left_deg = 7.0};
+  const HandTarget found = hand_angles(hand_pose(placed, plan, kLength_mm), plan);
+  EXPECT_NEAR(found.roll_deg, 20.0, 1e-6);
+  EXPECT_NEAR(tangent(found.tilt_left_deg), tangent(7.0), 1e-6);
+  EXPECT_EQ(found.tilt_anterior_deg, 0.0);
+}
+
 TEST(PageDevice, starts_where_the_plan_does_and_waits_for_a_target) {
   const Scenario scenario = test::box_scenario();
   PlannedInsertion plan = plan_along({0, 0, 1});

@@ -80,3 +80,23 @@ TEST(Replay, gives_the_whole_curve_when_asked) {
   EXPECT_TRUE(frame->bits & LiveFrame::whole_curve);
   EXPECT_EQ(frame->samples[9].axial_N, 5.0);
 }
+
+TEST(Replay, shows_a_straight_needle_where_no_frame_was_recorded_yet) {
+  RunRecording late = recording();
+  late.frames.erase(late.frames.begin());  // the one that is left is of 1 s
+  for (StepRecord& step : late.steps) {
+    step.base.origin = {1, 2, step.base_depth_mm - 100.0};
+    step.tip_mm = {1, 2, step.base_depth_mm};
+  }
+  for (const bool no_frames : {false, true}) {
+    if (no_frames) late.frames.clear();
+    Replay replay(late, {3, 1});
+    replay.seek(0.45);
+    const auto frame = replay.picture(false);
+    EXPECT_EQ(frame->centreline, (std::vector<float>{1, 2, -96, 1, 2, 4}));
+    EXPECT_EQ(frame->tip_mm, Vec3(1, 2, 4));
+    ASSERT_EQ(frame->displacement.size(), 6u);
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(moved(*frame, k), 0.0);
+    EXPECT_EQ(frame->left_out_N, 2.0) << "the force whose displacement was not recorded";
+  }
+}

@@ -17,7 +17,8 @@ namespace stylet {
 /// all its settings, and the content of every file that it names. Another program, another value or another patient is
 /// another key.
 /// @param scenario as of read_scenario(), with absolute paths
-/// Errors: a file that cannot be read.
+/// Errors: a file that cannot be read; one whose data are in other files that it names (.mhd, .nhdr, .node and .ele),
+/// which the key would not see.
 Result<std::string> model_key(const Scenario& scenario);
 
 /// Compiled models kept from one start of the program to the next: files as `stylet prepare` writes them, named by

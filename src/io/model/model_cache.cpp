@@ -6,9 +6,10 @@
 #include "stylet/io/scenario_io.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 namespace stylet {
 namespace fs = std::filesystem;
@@ -18,6 +19,7 @@ namespace {
 
 constexpr const char* kExtension = ".stylet";
 constexpr std::size_t kPiece = 1 << 20;
+constexpr std::size_t kHeader = 1 << 16;  ///< of an image, at most
 
 Result<> add_file(Digest& digest, const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -28,6 +30,27 @@ Result<> add_file(Digest& digest, const fs::path& path) {
   }
   if (file.eof()) return Ok{};
   return failure(path.string(), "cannot be read", "Check the file and its permissions");
+}
+
+/// Whether a file says that part of it is in another one, or is one of several that belong together.
+bool has_other_parts(const fs::path& path) {
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  const std::string kind = lower(path.extension().string());
+  if (kind == ".mhd" || kind == ".nhdr" || kind == ".node" || kind == ".ele") return true;
+  if (kind != ".mha" && kind != ".nrrd") return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(kHeader, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  std::istringstream lines(lower(std::move(head)));
+  for (std::string line; std::getline(lines, line) && !line.empty() && line != "\r";) {  // an empty one ends a header
+    if (line.starts_with("data file:") || line.starts_with("datafile:")) return true;
+    if (line.starts_with("elementdatafile")) return line.find("local") == std::string::npos;
+  }
+  return false;
 }
 
 /// A file, or all files of a folder in the order of their names.
@@ -58,6 +81,8 @@ Result<std::string> model_key(const Scenario& scenario) {
     if (!plan.motion.empty()) inputs.emplace_back(plan.motion);
   }
   for (const fs::path& input : inputs) {
+    if (has_other_parts(input))
+      return failure(input.string(), "its data are in several files", "Give it as one file, such as .mha or .nrrd");
     if (auto added = add_input(digest, input); !added) return added.error();
   }
   return digest.finish();

@@ -94,6 +94,24 @@ TEST(ModelCache, APatientThatIsNotThereHasNoKey) {
   EXPECT_NE(made.error().message().find("/nowhere/patient.json"), std::string::npos);
 }
 
+TEST(ModelCache, APatientInSeveralFilesHasNoKey) {
+  const Folder folder;
+  const auto says_so = [&](const char* name, const std::string& header) {
+    write(folder.path() / name, header);
+    Scenario s = box();
+    s.patient.source = (folder.path() / name).string();
+    const auto made = model_key(s);
+    return !made && made.error().what == "its data are in several files";
+  };
+  EXPECT_TRUE(says_so("a.mhd", "ObjectType = Image\nElementDataFile = a.raw\n"));
+  EXPECT_TRUE(says_so("b.mha", "ObjectType = Image\nElementDataFile = a.raw\n"));
+  EXPECT_FALSE(says_so("c.mha", "ObjectType = Image\nElementDataFile = LOCAL\nvoxels"));
+  EXPECT_TRUE(says_so("d.NHDR", "NRRD0004\n"));
+  EXPECT_TRUE(says_so("e.nrrd", "NRRD0004\ntype: short\ndata file: e.raw\n"));
+  EXPECT_FALSE(says_so("f.seg.nrrd", "NRRD0004\ntype: short\n\ndata file: of the voxels\n"));
+  EXPECT_TRUE(says_so("g.node", "1 3 0 0\n"));
+}
+
 TEST(ModelCache, FindsWhatWasKept) {
   const Folder folder;
   const ModelCache cache(folder.path() / "new" / "models");
