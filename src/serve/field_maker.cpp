@@ -11,7 +11,7 @@ namespace stylet::serve {
 
 namespace {
 
-constexpr int kNice = 10;  ///< the loop and the pictures come first
+constexpr int kNice = 5;  ///< the loop and the pictures come first
 /// The field is prepared in two stages, which take about as long.
 constexpr double kStages = 2.0;
 

@@ -47,6 +47,7 @@ test('the page opens with the needle before the skin', async () => {
   assert.ok((await readout(page, 'Depth')) < 0, 'the needle is before the skin');
   heard = await listenToEvents(page);
   await keepPicture(page, 'start');
+  await page.getByText("The picture of the tissue's motion is being prepared").waitFor({ state: 'hidden' });
 });
 
 test('the wheel pushes the needle: skin and capsule resist, then give way', async () => {
@@ -109,12 +110,15 @@ test('the insertion can be replayed, its time slider dragged, and its curve save
   await page.locator('#replay').waitFor();
   await until('the curve', () => page.locator('#replay output').textContent(), (text) => /of \d/.test(text));
   const slider = page.getByLabel('Time of the recording');
+  const time = page.locator('#replay output');
   const box = await slider.boundingBox();
   const depths = new Set();
   await page.mouse.move(box.x + 8, box.y + box.height / 2);
   await page.mouse.down();
   for (let k = 1; k <= 12; k++) {
+    const shown = await time.textContent();
     await page.mouse.move(box.x + 8 + (0.7 * box.width * k) / 12, box.y + box.height / 2);
+    await until('the time of the slider', () => time.textContent(), (text) => text !== shown);
     depths.add(await readout(page, 'Depth'));
   }
   await page.mouse.up();
