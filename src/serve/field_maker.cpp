@@ -12,8 +12,7 @@ namespace stylet::serve {
 namespace {
 
 constexpr int kNice = 5;  ///< the loop and the pictures come first
-/// The field is prepared in two stages, which take about as long.
-constexpr double kStages = 2.0;
+constexpr double kStages = 2.0;  ///< that the field is prepared in
 
 struct GivenUp {};
 
