@@ -20,6 +20,11 @@ namespace {
 constexpr double kNotHeld = 1e6;
 }  // namespace
 
+Vec3 Bevel::sharp_side(const Pose& base, const Vec3& tangent) {
+  const Vec3 axis = base.rotation * Vec3::UnitZ();
+  return Eigen::Quaterniond::FromTwoVectors(axis, tangent) * (base.rotation * Vec3::UnitX());
+}
+
 /// What a bevel of law `offset` adds to the direction of the cut, so that the cut leaves the axis at ψ and goes over to
 /// the line g beside it.
 Vec3 Insertion::Parts::lead_of_bevel(const Vec3& tangent) const {

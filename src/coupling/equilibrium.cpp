@@ -21,7 +21,7 @@ constexpr int kManyIterations = 5;  ///< an old matrix is made anew before the n
 // A tangent costs as much as some iterations with an old one, and spread over more of them it does no harm to the
 // longest step: this many are waited for, and so many when there have been so many tangents in one balance.
 constexpr int kSoon = 4;
-constexpr int kPatience = 6;
+constexpr int kTangentPatience = 6;
 constexpr int kManyTangents = 2;
 constexpr int kTryWithout = 16;  ///< tangents on springs, then one without
 constexpr int kFewSprings = 6;
@@ -491,7 +491,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       const double rate = error / before;
       const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
       exact = changed ? iteration > 1 || !(rate < 1.0) : !(iteration == 1 ? rate < 1.0 : done_after(kSoon));
-      if (tangents >= kManyTangents && done_after(kPatience)) exact = false;
+      if (tangents >= kManyTangents && done_after(kTangentPatience)) exact = false;
       if (exact && old_matrix && !changed && !(error < before)) {  // it led away: from where it began, with a new one
         go_back();
         error = look();

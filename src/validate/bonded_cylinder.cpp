@@ -61,9 +61,9 @@ Vec3 around(bool lateral, double theta) {
   return lateral ? Vec3(std::cos(theta), std::sin(theta), std::cos(theta)) : Vec3(Vec3::Ones());
 }
 
-class Layer {
+class TractionLayer {
  public:
-  Layer(const Medium& medium, bool lateral) : medium_(medium), lateral_(lateral) {}
+  TractionLayer(const Medium& medium, bool lateral) : medium_(medium), lateral_(lateral) {}
 
   /// Amplitudes of displacement in the middle of one ring per amplitudes of traction on another [mm/MPa].
   [[nodiscard]] Mat3 operator()(const Ring& at, const Ring& on) const {
@@ -110,7 +110,7 @@ class Layer {
 
 double force(double length, double radius, double way, const Medium& medium, bool lateral) {
   const auto rings = meridian(length, radius);
-  const Layer layer(medium, lateral);
+  const TractionLayer layer(medium, lateral);
   const auto count = static_cast<Eigen::Index>(rings.size());
   MatX moved(3 * count, 3 * count);
   for (Eigen::Index i = 0; i < count; ++i) {

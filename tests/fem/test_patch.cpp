@@ -8,7 +8,7 @@
 namespace stylet {
 namespace {
 
-const Material kGland{0.04, 0.45};
+const Material kSoftTissue{0.04, 0.45};
 
 Tissue body(const Material& material, Element element) {
   TetMesh mesh = box_mesh({-20, 10, 30}, {20, 50, 90}, {3, 3, 3}, 0.15);
@@ -20,10 +20,10 @@ using PatchStiffnesses = test::ElementTest;
 STYLET_FOR_EVERY_ELEMENT(PatchStiffnesses);
 
 TEST_P(PatchStiffnesses, OfAllElementsIsTheTissuesStiffness) {
-  const Tissue tissue = body(kGland, GetParam());
+  const Tissue tissue = body(kSoftTissue, GetParam());
   std::vector<Index> all;
   for (Index t = 0; t < tissue.mesh().tet_count(); ++t) all.push_back(t);
-  const PatchStiffness patch = patch_stiffness(tissue, all, kGland);
+  const PatchStiffness patch = patch_stiffness(tissue, all, kSoftTissue);
   ASSERT_EQ(patch.nodes.size(), static_cast<std::size_t>(tissue.displacement_nodes()));
   const MatX K = tissue.stiffness();
   for (Index a = 0; a < tissue.displacement_nodes(); ++a) {
@@ -38,7 +38,7 @@ TEST_P(PatchStiffnesses, OfAllElementsIsTheTissuesStiffness) {
 TEST_P(PatchStiffnesses, HasNoKernelButTheSixRigidMotionsAndTakesItsOwnMaterial) {
   const Tissue tissue = body({1.0, 0.1}, GetParam());
   const std::vector<Index> tets{42, 36, 37, 38, 39, 40, 41, 43, 44, 45, 46, 47};  // two neighbouring cells
-  const PatchStiffness patch = patch_stiffness(tissue, tets, kGland);
+  const PatchStiffness patch = patch_stiffness(tissue, tets, kSoftTissue);
   EXPECT_EQ((patch.K - patch.K.transpose()).norm(), 0.0);
   EXPECT_TRUE(std::is_sorted(patch.nodes.begin(), patch.nodes.end()));
   const auto p = static_cast<Eigen::Index>(patch.nodes.size());
@@ -54,7 +54,7 @@ TEST_P(PatchStiffnesses, HasNoKernelButTheSixRigidMotionsAndTakesItsOwnMaterial)
   EXPECT_LT(std::abs(values[5]), 1e-12 * values[values.size() - 1]);
   EXPECT_GT(values[6], 1e-4 * values[values.size() - 1]);
 
-  const PatchStiffness stiffer = patch_stiffness(tissue, tets, {2 * kGland.young_MPa, kGland.poisson});
+  const PatchStiffness stiffer = patch_stiffness(tissue, tets, {2 * kSoftTissue.young_MPa, kSoftTissue.poisson});
   EXPECT_LT((stiffer.K - 2 * patch.K).norm(), 1e-12 * stiffer.K.norm());
 }
 

@@ -9,7 +9,7 @@ namespace {
 using test::nodes_where;
 
 TetMesh cube() { return box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}, 0.1); }
-std::vector<Index> floor_nodes(const TetMesh& mesh) {
+std::vector<Index> nodes_at_zero(const TetMesh& mesh) {
   return nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
 }
 const Material kSoft{0.010, 0.45};
@@ -47,21 +47,21 @@ TetMesh join(TetMesh mesh, const TetMesh& other, bool weld) {
 }
 
 TEST(TissueErrors, MaterialsMustMatchTheRegions) {
-  expect_refused(cube(), {kSoft, kSoft}, floor_nodes(cube()), {"2 materials", "1 regions"});
+  expect_refused(cube(), {kSoft, kSoft}, nodes_at_zero(cube()), {"2 materials", "1 regions"});
 }
 
 TEST(TissueErrors, YoungsModulusMustBePositiveAndFinite) {
   for (const double young : {0.0, -0.01, HUGE_VAL, std::nan("")}) {
-    expect_refused(cube(), {{young, 0.4}}, floor_nodes(cube()), {"region 'body'", "Young's modulus", "kPa"});
+    expect_refused(cube(), {{young, 0.4}}, nodes_at_zero(cube()), {"region 'body'", "Young's modulus", "kPa"});
   }
-  expect_refused(cube(), {{-0.01, 0.4}}, floor_nodes(cube()), {"is -10 kPa"});
+  expect_refused(cube(), {{-0.01, 0.4}}, nodes_at_zero(cube()), {"is -10 kPa"});
 }
 
 TEST(TissueErrors, PoissonRatioMustBeBelowOneHalf) {
   for (const double poisson : {0.5, 0.7, -1.0, std::nan("")}) {
-    expect_refused(cube(), {{0.01, poisson}}, floor_nodes(cube()), {"region 'body'", "Poisson ratio", "below 0.5"});
+    expect_refused(cube(), {{0.01, poisson}}, nodes_at_zero(cube()), {"region 'body'", "Poisson ratio", "below 0.5"});
   }
-  expect_refused(cube(), {{0.01, 0.5}}, floor_nodes(cube()), {"is 0.5,"});
+  expect_refused(cube(), {{0.01, 0.5}}, nodes_at_zero(cube()), {"is 0.5,"});
 }
 
 TEST(TissueErrors, WithoutSupportsTheTissueIsNotHeld) {
@@ -95,15 +95,15 @@ TEST(TissueErrors, APartThatHangsOnByAnEdgeIsFoundLoose) {
   // Welded along the edge x = 40, z = 40 only: the second body turns about it.
   const TetMesh mesh =
       join(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}), box_mesh({40, 0, 40}, {60, 40, 60}, {2, 4, 2}), true);
-  expect_refused(mesh, {kSoft}, floor_nodes(mesh), {"not held", "single node or edge"});
+  expect_refused(mesh, {kSoft}, nodes_at_zero(mesh), {"not held", "single node or edge"});
   const TetMesh corner =
       join(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}), box_mesh({40, 40, 40}, {60, 60, 60}, {2, 2, 2}), true);
-  expect_refused(corner, {kSoft}, floor_nodes(corner), {"not held", "single node or edge"});
+  expect_refused(corner, {kSoft}, nodes_at_zero(corner), {"not held", "single node or edge"});
   // Wherever its nodes come in the elimination.
   const auto all = nodes_where(corner, [](const Vec3&) { return true; });
   const auto upper = nodes_where(corner, [](const Vec3& x) { return x.z() > 40; });
   for (const auto& corridor : {all, upper}) {
-    const auto tissue = Tissue::build(corner, {kSoft}, floor_nodes(corner), {}, Element::p1, corridor);
+    const auto tissue = Tissue::build(corner, {kSoft}, nodes_at_zero(corner), {}, Element::p1, corridor);
     ASSERT_FALSE(tissue);
     EXPECT_NE(tissue.error().message().find("single node or edge"), std::string::npos) << tissue.error().message();
   }
@@ -131,7 +131,7 @@ TEST(TissueErrors, AMeshThatWasNotCheckedIsRefusedNotRead) {
 TEST(TissueErrors, StiffAndSoftAndSlenderBodiesAreNotMistakenForLooseOnes) {
   TetMesh mesh = box_mesh({0, 0, 0}, {2, 2, 200}, {1, 1, 100});
   assign_regions(mesh, {"bone", "fat"}, [](const Vec3& x) { return x.z() > 100 ? 0 : 1; });
-  const auto tissue = Tissue::build(mesh, {{1e4, 0.3}, {0.001, 0.4999}}, floor_nodes(mesh));
+  const auto tissue = Tissue::build(mesh, {{1e4, 0.3}, {0.001, 0.4999}}, nodes_at_zero(mesh));
   EXPECT_TRUE(tissue) << tissue.error().message();
 }
 

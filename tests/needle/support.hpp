@@ -13,6 +13,10 @@
 
 namespace stylet::test {
 
+/// Of the default needle: its length [mm] and bending stiffness [N mm²].
+inline constexpr double kLength = 200.0;
+inline constexpr double kEI = 15722.0;
+
 inline std::unique_ptr<BeamNeedle> beam(int elements = 24, const NeedleSection& section = {}, int capacity = 64) {
   auto built = BeamNeedle::build(section, elements, capacity);
   EXPECT_TRUE(built.ok()) << (built.ok() ? "" : built.error().message());

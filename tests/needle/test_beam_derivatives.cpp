@@ -14,19 +14,19 @@ using beam::BeamShape;
 using beam::BeamTangent;
 using beam::RotationTerms;
 
-constexpr double kLength = 120.0;
+constexpr double kShort = 120.0;
 
 Mat3 tilted() { return Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix(); }
 
 /// Loads inside elements, on their boundaries, at the tip, at and before the clamp; unordered on purpose.
 std::vector<PointLoad> assorted_loads() {
-  return {{97.3, {0.21, -0.4, 0.13}}, {kLength, {-0.3, 0.25, -0.5}}, {3.1, {1.1, -0.6, 0.4}}, {60.0, {0.2, 0.3, -0.9}},
-          {61.7, {-0.5, 0.1, 0.3}},   {0.0, {2.0, 1.0, -3.0}},       {-5.0, {1.0, 1.0, 1.0}}};
+  return {{97.3, {0.21, -0.4, 0.13}}, {kShort, {-0.3, 0.25, -0.5}}, {3.1, {1.1, -0.6, 0.4}}, {60.0, {0.2, 0.3, -0.9}},
+          {61.7, {-0.5, 0.1, 0.3}},   {0.0, {2.0, 1.0, -3.0}},      {-5.0, {1.0, 1.0, 1.0}}};
 }
 
 /// Curved in 3D with element rotations up to the given angle [rad].
 BeamShape curved(int elements, double angle) {
-  BeamShape shape(elements, kLength, 15700.0, 12100.0);
+  BeamShape shape(elements, kShort, 15700.0, 12100.0);
   for (Eigen::Index i = 0; i < shape.curvature.size(); ++i) {
     shape.curvature[i] = angle / shape.element_length() * std::sin(1.7 * static_cast<double>(i) + 0.4) / std::sqrt(3.0);
   }
@@ -184,7 +184,7 @@ TEST(BeamTangent, StaysPositiveDefiniteFarBeyondBuckling) {
   for (const double push : {3.0, 20.0, 500.0}) {
     BeamShape shape = curved(24, 0.01);
     BeamTangent tangent(shape, 2);
-    const std::vector<PointLoad> loads = {{kLength, {0.0, 0.0, -push}}, {50.0, {0.1, 0.0, 0.0}}};
+    const std::vector<PointLoad> loads = {{kShort, {0.0, 0.0, -push}}, {50.0, {0.1, 0.0, 0.0}}};
     tangent.assemble(shape, Mat3::Identity(), loads);
     ASSERT_LT(tangent.hessian().selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0) << push;
     EXPECT_GT(tangent.elastic_shift(), 0.0);

@@ -9,8 +9,8 @@
 namespace stylet {
 namespace {
 
-constexpr double kLength = 200.0;
-constexpr double kEI = 15722.0;
+using test::kEI;
+using test::kLength;
 constexpr double kGJ = 12094.0;
 constexpr double kDegree = std::numbers::pi / 180.0;
 

@@ -9,8 +9,8 @@
 namespace stylet {
 namespace {
 
-constexpr double kLength = 200.0;
-constexpr double kEI = 15722.0;
+using test::kEI;
+using test::kLength;
 constexpr double kForce = 1e-5;
 
 double deflection(double F, double a, double s) { return cantilever_deflection(F, a, s, kEI); }

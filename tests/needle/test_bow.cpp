@@ -8,7 +8,7 @@
 namespace stylet {
 namespace {
 
-constexpr double kLength = 200.0;
+using test::kLength;
 constexpr double kBow = 4.0;
 
 class BowedNeedle : public test::NeedleModelTest {

@@ -11,8 +11,8 @@
 namespace stylet {
 namespace {
 
-constexpr double kLength = 200.0;
-const double kEI = NeedleSection{}.bending_stiffness_Nmm2;
+using test::kEI;
+using test::kLength;
 
 class NeedleInAGuide : public test::NeedleModelTest {
  protected:

@@ -12,7 +12,7 @@
 namespace stylet {
 namespace {
 
-constexpr double kLength = 200.0;
+using test::kLength;
 
 std::vector<PointLoad> spread_loads(int count) {
   std::vector<PointLoad> loads;

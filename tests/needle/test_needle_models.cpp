@@ -10,8 +10,8 @@
 namespace stylet {
 namespace {
 
-constexpr double kLength = 200.0;
-constexpr double kEI = 15722.0;
+using test::kEI;
+using test::kLength;
 constexpr double kForce = 1e-5;  // [N] geometry stays linear to 1e-6
 constexpr double kDegree = std::numbers::pi / 180.0;
 

@@ -14,8 +14,8 @@ using beam::BeamShape;
 using beam::BeamTangent;
 using beam::ElementKind;
 
-constexpr double kLength = 200.0;
-constexpr double kEI = 15722.0;
+using test::kEI;
+using test::kLength;
 
 /// Lateral compliance of the straight needle's tip over that of theory, L³/3EI.
 double softness(double clamp_weight, int rods) {

@@ -17,8 +17,8 @@ using Segment = TetNeedle::Segment;
 using tet::TetShape;
 using tet::TetTangent;
 
-constexpr double kLength = 200.0;
-constexpr double kEI = 15722.0;
+using test::kEI;
+using test::kLength;
 
 std::unique_ptr<TetNeedle> tets(int segments = 60, Segment segment = Segment::symmetric,
                                 const NeedleSection& section = {}) {

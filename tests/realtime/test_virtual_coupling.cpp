@@ -17,7 +17,7 @@ DeviceTraits haptic(double damping = 0.005, double damping_around = 0.5) {
           .damping_Nmm_s_per_rad = damping_around};
 }
 
-constexpr double kT = 1e-3;
+constexpr double kPeriod_s = 1e-3;
 
 }  // namespace
 
@@ -25,18 +25,18 @@ TEST(VirtualCoupling, is_refused_exactly_from_where_sampling_could_feed_the_hand
   // b > K T/2 + B with b = 0.005, B = 0.001: K < 8 N/mm.
   VirtualCouplingSettings s;
   s.stiffness_N_per_mm = 7.99;
-  ASSERT_TRUE(VirtualCoupling::create(s, haptic(), kT).ok());
-  EXPECT_NEAR(VirtualCoupling::create(s, haptic(), kT)->spare_damping_N_s_per_mm(), 5e-6, 1e-9);
+  ASSERT_TRUE(VirtualCoupling::create(s, haptic(), kPeriod_s).ok());
+  EXPECT_NEAR(VirtualCoupling::create(s, haptic(), kPeriod_s)->spare_damping_N_s_per_mm(), 5e-6, 1e-9);
   s.stiffness_N_per_mm = 8.0;
-  EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kT).ok());
-  EXPECT_TRUE(VirtualCoupling::create(s, haptic(), kT / 2).ok()) << "a shorter period bears more";
-  EXPECT_TRUE(VirtualCoupling::create(s, haptic(0.0051), kT).ok());
+  EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kPeriod_s).ok());
+  EXPECT_TRUE(VirtualCoupling::create(s, haptic(), kPeriod_s / 2).ok()) << "a shorter period bears more";
+  EXPECT_TRUE(VirtualCoupling::create(s, haptic(0.0051), kPeriod_s).ok());
 }
 
 TEST(VirtualCoupling, a_refusal_names_the_values_and_what_to_do) {
   VirtualCouplingSettings s;
   s.stiffness_N_per_mm = 20.0;
-  const auto refused = VirtualCoupling::create(s, haptic(), kT);
+  const auto refused = VirtualCoupling::create(s, haptic(), kPeriod_s);
   ASSERT_FALSE(refused.ok());
   const std::string text = refused.error().message();
   for (const char* part :
@@ -46,7 +46,7 @@ TEST(VirtualCoupling, a_refusal_names_the_values_and_what_to_do) {
 
 TEST(VirtualCoupling, a_device_with_less_damping_than_asked_for_is_told_so) {
   VirtualCouplingSettings s;
-  const auto refused = VirtualCoupling::create(s, haptic(0.0005), kT);
+  const auto refused = VirtualCoupling::create(s, haptic(0.0005), kPeriod_s);
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().cure.find("a damping below the device's 0.0005"), std::string::npos)
       << refused.error().message();
@@ -54,29 +54,29 @@ TEST(VirtualCoupling, a_device_with_less_damping_than_asked_for_is_told_so) {
 
 TEST(VirtualCoupling, rotation_counts_only_where_the_hand_feels_it) {
   DeviceTraits device = haptic(0.005, 0.0);
-  EXPECT_EQ(VirtualCoupling::create({}, device, kT).error().where, "virtual coupling, rotation");
+  EXPECT_EQ(VirtualCoupling::create({}, device, kPeriod_s).error().where, "virtual coupling, rotation");
   device.torque = false;
-  EXPECT_TRUE(VirtualCoupling::create({}, device, kT).ok());
+  EXPECT_TRUE(VirtualCoupling::create({}, device, kPeriod_s).ok());
 }
 
 TEST(VirtualCoupling, numbers_that_are_no_spring_are_refused) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     VirtualCouplingSettings s;
     s.stiffness_N_per_mm = bad;
-    EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kT).ok()) << bad;
+    EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kPeriod_s).ok()) << bad;
     s = {};
     s.stiffness_Nmm_per_rad = bad;
-    EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kT).ok()) << bad;
+    EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kPeriod_s).ok()) << bad;
     EXPECT_EQ(VirtualCoupling::create({}, haptic(), bad).error().where, "virtual coupling, period");
   }
   VirtualCouplingSettings s;
   s.damping_N_s_per_mm = -1e-3;
-  EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kT).ok());
+  EXPECT_FALSE(VirtualCoupling::create(s, haptic(), kPeriod_s).ok());
 }
 
 TEST(VirtualCoupling, pulls_the_base_to_the_handle_and_damps_their_relative_motion) {
   const VirtualCouplingSettings s;
-  const auto made = VirtualCoupling::create(s, haptic(), kT);
+  const auto made = VirtualCoupling::create(s, haptic(), kPeriod_s);
   ASSERT_TRUE(made.ok());
   const Vec3 axis = Vec3(1, 2, 2) / 3.0;
   Pose handle{{1, 2, 3}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, axis))};

@@ -28,10 +28,7 @@ struct Bevel {
   /// Direction of the sharp side at the tip, unit, square to the tangent: the base's x carried along the shaft without
   /// twisting it.
   /// @param tangent of the tip, unit, LPS
-  [[nodiscard]] static Vec3 sharp_side(const Pose& base, const Vec3& tangent) {
-    const Vec3 axis = base.rotation * Vec3::UnitZ();
-    return Eigen::Quaterniond::FromTwoVectors(axis, tangent) * (base.rotation * Vec3::UnitX());
-  }
+  [[nodiscard]] static Vec3 sharp_side(const Pose& base, const Vec3& tangent);
 };
 
 }  // namespace stylet

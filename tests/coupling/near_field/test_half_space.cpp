@@ -11,13 +11,15 @@
 namespace stylet {
 namespace {
 
-const Medium kMedium{3.4e-3, 0.45};
+const Medium kHalfSpaceMedium{3.4e-3, 0.45};
 const Vec3 kInwards = Vec3(0.3, -0.2, 0.9).normalized();
 
 /// Field of a force at `source` in the half space x·n ≥ 0 with a free surface.
 Vec3 half_space(const Vec3& x, const Vec3& source, const Vec3& force, double epsilon) {
   const SurfacePair surface{kInwards, kInwards.dot(x), kInwards.dot(source)};
-  return (kelvinlet(x - source, epsilon, kMedium) + free_surface_image(x - source, surface, epsilon, kMedium)) * force;
+  return (kelvinlet(x - source, epsilon, kHalfSpaceMedium) +
+          free_surface_image(x - source, surface, epsilon, kHalfSpaceMedium)) *
+         force;
 }
 
 const Vec3 kSource = 4.0 * kInwards + Vec3(1, 2, 3) - kInwards.dot(Vec3(1, 2, 3)) * kInwards;
@@ -27,7 +29,7 @@ TEST(FreeSurface, a_force_below_it_leaves_it_free_of_traction) {
     const auto u = [&](const Vec3& x) { return half_space(x, kSource, force, 1e-6); };
     for (const Vec3& way : {Vec3(0, 0, 0), Vec3(2, 1, 0), Vec3(-5, 3, 8)}) {
       const Vec3 x = kSource + way - kInwards.dot(kSource + way) * kInwards;
-      const Mat3 s = test::stress(u, x, kMedium);
+      const Mat3 s = test::stress(u, x, kHalfSpaceMedium);
       EXPECT_LT((s * kInwards).norm(), 1e-5 * s.norm() + 1e-9) << way.transpose();
     }
   }
@@ -39,7 +41,7 @@ TEST(FreeSurface, the_field_is_in_balance_below_it) {
     for (const Vec3& way : {Vec3(2, 1, 3), Vec3(-3, 3, 1)}) {
       const Vec3 x = kSource + way;
       ASSERT_GT(kInwards.dot(x), 0.5);
-      EXPECT_LT(test::body_force(u, x, kMedium).norm(), 1e-6) << way.transpose();
+      EXPECT_LT(test::body_force(u, x, kHalfSpaceMedium).norm(), 1e-6) << way.transpose();
     }
   }
 }
@@ -50,8 +52,9 @@ TEST(FreeSurface, action_equals_reaction) {
   for (const double epsilon : {1e-6, 1.0, 6.0}) {
     const SurfacePair there{kInwards, kInwards.dot(two), kInwards.dot(one)};
     const SurfacePair back{kInwards, kInwards.dot(one), kInwards.dot(two)};
-    const Mat3 forth = free_surface_image(two - one, there, epsilon, kMedium);
-    EXPECT_LT((forth - free_surface_image(one - two, back, epsilon, kMedium).transpose()).norm(), 1e-12 * forth.norm());
+    const Mat3 forth = free_surface_image(two - one, there, epsilon, kHalfSpaceMedium);
+    EXPECT_LT((forth - free_surface_image(one - two, back, epsilon, kHalfSpaceMedium).transpose()).norm(),
+              1e-12 * forth.norm());
   }
 }
 
@@ -59,7 +62,8 @@ TEST(FreeSurface, a_force_on_it_is_boussinesqs) {
   const double distance = 7.0;
   const Vec3 x = distance * kInwards.unitOrthogonal();
   const double normal = kInwards.dot(half_space(x, Vec3::Zero(), kInwards, 1e-6));
-  EXPECT_NEAR(normal, (1.0 - kMedium.poisson) / (2.0 * std::numbers::pi * kMedium.mu * distance), 1e-9);
+  EXPECT_NEAR(normal, (1.0 - kHalfSpaceMedium.poisson) / (2.0 * std::numbers::pi * kHalfSpaceMedium.mu * distance),
+              1e-9);
 }
 
 TEST(FreeSurface, a_tip_pressed_on_it_gives_way_like_a_flat_punch) {
