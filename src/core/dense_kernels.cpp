@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/dense_kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 // The same code for several processors, chosen when the program is loaded. Sanitizers cannot see through that choice.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
@@ -127,15 +129,39 @@ STYLET_INLINE void subtract_multiple(double* to, const double* from, double fact
   for (; i < count; ++i) to[i] -= from[i] * factor;
 }
 
+/// So many columns side by side: what one waits for, the others use. Fours begin at the same rows for every j, or the
+/// processor would wait for two stores each time it loads one.
+template <int Columns>
+STYLET_INLINE void lower_columns(const double* l, Size ldl, Size n, bool unit, double* y, Size ldy) {
+  const Size whole = n - n % kFour;
+  for (Size j = 0; j < n; ++j) {
+    const double* const factor = l + j * ldl;
+    double known[Columns];
+    for (int c = 0; c < Columns; ++c) {
+      double& x = y[j + c * ldy];
+      if (!unit) x /= factor[j];
+      known[c] = x;
+    }
+    const auto one_by_one = [&](Size first, Size last) {
+      for (Size i = first; i < last; ++i) {
+        for (int c = 0; c < Columns; ++c) y[i + c * ldy] -= factor[i] * known[c];
+      }
+    };
+    const Size fours = std::min(n, (j + kFour) / kFour * kFour);
+    one_by_one(j + 1, fours);
+    for (Size i = fours; i < whole; i += kFour) {
+      const Four column = four(factor + i);
+      for (int c = 0; c < Columns; ++c) four(y + i + c * ldy) -= column * known[c];
+    }
+    one_by_one(std::max(fours, whole), n);
+  }
+}
+
 STYLET_FOR_PROCESSORS
 void lower(const double* l, Size ldl, Size n, bool unit, double* y, Size ldy, Size columns) {
-  for (Size c = 0; c < columns; ++c) {
-    double* x = y + c * ldy;
-    for (Size j = 0; j < n; ++j) {
-      if (!unit) x[j] /= l[j + j * ldl];
-      subtract_multiple(x + j + 1, l + j + 1 + j * ldl, x[j], n - j - 1);
-    }
-  }
+  Size c = 0;
+  for (; c + 4 <= columns; c += 4) lower_columns<4>(l, ldl, n, unit, y + c * ldy, ldy);
+  for (; c < columns; ++c) lower_columns<1>(l, ldl, n, unit, y + c * ldy, ldy);
 }
 
 STYLET_FOR_PROCESSORS
@@ -186,6 +212,29 @@ bool cholesky(double* a, Size lda, Size n) {
   return true;
 }
 
+/// Columns first … first + count − 1 of A from row `first` down, each after those before it.
+STYLET_FOR_PROCESSORS
+bool lu_panel(double* a, Size lda, Size n, Size first, Size count, double tiny, int* pivots) {
+  for (Size j = first; j < first + count; ++j) {
+    double* const column = a + j * lda;
+    const Size before = j - first;
+    lower_columns<1>(a + first + first * lda, lda, before, true, column + first, lda);
+    subtract_columns<1>(column + j, lda, a + j + first * lda, lda, column + first, 1, lda, n - j, before);
+    Size pivot = j;
+    for (Size i = j + 1; i < n; ++i) {
+      if (std::abs(column[i]) > std::abs(column[pivot])) pivot = i;
+    }
+    pivots[j] = static_cast<int>(pivot);
+    if (!(std::abs(column[pivot]) > tiny)) return false;
+    if (pivot != j) {
+      for (Size c = first; c < first + count; ++c) std::swap(a[j + c * lda], a[pivot + c * lda]);
+    }
+    const double divisor = column[j];
+    for (Size i = j + 1; i < n; ++i) column[i] /= divisor;
+  }
+  return true;
+}
+
 }  // namespace
 
 // NOLINTBEGIN(performance-unnecessary-value-param): the results are written through the views
@@ -218,6 +267,11 @@ void solve_upper_tile(const Eigen::Ref<const MatX>& U, Eigen::Ref<MatX> Y) {
 
 void divide_by_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> X) {
   divide_by_transposed(L.data(), L.outerStride(), L.rows(), X.data(), X.outerStride(), X.rows());
+}
+
+bool factorise_lu_panel(Eigen::Ref<MatX> A, Eigen::Index first, Eigen::Index count, double tiny,
+                        std::span<int> pivots) {
+  return lu_panel(A.data(), A.outerStride(), A.rows(), first, count, tiny, pivots.data());
 }
 
 bool factorise_tile(Eigen::Ref<MatX> A) { return cholesky(A.data(), A.outerStride(), A.rows()); }

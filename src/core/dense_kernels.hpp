@@ -3,6 +3,8 @@
 
 #include "stylet/core/types.hpp"
 
+#include <span>
+
 /// The inner loops of the dense solvers: small matrices, column after column in memory, no work space. On processors
 /// with AVX2 its instructions are used. Sums are taken in the same order everywhere and products are rounded before
 /// they are added, so results do not depend on the processor.
@@ -28,6 +30,14 @@ void solve_upper_tile(const Eigen::Ref<const MatX>& U, Eigen::Ref<MatX> Y);
 
 /// X ← X L⁻ᵀ
 void divide_by_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> X);
+
+/// P A = L U for the columns first … first + count − 1 of A, as they are after those before them have been taken out:
+/// from row `first` down, L with ones on its diagonal and U over them, rows swapped in these columns only.
+/// @param tiny pivots no larger than this are none @param pivots (n) pivots[j] = row that was swapped with row j,
+/// written
+/// @return false when there is no pivot
+[[nodiscard]] bool factorise_lu_panel(Eigen::Ref<MatX> A, Eigen::Index first, Eigen::Index count, double tiny,
+                                      std::span<int> pivots);
 
 /// A = L Lᵀ for a small A, L over its lower triangle. @return false when A is not positive definite
 [[nodiscard]] bool factorise_tile(Eigen::Ref<MatX> A);
