@@ -19,10 +19,10 @@ constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifte
 constexpr int kMaxToggles = 6;
 constexpr int kManyIterations = 5;  ///< an old matrix is made anew before the next step when it took so many
 // A tangent costs as much as some iterations with an old one, and spread over more of them it does no harm to the
-// longest step: this many are waited for, and so many when there have been so many tangents in one balance.
+// longest step: so many are waited for, and more after a tangent in the same balance.
 constexpr int kSoon = 4;
 constexpr int kTangentPatience = 6;
-constexpr int kManyTangents = 2;
+constexpr double kFalls = 0.3;   ///< error over that before: less, and a tangent of this balance serves on
 constexpr int kTryWithout = 16;  ///< tangents on springs, then one without
 constexpr int kFewSprings = 6;
 constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
@@ -200,13 +200,15 @@ void Insertion::Parts::linearise() {
   auto motion = system.free.head(size);
   // What needed springs will need them again while it is pushed on; now and then it is tried without.
   const bool expected = system.supported && last_way > 0.0 && ++supported_for < kTryWithout;
-  system.supported = expected || !needle->linearise(loads, compliance_of_needle, motion);
+  system.supported = expected || !needle->linearise(loads, compliance_of_needle, motion, {}, Indefinite::give_up);
   if (!expected) supported_for = 0;
   if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness
     // At a few contacts that is enough as a rule, and cheaper; at all of them always.
     const std::span<const Mat3> lent(springs.data(), static_cast<std::size_t>(count));
     lend_springs(kFewSprings);
-    if (!needle->linearise(loads, compliance_of_needle, motion, lent) && count > kFewSprings + 1) {
+    const bool more = count > kFewSprings + 1;
+    if (!needle->linearise(loads, compliance_of_needle, motion, lent, more ? Indefinite::give_up : Indefinite::shift) &&
+        more) {
       lend_springs(count);
       needle->linearise(loads, compliance_of_needle, motion, lent);
     }
@@ -477,7 +479,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     return imbalance_over_tolerance();
   };
   bool old_matrix_failed = false;
-  int tangents = 0;
+  bool new_tangent = false;
   Index border_tet = -1;  // where the tip was when it was added to the matrix
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
     double error = look();
@@ -490,8 +492,11 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     if (iteration > 0 && !exact) {
       const double rate = error / before;
       const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
-      exact = changed ? iteration > 1 || !(rate < 1.0) : !(iteration == 1 ? rate < 1.0 : done_after(kSoon));
-      if (tangents >= kManyTangents && done_after(kTangentPatience)) exact = false;
+      if (changed) {
+        exact = new_tangent ? !(rate < kFalls) : iteration > 1 || !(rate < 1.0);
+      } else {
+        exact = iteration == 1 ? !(rate < 1.0) : !done_after(new_tangent ? kTangentPatience : kSoon);
+      }
       if (exact && old_matrix && !changed && !(error < before)) {  // it led away: from where it began, with a new one
         go_back();
         error = look();
@@ -504,7 +509,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       keep_iterate();
     } else {
       linearise();
-      ++tangents;
+      new_tangent = true;
     }
     if (!matrix_fits) {
       const InPhase in_phase(phases, StepPhase::factorise);

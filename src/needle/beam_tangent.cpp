@@ -75,18 +75,19 @@ void BeamTangent::reserve(Eigen::Index loads) {
   last_moved_.reserve(static_cast<std::size_t>(loads));
 }
 
-void BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
-                           std::span<const Mat3> springs) {
+bool BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                           std::span<const Mat3> springs, Indefinite otherwise) {
   reserve(static_cast<Eigen::Index>(loads.size()));
   keep_first(0);
   for (const PointLoad& load : loads) locate(shape, base_rotation, load);
   assemble_energy(shape);
   for (Eigen::Index c = 0; c < load_count(); ++c) assemble_jacobian(shape, base_rotation, c);
   if (!springs.empty()) add_springs(springs);
-  factorise_shifted();
+  if (!factorise_shifted(otherwise)) return false;
   z_ = g_;
   solve_lower(L_, 0, z_);
   solve_jacobian();
+  return true;
 }
 
 /// Virtual work of the loads per curvature of each element. The same question comes twice in an iteration.
@@ -233,20 +234,22 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
   }
 }
 
-void BeamTangent::factorise_shifted() {
+bool BeamTangent::factorise_shifted(Indefinite otherwise) {
   const auto attempt = [this](double shift) {
     L_.triangularView<Eigen::Lower>() = H_;
     L_.diagonal().array() += shift;
     elastic_shift_ = shift;
     return factorise(L_);
   };
-  if (attempt(0.0)) return;
+  if (attempt(0.0)) return true;
+  if (otherwise == Indefinite::give_up) return false;
   // Beyond buckling. The first shift that works bounds the smallest eigenvalue; twice that shift leaves a margin.
   for (double shift = kSmallestShift; shift < 1e12; shift *= 2.0) {
-    if (attempt(shift) && attempt(2.0 * shift)) return;
+    if (attempt(shift) && attempt(2.0 * shift)) return true;
   }
   // Only reached when loads or shape are not finite.
   L_.setIdentity();
+  return true;
 }
 
 void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation, Eigen::Index load) {

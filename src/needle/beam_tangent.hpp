@@ -18,8 +18,9 @@ class BeamTangent {
 
   /// Gradient, Hessian, factor, and L⁻¹Jᵀ for these loads. @param base_rotation base axes to LPS
   /// @param springs [N/mm] LPS, one per load or none: added to the Hessian as Jᵀ G J
-  void assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
-                std::span<const Mat3> springs = {});
+  /// @return false where it was given up: there is no factor then
+  bool assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift);
 
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
@@ -58,7 +59,7 @@ class BeamTangent {
   [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
   void locate(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load);
   void assemble_energy(const BeamShape& shape);
-  void factorise_shifted();
+  [[nodiscard]] bool factorise_shifted(Indefinite otherwise);
   void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation, Eigen::Index load);
   void add_springs(std::span<const Mat3> springs);
   void solve_jacobian();

@@ -91,9 +91,9 @@ std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> l
 }
 
 bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                             std::span<const Mat3> springs) {
+                             std::span<const Mat3> springs, Indefinite otherwise) {
   held_ = holds();
-  if (!held_) return inner_->linearise(loads, compliance, free, springs);
+  if (!held_) return inner_->linearise(loads, compliance, free, springs, otherwise);
   held_with_ = guide_load();
   held_stiffness_ = meeting_.stiffness;
   assert(springs.empty() || springs.size() == loads.size());
@@ -102,7 +102,8 @@ bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> 
   std::copy(springs.begin(), springs.end(), springs_.begin() + 1);
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   const bool definite = inner_->linearise(with_guide(loads, held_with_), N_.topLeftCorner(size + 3, size + 3),
-                                          free_.head(size + 3), springs_);
+                                          free_.head(size + 3), springs_, otherwise);
+  if (!definite && otherwise == Indefinite::give_up) return false;
   compliance = N_.block(3, 3, size, size);
   free = free_.segment(3, size);
   return definite;

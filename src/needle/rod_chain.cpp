@@ -21,8 +21,8 @@ Vec3 RodChain::point(double s) const { return parts_->base.origin + parts_->base
 Vec3 RodChain::tangent(double s) const { return parts_->base_rotation * parts_->shape.tangent(s); }
 
 bool RodChain::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                         std::span<const Mat3> springs) {
-  parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs);
+                         std::span<const Mat3> springs, Indefinite otherwise) {
+  if (!parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs, otherwise)) return false;
   parts_->tangent.condense(compliance, free);
   return parts_->tangent.elastic_shift() == 0.0;
 }

@@ -84,8 +84,8 @@ Vec3 TetNeedle::point(double s) const { return parts_->base.origin + parts_->bas
 Vec3 TetNeedle::tangent(double s) const { return parts_->base_rotation * parts_->shape.tangent(s); }
 
 bool TetNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                          std::span<const Mat3> springs) {
-  parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs);
+                          std::span<const Mat3> springs, Indefinite otherwise) {
+  if (!parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs, otherwise)) return false;
   parts_->tangent.condense(compliance, free);
   return parts_->tangent.material_shift() == 0.0;
 }

@@ -66,14 +66,14 @@ void TetTangent::reserve(Eigen::Index loads) {
   loads_.reserve(static_cast<std::size_t>(loads));
 }
 
-void TetTangent::assemble(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
-                          std::span<const Mat3> springs) {
+bool TetTangent::assemble(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                          std::span<const Mat3> springs, Indefinite otherwise) {
   if (assembled_ != shape.revision()) {  // not so when springs are lent after a first try without
     for (int k = 0; k < segments_; ++k) assemble_segment(shape, k);
     assembled_ = shape.revision();
   }
   assemble_loads(shape, base_rotation, loads);
-  factorise_shifted(base_rotation, springs);
+  if (!factorise_shifted(base_rotation, springs, otherwise)) return false;
   reduce_gradient();
   band_.solve_lower(0, z_.data());
   const Mat3 to_base = base_rotation.transpose();
@@ -88,6 +88,7 @@ void TetTangent::assemble(const TetShape& shape, const Mat3& base_rotation, std:
     const auto first = static_cast<int>(start(load, load + 1) / kBlock);
     for (int j = 0; j < 3; ++j) band_.solve_lower(first, columns.col(j).data());
   }
+  return true;
 }
 
 /// Blocks of the tangent of St. Venant–Kirchhoff's law between nodes a and b of an element, with G = F g:
@@ -153,17 +154,18 @@ bool TetTangent::relax(const TetShape& shape, const Mat3& base_rotation, std::sp
   return true;
 }
 
-void TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs) {
+bool TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs, Indefinite otherwise) {
   const auto attempt = [&](double shift) {
     material_shift_ = shift;
     band_.clear();
     if (!springs.empty()) add_springs(base_rotation, springs);
     return factorise(shift);
   };
-  if (attempt(0.0)) return;
+  if (attempt(0.0)) return true;
+  if (otherwise == Indefinite::give_up) return false;
   // Beyond buckling. The first shift that works bounds the smallest eigenvalue; twice that shift leaves a margin.
   for (double shift = kSmallestShift; shift < 1e12; shift *= kGrowth) {
-    if (attempt(shift) && attempt(2.0 * shift)) return;
+    if (attempt(shift) && attempt(2.0 * shift)) return true;
   }
   // Only reached when loads or shape are not finite.
   band_.clear();
@@ -172,6 +174,7 @@ void TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Ma
     node.L.setIdentity();
     for (Mat3& coupling : node.coupling) coupling.setZero();
   }
+  return true;
 }
 
 bool TetTangent::factorise(double shift) {

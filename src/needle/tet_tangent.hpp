@@ -18,8 +18,9 @@ class TetTangent {
 
   /// Gradient, stiffness, factor and L⁻¹Jᵀ for these loads. @param base_rotation base axes to LPS
   /// @param springs [N/mm] LPS, one per load or none: added to the stiffness as Jᵀ G J
-  void assemble(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
-                std::span<const Mat3> springs = {});
+  /// @return false where it was given up: there is no factor then
+  bool assemble(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift);
 
   /// J K⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J K⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
@@ -60,7 +61,7 @@ class TetTangent {
   [[nodiscard]] bool eliminate_middle(int segment);
   void add_segment(int segment);
   void add_springs(const Mat3& base_rotation, std::span<const Mat3> springs);
-  void factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs);
+  [[nodiscard]] bool factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs, Indefinite otherwise);
   void reduce_gradient();
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
 

@@ -416,6 +416,33 @@ TEST_P(NeedleContract, OnSpringsItIsDefiniteBeyondBuckling) {
   EXPECT_GE(compliance.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9);
 }
 
+TEST_P(NeedleContract, GivingUpOnAnIndefiniteTangentLeavesTheNextOneAsItWouldBe) {
+  const auto needle = make();
+  const auto other = make();
+  const Held held;
+  auto push = held.loads;
+  for (PointLoad& load : push) load.force.head<2>().setZero();
+  MatX compliance(9, 9);
+  VecX free(9);
+  for (Needle* each : {needle.get(), other.get()}) {
+    each->linearise(push, compliance, free);
+    each->advance(push);
+  }
+  const MatX untouched = MatX::Constant(9, 9, 7.0);
+  compliance = untouched;
+  free.setConstant(7.0);
+  EXPECT_FALSE(needle->linearise(held.loads, compliance, free, {}, Indefinite::give_up));
+  EXPECT_EQ(compliance, untouched);
+  EXPECT_EQ(free, untouched.col(0));
+
+  MatX expected(9, 9);
+  VecX expected_free(9);
+  ASSERT_TRUE(other->linearise(held.loads, expected, expected_free, held.springs));
+  EXPECT_TRUE(needle->linearise(held.loads, compliance, free, held.springs, Indefinite::give_up));
+  EXPECT_EQ(compliance, expected);
+  EXPECT_EQ(free, expected_free);
+}
+
 TEST_P(NeedleContract, ComplianceOnSpringsIsThatOfTheNeedleAndTheSpringsTogether) {
   // Below buckling both are there, and (N⁻¹ + G)⁻¹ = (I + N G)⁻¹ N.
   const auto needle = make();

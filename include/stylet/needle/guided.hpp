@@ -39,7 +39,7 @@ class GuidedNeedle final : public Needle {
   [[nodiscard]] Vec3 point(double s) const override { return inner_->point(s); }
   [[nodiscard]] Vec3 tangent(double s) const override { return inner_->tangent(s); }
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                 std::span<const Mat3> springs = {}) override;
+                 std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) override;
   bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) override;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
   void advance(std::span<const PointLoad> loads) override;

@@ -16,6 +16,12 @@ struct PointLoad {
   Vec3 force = Vec3::Zero();  ///< [N] LPS, does not turn with the needle
 };
 
+/// What Needle::linearise() does where the tangent is not positive definite.
+enum class Indefinite {
+  shift,    ///< makes it so by stiffening the needle
+  give_up,  ///< nothing more: for a caller who lends springs only where they are needed
+};
+
 /// A flexible needle clamped at its base. Knows nothing of tissue. One equilibrium is found by repeating
 ///   linearise(loads)  →  the caller picks new loads with `compliance`  →  advance(new loads)
 /// until residual() and the changes are small. No call after construction allocates, as long as the number of loads
@@ -45,9 +51,10 @@ class Needle {
   /// @param springs [N/mm] (w) stiffness at each load point, LPS, symmetric positive semidefinite; empty = none
   /// @param compliance [mm/N] (3w × 3w), symmetric positive semidefinite, written
   /// @param free [mm] (3w), written: motion of the load points by the Newton step with unchanged loads
-  /// @return true when the tangent was positive definite as it is; otherwise it was made so, and the step is not exact
+  /// @return true when the tangent was positive definite as it is; otherwise it was made so, and the step is not exact,
+  /// or with Indefinite::give_up nothing is written, and linearise() is to be called again before anything else
   virtual bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                         std::span<const Mat3> springs = {}) = 0;
+                         std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) = 0;
 
   /// The same problem at the shape of now under these loads, with the tangent and the springs of the last linearise():
   /// a step that converges linearly, at a small part of the cost. The compliance is that of then.

@@ -41,7 +41,7 @@ class TetNeedle final : public Needle {
   [[nodiscard]] Vec3 point(double s) const override;
   [[nodiscard]] Vec3 tangent(double s) const override;
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                 std::span<const Mat3> springs = {}) override;
+                 std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) override;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
