@@ -42,10 +42,10 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
   options.steps = arguments.steps;
   const auto rows = validate::bench_scale(options, console.progress());
   if (!rows) return rows.error();
-  Table table({"nodes",         "element",   "contacts",     "steps",      "events",          "flagged",
-               "iterations",    "p50 [µs]",  "p99 [µs]",     "p99.9 [µs]", "max [µs]",        "p99 / 570",
-               "wall p99 [µs]", "all steps", "longest [µs]", "over 1 ms",  "by medians [µs]", "mesh [s]",
-               "factor [s]",    "store [s]", "memory [MB]"});
+  Table table({"nodes",         "element",    "contacts",     "steps",      "events",     "flagged",
+               "iterations",    "p50 [µs]",   "p99 [µs]",     "p99.9 [µs]", "max [µs]",   "p99 / 570",
+               "wall p99 [µs]", "all steps",  "longest [µs]", "over 1 ms",  "fixed work", "by medians [µs]",
+               "mesh [s]",      "factor [s]", "store [s]",    "memory [MB]"});
   Json json{{"rows", Json::array()}};
   for (const validate::ScaleRow& row : *rows) {
     const auto coarsest = std::find_if(rows->begin(), rows->end(),
@@ -67,6 +67,7 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
                std::to_string(row.all_steps),
                number(row.all_longest_us, 0),
                std::to_string(row.all_over_1ms),
+               std::to_string(row.fixed_over_1ms),
                number(row.all_longest_median_us, 0),
                number(row.mesh_s, 1),
                number(row.factor_s, 1),
@@ -88,6 +89,9 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
          {"all_steps", row.all_steps},
          {"all_longest_us", row.all_longest_us},
          {"all_over_1ms", row.all_over_1ms},
+         {"all_cpu_s", row.all_cpu_s},
+         {"fixed_work_over_1ms", row.fixed_over_1ms},
+         {"fixed_work_cpu_s", row.fixed_cpu_s},
          {"all_longest_median_us",
           std::isfinite(row.all_longest_median_us) ? Json(row.all_longest_median_us) : Json(nullptr)},
          {"offline_s", {{"mesh", row.mesh_s}, {"factor", row.factor_s}, {"store", row.store_s}}},
@@ -98,7 +102,8 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
       "The demo's needle, 90 mm in, back and forth three times, and out: time of the steps with nearly all contacts.\n"
       "p50 … max: processor time of the thread; p99 / 570: against the coarsest mesh with as many contacts; all "
       "steps, longest, over 1 ms:\n"
-      "with however many contacts, processor time; by medians: the longest when each is given the median of its "
+      "with however many contacts, processor time; fixed work: how often arithmetic of always the same amount, 100 µs "
+      "after each step, took\nover 1 ms; by medians: the longest when each is given the median of its "
       "repeats (--steps); before the first step: mesh from contours, factor of the stiffness, "
       "store of compliances and all else; memory: resident then.");
   console.say(table.text());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driven_needle.hpp"
 
+#include "fixed_work.hpp"
+
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/sim/simulation.hpp"
 #include "stylet/validate/context.hpp"
@@ -20,6 +22,7 @@ constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
 /// Steps with fewer of the most contacts are not of that number.
 constexpr double kShare = 0.85;
+constexpr double kFixedWork_us = 100.0;  ///< as long as a step with 40 contacts
 
 double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -64,6 +67,7 @@ class PhaseClock final : public PhaseObserver {
 void drive(Simulation& simulation, bool phases, long least, long place, std::vector<DrivenStep>& steps,
            const Progress& progress) {
   PhaseClock clock;
+  const FixedWork fixed(kFixedWork_us);
   simulation.observe_phases(phases ? &clock : nullptr);
   const PlannedInsertion& plan = simulation.model().insertions().front();
   const Pose first = plan.motion.at(0.0);
@@ -85,6 +89,7 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
     if (phases) step.phase_us = clock.stop();
     step.cpu_us = 1e6 * (reproduce::thread_cpu_s() - cpu);
     step.wall_us = 1e6 * (wall_s() - wall);
+    if (!phases) step.fixed_us = fixed.run();
     step.contacts = simulation.record().contacts;
     step.iterations = simulation.record().iterations;
     step.events = static_cast<int>(simulation.new_events().size());

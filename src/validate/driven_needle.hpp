@@ -32,6 +32,7 @@ struct DrivenStep {
   bool flagged = false;
   double cpu_us = 0.0;  ///< of the thread
   double wall_us = 0.0;
+  double fixed_us = 0.0;  ///< processor time of FixedWork right after the step; 0 in a run with phases
   std::array<double, kStepPhases> phase_us{};  ///< wall clock; of a run with phases
 };
 

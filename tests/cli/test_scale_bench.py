@@ -20,6 +20,9 @@ class ScaleBench(InFolder):
                 self.assertTrue(0 < times["p50"] <= times["p99"] <= times["p999"] <= times["max"])
             self.assertTrue(all(seconds > 0 for seconds in row["offline_s"].values()))
             self.assertGreater(row["memory_mb"], 0)
+            self.assertGreater(row["all_cpu_s"], 0)
+            self.assertGreater(row["fixed_work_cpu_s"], 0)
+            self.assertLessEqual(1e-3 * row["fixed_work_over_1ms"], row["fixed_work_cpu_s"])
         again = self.json_of("bench", "scale", "--nodes", "570", "--contacts", "20", "--steps", "25000")["rows"]
         self.assertEqual([r["contacts"] for r in again], [20])
         self.assertGreaterEqual(again[0]["all_steps"], 25000)

@@ -35,6 +35,11 @@ struct ScaleRow {
   long all_steps = 0;           ///< with however many contacts
   double all_longest_us = 0.0;  ///< of those, thread CPU time
   long all_over_1ms = 0;        ///< of those, above a millisecond of it
+  double all_cpu_s = 0.0;       ///< of those together
+  /// After every step an arithmetic of always the same amount is timed, 100 µs when nothing interrupts it: how often it
+  /// took above a millisecond, and all of it together. What the machine does to it it does to the steps.
+  long fixed_over_1ms = 0;
+  double fixed_cpu_s = 0.0;
   /// The longest of all steps when each is given the median of its repeats, which do the same work: what is left
   /// without the system's interruptions, which count as the thread's time too. NaN with fewer than three repeats.
   double all_longest_median_us = std::numeric_limits<double>::quiet_NaN();
