@@ -13,10 +13,9 @@ namespace stylet::cli {
 Result<> bench_display_command(const BenchArguments& arguments, Console& console) {
   validate::DisplayBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  constexpr int smallest = 570;
-  if (options.largest < smallest)
-    return input_error("--nodes", fmt::format("display takes {} nodes or more, not {}", smallest, options.largest),
-                       "570 nodes is the coarsest mesh it is measured on");
+  if (auto checked = check_nodes("display", options.largest, 570, "570 nodes is the coarsest mesh it is measured on");
+      !checked)
+    return checked;
   const auto rows = validate::bench_display(options, console.progress());
   if (!rows) return rows.error();
   Table table({"nodes", "surface", "triangles", "zone", "columns", "surface [ms]", "max", "slice [ms]", "max",

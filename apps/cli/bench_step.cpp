@@ -34,10 +34,9 @@ Json phases_json(const std::array<double, kStepPhases>& us) {
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console) {
   validate::ScaleBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  constexpr int smallest = 570;
-  if (options.largest < smallest)
-    return input_error("--nodes", fmt::format("scale takes {} nodes or more, not {}", smallest, options.largest),
-                       "570 nodes is the mesh of Goksel et al. 2005");
+  if (auto checked = check_nodes("scale", options.largest, 570, "570 nodes is the mesh of Goksel et al. 2005");
+      !checked)
+    return checked;
   if (arguments.contacts > 0) options.contacts = {arguments.contacts};
   options.steps = arguments.steps;
   const auto rows = validate::bench_scale(options, console.progress());
@@ -113,10 +112,9 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
 Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
   validate::StepBenchOptions options;
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
-  constexpr int smallest = 500;
-  if (options.nodes < smallest)
-    return input_error("--nodes", fmt::format("step takes {} nodes or more, not {}", smallest, options.nodes),
-                       "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("step", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+      !checked)
+    return checked;
   const auto rows = validate::bench_step(options, console.progress());
   if (!rows) return rows.error();
   Table times({"nodes", "contacts", "steps", "iterations", "mean [µs]", "p50 [µs]", "p99 [µs]", "p99.9 [µs]",

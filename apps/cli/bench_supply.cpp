@@ -12,10 +12,9 @@ Result<> bench_supply_command(const BenchArguments& arguments, Console& console)
   validate::SupplyBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
   if (arguments.speed > 0.0) options.speeds_mm_per_s = {arguments.speed};
-  constexpr int smallest = 570;
-  if (options.largest < smallest)
-    return input_error("--nodes", fmt::format("supply takes {} nodes or more, not {}", smallest, options.largest),
-                       "570 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("supply", options.largest, 570, "570 nodes is the coarsest mesh of the demo patient");
+      !checked)
+    return checked;
   const auto rows = validate::bench_supply(options, console.progress());
   if (!rows) return rows.error();
   Table table({"nodes", "element", "prepared", "speed [mm/s]", "steps", "outrun [%]", "force off [N]", "peak [N]",

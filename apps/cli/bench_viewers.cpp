@@ -34,10 +34,9 @@ Result<> bench_viewers_command(const BenchArguments& arguments, Console& console
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
   if (arguments.contacts > 0) options.contacts = arguments.contacts;
   if (arguments.seconds > 0) options.seconds = arguments.seconds;
-  constexpr int smallest = 500;
-  if (options.nodes < smallest)
-    return input_error("--nodes", fmt::format("viewers takes {} nodes or more, not {}", smallest, options.nodes),
-                       "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("viewers", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+      !checked)
+    return checked;
   const auto done = validate::bench_viewers(options, console.progress());
   if (!done) return done.error();
 

@@ -30,6 +30,10 @@ Result<> bench_supply_command(const BenchArguments& arguments, Console& console)
 Result<> bench_display_command(const BenchArguments& arguments, Console& console);
 Result<> bench_viewers_command(const BenchArguments& arguments, Console& console);
 
+/// Refuses `--nodes` below `fewest`.
+/// @param why says where that number comes from
+Result<> check_nodes(const std::string& benchmark, int nodes, int fewest, const std::string& why);
+
 /// The machine times are of.
 Json machine_json();
 

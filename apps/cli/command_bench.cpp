@@ -107,9 +107,10 @@ std::vector<std::string> coupling_cells(const validate::CouplingRow& row) {
 Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   validate::CouplingBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (options.largest < 500)
-    return input_error("--nodes", fmt::format("coupling takes 500 nodes or more, not {}", options.largest),
-                       "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked =
+          check_nodes("coupling", options.largest, 500, "500 nodes is the coarsest mesh of the demo patient");
+      !checked)
+    return checked;
   const auto rows = validate::bench_coupling(options, console.progress());
   if (!rows) return rows.error();
   Table table({"over", "method", "element", "nodes", "spacing [mm]", "dt [ms]", "peak [N]", "RMS [%]", "shift [mm]",
@@ -145,6 +146,11 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
 }
 
 }  // namespace
+
+Result<> check_nodes(const std::string& benchmark, int nodes, int fewest, const std::string& why) {
+  if (nodes >= fewest) return Ok{};
+  return input_error("--nodes", fmt::format("{} takes {} nodes or more, not {}", benchmark, fewest, nodes), why);
+}
 
 Json machine_json() {
   const reproduce::Machine machine = reproduce::this_machine();

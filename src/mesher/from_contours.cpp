@@ -12,8 +12,6 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kSmallIsland = 0.01;  // of the largest piece
-
 constexpr double kWholeGland = 0.85;  // zones that make up this much of the gland divide all of it
 
 /// The structure of one ROI.

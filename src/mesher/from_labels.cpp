@@ -12,8 +12,6 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kSmallIsland = 0.01;  // of the largest piece
-
 /// The image with its slice axis last: axis order, sizes and frame.
 struct Slices {
   std::array<int, 3> axis{0, 1, 2};  ///< image axes used as u, v, n

@@ -17,6 +17,9 @@ Islands find_islands(const GridShape& grid);
 /// @return volume left, as a fraction of the volume before
 double keep_islands(GridShape& grid, const Islands& islands, const std::vector<bool>& keep);
 
+/// What is an island beside the largest piece, as a fraction of its volume.
+inline constexpr double kSmallIsland = 0.01;
+
 /// Removes pieces smaller than `fraction` of the largest: stray voxels and slips of the pen.
 /// @return volume removed [mm³]
 double drop_small_islands(GridShape& grid, double fraction);

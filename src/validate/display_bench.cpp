@@ -19,7 +19,7 @@ namespace {
 constexpr int kContacts = 40;
 constexpr double kFrames = 60;
 constexpr double kWay_mm = 90.0;
-constexpr double kSpeed_mm_per_s = 20.0;
+constexpr double kDisplayedSpeed_mm_per_s = 20.0;
 constexpr double kDt_s = 1e-3;
 constexpr Index kNodalPressureFits = 50000;  ///< nodes; above, its factor is too large for most machines
 
@@ -166,13 +166,14 @@ DisplayRow measure(const std::shared_ptr<const Model>& model, const DisplayField
   const PlannedInsertion& plan = model->insertions().front();
   Pose base = plan.motion.at(0.0);
   simulation.place(base, plan.entry, plan.direction);
-  const auto steps = static_cast<int>((kWay_mm - simulation.record().base_depth_mm) / (kSpeed_mm_per_s * kDt_s));
+  const auto steps =
+      static_cast<int>((kWay_mm - simulation.record().base_depth_mm) / (kDisplayedSpeed_mm_per_s * kDt_s));
   const int every = steps / static_cast<int>(kFrames);
   const Vec3 across = plan.direction.unitOrthogonal();
   std::vector<double> solve_us;
   if (coarse != nullptr) row.coarse_error_mm = 0.0;
   for (int k = 1; k <= steps; ++k) {
-    base.origin += kSpeed_mm_per_s * kDt_s * plan.direction;
+    base.origin += kDisplayedSpeed_mm_per_s * kDt_s * plan.direction;
     simulation.prepare();
     simulation.step(base, kDt_s);
     if (k % every != 0) continue;

@@ -15,8 +15,8 @@ namespace stylet::validate {
 
 namespace {
 
-constexpr double kDepth_mm = 90.0;
-constexpr double kSpeed_mm_per_s = 20.0;
+constexpr double kDrivenDepth_mm = 90.0;
+constexpr double kDrivenSpeed_mm_per_s = 20.0;
 constexpr double kBackAndForth_mm = 15.0;
 constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
@@ -103,16 +103,16 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
 }  // namespace
 
 std::vector<double> driven_depths(double start_mm) {
-  std::vector<double> turns{start_mm, kDepth_mm};
+  std::vector<double> turns{start_mm, kDrivenDepth_mm};
   for (int cycle = 1; cycle <= kCycles; ++cycle) {
     turns.push_back(turns.back() - kBackAndForth_mm);
-    turns.push_back(kDepth_mm + cycle * kFurther_mm);
+    turns.push_back(kDrivenDepth_mm + cycle * kFurther_mm);
   }
   turns.push_back(start_mm);
   std::vector<double> result;
   for (std::size_t k = 1; k < turns.size(); ++k) {
     const double way = turns[k] - turns[k - 1];
-    const auto steps = std::lround(std::abs(way) / (kSpeed_mm_per_s * kDrivenStep_s));
+    const auto steps = std::lround(std::abs(way) / (kDrivenSpeed_mm_per_s * kDrivenStep_s));
     for (long i = 1; i <= steps; ++i)
       result.push_back(turns[k - 1] + way * static_cast<double>(i) / static_cast<double>(steps));
   }
@@ -136,9 +136,9 @@ BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double s
 
 Scenario driven_scenario(int contacts) {
   Scenario scenario = demo_scenario();
-  scenario.coupling.spacing_mm = (kDepth_mm + kCycles * kFurther_mm) / (contacts - 1);  // the tip is one of them
+  scenario.coupling.spacing_mm = (kDrivenDepth_mm + kCycles * kFurther_mm) / (contacts - 1);  // the tip is one of them
   scenario.coupling.contacts = std::max(scenario.coupling.contacts, contacts + 20);
-  scenario.insertions.front().depth_mm = kDepth_mm + kCycles * kFurther_mm;
+  scenario.insertions.front().depth_mm = kDrivenDepth_mm + kCycles * kFurther_mm;
   scenario.output.frames_per_s = 0.0;
   return scenario;
 }

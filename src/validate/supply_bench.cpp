@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kBeside_mm = 18.0;
 constexpr double kFrom_mm = -5.0;
-constexpr double kDepth_mm = 40.0;
+constexpr double kTo_mm = 40.0;
 constexpr double kStep_s = 1e-3;
 
 /// Base poses of the steps.
@@ -25,10 +25,10 @@ std::vector<Pose> way_beside(const Model& model, double speed_mm_per_s) {
   const Pose planned = plan.motion.at(0.0);
   const Vec3 tip = planned.origin + model.scenario().needle.length_mm * plan.direction;
   const Vec3 beside = plan.direction.cross(plan.direction.unitOrthogonal());
-  const long steps = std::lround((kDepth_mm - kFrom_mm) / (speed_mm_per_s * kStep_s));
+  const long steps = std::lround((kTo_mm - kFrom_mm) / (speed_mm_per_s * kStep_s));
   std::vector<Pose> way;
   for (long k = 0; k <= steps; ++k) {
-    const double depth = kFrom_mm + (kDepth_mm - kFrom_mm) * static_cast<double>(k) / static_cast<double>(steps);
+    const double depth = kFrom_mm + (kTo_mm - kFrom_mm) * static_cast<double>(k) / static_cast<double>(steps);
     Pose pose = planned;
     pose.origin += kBeside_mm * beside + (depth - (tip - plan.entry).dot(plan.direction)) * plan.direction;
     way.push_back(pose);

@@ -5,6 +5,7 @@
 #include "stylet/coupling/paper/dense_inverse.hpp"
 #include "stylet/geom/box_mesh.hpp"
 #include "stylet/needle/beam.hpp"
+#include "support/sanitized.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,9 @@
 #include <vector>
 
 namespace stylet::test {
+
+/// The usual step. Under sanitizers, which look at what a step does and not at its numbers, half as many.
+inline constexpr double kStep_s = kSanitized ? 2e-3 : 1e-3;
 
 /// A block of tissue 100 mm wide and deep, skin at z = 0, held at its sides and bottom, and a needle along z.
 struct BlockOptions {
@@ -96,7 +100,7 @@ class NeedleInBlock {
   }
 
   /// Moves the base along the axis to a depth at a speed; records.
-  void go(double to, double speed = 20.0, double dt = 1e-3) {
+  void go(double to, double speed = 20.0, double dt = kStep_s) {
     const double way = to - depth;
     const auto steps = std::max<long>(1, std::lround(std::abs(way) / (speed * dt)));
     const double from = depth;
@@ -105,7 +109,7 @@ class NeedleInBlock {
       step(dt);
     }
   }
-  void wait(double seconds, double dt = 1e-3) {
+  void wait(double seconds, double dt = kStep_s) {
     for (long k = 0; k < std::lround(seconds / dt); ++k) step(dt);
   }
 

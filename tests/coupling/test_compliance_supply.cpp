@@ -34,7 +34,7 @@ struct WithWorker : NeedleInBlock {
     insertion->supply().open(settings);
   }
 
-  void go_on(double to, double speed = 20.0, double dt = 1e-3) {
+  void go_on(double to, double speed = 20.0, double dt = kStep_s) {
     const double way = to - depth;
     const double from = depth;
     const auto steps = std::max<long>(1, std::lround(std::abs(way) / (speed * dt)));
@@ -44,7 +44,7 @@ struct WithWorker : NeedleInBlock {
     }
   }
 
-  void one_step(double dt = 1e-3) {
+  void one_step(double dt = kStep_s) {
     report = insertion->step(pose(), dt);
     forces.push_back(report.hand_force.dot(axis));
     flags |= report.flags;
@@ -104,7 +104,7 @@ TEST(ComplianceSupply, a_worker_that_keeps_ahead_gives_the_same_forces) {
   run.rest();
   NeedleInBlock prepared;
   prepared.aim({3, 2, 0}, {0.05, 0.02, 1.0});
-  prepared.wait(1e-3 * static_cast<double>(run.forces.size()));
+  prepared.wait(kStep_s * static_cast<double>(run.forces.size()));
   run.go_on(60, 5.0);
   prepared.go(60, 5.0);
   EXPECT_EQ(run.flags, 0u);
@@ -120,12 +120,12 @@ TEST(ComplianceSupply, memory_is_bounded_and_no_contact_loses_its_compliance) {
     run.rest();
     Index most = 0;
     for (const double depth : {30.0, 55.0, 20.0, 45.0}) {
-      run.go_on(depth, 10.0, 2e-3);
+      run.go_on(depth, 10.0, 2 * kStep_s);
       most = std::max(most, run.store->stored_nodes());
       for (const ContactState& contact : run.insertion->contacts()) EXPECT_TRUE(contact.force.allFinite());
     }
     EXPECT_LE(most, kLittle);
-    run.go_on(-1.0, 20.0, 2e-3);
+    run.go_on(-1.0, 20.0, 2 * kStep_s);
     EXPECT_EQ(run.flags, 0u);
   }
   EXPECT_EQ(run.count(Kind::withdrawn), 3);
@@ -136,9 +136,9 @@ TEST(ComplianceSupply, what_was_forgotten_comes_back_with_the_same_numbers) {
   const auto insertion_at = [&](const Vec3& through) {
     run.aim(through);
     run.rest();
-    run.go_on(40.0, 10.0, 2e-3);
+    run.go_on(40.0, 10.0, 2 * kStep_s);
     const double force = run.forces.back();
-    run.go_on(-1.0, 20.0, 2e-3);
+    run.go_on(-1.0, 20.0, 2 * kStep_s);
     return force;
   };
   EXPECT_GT(insertion_at({3, 2, 0}), 0.5);
@@ -151,7 +151,7 @@ TEST(ComplianceSupply, what_was_forgotten_comes_back_with_the_same_numbers) {
   WithWorker fresh(fine_block());
   fresh.aim({3, 6, 0});
   fresh.rest();
-  fresh.go_on(40.0, 10.0, 2e-3);
+  fresh.go_on(40.0, 10.0, 2 * kStep_s);
   EXPECT_NEAR(again, fresh.forces.back(), 1e-6);
 }
 
@@ -240,15 +240,15 @@ TEST(ComplianceSupply, an_old_track_that_was_forgotten_is_joined_all_the_same) {
   const auto in_and_out = [&](const Vec3& through) {
     run.aim(through);
     run.rest();
-    run.go_on(45.0, 20.0, 2e-3);
-    run.go_on(-1.0, 20.0, 2e-3);
+    run.go_on(45.0, 20.0, 2 * kStep_s);
+    run.go_on(-1.0, 20.0, 2 * kStep_s);
   };
   for (const Vec3& through : {Vec3(3, 2, 0), Vec3(-25, 20, 0), Vec3(24, -22, 0)}) in_and_out(through);
   ASSERT_EQ(run.flags, 0u);
   run.aim({3, 2, 0});
   run.rest();
   run.rounds_every = 0;
-  run.go_on(50.0, 20.0, 2e-3);  // through the old track and on
+  run.go_on(50.0, 20.0, 2 * kStep_s);  // through the old track and on
   EXPECT_EQ(run.flags, static_cast<unsigned>(StepReport::compliance_missing));
   for (const double force : run.forces) ASSERT_TRUE(std::isfinite(force));
   run.rest();

@@ -93,24 +93,23 @@ Errors solve(const Manufactured& problem, const Material& material, int cells, E
   };
 
   VecX f = VecX::Zero(3 * Eigen::Index{tissue.displacement_nodes()});
+  double work = 0.0;
   for_each_point([&](const Vec3& x, double volume, const Shape& shape) {
     const Vec3 force = volume * problem.body_force(x);
     for (int i = 0; i < shape.count; ++i) f.segment<3>(3 * Eigen::Index{shape.node[i]}) += shape.weight[i] * force;
+    work += force.dot(problem.displacement(x));
   });
   const VecX u = tissue.solve(f);
+  const double work_h = f.dot(u);
 
   double error = 0.0;
   double norm = 0.0;
-  double work_h = 0.0;
-  double work = 0.0;
   for_each_point([&](const Vec3& x, double volume, const Shape& shape) {
     Vec3 u_h = Vec3::Zero();
     for (int i = 0; i < shape.count; ++i) u_h += shape.weight[i] * u.segment<3>(3 * Eigen::Index{shape.node[i]});
     const Vec3 exact = problem.displacement(x);
     error += volume * (u_h - exact).squaredNorm();
     norm += volume * exact.squaredNorm();
-    work_h += volume * u_h.dot(problem.body_force(x));
-    work += volume * exact.dot(problem.body_force(x));
   });
 
   double pressure_error = 0.0;

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/count_allocations.hpp"
+#include "support/sanitized.hpp"
 
 #include <cerrno>
 #include <cstdlib>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define STYLET_SANITIZED_HEAP 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define STYLET_SANITIZED_HEAP 1
-#endif
 #if defined(__GLIBC__) && !defined(STYLET_SANITIZED_HEAP)
 #define STYLET_COUNT_ALLOCATIONS 1
 #endif

@@ -13,7 +13,7 @@ namespace stylet {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kColumns{"time_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"};
+constexpr std::array<std::string_view, 8> kMotionColumns{"time_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"};
 constexpr std::string_view kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz";
 constexpr std::size_t kLongestLine = 1000;
 
@@ -27,15 +27,16 @@ constexpr double kLongest_s = 36e3;
 /// One line of numbers.
 Result<MotionSample> parse_sample(std::string_view line, const std::string& where) {
   const auto fields = detail::split(line, ',');
-  if (fields.size() != kColumns.size()) {
-    return input_error(where, fmt::format("the line has {} fields, {} are expected", fields.size(), kColumns.size()),
+  if (fields.size() != kMotionColumns.size()) {
+    return input_error(where,
+                       fmt::format("the line has {} fields, {} are expected", fields.size(), kMotionColumns.size()),
                        fmt::format("Write {}, separated by commas, decimals with a point", kHeader));
   }
-  std::array<double, kColumns.size()> v{};
-  for (std::size_t i = 0; i < kColumns.size(); ++i) {
+  std::array<double, kMotionColumns.size()> v{};
+  for (std::size_t i = 0; i < kMotionColumns.size(); ++i) {
     const auto number = detail::to_number(fields[i]);
     if (!number || !std::isfinite(*number)) {
-      return input_error(fmt::format("{}, column {} ({})", where, i + 1, kColumns[i]),
+      return input_error(fmt::format("{}, column {} ({})", where, i + 1, kMotionColumns[i]),
                          fmt::format("'{}' is not a finite number", detail::trimmed(fields[i])),
                          "Write a number with a decimal point, such as 12.5; leave out samples without a reading");
     }
@@ -50,7 +51,7 @@ Result<MotionSample> parse_sample(std::string_view line, const std::string& wher
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(sample.base.origin[axis]) <= kFarthest_mm) continue;
     return input_error(
-        fmt::format("{}, column {} ({})", where, axis + 2, kColumns[static_cast<std::size_t>(axis) + 1]),
+        fmt::format("{}, column {} ({})", where, axis + 2, kMotionColumns[static_cast<std::size_t>(axis) + 1]),
         fmt::format("{} mm lies more than {} mm from the patient's origin", sample.base.origin[axis], kFarthest_mm),
         "Give the base's position in mm in patient coordinates (LPS), not the tracker's");
   }

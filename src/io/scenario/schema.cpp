@@ -12,7 +12,7 @@ namespace stylet {
 
 namespace {
 
-constexpr std::size_t kColumns = 110;
+constexpr std::size_t kSchemaWidth = 110;
 
 struct TableText {
   std::string_view pattern;  ///< of the keys in it
@@ -56,7 +56,7 @@ std::string comment(std::string_view text) {
   while (!text.empty()) {
     const auto blank = std::min(text.find(' '), text.size());
     const std::string_view word = text.substr(0, blank);
-    if (width(line) + 1 + width(word) > kColumns) {
+    if (width(line) + 1 + width(word) > kSchemaWidth) {
       out += line + "\n";
       line = "#";
     }

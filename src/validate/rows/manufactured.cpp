@@ -15,19 +15,19 @@ namespace stylet::validate {
 
 namespace {
 
-constexpr double kSide_mm = 60.0;
+constexpr double kCube_mm = 60.0;
 const Material kMaterial{0.02, 0.3};
 const Vec3 kAmplitude(1.0, -0.7, 0.4);
 
 /// u = d sin(πx/L) sin(πy/L) sin(πz/L), zero on the surface of the cube.
 Vec3 exact(const Vec3& x) {
-  const Vec3 s = (std::numbers::pi / kSide_mm * x).array().sin();
+  const Vec3 s = (std::numbers::pi / kCube_mm * x).array().sin();
   return s.prod() * kAmplitude;
 }
 
 /// The body force that holds it [N/mm³]: −div σ = −(λ+μ) H d − μ tr(H) d with H the Hessian of the product.
 Vec3 body_force(const Vec3& x) {
-  const double k = std::numbers::pi / kSide_mm;
+  const double k = std::numbers::pi / kCube_mm;
   const Vec3 s = (k * x).array().sin();
   const Vec3 c = (k * x).array().cos();
   Mat3 H = Mat3::Identity() * -s.prod();
@@ -41,9 +41,9 @@ Vec3 body_force(const Vec3& x) {
 
 /// ‖u_h − u‖ / ‖u‖ in L2.
 Result<double> error_of(int cells, Element element) {
-  TetMesh mesh = box_mesh({0, 0, 0}, Vec3::Constant(kSide_mm), {cells, cells, cells}, 0.1);
+  TetMesh mesh = box_mesh({0, 0, 0}, Vec3::Constant(kCube_mm), {cells, cells, cells}, 0.1);
   const auto surface =
-      nodes_where(mesh, [](const Vec3& x) { return (x.array() == 0.0).any() || (x.array() == kSide_mm).any(); });
+      nodes_where(mesh, [](const Vec3& x) { return (x.array() == 0.0).any() || (x.array() == kCube_mm).any(); });
   const auto tissue = Tissue::build(std::move(mesh), {kMaterial}, surface, {}, element);
   if (!tissue) return tissue.error();
   const TetMesh& m = tissue->mesh();
@@ -87,7 +87,7 @@ Result<Finding> order(Element element, const std::string& label, int expected, c
   for (auto n = cells.rbegin(); n != cells.rend(); ++n) {
     const auto error = error_of(*n, element);
     if (!error) return error.error();
-    const double h = kSide_mm / *n;
+    const double h = kCube_mm / *n;
     ours.add(h, *error);
     slope.add(h, ours.y.front() * std::pow(h / ours.x.front(), expected) / 1.3);
   }

@@ -19,7 +19,7 @@ constexpr std::array kFitted{"exp_b1_00a.csv", "exp_b1_00b.csv"};
 constexpr std::array kPredicted{"exp_b1_00c.csv", "exp_b1_00d.csv"};
 constexpr double kDeepest_mm = 100.0;
 constexpr double kEvery_mm = 5.0;
-constexpr double kSpeed_mm_per_s = 2.0;  ///< 100 mm in about a minute
+constexpr double kInsertionSpeed_mm_per_s = 2.0;  ///< 100 mm in about a minute
 
 /// Lateral place of the tip over depth, from where it entered.
 struct Recording {
@@ -69,7 +69,7 @@ Result<std::vector<double>> simulate(double bevel_deg) {
   Drive drive(*model, 0.0);
   std::vector<double> lateral;
   for (double z = kEvery_mm; z <= kDeepest_mm; z += kEvery_mm) {
-    drive.go(z, kSpeed_mm_per_s, 25e-3);
+    drive.go(z, kInsertionSpeed_mm_per_s, 25e-3);
     lateral.push_back(drive.last().record.tip_mm.x() - (*model)->insertions().front().entry.x());
   }
   return lateral;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTau_s = 0.2;
 constexpr double kStep_s = 1e-3;
-constexpr double kSpeed_mm_per_s = 4.0;
+constexpr double kPressSpeed_mm_per_s = 4.0;
 constexpr double kDent_mm = 4.0;
 
 Result<std::shared_ptr<const Model>> block(double relaxation_s, double puncture_N) {
@@ -36,21 +36,21 @@ Result<Finding> viscosity(Context&) {
 
   // Pressed in at constant speed and held.
   Drive at_rest(*elastic, 0.0);
-  at_rest.go(kDent_mm, kSpeed_mm_per_s, kStep_s);
+  at_rest.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   const double held_N = at_rest.last().record.force_axial_N;
   const double stiffness = held_N / kDent_mm;
   Drive pressing(*viscous, 0.0);
-  pressing.go(kDent_mm, kSpeed_mm_per_s, kStep_s);
+  pressing.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   pressing.wait(kTau_s, kStep_s);
-  const double moving_s = kDent_mm / kSpeed_mm_per_s;
+  const double moving_s = kDent_mm / kPressSpeed_mm_per_s;
   double press_off = 0.0;
   Curve force{.label = "force over the held force", .x = {}, .y = {}};
   Curve force_law{.label = "k (d + τ v)", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (std::size_t i = 0; i < pressing.steps().size(); ++i) {
     const double time = kStep_s * static_cast<double>(i + 1);
     const bool moves = time < moving_s + 0.5 * kStep_s;
-    const double dent = std::min(kDent_mm, kSpeed_mm_per_s * time);
-    const double law = stiffness * (dent + (moves ? kTau_s * kSpeed_mm_per_s : 0.0)) / held_N;
+    const double dent = std::min(kDent_mm, kPressSpeed_mm_per_s * time);
+    const double law = stiffness * (dent + (moves ? kTau_s * kPressSpeed_mm_per_s : 0.0)) / held_N;
     const double found = pressing.steps()[i].record.force_axial_N / held_N;
     press_off = worse(press_off, 100.0 * std::abs(found - law));
     force.add(time / kTau_s, found);
@@ -84,7 +84,7 @@ Result<Finding> viscosity(Context&) {
       "stop, which the needle’s own "
       "compression softens. A needle taken out after 30 mm: the "
       "whole field of displacement, {:.2f} mm at first, dies away to within {:.2f} % of that.",
-      kTau_s, 1e3 * kStep_s, kSpeed_mm_per_s, press_off, held_N, first.cwiseAbs().maxCoeff(), relax_off);
+      kTau_s, 1e3 * kStep_s, kPressSpeed_mm_per_s, press_off, held_N, first.cwiseAbs().maxCoeff(), relax_off);
   finding.why_missed = "Steps in time are of first order: dt/(2τ) of the change is to be expected.";
   finding.plot = {.x_label = "time over τ", .y_label = "force, displacement", .curves = {force, left, force_law, law}};
   return finding;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mask_files.hpp"
 
+#include "files.hpp"
+
 #include <zlib.h>
 #include <Eigen/Geometry>
 
@@ -152,6 +154,11 @@ std::string metaimage(const Mask& mask, bool compressed, const std::string& data
        << "\nDimSize = " << mask.size[0] << ' ' << mask.size[1] << ' ' << mask.size[2]
        << "\nElementType = MET_UCHAR\nElementDataFile = " << data_file << '\n';
   return data_file == "LOCAL" ? text.str() + data : text.str();
+}
+
+Result<LabelImage> read_mask(const std::string& name, const std::string& bytes) {
+  const Folder folder;
+  return read_label_image(write_file(folder / name, bytes));
 }
 
 }  // namespace stylet::test

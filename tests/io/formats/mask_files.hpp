@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/types.hpp"
+#include "stylet/io/label_image_io.hpp"
 
 #include <array>
 #include <cstdint>
@@ -40,5 +41,8 @@ void poke(std::string& bytes, std::size_t offset, T value) {
 std::string nrrd(const Mask& mask, const std::string& encoding = "raw", const std::string& extra = "",
                  const std::string& space = "left-posterior-superior");
 std::string metaimage(const Mask& mask, bool compressed = false, const std::string& data_file = "LOCAL");
+
+/// What a file with this name and content is read as.
+Result<LabelImage> read_mask(const std::string& name, const std::string& bytes);
 
 }  // namespace stylet::test

@@ -34,20 +34,15 @@ void expect_same_place(const Result<LabelImage>& image, const Mask& mask, const 
   EXPECT_LT((image->direction.transpose() * image->direction - Mat3::Identity()).norm(), 1e-5) << what;
 }
 
-Result<LabelImage> read(const std::string& name, const std::string& bytes) {
-  const Folder folder;
-  return read_label_image(write_file(folder / name, bytes));
-}
-
 }  // namespace
 
 TEST(LabelImage, nifti_keeps_oblique_and_left_handed_frames) {
   for (const Mat3& axes : {Mask().axes, oblique_axes(), left_handed_axes()}) {
     Mask mask;
     mask.axes = axes;
-    expect_same_place(read("mask.nii", nifti(mask, NiftiForm::sform)), mask, "sform");
-    expect_same_place(read("mask.nii", nifti(mask, NiftiForm::qform)), mask, "qform");
-    expect_same_place(read("mask.nii.gz", gzipped(nifti(mask))), mask, "gzip");
+    expect_same_place(read_mask("mask.nii", nifti(mask, NiftiForm::sform)), mask, "sform");
+    expect_same_place(read_mask("mask.nii", nifti(mask, NiftiForm::qform)), mask, "qform");
+    expect_same_place(read_mask("mask.nii.gz", gzipped(nifti(mask))), mask, "gzip");
   }
 }
 
@@ -56,7 +51,7 @@ TEST(LabelImage, nifti_prefers_the_sform) {
   std::string bytes = nifti(mask);
   poke<std::int16_t>(bytes, 252, 1);  // a qform that says something else
   poke(bytes, 268, 500.0F);
-  expect_same_place(read("mask.nii", bytes), mask, "both");
+  expect_same_place(read_mask("mask.nii", bytes), mask, "both");
 }
 
 TEST(LabelImage, nifti_units_are_turned_into_mm) {
@@ -71,16 +66,16 @@ TEST(LabelImage, nifti_units_are_turned_into_mm) {
     poke(bytes, 80 + 4 * i, static_cast<float>(metres.axes.col(i).norm()) * 1e-3F);
   }
   poke<char>(bytes, 123, 1);
-  expect_same_place(read("mask.nii", bytes), metres, "metres");
+  expect_same_place(read_mask("mask.nii", bytes), metres, "metres");
   poke<char>(bytes, 123, 2);
-  expect_refused(read("mask.nii", bytes), {"0.016 mm long", "1 mm to 2 m", "spacing"});
+  expect_refused(read_mask("mask.nii", bytes), {"0.016 mm long", "1 mm to 2 m", "spacing"});
 }
 
 TEST(LabelImage, nifti_scaling_is_applied) {
   const Mask mask;
   std::string bytes = nifti(mask);
   poke(bytes, 112, 3.0F);
-  const Result<LabelImage> image = read("mask.nii", bytes);
+  const Result<LabelImage> image = read_mask("mask.nii", bytes);
   ASSERT_TRUE(image.ok()) << why(image);
   EXPECT_EQ(*std::max_element(image->labels.begin(), image->labels.end()), 6);
 }
@@ -90,7 +85,7 @@ TEST(LabelImage, nrrd_keeps_oblique_and_left_handed_frames) {
     Mask mask;
     mask.axes = axes;
     for (const char* encoding : {"raw", "gzip", "ascii"})
-      expect_same_place(read("mask.nrrd", nrrd(mask, encoding)), mask, encoding);
+      expect_same_place(read_mask("mask.nrrd", nrrd(mask, encoding)), mask, encoding);
   }
 }
 
@@ -100,26 +95,28 @@ TEST(LabelImage, nrrd_spaces_are_turned_into_lps) {
   ras.origin = Vec3(-1, -1, 1).asDiagonal() * mask.origin;
   las.axes = Vec3(1, -1, 1).asDiagonal() * mask.axes;
   las.origin = Vec3(1, -1, 1).asDiagonal() * mask.origin;
-  expect_same_place(read("mask.nrrd", nrrd(ras, "raw", "", "right-anterior-superior")), mask, "RAS");
-  expect_same_place(read("mask.nrrd", nrrd(las, "raw", "", "left-anterior-superior")), mask, "LAS");
-  expect_same_place(read("mask.nrrd", nrrd(ras, "raw", "", "RAS")), mask, "RAS, short");
+  expect_same_place(read_mask("mask.nrrd", nrrd(ras, "raw", "", "right-anterior-superior")), mask, "RAS");
+  expect_same_place(read_mask("mask.nrrd", nrrd(las, "raw", "", "left-anterior-superior")), mask, "LAS");
+  expect_same_place(read_mask("mask.nrrd", nrrd(ras, "raw", "", "RAS")), mask, "RAS, short");
 }
 
 TEST(LabelImage, nrrd_units_are_turned_into_mm) {
   Mask mask, centimetres;
   centimetres.axes *= 0.1;
   centimetres.origin *= 0.1;
-  expect_same_place(read("mask.nrrd", nrrd(centimetres, "raw", "space units: \"cm\" \"cm\" \"cm\"\n")), mask, "cm");
-  expect_refused(read("mask.nrrd", nrrd(mask, "raw", "space units: \"inch\" \"inch\" \"inch\"\n")), {"unit 'inch'"});
+  expect_same_place(read_mask("mask.nrrd", nrrd(centimetres, "raw", "space units: \"cm\" \"cm\" \"cm\"\n")), mask,
+                    "cm");
+  expect_refused(read_mask("mask.nrrd", nrrd(mask, "raw", "space units: \"inch\" \"inch\" \"inch\"\n")),
+                 {"unit 'inch'"});
 }
 
 TEST(LabelImage, segment_names_of_seg_nrrd_are_kept) {
   const Mask mask;
   const Result<LabelImage> image =
-      read("case.seg.nrrd",
-           nrrd(mask, "gzip",
-                "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=Prostate\n"
-                "Segment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Name:=Urethra \n"));
+      read_mask("case.seg.nrrd",
+                nrrd(mask, "gzip",
+                     "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=Prostate\n"
+                     "Segment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Name:=Urethra \n"));
   ASSERT_TRUE(image.ok()) << why(image);
   EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "Prostate"}, {2, "Urethra"}}));
 }
@@ -137,8 +134,8 @@ TEST(LabelImage, metaimage_keeps_oblique_and_left_handed_frames) {
   for (const Mat3& axes : {Mask().axes, oblique_axes(), left_handed_axes()}) {
     Mask mask;
     mask.axes = axes;
-    expect_same_place(read("mask.mha", metaimage(mask)), mask, "raw");
-    expect_same_place(read("mask.mha", metaimage(mask, true)), mask, "compressed");
+    expect_same_place(read_mask("mask.mha", metaimage(mask)), mask, "raw");
+    expect_same_place(read_mask("mask.mha", metaimage(mask, true)), mask, "compressed");
   }
 }
 
@@ -155,8 +152,8 @@ TEST(LabelImage, metaimage_with_its_data_beside_it_is_read) {
 TEST(LabelImage, the_same_mask_in_three_formats_is_the_same_image) {
   Mask mask;
   mask.axes = oblique_axes();
-  const Result<LabelImage> a = read("a.nii", nifti(mask)), b = read("b.nrrd", nrrd(mask)),
-                           c = read("c.mha", metaimage(mask));
+  const Result<LabelImage> a = read_mask("a.nii", nifti(mask)), b = read_mask("b.nrrd", nrrd(mask)),
+                           c = read_mask("c.mha", metaimage(mask));
   ASSERT_TRUE(a.ok() && b.ok() && c.ok());
   EXPECT_EQ(a->labels, b->labels);
   EXPECT_EQ(b->labels, c->labels);
@@ -168,7 +165,7 @@ TEST(LabelImage, the_same_mask_in_three_formats_is_the_same_image) {
 
 TEST(LabelImage, a_format_is_known_by_its_content_not_its_name) {
   const Mask mask;
-  expect_same_place(read("mask.nrrd", nifti(mask)), mask, "NIfTI called .nrrd");
-  expect_same_place(read("mask", nrrd(mask)), mask, "NRRD without extension");
-  expect_same_place(read("mask.nii", metaimage(mask)), mask, "MetaImage called .nii");
+  expect_same_place(read_mask("mask.nrrd", nifti(mask)), mask, "NIfTI called .nrrd");
+  expect_same_place(read_mask("mask", nrrd(mask)), mask, "NRRD without extension");
+  expect_same_place(read_mask("mask.nii", metaimage(mask)), mask, "MetaImage called .nii");
 }

@@ -8,7 +8,7 @@ using namespace stylet::test;
 
 namespace {
 
-Result<TetMesh> read(const std::string& name, const std::string& text) {
+Result<TetMesh> read_mesh(const std::string& name, const std::string& text) {
   const Folder folder;
   return read_tet_mesh(write_file(folder / name, text));
 }
@@ -17,7 +17,7 @@ Result<TetMesh> read(const std::string& name, const std::string& text) {
 Result<TetMesh> changed(const std::function<void(TetMesh&)>& change) {
   TetMesh mesh = two_region_box();
   change(mesh);
-  return read("m.vtk", vtk_text(mesh));
+  return read_mesh("m.vtk", vtk_text(mesh));
 }
 
 }  // namespace
@@ -48,8 +48,8 @@ TEST(TetMeshErrors, nan_is_refused) {
 }
 
 TEST(TetMeshErrors, node_numbers_out_of_range_are_refused) {
-  expect_refused(read("m.vtk", replaced(vtk_text(two_region_box()), "\n4 ", "\n4 9999 1 2 3\n4 ")), {"m.vtk"});
-  expect_refused(read("m.msh", replaced(msh22_text(two_region_box()), "\n1 4 2 1 1 1 ", "\n1 4 2 1 1 9999 ")),
+  expect_refused(read_mesh("m.vtk", replaced(vtk_text(two_region_box()), "\n4 ", "\n4 9999 1 2 3\n4 ")), {"m.vtk"});
+  expect_refused(read_mesh("m.msh", replaced(msh22_text(two_region_box()), "\n1 4 2 1 1 1 ", "\n1 4 2 1 1 9999 ")),
                  {"m.msh"});
   const auto [nodes, tets] = tetgen_texts(two_region_box());
   const Folder folder;
@@ -79,14 +79,15 @@ TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
   const std::string surface =
       "# vtk DataFile Version 3.0\ntriangle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n0 0 0 20 0 0 0 20 0\n"
       "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n";
-  expect_refused(read("s.vtk", surface), {"no tetrahedra", "vtkTriangle", "filled"});
-  expect_refused(read("s.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"),
-                 {"no unstructured grid"});
+  expect_refused(read_mesh("s.vtk", surface), {"no tetrahedra", "vtkTriangle", "filled"});
+  expect_refused(
+      read_mesh("s.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"),
+      {"no unstructured grid"});
 }
 
 TEST(TetMeshErrors, half_a_tetgen_mesh_is_refused) {
-  expect_refused(read("m.ele", tetgen_texts(two_region_box()).second), {"'m.node' is not there", "side by side"});
-  expect_refused(read("m.node", tetgen_texts(two_region_box()).first), {"'m.ele' is not there"});
+  expect_refused(read_mesh("m.ele", tetgen_texts(two_region_box()).second), {"'m.node' is not there", "side by side"});
+  expect_refused(read_mesh("m.node", tetgen_texts(two_region_box()).first), {"'m.ele' is not there"});
 }
 
 TEST(TetMeshErrors, tetgen_files_in_disorder_are_refused_with_the_line) {
@@ -126,9 +127,9 @@ TEST(TetMeshErrors, regions_that_are_no_numbers_are_refused) {
   std::string text = vtk_text(two_region_box());
   text = replaced(text, "SCALARS region int 1", "SCALARS region double 1");
   text = replaced(text, "default\n0\n", "default\n0.5\n");
-  expect_refused(read("m.vtk", text), {"cell 0", "0.5", "whole number"});
+  expect_refused(read_mesh("m.vtk", text), {"cell 0", "0.5", "whole number"});
 }
 
 TEST(TetMeshErrors, other_files_are_named) {
-  expect_refused(read("m.msh", "solid x\nendsolid x\n"), {"an STL surface", "a tetrahedral mesh"});
+  expect_refused(read_mesh("m.msh", "solid x\nendsolid x\n"), {"an STL surface", "a tetrahedral mesh"});
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled models kept from one start to the next: found by what they are of, and not too many.
+#include "box.hpp"
 #include "io/formats/files.hpp"
-#include "sim/box_patient.hpp"
 
 #include "stylet/io/model_cache.hpp"
 #include "stylet/io/model_file.hpp"
@@ -13,15 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::Folder;
-
-Scenario box() {
-  Scenario scenario = test::box_scenario();
-  scenario.patient.source = "phantom";
-  return scenario;
-}
+using test::saved_box;
 
 std::shared_ptr<const Model> box_model() {
-  auto model = Model::compile(box(), test::box_patient(), "box");
+  auto model = Model::compile(saved_box(), test::box_patient(), "box");
   if (!model) throw std::runtime_error(model.error().message());
   return *model;
 }
@@ -53,7 +48,7 @@ TEST(ModelCache, AKeyFollowsFromEverythingAModelIsMadeOf) {
   const fs::path motion = folder.path() / "motion.csv";
   write(patient, "{}");
   write(motion, "time_s\n");
-  Scenario s = box();
+  Scenario s = saved_box();
   s.patient.source = patient.string();
   s.insertions[0].motion = motion.string();
   const std::string first = key(s);
@@ -75,7 +70,7 @@ TEST(ModelCache, AKeyOfAFolderKnowsItsFilesByNameAndContent) {
   fs::create_directories(folder.path() / "slices" / "more");
   write(folder.path() / "slices" / "1.dcm", "one");
   write(folder.path() / "slices" / "more" / "2.dcm", "two");
-  Scenario s = box();
+  Scenario s = saved_box();
   s.patient.source = (folder.path() / "slices").string();
   const std::string first = key(s);
   write(folder.path() / "slices" / "more" / "2.dcm", "2");
@@ -87,7 +82,7 @@ TEST(ModelCache, AKeyOfAFolderKnowsItsFilesByNameAndContent) {
 }
 
 TEST(ModelCache, APatientThatIsNotThereHasNoKey) {
-  Scenario s = box();
+  Scenario s = saved_box();
   s.patient.source = "/nowhere/patient.json";
   const auto made = model_key(s);
   ASSERT_FALSE(made);
@@ -98,7 +93,7 @@ TEST(ModelCache, APatientInSeveralFilesHasNoKey) {
   const Folder folder;
   const auto says_so = [&](const char* name, const std::string& header) {
     write(folder.path() / name, header);
-    Scenario s = box();
+    Scenario s = saved_box();
     s.patient.source = (folder.path() / name).string();
     const auto made = model_key(s);
     return !made && made.error().what == "its data are in several files";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A saved model is the model, or is refused.
+#include "box.hpp"
 #include "io/formats/files.hpp"
-#include "sim/box_patient.hpp"
 
 #include "h5.hpp"
 #include "stylet/io/model_file.hpp"
@@ -14,6 +14,7 @@ namespace stylet {
 namespace {
 
 using test::Folder;
+using test::saved_box;
 
 /// Every number of a run but the clock's, and the forces on the tissue at its end.
 std::vector<double> run_of(const std::shared_ptr<const Model>& model, bool grow = true) {
@@ -37,13 +38,6 @@ std::shared_ptr<const Model> loaded(const std::filesystem::path& path, std::span
   auto model = load_model(path, {}, settings);
   if (!model) throw std::runtime_error(model.error().message());
   return *model;
-}
-
-/// The box; its mesh is given, and "phantom" is the one source that is not a path.
-Scenario box() {
-  Scenario scenario = test::box_scenario();
-  scenario.patient.source = "phantom";
-  return scenario;
 }
 
 /// Some nodes whose compliance is not there.
@@ -79,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, SavedModels, testing::Values("p1", "nodal-pre
 
 TEST_P(SavedModels, StepAsTheCompiledOneToTheLastBitWithoutAFactor) {
   const Folder folder;
-  Scenario scenario = box();
+  Scenario scenario = saved_box();
   scenario.tissue_model.element = GetParam();
   const auto compiled = test::compiled(scenario, test::box_patient());
   save(*compiled, folder / "box.stylet");
@@ -93,7 +87,7 @@ TEST_P(SavedModels, StepAsTheCompiledOneToTheLastBitWithoutAFactor) {
 
 TEST(SavedModel, MakesTheFactorForWhatIsNotInIt) {
   const Folder folder;
-  Scenario scenario = box();
+  Scenario scenario = saved_box();
   scenario.coupling.corridor_mm = 1.0;
   const auto compiled = test::compiled(scenario);
   save(*compiled, folder / "box.stylet");
@@ -111,7 +105,7 @@ TEST(SavedModel, MakesTheFactorForWhatIsNotInIt) {
 
 TEST(SavedModel, KeepsRecordedMotionsSeveralNeedlesAndNotes) {
   const Folder folder;
-  Scenario scenario = box();
+  Scenario scenario = saved_box();
   scenario.insertions.push_back(scenario.insertions.front());
   scenario.insertions[1].entry_mm = {-5.0, 4.0, -20.0};
   const auto straight = test::compiled(scenario);
@@ -132,7 +126,7 @@ TEST(SavedModel, KeepsRecordedMotionsSeveralNeedlesAndNotes) {
 
 TEST(SavedModel, TakesSettingsThatLeaveItsComplianceAsItIs) {
   const Folder folder;
-  const Scenario scenario = box();
+  const Scenario scenario = saved_box();
   save(*test::compiled(scenario), folder / "box.stylet");
   Scenario slower = scenario;
   slower.insertions[0].speed_mm_per_s = 25.0;
@@ -147,7 +141,7 @@ TEST(SavedModel, TakesSettingsThatLeaveItsComplianceAsItIs) {
 
 TEST(SavedModel, OfAnotherMeshOrMaterialIsRefused) {
   const Folder folder;
-  save(*test::compiled(box()), folder / "box.stylet");
+  save(*test::compiled(saved_box()), folder / "box.stylet");
   const auto file = read_model_file(folder / "box.stylet");
   ASSERT_TRUE(file);
   ModelFile moved = *file;
@@ -170,7 +164,7 @@ TEST(SavedModel, OfAnotherMeshOrMaterialIsRefused) {
 
 TEST(SavedModel, DamageIsFoundWhereverItIs) {
   const Folder folder;
-  Scenario scenario = box();
+  Scenario scenario = saved_box();
   scenario.coupling.corridor_mm = 1.0;
   const auto compiled = test::compiled(scenario);
   save(*compiled, folder / "whole.stylet");
@@ -216,7 +210,7 @@ TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
   EXPECT_SAYS(refusal(folder / "other.stylet"), "not a saved model");
   EXPECT_FALSE(is_model_file(folder / "other.stylet"));
   EXPECT_TRUE(is_hdf5_file(folder / "other.stylet"));
-  save(*test::compiled(box()), folder / "box.stylet");
+  save(*test::compiled(saved_box()), folder / "box.stylet");
   EXPECT_TRUE(is_model_file(folder / "box.stylet"));
   {
     const h5::Handle file(H5Fopen((folder / "box.stylet").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
@@ -228,12 +222,12 @@ TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
 
 TEST(SavedModel, IsNotWrittenWhereItWouldNotBeWhole) {
   const Folder folder;
-  Scenario scenario = box();
+  Scenario scenario = saved_box();
   scenario.coupling.engine = "woodbury";
   const auto full = save_model(*test::compiled(scenario), folder / "full.stylet");
   ASSERT_FALSE(full);
   EXPECT_SAYS(full.error().message(), "woodbury");
-  const auto nowhere = save_model(*test::compiled(box()), folder / "none" / "box.stylet");
+  const auto nowhere = save_model(*test::compiled(saved_box()), folder / "none" / "box.stylet");
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
 }

@@ -275,6 +275,8 @@ SyntheticRun synthetic_run(const SyntheticOptions& options) {
   return run;
 }
 
+RunRecording recording_of(const SyntheticRun& run) { return {run.info, run.mesh, run.steps, run.frames, run.summary}; }
+
 TemporaryFolder::TemporaryFolder() {
   std::string name = (fs::temp_directory_path() / "stylet-results-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) std::abort();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/io/recording_io.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <array>
@@ -28,6 +29,9 @@ struct SyntheticOptions {
 /// A made-up insertion into ellipsoids in a box, by formulas and without a simulation: an approach, skin contact,
 /// puncture, entry into the gland, the deepest point, a hold, a retraction that sticks and then slips, and withdrawal.
 SyntheticRun synthetic_run(const SyntheticOptions& options = {});
+
+/// What a reader of the run's file would get.
+RunRecording recording_of(const SyntheticRun& run);
 
 /// A folder below the test's temporary folder, empty at first, removed with everything in it at the end.
 class TemporaryFolder {

@@ -13,13 +13,10 @@
 
 using namespace stylet;
 using namespace stylet::results;
+using stylet::testing::recording_of;
 using stylet::testing::synthetic_run;
 
 namespace {
-
-RunRecording recording_of(stylet::testing::SyntheticRun run) {
-  return {run.info, run.mesh, run.steps, run.frames, run.summary};
-}
 
 /// Stages every kind of picture of a run; returns the number of actors in all of them.
 int stage_all(const RunRecording& run) {

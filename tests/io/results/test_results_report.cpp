@@ -17,11 +17,8 @@
 using namespace stylet;
 using namespace stylet::results;
 using namespace stylet::testing;
-using nlohmann::json;
 
 namespace {
-
-RunRecording recording_of(const SyntheticRun& run) { return {run.info, run.mesh, run.steps, run.frames, run.summary}; }
 
 std::string page_of(const RunRecording& run) {
   const auto regions = region_views(run.mesh, run.info.target_regions);
@@ -35,8 +32,9 @@ std::string page_of(const RunRecording& run) {
   return *page;
 }
 
-json data_of(const RunRecording& run) {
-  return json::parse(report_data(run, region_views(run.mesh, run.info.target_regions), find_moments(run.frames)));
+nlohmann::json data_of(const RunRecording& run) {
+  return nlohmann::json::parse(
+      report_data(run, region_views(run.mesh, run.info.target_regions), find_moments(run.frames)));
 }
 
 /// Base 64 back to numbers, by the alphabet of RFC 4648.
@@ -135,7 +133,7 @@ TEST(Report, text_from_the_user_cannot_break_the_page) {
   EXPECT_EQ(count(page, "</script"), 2U);
   EXPECT_EQ(count(page, "<!--"), 0U);
   EXPECT_EQ(page.find("alert('x')"), page.find("alert('x')", page.find("report-data")));
-  const auto data = json::parse(between(page, "id=\"report-data\">", "</script>"));
+  const auto data = nlohmann::json::parse(between(page, "id=\"report-data\">", "</script>"));
   EXPECT_EQ(data["surface"]["regions"][0]["name"], evil);
 }
 
@@ -197,7 +195,7 @@ TEST(Report, long_runs_are_thinned_but_keep_labelled_frames_and_force_peaks) {
   EXPECT_LT(data["frames"].size(), 6000U);
   for (const Frame& frame : run.frames) {
     if (frame.label.empty()) continue;
-    const auto has = [&](const json& f) { return f["label"] == readable_name(frame.label); };
+    const auto has = [&](const nlohmann::json& f) { return f["label"] == readable_name(frame.label); };
     EXPECT_TRUE(std::any_of(data["frames"].begin(), data["frames"].end(), has)) << frame.label;
   }
 }

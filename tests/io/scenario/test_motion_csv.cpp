@@ -11,14 +11,14 @@ namespace {
 
 const std::string kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n";
 
-Result<std::vector<MotionSample>> read(const std::string& content) {
+Result<std::vector<MotionSample>> read_motion(const std::string& content) {
   const ScratchFolder folder;
   return read_motion_csv(folder.write("hand.csv", content));
 }
 
 /// What a motion whose second sample is this line is refused with.
-std::string refused(const std::string& line) {
-  const std::string message = refusal(read(kHeader + "0,0,0,-250,1,0,0,0\n" + line + "\n"));
+std::string refused_sample(const std::string& line) {
+  const std::string message = refusal(read_motion(kHeader + "0,0,0,-250,1,0,0,0\n" + line + "\n"));
   expect_says(message, {"hand.csv, line 3"});
   return message;
 }
@@ -27,7 +27,7 @@ std::string refused(const std::string& line) {
 
 TEST(MotionCsv, is_read_as_it_stands) {
   const auto samples =
-      read(kHeader + "0,1.5,-2,-250,1,0,0,0\n0.5, 1.5, -2, -240.25, 0, 0, 1, 0\n1e0,1.5,-2,-200,0.6,0,0,-0.8\n");
+      read_motion(kHeader + "0,1.5,-2,-250,1,0,0,0\n0.5, 1.5, -2, -240.25, 0, 0, 1, 0\n1e0,1.5,-2,-200,0.6,0,0,-0.8\n");
   ASSERT_TRUE(samples.ok()) << samples.error().message();
   ASSERT_EQ(samples->size(), 3U);
   EXPECT_EQ((*samples)[0].time_s, 0.0);
@@ -41,14 +41,14 @@ TEST(MotionCsv, is_read_as_it_stands) {
 }
 
 TEST(MotionCsv, takes_line_ends_spaces_and_marks_of_other_programs) {
-  const auto samples = read(
+  const auto samples = read_motion(
       "\xEF\xBB\xBFtime_s, x_mm, y_mm, z_mm, qw, qx, qy, qz\r\n0,0,0,-250,1,0,0,0\r\n\r\n1,0,0,-200,1,0,0,0\r\n\r\n");
   ASSERT_TRUE(samples.ok()) << samples.error().message();
   EXPECT_EQ(samples->size(), 2U);
 }
 
 TEST(MotionCsv, quaternions_come_out_with_norm_one) {
-  const auto samples = read(kHeader + "0,0,0,-250,1.0009,0,0,0\n1,0,0,-200,0.7071,0.7071,0,0\n");
+  const auto samples = read_motion(kHeader + "0,0,0,-250,1.0009,0,0,0\n1,0,0,-200,0.7071,0.7071,0,0\n");
   ASSERT_TRUE(samples.ok()) << samples.error().message();
   for (const MotionSample& sample : *samples) EXPECT_NEAR(sample.base.rotation.norm(), 1.0, 1e-15);
 }
@@ -64,7 +64,7 @@ TEST(MotionCsv, a_motion_written_with_full_precision_is_read_to_the_last_bit) {
         << s.base.rotation.w() << ',' << s.base.rotation.x() << ',' << s.base.rotation.y() << ',' << s.base.rotation.z()
         << '\n';
   }
-  const auto samples = read(out.str());
+  const auto samples = read_motion(out.str());
   ASSERT_TRUE(samples.ok()) << samples.error().message();
   ASSERT_EQ(samples->size(), motion.samples().size());
   for (std::size_t i = 0; i < samples->size(); ++i) {
@@ -86,46 +86,49 @@ TEST(MotionCsv, what_is_no_motion_is_refused) {
 }
 
 TEST(MotionCsv, another_header_is_refused_with_the_right_one) {
-  const std::string message = refusal(read("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n"));
+  const std::string message = refusal(read_motion("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n"));
   expect_says(message,
               {"hand.csv, line 1", "'time,x,y,z,qx,qy,qz,qw'", "Write the header time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz"});
-  expect_says(refusal(read("0,0,0,-250,1,0,0,0\n1,0,0,-200,1,0,0,0\n")), {"line 1", "the header is '0,0,0,-250"});
+  expect_says(refusal(read_motion("0,0,0,-250,1,0,0,0\n1,0,0,-200,1,0,0,0\n")),
+              {"line 1", "the header is '0,0,0,-250"});
 }
 
 TEST(MotionCsv, too_few_samples_are_refused) {
-  expect_says(refusal(read(kHeader)), {"hand.csv", "0 samples", "at least 2"});
-  expect_says(refusal(read(kHeader + "0,0,0,-250,1,0,0,0\n")), {"1 samples"});
+  expect_says(refusal(read_motion(kHeader)), {"hand.csv", "0 samples", "at least 2"});
+  expect_says(refusal(read_motion(kHeader + "0,0,0,-250,1,0,0,0\n")), {"1 samples"});
 }
 
 TEST(MotionCsv, fields_that_are_missing_or_no_numbers_are_refused_with_line_and_column) {
-  expect_says(refused("1,0,0,-200,1,0,0"), {"7 fields, 8 are expected"});
-  expect_says(refused("1,0,0,-200,1,0,0,0,"), {"9 fields"});
-  expect_says(refused("1;0;0;-200;1;0;0;0"), {"1 fields", "separated by commas"});
-  expect_says(refused("1,0,zero,-200,1,0,0,0"), {"column 3 (y_mm)", "'zero'"});
-  expect_says(refused("1,,0,-200,1,0,0,0"), {"column 2 (x_mm)", "''"});
-  expect_says(refused("1,0,0,nan,1,0,0,0"), {"column 4 (z_mm)", "'nan' is not a finite number", "without a reading"});
-  expect_says(refused("inf,0,0,-200,1,0,0,0"), {"column 1 (time_s)", "'inf'"});
-  expect_says(refused("1,0,0,-200mm,1,0,0,0"), {"column 4 (z_mm)", "'-200mm'"});
-  expect_says(refused("1,0,0,1e999,1,0,0,0"), {"column 4 (z_mm)", "'1e999'"});
+  expect_says(refused_sample("1,0,0,-200,1,0,0"), {"7 fields, 8 are expected"});
+  expect_says(refused_sample("1,0,0,-200,1,0,0,0,"), {"9 fields"});
+  expect_says(refused_sample("1;0;0;-200;1;0;0;0"), {"1 fields", "separated by commas"});
+  expect_says(refused_sample("1,0,zero,-200,1,0,0,0"), {"column 3 (y_mm)", "'zero'"});
+  expect_says(refused_sample("1,,0,-200,1,0,0,0"), {"column 2 (x_mm)", "''"});
+  expect_says(refused_sample("1,0,0,nan,1,0,0,0"),
+              {"column 4 (z_mm)", "'nan' is not a finite number", "without a reading"});
+  expect_says(refused_sample("inf,0,0,-200,1,0,0,0"), {"column 1 (time_s)", "'inf'"});
+  expect_says(refused_sample("1,0,0,-200mm,1,0,0,0"), {"column 4 (z_mm)", "'-200mm'"});
+  expect_says(refused_sample("1,0,0,1e999,1,0,0,0"), {"column 4 (z_mm)", "'1e999'"});
 }
 
 TEST(MotionCsv, times_must_increase_from_zero_on) {
-  expect_says(refused("0,0,0,-200,1,0,0,0"), {"column 1 (time_s)", "0 s does not come after 0 s", "Sort"});
-  expect_says(refused("-1,0,0,-200,1,0,0,0"), {"column 1 (time_s)", "-1 s is outside 0 … 36000 s"});
-  expect_says(refused("1666000000.5,0,0,-200,1,0,0,0"),
+  expect_says(refused_sample("0,0,0,-200,1,0,0,0"), {"column 1 (time_s)", "0 s does not come after 0 s", "Sort"});
+  expect_says(refused_sample("-1,0,0,-200,1,0,0,0"), {"column 1 (time_s)", "-1 s is outside 0 … 36000 s"});
+  expect_says(refused_sample("1666000000.5,0,0,-200,1,0,0,0"),
               {"1666000000.5 s is outside", "from the start of the recording"});
 }
 
 TEST(MotionCsv, rotations_must_be_unit_quaternions) {
-  expect_says(refused("1,0,0,-200,0,0,0,0"),
+  expect_says(refused_sample("1,0,0,-200,0,0,0,0"),
               {"columns 5 to 8 (qw, qx, qy, qz)", "norm is 0", "Write unit quaternions"});
-  expect_says(refused("1,0,0,-200,1.0011,0,0,0"), {"norm is 1.0011", "0.001"});
-  expect_says(refused("1,0,0,-200,1,1,0,0"), {"norm is 1.41421"});
+  expect_says(refused_sample("1,0,0,-200,1.0011,0,0,0"), {"norm is 1.0011", "0.001"});
+  expect_says(refused_sample("1,0,0,-200,1,1,0,0"), {"norm is 1.41421"});
 }
 
 TEST(MotionCsv, positions_in_other_units_are_refused) {
-  expect_says(refused("100,0,0,-250000,1,0,0,0"), {"column 4 (z_mm)", "-250000 mm lies more than 5000 mm"});
-  expect_says(refusal(read(kHeader + "0,0,0,-0.25,1,0,0,0\n1,0,0,-0.20,1,0,0,0\n")),
+  expect_says(refused_sample("100,0,0,-250000,1,0,0,0"), {"column 4 (z_mm)", "-250000 mm lies more than 5000 mm"});
+  expect_says(refusal(read_motion(kHeader + "0,0,0,-0.25,1,0,0,0\n1,0,0,-0.20,1,0,0,0\n")),
               {"hand.csv", "moves within 0.05 mm", "multiply by 1000"});
-  expect_says(refused("1e-3,0,0,-200,1,0,0,0"), {"moves 50 mm in 0.001 s, faster than 10000 mm/s", "Check the units"});
+  expect_says(refused_sample("1e-3,0,0,-200,1,0,0,0"),
+              {"moves 50 mm in 0.001 s, faster than 10000 mm/s", "Check the units"});
 }

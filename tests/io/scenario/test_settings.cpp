@@ -23,7 +23,7 @@ Scenario one_with(const std::vector<std::string>& settings) {
   return *scenario;
 }
 
-std::string refused(const std::string& setting, const std::string& content = kOne) {
+std::string refused_setting(const std::string& setting, const std::string& content = kOne) {
   return refusal(with(content, {setting}));
 }
 
@@ -51,7 +51,7 @@ TEST(Settings, need_no_quotes_around_texts) {
 
 TEST(Settings, may_leave_out_the_number_of_the_only_insertion) {
   EXPECT_EQ(one_with({"insertion.depth_mm=60"}).insertions[0].depth_mm, 60);
-  const std::string message = refused("insertion.depth_mm=60", kTwo);
+  const std::string message = refused_setting("insertion.depth_mm=60", kTwo);
   expect_says(message,
               {"--set insertion.depth_mm=60", "2 insertions", "insertion[0].depth_mm to insertion[1].depth_mm"});
   EXPECT_EQ(with(kTwo, {"insertion[1].depth_mm=60"})->insertions[1].depth_mm, 60);
@@ -60,10 +60,10 @@ TEST(Settings, may_leave_out_the_number_of_the_only_insertion) {
 TEST(Settings, can_add_an_insertion_but_leave_no_gap) {
   EXPECT_EQ(one_with({"insertion[1].hole=d4"}).insertions.size(), 2U);
   EXPECT_EQ(with("[patient]\nsource = \"phantom\"\n", {"insertion.hole=D4"})->insertions.size(), 1U);
-  expect_says(refused("insertion[2].hole=d4"),
+  expect_says(refused_setting("insertion[2].hole=d4"),
               {"--set insertion[2].hole=d4", "there is no insertion[2]", "insertion[1] adds another"});
-  expect_says(refused("insertion[x].hole=d4"), {"there is no insertion[x]"});
-  expect_says(refused("insertion[99999999999999999999999].hole=d4"), {"there is no insertion["});
+  expect_says(refused_setting("insertion[x].hole=d4"), {"there is no insertion[x]"});
+  expect_says(refused_setting("insertion[99999999999999999999999].hole=d4"), {"there is no insertion["});
 }
 
 TEST(Settings, may_be_whole_tables) {
@@ -73,7 +73,7 @@ TEST(Settings, may_be_whole_tables) {
   EXPECT_EQ(s.insertions[0].speed_mm_per_s, 5);
   EXPECT_EQ(s.insertions[0].hole, "D4") << "the rest stays";
   EXPECT_EQ(with(kOne, {"insertion[1]={ hole = \"d4\" }"})->insertions.size(), 2U);
-  refused("insertion={ \"[99999999999999999999]\" = { hole = \"d4\" } }");
+  refused_setting("insertion={ \"[99999999999999999999]\" = { hole = \"d4\" } }");
 }
 
 TEST(Settings, reach_regions_and_labels_with_any_name) {
@@ -103,27 +103,29 @@ TEST(Settings, name_files_from_the_current_folder_or_else_from_the_scenarios) {
 }
 
 TEST(Settings, are_checked_as_the_file_is) {
-  expect_says(refused("needle.lenght_mm=150"),
+  expect_says(refused_setting("needle.lenght_mm=150"),
               {"--set needle.lenght_mm=150: unknown key", "Did you mean needle.length_mm?"});
-  expect_says(refused("needle.length_mm=2000"), {"--set needle.length_mm=2000", "outside its range", "20 … 1000 mm"});
-  expect_says(refused("needle.length_mm=long"), {"needle.length_mm = \"long\" is not a number"});
-  expect_says(refused("needle.length_mm=1,5"), {"needle.length_mm = \"1,5\" is not a number"});
-  expect_says(refused("mesh=3"), {"--set mesh=3", "a table is expected"});
-  expect_says(refused("fixed.box_mm=[1, \"2\"]"), {"fixed.box_mm", "list"});
-  expect_says(refused("insertion.hole=Z9"), {"--set insertion.hole=Z9: insertion[0].hole = \"Z9\"", "no such hole"});
-  expect_says(refused("insertion.depth_mm=500"), {"--set insertion.depth_mm=500: insertion[0].depth_mm = 500"});
+  expect_says(refused_setting("needle.length_mm=2000"),
+              {"--set needle.length_mm=2000", "outside its range", "20 … 1000 mm"});
+  expect_says(refused_setting("needle.length_mm=long"), {"needle.length_mm = \"long\" is not a number"});
+  expect_says(refused_setting("needle.length_mm=1,5"), {"needle.length_mm = \"1,5\" is not a number"});
+  expect_says(refused_setting("mesh=3"), {"--set mesh=3", "a table is expected"});
+  expect_says(refused_setting("fixed.box_mm=[1, \"2\"]"), {"fixed.box_mm", "list"});
+  expect_says(refused_setting("insertion.hole=Z9"),
+              {"--set insertion.hole=Z9: insertion[0].hole = \"Z9\"", "no such hole"});
+  expect_says(refused_setting("insertion.depth_mm=500"), {"--set insertion.depth_mm=500: insertion[0].depth_mm = 500"});
 }
 
 TEST(Settings, without_key_or_value_are_refused) {
-  expect_says(refused("needle.length_mm"), {"--set needle.length_mm", "no '='", "--set key=value"});
-  expect_says(refused("=3"), {"--set =3", "no key"});
-  expect_says(refused(""), {"--set", "no '='"});
-  expect_says(refused("name=\x01"), {"--set name", "no printable text"});
-  expect_says(refused("name=Pr\xFC"
-                      "f"),
+  expect_says(refused_setting("needle.length_mm"), {"--set needle.length_mm", "no '='", "--set key=value"});
+  expect_says(refused_setting("=3"), {"--set =3", "no key"});
+  expect_says(refused_setting(""), {"--set", "no '='"});
+  expect_says(refused_setting("name=\x01"), {"--set name", "no printable text"});
+  expect_says(refused_setting("name=Pr\xFC"
+                              "f"),
               {"--set name", "UTF-8"});
-  expect_says(refused("..=3"), {"--set ..=3", "unknown key"});
-  expect_says(refused("[0].hole=3"), {"unknown key"});
-  expect_says(refused("insertion=3"), {"--set insertion=3"});
-  expect_says(refused("name=\"a\"\nmesh.nodes=3"), {"--set name", "no printable text"});
+  expect_says(refused_setting("..=3"), {"--set ..=3", "unknown key"});
+  expect_says(refused_setting("[0].hole=3"), {"unknown key"});
+  expect_says(refused_setting("insertion=3"), {"--set insertion=3"});
+  expect_says(refused_setting("name=\"a\"\nmesh.nodes=3"), {"--set name", "no printable text"});
 }

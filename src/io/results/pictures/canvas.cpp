@@ -28,6 +28,30 @@ Error no_picture(const std::string& what) {
   return failure("pictures", what, "Install the packages libegl1, libegl-mesa0 and libgl1-mesa-dri.");
 }
 
+/// Averages squares of kOversampling × kOversampling pixels.
+void average_down(const vtkUnsignedCharArray& large, vtkImageData& picture) {
+  constexpr int k = Canvas::kOversampling;
+  picture.SetDimensions(Canvas::kWidth, Canvas::kHeight, 1);
+  picture.AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  for (int y = 0; y < Canvas::kHeight; ++y) {
+    for (int x = 0; x < Canvas::kWidth; ++x) {
+      auto* pixel = static_cast<unsigned char*>(picture.GetScalarPointer(x, y, 0));
+      for (int c = 0; c < 3; ++c) {
+        int sum = k * k / 2;
+        for (int j = 0; j < k; ++j) {
+          for (int i = 0; i < k; ++i) {
+            const vtkIdType at = static_cast<vtkIdType>(k * y + j) * (k * Canvas::kWidth) + (k * x + i);
+            sum += const_cast<vtkUnsignedCharArray&>(large).GetValue(3 * at + c);  // VTK's getters are not const
+          }
+        }
+        pixel[c] = static_cast<unsigned char>(sum / (k * k));
+      }
+    }
+  }
+}
+
+}  // namespace
+
 /// An OpenGL 3.2 core context that draws nowhere but into its own framebuffers.
 class SurfacelessContext {
  public:
@@ -61,30 +85,6 @@ class SurfacelessContext {
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;
 };
-
-/// Averages squares of kOversampling × kOversampling pixels.
-void average_down(const vtkUnsignedCharArray& large, vtkImageData& picture) {
-  constexpr int k = Canvas::kOversampling;
-  picture.SetDimensions(Canvas::kWidth, Canvas::kHeight, 1);
-  picture.AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  for (int y = 0; y < Canvas::kHeight; ++y) {
-    for (int x = 0; x < Canvas::kWidth; ++x) {
-      auto* pixel = static_cast<unsigned char*>(picture.GetScalarPointer(x, y, 0));
-      for (int c = 0; c < 3; ++c) {
-        int sum = k * k / 2;
-        for (int j = 0; j < k; ++j) {
-          for (int i = 0; i < k; ++i) {
-            const vtkIdType at = static_cast<vtkIdType>(k * y + j) * (k * Canvas::kWidth) + (k * x + i);
-            sum += const_cast<vtkUnsignedCharArray&>(large).GetValue(3 * at + c);  // VTK's getters are not const
-          }
-        }
-        pixel[c] = static_cast<unsigned char>(sum / (k * k));
-      }
-    }
-  }
-}
-
-}  // namespace
 
 struct Canvas::Parts {
   SurfacelessContext context;  ///< first: outlives the window
