@@ -34,6 +34,7 @@ function part(id: string): HTMLElement {
 
 const fake = __FAKE_SERVER__ && new URLSearchParams(location.search).has('fake');
 const session = new Session(fake ? new FakeServer() : new WebSocketTransport(serverAddress('live', true)));
+session.start();  // the server answers while the page is being built
 const hand = new HandControl(session);
 const help = makeHelp(session);
 
@@ -74,7 +75,6 @@ view.onVisibility = (region, visible) => {
     section.box.request();
   }
 };
-session.start();
 
 function takePicture(): void {
   view.stage?.render();

@@ -48,6 +48,7 @@ export class Cover {
       this.show('Preparing the patient', sentence(status?.stage ?? 'waiting for the server'), '', true,
                 typeof fraction === 'number' ? fraction : null);
     } else {
+      if (!this.root.hidden) performance.mark('needle ready');  // for whoever measures how long the page takes
       this.root.hidden = true;
     }
   }

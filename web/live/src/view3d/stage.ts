@@ -34,6 +34,7 @@ export class Stage {
   private sorted: { surface: RegionSurface; distance: number }[] = [];
   private readonly pace = new Pace(Math.min(devicePixelRatio, 2));
   private halfSize = 60;  // [mm] half height of the view at zoom 1
+  private drawn = false;
   private compiled = false;  // the shaders of the anatomy: waiting for them would hold up all of the page
 
   /** Throws where the browser has no WebGL. @param scaleBar [mm] and width [CSS px] of a bar that fits the zoom */
@@ -119,6 +120,8 @@ export class Stage {
     this.renderer.setViewport(0, 0, width, height);
     this.sortSurfaces();
     this.renderer.render(this.scene, this.camera);
+    if (!this.drawn) performance.mark('3D view');  // like 'needle ready' of the cover
+    this.drawn = true;
     this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
     const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
     const mm = roundDown((0.16 * width) / pixelsPerMm);

@@ -15,8 +15,9 @@ import { Stage } from './stage';
 
 const SMALLEST_SCALE_MM = 0.5;
 
+/** The 3D view comes last when the page opens: a WebGL context may hold up all of it for a second or more. */
 export class ViewPanel {
-  readonly stage: Stage | null;
+  stage: Stage | null = null;
   onVisibility: (region: number, visible: boolean) => void = () => {};
   private anatomy: Anatomy | null = null;
   private byDisplacement = false;
@@ -25,15 +26,16 @@ export class ViewPanel {
   private readonly list = element('div', 'regions');
   private readonly scale = element('div', 'view-scale');
   private readonly note = element('p', 'view-note');
+  private readonly picture = element('div', 'canvas');
+  private readonly bar = element('div', 'scale-bar');
   private cutControl: CutControl | null = null;
+  private opening = false;
 
   constructor(private readonly root: HTMLElement, private readonly session: Session, hand: HandControl) {
-    const picture = element('div', 'canvas');
-    const bar = element('div', 'scale-bar');
-    root.append(picture, bar, this.scale, this.note);
+    root.append(this.picture, this.bar, this.scale, this.note);
+    this.bar.hidden = true;
     this.note.hidden = true;
     this.scale.hidden = true;
-    this.stage = this.makeStage(picture, bar);
     // The wheel pushes the needle, with Ctrl it zooms.
     root.addEventListener('wheel', (e) => {
       if (e.ctrlKey || this.settings.contains(e.target as Node)) return;
@@ -41,12 +43,11 @@ export class ViewPanel {
       e.stopPropagation();
       hand.push(wheelNotches(e));
     }, { capture: true, passive: false });
-    if (!this.stage) return;
-    this.buildSettings(this.stage);
     session.on('frame', () => this.update());
     session.on('restart', () => this.setScale(SMALLEST_SCALE_MM));
     session.on('status', (status) => {
       this.stage?.template.mark(status.hole ?? '');
+      this.openSoon();
     });
   }
 
@@ -58,16 +59,40 @@ export class ViewPanel {
   setAnatomy(anatomy: Anatomy): void {
     const again = this.anatomy !== null && samePatient(this.anatomy.scene, anatomy.scene);
     this.anatomy = anatomy;
-    if (!this.stage) return;
-    this.stage.setAnatomy(anatomy, again);
-    if (!again) this.cutControl?.setScene(anatomy.scene);
-    const { stage } = this;
-    this.list.replaceChildren(...stage.surfaces.map((surface, i) => this.rowOf(stage, surface, i)));
-    for (const surface of this.stage.surfaces) surface.colorByDisplacement(this.byDisplacement);
-    this.stage.showTissue(this.most);
+    if (this.stage) {
+      this.showAnatomy(this.stage, anatomy, again);
+    } else {
+      this.openSoon();
+    }
   }
 
-  private makeStage(picture: HTMLElement, bar: HTMLElement): Stage | null {
+  /** Once the needle can be taken, and what else there is to see has been painted. */
+  private openSoon(): void {
+    if (this.opening || !this.anatomy || this.session.status?.state !== 'ready') return;
+    this.opening = true;
+    requestAnimationFrame(() => setTimeout(() => this.open()));
+  }
+
+  private open(): void {
+    this.stage = this.makeStage();
+    if (!this.stage) return;
+    this.bar.hidden = false;
+    this.buildSettings(this.stage);
+    if (this.anatomy) this.showAnatomy(this.stage, this.anatomy, false);
+    if (this.session.frame) this.stage.showNeedle(this.session.frame);
+    this.stage.template.mark(this.session.status?.hole ?? '');
+  }
+
+  private showAnatomy(stage: Stage, anatomy: Anatomy, again: boolean): void {
+    stage.setAnatomy(anatomy, again);
+    if (!again) this.cutControl?.setScene(anatomy.scene);
+    this.list.replaceChildren(...stage.surfaces.map((surface, i) => this.rowOf(stage, surface, i)));
+    for (const surface of stage.surfaces) surface.colorByDisplacement(this.byDisplacement);
+    stage.showTissue(this.most);
+  }
+
+  private makeStage(): Stage | null {
+    const { picture, bar } = this;
     try {
       return new Stage(picture, (mm, px) => {
         const text = `${mm} mm`;
@@ -77,7 +102,6 @@ export class ViewPanel {
     } catch {
       picture.replaceChildren(element('p', 'no-webgl',
         'This browser offers no WebGL, which the 3D view needs. The sections and the curves work without it. Cure: a current browser with hardware acceleration switched on.'));
-      bar.hidden = true;
       return null;
     }
   }
