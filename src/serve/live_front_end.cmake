@@ -7,6 +7,8 @@ set(WEB_DIST ${STYLET_WEB_BUILD}/dist)
 
 set(live_assets ${STYLET_WEB_BUILD}/live_assets.cpp)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/assets.cpp.in ${live_assets} @ONLY)
-set_source_files_properties(${live_assets} PROPERTIES OBJECT_DEPENDS "${live_outputs};${LIVE_PAGE}")
+# A file by itself: what it depends on would be forgotten in one joined of several.
+set_source_files_properties(${live_assets} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+  OBJECT_DEPENDS "${live_outputs};${LIVE_PAGE}")
 add_library(stylet_live_assets STATIC ${live_assets} ${live_outputs})
 target_include_directories(stylet_live_assets PRIVATE ${CMAKE_CURRENT_LIST_DIR})

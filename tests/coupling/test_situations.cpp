@@ -28,7 +28,7 @@ TEST(Situation, bone_cannot_be_cut_and_the_force_rises) {
   run.aim({3, 2, 0});
   run.go(39.5);
   const double before = run.forces.back();
-  run.go(42);
+  run.go(42, 5.0);
   ASSERT_EQ(run.count(Kind::bone_contact, 1), 1);
   EXPECT_NEAR(run.first(Kind::bone_contact)->depth, 40.0, 1.5);
   EXPECT_EQ(run.report.tip, TipPhase::bone);
