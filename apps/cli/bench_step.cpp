@@ -101,8 +101,9 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
       "The demo's needle, 90 mm in, back and forth three times, and out: time of the steps with nearly all contacts.\n"
       "p50 … max: processor time of the thread; p99 / 570: against the coarsest mesh with as many contacts; all "
       "steps, longest, over 1 ms:\n"
-      "with however many contacts, processor time; fixed work: how often arithmetic of always the same amount, 100 µs "
-      "after each step, took\nover 1 ms; by medians: the longest when each is given the median of its "
+      "with however many contacts, processor time; fixed work: how often arithmetic of always the same amount, some "
+      "100 µs long, done after each step,\ntook over 1 ms; by medians: the longest when each is given the median of "
+      "its "
       "repeats (--steps); before the first step: mesh from contours, factor of the stiffness, "
       "store of compliances and all else; memory: resident then.");
   console.say(table.text());

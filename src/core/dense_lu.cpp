@@ -5,7 +5,6 @@
 #include "core/dense_kernels.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace stylet::dense {
 

@@ -19,10 +19,12 @@ constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifte
 constexpr int kMaxToggles = 6;
 constexpr int kManyIterations = 5;  ///< an old matrix is made anew before the next step when it took so many
 // A tangent costs as much as some iterations with an old one, and spread over more of them it does no harm to the
-// longest step: so many are waited for, and more after a tangent in the same balance.
-constexpr int kSoon = 4;
-constexpr int kTangentPatience = 6;
-constexpr double kFalls = 0.3;   ///< error over that before: less, and a tangent of this balance serves on
+// longest step.
+constexpr int kSoon = 4;             ///< so many more iterations are waited for
+constexpr int kTangentPatience = 6;  ///< the same where the tangent is of this balance
+/// Where states have changed, one of this balance serves on while no more than this part of the error is left each
+/// time.
+constexpr double kFalls = 0.3;
 constexpr int kTryWithout = 16;  ///< tangents on springs, then one without
 constexpr int kFewSprings = 6;
 constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
@@ -493,7 +495,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       const double rate = error / before;
       const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
       if (changed) {
-        exact = new_tangent ? !(rate < kFalls) : iteration > 1 || !(rate < 1.0);
+        exact = new_tangent ? !(rate < kFalls || done_after(kTangentPatience)) : iteration > 1 || !(rate < 1.0);
       } else {
         exact = iteration == 1 ? !(rate < 1.0) : !done_after(new_tangent ? kTangentPatience : kSoon);
       }

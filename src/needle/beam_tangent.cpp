@@ -83,7 +83,8 @@ bool BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, st
   assemble_energy(shape);
   for (Eigen::Index c = 0; c < load_count(); ++c) assemble_jacobian(shape, base_rotation, c);
   if (!springs.empty()) add_springs(springs);
-  if (!factorise_shifted(otherwise)) return false;
+  factorised_ = factorise_shifted(otherwise);
+  if (!factorised_) return false;
   z_ = g_;
   solve_lower(L_, 0, z_);
   solve_jacobian();
@@ -140,7 +141,7 @@ double BeamTangent::largest_imbalance(const BeamShape& shape, const Mat3& base_r
 
 bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                         Eigen::Ref<VecX> free) {
-  if (loads.size() > last_moved_.size()) return false;
+  if (!factorised_ || loads.size() > last_moved_.size()) return false;
   keep_first(loads.size());
   sum_work(shape, base_rotation, loads);
   for (int e = 0; e < elements_; ++e) {
@@ -178,7 +179,7 @@ void BeamTangent::locate(const BeamShape& shape, const Mat3& base_rotation, cons
 bool BeamTangent::append(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                          Eigen::Ref<MatX> compliance) {
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
-  if (loads.size() > last_moved_.size() + 1 || size > Y_.cols()) return false;
+  if (!factorised_ || loads.size() > last_moved_.size() + 1 || size > Y_.cols()) return false;
   keep_first(loads.size() - 1);
   locate(shape, base_rotation, loads.back());
   const Eigen::Index c = load_count() - 1;

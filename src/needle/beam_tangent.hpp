@@ -29,13 +29,13 @@ class BeamTangent {
   /// other columns of assemble().
   /// @param loads (w) those there, or the first of them, and the new one last
   /// @param compliance [mm/N] (3 × 3w) LPS rows of J H⁻¹ Jᵀ, written
-  /// @return false, and nothing done, when there is no room or there were fewer
+  /// @return false, and nothing done, when there is no room or no factor, or there were fewer
   bool append(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
               Eigen::Ref<MatX> compliance);
 
   /// Gradient for this shape and these loads; Hessian, J and springs as assemble() left them.
   /// @param free -J H⁻¹ g [mm] (3w) LPS, written
-  /// @return false, and nothing done, when there were fewer loads
+  /// @return false, and nothing done, when there were fewer loads, or there is no factor
   bool relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
              Eigen::Ref<VecX> free);
 
@@ -85,6 +85,7 @@ class BeamTangent {
   std::vector<Mat3> lever_;            ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
   MatX Y_;                             ///< (3n × 3 capacity) L⁻¹ Jᵀ
   double elastic_shift_ = 0.0;
+  bool factorised_ = false;  ///< not where it was given up
 };
 
 }  // namespace stylet::beam

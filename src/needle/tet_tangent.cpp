@@ -73,7 +73,8 @@ bool TetTangent::assemble(const TetShape& shape, const Mat3& base_rotation, std:
     assembled_ = shape.revision();
   }
   assemble_loads(shape, base_rotation, loads);
-  if (!factorise_shifted(base_rotation, springs, otherwise)) return false;
+  factorised_ = factorise_shifted(base_rotation, springs, otherwise);
+  if (!factorised_) return false;
   reduce_gradient();
   band_.solve_lower(0, z_.data());
   const Mat3 to_base = base_rotation.transpose();
@@ -144,7 +145,7 @@ void TetTangent::assemble_gradient(const TetShape& shape, const Mat3& base_rotat
 
 bool TetTangent::relax(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                        Eigen::Ref<VecX> free) {
-  if (loads.size() > loads_.size()) return false;
+  if (!factorised_ || loads.size() > loads_.size()) return false;
   loads_.resize(loads.size());
   assemble_gradient(shape, base_rotation, loads);
   reduce_gradient();

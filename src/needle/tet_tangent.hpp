@@ -27,7 +27,7 @@ class TetTangent {
 
   /// Gradient for this shape and these loads; stiffness, J and springs as assemble() left them.
   /// @param free -J K⁻¹ g [mm] (3w) LPS, written
-  /// @return false, and nothing done, when there were fewer loads
+  /// @return false, and nothing done, when there were fewer loads, or there is no factor
   bool relax(const TetShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads, Eigen::Ref<VecX> free);
 
   /// Adds the Newton step for these loads to the displacement.
@@ -80,6 +80,7 @@ class TetTangent {
   MatX Y_;                                 ///< (15 segments × 3 capacity) L⁻¹ Jᵀ
   long assembled_ = -1;                    ///< revision of the shape that stiffness_ is of
   double material_shift_ = 0.0;
+  bool factorised_ = false;  ///< not where it was given up
 };
 
 }  // namespace stylet::tet

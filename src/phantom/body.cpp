@@ -10,7 +10,7 @@ namespace stylet::phantom {
 using Eigen::Vector2d;
 
 namespace {
-constexpr double middle_y = 9.0;         // [mm] the gland lies nearer to the front
+constexpr double body_centre_y = 9.0;    // [mm] the gland lies nearer to the front
 constexpr double perineum_start = 34.0;  // [mm] above the skin the sections begin to shrink
 constexpr double roundness = 2.6;        // of the perineum; 2 is an ellipsoid's cap, larger is flatter
 }  // namespace
@@ -29,7 +29,7 @@ std::vector<Outline> Body::outlines(double z) const {
   const double u = std::clamp((low + perineum_start - z) / perineum_start, 0.0, 0.99);
   const double size = std::pow(1.0 - std::pow(u, roundness), 1.0 / roundness);
   const double squareness = 2.6 - 0.4 * u;
-  const double y = middle_y - 5.0 * u * u;  // the perineum is centred in front of the anus
+  const double y = body_centre_y - 5.0 * u * u;  // the perineum is centred in front of the anus
   const double cleft = 5.0 * std::exp(-std::pow((z + 5.0) / 40.0, 2));
   return {trace(72, [&](double theta) {
     Vector2d p =

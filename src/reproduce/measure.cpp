@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <limits>
@@ -31,6 +32,8 @@ std::string asked(const char* function) {
 }
 
 }  // namespace
+
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double thread_cpu_s() {
   timespec now{};

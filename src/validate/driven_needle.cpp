@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driven_needle.hpp"
 
-#include "fixed_work.hpp"
-
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/sim/simulation.hpp"
 #include "stylet/validate/context.hpp"
@@ -22,9 +20,6 @@ constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
 /// Steps with fewer of the most contacts are not of that number.
 constexpr double kShare = 0.85;
-constexpr double kFixedWork_us = 100.0;  ///< as long as a step with 40 contacts
-
-double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Time spent in each phase itself, not in phases within it.
 class PhaseClock final : public PhaseObserver {
@@ -65,9 +60,8 @@ class PhaseClock final : public PhaseObserver {
 /// Once in, back and forth, and out.
 /// @param place number of the first step, DrivenStep::place
 void drive(Simulation& simulation, bool phases, long least, long place, std::vector<DrivenStep>& steps,
-           const Progress& progress) {
+           const Progress& progress, const FixedWork* fixed) {
   PhaseClock clock;
-  const FixedWork fixed(kFixedWork_us);
   simulation.observe_phases(phases ? &clock : nullptr);
   const PlannedInsertion& plan = simulation.model().insertions().front();
   const Pose first = plan.motion.at(0.0);
@@ -82,14 +76,14 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
     simulation.prepare();
     DrivenStep step;
     step.place = place++;
-    const double wall = wall_s();
+    const double wall = reproduce::wall_s();
     const double cpu = reproduce::thread_cpu_s();
     if (phases) clock.start();
     simulation.step(base, kDrivenStep_s);
     if (phases) step.phase_us = clock.stop();
     step.cpu_us = 1e6 * (reproduce::thread_cpu_s() - cpu);
-    step.wall_us = 1e6 * (wall_s() - wall);
-    if (!phases) step.fixed_us = fixed.run();
+    step.wall_us = 1e6 * (reproduce::wall_s() - wall);
+    if (fixed != nullptr) step.fixed_us = fixed->run();
     step.contacts = simulation.record().contacts;
     step.iterations = simulation.record().iterations;
     step.events = static_cast<int>(simulation.new_events().size());
@@ -144,13 +138,13 @@ Scenario driven_scenario(int contacts) {
 }
 
 std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
-                                     const Progress& progress) {
+                                     const Progress& progress, const FixedWork* fixed) {
   std::vector<DrivenStep> steps;
   std::unique_ptr<Simulation> simulation;
   for (int times = 0; times == 0 || static_cast<long>(steps.size()) < least; ++times) {
     const bool fresh = times % 2 == 0;
     if (fresh) simulation = std::make_unique<Simulation>(model);
-    drive(*simulation, phases, least, fresh ? 0 : steps.back().place + 1, steps, progress);
+    drive(*simulation, phases, least, fresh ? 0 : steps.back().place + 1, steps, progress, fixed);
   }
   return steps;
 }

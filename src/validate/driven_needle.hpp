@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "fixed_work.hpp"
+
 #include "stylet/coupling/step_phases.hpp"
 #include "stylet/sim/model.hpp"
 #include "stylet/validate/scale_bench.hpp"
@@ -32,14 +34,15 @@ struct DrivenStep {
   bool flagged = false;
   double cpu_us = 0.0;  ///< of the thread
   double wall_us = 0.0;
-  double fixed_us = 0.0;  ///< processor time of FixedWork right after the step; 0 in a run with phases
+  double fixed_us = 0.0;                       ///< processor time of FixedWork right after the step, if any
   std::array<double, kStepPhases> phase_us{};  ///< wall clock; of a run with phases
 };
 
+/// @param fixed done and timed after each step, or nothing
 /// @param phases the clock is read whenever a step goes from one phase to another, which costs time itself
 /// @param least steps: the way is gone again until there are so many, by the same needle and a new one by turns
 std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
-                                     const Progress& progress);
+                                     const Progress& progress, const FixedWork* fixed = nullptr);
 
 /// Which of the steps have nearly all contacts.
 std::vector<std::size_t> full_steps(const std::vector<DrivenStep>& steps);

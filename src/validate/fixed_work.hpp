@@ -3,7 +3,7 @@
 
 namespace stylet::validate {
 
-/// Arithmetic of always the same amount, about as long as a step: what its time varies by is the machine's doing. It
+/// Arithmetic of always the same amount: what its time varies by is the machine's doing. It
 /// stays within the processor's registers, so whoever comes after it finds the caches as they were.
 class FixedWork {
  public:
@@ -11,7 +11,7 @@ class FixedWork {
   explicit FixedWork(double about_us);
 
   /// @return [µs] processor time of the thread
-  double run() const;
+  [[nodiscard]] double run() const;
 
  private:
   void work() const;

@@ -2,20 +2,18 @@
 #include "stylet/validate/scale_bench.hpp"
 
 #include "driven_needle.hpp"
+#include "stylet/reproduce/measure.hpp"
 #include "stylet/validate/context.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 
 namespace stylet::validate {
 
 namespace {
-
-double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double resident_mb() {
   std::ifstream statm("/proc/self/statm");
@@ -40,22 +38,25 @@ double longest_median(const std::vector<DrivenStep>& steps) {
   return longest;
 }
 
-Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least, const Progress& progress) {
+constexpr double kFixedWork_us = 100.0;  ///< as a step with 40 contacts takes
+
+Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least, const FixedWork& fixed,
+                         const Progress& progress) {
   ScaleRow row;
   row.contacts = contacts;
   const Scenario scenario = driven_scenario(contacts);
   row.spacing_mm = scenario.coupling.spacing_mm;
-  const double start = wall_s();
+  const double start = reproduce::wall_s();
   const auto model = Model::compile(scenario, anatomy.mesh, "the demo", {}, progress);
   if (!model) return model.error();
   row.nodes = (*model)->mesh().node_count();
   row.element = to_string((*model)->tissue().element());
   row.mesh_s = anatomy.report.seconds;
   row.factor_s = (*model)->tissue().statistics().factor_seconds;
-  row.store_s = wall_s() - start - row.factor_s;
+  row.store_s = reproduce::wall_s() - start - row.factor_s;
   row.memory_mb = resident_mb();
 
-  const std::vector<DrivenStep> steps = drive_needle(*model, false, least, progress);
+  const std::vector<DrivenStep> steps = drive_needle(*model, false, least, progress, &fixed);
   row.all_steps = static_cast<long>(steps.size());
   for (const DrivenStep& step : steps) {
     row.all_longest_us = std::max(row.all_longest_us, step.cpu_us);
@@ -87,12 +88,13 @@ Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least,
 
 Result<std::vector<ScaleRow>> bench_scale(const ScaleBenchOptions& options, const Progress& progress) {
   std::vector<ScaleRow> rows;
+  const FixedWork fixed(kFixedWork_us);
   for (const Index nodes : {570, 5000, 20000, 100000}) {
     if (nodes > options.largest) continue;
     const auto anatomy = mesh_demo(nodes, progress);
     if (!anatomy) return anatomy.error();
     for (const int contacts : options.contacts) {
-      auto row = measure(*anatomy, contacts, options.steps, progress);
+      auto row = measure(*anatomy, contacts, options.steps, fixed, progress);
       if (!row) return row.error();
       rows.push_back(std::move(*row));
     }

@@ -18,7 +18,7 @@
 
 namespace stylet::test {
 
-/// The usual step. Under sanitizers, which look at what a step does and not at its numbers, half as many.
+/// The usual step; under sanitizers, which look at what a step does and not at its numbers, one twice as long.
 inline constexpr double kStep_s = kSanitized ? 2e-3 : 1e-3;
 
 /// A block of tissue 100 mm wide and deep, skin at z = 0, held at its sides and bottom, and a needle along z.

@@ -146,6 +146,24 @@ TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
   EXPECT_FALSE(free->linearise(loads, compliance, motion));
 }
 
+TEST_P(NeedleInAGuide, GivesUpOnATangentThatTheHoleDoesNotMakeDefinite) {
+  const auto needle = guided({0.05, 100.0}, 60.0, {0.4, 0.0, 0.0});
+  const std::vector<PointLoad> loads = {{kLength, {0.0, 0.0, -4.0}}, {150.0, {0, 0, -0.2}}};
+  const std::vector<Mat3> springs(2, Vec3(0.4, 0.4, 0.0).asDiagonal());
+  MatX compliance(6, 6);
+  VecX free(6);
+  needle->linearise(loads, compliance, free, springs);
+  needle->advance(loads);
+  ASSERT_GT(needle->guide_load().force.norm(), 0.0);
+  const MatX untouched = MatX::Constant(6, 6, 7.0);
+  compliance = untouched;
+  EXPECT_FALSE(needle->linearise(loads, compliance, free, {}, Indefinite::give_up));
+  EXPECT_EQ(compliance, untouched);
+  EXPECT_FALSE(needle->relax(loads, free)) << "there is no tangent";
+  EXPECT_TRUE(needle->linearise(loads, compliance, free, springs, Indefinite::give_up));
+  EXPECT_TRUE(needle->relax(loads, free));
+}
+
 TEST_P(NeedleInAGuide, OnSpringsBeyondBucklingNewtonReachesTheEquilibriumInFewSteps) {
   const auto needle = guided({0.05, 100.0}, 60.0, {0.4, 0.0, 0.0});
   const std::vector<PointLoad> given = {{kLength, {0.02, 0.01, -4.0}}, {150.0, {0, 0, -0.2}}};

@@ -434,6 +434,7 @@ TEST_P(NeedleContract, GivingUpOnAnIndefiniteTangentLeavesTheNextOneAsItWouldBe)
   EXPECT_FALSE(needle->linearise(held.loads, compliance, free, {}, Indefinite::give_up));
   EXPECT_EQ(compliance, untouched);
   EXPECT_EQ(free, untouched.col(0));
+  EXPECT_FALSE(needle->relax(held.loads, free)) << "there is no tangent";
 
   MatX expected(9, 9);
   VecX expected_free(9);

@@ -49,10 +49,11 @@ class Needle {
   /// point back to where it is now, and compliance and free are those of the needle on its springs. The caller adds the
   /// springs' forces to its own balance; with them the Newton step stays exact.
   /// @param springs [N/mm] (w) stiffness at each load point, LPS, symmetric positive semidefinite; empty = none
+  /// @param otherwise where the tangent is not positive definite
   /// @param compliance [mm/N] (3w × 3w), symmetric positive semidefinite, written
   /// @param free [mm] (3w), written: motion of the load points by the Newton step with unchanged loads
   /// @return true when the tangent was positive definite as it is; otherwise it was made so, and the step is not exact,
-  /// or with Indefinite::give_up nothing is written, and linearise() is to be called again before anything else
+  /// or with Indefinite::give_up nothing is written, and there is no tangent until linearise() is called again
   virtual bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                          std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) = 0;
 

@@ -10,6 +10,9 @@ namespace stylet::reproduce {
 /// Processor time of this thread [s].
 double thread_cpu_s();
 
+/// A clock on the wall that only goes forward [s].
+double wall_s();
+
 /// Processor time of one call [s].
 template <class Work>
 double cpu_seconds(Work&& work) {

@@ -24,7 +24,7 @@ constexpr double kStiffest_kPa = 400.0;
 constexpr double kContact_N = 0.15;  ///< more than the noise of free travel
 
 /// The recording, mean force in bins of depth, depth counted from contact.
-struct Recording {
+struct OkamuraRecording {
   std::vector<double> depth_mm;
   std::vector<double> force_N;
   double first_peak_N = 0.0;  ///< before the first drop
@@ -32,7 +32,7 @@ struct Recording {
   double contact_mm = 0.0;  ///< on the recording's own scale
 };
 
-Result<Recording> read_recording_of(const std::filesystem::path& file) {
+Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
   const auto columns = read_number_table(file);
   if (!columns) return columns.error();
   if (columns->size() < 2)
@@ -49,7 +49,7 @@ Result<Recording> read_recording_of(const std::filesystem::path& file) {
     sum[bin] += force[i];
     ++count[bin];
   }
-  Recording out;
+  OkamuraRecording out;
   for (std::size_t b = 0; b < bins; ++b) {
     if (count[b] == 0) continue;
     const double f = sum[b] / count[b];
@@ -95,7 +95,7 @@ Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
                .y = column(drive.steps(), &StepRecord::force_axial_N)};
 }
 
-double rms(const Recording& recording, const Curve& curve) {
+double rms(const OkamuraRecording& recording, const Curve& curve) {
   double sum = 0.0;
   for (std::size_t i = 0; i < recording.depth_mm.size(); ++i)
     sum += std::pow(interpolated(curve.x, curve.y, recording.depth_mm[i]) - recording.force_N[i], 2);

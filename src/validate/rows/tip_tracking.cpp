@@ -22,14 +22,14 @@ constexpr double kEvery_mm = 5.0;
 constexpr double kInsertionSpeed_mm_per_s = 2.0;  ///< 100 mm in about a minute
 
 /// Lateral place of the tip over depth, from where it entered.
-struct Recording {
+struct TipRecording {
   std::string name;
   std::vector<double> depth_mm;
   std::vector<double> lateral_mm;
 };
 
 /// @return the recording every 5 mm of depth
-Result<Recording> read(const std::filesystem::path& file) {
+Result<TipRecording> read(const std::filesystem::path& file) {
   const auto columns = read_number_table(file, {"Tip x", "Tip y"});
   if (!columns) return columns.error();
   std::vector<std::pair<double, double>> samples;  // depth, lateral
@@ -47,7 +47,7 @@ Result<Recording> read(const std::filesystem::path& file) {
   }
   if (depth.size() < 10)
     return input_error(file.string(), "there are fewer than 10 readings", "Use the file as it was published");
-  Recording out{.name = file.stem().string(), .depth_mm = {}, .lateral_mm = {}};
+  TipRecording out{.name = file.stem().string(), .depth_mm = {}, .lateral_mm = {}};
   const double start = interpolated(depth, lateral, 0.0);
   for (double z = kEvery_mm; z <= kDeepest_mm; z += kEvery_mm) {
     out.depth_mm.push_back(z);
@@ -83,10 +83,10 @@ struct Fit {
   std::vector<double> lateral_mm;  ///< heading included
 };
 
-double rms(const std::vector<double>& lateral, const std::vector<Recording>& recordings) {
+double rms(const std::vector<double>& lateral, const std::vector<TipRecording>& recordings) {
   double sum = 0.0;
   double count = 0.0;
-  for (const Recording& r : recordings) {
+  for (const TipRecording& r : recordings) {
     for (std::size_t i = 0; i < lateral.size(); ++i) sum += std::pow(r.lateral_mm[i] - lateral[i], 2);
     count += static_cast<double>(lateral.size());
   }
@@ -94,12 +94,12 @@ double rms(const std::vector<double>& lateral, const std::vector<Recording>& rec
 }
 
 /// The best heading for a bevel angle follows by least squares.
-Result<Fit> fit_heading(double bevel_deg, const std::vector<Recording>& recordings) {
+Result<Fit> fit_heading(double bevel_deg, const std::vector<TipRecording>& recordings) {
   auto lateral = simulate(bevel_deg);
   if (!lateral) return lateral.error();
   double top = 0.0;
   double bottom = 0.0;
-  for (const Recording& r : recordings) {
+  for (const TipRecording& r : recordings) {
     for (std::size_t i = 0; i < lateral->size(); ++i) {
       top += r.depth_mm[i] * (r.lateral_mm[i] - (*lateral)[i]);
       bottom += r.depth_mm[i] * r.depth_mm[i];
@@ -111,7 +111,7 @@ Result<Fit> fit_heading(double bevel_deg, const std::vector<Recording>& recordin
   return fit;
 }
 
-Result<Fit> best_fit(const std::vector<Recording>& recordings) {
+Result<Fit> best_fit(const std::vector<TipRecording>& recordings) {
   Fit best;
   double low = 0.0;
   double high = 40.0;
@@ -129,8 +129,8 @@ Result<Fit> best_fit(const std::vector<Recording>& recordings) {
 }
 
 Result<Finding> predict(Context& context) {
-  const auto read_all = [&](const auto& names) -> Result<std::vector<Recording>> {
-    std::vector<Recording> all;
+  const auto read_all = [&](const auto& names) -> Result<std::vector<TipRecording>> {
+    std::vector<TipRecording> all;
     for (const char* name : names) {
       auto recording = read(*context.data(std::string("needle_tip_tracking/") + name));
       if (!recording) return recording.error();
@@ -156,7 +156,7 @@ Result<Finding> predict(Context& context) {
   Finding finding;
   finding.value = rms(fit->lateral_mm, *others);
   std::string ends;
-  for (const Recording& r : *others)
+  for (const TipRecording& r : *others)
     ends +=
         fmt::format("{}{:.2f} mm", ends.empty() ? "" : " and ", std::abs(fit->lateral_mm.back() - r.lateral_mm.back()));
   finding.note = fmt::format(
@@ -176,7 +176,7 @@ Result<Finding> predict(Context& context) {
   Curve model{.label = "fitted", .x = fitted->front().depth_mm, .y = fit->lateral_mm};
   finding.plot = {.x_label = "depth [mm]", .y_label = "lateral place of the tip [mm]", .curves = {model}};
   for (const auto* set : {&*fitted, &*others}) {
-    for (const Recording& r : *set) {
+    for (const TipRecording& r : *set) {
       finding.plot.curves.push_back({.label = r.name + (set == &*fitted ? ", for the fit" : ", predicted"),
                                      .x = r.depth_mm,
                                      .y = r.lateral_mm,

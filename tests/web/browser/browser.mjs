@@ -89,6 +89,14 @@ export async function until(what, ask, good, timeout = PATIENCE_MS) {
   assert.fail(`waited in vain for ${what}; last was ${JSON.stringify(value)}`);
 }
 
+/** Waits until the page has marked a moment of its opening ("needle ready", "3D view"); @returns it [ms since 1970] */
+export function marked(page, name) {
+  return until(name, () => page.evaluate((mark) => {
+    const [entry] = performance.getEntriesByName(mark);
+    return entry ? performance.timeOrigin + entry.startTime : 0;
+  }, name), Boolean);
+}
+
 /** Waits until a read-out satisfies `good`, and returns it. */
 export function untilReadout(page, label, good) {
   return until(`${label} ${good}`, () => readout(page, label), good);

@@ -4,7 +4,7 @@
 //   node tests/web/browser/opening.mjs [STARTS] [SCENARIO]
 // Each start has an empty cache of models; the demo's comes with the build.
 import path from 'node:path';
-import { openBrowser, openVisitor, until } from './browser.mjs';
+import { marked, openBrowser, openVisitor } from './browser.mjs';
 import { DEMO, makeFolder, startServer } from './server.mjs';
 
 const starts = Number(process.argv[2] ?? 5);
@@ -19,12 +19,8 @@ for (let k = 0; k < starts; k++) {
   const row = { listens: seconds() };
   const { page } = await openVisitor(browser, server.url);
   row.page = seconds();
-  const marked = (name) => until(name, () => page.evaluate((mark) => {
-    const [entry] = performance.getEntriesByName(mark);
-    return entry ? performance.timeOrigin + entry.startTime : 0;
-  }, name), Boolean);
-  row.needle = ((await marked('needle ready')) - performance.timeOrigin - begun) / 1000;
-  row.view = ((await marked('3D view')) - performance.timeOrigin - begun) / 1000;
+  row.needle = ((await marked(page, 'needle ready')) - performance.timeOrigin - begun) / 1000;
+  row.view = ((await marked(page, '3D view')) - performance.timeOrigin - begun) / 1000;
   rows.push(row);
   console.log(`listens ${row.listens.toFixed(2)} s, page ${row.page.toFixed(2)} s, needle ready ${row.needle.toFixed(2)} s, 3D view ${row.view.toFixed(2)} s`);
   await page.close();

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before } from 'node:test';
 import {
-  inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
+  inOrder, keepPicture, listenToEvents, marked, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
 } from './browser.mjs';
 import { shadesOf } from './png.mjs';
 import { makeFolder, startServer } from './server.mjs';
@@ -46,6 +46,7 @@ test('the page opens with the needle before the skin', async () => {
   assert.equal(await readout(page, 'Axial'), 0);
   assert.ok((await readout(page, 'Depth')) < 0, 'the needle is before the skin');
   heard = await listenToEvents(page);
+  await marked(page, '3D view');
   await keepPicture(page, 'start');
   await page.getByText("The picture of the tissue's motion is being prepared").waitFor({ state: 'hidden' });
 });
@@ -73,6 +74,20 @@ test('the gland moves with the needle', async () => {
   await keepPicture(page, 'displacement');
   await page.getByLabel('Tissue').check();
   await page.getByText('View', { exact: true }).click();
+});
+
+test('a page that is opened while nothing moves shows how far the gland has been moved', async () => {
+  await page.getByRole('button', { name: 'Pause' }).click();
+  await page.getByRole('button', { name: 'Resume' }).waitFor();
+  const { page: late, problems: lateProblems } = await openVisitor(browser, server.url);
+  await waitUntilReady(late);
+  await marked(late, '3D view');
+  await late.getByText('View', { exact: true }).click();
+  await late.getByLabel('Displacement').check();
+  await until('a scale for what has moved', () => late.locator('.view-scale .ticks span').last().textContent(), (most) => Number(most) > 0.5);
+  assert.deepEqual(lateProblems, []);
+  await late.close();
+  await page.getByRole('button', { name: 'Resume' }).click();
 });
 
 test('a picture can be kept', async () => {

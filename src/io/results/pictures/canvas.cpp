@@ -52,7 +52,8 @@ void average_down(const vtkUnsignedCharArray& large, vtkImageData& picture) {
 
 }  // namespace
 
-/// An OpenGL 3.2 core context that draws nowhere but into its own framebuffers.
+/// An OpenGL 3.2 core context that draws nowhere but into its own framebuffers. Part of Canvas::Parts, so not in the
+/// anonymous namespace.
 class SurfacelessContext {
  public:
   /// @return what went wrong, or empty

@@ -9,6 +9,7 @@ import type { Session } from '../session';
 import type { HandControl } from '../hand';
 import { samePatient } from '../scene';
 import { wheelNotches } from '../wheel';
+import type { Frame } from '../wire';
 import { CutControl } from './cut_control';
 import type { RegionSurface } from './region_surface';
 import { Stage } from './stage';
@@ -78,9 +79,14 @@ export class ViewPanel {
     if (!this.stage) return;
     this.bar.hidden = false;
     this.buildSettings(this.stage);
-    if (this.anatomy) this.showAnatomy(this.stage, this.anatomy, false);
-    if (this.session.frame) this.stage.showNeedle(this.session.frame);
+    if (!this.anatomy) return;
+    this.showAnatomy(this.stage, this.anatomy, false);
     this.stage.template.mark(this.session.status?.hole ?? '');
+    const { frame } = this.session;
+    if (!frame) return;
+    this.fitScale(this.anatomy.largest);  // nothing may move from now on
+    this.stage.showNeedle(frame);
+    this.showNote(frame);
   }
 
   private showAnatomy(stage: Stage, anatomy: Anatomy, again: boolean): void {
@@ -110,10 +116,18 @@ export class ViewPanel {
     const { frame } = this.session;
     if (!frame || !this.anatomy || !this.stage) return;
     if (this.anatomy.tissueMoved) {
-      if (this.anatomy.largest > this.most) this.setScale(this.anatomy.largest);
+      this.fitScale(this.anatomy.largest);
       this.tissueChanged();
     }
     if (this.anatomy.needleMoved) this.stage.showNeedle(frame);
+    this.showNote(frame);
+  }
+
+  private fitScale(largest: number): void {
+    if (largest > this.most) this.setScale(largest);
+  }
+
+  private showNote(frame: Frame): void {
     const note = this.notShown(frame.hidden);
     if (this.note.textContent !== note) {
       this.note.textContent = note;
