@@ -11,7 +11,7 @@ namespace stylet::serve {
 
 namespace {
 
-constexpr int kNice = 15;        ///< the loop, the pictures and a browser beside it come first
+constexpr int kNice = 10;        ///< the loop, the pictures and a browser beside it come first
 constexpr double kStages = 2.0;  ///< that the field is prepared in
 
 struct GivenUp {};
