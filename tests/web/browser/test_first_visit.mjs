@@ -148,16 +148,3 @@ test('back to the live needle', async () => {
   await turnUntil(3, 'the skin to be touched', async () => (await readout(page, 'Depth')) > 1);
   assert.deepEqual(problems, []);
 });
-
-test('a page that is opened while nothing moves shows how far the tissue has been moved', async () => {
-  await turnUntil(1, 'the skin to be pressed in', async () => (await readout(page, 'Depth')) > 6);
-  await page.getByRole('button', { name: 'Pause' }).click();
-  await page.getByRole('button', { name: 'Resume' }).waitFor();
-  const { page: late, problems: lateProblems } = await openVisitor(browser, server.url);
-  await waitUntilReady(late);
-  await marked(late, '3D view');
-  await late.getByText('View', { exact: true }).click();
-  await late.getByLabel('Displacement').check();
-  await until('a scale for what has moved', () => late.locator('.view-scale .ticks span').last().textContent(), (most) => Number(most) > 0.5);
-  assert.deepEqual(lateProblems, []);
-});
