@@ -37,7 +37,7 @@ struct ScaleRow {
   long all_over_1ms = 0;        ///< of those, above a millisecond of it
   double all_cpu_s = 0.0;       ///< of those together
   /// After every step an arithmetic of always the same amount is timed, 100 µs when nothing interrupts it: how often it
-  /// took above a millisecond, and all of it together. What the machine does to it it does to the steps.
+  /// took above a millisecond, and all of it together. An interruption takes time from it and from steps alike.
   long fixed_over_1ms = 0;
   double fixed_cpu_s = 0.0;
   /// The longest of all steps when each is given the median of its repeats, which do the same work: what is left

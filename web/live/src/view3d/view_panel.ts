@@ -34,6 +34,7 @@ export class ViewPanel {
 
   constructor(private readonly root: HTMLElement, private readonly session: Session, hand: HandControl) {
     root.append(this.picture, this.bar, this.scale, this.note);
+    this.picture.append(element('p', 'preparing', 'The 3D view is being prepared.'));
     this.bar.hidden = true;
     this.note.hidden = true;
     this.scale.hidden = true;
@@ -99,6 +100,7 @@ export class ViewPanel {
 
   private makeStage(): Stage | null {
     const { picture, bar } = this;
+    picture.replaceChildren();
     try {
       return new Stage(picture, (mm, px) => {
         const text = `${mm} mm`;
