@@ -7,21 +7,26 @@
 
 namespace stylet::dense {
 
-bool factorise(Eigen::Ref<MatX> A) {
+bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns) {
   const Eigen::Index n = A.rows();
-  for (Eigen::Index k = 0; k < n; k += kTile) {
-    const Eigen::Index nk = std::min(kTile, n - k);
+  for (Eigen::Index k = 0; k < n;) {
+    const bool left = k >= columns;
+    const Eigen::Index nk = std::min(kTile, left ? n - k : columns - k);
     const Eigen::Index below = n - k - nk;
-    const auto done = A.block(k, 0, nk, k);
+    const Eigen::Index before = std::min(k, columns);
+    const auto done = A.block(k, 0, nk, before);
     auto diagonal = A.block(k, k, nk, nk);
     auto rest = A.block(k + nk, k, below, nk);
     subtract_product_transposed(diagonal, done, done);
-    if (!factorise_tile(diagonal)) return false;
-    subtract_product_transposed(rest, A.block(k + nk, 0, below, k), done);
-    divide_by_transposed_tile(diagonal, rest);
+    if (!left && !factorise_tile(diagonal)) return false;
+    subtract_product_transposed(rest, A.block(k + nk, 0, below, before), done);
+    if (!left) divide_by_transposed_tile(diagonal, rest);
+    k += nk;
   }
   return A.diagonal().allFinite();
 }
+
+bool factorise(Eigen::Ref<MatX> A) { return factorise_first(A, A.rows()); }
 
 void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y) {
   const Eigen::Index n = L.rows();

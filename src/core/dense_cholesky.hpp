@@ -12,6 +12,9 @@ inline constexpr Eigen::Index kTile = 24;
 /// A = L Lᵀ, L over A. @return false if A is not positive definite (A is then spoilt)
 [[nodiscard]] bool factorise(Eigen::Ref<MatX> A);
 
+/// The first columns of that only, down to the last row; what A has left of the other columns is in their place.
+[[nodiscard]] bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns);
+
 /// Y ← L⁻¹ Y for a block of columns whose rows before `start` are zero (they are left alone).
 void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y);
 

@@ -36,42 +36,6 @@ bool factorise_lu(Eigen::Ref<MatX> A, std::span<int> pivots) {
   return A.allFinite();
 }
 
-bool append_lu(Eigen::Ref<MatX> LU, Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& R,
-               const Eigen::Ref<const MatX>& last, std::span<int> pivots) {
-  const Eigen::Index m = last.rows();
-  const Eigen::Index n = LU.rows() - m;
-  const auto old = LU.topLeftCorner(n, n);
-  swap_rows(C, pivots, 0, n);
-  for (Eigen::Index j = 0; j < m; ++j) {
-    auto column = C.col(j);
-    old.triangularView<Eigen::UnitLower>().solveInPlace(column);
-  }
-  LU.topRightCorner(n, m) = C;
-  for (Eigen::Index i = 0; i < m; ++i) {  // row by row: x U = r
-    auto row = C.col(i);
-    row = R.row(i).transpose();
-    old.triangularView<Eigen::Upper>().transpose().solveInPlace(row);
-    LU.row(n + i).head(n) = row.transpose();
-  }
-  auto corner = LU.bottomRightCorner(m, m);
-  corner = last;
-  const double tiny = kSingular * last.cwiseAbs().maxCoeff();
-  corner.noalias() -= LU.bottomLeftCorner(m, n).lazyProduct(LU.topRightCorner(n, m));
-  for (Eigen::Index j = 0; j < m; ++j) {
-    Eigen::Index pivot = 0;
-    const double largest = corner.col(j).tail(m - j).cwiseAbs().maxCoeff(&pivot);
-    if (!(largest > tiny)) return false;
-    pivot += j;
-    pivots[static_cast<std::size_t>(n + j)] = static_cast<int>(n + pivot);
-    if (pivot != j) LU.row(n + j).swap(LU.row(n + pivot));
-    for (Eigen::Index i = j + 1; i < m; ++i) {
-      corner(i, j) /= corner(j, j);
-      corner.row(i).tail(m - j - 1) -= corner(i, j) * corner.row(j).tail(m - j - 1);
-    }
-  }
-  return LU.bottomRows(m).allFinite();
-}
-
 void solve_lu(const Eigen::Ref<const MatX>& LU, std::span<const int> pivots, Eigen::Ref<MatX> Y) {
   const Eigen::Index n = LU.rows();
   swap_rows(Y, pivots, 0, n);

@@ -13,13 +13,6 @@ namespace stylet::dense {
 /// @return false when A is singular to working precision (A is then spoilt)
 [[nodiscard]] bool factorise_lu(Eigen::Ref<MatX> A, std::span<int> pivots);
 
-/// The factors of [A  C; R  last] from those of A, with rows swapped among the last ones only.
-/// @param LU (n + m)², its first n rows and columns the factors of A; the others are written
-/// @param C (n × m), spoilt @param R (m × n) @param last (m × m) @param pivots (n + m), the last m written
-/// @return false when it is singular to working precision
-[[nodiscard]] bool append_lu(Eigen::Ref<MatX> LU, Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& R,
-                             const Eigen::Ref<const MatX>& last, std::span<int> pivots);
-
 /// Y ← A⁻¹ Y from the factors.
 void solve_lu(const Eigen::Ref<const MatX>& LU, std::span<const int> pivots, Eigen::Ref<MatX> Y);
 

@@ -1,41 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact_system.hpp"
 
-#include "core/dense_kernels.hpp"
-
 #include <Eigen/LU>
 
 namespace stylet {
 
 ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
+  const Eigen::Index most_springs = 2 * static_cast<Eigen::Index>(contacts);
   A = N = MatX::Zero(n, n);
-  free = now = gap = shift = lambda = push = right_ = lent_ = work_ = VecX::Zero(n);
+  free = now = gap = shift = lambda = push = work_ = VecX::Zero(n);
   frame.assign(static_cast<std::size_t>(contacts), Mat3::Identity());
   yield.assign(static_cast<std::size_t>(contacts), Yield{});
-  lent_to_.reserve(static_cast<std::size_t>(contacts));
-  spring.assign(static_cast<std::size_t>(contacts), Mat3::Zero());
-  lent_by_tip_ = column_ = row_ = MatX::Zero(n, 3);
-  solved_ = MatX::Zero(n, 4);
-}
-
-void ContactSystem::list_lent() {
-  lent_to_.clear();
-  if (!supported) return;
-  for (int c = 0; c < count; ++c) {
-    if (!spring[static_cast<std::size_t>(c)].isZero(0.0)) lent_to_.push_back(c);
-  }
-}
-
-/// lent_ = G way
-void ContactSystem::lend(const Eigen::Ref<const VecX>& way) {
-  for (const int c : lent_to_)
-    lent_.segment<3>(3 * c).noalias() = spring[static_cast<std::size_t>(c)] * way.segment<3>(3 * c);
+  spring.assign(static_cast<std::size_t>(contacts), LentSpring{});
+  column_ = begun_ = solved_ = MatX::Zero(n + most_springs, 3);
+  right_ = VecX::Zero(n + most_springs);
 }
 
 bool ContactSystem::factorise() {
   lacks_tip_ = true;
-  list_lent();
   const Eigen::Index n = grip_rows();
   if (n == 0) return true;
   return grips_.factorise(A.block(3, 3, n, n), N.block(3, 3, n, n), grip_springs(), grip_yields());
@@ -45,7 +28,8 @@ bool ContactSystem::append() {
   lacks_tip_ = true;
   if (grip_count() == 1) return factorise();
   const Eigen::Index n = grip_rows();
-  return grips_.append(A.block(3, 3, n, n), N.block(3, 3, n, n), grip_springs(), grip_yields().back());
+  grips_.append(A.block(3, 3, n, n), N.block(3, 3, n, n), grip_yields().back());
+  return true;
 }
 
 bool ContactSystem::keep_first(int contacts) {
@@ -56,25 +40,18 @@ bool ContactSystem::keep_first(int contacts) {
 
 void ContactSystem::add_tip() {
   lacks_tip_ = false;
+  solved_for_ = 0;
   const Eigen::Index n = grip_rows();
   if (n == 0) return;
-  auto column = column_.topRows(n);
-  auto row = row_.topRows(n);
-  column = A.block(3, 0, n, 3) + N.block(3, 0, n, 3);
-  row = column;
-  for (const int c : lent_to_) {
-    if (c == 0) continue;
-    const Eigen::Index i = 3 * static_cast<Eigen::Index>(c) - 3;
-    const Mat3& G = spring[static_cast<std::size_t>(c)];
-    auto by_tip = lent_by_tip_.middleRows<3>(i);
-    by_tip.noalias() = G * N.block<3, 3>(3 * c, 0);
-    const Mat3 by_grip = G * A.block<3, 3>(3 * c, 0);
-    dense::subtract_product(column, A.block(3, 3 * c, n, 3), by_tip);
-    const Yield then = grips_.yield_of_factor(c - 1);
-    for (int k = 0; k < 3; ++k) column.col(k).segment<3>(i) -= then.of(by_tip.col(k));
-    dense::subtract_product(row, N.block(3, 3 * c, n, 3), by_grip);
+  auto column = column_.topRows(grips_.rows());
+  for (int k = 0; k < 3; ++k) {
+    column.col(k).head(n) = A.block(3, k, n, 1);
+    grips_.across(column.col(k).head(n), column.col(k).tail(grips_.spring_rows()));
   }
-  grips_.solve_base(column);
+  column.topRows(n) += N.block(3, 0, n, 3);
+  auto begun = begun_.topRows(grips_.rows());
+  begun = column;
+  grips_.begin(begun);
 }
 
 Vec3 ContactSystem::error(int contact) const {
@@ -92,70 +69,62 @@ double ContactSystem::own_yield(int contact, int k) const {
 
 bool ContactSystem::solve(TipRows held) {
   const Eigen::Index n = grip_rows();
-  if (n > 0 && !grips_.change(grip_yields()) && !factorise()) return false;
+  if (n > 0 && !grips_.change(grip_yields()) && !(factorise() && grips_.change(grip_yields()))) return false;
   if (lacks_tip_) add_tip();
 
-  auto right = right_.head(rows());
-  right = free.head(rows());
-  if (supported) {
-    lend(free);
-    for (const int c : lent_to_) {
-      const Vec3 lent = lent_.segment<3>(3 * c);
-      right.noalias() -= A.block(0, 3 * c, rows(), 3).lazyProduct(lent);
-      right.segment<3>(3 * c) -= yield[static_cast<std::size_t>(c)].of(lent);
-    }
-  }
-  for (int c = 0; c < count; ++c) right.segment<3>(3 * c) -= frame[static_cast<std::size_t>(c)] * error(c);
-
-  // The grips by themselves: B⁻¹ of the tip's columns and of the right-hand side.
-  auto solved = solved_.topRows(n);
+  // The grips and springs by themselves: B⁻¹ of the tip's columns and of the right-hand side.
+  const Eigen::Index rows_there = n > 0 ? grips_.rows() : 0;
+  auto right = right_.head(rows_there);
+  auto column = column_.topRows(rows_there);
+  auto solved = solved_.topRows(rows_there);
   if (n > 0) {
-    solved.leftCols<3>() = column_.topRows(n);
-    solved.col(3) = right.tail(n);
-    grips_.solve_base(solved.rightCols<1>());
-    grips_.take_changes_in(solved.leftCols<3>(), lent_by_tip_.topRows(supported ? n : 0));
-    grips_.take_changes_in(solved.rightCols<1>(), lent_by_tip_.topLeftCorner(0, 0));
+    if (solved_for_ != grips_.version()) {
+      solved = begun_.topRows(rows_there);
+      grips_.finish(solved);
+      solved_for_ = grips_.version();
+    }
+    for (int c = 1; c < count; ++c)
+      right.segment<3>(3 * c - 3).noalias() = frame[static_cast<std::size_t>(c)] * error(c);
+    grips_.across(right.head(n), right.tail(grips_.spring_rows()));
+    right = -right;
+    right.head(n) += free.segment(3, n);
+    grips_.begin(right);
+    grips_.finish(right);
   }
 
-  // The tip: its three rows with the grips taken out.
+  // The tip: its three rows with the others taken out.
   const Mat3& Q = frame.front();
-  Mat3 own = A.topLeftCorner<3, 3>();
   const Yield& tip = yield.front();
+  Mat3 own = A.topLeftCorner<3, 3>();
   own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();
   const Mat3 N_tip = N.topLeftCorner<3, 3>();
-  if (supported) own -= own * spring.front() * N_tip;
-  Mat3 corner = own + N_tip;
-  Vec3 rest = right.head<3>();
+  const Mat3 lent = n == 0 && supported ? spring.front().matrix() : Mat3::Zero();
+  Mat3 corner = own - own * lent * N_tip + N_tip;
+  Vec3 rest = free.head<3>() - own * (lent * free.head<3>()) - Q * error(0);
   if (n > 0) {
-    for (const int c : lent_to_) {  // by way of the grips
-      if (c > 0) corner.noalias() -= A.block<3, 3>(0, 3 * c) * lent_by_tip_.middleRows<3>(3 * c - 3);
-    }
-    corner.noalias() -= row_.topRows(n).transpose().lazyProduct(solved.leftCols<3>());
-    rest.noalias() -= row_.topRows(n).transpose().lazyProduct(solved.col(3));
+    corner.noalias() -= column.transpose().lazyProduct(solved);
+    rest.noalias() -= column.transpose().lazyProduct(right);
   }
-  corner = (Q.transpose() * corner * Q).eval();
-  rest = (Q.transpose() * rest).eval();
-  // Rows that are not held carry nothing any more.
-  Vec3 change = -(Q.transpose() * now.head<3>());
-  if (held == TipRows::all) {
-    const Eigen::PartialPivLU<Mat3> lu(corner);
-    change = lu.solve(rest);
-  } else if (held == TipRows::axial) {
-    change[2] = (rest[2] - corner(2, 0) * change[0] - corner(2, 1) * change[1]) / corner(2, 2);
+  // Rows that are not held carry nothing any more: λ = 0.
+  Mat3 left = Q.transpose() * corner * Q;
+  Vec3 given = Q.transpose() * rest;
+  const Mat3 free_row = Q.transpose() * (Mat3::Identity() - lent * N_tip) * Q;
+  const Vec3 carried = Q.transpose() * (now.head<3>() + lent * free.head<3>());
+  const int held_from = held == TipRows::all ? 0 : held == TipRows::axial ? 2 : 3;
+  for (int k = 0; k < held_from; ++k) {
+    left.row(k) = free_row.row(k);
+    given[k] = -carried[k];
   }
-  change = (Q * change).eval();
+  const Vec3 change = Q * Eigen::PartialPivLU<Mat3>(left).solve(given);
   push.head<3>() = now.head<3>() + change;
-  if (n > 0) push.segment(3, n) = now.segment(3, n) + solved.col(3) - solved.leftCols<3>().lazyProduct(change);
 
-  // λ = p + G (r − r_now), r − r_now = free − N (p − λ_now)
   auto forces = work_.head(rows());
-  forces = push.head(rows());
-  if (supported) {
-    right = push.head(rows()) - now.head(rows());
-    for (const int c : lent_to_) {
-      const Vec3 way = free.segment<3>(3 * c) - N.block(3 * c, 0, 3, rows()).lazyProduct(right);
-      forces.segment<3>(3 * c).noalias() += spring[static_cast<std::size_t>(c)] * way;
-    }
+  forces.head<3>() = push.head<3>() + lent * (free.head<3>() - N_tip * change);
+  if (n > 0) {
+    right.noalias() -= solved.lazyProduct(change);
+    push.segment(3, n) = now.segment(3, n) + right.head(n);
+    forces.tail(n) = push.segment(3, n);
+    grips_.add_lent(right.tail(grips_.spring_rows()), forces.tail(n));
   }
   for (int c = 0; c < count; ++c)
     lambda.segment<3>(3 * c).noalias() = frame[static_cast<std::size_t>(c)].transpose() * forces.segment<3>(3 * c);
@@ -166,8 +135,7 @@ bool ContactSystem::solve(TipRows held) {
 
 double ContactSystem::axial_excess(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
-  Vec3 change = frame[c] * lambda.segment<3>(3 * contact) - now.segment<3>(3 * contact);
-  if (supported) change -= spring[c] * free.segment<3>(3 * contact);
+  const Vec3 change = frame[c] * lambda.segment<3>(3 * contact) - now.segment<3>(3 * contact);
   return frame[c].col(2).dot(grips_.yield(contact - 1).of(change) - yield[c].of(change));
 }
 

@@ -9,10 +9,11 @@ namespace stylet {
 
 /// The linear equations of one iteration: contact forces λ on the tissue and pushes p on the needle, whose loads are
 /// −p. Tissue, needle, and contact c:
-///   u = A λ,   r = r_now + free − N (p − λ_now),   λ = p + G (r − r_now),   X + u − r + D λ = shift,
-/// G being springs lent to a needle that would buckle by itself, or nothing (Needle::linearise): their forces belong to
-/// the contacts. With π = p − λ_now and error = X + A λ_now − r_now + D λ_now − shift the rows that are held become
-///   [P (I − G N) + N] π = free − error − P G free,   P = A + diag(D).
+///   u = A λ,   r = r_now + free − N π,   π = p − λ_now,   λ = p + E f,   X + u − r + D λ = shift,
+/// f being the forces of springs K lent across a needle that would buckle by itself, f = K Eᵀ (r − r_now), or nothing
+/// (Needle::linearise): they belong to the contacts. With error = X + A λ_now − r_now + D λ_now − shift and P = A +
+/// diag(D) the rows that are held, and those of the springs, become
+///   (P + N) π + P E f = free − error,   Eᵀ P π + (Eᵀ P E − K⁻¹) f = −Eᵀ error.
 /// docs/theory/coupling.md §4 derives them.
 ///
 /// What is dear, the matrix of the shaft's contacts, is factorised by factorise() and used for as long as iterations
@@ -27,17 +28,17 @@ class ContactSystem {
   /// @param contacts most contacts, tip included
   explicit ContactSystem(int contacts);
 
-  int count = 0;             ///< contacts, tip included
-  MatX A;                    ///< [mm/N] tissue's compliance, full
-  MatX N;                    ///< [mm/N] needle's compliance, full
-  VecX free;                 ///< [mm]
-  VecX now;                  ///< [N] λ_now
-  VecX gap;                  ///< [mm] X + A λ_now − r_now: how far the tissue's points are beyond the needle's
-  VecX shift;                ///< [mm] in the frames
-  std::vector<Mat3> frame;   ///< columns n1, n2, t of each contact
-  std::vector<Yield> yield;  ///< D
-  std::vector<Mat3> spring;  ///< [N/mm] G
-  bool supported = false;    ///< springs are lent
+  int count = 0;                   ///< contacts, tip included
+  MatX A;                          ///< [mm/N] tissue's compliance, full
+  MatX N;                          ///< [mm/N] needle's compliance, full
+  VecX free;                       ///< [mm]
+  VecX now;                        ///< [N] λ_now
+  VecX gap;                        ///< [mm] X + A λ_now − r_now: how far the tissue's points are beyond the needle's
+  VecX shift;                      ///< [mm] in the frames
+  std::vector<Mat3> frame;         ///< columns n1, n2, t of each contact
+  std::vector<Yield> yield;        ///< D
+  std::vector<LentSpring> spring;  ///< at the tip only where it is the only contact
+  bool supported = false;          ///< springs are lent
 
   VecX lambda;  ///< [N] contact forces on the tissue, in the frames
   VecX push;    ///< [N] p
@@ -46,7 +47,7 @@ class ContactSystem {
   [[nodiscard]] bool factorise();
 
   /// Adds the contact after those in the matrix, with A, N and D of now; no spring is lent at it. False where the
-  /// matrix must be made anew.
+  /// matrix is singular.
   [[nodiscard]] bool append();
 
   /// The first `contacts` of those in the matrix are all there are now. False where it must be made anew.
@@ -80,21 +81,17 @@ class ContactSystem {
   [[nodiscard]] Eigen::Index grip_rows() const { return rows() - 3; }
   [[nodiscard]] std::span<const Yield> grip_yields() const { return std::span(yield).subspan(1, grip_count()); }
   [[nodiscard]] std::size_t grip_count() const { return static_cast<std::size_t>(count - 1); }
-  [[nodiscard]] std::span<const Mat3> grip_springs() const {
-    return supported ? std::span(spring).subspan(1, grip_count()) : std::span<const Mat3>();
+  [[nodiscard]] std::span<const LentSpring> grip_springs() const {
+    return supported ? std::span(spring).subspan(1, grip_count()) : std::span<const LentSpring>();
   }
-  void lend(const Eigen::Ref<const VecX>& way);
-  void list_lent();
 
   GripMatrix grips_;
   bool lacks_tip_ = true;
-  MatX lent_by_tip_;  ///< (3g × 3) G N of grips and tip
-  MatX column_;       ///< (3g × 3) B₀⁻¹ of rows of the grips, columns of the tip
-  MatX row_;          ///< (3g × 3) transposed rows of the tip
-  MatX solved_;       ///< (3g × 4) B⁻¹ of the tip's columns, and of the right-hand side
-  VecX right_;
-  std::vector<int> lent_to_;  ///< contacts with a spring
-  VecX lent_;                 ///< [N] G × something, there
+  unsigned solved_for_ = 0;  ///< version of the matrix that solved_ is of
+  MatX column_;              ///< (rows × 3) of the grips and springs, columns of the tip: also its rows
+  MatX begun_;               ///< (rows × 3) the same, half solved
+  MatX solved_;              ///< (rows × 3) B⁻¹ of them
+  VecX right_;               ///< right-hand side of the grips and springs, then their π and f
   VecX work_;
 };
 

@@ -8,8 +8,8 @@
 /// One sub-step's balance: Newton's iteration over the needle's shape, the frames and the place of the cut, with the
 /// linear equations of ContactSystem. Their matrix is dear and changes little from step to step, so it is kept, and
 /// errors are taken as they are: an iteration with an old matrix converges to the same balance, linearly. Sliding and
-/// cutting stay in the system as soft rows (viscous friction is a compliance h/(bℓ)), so a change of state changes D in
-/// one direction.
+/// cutting stay in the system as soft rows (viscous friction is a compliance h/(bℓ)), so a change of state changes D
+/// alone.
 namespace stylet {
 
 namespace {
@@ -154,11 +154,11 @@ void Insertion::Parts::append_contact(int load) {
   const Eigen::Index before = 3 * static_cast<Eigen::Index>(load);
   auto rows = system.N.block(before, 0, 3, before + 3);
   // What was lent at the tip alone is not for a matrix with grips.
-  if (system.supported && !springs.front().isZero(0.0)) tangent_fits = false;
+  if (system.supported && system.spring.front().stiffness > 0.0) tangent_fits = false;
   tangent_fits = tangent_fits && needle->append({loads.data(), static_cast<std::size_t>(count)}, rows);
   if (!tangent_fits) return;
   system.N.block(0, before, before, 3) = rows.leftCols(before).transpose();
-  springs[static_cast<std::size_t>(load)].setZero();
+  system.spring[static_cast<std::size_t>(load)] = {};
   system.count = count;
   matrix_fits = matrix_fits && system.append();
 }
@@ -241,9 +241,9 @@ void Insertion::Parts::lend_springs(int most) {
       own += grips[static_cast<std::size_t>(c - 1)].softness;
       lend = (count - 1 - c) % every == 0;
     }
-    const double stiffness = lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0;
-    const Mat3& Q = frames[static_cast<std::size_t>(c)];
-    springs[static_cast<std::size_t>(c)] = stiffness * Q.leftCols<2>() * Q.leftCols<2>().transpose();
+    LentSpring& spring = system.spring[static_cast<std::size_t>(c)];
+    spring = {frames[static_cast<std::size_t>(c)].col(2), lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0};
+    springs[static_cast<std::size_t>(c)] = spring.matrix();
   }
 }
 

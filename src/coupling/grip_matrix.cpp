@@ -5,9 +5,6 @@
 #include "core/dense_kernels.hpp"
 #include "core/dense_lu.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -22,254 +19,307 @@ constexpr double kNoChange = 1e-3;
 /// What D gives sideways because its direction is an old one, over what the contact gives way there.
 constexpr double kTurned = 0.1;
 
-double component(const Yield& yield, int which) { return which == 2 ? yield.axial : yield.lateral; }
+/// The last contacts, next to the tip, grow hard, or soft again when the needle is withdrawn.
+constexpr int kNextToTip = 3;
 
 bool differs(double now, double then) { return std::abs(now - then) > kNoChange * std::max(now, then); }
 
 /// Two directions square to t, and t.
-Vec3 direction_of(const Yield& yield, int which) {
-  if (which == 2) return yield.along;
-  const Vec3 helper = std::abs(yield.along.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-  const Vec3 first = yield.along.cross(helper).normalized();
-  return which == 0 ? first : Vec3(yield.along.cross(first));
+Mat3 frame_along(const Vec3& t) {
+  const Vec3 helper = std::abs(t.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  Mat3 frame;
+  frame.col(0) = t.cross(helper).normalized();
+  frame.col(1) = t.cross(frame.col(0));
+  frame.col(2) = t;
+  return frame;
 }
+
+double component(const Yield& yield, int k) { return k == 2 ? yield.axial : yield.lateral; }
 
 }  // namespace
 
 GripMatrix::GripMatrix(int grips)
-    : pivots_(static_cast<std::size_t>(3 * grips)),
-      own_(static_cast<std::size_t>(grips)),
+    : place_(3 * static_cast<std::size_t>(grips)),
+      frames_(static_cast<std::size_t>(grips), Mat3::Identity()),
       yields_(static_cast<std::size_t>(grips)),
-      known_(static_cast<std::size_t>(grips)) {
+      own_(static_cast<std::size_t>(grips)),
+      pivots_(2 * static_cast<std::size_t>(grips)) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips);
-  factor_ = P_lent_ = G_N_ = MatX::Zero(n, n);
-  row_ = MatX::Zero(3, n);
-  lent_.reserve(static_cast<std::size_t>(grips));
-  lent_row_.assign(static_cast<std::size_t>(grips), -1);
-  Z_ = MatX::Zero(n, kMostChanges);
+  const Eigen::Index s = 2 * static_cast<Eigen::Index>(grips);
+  springs_.reserve(static_cast<std::size_t>(grips));
+  flexibility_.reserve(static_cast<std::size_t>(grips));
+  factor_ = MatX::Zero(n + s, n + s);
+  changing_ = MatX::Zero(n, n);
+  by_springs_ = MatX::Zero(n, s);
+  left_ = MatX::Zero(s, s);
+  work_ = MatX::Zero(n + s, kMostColumns);
+  turned_ = MatX::Zero(n, 3);
 }
 
-void GripMatrix::forget_changes() {
-  count_ = 0;
-  changed_ = false;
-  std::fill(known_.begin(), known_.end(), Eigen::Vector3i::Constant(-1));
+void GripMatrix::take_springs(std::span<const LentSpring> springs) {
+  springs_.clear();
+  flexibility_.clear();
+  for (std::size_t g = 0; g < springs.size(); ++g) {
+    if (!(springs[g].stiffness > 0.0)) continue;
+    Spring spring{.grip = static_cast<int>(g)};
+    spring.E = frame_along(springs[g].along).leftCols<2>();
+    spring.local.noalias() = frames_[g].transpose() * spring.E;
+    springs_.push_back(spring);
+    flexibility_.push_back(1.0 / springs[g].stiffness);
+  }
+}
+
+/// Gives every row its place.
+void GripMatrix::order(std::span<const Yield> yields) {
+  const auto will_change = [&](int g) {
+    return g >= grips_ - kNextToTip || yields[static_cast<std::size_t>(g)].lateral > 0.0;
+  };
+  staying_ = 0;
+  for (int g = 0; g < grips_; ++g) {
+    for (int k = 0; k < 2 && !will_change(g); ++k) place(g, k) = staying_++;
+  }
+  Eigen::Index next = staying_ + spring_rows();
+  for (int g = 0; g < grips_; ++g) {
+    for (int k = will_change(g) ? 0 : 2; k < 3; ++k) place(g, k) = next++;
+  }
+}
+
+/// P + N among the contacts, with D of the rows that stay.
+void GripMatrix::fill_contacts(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N) {
+  for (int h = 0; h < grips_; ++h) {
+    const Eigen::Index down = grip_rows() - 3 * h;
+    auto columns = turned_.topRows(down);
+    columns.noalias() = A.block(3 * h, 3 * h, down, 3).lazyProduct(frame(h));
+    columns.noalias() += N.block(3 * h, 3 * h, down, 3).lazyProduct(frame(h));
+    for (int g = h; g < grips_; ++g) {
+      const Mat3 block = frame(g).transpose() * columns.middleRows<3>(3 * (g - h));
+      if (g == h) own_[static_cast<std::size_t>(h)] = block.trace() / 3.0;
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) lower(place(g, i), place(h, j)) = block(i, j);
+      }
+    }
+    for (int k = 0; k < 2; ++k) {
+      if (stays(h, k)) factor_(place(h, k), place(h, k)) += yields_[static_cast<std::size_t>(h)].lateral;
+    }
+  }
+}
+
+/// P E and Eᵀ P E − K⁻¹, likewise.
+void GripMatrix::fill_springs(const Eigen::Ref<const MatX>& A) {
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const Spring& spring = springs_[s];
+    const Eigen::Index at = staying_ + 2 * static_cast<Eigen::Index>(s);
+    auto columns = turned_.leftCols<2>().topRows(grip_rows());
+    columns.noalias() = A.middleCols<3>(3 * spring.grip).lazyProduct(spring.E);
+    for (int g = 0; g < grips_; ++g) {
+      const Eigen::Matrix<double, 3, 2> block = frame(g).transpose() * columns.middleRows<3>(3 * g);
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 2; ++j) {
+          const Eigen::Index row = place(g, i);
+          const double own = g == spring.grip && stays(g, i) ? yields_[static_cast<std::size_t>(g)].lateral : 0.0;
+          lower(row, at + j) = block(i, j) + own * spring.local(i, j);
+        }
+      }
+    }
+    for (std::size_t r = s; r < springs_.size(); ++r) {
+      const Spring& other = springs_[r];
+      factor_.block<2, 2>(staying_ + 2 * static_cast<Eigen::Index>(r), at).noalias() =
+          other.E.transpose() * columns.middleRows<3>(3 * other.grip);
+    }
+    auto own = factor_.block<2, 2>(at, at);
+    for (int i = 0; i < 3; ++i) {
+      if (stays(spring.grip, i))
+        own += yields_[static_cast<std::size_t>(spring.grip)].lateral * spring.local.row(i).transpose() *
+               spring.local.row(i);
+    }
+    own.diagonal().array() -= flexibility_[s];
+  }
 }
 
 bool GripMatrix::factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
-                           std::span<const Mat3> springs, std::span<const Yield> yields) {
-  const Eigen::Index n = A.rows();
-  grips_ = static_cast<int>(n / 3);
-  supported_ = !springs.empty();
+                           std::span<const LentSpring> springs, std::span<const Yield> yields) {
+  grips_ = static_cast<int>(A.rows() / 3);
   std::copy(yields.begin(), yields.end(), yields_.begin());
-  forget_changes();
+  for (int g = 0; g < grips_; ++g)
+    frames_[static_cast<std::size_t>(g)] = frame_along(yields[static_cast<std::size_t>(g)].along);
+  take_springs(springs);
+  order(yields);
+  fill_contacts(A, N);
+  fill_springs(A);
+  current_ = false;
+  return dense::factorise_first(factor_.topLeftCorner(rows(), rows()), staying_);
+}
 
-  auto B = factor_.topLeftCorner(n, n);
-  B = A;
+void GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield) {
+  assert(A.rows() == grip_rows() + 3 && N.rows() == grip_rows() + 3);
+  current_ = false;
+  const int last = grips_++;
+  const auto l = static_cast<std::size_t>(last);
+  frames_[l] = frame_along(yield.along);
+  yields_[l] = yield;
+  const Eigen::Index at = rows() - 3;
+  for (int k = 0; k < 3; ++k) place(last, k) = at + k;
+
+  // Its columns of B in the order of the rows, as far as they are there; then as L has them; then what is left.
+  auto columns = work_.topLeftCorner(rows(), 3);
+  auto turned = turned_.topRows(grip_rows());
+  turned.noalias() = A.middleCols<3>(3 * last).lazyProduct(frame(last));
+  for (std::size_t s = 0; s < springs_.size(); ++s)
+    columns.middleRows<2>(staying_ + 2 * static_cast<Eigen::Index>(s)).noalias() =
+        springs_[s].E.transpose() * turned.middleRows<3>(3 * springs_[s].grip);
+  turned.noalias() += N.middleCols<3>(3 * last).lazyProduct(frame(last));
   for (int g = 0; g < grips_; ++g) {
-    const Yield& yield = yields_[static_cast<std::size_t>(g)];
-    auto block = B.block<3, 3>(3 * g, 3 * g);
-    own_[static_cast<std::size_t>(g)] = (block.trace() + N.block<3, 3>(3 * g, 3 * g).trace()) / 3.0;
-    block += (yield.axial - yield.lateral) * yield.along * yield.along.transpose();
-    block.diagonal().array() += yield.lateral;
+    const Mat3 block = frame(g).transpose() * turned.middleRows<3>(3 * g);
+    for (int i = 0; i < 3; ++i) columns.row(place(g, i)) = block.row(i);
   }
-  lent_.clear();
-  std::fill(lent_row_.begin(), lent_row_.end(), -1);
-  if (!supported_) {
-    B += N;
-    return dense::factorise(B);
-  }
-  for (int g = 0; g < grips_; ++g) {
-    const Mat3& spring = springs[static_cast<std::size_t>(g)];
-    if (spring.isZero(0.0)) continue;
-    const Eigen::Index at = 3 * static_cast<Eigen::Index>(lent_.size());
-    lent_row_[static_cast<std::size_t>(g)] = static_cast<int>(at);
-    lent_.push_back(g);
-    P_lent_.block(0, at, n, 3) = B.middleCols<3>(3 * g);
-    G_N_.block(at, 0, 3, n).noalias() = spring.lazyProduct(N.middleRows<3>(3 * g));
-  }
-  B += N;
-  dense::subtract_product(B, P_lent_.topLeftCorner(n, lent_rows()), G_N_.topLeftCorner(lent_rows(), n));
-  return dense::factorise_lu(B, pivots_);
-}
-
-bool GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, std::span<const Mat3> springs,
-                        const Yield& yield) {
-  const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips_);
-  assert(A.rows() == n + 3 && N.rows() == n + 3 && springs.empty() == !supported_);
-  forget_changes();
-  const auto g = static_cast<std::size_t>(grips_++);
-  yields_[g] = yield;
-  own_[g] = (A.block<3, 3>(n, n).trace() + N.block<3, 3>(n, n).trace()) / 3.0;
-
-  // B = [old  C; R  last], C = Rᵀ without springs
-  Mat3 last = A.block<3, 3>(n, n) + (yield.axial - yield.lateral) * yield.along * yield.along.transpose() +
-              yield.lateral * Mat3::Identity() + N.block<3, 3>(n, n);
-  const auto old = factor_.topLeftCorner(n, n);
-  auto C = Z_.topLeftCorner(n, 3);
-  C = A.block(0, n, n, 3) + N.block(0, n, n, 3);
-  auto below = factor_.block(n, 0, 3, n);
-  if (!supported_) {
-    dense::solve_lower(old, 0, C);
-    below = C.transpose();
-    last.noalias() -= below.lazyProduct(C);
-    const Eigen::LLT<Mat3> llt(last);
-    if (llt.info() != Eigen::Success) return false;
-    factor_.block<3, 3>(n, n) = llt.matrixL();
-    return true;
-  }
-  // P G N, with no spring at the last: P and G N have but one column more.
-  for (const int lent : lent_) {
-    const int at = lent_row_[static_cast<std::size_t>(lent)];
-    G_N_.block<3, 3>(at, n).noalias() = springs[static_cast<std::size_t>(lent)] * N.block<3, 3>(3 * lent, n);
-    P_lent_.block<3, 3>(n, at) = A.block<3, 3>(n, 3 * lent);
-  }
-  const auto G_N = G_N_.topLeftCorner(lent_rows(), n + 3);
-  dense::subtract_product(C, P_lent_.topLeftCorner(n, lent_rows()), G_N.rightCols<3>());
-  auto R = row_.leftCols(n);
-  R = A.block(n, 0, 3, n) + N.block(n, 0, 3, n);
-  R.noalias() -= P_lent_.block(n, 0, 3, lent_rows()).lazyProduct(G_N.leftCols(n));
-  last.noalias() -= P_lent_.block(n, 0, 3, lent_rows()).lazyProduct(G_N.rightCols<3>());
-  return dense::append_lu(factor_.topLeftCorner(n + 3, n + 3), C, R, last, pivots_);
-}
-
-// NOLINTNEXTLINE(performance-unnecessary-value-param): Y is written through the view
-void GripMatrix::solve_base(Eigen::Ref<MatX> Y) const {
-  const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips_);
-  const auto factor = factor_.topLeftCorner(n, n);
-  if (supported_) {
-    dense::solve_lu(factor, pivots_, Y);
-    return;
-  }
-  dense::solve_lower(factor, 0, Y);
-  dense::solve_upper(factor, Y);
-}
-
-/// eᵀ (I − G N) y
-double GripMatrix::across(const Direction& d, const Eigen::Ref<const VecX>& y) const {
-  double value = d.e.dot(y.segment<3>(3 * d.grip));
-  const int at = lent_row_[static_cast<std::size_t>(d.grip)];
-  if (at >= 0) {
-    for (int k = 0; k < 3; ++k) value -= d.e[k] * G_N_.row(at + k).head(y.size()).dot(y);
-  }
-  return value;
-}
-
-/// Number of a direction, its column of Z made when it is asked for first; -1 when there is no room.
-int GripMatrix::direction(int grip, int which) {
-  int& known = known_[static_cast<std::size_t>(grip)][which];
-  if (known >= 0) return known;
-  if (count_ == kMostChanges) return -1;
-  const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips_);
-  const int k = count_++;
-  Direction& d = directions_[static_cast<std::size_t>(k)];
-  d = {grip, direction_of(yields_[static_cast<std::size_t>(grip)], which), 0.0};
-  auto z = Z_.col(k).head(n);
-  z.setZero();
-  z.segment<3>(3 * grip) = d.e;
-  solve_base(z);
-  F_Z_.conservativeResize(count_, count_);
-  for (int i = 0; i < count_; ++i) {
-    F_Z_(i, k) = across(directions_[static_cast<std::size_t>(i)], z);
-    F_Z_(k, i) = across(d, Z_.col(i).head(n));
-  }
-  known = k;
-  return k;
-}
-
-/// Makes room: forgets the directions in which D is again what it was. @return their number
-int GripMatrix::forget_unchanged(std::span<const Yield> yields) {
-  int kept = 0;
-  for (int k = 0; k < count_; ++k) {
-    const Direction& d = directions_[static_cast<std::size_t>(k)];
-    const auto g = static_cast<std::size_t>(d.grip);
-    auto& known = known_[g];
-    const int which = known[0] == k ? 0 : known[1] == k ? 1 : 2;
-    if (!differs(component(yields[g], which), component(yields_[g], which))) {
-      known[which] = -1;
-      continue;
-    }
-    known[which] = kept;
-    directions_[static_cast<std::size_t>(kept)] = d;
-    Z_.col(kept) = Z_.col(k);
-    F_Z_.row(kept) = F_Z_.row(k);
-    F_Z_.col(kept) = F_Z_.col(k);
-    ++kept;
-  }
-  const int forgotten = count_ - kept;
-  count_ = kept;
-  F_Z_.conservativeResize(count_, count_);
-  return forgotten;
-}
-
-bool GripMatrix::change(std::span<const Yield> yields) {
-  int needed = count_;
-  for (int g = 0; g < grips_; ++g) {
-    const Yield& now = yields[static_cast<std::size_t>(g)];
-    const Yield& then = yields_[static_cast<std::size_t>(g)];
-    const auto& known = known_[static_cast<std::size_t>(g)];
-    const double sideways = std::abs(now.axial - now.lateral) * (now.along - then.along).norm();
-    if (sideways > kTurned * (own_[static_cast<std::size_t>(g)] + now.lateral)) return false;
-    if (differs(now.lateral, then.lateral)) needed += (known[0] < 0 ? 1 : 0) + (known[1] < 0 ? 1 : 0);
-    if (differs(now.axial, then.axial) && known[2] < 0) ++needed;
-  }
-  if (needed > kMostChanges) {
-    needed -= forget_unchanged(yields);
-    if (needed > kMostChanges) return false;
-  }
-  changed_ = false;
-  for (int k = 0; k < count_; ++k) directions_[static_cast<std::size_t>(k)].change = 0.0;
-  for (int g = 0; g < grips_; ++g) {
-    const Yield& now = yields[static_cast<std::size_t>(g)];
-    const Yield& then = yields_[static_cast<std::size_t>(g)];
-    for (int which = 0; which < 3; ++which) {
-      const double value = component(now, which);
-      const double before = component(then, which);
-      if (!differs(value, before)) continue;
-      directions_[static_cast<std::size_t>(direction(g, which))].change = value - before;
-      changed_ = true;
-    }
-  }
-  return true;
+  own_[l] = columns.bottomRows<3>().trace() / 3.0;
+  auto in_L = columns.topRows(staying_);
+  dense::solve_lower(factor_.topLeftCorner(staying_, staying_), 0, in_L);
+  factor_.block(at, 0, 3, staying_) = in_L.transpose();
+  auto rest = columns.bottomRows(rows() - staying_);
+  dense::subtract_product(rest, factor_.block(staying_, 0, rows() - staying_, staying_), in_L);
+  factor_.block(at, staying_, 3, rows() - staying_) = rest.transpose();
 }
 
 bool GripMatrix::keep_first(int grips) {
-  if (supported_ || grips > grips_) return false;
+  for (int g = grips; g < grips_; ++g) {
+    if (stays(g, 0)) return false;
+  }
+  if (!springs_.empty() && springs_.back().grip >= grips) return false;
+  current_ = current_ && grips == grips_;
   grips_ = grips;
-  forget_changes();
   return true;
 }
 
-Yield GripMatrix::yield(int grip) const {
-  const auto change = [&](int which) {
-    const int known = known_[static_cast<std::size_t>(grip)][which];
-    return known < 0 ? 0.0 : directions_[static_cast<std::size_t>(known)].change;
-  };
-  const Yield& then = yields_[static_cast<std::size_t>(grip)];
-  return {then.along, then.lateral + change(0), then.axial + change(2)};
+bool GripMatrix::change(std::span<const Yield> yields) {
+  for (int g = 0; g < grips_; ++g) {
+    const Yield& now = yields[static_cast<std::size_t>(g)];
+    Yield& then = yields_[static_cast<std::size_t>(g)];
+    const double sideways = std::abs(now.axial - now.lateral) * (now.along - then.along).norm();
+    if (sideways > kTurned * (own_[static_cast<std::size_t>(g)] + now.lateral)) return false;
+    if (differs(now.lateral, then.lateral)) {
+      if (stays(g, 0)) return false;
+      then.lateral = now.lateral;
+      current_ = false;
+    }
+    if (differs(now.axial, then.axial)) {
+      then.axial = now.axial;
+      current_ = false;
+    }
+  }
+  if (!current_) current_ = factorise_changing();
+  return current_;
 }
 
-void GripMatrix::take_changes_in(Eigen::Ref<MatX> Y, const Eigen::Ref<const MatX>& lent) const {
-  if (!changed_) return;
-  // (B₀ + E Δ Fᵀ) X = C₀ − E Δ Eᵀ lent:  X = X₀ − Z (I + Δ Fᵀ Z)⁻¹ Δ (Fᵀ X₀ + Eᵀ lent),  X₀ = B₀⁻¹ C₀,  Z = B₀⁻¹ E
-  Small small(count_, count_);
-  for (int i = 0; i < count_; ++i) {
-    small.row(i) = directions_[static_cast<std::size_t>(i)].change * F_Z_.row(i);
-    small(i, i) += 1.0;
-  }
-  const Eigen::PartialPivLU<Small> lu(small);
-  for (Eigen::Index c = 0; c < Y.cols(); ++c) {
-    SmallVector right(count_);
-    for (int i = 0; i < count_; ++i) {
-      const Direction& d = directions_[static_cast<std::size_t>(i)];
-      right[i] = 0.0;
-      if (d.change == 0.0) continue;
-      right[i] = d.change * across(d, Y.col(c));
-      if (lent.size() > 0 && lent_row_[static_cast<std::size_t>(d.grip)] >= 0)
-        right[i] += d.change * d.e.dot(lent.col(c).segment<3>(3 * d.grip));
+/// Puts D into what is left of the rows that change, and takes them and the springs out.
+bool GripMatrix::factorise_changing() {
+  ++version_;
+  const Eigen::Index c = changing();
+  const Eigen::Index s = spring_rows();
+  const Eigen::Index first = staying_ + s;
+  auto L = changing_.topLeftCorner(c, c);
+  for (Eigen::Index j = 0; j < c; ++j) L.col(j).tail(c - j) = factor_.col(first + j).segment(first + j, c - j);
+  for (int g = 0; g < grips_; ++g) {
+    for (int k = 0; k < 3; ++k) {
+      if (stays(g, k)) continue;
+      const Eigen::Index i = place(g, k) - first;
+      L(i, i) += component(yields_[static_cast<std::size_t>(g)], k);
     }
-    const SmallVector amount = lu.solve(right);
-    for (int i = 0; i < count_; ++i) Y.col(c) -= amount[i] * Z_.col(i).head(Y.rows());
   }
+  if (!dense::factorise(L)) return false;
+  if (s == 0) return true;
+
+  auto across = by_springs_.topLeftCorner(c, s);
+  across = factor_.block(first, staying_, c, s);
+  for (const Spring& spring : springs_) {
+    const Eigen::Index at = 2 * (&spring - springs_.data());
+    for (int k = 0; k < 3; ++k) {
+      if (!stays(spring.grip, k)) across.block<1, 2>(place(spring.grip, k) - first, at) += own(spring, k);
+    }
+  }
+  dense::solve_lower(L, 0, across);
+  auto left = left_.topLeftCorner(s, s);
+  dense::transposed_product(left, across, across);
+  for (Eigen::Index j = 0; j < s; ++j) {
+    for (Eigen::Index i = 0; i < s; ++i)
+      left(i, j) = factor_(staying_ + std::max(i, j), staying_ + std::min(i, j)) - left(i, j);
+  }
+  for (const Spring& spring : springs_) {
+    const Eigen::Index at = 2 * (&spring - springs_.data());
+    for (int k = 0; k < 3; ++k) {
+      if (!stays(spring.grip, k))
+        left.block<2, 2>(at, at).noalias() += spring.local.row(k).transpose() * own(spring, k);
+    }
+  }
+  return dense::factorise_lu(left, pivots_);
 }
+
+/// What D of a contact's direction gives its spring's two.
+Eigen::RowVector2d GripMatrix::own(const Spring& spring, int k) const {
+  return component(yields_[static_cast<std::size_t>(spring.grip)], k) * spring.local.row(k);
+}
+
+void GripMatrix::across(const Eigen::Ref<const VecX>& y, Eigen::Ref<VecX> along) const {
+  for (const Spring& spring : springs_)
+    along.segment<2>(2 * (&spring - springs_.data())).noalias() = spring.E.transpose() * y.segment<3>(3 * spring.grip);
+}
+
+void GripMatrix::add_lent(const Eigen::Ref<const VecX>& f, Eigen::Ref<VecX> y) const {
+  for (const Spring& spring : springs_)
+    y.segment<3>(3 * spring.grip).noalias() += spring.E * f.segment<2>(2 * (&spring - springs_.data()));
+}
+
+// NOLINTBEGIN(performance-unnecessary-value-param): Y is written through the view
+
+void GripMatrix::begin(Eigen::Ref<MatX> Y) {
+  auto ordered = work_.topLeftCorner(rows(), Y.cols());
+  for (int g = 0; g < grips_; ++g) {
+    for (Eigen::Index j = 0; j < Y.cols(); ++j) {
+      const Vec3 local = frame(g).transpose() * Y.col(j).segment<3>(3 * g);
+      for (int k = 0; k < 3; ++k) ordered(place(g, k), j) = local[k];
+    }
+  }
+  ordered.middleRows(staying_, spring_rows()) = Y.bottomRows(spring_rows());
+  const Eigen::Index rest = rows() - staying_;
+  dense::solve_lower(factor_.topLeftCorner(staying_, staying_), 0, ordered.topRows(staying_));
+  dense::subtract_product(ordered.bottomRows(rest), factor_.block(staying_, 0, rest, staying_),
+                          ordered.topRows(staying_));
+  Y = ordered;
+}
+
+void GripMatrix::finish(Eigen::Ref<MatX> Y) {
+  assert(current_);
+  const Eigen::Index c = changing();
+  const Eigen::Index s = spring_rows();
+  const Eigen::Index rest = rows() - staying_;
+  const auto L = changing_.topLeftCorner(c, c);
+  auto of_changing = Y.bottomRows(c);
+  auto of_springs = Y.middleRows(staying_, s);
+  auto known = work_.leftCols(Y.cols());
+  dense::solve_lower(L, 0, of_changing);
+  if (s > 0) {
+    const auto across = by_springs_.topLeftCorner(c, s);
+    dense::transposed_product(known.topRows(s), across, of_changing);
+    of_springs -= known.topRows(s);
+    dense::solve_lu(left_.topLeftCorner(s, s), pivots_, of_springs);
+    dense::subtract_product(of_changing, across, of_springs);
+  }
+  dense::solve_upper(L, of_changing);
+  dense::transposed_product(known.topRows(staying_), factor_.block(staying_, 0, rest, staying_), Y.bottomRows(rest));
+  Y.topRows(staying_) -= known.topRows(staying_);
+  dense::solve_upper(factor_.topLeftCorner(staying_, staying_), Y.topRows(staying_));
+
+  auto ordered = work_.topLeftCorner(rows(), Y.cols());
+  ordered = Y;
+  for (int g = 0; g < grips_; ++g) {
+    for (Eigen::Index j = 0; j < Y.cols(); ++j) {
+      const Vec3 local(ordered(place(g, 0), j), ordered(place(g, 1), j), ordered(place(g, 2), j));
+      Y.col(j).segment<3>(3 * g).noalias() = frame(g) * local;
+    }
+  }
+  Y.bottomRows(s) = ordered.middleRows(staying_, s);
+}
+
+// NOLINTEND(performance-unnecessary-value-param)
 
 }  // namespace stylet

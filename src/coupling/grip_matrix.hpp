@@ -3,7 +3,7 @@
 
 #include "stylet/core/types.hpp"
 
-#include <array>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -20,84 +20,113 @@ struct Yield {
   }
 };
 
+/// A spring that is lent to the needle at a contact, across it: G = k (I − t tᵀ).
+struct LentSpring {
+  Vec3 along = Vec3::UnitZ();  ///< t, unit, LPS
+  double stiffness = 0.0;      ///< k [N/mm]; 0 = none
+
+  [[nodiscard]] Mat3 matrix() const { return stiffness * (Mat3::Identity() - along * along.transpose()); }
+};
+
 /// Matrix of the equations of the shaft's contacts, all held in all directions (ContactSystem has the derivation):
-///   B = P (I − G N) + N,  P = A + diag(D),
-/// A and N being the tissue's and the needle's compliance, G springs lent to the needle or nothing. Without springs B
-/// is symmetric positive definite.
+///   B = [P + N,  P E;  Eᵀ P,  Eᵀ P E − K⁻¹],  P = A + diag(D),
+/// A and N being the tissue's and the needle's compliance, E the two directions of each lent spring and K their
+/// stiffness. P + N is symmetric positive definite.
 ///
-/// It is factorised once and used over many steps: contacts that come to slide or to hold change D in a few directions,
-/// B' = B + E Δ Fᵀ with F = (I − G N)ᵀ E, and Woodbury's formula takes them in. LPS, three rows a contact. Sized once;
-/// nothing allocates after that.
+/// It is factorised once and used over many steps. What changes meanwhile is D: contacts come to slide or to hold, and
+/// young ones grow hard. So rows whose D will stay, across the needle at contacts that have come of age, are eliminated
+/// first and for good. What is left of the others, two fifths as many, is a small matrix to which D of now is added on
+/// its diagonal; that one is factorised again for each D, however many contacts change. Springs come last.
+///
+/// Columns have 3g rows of the contacts, LPS, then two a spring. Sized once; nothing allocates after that.
 class GripMatrix {
  public:
-  static constexpr int kMostChanges = 12;
-
   explicit GripMatrix(int grips);
 
-  /// @param A, N [mm/N] (3g × 3g) @param springs [N/mm] (g) G, or none @param yields (g)
+  /// @param A, N [mm/N] (3g × 3g) @param springs (g), or none @param yields (g)
   /// @return false where the matrix is singular
   [[nodiscard]] bool factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
-                               std::span<const Mat3> springs, std::span<const Yield> yields);
+                               std::span<const LentSpring> springs, std::span<const Yield> yields);
 
-  /// Adds a contact after those there; no spring is lent at it. The others are as factorise() left them.
-  /// @param A, N [mm/N] (3g × 3g) with it @param springs [N/mm] (g), or none if factorise() had none
-  /// @return false where the matrix is singular; factorise again
-  [[nodiscard]] bool append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
-                            std::span<const Mat3> springs, const Yield& yield);
-
-  /// Puts other values of D in; directions stay those of factorise().
-  /// @return false, and nothing done, when more than kMostChanges differ, or a contact that slides almost freely has
-  ///   turned: factorise again
-  [[nodiscard]] bool change(std::span<const Yield> yields);
+  /// Adds a contact after those there, without a spring.
+  /// @param A, N [mm/N] (3g × 3g) with it
+  void append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield);
 
   /// Forgets all contacts but the first. @return false, and nothing done, where that takes a new factor
   [[nodiscard]] bool keep_first(int grips);
 
-  /// Y ← B₀⁻¹ Y, with D as factorise() or append() had it.
-  void solve_base(Eigen::Ref<MatX> Y) const;
+  /// Takes other values of D in; directions stay those of factorise(). To be called before finish().
+  /// @return false where D of a row that was to stay has changed, or a contact that slides almost freely has turned:
+  ///   factorise again; or, just after that, where the matrix is singular
+  [[nodiscard]] bool change(std::span<const Yield> yields);
 
-  /// From B₀⁻¹ C₀ to B⁻¹ C with D of now, where C = C₀ − ΔD lent: what D has to do with a column, if anything.
-  /// @param Y (3g × k) B₀⁻¹ C₀, becomes B⁻¹ C @param lent (3g × k), or (0 × 0)
-  void take_changes_in(Eigen::Ref<MatX> Y, const Eigen::Ref<const MatX>& lent) const;
+  /// Counts the matrices there have been: finish() depends on it.
+  [[nodiscard]] unsigned version() const { return version_; }
+
+  /// Rows of a column: three a contact, two a spring.
+  [[nodiscard]] Eigen::Index rows() const { return grip_rows() + spring_rows(); }
+  [[nodiscard]] Eigen::Index grip_rows() const { return 3 * static_cast<Eigen::Index>(grips_); }
+  [[nodiscard]] Eigen::Index spring_rows() const { return 2 * static_cast<Eigen::Index>(springs_.size()); }
+
+  /// Eᵀ y. @param y (3g) LPS @param along (rows of the springs) written
+  void across(const Eigen::Ref<const VecX>& y, Eigen::Ref<VecX> along) const;
+  /// y += E f. @param f (rows of the springs) [N] @param y (3g) LPS
+  void add_lent(const Eigen::Ref<const VecX>& f, Eigen::Ref<VecX> y) const;
+
+  /// The part of Y ← B⁻¹ Y that does not know D: good until the matrix is factorised, grows or shrinks.
+  /// @param Y (rows × k), at most kMostColumns; its rows are in no order then
+  void begin(Eigen::Ref<MatX> Y);
+  /// The rest of it, with D of now. @param Y as begin() left it
+  void finish(Eigen::Ref<MatX> Y);
+  static constexpr int kMostColumns = 4;
 
   /// D of a contact as it is in the matrix.
-  [[nodiscard]] Yield yield(int grip) const;
-  /// D of a contact in B₀.
-  [[nodiscard]] const Yield& yield_of_factor(int grip) const { return yields_[static_cast<std::size_t>(grip)]; }
+  [[nodiscard]] const Yield& yield(int grip) const { return yields_[static_cast<std::size_t>(grip)]; }
 
  private:
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostChanges, kMostChanges>;
-  using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostChanges, 1>;
-
-  /// A direction in which D has changed.
-  struct Direction {
+  struct Spring {
     int grip = 0;
-    Vec3 e = Vec3::Zero();
-    double change = 0.0;  ///< [mm/N]
+    Eigen::Matrix<double, 3, 2> E = Eigen::Matrix<double, 3, 2>::Zero();      ///< LPS
+    Eigen::Matrix<double, 3, 2> local = Eigen::Matrix<double, 3, 2>::Zero();  ///< in the contact's frame
   };
-  [[nodiscard]] Eigen::Index lent_rows() const { return 3 * static_cast<Eigen::Index>(lent_.size()); }
-  void forget_changes();
-  int forget_unchanged(std::span<const Yield> yields);
-  int direction(int grip, int which);
-  [[nodiscard]] double across(const Direction& d, const Eigen::Ref<const VecX>& y) const;
+  /// Where a row of a contact, in its frame (n1, n2, t), is in the order of elimination: those that stay, the springs,
+  /// those that change.
+  [[nodiscard]] Eigen::Index& place(int grip, int k) {
+    return place_[3 * static_cast<std::size_t>(grip) + static_cast<std::size_t>(k)];
+  }
+  [[nodiscard]] Eigen::Index place(int grip, int k) const {
+    return place_[3 * static_cast<std::size_t>(grip) + static_cast<std::size_t>(k)];
+  }
+  [[nodiscard]] bool stays(int grip, int k) const { return place(grip, k) < staying_; }
+  [[nodiscard]] Eigen::Index changing() const { return rows() - staying_ - spring_rows(); }
+  [[nodiscard]] double& lower(Eigen::Index a, Eigen::Index b) { return factor_(std::max(a, b), std::min(a, b)); }
+  [[nodiscard]] const Mat3& frame(int grip) const { return frames_[static_cast<std::size_t>(grip)]; }
+  void take_springs(std::span<const LentSpring> springs);
+  void order(std::span<const Yield> yields);
+  void fill_contacts(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N);
+  void fill_springs(const Eigen::Ref<const MatX>& A);
+  [[nodiscard]] bool factorise_changing();
+  [[nodiscard]] Eigen::RowVector2d own(const Spring& spring, int k) const;
 
   int grips_ = 0;
-  bool supported_ = false;
-  std::vector<int> lent_;               ///< grips with a spring
-  std::vector<int> lent_row_;           ///< (g) where their rows of G N begin, -1 without a spring
-  MatX factor_;                         ///< of B as factorised: L, or L and U
-  MatX P_lent_;                         ///< (3g × 3 springs) columns of P at the springs
-  MatX G_N_;                            ///< (3 springs × 3g) rows of G N there
-  MatX row_;                            ///< (3 × 3g) of a contact that is appended
-  std::vector<int> pivots_;             ///< with springs
-  std::vector<double> own_;             ///< [mm/N] what needle and tissue give way at a contact, mean of the directions
-  std::vector<Yield> yields_;           ///< as factorised
-  std::vector<Eigen::Vector3i> known_;  ///< (g) numbers of the directions two lateral, axial; -1 unknown
-  std::array<Direction, kMostChanges> directions_;
-  int count_ = 0;         ///< of directions
-  bool changed_ = false;  ///< any with a change other than 0
-  MatX Z_;                ///< (3g × directions) B⁻¹ E
-  Small F_Z_;             ///< Fᵀ Z
+  Eigen::Index staying_ = 0;         ///< rows whose D stays
+  std::vector<Eigen::Index> place_;  ///< (3g)
+  std::vector<Mat3> frames_;         ///< (g) n1, n2, t of each contact as the rows have it
+  std::vector<Yield> yields_;        ///< (g) in the matrix
+  std::vector<double> own_;          ///< [mm/N] what needle and tissue give way at a contact, mean of the directions
+  std::vector<Spring> springs_;
+  std::vector<double> flexibility_;  ///< [mm/N] K⁻¹ of each spring
+  /// Lower triangle of B in the order of elimination. Of the rows that stay L; of the others what they are in L, and
+  /// right of that what B has left of them, without D of the rows that change.
+  MatX factor_;
+  bool current_ = false;  ///< what follows is of D and contacts of now
+  unsigned version_ = 0;
+  MatX changing_;            ///< (c × c) L of the rows that change
+  MatX by_springs_;          ///< (c × s) L⁻¹ of the springs' columns there
+  MatX left_;                ///< (s × s) what is left for the springs: L and U
+  std::vector<int> pivots_;  ///< (s)
+  MatX work_;                ///< (rows × most columns)
+  MatX turned_;              ///< (3g × 3) columns of a contact, in its frame
 };
 
 }  // namespace stylet

@@ -69,6 +69,7 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   grips.reserve(capacity);
   loads.reserve(capacity + 1);
   past.resize(capacity + 1, Vec3::Zero());
+  springs.resize(capacity + 1, Mat3::Zero());
   system_points.reserve(capacity + 1);
   kept.needle = needle->state();
   kept.grips.resize(capacity);

@@ -96,13 +96,13 @@ struct Insertion::Parts {
   std::vector<Vec3> past;        ///< [mm] by which earlier forces displace the tissue at each load
   ContactSystem system;
   std::vector<Mat3>& frames = system.frame;
-  std::vector<Mat3>& springs = system.spring;  ///< lent to the needle at each load
-  std::vector<int> system_points;              ///< points whose compliance system.A holds, …
-  unsigned system_version = 0;                 ///< … as of this version of it, …
-  double system_share = 0.0;                   ///< … and times this share
-  int supported_for = 0;                       ///< tangents on springs since one without was tried
-  bool tangent_fits = false;                   ///< the needle's tangent is of these contacts
-  bool matrix_fits = false;                    ///< the system's matrix is of that tangent and compliance
+  std::vector<Mat3> springs;       ///< [N/mm] lent to the needle at each load
+  std::vector<int> system_points;  ///< points whose compliance system.A holds, …
+  unsigned system_version = 0;     ///< … as of this version of it, …
+  double system_share = 0.0;       ///< … and times this share
+  int supported_for = 0;           ///< tangents on springs since one without was tried
+  bool tangent_fits = false;       ///< the needle's tangent is of these contacts
+  bool matrix_fits = false;        ///< the system's matrix is of that tangent and compliance
   /// An iterate, before an old matrix is tried on it.
   struct Iterate {
     struct AtGrip {

@@ -42,6 +42,26 @@ TEST(DenseCholesky, solves_for_one_and_for_several_columns) {
   }
 }
 
+TEST(DenseCholesky, stops_after_the_first_columns_and_leaves_what_is_left) {
+  for (const Eigen::Index n : kSizes) {
+    const MatX root = some_matrix(n, n);
+    const MatX A = root * root.transpose() + static_cast<double>(n) * MatX::Identity(n, n);
+    for (const Eigen::Index first : {Eigen::Index{0}, n / 3, n - 1, n}) {
+      const Eigen::Index rest = n - first;
+      MatX partly = A;
+      ASSERT_TRUE(dense::factorise_first(partly, first)) << n << ", " << first;
+      const MatX L = partly.topLeftCorner(first, first).triangularView<Eigen::Lower>();
+      const MatX below = partly.bottomLeftCorner(rest, first);
+      const MatX left = partly.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>();
+      EXPECT_LT((L * L.transpose() - A.topLeftCorner(first, first)).norm(), 1e-13 * A.norm()) << n << ", " << first;
+      EXPECT_LT((below * L.transpose() - A.bottomLeftCorner(rest, first)).norm(), 1e-13 * A.norm())
+          << n << ", " << first;
+      EXPECT_LT((below * below.transpose() + left - A.bottomRightCorner(rest, rest)).norm(), 1e-13 * A.norm())
+          << n << ", " << first;
+    }
+  }
+}
+
 TEST(DenseLu, solves_with_rows_that_must_be_swapped) {
   for (const Eigen::Index n : kSizes) {
     MatX A = some_matrix(n, n);
@@ -55,33 +75,6 @@ TEST(DenseLu, solves_with_rows_that_must_be_swapped) {
     dense::solve_lu(LU, pivots, x);
     EXPECT_LT((A * x - b).norm(), 1e-10 * A.norm() * x.norm()) << n;
   }
-}
-
-TEST(DenseLu, takes_more_rows_and_columns_in) {
-  for (const Eigen::Index n : kSizes) {
-    MatX A = some_matrix(n + 3, n + 3);
-    A.diagonal().tail(3).setZero();
-    A(0, 0) += 2.0;
-    MatX LU = A;
-    std::vector<int> pivots(static_cast<std::size_t>(n + 3));
-    ASSERT_TRUE(dense::factorise_lu(LU.topLeftCorner(n, n), pivots)) << n;
-    MatX C = A.topRightCorner(n, 3);
-    ASSERT_TRUE(dense::append_lu(LU, C, A.bottomLeftCorner(3, n), A.bottomRightCorner(3, 3), pivots)) << n;
-    const MatX b = some_matrix(n + 3, 4);
-    MatX x = b;
-    dense::solve_lu(LU, pivots, x);
-    EXPECT_LT((A * x - b).norm(), 1e-10 * A.norm() * x.norm()) << n;
-  }
-}
-
-TEST(DenseLu, takes_no_rows_in_that_follow_from_those_there) {
-  const MatX A = some_matrix(30, 30);
-  MatX LU(33, 33);
-  LU.topLeftCorner(30, 30) = A;
-  std::vector<int> pivots(33);
-  ASSERT_TRUE(dense::factorise_lu(LU.topLeftCorner(30, 30), pivots));
-  MatX C = A.leftCols(3);
-  EXPECT_FALSE(dense::append_lu(LU, C, A.topRows(3), A.topLeftCorner(3, 3), pivots));
 }
 
 TEST(DenseLu, refuses_a_singular_matrix_and_one_that_is_not_finite) {
