@@ -29,7 +29,7 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s)
     : open_(open),
       plan_(open.model->insertions()[insertion]),
-      shown_(3, static_cast<Eigen::Index>(open.scene_nodes.size())),
+      shown_(Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(open.scene_nodes.size()))),
       all_nodes_(static_cast<std::size_t>(open.model->mesh().node_count())),
       room_(Snapshot::kForces),
       step_room_(1024),
@@ -41,6 +41,7 @@ LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_f
 void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
   open_.field = std::move(field);
   load_ = open_.field->make_load();
+  owed_ = seen_;
 }
 
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size_t insertion,
@@ -110,12 +111,13 @@ void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   }
 }
 
-void LiveRun::put_displacement(LiveFrame& frame) {
+/// Whether there is a displacement that no picture has had yet, and time for it.
+bool LiveRun::displacement_is_due() const { return load_ && owed_ && now_s() >= picture_after_s_; }
+
+void LiveRun::compute_displacement() {
   const double before = now_s();
-  frame.left_out_N = load_->left_out_N();
-  if (before < picture_after_s_) return;
   open_.field->displacement(open_.scene_nodes, *load_, shown_);
-  set_displacement(frame, shown_);
+  owed_ = false;
   shown_anew_ = true;
   const double after = now_s();
   picture_after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
@@ -153,7 +155,10 @@ void LiveRun::record_frame(const Snapshot& snapshot) {
 std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const bool fresh = runner_->fetch_snapshot();
   seen_ = seen_ || fresh;
-  if (!fresh && !whole_curve) return nullptr;
+  owed_ = owed_ || fresh;
+  // While paused there is no fresh one: what it lacked comes by itself, what it had is there for who joins.
+  const bool due = displacement_is_due();
+  if (!fresh && !whole_curve && !due) return nullptr;
   const Snapshot& s = runner_->snapshot();
   if (load_) {
     open_.field->set(tissue_forces(s, room_), *load_);
@@ -184,7 +189,9 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
-  if (load_) put_displacement(*frame);
+  if (load_) frame->left_out_N = load_->left_out_N();
+  if (due) compute_displacement();
+  if (due || (load_ && whole_curve)) set_displacement(*frame, shown_);
   if (whole_curve) {
     frame->samples = curve_;
     unsent_.clear();

@@ -40,8 +40,9 @@ class LiveRun {
   void set_field(std::shared_ptr<const DisplayField> field);
   /// Passes on what has happened since: to the recording, and the events to `tell`. Often enough that no step is lost.
   void pump(const std::function<void(const LiveEvent&)>& tell);
-  /// The newest picture, if there is one that was not fetched yet.
-  /// @param whole_curve with all samples instead of the new ones
+  /// The newest picture, if there is something in it that was not fetched yet. Its displacement may come later, in a
+  /// picture of the same moment.
+  /// @param whole_curve with all samples instead of the new ones, and the newest displacement there is
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
   /// What the last picture shows, and its displacement where that was computed.
   void show_to(Companion& companion);
@@ -59,7 +60,8 @@ class LiveRun {
   LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
   void record(const Result<>& done);
   void record_frame(const Snapshot& snapshot);
-  void put_displacement(LiveFrame& frame);
+  [[nodiscard]] bool displacement_is_due() const;
+  void compute_displacement();
 
   OpenModel open_;
   const PlannedInsertion& plan_;  ///< of the model
@@ -71,6 +73,7 @@ class LiveRun {
   std::optional<DisplayField::Load> load_;  ///< with a field
   Eigen::Matrix3Xf shown_;                  ///< (3 × scene nodes)
   bool seen_ = false;                       ///< there has been a snapshot
+  bool owed_ = false;                       ///< the newest snapshot's displacement
   bool shown_anew_ = false;                 ///< since show_to()
   std::vector<Index> all_nodes_;            ///< of the mesh
   std::vector<TissueForce> room_;           ///< for forces
