@@ -10,17 +10,17 @@ namespace stylet::dense {
 bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns) {
   const Eigen::Index n = A.rows();
   for (Eigen::Index k = 0; k < n;) {
-    const bool left = k >= columns;
-    const Eigen::Index nk = std::min(kTile, left ? n - k : columns - k);
+    const bool beyond = k >= columns;
+    const Eigen::Index nk = std::min(kTile, beyond ? n - k : columns - k);
     const Eigen::Index below = n - k - nk;
     const Eigen::Index before = std::min(k, columns);
     const auto done = A.block(k, 0, nk, before);
     auto diagonal = A.block(k, k, nk, nk);
     auto rest = A.block(k + nk, k, below, nk);
     subtract_product_transposed(diagonal, done, done);
-    if (!left && !factorise_tile(diagonal)) return false;
+    if (!beyond && !factorise_tile(diagonal)) return false;
     subtract_product_transposed(rest, A.block(k + nk, 0, below, before), done);
-    if (!left) divide_by_transposed_tile(diagonal, rest);
+    if (!beyond) divide_by_transposed_tile(diagonal, rest);
     k += nk;
   }
   return A.diagonal().allFinite();

@@ -28,8 +28,7 @@ bool ContactSystem::append() {
   lacks_tip_ = true;
   if (grip_count() == 1) return factorise();
   const Eigen::Index n = grip_rows();
-  grips_.append(A.block(3, 3, n, n), N.block(3, 3, n, n), grip_yields().back());
-  return true;
+  return grips_.append(A.block(3, 3, n, n), N.block(3, 3, n, n), grip_yields().back());
 }
 
 bool ContactSystem::keep_first(int contacts) {

@@ -43,11 +43,11 @@ class ContactSystem {
   VecX lambda;  ///< [N] contact forces on the tissue, in the frames
   VecX push;    ///< [N] p
 
-  /// Takes A, N, D and the springs of now into the matrix. False where it is singular.
+  /// Takes A, N, D and the springs of now into the matrix. False where it is found singular; solve() may still find it.
   [[nodiscard]] bool factorise();
 
   /// Adds the contact after those in the matrix, with A, N and D of now; no spring is lent at it. False where the
-  /// matrix is singular.
+  /// matrix must be made anew.
   [[nodiscard]] bool append();
 
   /// The first `contacts` of those in the matrix are all there are now. False where it must be made anew.
@@ -87,11 +87,11 @@ class ContactSystem {
 
   GripMatrix grips_;
   bool lacks_tip_ = true;
-  unsigned solved_for_ = 0;  ///< version of the matrix that solved_ is of
-  MatX column_;              ///< (rows × 3) of the grips and springs, columns of the tip: also its rows
-  MatX begun_;               ///< (rows × 3) the same, half solved
-  MatX solved_;              ///< (rows × 3) B⁻¹ of them
-  VecX right_;               ///< right-hand side of the grips and springs, then their π and f
+  std::uint64_t solved_for_ = 0;  ///< version of the matrix that solved_ is of
+  MatX column_;                   ///< (rows × 3) of the grips and springs, columns of the tip: also its rows
+  MatX begun_;                    ///< (rows × 3) the same, half solved
+  MatX solved_;                   ///< (rows × 3) B⁻¹ of them
+  VecX right_;                    ///< right-hand side of the grips and springs, then their π and f
   VecX work_;
 };
 

@@ -22,6 +22,9 @@ constexpr double kTurned = 0.1;
 /// The last contacts, next to the tip, grow hard, or soft again when the needle is withdrawn.
 constexpr int kNextToTip = 3;
 
+/// Contacts that were appended keep three rows among those that change, also when they have come of age.
+constexpr int kMostAppended = 8;
+
 bool differs(double now, double then) { return std::abs(now - then) > kNoChange * std::max(now, then); }
 
 /// Two directions square to t, and t.
@@ -69,7 +72,7 @@ void GripMatrix::take_springs(std::span<const LentSpring> springs) {
   }
 }
 
-/// Gives every row its place.
+/// Gives every row its place. Those that stay have no D.
 void GripMatrix::order(std::span<const Yield> yields) {
   const auto will_change = [&](int g) {
     return g >= grips_ - kNextToTip || yields[static_cast<std::size_t>(g)].lateral > 0.0;
@@ -84,7 +87,7 @@ void GripMatrix::order(std::span<const Yield> yields) {
   }
 }
 
-/// P + N among the contacts, with D of the rows that stay.
+/// P + N among the contacts, without D.
 void GripMatrix::fill_contacts(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N) {
   for (int h = 0; h < grips_; ++h) {
     const Eigen::Index down = grip_rows() - 3 * h;
@@ -98,13 +101,10 @@ void GripMatrix::fill_contacts(const Eigen::Ref<const MatX>& A, const Eigen::Ref
         for (int i = 0; i < 3; ++i) lower(place(g, i), place(h, j)) = block(i, j);
       }
     }
-    for (int k = 0; k < 2; ++k) {
-      if (stays(h, k)) factor_(place(h, k), place(h, k)) += yields_[static_cast<std::size_t>(h)].lateral;
-    }
   }
 }
 
-/// P E and Eᵀ P E − K⁻¹, likewise.
+/// P E and Eᵀ P E − K⁻¹, without D.
 void GripMatrix::fill_springs(const Eigen::Ref<const MatX>& A) {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const Spring& spring = springs_[s];
@@ -114,11 +114,7 @@ void GripMatrix::fill_springs(const Eigen::Ref<const MatX>& A) {
     for (int g = 0; g < grips_; ++g) {
       const Eigen::Matrix<double, 3, 2> block = frame(g).transpose() * columns.middleRows<3>(3 * g);
       for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 2; ++j) {
-          const Eigen::Index row = place(g, i);
-          const double own = g == spring.grip && stays(g, i) ? yields_[static_cast<std::size_t>(g)].lateral : 0.0;
-          lower(row, at + j) = block(i, j) + own * spring.local(i, j);
-        }
+        for (int j = 0; j < 2; ++j) lower(place(g, i), at + j) = block(i, j);
       }
     }
     for (std::size_t r = s; r < springs_.size(); ++r) {
@@ -126,13 +122,7 @@ void GripMatrix::fill_springs(const Eigen::Ref<const MatX>& A) {
       factor_.block<2, 2>(staying_ + 2 * static_cast<Eigen::Index>(r), at).noalias() =
           other.E.transpose() * columns.middleRows<3>(3 * other.grip);
     }
-    auto own = factor_.block<2, 2>(at, at);
-    for (int i = 0; i < 3; ++i) {
-      if (stays(spring.grip, i))
-        own += yields_[static_cast<std::size_t>(spring.grip)].lateral * spring.local.row(i).transpose() *
-               spring.local.row(i);
-    }
-    own.diagonal().array() -= flexibility_[s];
+    factor_.block<2, 2>(at, at).diagonal().array() -= flexibility_[s];
   }
 }
 
@@ -146,12 +136,15 @@ bool GripMatrix::factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<con
   order(yields);
   fill_contacts(A, N);
   fill_springs(A);
+  appended_ = 0;
   current_ = false;
   return dense::factorise_first(factor_.topLeftCorner(rows(), rows()), staying_);
 }
 
-void GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield) {
+bool GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield) {
   assert(A.rows() == grip_rows() + 3 && N.rows() == grip_rows() + 3);
+  if (appended_ == kMostAppended) return false;
+  ++appended_;
   current_ = false;
   const int last = grips_++;
   const auto l = static_cast<std::size_t>(last);
@@ -179,9 +172,11 @@ void GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const 
   auto rest = columns.bottomRows(rows() - staying_);
   dense::subtract_product(rest, factor_.block(staying_, 0, rows() - staying_, staying_), in_L);
   factor_.block(at, staying_, 3, rows() - staying_) = rest.transpose();
+  return true;
 }
 
 bool GripMatrix::keep_first(int grips) {
+  assert(grips <= grips_);
   for (int g = grips; g < grips_; ++g) {
     if (stays(g, 0)) return false;
   }

@@ -4,6 +4,7 @@
 #include "stylet/core/types.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,9 +35,10 @@ struct LentSpring {
 /// stiffness. P + N is symmetric positive definite.
 ///
 /// It is factorised once and used over many steps. What changes meanwhile is D: contacts come to slide or to hold, and
-/// young ones grow hard. So rows whose D will stay, across the needle at contacts that have come of age, are eliminated
-/// first and for good. What is left of the others, two fifths as many, is a small matrix to which D of now is added on
-/// its diagonal; that one is factorised again for each D, however many contacts change. Springs come last.
+/// young ones grow hard. So rows that have no D and will have none, across the needle at contacts that have come of
+/// age, are eliminated first and for good; not those of the last three, next to the tip. What is left of the others,
+/// two fifths of all, is a small matrix to which D of now is added on its diagonal; that one is factorised again for
+/// each D, however many contacts change. Springs come last.
 ///
 /// Columns have 3g rows of the contacts, LPS, then two a spring. Sized once; nothing allocates after that.
 class GripMatrix {
@@ -44,24 +46,25 @@ class GripMatrix {
   explicit GripMatrix(int grips);
 
   /// @param A, N [mm/N] (3g × 3g) @param springs (g), or none @param yields (g)
-  /// @return false where the matrix is singular
+  /// @return false where the matrix is found singular; change() may still find it
   [[nodiscard]] bool factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
                                std::span<const LentSpring> springs, std::span<const Yield> yields);
 
   /// Adds a contact after those there, without a spring.
   /// @param A, N [mm/N] (3g × 3g) with it
-  void append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield);
+  /// @return false, and nothing done, where it is better to factorise again
+  [[nodiscard]] bool append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield);
 
   /// Forgets all contacts but the first. @return false, and nothing done, where that takes a new factor
   [[nodiscard]] bool keep_first(int grips);
 
   /// Takes other values of D in; directions stay those of factorise(). To be called before finish().
-  /// @return false where D of a row that was to stay has changed, or a contact that slides almost freely has turned:
+  /// @return false where a row that was to have none gets a D, or a contact that slides almost freely has turned:
   ///   factorise again; or, just after that, where the matrix is singular
   [[nodiscard]] bool change(std::span<const Yield> yields);
 
   /// Counts the matrices there have been: finish() depends on it.
-  [[nodiscard]] unsigned version() const { return version_; }
+  [[nodiscard]] std::uint64_t version() const { return version_; }
 
   /// Rows of a column: three a contact, two a spring.
   [[nodiscard]] Eigen::Index rows() const { return grip_rows() + spring_rows(); }
@@ -109,18 +112,19 @@ class GripMatrix {
   [[nodiscard]] Eigen::RowVector2d own(const Spring& spring, int k) const;
 
   int grips_ = 0;
-  Eigen::Index staying_ = 0;         ///< rows whose D stays
+  int appended_ = 0;                 ///< contacts since factorise()
+  Eigen::Index staying_ = 0;         ///< rows that stay without D
   std::vector<Eigen::Index> place_;  ///< (3g)
   std::vector<Mat3> frames_;         ///< (g) n1, n2, t of each contact as the rows have it
   std::vector<Yield> yields_;        ///< (g) in the matrix
   std::vector<double> own_;          ///< [mm/N] what needle and tissue give way at a contact, mean of the directions
   std::vector<Spring> springs_;
   std::vector<double> flexibility_;  ///< [mm/N] K⁻¹ of each spring
-  /// Lower triangle of B in the order of elimination. Of the rows that stay L; of the others what they are in L, and
-  /// right of that what B has left of them, without D of the rows that change.
+  /// Lower triangle of B, without D, in the order of elimination. Of the rows that stay L; of the others what they are
+  /// in L, and right of that what B has left of them. Nothing reads the upper triangle.
   MatX factor_;
   bool current_ = false;  ///< what follows is of D and contacts of now
-  unsigned version_ = 0;
+  std::uint64_t version_ = 0;
   MatX changing_;            ///< (c × c) L of the rows that change
   MatX by_springs_;          ///< (c × s) L⁻¹ of the springs' columns there
   MatX left_;                ///< (s × s) what is left for the springs: L and U

@@ -136,13 +136,19 @@ TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_conta
     system.yield[6].axial = 5.0;
     ASSERT_TRUE(system.solve(TipRows::all));
   }
-  if (!system.keep_first(9)) {
+  const bool last_has_a_spring = GetParam();
+  EXPECT_EQ(system.keep_first(9), !last_has_a_spring);
+  if (last_has_a_spring) {
     ASSERT_TRUE(system.factorise());
   }
   equations.rows = 27;
   system.A.topLeftCorner<3, 3>() += more;
   system.add_tip();
   equations.expect_solved(TipRows::all, "nine of twelve, a softer tip");
+  EXPECT_FALSE(system.keep_first(4)) << "rows of older ones stay";
+  ASSERT_TRUE(system.factorise());
+  equations.rows = 12;
+  equations.expect_solved(TipRows::all, "four of twelve");
 }
 
 TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matrix_was_made) {
@@ -163,7 +169,30 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matr
     system.yield.back().lateral = 2.0;
     system.yield[static_cast<std::size_t>(before)].axial = 9.0;
     equations.expect_solved(TipRows::axial, "one older, one slides");
+    ASSERT_TRUE(system.keep_first(before + 2)) << before;
+    equations.rows = 3 * system.count;
+    equations.expect_solved(TipRows::all, "the youngest is gone");
   }
+}
+
+TEST_P(ContactEquations, are_put_in_order_again_when_many_contacts_have_come_alive) {
+  Equations equations(30, GetParam());
+  ContactSystem& system = equations.system;
+  for (std::size_t c = 5; c < 30; ++c) system.spring[c] = {};
+  system.count = 5;
+  ASSERT_TRUE(system.factorise());
+  int anew = 0;
+  for (int c = 5; c < 30; ++c) {
+    system.count = c + 1;
+    if (!system.append()) {
+      ++anew;
+      ASSERT_TRUE(system.factorise());
+    }
+    equations.rows = 3 * system.count;
+    equations.expect_solved(TipRows::all, std::to_string(c).c_str());
+  }
+  EXPECT_GE(anew, 1);
+  EXPECT_LE(anew, 5);
 }
 
 TEST_P(ContactEquations, tell_how_far_the_needle_is_beyond_the_tissue_where_the_tip_is_free) {

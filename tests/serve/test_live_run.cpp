@@ -3,7 +3,11 @@
 #include "live_run.hpp"
 #include "serving.hpp"
 
+#include <gtest/gtest.h>
+
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <numeric>
 #include <thread>
 
