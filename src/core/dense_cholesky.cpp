@@ -26,6 +26,7 @@ bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns) {
   return A.diagonal().allFinite();
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): A is written through the view
 bool factorise(Eigen::Ref<MatX> A) { return factorise_first(A, A.rows()); }
 
 void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y) {
