@@ -17,11 +17,16 @@ constexpr int kMaxNewton = 30;
 constexpr int kMaxPivots = 60;
 constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifted together, then one by one
 constexpr int kMaxToggles = 6;
-constexpr int kManyIterations = 5;  ///< an old matrix is made anew before the next step when it took so many
+/// An old matrix is made anew before the next step when it took more iterations than this, …
+constexpr int kManyIterations = 5;
+constexpr int kManyQuiet = 3;  ///< … or than this where no state changed, so that it is the matrix's fault
 // A tangent costs as much as some iterations with an old one, and spread over more of them it does no harm to the
 // longest step.
 constexpr int kSoon = 4;             ///< so many more iterations are waited for
 constexpr int kTangentPatience = 6;  ///< the same where the tangent is of this balance
+/// [of the largest force] From nearer than this to the balance, the first iteration's success says nothing about the
+/// matrix: a contact that changes its state or a cut that goes a little further may outweigh all the error there was.
+constexpr double kNear = 1e-4;
 /// Where states have changed, one of this balance serves on while no more than this part of the error is left each
 /// time.
 constexpr double kFalls = 0.3;
@@ -434,21 +439,6 @@ void Insertion::Parts::go_back() {
   if (tip.touching && tip.state == Tip::State::cut) march(kept.advance);
 }
 
-/// Starts the sub-step from where it will probably end: what slid and cut in the last one goes on as the base does.
-void Insertion::Parts::expect(const Pose& from, const Pose& to) {
-  constexpr double most = 4.0;  // times as far as before
-  const double way = (to.origin - from.origin).dot(to.rotation * Vec3::UnitZ());
-  const double share = last_way != 0.0 ? way / last_way : 0.0;
-  if (way < 0.0 && last_way > 0.0 && system.supported) tangent_fits = false;  // without springs it is cheaper
-  last_way = way;
-  expected_cut = 0.0;
-  if (!(share > 0.0 && share < most)) return;
-  expected_cut = share * last_cut;
-  for (Grip& grip : grips) {
-    if (grip.state != Grip::State::stick) grip.s = grip.s_start + share * grip.slid;
-  }
-}
-
 /// Remembers where the tip was, and aims the cut.
 void Insertion::Parts::begin_balance(int most_toggles) {
   toggle_limit = most_toggles;
@@ -464,11 +454,7 @@ void Insertion::Parts::begin_balance(int most_toggles) {
 
 void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
-  if (tip.touching && tip.state == Tip::State::cut && expected_cut > 0.0) {
-    march(expected_cut);
-    if (tip.blocked) march(0.0);  // left to the balance
-    tip.blocked = false;
-  }
+  go_on();
 
   bool changed = true;
   bool old_matrix = false;
@@ -482,11 +468,12 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   };
   bool old_matrix_failed = false;
   bool new_tangent = false;
+  bool quiet = true;      // no state has changed
   Index border_tet = -1;  // where the tip was when it was added to the matrix
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
     double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
-      if (iteration > kManyIterations) tangent_fits = false;
+      if (iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
       return;
     }
     bool exact = old_matrix_failed;
@@ -504,7 +491,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
         error = look();
       }
     }
-    before = error;
+    before = iteration == 0 ? std::max(error, kNear / settings.tolerance) : error;
     ++report.iterations;
     old_matrix = !exact && relax_needle();
     if (old_matrix) {
@@ -530,6 +517,8 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       old_matrix_failed = true;
       continue;
     }
+    quiet = quiet && !changed;
+    steady = steady && tip.toggles == 0;
 
     for (int c = 0; c < load_count(); ++c) {
       loads[static_cast<std::size_t>(c)].force = -system.push.segment<3>(3 * c);
@@ -547,6 +536,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       if (tip.blocked) {
         tip.state = Tip::State::stick;
         changed = true;
+        steady = false;
       }
     }
   }

@@ -71,7 +71,8 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   past.resize(capacity + 1, Vec3::Zero());
   springs.resize(capacity + 1, Mat3::Zero());
   system_points.reserve(capacity + 1);
-  kept.needle = needle->state();
+  kept.needle = shape_start = needle->state();
+  shape_gained = VecX::Zero(shape_start.size());
   kept.grips.resize(capacity);
   forces = MatX::Zero(3, most_points(settings) + 1);
   point_at.resize(static_cast<std::size_t>(most_points(settings)) + 1);
@@ -134,6 +135,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
   needle->set_base(pose);
   memory.begin(h);
   if (phase == TipPhase::air) {
+    steady = false;
     settle_in_air(report);
     const Vec3 now = needle->point(length());
     const bool settled = enter(air_tip, now, report);
@@ -144,8 +146,9 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     }
     share_length();
   }
-  for (Grip& grip : grips) grip.s_start = grip.s;
+  keep_start();
   expect(before, pose);
+  steady = settings.solver == CouplingSettings::Solver::coupled;
   bool broke = false;
   int surfaces = 0;
   do {
@@ -158,12 +161,12 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     // more than the surface bears.
     const bool met = memory.on() && tip.touching && tip.blocked;
     last_cut = tip.touching ? tip.advance : 0.0;
-    expected_cut = 0.0;
+    expected_cut = expected_share = 0.0;
     commit_tip(report);
     broke = met && tip.touching && tip.force.norm() > tip.limit;
   } while (broke && ++surfaces < kMostSurfaces);
+  keep_gains();
   for (Grip& grip : grips) {
-    grip.slid = grip.s - grip.s_start;
     const double speed = std::abs(grip.slid) / h;
     if (grip.state != Grip::State::stick && speed < settings.zero_band_mm_per_s) grip.state = Grip::State::stick;
   }

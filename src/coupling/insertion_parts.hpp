@@ -35,6 +35,8 @@ struct Grip {
   double reach = 0.0;         ///< [mm] by which it slides in this sub-step at the speed where friction stops growing
   int toggles = 0;            ///< changes of state in this sub-step
   Vec3 force = Vec3::Zero();  ///< [N] on the tissue
+  Vec3 force_start = Vec3::Zero();  ///< … at the start of the sub-step
+  Vec3 gained = Vec3::Zero();       ///< [N] by which it changed in the last sub-step
 };
 
 /// The tip against the end of its track.
@@ -58,7 +60,9 @@ struct Tip {
   double cutting = 0.0;            ///< [N] force that keeps it going
   double lateral_softness = 0.0;   ///< [mm/N]; infinite: the tip is not held sideways
   int toggles = 0;
-  Vec3 force = Vec3::Zero();  ///< [N] on the tissue
+  Vec3 force = Vec3::Zero();        ///< [N] on the tissue
+  Vec3 force_start = Vec3::Zero();  ///< … at the start of the sub-step
+  Vec3 gained = Vec3::Zero();       ///< [N] by which it changed in the last sub-step
 };
 
 struct Insertion::Parts {
@@ -82,10 +86,14 @@ struct Insertion::Parts {
   int joined = -1;          ///< old track this insertion runs in
   std::vector<Grip> grips;  ///< grip k sits on mark k of the track
   Tip tip;
-  double last_way = 0.0;      ///< [mm] of the base along its axis in the last sub-step …
-  double last_cut = 0.0;      ///< [mm] … and of the tip through tissue
-  double expected_cut = 0.0;  ///< [mm] in this one
-  double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
+  double last_way = 0.0;        ///< [mm] of the base along its axis in the last sub-step …
+  double last_cut = 0.0;        ///< [mm] … and of the tip through tissue
+  double expected_cut = 0.0;    ///< [mm] in this one
+  double expected_share = 0.0;  ///< by which forces and shape change in this one as they did in the last
+  VecX shape_start;             ///< Needle::state() at the start of the sub-step …
+  VecX shape_gained;            ///< … and by how much it changed in the last one
+  bool steady = false;          ///< the tip did not change its state in the last sub-step
+  double candidate_xi = 0.0;    ///< next place on the track where a contact may be laid
   Vec3 prepared_at = Vec3::Constant(1e30);
   std::uint64_t rows_prepared = 0;                 ///< ComplianceStore::arrived() then
   std::optional<NeedleWhereabouts> awaited_entry;  ///< surface met where no compliance is there yet
@@ -122,6 +130,12 @@ struct Insertion::Parts {
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
   void solve_equilibrium(double h, StepReport& report);
 
+  // expectation.cpp: where the balance is solved from.
+  void keep_start();
+  void expect(const Pose& from, const Pose& to);  ///< how far all will go; contacts that slide go at once
+  void go_on();                                   ///< the rest, once the cut is aimed
+  void keep_gains();
+
   // paper/staggered.cpp: the same balance, needle and tissue in turn.
   void solve_staggered(double h, StepReport& report);
   void condense_tissue();
@@ -151,7 +165,6 @@ struct Insertion::Parts {
   [[nodiscard]] Vec3 unloaded(int load) const { return material_of(load) + past[static_cast<std::size_t>(load)]; }
   [[nodiscard]] double arc_of(int load) const;
   [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
-  void expect(const Pose& from, const Pose& to);
   void keep_iterate();
   void go_back();
   void begin_balance(int most_toggles);

@@ -15,7 +15,7 @@ namespace stylet {
 
 namespace {
 
-constexpr double kBeyond_mm = 10.0;       ///< of the planned depth
+constexpr double kShownBeyond_mm = 10.0;  ///< of the planned depth
 constexpr Eigen::Index kBatch = 192;      ///< right-hand sides solved for at once
 constexpr Eigen::Index kOversample = 20;  ///< random rows more than columns
 constexpr Eigen::Index kChecks = 60;      ///< columns the error is measured on
@@ -35,7 +35,7 @@ void DisplayField::find_zone(double reach_mm) {
   slot_.assign(static_cast<std::size_t>(tissue.displacement_nodes()), -1);
   std::vector<std::array<Vec3, 2>> ways;
   for (const PlannedInsertion& plan : model_->insertions())
-    ways.push_back({plan.entry, plan.entry + (plan.depth_mm + kBeyond_mm) * plan.direction});
+    ways.push_back({plan.entry, plan.entry + (plan.depth_mm + kShownBeyond_mm) * plan.direction});
   const Corridor near = find_corridor(tissue.mesh(), ways, reach_mm, std::numeric_limits<int>::max());
   for (const Index tet : near.elements) {
     for (const Index node : tissue.nodes_of(tet)) {
