@@ -3,6 +3,7 @@
 #include "detail/file_kind.hpp"
 #include "detail/guard.hpp"
 #include "detail/parsers.hpp"
+#include "mesh/gmsh_library.hpp"
 #include "mesh/raw_mesh.hpp"
 #include "mesh/surfaces.hpp"
 
@@ -71,10 +72,10 @@ Result<TetMesh> read_tet_mesh(const fs::path& path, const MeshReadOptions& optio
       parse = [&] { return detail::parse_vtk_mesh(path, false); };
       break;
     case FileKind::gmsh:
-      parse = [&] { return detail::parse_gmsh_mesh(path, false); };
-      break;
     case FileKind::medit:
-      parse = [&] { return detail::parse_gmsh_mesh(path, true); };
+      // Here, once: a child would load it for each file.
+      if (const auto library = detail::GmshLibrary::get(); !library) return library.error();
+      parse = [&] { return detail::parse_gmsh_mesh(path, *kind == FileKind::medit); };
       break;
     case FileKind::tetgen:
       parse = [&] { return detail::parse_tetgen_mesh(path); };

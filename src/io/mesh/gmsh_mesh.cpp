@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // gmsh MSH 1, 2.2, 4.1 (ASCII, binary) and MEDIT .mesh, by the gmsh library.
 #include "detail/text.hpp"
+#include "mesh/gmsh_library.hpp"
 #include "mesh/raw_mesh.hpp"
 
 #include <fmt/format.h>
-#include <gmsh.h>
 
 #include <fstream>
 #include <unordered_map>
@@ -17,56 +17,31 @@ namespace fs = std::filesystem;
 
 constexpr int tetrahedron_4 = 4, tetrahedron_10 = 11;  // gmsh element types
 
-struct Gmsh {
-  Gmsh() {
-    gmsh::initialize(0, nullptr, false);  // without the user's configuration files
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::option::setNumber("General.AbortOnError", 2);  // throw
-    gmsh::option::setNumber("General.NumThreads", 1);
-    gmsh::logger::start();
-  }
-  /// gmsh goes on after errors; its log knows.
-  static std::string first_error() {
-    std::vector<std::string> lines;
-    gmsh::logger::get(lines);
-    for (const std::string& line : lines) {
-      if (line.starts_with("Error")) return line.substr(line.find(':') == std::string::npos ? 0 : line.find(':') + 2);
-    }
-    return {};
-  }
-};
-
 /// Region numbers and names of volumes: the volume's first physical group. Without groups, or when one group without a
 /// name holds several volumes (gmsh wants some group to save a mesh), the volumes themselves.
 class Regions {
  public:
-  Regions() {
-    gmsh::vectorpair volumes, groups;
-    gmsh::model::getEntities(volumes, 3);
-    gmsh::model::getPhysicalGroups(groups, 3);
-    std::string name;
-    if (groups.size() == 1) gmsh::model::getPhysicalName(3, groups.front().second, name);
+  explicit Regions(const GmshLibrary& gmsh) : gmsh_(gmsh) {
+    const auto volumes = gmsh.entities(3), groups = gmsh.physical_groups(3);
+    const std::string name = groups.size() == 1 ? gmsh.physical_name(3, groups.front().second) : "";
     by_volume_ = groups.empty() || (groups.size() == 1 && name.empty() && volumes.size() > 1);
   }
   [[nodiscard]] std::pair<int, std::string> of(int volume) const {
     std::vector<int> groups;
-    if (!by_volume_) gmsh::model::getPhysicalGroupsForEntity(3, volume, groups);
+    if (!by_volume_) groups = gmsh_.physical_groups_of(3, volume);
     // Minus keeps the number of a volume outside all groups apart from those of the groups.
     if (groups.empty()) return {by_volume_ ? volume : -volume, fmt::format("region {}", volume)};
-    std::string name;
-    gmsh::model::getPhysicalName(3, groups.front(), name);
-    return {groups.front(), name};
+    return {groups.front(), gmsh_.physical_name(3, groups.front())};
   }
 
  private:
+  const GmshLibrary& gmsh_;
   bool by_volume_ = true;
 };
 
-Result<RawMesh> to_raw(const std::string& source) {
+Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   RawMesh raw;
-  std::vector<std::size_t> tags;
-  std::vector<double> coordinates, parameters;
-  gmsh::model::mesh::getNodes(tags, coordinates, parameters);
+  const auto [tags, coordinates] = gmsh.nodes();
   std::unordered_map<std::size_t, Index> node;
   node.reserve(tags.size());
   for (std::size_t a = 0; a < tags.size(); ++a) {
@@ -78,36 +53,28 @@ Result<RawMesh> to_raw(const std::string& source) {
   }
   raw.used_elsewhere.assign(raw.nodes.size(), false);
 
-  const Regions regions;
-  gmsh::vectorpair entities;
-  gmsh::model::getEntities(entities);
-  for (const auto& [dimension, entity] : entities) {
+  const Regions regions(gmsh);
+  for (const auto& [dimension, entity] : gmsh.entities(-1)) {
     const auto [tag, name] = dimension == 3 ? regions.of(entity) : std::pair<int, std::string>{};
-    std::vector<int> types;
-    std::vector<std::vector<std::size_t>> elements, nodes;
-    gmsh::model::mesh::getElements(types, elements, nodes, dimension, entity);
-    for (std::size_t k = 0; k < types.size(); ++k) {
-      const std::size_t count = elements[k].size();
+    for (const auto& [type, elements, nodes] : gmsh.elements(dimension, entity)) {
+      const std::size_t count = elements.size();
       if (count == 0) continue;
-      const std::size_t per_element = nodes[k].size() / count;
-      const bool tets = types[k] == tetrahedron_4 || types[k] == tetrahedron_10;
+      const std::size_t per_element = nodes.size() / count;
+      const bool tets = type == tetrahedron_4 || type == tetrahedron_10;
       if (!tets) {
-        std::string kind;
-        int element_dimension = 0, order = 0, corners = 0, primary = 0;
-        std::vector<double> local;
-        gmsh::model::mesh::getElementProperties(types[k], kind, element_dimension, order, corners, local, primary);
+        const std::string kind = gmsh.element_name(type);
         raw.passed_over[fmt::format("element(s) of type {}", kind)] += static_cast<Index>(count);
       } else {
-        raw.quadratic = raw.quadratic || types[k] == tetrahedron_10;
+        raw.quadratic = raw.quadratic || type == tetrahedron_10;
         raw.tag_names[tag] = name;
       }
       for (std::size_t e = 0; e < count; ++e) {
         std::array<Index, 4> tet{};
         for (std::size_t i = 0; i < per_element; ++i) {
-          const auto found = node.find(nodes[k][e * per_element + i]);
+          const auto found = node.find(nodes[e * per_element + i]);
           if (found == node.end()) {
-            return input_error(fmt::format("{}, element {}", source, elements[k][e]),
-                               fmt::format("node {} is not in the file", nodes[k][e * per_element + i]),
+            return input_error(fmt::format("{}, element {}", source, elements[e]),
+                               fmt::format("node {} is not in the file", nodes[e * per_element + i]),
                                "Export the mesh again; the file is damaged.");
           }
           if (tets && i < 4) {
@@ -168,12 +135,15 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
   if (Result<> harmless = check_harmless(path, medit); !harmless) return harmless.error();
   const std::string source = path.string();
   std::string problem;
-  const Gmsh library;
+  const Result<const GmshLibrary*> library = GmshLibrary::get();
+  if (!library) return library.error();
+  const GmshLibrary& gmsh = **library;
+  gmsh.start();
   try {
-    gmsh::merge(source);
-    problem = Gmsh::first_error();
+    gmsh.merge(source);
+    problem = gmsh.first_error();
     if (problem.empty()) {
-      Result<RawMesh> raw = to_raw(source);
+      Result<RawMesh> raw = to_raw(gmsh, source);
       const std::size_t announced = medit ? announced_tetrahedra(path) : 0;
       if (raw && medit && raw->tets.size() != announced) {
         return input_error(source,
@@ -183,9 +153,8 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
       return raw;
     }
   } catch (const std::exception& error) {
-    problem = error.what();
-  } catch (...) {
-    problem = Gmsh::first_error();
+    problem = gmsh.first_error();
+    if (problem.empty()) problem = error.what();
   }
   return input_error(source,
                      fmt::format("gmsh cannot read the file ({})", problem.empty() ? "no reason given" : problem),

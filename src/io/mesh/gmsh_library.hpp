@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gmsh library, loaded with the first file that needs it: it brings CAD libraries, and binding the symbols of those
+// took every start of the program 0.2 s.
+#pragma once
+
+#include "stylet/core/result.hpp"
+
+#include <gmshc.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stylet::detail {
+
+/// What of the library the reader calls. Where gmsh reports an error the functions throw std::runtime_error.
+class GmshLibrary {
+ public:
+  using DimTags = std::vector<std::pair<int, int>>;  ///< dimension and number of each entity or group
+  struct Nodes {
+    std::vector<std::size_t> tags;
+    std::vector<double> coordinates;  ///< (3 × nodes) [file unit]
+  };
+  struct Elements {
+    int type = 0;
+    std::vector<std::size_t> tags, nodes;  ///< nodes: those of an element follow each other
+  };
+
+  /// The library; loads it the first time. Failure: it is not there, or it is another version.
+  static Result<const GmshLibrary*> get();
+
+  /// Starts it, without the user's configuration files, silent, on one thread, with a log.
+  void start() const;
+  void merge(const std::string& file) const;
+  /// gmsh goes on after errors; its log knows. Empty: none.
+  [[nodiscard]] std::string first_error() const;
+
+  /// @param dimension −1: all
+  [[nodiscard]] DimTags entities(int dimension) const;
+  [[nodiscard]] DimTags physical_groups(int dimension) const;
+  [[nodiscard]] std::vector<int> physical_groups_of(int dimension, int entity) const;
+  [[nodiscard]] std::string physical_name(int dimension, int group) const;
+  [[nodiscard]] Nodes nodes() const;
+  [[nodiscard]] std::vector<Elements> elements(int dimension, int entity) const;
+  [[nodiscard]] std::string element_name(int type) const;
+
+ private:
+  explicit GmshLibrary(void* loaded);
+
+  template <class T>
+  std::vector<T> taken(T* data, std::size_t size) const;
+  std::string taken(char* text) const;
+
+  bool whole_ = true;  ///< every function below is there
+  decltype(&gmshFree) free_ = nullptr;
+  decltype(&gmshInitialize) initialize_ = nullptr;
+  decltype(&gmshOptionSetNumber) set_number_ = nullptr;
+  decltype(&gmshLoggerStart) logger_start_ = nullptr;
+  decltype(&gmshLoggerGet) logger_get_ = nullptr;
+  decltype(&gmshMerge) merge_ = nullptr;
+  decltype(&gmshModelGetEntities) entities_ = nullptr;
+  decltype(&gmshModelGetPhysicalGroups) groups_ = nullptr;
+  decltype(&gmshModelGetPhysicalGroupsForEntity) groups_of_ = nullptr;
+  decltype(&gmshModelGetPhysicalName) name_ = nullptr;
+  decltype(&gmshModelMeshGetNodes) nodes_ = nullptr;
+  decltype(&gmshModelMeshGetElements) elements_ = nullptr;
+  decltype(&gmshModelMeshGetElementProperties) properties_ = nullptr;
+};
+
+}  // namespace stylet::detail
