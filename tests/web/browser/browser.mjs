@@ -10,7 +10,8 @@ import { fileURLToPath } from 'node:url';
 const PLACES = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 const WEB = process.env.STYLET_WEB ?? path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../../build/web');
 const SKIPPED = 77;
-const SOFTWARE_GL = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+// WebGL alone: what Chromium does by itself where there is no graphics hardware. The page itself it draws without.
+const SOFTWARE_GL = ['--use-gl=angle', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader'];
 const NO_GL_SAID = /Error creating WebGL context|WebGL context could not be created/;  // three.js tells the console as well
 const NO_GL = ['--disable-gpu', '--disable-3d-apis'];
 /** Pictures in software on a busy machine come seconds apart. */
