@@ -18,10 +18,31 @@ struct GivenUp {};
 
 }  // namespace
 
-FieldMaker::FieldMaker(std::shared_ptr<const Model> model)
-    : thread_([this, model = std::move(model)]() mutable { make(std::move(model)); }) {}
+FieldMaker::FieldMaker(std::shared_ptr<const Model> model, std::chrono::duration<double> longest_wait)
+    : thread_([this, model = std::move(model), longest_wait]() mutable {
+        wait(longest_wait);
+        make(std::move(model));
+      }) {}
 
 FieldMaker::~FieldMaker() { give_up(); }
+
+void FieldMaker::begin() {
+  {
+    const std::lock_guard lock(mutex_);
+    begins_ = true;
+  }
+  woken_.notify_all();
+}
+
+void FieldMaker::give_up() {
+  given_up_ = true;
+  begin();
+}
+
+void FieldMaker::wait(std::chrono::duration<double> longest) {
+  std::unique_lock lock(mutex_);
+  (void)woken_.wait_for(lock, longest, [this] { return begins_; });
+}
 
 void FieldMaker::make(std::shared_ptr<const Model> model) {
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
@@ -31,6 +52,7 @@ void FieldMaker::make(std::shared_ptr<const Model> model) {
     fraction_.store((first ? fraction : 1.0 + fraction) / kStages, std::memory_order_relaxed);
   };
   try {
+    if (given_up_) throw GivenUp();
     if (auto field = DisplayField::prepare(std::move(model), {}, progress)) made_ = std::move(*field);
   } catch (const GivenUp&) {  // nobody waits for it
   } catch (const std::bad_alloc&) {

@@ -73,6 +73,8 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
       return Request::Kind::seek;
     case play:
       return Request::Kind::play;
+    case drawn:
+      return Request::Kind::drawn;
     case take:
     case release:
       break;
@@ -174,7 +176,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       holding.release(viewer.id());
       return say_status();
     }
-    if (holding.holder() != viewer.id())
+    if (command.what != drawn && holding.holder() != viewer.id())
       return viewer.send(wire::Kind::notice,
                          text_of({{"text", "somebody else holds the needle"}, {"cure", "Ask for it"}}));
     const auto kind = request_kind(command.what);

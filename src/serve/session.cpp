@@ -60,6 +60,7 @@ struct Session::Parts {
     std::vector<PlannedInsertion> insertions;
   } planned;
   std::size_t insertion = 0;
+  bool page_has_drawn = false;  ///< any, ever: then no field waits
   std::unique_ptr<LiveRun> live;
   std::unique_ptr<Replay> replay;
   SessionStatus status;
@@ -257,7 +258,8 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
       planned = {(*model)->scenario(), (*model)->insertions()};
     open_case = case_number;
     show_model();
-    field_maker = std::make_unique<FieldMaker>(open.model);
+    field_maker = std::make_unique<FieldMaker>(
+        open.model, std::chrono::duration<double>(page_has_drawn ? 0.0 : settings.field_waits_s));
     return place(request, 0);
   }
   if (open.model) {
@@ -337,6 +339,10 @@ void Session::Parts::carry_out(const Request& request) {
   switch (request.kind) {
     case Kind::greet:
       whole_curve = true;
+      break;
+    case Kind::drawn:
+      page_has_drawn = true;
+      if (field_maker) field_maker->begin();
       break;
     case Kind::open_case:
       if (number >= settings.cases.size()) return missing("case", settings.cases.size());

@@ -34,7 +34,22 @@ Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
 /// What a page asks for, by the names of the protocol.
 struct Command {
-  enum class Do { take, release, hole, insertion, reset, pause, resume, step, open_case, replay, live, seek, play };
+  enum class Do {
+    take,
+    release,
+    hole,
+    insertion,
+    reset,
+    pause,
+    resume,
+    step,
+    open_case,
+    replay,
+    live,
+    seek,
+    play,
+    drawn
+  };
   Do what{};
   std::string text;     ///< of hole and replay
   double number = 0.0;  ///< of insertion, step, case, seek and play

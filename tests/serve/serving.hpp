@@ -50,6 +50,7 @@ struct Serving {
     s.session.runner.late_after_s = 0.5;
     s.session.runner.realtime_scheduling = false;
     s.session.runner.lock_memory = false;
+    s.session.field_waits_s = 0.0;  // no page draws here, and recordings have frames once the field is there
     if (change) change(s);
     auto opened = serve::Server::open(std::move(s));
     if (!opened) throw std::runtime_error(opened.error().message());

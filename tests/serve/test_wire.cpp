@@ -145,7 +145,7 @@ TEST(Wire, commands_carry_what_they_need) {
   const auto seek = wire::decode(command(R"({"do":"seek","time_s":1.5})"));
   ASSERT_NE(as_command(seek), nullptr);
   EXPECT_EQ(as_command(seek)->number, 1.5);
-  for (const char* name : {"take", "release", "reset", "pause", "resume", "live"})
+  for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn"})
     EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;
 }
 

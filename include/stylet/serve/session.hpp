@@ -28,6 +28,7 @@ struct SessionSettings {
   std::string replay;                    ///< name of a recording to start with; empty: live
   RunnerSettings runner;                 ///< keep_steps is set
   double pictures_per_s = 60.0;          ///< at most
+  double field_waits_s = 3.0;            ///< at most: the displacement field, for the first page to draw
   double recorded_frames_per_s = 10;     ///< at most; fewer where a mesh makes them expensive
   std::shared_ptr<Companion> companion;  ///< may be null
 };
@@ -58,7 +59,8 @@ struct Request {
     live,       ///< back from it
     seek,       ///< number [s]
     play,       ///< number: rate, 0 stands
-    greet       ///< somebody has come: the whole curve again
+    greet,      ///< somebody has come: the whole curve again
+    drawn       ///< a page has drawn all it shows
   };
   Kind kind{};
   std::uint64_t viewer = 0;

@@ -55,7 +55,7 @@ export interface Event { kind: string; time_s: number; depth_mm: number; force_N
 export interface Notice { text: string; cure: string }
 
 export type Command =
-  | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' }
+  | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' | 'drawn' }
   | { do: 'hole'; hole: string } | { do: 'insertion' | 'case'; index: number } | { do: 'step'; count: number }
   | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number };
 

@@ -23,6 +23,7 @@ export class Stage {
   readonly cut = new CutPlane();
   readonly template = new TemplatePlate();
   readonly canvas: HTMLCanvasElement;
+  onFirstPicture: () => void = () => {};
   private needle = new NeedleMesh(1.27);
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.OrthographicCamera();
@@ -120,8 +121,11 @@ export class Stage {
     this.renderer.setViewport(0, 0, width, height);
     this.sortSurfaces();
     this.renderer.render(this.scene, this.camera);
-    if (!this.drawn) performance.mark('3D view');  // like 'needle ready' of the cover
-    this.drawn = true;
+    if (!this.drawn) {
+      this.drawn = true;
+      performance.mark('3D view');  // like 'needle ready' of the cover
+      this.onFirstPicture();
+    }
     this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
     const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
     const mm = roundDown((0.16 * width) / pixelsPerMm);

@@ -77,7 +77,9 @@ export class ViewPanel {
 
   private open(): void {
     this.stage = this.makeStage();
-    if (!this.stage) return;
+    const drawn = () => this.session.command({ do: 'drawn' });
+    if (!this.stage) return drawn();
+    this.stage.onFirstPicture = drawn;
     this.bar.hidden = false;
     this.buildSettings(this.stage);
     if (!this.anatomy) return;
