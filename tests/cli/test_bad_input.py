@@ -3,10 +3,13 @@
 """Whatever is wrong with a file, both commands that read it say so, name it, and write nothing."""
 import gzip
 import json
+import os
 import unittest
+import unittest.mock
+from pathlib import Path
 
 import samples
-from program import InFolder
+from program import InFolder, run
 
 
 class BadInput(InFolder):
@@ -99,6 +102,16 @@ class BadInput(InFolder):
         self.refused_by_both("beyond.msh")
         samples.tet_mesh(self.folder / "metres.msh", unit=1000)
         self.refused_by_both("metres.msh")
+
+    def test_a_gmsh_library_that_cannot_be_loaded_is_named_where_it_is_needed_only(self):
+        samples.tet_mesh(self.folder / "mesh.msh")
+        for library in Path("/usr/lib").glob("*/libgmsh.so.*"):
+            (self.folder / library.name).touch()
+        with unittest.mock.patch.dict(os.environ, {"LD_LIBRARY_PATH": str(self.folder)}):
+            done = run("info", "mesh.msh", cwd=self.folder)
+            self.assertEqual(done.returncode, 1)  # the file may be a good one
+            self.assertRegex(done.stderr, r"\Astylet: error: libgmsh\.so[^\n]+ cannot be loaded [^\n]+ Install gmsh[^\n]+\n\Z")
+            self.succeed("--version")
 
     def test_hdf5_that_is_no_recording(self):
         self.write("run.h5", b"\x89HDF\r\n\x1a\n" + bytes(500))
