@@ -25,11 +25,10 @@ GmshLibrary::DimTags pairs(const std::vector<int>& flat) {
 
 Result<const GmshLibrary*> GmshLibrary::get() {
   static const std::string name = fmt::format("libgmsh.so.{}.{}", GMSH_API_VERSION_MAJOR, GMSH_API_VERSION_MINOR);
-  static void* const loaded = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  static const std::string problem = loaded != nullptr ? "" : dlerror();
-  static const GmshLibrary library(loaded);
-  if (loaded == nullptr)
-    return failure(name, fmt::format("the library that reads gmsh and MEDIT meshes cannot be loaded ({})", problem),
+  static const GmshLibrary library(dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL));
+  if (!library.problem_.empty())
+    return failure(name,
+                   fmt::format("the library that reads gmsh and MEDIT meshes cannot be loaded ({})", library.problem_),
                    "Install gmsh, or bring the mesh as VTU.");
   if (!library.whole_)
     return failure(name, "the library that reads gmsh and MEDIT meshes lacks functions",
@@ -38,7 +37,11 @@ Result<const GmshLibrary*> GmshLibrary::get() {
 }
 
 GmshLibrary::GmshLibrary(void* loaded) {
-  if (loaded == nullptr) return;
+  if (loaded == nullptr) {
+    const char* said = dlerror();
+    problem_ = said != nullptr ? said : "no reason given";
+    return;
+  }
   const auto find = [&]<class F>(F& function, const char* name) {
     function = reinterpret_cast<F>(dlsym(loaded, name));
     whole_ = whole_ && function != nullptr;
