@@ -151,6 +151,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   settings.session.cases = {{"the demo", [&](const Progress&) { return model; }}};
   settings.session.recordings = folder.path;
   settings.session.companion = script;
+  settings.session.field_waits_s = 0.0;  // made before the first turn begins
   auto server = serve::Server::open(std::move(settings));
   if (!server) return server.error();
   (*server)->start();

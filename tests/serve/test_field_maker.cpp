@@ -39,7 +39,10 @@ TEST(FieldMaker, begins_by_itself_when_nobody_tells_it_to) {
 
 TEST(FieldMaker, gives_up_while_it_waits) {
   FieldMaker maker(compiled(hole_scenario()), kNever);
+  const FieldMaker other(compiled(hole_scenario()), std::chrono::seconds(0));
+  ASSERT_TRUE(ends(other));  // by then it would have made some
   EXPECT_FALSE(maker.done());
+  EXPECT_EQ(maker.fraction(), 0.0);
   maker.give_up();
   ASSERT_TRUE(ends(maker));
   EXPECT_FALSE(maker.field());

@@ -28,7 +28,7 @@ struct SessionSettings {
   std::string replay;                    ///< name of a recording to start with; empty: live
   RunnerSettings runner;                 ///< keep_steps is set
   double pictures_per_s = 60.0;          ///< at most
-  double field_waits_s = 3.0;            ///< at most: the displacement field, for the first page to draw
+  double field_waits_s = 3.0;            ///< longest wait for a page to draw before the displacement field is made
   double recorded_frames_per_s = 10;     ///< at most; fewer where a mesh makes them expensive
   std::shared_ptr<Companion> companion;  ///< may be null
 };

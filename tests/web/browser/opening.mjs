@@ -9,7 +9,9 @@ import { DEMO, makeFolder, startServer } from './server.mjs';
 
 const starts = Number(process.argv[2] ?? 5);
 const scenario = path.resolve(process.argv[3] ?? DEMO);
-const open = (process.argv[4] ?? 'open') === 'open';
+const way = process.argv[4] ?? 'open';
+if (way !== 'open' && way !== 'started') throw new Error(`"${way}" is neither "open" nor "started"`);
+const open = way === 'open';
 const REST_MS = 1500;  // what the window and the start before still do is no part of this one
 let browser = open ? await openBrowser() : null;
 const rows = [];
