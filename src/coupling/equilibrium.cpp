@@ -454,6 +454,7 @@ void Insertion::Parts::begin_balance(int most_toggles) {
 
 void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
+  bool from_start = expected_share == 0.0;
   go_on();
 
   bool changed = true;
@@ -474,6 +475,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
       if (iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
+      if (iteration > kManyIterations) steady = false;  // what took long to find says little about what comes next
       return;
     }
     bool exact = old_matrix_failed;
@@ -510,9 +512,14 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       system.add_tip();
     }
     if (!matrix_fits || !pivot(h, report, changed)) {
-      if (!old_matrix) {  // needle and tissue as they are have no balance nearby: they stay
-        report.flags |= StepReport::not_converged;
-        return;
+      if (!old_matrix) {  // needle and tissue have no balance nearby: they stay as they were
+        steady = false;
+        stay();
+        if (from_start) {
+          report.flags |= StepReport::not_converged;
+          return;
+        }
+        from_start = true;
       }
       old_matrix_failed = true;
       continue;
@@ -540,6 +547,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       }
     }
   }
+  steady = false;
   if (changed || !(look() < 1e3)) report.flags |= StepReport::not_converged;
 }
 

@@ -1,10 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "insertion_parts.hpp"
 
-/// Where a sub-step will probably end: everything goes on as in the last one, in proportion to the base's way. What the
-/// balance is solved from changes nothing of what it is, but from there the solver has only second differences to find
-/// (docs/theory/coupling.md §4).
+#include <cmath>
+
+/// Where a sub-step will probably end: everything goes on as in the last one, in proportion to the base's motion. What
+/// the balance is solved from changes nothing of what it is, but from there the solver has only second differences to
+/// find (docs/theory/coupling.md §4).
 namespace stylet {
+
+namespace {
+
+constexpr double kBaseStill_mm = 1e-6;  ///< a base that moves less in a sub-step stands still
+/// Times as far as before are slides and cuts expected to go, …
+constexpr double kMostFurther = 4.0;
+constexpr double kMostShare = 2.0;   ///< … forces and shape, …
+constexpr double kMostUnlike = 0.5;  ///< … and those only where less than this part of the base's motion is a new one
+
+/// Motion of a base [mm]: of its origin, and of a point so far from it as the needle is long by its turn.
+Eigen::Vector<double, 6> motion(const Pose& from, const Pose& to, double length) {
+  const Eigen::Quaterniond turn = to.rotation * from.rotation.conjugate();
+  const double sign = turn.w() < 0.0 ? -1.0 : 1.0;  // one turn is two quaternions
+  Eigen::Vector<double, 6> result;
+  result << to.origin - from.origin, 2.0 * sign * length * turn.vec();
+  return result;
+}
+
+}  // namespace
 
 void Insertion::Parts::keep_start() {
   shape_start = needle->state();
@@ -16,17 +37,26 @@ void Insertion::Parts::keep_start() {
 }
 
 void Insertion::Parts::expect(const Pose& from, const Pose& to) {
-  constexpr double most = 4.0;  // times as far as before
-  const double way = (to.origin - from.origin).dot(to.rotation * Vec3::UnitZ());
-  const double share = last_way != 0.0 ? way / last_way : 0.0;
-  last_way = way;
   expected_cut = expected_share = 0.0;
-  if (!(share > 0.0 && share < most)) return;
-  expected_cut = share * last_cut;
-  if (steady) expected_share = share;
-  for (Grip& grip : grips) {
-    if (grip.state != Grip::State::stick) grip.s = grip.s_start + share * grip.slid;
+  const Eigen::Vector<double, 6> now = motion(from, to, length());
+  const Eigen::Vector<double, 6> before = last_motion;
+  last_motion = now;
+  const double way = (to.origin - from.origin).dot(to.rotation * Vec3::UnitZ());
+  const double way_before = last_way;
+  last_way = way;
+  if (std::abs(way) > kBaseStill_mm && std::abs(way_before) > kBaseStill_mm) {
+    const double share = way / way_before;
+    if (share > 0.0 && share < kMostFurther) {
+      expected_cut = share * last_cut;
+      for (Grip& grip : grips) {
+        if (grip.state != Grip::State::stick) grip.s = grip.s_start + share * grip.slid;
+      }
+    }
   }
+  if (!steady || !(now.norm() > kBaseStill_mm && before.norm() > kBaseStill_mm)) return;
+  const double share = now.dot(before) / before.squaredNorm();
+  if (share > 0.0 && share < kMostShare && (now - share * before).norm() < kMostUnlike * now.norm())
+    expected_share = share;
 }
 
 void Insertion::Parts::go_on() {
@@ -41,6 +71,16 @@ void Insertion::Parts::go_on() {
   needle->set_state(expected);
   if (tip.touching && tip.state != Tip::State::open) tip.force += expected_share * tip.gained;
   for (Grip& grip : grips) grip.force += expected_share * grip.gained;
+}
+
+void Insertion::Parts::stay() {
+  needle->set_state(shape_start);
+  tip.force = tip.touching && tip.state != Tip::State::open ? tip.force_start : Vec3::Zero();
+  for (Grip& grip : grips) {
+    grip.s = grip.s_start;
+    grip.force = grip.force_start;
+  }
+  if (tip.touching && tip.state == Tip::State::cut) march(0.0);
 }
 
 void Insertion::Parts::keep_gains() {

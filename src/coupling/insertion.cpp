@@ -234,6 +234,7 @@ void Insertion::place(const Pose& base) {
   parts_->awaited_entry.reset();
   parts_->tangent_fits = false;
   parts_->last_way = parts_->last_cut = 0.0;
+  parts_->last_motion.setZero();
   parts_->base = base;
   parts_->needle->set_base(base);
   parts_->settle_in_air(unused);

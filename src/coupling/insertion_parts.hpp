@@ -86,13 +86,14 @@ struct Insertion::Parts {
   int joined = -1;          ///< old track this insertion runs in
   std::vector<Grip> grips;  ///< grip k sits on mark k of the track
   Tip tip;
+  Eigen::Vector<double, 6> last_motion = Eigen::Vector<double, 6>::Zero();  ///< of the base in the last sub-step
   double last_way = 0.0;        ///< [mm] of the base along its axis in the last sub-step …
   double last_cut = 0.0;        ///< [mm] … and of the tip through tissue
   double expected_cut = 0.0;    ///< [mm] in this one
   double expected_share = 0.0;  ///< by which forces and shape change in this one as they did in the last
   VecX shape_start;             ///< Needle::state() at the start of the sub-step …
   VecX shape_gained;            ///< … and by how much it changed in the last one
-  bool steady = false;          ///< the tip did not change its state in the last sub-step
+  bool steady = false;          ///< the last sub-step was balanced soon, and the tip kept its state in it
   double candidate_xi = 0.0;    ///< next place on the track where a contact may be laid
   Vec3 prepared_at = Vec3::Constant(1e30);
   std::uint64_t rows_prepared = 0;                 ///< ComplianceStore::arrived() then
@@ -134,6 +135,7 @@ struct Insertion::Parts {
   void keep_start();
   void expect(const Pose& from, const Pose& to);  ///< how far all will go; contacts that slide go at once
   void go_on();                                   ///< the rest, once the cut is aimed
+  void stay();                                    ///< where there is no balance: as all was
   void keep_gains();
 
   // paper/staggered.cpp: the same balance, needle and tissue in turn.
