@@ -4,12 +4,16 @@
 #include "core/dense_kernels.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace stylet::dense {
 
-bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns) {
+namespace {
+
+/// Columns `first` … `columns` − 1, after those before them.
+bool factorise_columns(Eigen::Ref<MatX>& A, Eigen::Index first, Eigen::Index columns) {
   const Eigen::Index n = A.rows();
-  for (Eigen::Index k = 0; k < n;) {
+  for (Eigen::Index k = first; k < n;) {
     const bool beyond = k >= columns;
     const Eigen::Index nk = std::min(kTile, beyond ? n - k : columns - k);
     const Eigen::Index below = n - k - nk;
@@ -20,22 +24,38 @@ bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns) {
     subtract_product_transposed(diagonal, done, done);
     if (!beyond && !factorise_tile(diagonal)) return false;
     subtract_product_transposed(rest, A.block(k + nk, 0, below, before), done);
-    if (!beyond) divide_by_transposed_tile(diagonal, rest);
+    if (!beyond) {
+      divide_by_transposed_tile(diagonal, rest);
+      invert_tile(diagonal);
+    }
     k += nk;
   }
   return A.diagonal().allFinite();
 }
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): A is written through the view
-bool factorise(Eigen::Ref<MatX> A) { return factorise_first(A, A.rows()); }
+}  // namespace
+
+// NOLINTBEGIN(performance-unnecessary-value-param): A is written through the view
+
+bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns) { return factorise_columns(A, 0, columns); }
+
+bool factorise(Eigen::Ref<MatX> A) { return factorise_columns(A, 0, A.rows()); }
+
+bool factorise_from(Eigen::Ref<MatX> A, Eigen::Index first) {
+  assert(first % kTile == 0);
+  return factorise_columns(A, first, A.rows());
+}
+
+// NOLINTEND(performance-unnecessary-value-param)
 
 void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y) {
   const Eigen::Index n = L.rows();
-  for (Eigen::Index k = start; k < n; k += kTile) {
+  const Eigen::Index first = start / kTile * kTile;  // the tiles are those of the factor
+  for (Eigen::Index k = first; k < n; k += kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);
     auto tile = Y.middleRows(k, nk);
-    subtract_product(tile, L.block(k, start, nk, k - start), Y.middleRows(start, k - start));
-    solve_lower_tile(L.block(k, k, nk, nk), false, tile);
+    subtract_product(tile, L.block(k, first, nk, k - first), Y.middleRows(first, k - first));
+    solve_inverted_tile(L.block(k, k, nk, nk), tile);
   }
 }
 
@@ -50,7 +70,7 @@ void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
       transposed_product(known, L.block(k + nk, k, below, nk), Y.col(c).tail(below));
       tile.col(c) -= known;
     }
-    solve_lower_transposed_tile(L.block(k, k, nk, nk), tile);
+    solve_inverted_tile_transposed(L.block(k, k, nk, nk), tile);
   }
 }
 

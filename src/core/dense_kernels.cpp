@@ -76,6 +76,13 @@ STYLET_INLINE void subtract_any(double* c, Size ldc, const double* a, Size lda, 
   if (j < columns) subtract_columns<1>(c + j * ldc, ldc, a, lda, b + j * across, down, across, rows, depth);
 }
 
+/// The sums of four registers' numbers, (0 + 1) + (2 + 3) of each.
+STYLET_INLINE void add_up(const Four& a, const Four& b, const Four& c, const Four& d, double* sums) {
+  const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  four(sums) = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
 /// c(i, j) = Σ_k a(k, i) b(k, j): four sums side by side, then the rest.
 template <int Rows, int Columns>
 STYLET_INLINE void dot_block(double* c, Size ldc, const double* a, Size lda, const double* b, Size ldb, Size depth) {
@@ -90,12 +97,15 @@ STYLET_INLINE void dot_block(double* c, Size ldc, const double* a, Size lda, con
       for (int i = 0; i < Rows; ++i) sum[i][j] += four(a + k + i * lda) * right;
     }
   }
-  for (int i = 0; i < Rows; ++i) {
-    for (int j = 0; j < Columns; ++j) {
-      const Four& s = sum[i][j];
-      double total = (s[0] + s[1]) + (s[2] + s[3]);
-      for (Size rest = k; rest < depth; ++rest) total += a[rest + i * lda] * b[rest + j * ldb];
-      c[i + j * ldc] = total;
+  for (int j = 0; j < Columns; ++j) {
+    for (int i = 0; i < Rows; ++i) {
+      if constexpr (Rows == kFour) {
+        if (i == 0) add_up(sum[0][j], sum[1][j], sum[2][j], sum[3][j], c + j * ldc);
+      } else {
+        const Four& s = sum[i][j];
+        c[i + j * ldc] = (s[0] + s[1]) + (s[2] + s[3]);
+      }
+      for (Size rest = k; rest < depth; ++rest) c[i + j * ldc] += a[rest + i * lda] * b[rest + j * ldb];
     }
   }
 }
@@ -175,14 +185,61 @@ void upper(const double* u, Size ldu, Size n, double* y, Size ldy, Size columns)
   }
 }
 
+/// Column i of L⁻ᵀ is −1/L_ii Σ_(m < i) L_im × column m, that of m ending with 1/L_mm.
 STYLET_FOR_PROCESSORS
-void lower_transposed(const double* l, Size ldl, Size n, double* y, Size ldy, Size columns) {
+void invert(double* tile, Size ld, Size n) {
+  for (Size i = 1; i < n; ++i) {
+    double* const column = tile + i * ld;
+    for (Size m = 0; m < i; ++m) column[m] = -tile[i + m * ld] / tile[m + m * ld];
+    for (Size m = 1; m < i; ++m) subtract_multiple(column, tile + m * ld, tile[i + m * ld], m);
+    const double inverse = 1.0 / column[i];
+    for (Size k = 0; k < i; ++k) column[k] *= inverse;
+  }
+}
+
+/// So many columns. Last rows first: row i needs those above it as they were.
+template <int Columns>
+STYLET_INLINE void inverted_columns(const double* tile, Size ld, Size n, double* y, Size ldy) {
+  Size i = n;
+  for (; i % kFour != 0; --i) {
+    const double* const column = tile + (i - 1) * ld;
+    double above[Columns];
+    dot_block<1, Columns>(above, 1, column, ld, y, ldy, i - 1);
+    for (int c = 0; c < Columns; ++c) {
+      double& x = y[i - 1 + c * ldy];
+      x = x / column[i - 1] + above[c];
+    }
+  }
+  for (; i > 0; i -= kFour) {
+    const Size first = i - kFour;
+    double sum[Columns][kFour];
+    dot_block<kFour, Columns>(sum[0], kFour, tile + first * ld, ld, y, ldy, first);
+    for (Size r = kFour - 1; r >= 0; --r) {
+      const double* const column = tile + (first + r) * ld + first;
+      for (int c = 0; c < Columns; ++c) {
+        double* const x = y + first + c * ldy;
+        for (Size k = 0; k < r; ++k) sum[c][r] += column[k] * x[k];
+        x[r] = x[r] / column[r] + sum[c][r];
+      }
+    }
+  }
+}
+
+STYLET_FOR_PROCESSORS
+void inverted(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
+  Size c = 0;
+  for (; c + 2 <= columns; c += 2) inverted_columns<2>(tile, ld, n, y + c * ldy, ldy);
+  if (c < columns) inverted_columns<1>(tile, ld, n, y + c * ldy, ldy);
+}
+
+STYLET_FOR_PROCESSORS
+void inverted_transposed(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
   for (Size c = 0; c < columns; ++c) {
-    double* x = y + c * ldy;
-    for (Size j = n - 1; j >= 0; --j) {
-      double known = 0.0;
-      dot_block<1, 1>(&known, 1, l + j + 1 + j * ldl, ldl, x + j + 1, ldy, n - j - 1);
-      x[j] = (x[j] - known) / l[j + j * ldl];
+    double* const x = y + c * ldy;
+    for (Size i = 0; i < n; ++i) {
+      const double factor = x[i];
+      subtract_multiple(x, tile + i * ld, -factor, i);
+      x[i] = factor / tile[i + i * ld];
     }
   }
 }
@@ -257,8 +314,14 @@ void solve_lower_tile(const Eigen::Ref<const MatX>& L, bool unit, Eigen::Ref<Mat
   lower(L.data(), L.outerStride(), L.rows(), unit, Y.data(), Y.outerStride(), Y.cols());
 }
 
-void solve_lower_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
-  lower_transposed(L.data(), L.outerStride(), L.rows(), Y.data(), Y.outerStride(), Y.cols());
+void invert_tile(Eigen::Ref<MatX> L) { invert(L.data(), L.outerStride(), L.rows()); }
+
+void solve_inverted_tile(const Eigen::Ref<const MatX>& tile, Eigen::Ref<MatX> Y) {
+  inverted(tile.data(), tile.outerStride(), tile.rows(), Y.data(), Y.outerStride(), Y.cols());
+}
+
+void solve_inverted_tile_transposed(const Eigen::Ref<const MatX>& tile, Eigen::Ref<MatX> Y) {
+  inverted_transposed(tile.data(), tile.outerStride(), tile.rows(), Y.data(), Y.outerStride(), Y.cols());
 }
 
 void solve_upper_tile(const Eigen::Ref<const MatX>& U, Eigen::Ref<MatX> Y) {

@@ -22,8 +22,14 @@ void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, con
 /// Y ← L⁻¹ Y for a small lower triangle L. @param unit its diagonal counts as ones
 void solve_lower_tile(const Eigen::Ref<const MatX>& L, bool unit, Eigen::Ref<MatX> Y);
 
+/// Writes L⁻ᵀ of a small lower triangle L over it, without its diagonal: above that of L.
+void invert_tile(Eigen::Ref<MatX> L);
+
+/// Y ← L⁻¹ Y for such a tile. It has no chain of divisions, each of which waits for the one before.
+void solve_inverted_tile(const Eigen::Ref<const MatX>& tile, Eigen::Ref<MatX> Y);
+
 /// Y ← L⁻ᵀ Y
-void solve_lower_transposed_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y);
+void solve_inverted_tile_transposed(const Eigen::Ref<const MatX>& tile, Eigen::Ref<MatX> Y);
 
 /// Y ← U⁻¹ Y for a small upper triangle U.
 void solve_upper_tile(const Eigen::Ref<const MatX>& U, Eigen::Ref<MatX> Y);

@@ -59,11 +59,14 @@ Vec3 ContactSystem::error(int contact) const {
   return frame[c].transpose() * off - shift.segment<3>(3 * contact);
 }
 
-double ContactSystem::own_yield(int contact, int k) const {
+Vec3 ContactSystem::own_yield(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
-  const Vec3 d = frame[c].col(k);
+  const Mat3& Q = frame[c];
   const Mat3 own = A.block<3, 3>(3 * contact, 3 * contact) + N.block<3, 3>(3 * contact, 3 * contact);
-  return d.dot(own * d) + d.dot(yield[c].of(d));
+  const Vec3 along = Q.transpose() * yield[c].along;
+  Vec3 result = (own * Q).cwiseProduct(Q).colwise().sum().transpose();
+  result.array() += yield[c].lateral + (yield[c].axial - yield[c].lateral) * along.array().square();
+  return result;
 }
 
 bool ContactSystem::solve(TipRows held) {

@@ -64,8 +64,8 @@ class ContactSystem {
   /// X + A λ_now − r_now + D λ_now − shift of a contact [mm], in its frame.
   [[nodiscard]] Vec3 error(int contact) const;
 
-  /// How far a contact gives way to its own unit force along direction k of its frame [mm/N].
-  [[nodiscard]] double own_yield(int contact, int k) const;
+  /// How far a contact gives way to its own unit force along each direction of its frame [mm/N].
+  [[nodiscard]] Vec3 own_yield(int contact) const;
 
   /// By how much the last solution takes a contact of the shaft to give way along t beyond what D of now says [mm]: the
   /// matrix is an older one. Where D is large, a sliding contact without viscosity, its force cannot tell how far it

@@ -19,11 +19,10 @@ constexpr int kAllAtOnce = 4;  ///< rounds in which all contradictions are lifte
 constexpr int kMaxToggles = 6;
 /// An old matrix is made anew before the next step when it took more iterations than this, …
 constexpr int kManyIterations = 5;
-constexpr int kManyQuiet = 3;  ///< … or than this where no state changed, so that it is the matrix's fault
-// A tangent costs as much as some iterations with an old one, and spread over more of them it does no harm to the
-// longest step.
-constexpr int kSoon = 4;             ///< so many more iterations are waited for
-constexpr int kTangentPatience = 6;  ///< the same where the tangent is of this balance
+constexpr int kManyQuiet = 3;   ///< … or than this where no state changed, …
+constexpr double kSlow = 0.08;  ///< … and the last one left more than this part of the error: it is the matrix's fault
+/// A tangent costs as much as some iterations with an old one, so many more are waited for.
+constexpr int kWorthATangent = 6;
 /// [of the largest force] From nearer than this to the balance, the first iteration's success says nothing about the
 /// matrix: a contact that changes its state or a cut that goes a little further may outweigh all the error there was.
 constexpr double kNear = 1e-4;
@@ -82,7 +81,11 @@ Vec3 Insertion::Parts::tissue_displacement(int point) const {
 void Insertion::Parts::set_frames() {
   const InPhase in_phase(phases, StepPhase::gather);
   for (int c = 0; c < load_count(); ++c) {
-    const Vec3 t = needle->tangent(arc_of(c));
+    const double s = arc_of(c);
+    const AxisPlace at = needle->place(s);
+    const Vec3& t = at.tangent;
+    const double beyond = c == 0 ? 0.0 : grips[static_cast<std::size_t>(c - 1)].s - s;
+    shaft[static_cast<std::size_t>(c)] = at.point + beyond * t;
     // Any pair of normals will do: both lateral directions are treated alike.
     const Vec3 helper = std::abs(t.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
     const Vec3 n1 = t.cross(helper).normalized();
@@ -195,7 +198,7 @@ void Insertion::Parts::gather_system() {
   auto gap = system.gap.head(size);
   for (int c = 0; c < count; ++c) now.segment<3>(3 * c) = force_of(c);
   gap.noalias() = system.A.topLeftCorner(size, size) * now;
-  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) += unloaded(c) - shaft_point(c);
+  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) += unloaded(c) - shaft[static_cast<std::size_t>(c)];
 }
 
 /// The needle's tangent at its present shape, and the matrix made of it.
@@ -324,7 +327,7 @@ Insertion::Parts::Trial Insertion::Parts::trial(int load) const {
     const double sign = grip.state == Grip::State::backward ? -1.0 : 1.0;
     result.slides = way(grip, result.axial) + sign * system.axial_excess(load);
   } else if (tip.state == Tip::State::open) {
-    result.opening = system.opening() / std::max(system.own_yield(0, 2), kTiny);
+    result.opening = system.opening() / std::max(system.own_yield(0)[2], kTiny);
   }
   return result;
 }
@@ -385,13 +388,10 @@ bool Insertion::Parts::pivot(double h, StepReport& report, bool& changed) {
 double Insertion::Parts::equation_error() const {
   double error = 0.0;
   const auto held = tip_rows();
+  const int tip_from = held == ContactSystem::TipRows::all ? 0 : held == ContactSystem::TipRows::axial ? 2 : 3;
   for (int c = 0; c < load_count(); ++c) {
-    const Vec3 off = system.error(c);
-    for (int k = 0; k < 3; ++k) {
-      if (c == 0 && (held == ContactSystem::TipRows::none || (held == ContactSystem::TipRows::axial && k < 2)))
-        continue;
-      error = larger_or_nan(error, std::abs(off[k]) / system.own_yield(c, k));
-    }
+    const Vec3 off = system.error(c).cwiseAbs().cwiseQuotient(system.own_yield(c));
+    for (int k = c == 0 ? tip_from : 0; k < 3; ++k) error = larger_or_nan(error, off[k]);
   }
   // A contact that is not held in a direction must carry nothing there.
   if (held == ContactSystem::TipRows::axial)
@@ -454,8 +454,8 @@ void Insertion::Parts::begin_balance(int most_toggles) {
 
 void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
-  bool from_start = expected_share == 0.0;
-  go_on();
+  bool from_start = !going_on || force_share == 0.0;
+  if (going_on) go_on();
 
   bool changed = true;
   bool old_matrix = false;
@@ -474,7 +474,8 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
     double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
-      if (iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
+      const bool slow = error > kSlow * before;
+      if (slow && iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
       if (iteration > kManyIterations) steady = false;  // what took long to find says little about what comes next
       return;
     }
@@ -484,9 +485,9 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       const double rate = error / before;
       const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
       if (changed) {
-        exact = new_tangent ? !(rate < kFalls || done_after(kTangentPatience)) : iteration > 1 || !(rate < 1.0);
+        exact = new_tangent ? !(rate < kFalls || done_after(kWorthATangent)) : iteration > 1 || !(rate < 1.0);
       } else {
-        exact = iteration == 1 ? !(rate < 1.0) : !done_after(new_tangent ? kTangentPatience : kSoon);
+        exact = iteration == 1 ? !(rate < 1.0) : !done_after(kWorthATangent);
       }
       if (exact && old_matrix && !changed && !(error < before)) {  // it led away: from where it began, with a new one
         go_back();

@@ -138,6 +138,7 @@ bool GripMatrix::factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<con
   fill_springs(A);
   appended_ = 0;
   current_ = false;
+  current_before_ = 0;
   return dense::factorise_first(factor_.topLeftCorner(rows(), rows()), staying_);
 }
 
@@ -146,6 +147,7 @@ bool GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const 
   if (appended_ == kMostAppended) return false;
   ++appended_;
   current_ = false;
+  current_before_ = 0;
   const int last = grips_++;
   const auto l = static_cast<std::size_t>(last);
   frames_[l] = frame_along(yield.along);
@@ -182,6 +184,7 @@ bool GripMatrix::keep_first(int grips) {
   }
   if (!springs_.empty() && springs_.back().grip >= grips) return false;
   current_ = current_ && grips == grips_;
+  if (!current_) current_before_ = 0;
   grips_ = grips;
   return true;
 }
@@ -195,15 +198,21 @@ bool GripMatrix::change(std::span<const Yield> yields) {
     if (differs(now.lateral, then.lateral)) {
       if (stays(g, 0)) return false;
       then.lateral = now.lateral;
-      current_ = false;
+      outdate(place(g, 0));
     }
     if (differs(now.axial, then.axial)) {
       then.axial = now.axial;
-      current_ = false;
+      outdate(place(g, 2));
     }
   }
   if (!current_) current_ = factorise_changing();
   return current_;
+}
+
+/// D of a row has changed.
+void GripMatrix::outdate(Eigen::Index row) {
+  current_ = false;
+  current_before_ = std::min(current_before_, row - staying_ - spring_rows());
 }
 
 /// Puts D into what is left of the rows that change, and takes them and the springs out.
@@ -213,15 +222,18 @@ bool GripMatrix::factorise_changing() {
   const Eigen::Index s = spring_rows();
   const Eigen::Index first = staying_ + s;
   auto L = changing_.topLeftCorner(c, c);
-  for (Eigen::Index j = 0; j < c; ++j) L.col(j).tail(c - j) = factor_.col(first + j).segment(first + j, c - j);
+  const Eigen::Index from = current_before_ / dense::kTile * dense::kTile;
+  current_before_ = 0;
+  for (Eigen::Index j = from; j < c; ++j) L.col(j).tail(c - j) = factor_.col(first + j).segment(first + j, c - j);
   for (int g = 0; g < grips_; ++g) {
     for (int k = 0; k < 3; ++k) {
       if (stays(g, k)) continue;
       const Eigen::Index i = place(g, k) - first;
-      L(i, i) += component(yields_[static_cast<std::size_t>(g)], k);
+      if (i >= from) L(i, i) += component(yields_[static_cast<std::size_t>(g)], k);
     }
   }
-  if (!dense::factorise(L)) return false;
+  if (!dense::factorise_from(L, from)) return false;
+  current_before_ = c;
   if (s == 0) return true;
 
   auto across = by_springs_.topLeftCorner(c, s);

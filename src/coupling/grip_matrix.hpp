@@ -108,6 +108,7 @@ class GripMatrix {
   void order(std::span<const Yield> yields);
   void fill_contacts(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N);
   void fill_springs(const Eigen::Ref<const MatX>& A);
+  void outdate(Eigen::Index row);
   [[nodiscard]] bool factorise_changing();
   [[nodiscard]] Eigen::RowVector2d own(const Spring& spring, int k) const;
 
@@ -121,9 +122,11 @@ class GripMatrix {
   std::vector<Spring> springs_;
   std::vector<double> flexibility_;  ///< [mm/N] K⁻¹ of each spring
   /// Lower triangle of B, without D, in the order of elimination. Of the rows that stay L; of the others what they are
-  /// in L, and right of that what B has left of them. Nothing reads the upper triangle.
+  /// in L, and right of that what B has left of them. In the upper triangle nothing but the inverses of tiles is read
+  /// (dense_cholesky.hpp).
   MatX factor_;
-  bool current_ = false;  ///< what follows is of D and contacts of now
+  bool current_ = false;             ///< what follows is of D and contacts of now, …
+  Eigen::Index current_before_ = 0;  ///< … or at least changing_ before this column
   std::uint64_t version_ = 0;
   MatX changing_;            ///< (c × c) L of the rows that change
   MatX by_springs_;          ///< (c × s) L⁻¹ of the springs' columns there

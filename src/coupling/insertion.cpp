@@ -68,11 +68,12 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   for (Track& old : old_tracks) old.marks.reserve(capacity);
   grips.reserve(capacity);
   loads.reserve(capacity + 1);
+  shaft.resize(capacity + 1, Vec3::Zero());
   past.resize(capacity + 1, Vec3::Zero());
   springs.resize(capacity + 1, Mat3::Zero());
   system_points.reserve(capacity + 1);
   kept.needle = shape_start = needle->state();
-  shape_gained = VecX::Zero(shape_start.size());
+  shape_gained = shape_more = VecX::Zero(shape_start.size());
   kept.grips.resize(capacity);
   forces = MatX::Zero(3, most_points(settings) + 1);
   point_at.resize(static_cast<std::size_t>(most_points(settings)) + 1);
@@ -151,6 +152,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
   steady = settings.solver == CouplingSettings::Solver::coupled;
   bool broke = false;
   int surfaces = 0;
+  double cut = 0.0;
   do {
     if (settings.solver == CouplingSettings::Solver::staggered) {
       solve_staggered(h, report);
@@ -160,12 +162,12 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     // What is held by a surface for the rest of a sub-step pushes it on; viscous tissue resists that at once, and with
     // more than the surface bears.
     const bool met = memory.on() && tip.touching && tip.blocked;
-    last_cut = tip.touching ? tip.advance : 0.0;
-    expected_cut = expected_share = 0.0;
+    cut = tip.touching ? tip.advance : 0.0;
+    going_on = false;
     commit_tip(report);
     broke = met && tip.touching && tip.force.norm() > tip.limit;
   } while (broke && ++surfaces < kMostSurfaces);
-  keep_gains();
+  keep_gains(cut);
   for (Grip& grip : grips) {
     const double speed = std::abs(grip.slid) / h;
     if (grip.state != Grip::State::stick && speed < settings.zero_band_mm_per_s) grip.state = Grip::State::stick;
@@ -233,7 +235,8 @@ void Insertion::place(const Pose& base) {
   parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->awaited_entry.reset();
   parts_->tangent_fits = false;
-  parts_->last_way = parts_->last_cut = 0.0;
+  parts_->last_way = parts_->last_cut = parts_->cut_more = 0.0;
+  parts_->force_share = parts_->way_share = 0.0;
   parts_->last_motion.setZero();
   parts_->base = base;
   parts_->needle->set_base(base);

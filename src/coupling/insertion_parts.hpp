@@ -19,14 +19,15 @@ struct Grip {
     backward
   };  ///< forward: the needle slides into the tissue, friction pushes it along
 
-  int point = -1;         ///< in ContactCompliance
-  double xi = 0.0;        ///< [mm] along the track
-  Vec3 x = Vec3::Zero();  ///< [mm] tissue point, undeformed
-  double s = 0.0;         ///< [mm] where on the needle it is now
-  double s_start = 0.0;   ///< … at the start of the sub-step
-  double slid = 0.0;      ///< [mm] along the needle in the last sub-step
-  double softness = 0.0;  ///< [mm/N] a young contact yields this much: it comes alive and dies without a jump
-  double length = 0.0;    ///< [mm] tributary length
+  int point = -1;          ///< in ContactCompliance
+  double xi = 0.0;         ///< [mm] along the track
+  Vec3 x = Vec3::Zero();   ///< [mm] tissue point, undeformed
+  double s = 0.0;          ///< [mm] where on the needle it is now
+  double s_start = 0.0;    ///< … at the start of the sub-step
+  double slid = 0.0;       ///< [mm] along the needle in the last sub-step, …
+  double slid_more = 0.0;  ///< [mm] … and how much of that was beyond what was in proportion to the one before
+  double softness = 0.0;   ///< [mm/N] a young contact yields this much: it comes alive and dies without a jump
+  double length = 0.0;     ///< [mm] tributary length
   FrictionLaw law;
   State state = State::stick;
   bool fast = false;          ///< slides faster than friction grows with speed
@@ -36,7 +37,8 @@ struct Grip {
   int toggles = 0;            ///< changes of state in this sub-step
   Vec3 force = Vec3::Zero();  ///< [N] on the tissue
   Vec3 force_start = Vec3::Zero();  ///< … at the start of the sub-step
-  Vec3 gained = Vec3::Zero();       ///< [N] by which it changed in the last sub-step
+  Vec3 gained = Vec3::Zero();       ///< [N] by which it changed in the last sub-step, …
+  Vec3 gained_more = Vec3::Zero();  ///< [N] … and how much of that was beyond what was in proportion to the one before
 };
 
 /// The tip against the end of its track.
@@ -62,7 +64,8 @@ struct Tip {
   int toggles = 0;
   Vec3 force = Vec3::Zero();        ///< [N] on the tissue
   Vec3 force_start = Vec3::Zero();  ///< … at the start of the sub-step
-  Vec3 gained = Vec3::Zero();       ///< [N] by which it changed in the last sub-step
+  Vec3 gained = Vec3::Zero();       ///< [N] by which it changed in the last sub-step, …
+  Vec3 gained_more = Vec3::Zero();  ///< [N] … and how much of that was beyond what was in proportion to the one before
 };
 
 struct Insertion::Parts {
@@ -87,14 +90,19 @@ struct Insertion::Parts {
   std::vector<Grip> grips;  ///< grip k sits on mark k of the track
   Tip tip;
   Eigen::Vector<double, 6> last_motion = Eigen::Vector<double, 6>::Zero();  ///< of the base in the last sub-step
-  double last_way = 0.0;        ///< [mm] of the base along its axis in the last sub-step …
-  double last_cut = 0.0;        ///< [mm] … and of the tip through tissue
-  double expected_cut = 0.0;    ///< [mm] in this one
-  double expected_share = 0.0;  ///< by which forces and shape change in this one as they did in the last
-  VecX shape_start;             ///< Needle::state() at the start of the sub-step …
-  VecX shape_gained;            ///< … and by how much it changed in the last one
-  bool steady = false;          ///< the last sub-step was balanced soon, and the tip kept its state in it
-  double candidate_xi = 0.0;    ///< next place on the track where a contact may be laid
+  double last_way = 0.0;     ///< [mm] of the base along its axis in the last sub-step …
+  double last_cut = 0.0;     ///< [mm] … and of the tip through tissue, …
+  double cut_more = 0.0;     ///< [mm] … of which beyond what was in proportion to the one before
+  VecX shape_start;          ///< Needle::state() at the start of the sub-step …
+  VecX shape_gained;         ///< … and by how much it changed in the last one, …
+  VecX shape_more;           ///< … of which beyond what was in proportion to the one before
+  double force_share = 0.0;  ///< forces and shape are expected to change so many times as much as in the last sub-step,
+  double force_trend = 0.0;  ///< and so many times what was beyond proportion then comes again; 0 = not known
+  double way_share = 0.0;    ///< the same of slides and the cut
+  double way_trend = 0.0;
+  bool going_on = false;      ///< the balance is solved from there
+  bool steady = false;        ///< the last sub-step was balanced soon, and the tip kept its state in it
+  double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
   Vec3 prepared_at = Vec3::Constant(1e30);
   std::uint64_t rows_prepared = 0;                 ///< ComplianceStore::arrived() then
   std::optional<NeedleWhereabouts> awaited_entry;  ///< surface met where no compliance is there yet
@@ -102,6 +110,7 @@ struct Insertion::Parts {
 
   // Scratch of the equilibrium, sized once.
   std::vector<PointLoad> loads;  ///< tip first, then the grips: the needle's side, −force
+  std::vector<Vec3> shaft;       ///< [mm] needle at each load; past its ends, straight on
   std::vector<Vec3> past;        ///< [mm] by which earlier forces displace the tissue at each load
   ContactSystem system;
   std::vector<Mat3>& frames = system.frame;
@@ -136,7 +145,7 @@ struct Insertion::Parts {
   void expect(const Pose& from, const Pose& to);  ///< how far all will go; contacts that slide go at once
   void go_on();                                   ///< the rest, once the cut is aimed
   void stay();                                    ///< where there is no balance: as all was
-  void keep_gains();
+  void keep_gains(double cut);                    ///< @param cut [mm] by the tip in the sub-step
 
   // paper/staggered.cpp: the same balance, needle and tissue in turn.
   void solve_staggered(double h, StepReport& report);

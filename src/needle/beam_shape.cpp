@@ -44,7 +44,7 @@ Pulls BeamShape::pulls(double s, const Vec3& force) const {
   Pulls result;
   if (kind_ == ElementKind::arc) {
     const Station at = locate(s);
-    result.pull[0] = {at, 1.0, force, point(at)};
+    result.pull[0] = pull(at, 1.0, force);
     result.count = 1;
     return result;
   }
@@ -52,9 +52,18 @@ Pulls BeamShape::pulls(double s, const Vec3& force) const {
   for (int i = 0; i < AxisCurve::kReach; ++i) {
     if (w.value[i] == 0.0) continue;
     const int node = w.first + i;
-    result.pull[result.count++] = {{node - 1, element_length_}, w.value[i], w.value[i] * force, origin_[node]};
+    result.pull[result.count++] = pull({node - 1, element_length_}, w.value[i], w.value[i] * force);
   }
   return result;
+}
+
+/// @param force of the share [N]
+Pull BeamShape::pull(const Station& at, double weight, const Vec3& force) const {
+  if (at.element < 0) return {at, weight, force, point(at), Mat3::Zero()};
+  const Mat3& R = frame_[at.element];
+  const RotationTerms inner = terms(at);
+  return {at, weight, force, origin_[at.element] + at.local * (R * inner.chord()),
+          at.local * at.local * (R * inner.chord_derivative())};
 }
 
 Vec3 BeamShape::point(const Station& at) const {
@@ -77,14 +86,19 @@ Vec3 BeamShape::tangent(double s) const {
   return curve_.tangent(s, [this](int node) { return deviation(node); });
 }
 
+AxisPlace BeamShape::place(double s) const {
+  if (kind_ != ElementKind::arc) return {point(s), tangent(s)};
+  const Station at = locate(s);
+  if (at.element < 0) return {point(at), tangent(at)};
+  const Mat3& R = frame_[at.element];
+  const RotationTerms inner = terms(at);
+  return {origin_[at.element] + at.local * (R * inner.chord()), R * inner.rotation().col(2)};
+}
+
 double BeamShape::energy() const {
   double sum = 0.0;
   for (int e = 0; e < elements_; ++e) sum += elastic_weight(e) * stiffness_.dot(strain(e).cwiseAbs2());
   return 0.5 * element_length_ * sum;
-}
-
-Mat3 BeamShape::inner_jacobian(const Station& at) const {
-  return at.local * at.local * (frame_[at.element] * terms(at).chord_derivative());
 }
 
 }  // namespace stylet::beam

@@ -4,6 +4,7 @@
 #include "needle/axis_curve.hpp"
 #include "needle/rotation_terms.hpp"
 #include "stylet/core/types.hpp"
+#include "stylet/needle/needle.hpp"
 
 #include <array>
 #include <vector>
@@ -23,9 +24,10 @@ struct Station {
 /// A pull on one station of the chain, in base axes.
 struct Pull {
   Station at;
-  double weight = 1.0;        ///< share of the load that acts here
-  Vec3 force = Vec3::Zero();  ///< [N] base axes, the share
-  Vec3 point = Vec3::Zero();  ///< [mm] base axes, from the base
+  double weight = 1.0;  ///< share of the load that acts here
+  Vec3 force;           ///< [N] base axes, the share
+  Vec3 point;           ///< [mm] base axes, from the base
+  Mat3 jacobian;        ///< [mm²] ∂ point/∂κ of the element it is in; of none before the base
 };
 
 /// A point load as the chain feels it: one pull, or for rods one at each joint that shapes the centreline there.
@@ -80,6 +82,8 @@ class BeamShape {
   [[nodiscard]] Vec3 point(double s) const;
   [[nodiscard]] Vec3 tangent(double s) const;
 
+  [[nodiscard]] AxisPlace place(double s) const;  ///< both, base axes
+
   /// Elastic energy [N mm].
   [[nodiscard]] double energy() const;
 
@@ -91,14 +95,13 @@ class BeamShape {
   [[nodiscard]] const Mat3& spin(int e) const { return spin_[e]; }    ///< Ω_e [mm]
   [[nodiscard]] const Mat3& shift(int e) const { return shift_[e]; }  ///< D_e [mm²]
 
-  /// ∂r/∂κ_e [mm²] of a point inside element e (of a rod: its end).
-  [[nodiscard]] Mat3 inner_jacobian(const Station& at) const;
   /// Of the part of an element up to a station in it (of a rod: its end).
   [[nodiscard]] RotationTerms terms(const Station& at) const {
     return RotationTerms(at.local * kappa(at.element), kind_);
   }
 
  private:
+  [[nodiscard]] Pull pull(const Station& at, double weight, const Vec3& force) const;
   [[nodiscard]] Vec3 deviation(int node) const { return origin_[node] - node * element_length_ * Vec3::UnitZ(); }
 
   ElementKind kind_;

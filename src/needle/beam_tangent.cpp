@@ -81,7 +81,7 @@ bool BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, st
   keep_first(0);
   for (const PointLoad& load : loads) locate(shape, base_rotation, load);
   assemble_energy(shape);
-  for (Eigen::Index c = 0; c < load_count(); ++c) assemble_jacobian(shape, base_rotation, c);
+  for (Eigen::Index c = 0; c < load_count(); ++c) assemble_jacobian(base_rotation, c);
   if (!springs.empty()) add_springs(springs);
   factorised_ = factorise_shifted(otherwise);
   if (!factorised_) return false;
@@ -119,7 +119,7 @@ void BeamTangent::sum_work(const BeamShape& shape, const Mat3& base_rotation, st
     Vec3 work = shape.shift(e).transpose() * beyond.force + shape.spin(e).transpose() * beyond.moment();
     for (int i = first_[static_cast<std::size_t>(e)]; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
       const Pull& pull = acting_[static_cast<std::size_t>(i)];
-      work.noalias() += shape.inner_jacobian(pull.at).transpose() * pull.force;
+      work.noalias() += pull.jacobian.transpose() * pull.force;
       beyond.add(pull);
     }
     work_[static_cast<std::size_t>(e)] = work;
@@ -183,7 +183,7 @@ bool BeamTangent::append(const BeamShape& shape, const Mat3& base_rotation, std:
   keep_first(loads.size() - 1);
   locate(shape, base_rotation, loads.back());
   const Eigen::Index c = load_count() - 1;
-  assemble_jacobian(shape, base_rotation, c);
+  assemble_jacobian(base_rotation, c);
   auto column = Y_.middleCols<3>(3 * c);
   const Eigen::Index first = start(c, c + 1);
   solve_lower(L_, first, column);
@@ -217,7 +217,7 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
       if (pull.at.element != e) continue;
       const double s = pull.at.local;
       const RotationTerms inner = shape.terms(pull.at);
-      const Mat3 jacobian = s * s * (shape.frame(e) * inner.chord_derivative()) * scale;
+      const Mat3 jacobian = pull.jacobian * scale;
       second += s * s * s * inner.chord_hessian(Rt * pull.force);
       generalised.noalias() += jacobian.transpose() * pull.force;
       lever.noalias() += cross(pull.force) * jacobian;
@@ -253,7 +253,7 @@ bool BeamTangent::factorise_shifted(Indefinite otherwise) {
   return true;
 }
 
-void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation, Eigen::Index load) {
+void BeamTangent::assemble_jacobian(const Mat3& base_rotation, Eigen::Index load) {
   const Mat3 to_base = base_rotation.transpose();
   const Eigen::Index rows = Y_.rows();
   auto column = Y_.middleCols<3>(3 * load);
@@ -266,8 +266,8 @@ void BeamTangent::assemble_jacobian(const BeamShape& shape, const Mat3& base_rot
     const Eigen::Index below = rows - i - 3;
     const Mat3 shifted = pull.weight * to_base;
     const Mat3 turned = pull.weight * cross(pull.point) * to_base;
-    column.middleRows<3>(i).noalias() += scale_[static_cast<std::size_t>(pull.at.element)].asDiagonal() *
-                                         (shape.inner_jacobian(pull.at).transpose() * shifted);
+    column.middleRows<3>(i).noalias() +=
+        scale_[static_cast<std::size_t>(pull.at.element)].asDiagonal() * (pull.jacobian.transpose() * shifted);
     column.bottomRows(below).noalias() += shift_.bottomRows(below).lazyProduct(shifted);
     column.bottomRows(below).noalias() += spin_.bottomRows(below).lazyProduct(turned);
   }

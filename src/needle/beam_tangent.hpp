@@ -60,7 +60,7 @@ class BeamTangent {
   void locate(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load);
   void assemble_energy(const BeamShape& shape);
   [[nodiscard]] bool factorise_shifted(Indefinite otherwise);
-  void assemble_jacobian(const BeamShape& shape, const Mat3& base_rotation, Eigen::Index load);
+  void assemble_jacobian(const Mat3& base_rotation, Eigen::Index load);
   void add_springs(std::span<const Mat3> springs);
   void solve_jacobian();
   [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }
@@ -79,7 +79,7 @@ class BeamTangent {
   std::vector<int> last_pull_;         ///< (w) where in pulls_ each load's pulls end
   std::vector<int> last_moved_;        ///< (w) element nearest the tip that moves the load point, -1 = none
   VecX force_;                         ///< [N] (3w) LPS
-  MatX H_, L_;                         ///< (3n × 3n) lower triangles
+  MatX H_, L_;                         ///< (3n × 3n) lower triangles, of L_ with its tiles' inverses
   VecX g_, z_, step_;                  ///< (3n) gradient, L⁻¹ g, work
   MatX spin_, shift_;                  ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
   std::vector<Mat3> lever_;            ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e

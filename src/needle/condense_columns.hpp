@@ -27,7 +27,9 @@ void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const St
     motion = -motion;
     for (Eigen::Index b = 0; b <= a; b += stride) {
       const Eigen::Index nb = std::min(stride, loads - b);
-      const Eigen::Index depth = Y.rows() - std::max(start_a, start(b, b + nb));
+      constexpr Eigen::Index four = 4;  // numbers are multiplied side by side
+      const Eigen::Index reach = Y.rows() - std::max(start_a, start(b, b + nb));
+      const Eigen::Index depth = std::min(Y.rows(), (reach + four - 1) / four * four);
       auto tile = compliance.block(3 * a, 3 * b, 3 * na, 3 * nb);
       dense::transposed_product(tile, columns.bottomRows(depth), Y.middleCols(3 * b, 3 * nb).bottomRows(depth));
       if (a == b) {

@@ -20,6 +20,11 @@ Vec3 RodChain::point(double s) const { return parts_->base.origin + parts_->base
 
 Vec3 RodChain::tangent(double s) const { return parts_->base_rotation * parts_->shape.tangent(s); }
 
+AxisPlace RodChain::place(double s) const {
+  const AxisPlace at = parts_->shape.place(s);
+  return {parts_->base.origin + parts_->base_rotation * at.point, parts_->base_rotation * at.tangent};
+}
+
 bool RodChain::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                          std::span<const Mat3> springs, Indefinite otherwise) {
   if (!parts_->tangent.assemble(parts_->shape, parts_->base_rotation, loads, springs, otherwise)) return false;

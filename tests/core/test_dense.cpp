@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace stylet {
@@ -38,6 +39,47 @@ TEST(DenseCholesky, solves_for_one_and_for_several_columns) {
       dense::solve_lower(L, 0, x);
       dense::solve_upper(L, x);
       EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm()) << n << " × " << columns;
+    }
+  }
+}
+
+TEST(DenseCholesky, leaves_zeros_before_a_start_and_goes_on_from_columns_that_are_done) {
+  for (const Eigen::Index n : kSizes) {
+    const MatX root = some_matrix(n, n);
+    const MatX A = root * root.transpose() + static_cast<double>(n) * MatX::Identity(n, n);
+    MatX L = A;
+    L.triangularView<Eigen::StrictlyUpper>().setConstant(std::numeric_limits<double>::quiet_NaN());
+    ASSERT_TRUE(dense::factorise(L)) << n;
+    for (const Eigen::Index start : {n / 5, n / 2, n - 1}) {
+      MatX b = some_matrix(n, 3);
+      b.topRows(start).setZero();
+      MatX x = b;
+      dense::solve_lower(L, start, x);
+      EXPECT_TRUE(x.topRows(start).isZero(0.0)) << n << ", " << start;
+      dense::solve_upper(L, x);
+      EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm()) << n << ", " << start;
+
+      const Eigen::Index done = start / dense::kTile * dense::kTile;
+      MatX other = L;
+      MatX changed = A;
+      changed.diagonal().tail(n - start).array() += 1.0;
+      for (Eigen::Index j = done; j < n; ++j) other.col(j).tail(n - j) = changed.col(j).tail(n - j);
+      ASSERT_TRUE(dense::factorise_from(other, done)) << n << ", " << start;
+      MatX y = b;
+      dense::solve_lower(other, 0, y);
+      dense::solve_upper(other, y);
+      EXPECT_LT((changed * y - b).norm(), 1e-12 * b.norm()) << n << ", " << start;
+
+      // The first columns are a factor by themselves.
+      if (start == 0) continue;
+      MatX partly = A;
+      ASSERT_TRUE(dense::factorise_first(partly, start)) << n << ", " << start;
+      const MatX corner = A.topLeftCorner(start, start);
+      const MatX given = some_matrix(start, 2);
+      MatX z = given;
+      dense::solve_lower(partly.topLeftCorner(start, start), 0, z);
+      dense::solve_upper(partly.topLeftCorner(start, start), z);
+      EXPECT_LT((corner * z - given).norm(), 1e-12 * given.norm()) << n << ", " << start;
     }
   }
 }

@@ -38,6 +38,7 @@ class GuidedNeedle final : public Needle {
   [[nodiscard]] const Pose& base() const override { return inner_->base(); }
   [[nodiscard]] Vec3 point(double s) const override { return inner_->point(s); }
   [[nodiscard]] Vec3 tangent(double s) const override { return inner_->tangent(s); }
+  [[nodiscard]] AxisPlace place(double s) const override { return inner_->place(s); }
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) override;
   bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) override;

@@ -22,6 +22,12 @@ enum class Indefinite {
   give_up,  ///< nothing more: for a caller who lends springs only where they are needed
 };
 
+/// A place on the centreline.
+struct AxisPlace {
+  Vec3 point = Vec3::Zero();     ///< [mm]
+  Vec3 tangent = Vec3::UnitZ();  ///< unit, towards the tip
+};
+
 /// A flexible needle clamped at its base. Knows nothing of tissue. One equilibrium is found by repeating
 ///   linearise(loads)  →  the caller picks new loads with `compliance`  →  advance(new loads)
 /// until residual() and the changes are small. No call after construction allocates, as long as the number of loads
@@ -40,6 +46,8 @@ class Needle {
   /// Centreline point [mm] LPS and unit tangent (towards the tip) at arc length s, current shape.
   [[nodiscard]] virtual Vec3 point(double s) const = 0;
   [[nodiscard]] virtual Vec3 tangent(double s) const = 0;
+  /// Both, which share much of their arithmetic.
+  [[nodiscard]] virtual AxisPlace place(double s) const { return {point(s), tangent(s)}; }
 
   /// Tangent problem at the current shape. For loads f (not necessarily in equilibrium with the shape) a Newton step to
   /// equilibrium moves load point c by free(c) + Σ_d compliance(c,d) Δf_d where Δf_d changes the given loads.

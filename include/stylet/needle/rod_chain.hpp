@@ -21,6 +21,7 @@ class RodChain : public Needle {
   [[nodiscard]] const Pose& base() const final;
   [[nodiscard]] Vec3 point(double s) const final;
   [[nodiscard]] Vec3 tangent(double s) const final;
+  [[nodiscard]] AxisPlace place(double s) const final;
   bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                  std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) final;
   bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) final;
