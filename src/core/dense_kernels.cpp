@@ -142,16 +142,12 @@ STYLET_INLINE void subtract_multiple(double* to, const double* from, double fact
 /// So many columns side by side: what one waits for, the others use. Fours begin at the same rows for every j, or the
 /// processor would wait for two stores each time it loads one.
 template <int Columns>
-STYLET_INLINE void lower_columns(const double* l, Size ldl, Size n, bool unit, double* y, Size ldy) {
+STYLET_INLINE void lower_columns(const double* l, Size ldl, Size n, double* y, Size ldy) {
   const Size whole = n - n % kFour;
   for (Size j = 0; j < n; ++j) {
     const double* const factor = l + j * ldl;
     double known[Columns];
-    for (int c = 0; c < Columns; ++c) {
-      double& x = y[j + c * ldy];
-      if (!unit) x /= factor[j];
-      known[c] = x;
-    }
+    for (int c = 0; c < Columns; ++c) known[c] = y[j + c * ldy];
     const auto one_by_one = [&](Size first, Size last) {
       for (Size i = first; i < last; ++i) {
         for (int c = 0; c < Columns; ++c) y[i + c * ldy] -= factor[i] * known[c];
@@ -168,10 +164,10 @@ STYLET_INLINE void lower_columns(const double* l, Size ldl, Size n, bool unit, d
 }
 
 STYLET_FOR_PROCESSORS
-void lower(const double* l, Size ldl, Size n, bool unit, double* y, Size ldy, Size columns) {
+void lower(const double* l, Size ldl, Size n, double* y, Size ldy, Size columns) {
   Size c = 0;
-  for (; c + 4 <= columns; c += 4) lower_columns<4>(l, ldl, n, unit, y + c * ldy, ldy);
-  for (; c < columns; ++c) lower_columns<1>(l, ldl, n, unit, y + c * ldy, ldy);
+  for (; c + 4 <= columns; c += 4) lower_columns<4>(l, ldl, n, y + c * ldy, ldy);
+  for (; c < columns; ++c) lower_columns<1>(l, ldl, n, y + c * ldy, ldy);
 }
 
 STYLET_FOR_PROCESSORS
@@ -275,7 +271,7 @@ bool lu_panel(double* a, Size lda, Size n, Size first, Size count, double tiny, 
   for (Size j = first; j < first + count; ++j) {
     double* const column = a + j * lda;
     const Size before = j - first;
-    lower_columns<1>(a + first + first * lda, lda, before, true, column + first, lda);
+    lower_columns<1>(a + first + first * lda, lda, before, column + first, lda);
     subtract_columns<1>(column + j, lda, a + j + first * lda, lda, column + first, 1, lda, n - j, before);
     Size pivot = j;
     for (Size i = j + 1; i < n; ++i) {
@@ -310,8 +306,8 @@ void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, con
   dot(C.data(), C.outerStride(), A.data(), A.outerStride(), B.data(), B.outerStride(), C.rows(), C.cols(), A.rows());
 }
 
-void solve_lower_tile(const Eigen::Ref<const MatX>& L, bool unit, Eigen::Ref<MatX> Y) {
-  lower(L.data(), L.outerStride(), L.rows(), unit, Y.data(), Y.outerStride(), Y.cols());
+void solve_lower_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
+  lower(L.data(), L.outerStride(), L.rows(), Y.data(), Y.outerStride(), Y.cols());
 }
 
 void invert_tile(Eigen::Ref<MatX> L) { invert(L.data(), L.outerStride(), L.rows()); }

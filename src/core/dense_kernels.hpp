@@ -19,8 +19,8 @@ void subtract_product_transposed(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX
 /// C ← Aᵀ B
 void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
 
-/// Y ← L⁻¹ Y for a small lower triangle L. @param unit its diagonal counts as ones
-void solve_lower_tile(const Eigen::Ref<const MatX>& L, bool unit, Eigen::Ref<MatX> Y);
+/// Y ← L⁻¹ Y for a small lower triangle L whose diagonal counts as ones.
+void solve_lower_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y);
 
 /// Writes L⁻ᵀ of a small lower triangle L over it, without its diagonal: above that of L.
 void invert_tile(Eigen::Ref<MatX> L);

@@ -30,7 +30,7 @@ bool factorise_lu(Eigen::Ref<MatX> A, std::span<int> pivots) {
     if (!factorise_lu_panel(A, k, nk, tiny, pivots)) return false;
     swap_rows(A.leftCols(k), pivots, k, end);
     swap_rows(A.rightCols(n - end), pivots, k, end);
-    solve_lower_tile(A.block(k, k, nk, nk), true, A.block(k, end, nk, n - end));
+    solve_lower_tile(A.block(k, k, nk, nk), A.block(k, end, nk, n - end));
     subtract_product(A.bottomRightCorner(n - end, n - end), A.block(end, k, n - end, nk), A.block(k, end, nk, n - end));
   }
   return A.allFinite();
@@ -43,7 +43,7 @@ void solve_lu(const Eigen::Ref<const MatX>& LU, std::span<const int> pivots, Eig
     const Eigen::Index nk = std::min(kTile, n - k);
     auto tile = Y.middleRows(k, nk);
     subtract_product(tile, LU.block(k, 0, nk, k), Y.topRows(k));
-    solve_lower_tile(LU.block(k, k, nk, nk), true, tile);
+    solve_lower_tile(LU.block(k, k, nk, nk), tile);
   }
   for (Eigen::Index k = (n - 1) / kTile * kTile; k >= 0; k -= kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include <random>
 
 namespace stylet {
@@ -27,7 +25,6 @@ class Contacts {
   }
 
   std::vector<Yield>& yields() { return yields_; }
-  GripMatrix& matrix() { return matrix_; }
   [[nodiscard]] std::span<const Yield> present() const { return {yields_.data(), static_cast<std::size_t>(grips_)}; }
 
   bool factorise() { return matrix_.factorise(A(), N(), {}, present()) && matrix_.change(present()); }
