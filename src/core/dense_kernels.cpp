@@ -8,7 +8,7 @@
 // The same code for several processors, chosen when the program is loaded. Sanitizers cannot see through that choice.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define STYLET_FOR_PROCESSORS __attribute__((target_clones("avx2", "default")))
+#define STYLET_FOR_PROCESSORS __attribute__((target_clones("fma", "default")))
 #else
 #define STYLET_FOR_PROCESSORS
 #endif
@@ -228,14 +228,21 @@ void inverted(const double* tile, Size ld, Size n, double* y, Size ldy, Size col
   if (c < columns) inverted_columns<1>(tile, ld, n, y + c * ldy, ldy);
 }
 
+/// First rows first: those above take of a row what it was. Four rows at once, then what they take of each other.
 STYLET_FOR_PROCESSORS
 void inverted_transposed(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
   for (Size c = 0; c < columns; ++c) {
     double* const x = y + c * ldy;
-    for (Size i = 0; i < n; ++i) {
-      const double factor = x[i];
-      subtract_multiple(x, tile + i * ld, -factor, i);
-      x[i] = factor / tile[i + i * ld];
+    for (Size i = 0; i < n; i += kFour) {
+      const Size count = std::min(kFour, n - i);
+      double less[kFour];
+      for (Size r = 0; r < count; ++r) less[r] = -x[i + r];
+      subtract_columns<1>(x, ldy, tile + i * ld, ld, less, 1, count, i, count);
+      for (Size r = 0; r < count; ++r) {
+        const double* const column = tile + (i + r) * ld + i;
+        for (Size k = 0; k < r; ++k) x[i + k] -= column[k] * less[r];
+        x[i + r] = -less[r] / column[r];
+      }
     }
   }
 }

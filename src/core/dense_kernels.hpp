@@ -6,8 +6,8 @@
 #include <span>
 
 /// The inner loops of the dense solvers: small matrices, column after column in memory, no work space. On processors
-/// with AVX2 its instructions are used. Sums are taken in the same order everywhere and products are rounded before
-/// they are added, so results do not depend on the processor.
+/// that multiply and add at once (FMA) its instructions are used, and all of these give the same results: sums are
+/// taken in the same order everywhere. Older ones round each product.
 namespace stylet::dense {
 
 /// C ← C − A B, element (i, j) over k = 0, 1, … in turn.

@@ -3,18 +3,21 @@
 
 #include <Eigen/LU>
 
+#include <utility>
+
 namespace stylet {
 
-ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1) {
+ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1), prepared_grips_(contacts - 1) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
   const Eigen::Index most_springs = 2 * static_cast<Eigen::Index>(contacts);
-  A = N = MatX::Zero(n, n);
-  free = now = gap = shift = lambda = push = work_ = VecX::Zero(n);
+  A = N = prepared.N = MatX::Zero(n, n);
+  free = now = gap = shift = drift = lambda = push = work_ = VecX::Zero(n);
   frame.assign(static_cast<std::size_t>(contacts), Mat3::Identity());
   yield.assign(static_cast<std::size_t>(contacts), Yield{});
   spring.assign(static_cast<std::size_t>(contacts), LentSpring{});
+  prepared.spring = spring;
   column_ = begun_ = solved_ = MatX::Zero(n + most_springs, 3);
-  right_ = VecX::Zero(n + most_springs);
+  right_ = MatX::Zero(n + most_springs, 2);
 }
 
 bool ContactSystem::factorise() {
@@ -35,6 +38,25 @@ bool ContactSystem::keep_first(int contacts) {
   lacks_tip_ = true;
   count = contacts;
   return grips_.keep_first(contacts - 1);
+}
+
+bool ContactSystem::factorise_prepared() {
+  const auto grips = static_cast<std::size_t>(prepared.count - 1);
+  const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips);
+  if (n == 0) return true;
+  const auto springs = prepared.supported ? std::span<const LentSpring>(prepared.spring).subspan(1, grips)
+                                          : std::span<const LentSpring>();
+  return prepared_grips_.factorise(A.block(3, 3, n, n), prepared.N.block(3, 3, n, n), springs,
+                                   std::span<const Yield>(yield).subspan(1, grips));
+}
+
+void ContactSystem::take_prepared() {
+  lacks_tip_ = true;
+  count = prepared.count;
+  N.swap(prepared.N);
+  spring.swap(prepared.spring);
+  supported = prepared.supported;
+  std::swap(grips_, prepared_grips_);
 }
 
 void ContactSystem::add_tip() {
@@ -63,9 +85,12 @@ Vec3 ContactSystem::own_yield(int contact) const {
   const auto c = static_cast<std::size_t>(contact);
   const Mat3& Q = frame[c];
   const Mat3 own = A.block<3, 3>(3 * contact, 3 * contact) + N.block<3, 3>(3 * contact, 3 * contact);
-  const Vec3 along = Q.transpose() * yield[c].along;
-  Vec3 result = (own * Q).cwiseProduct(Q).colwise().sum().transpose();
-  result.array() += yield[c].lateral + (yield[c].axial - yield[c].lateral) * along.array().square();
+  Vec3 result;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 q = Q.col(k);
+    const double along = q.dot(yield[c].along);
+    result[k] = q.dot(own * q) + yield[c].lateral + (yield[c].axial - yield[c].lateral) * along * along;
+  }
   return result;
 }
 
@@ -74,9 +99,11 @@ bool ContactSystem::solve(TipRows held) {
   if (n > 0 && !grips_.change(grip_yields()) && !(factorise() && grips_.change(grip_yields()))) return false;
   if (lacks_tip_) add_tip();
 
-  // The grips and springs by themselves: B⁻¹ of the tip's columns and of the right-hand side.
+  // The grips and springs by themselves: B⁻¹ of the tip's columns, of the right-hand side and of the drift.
   const Eigen::Index rows_there = n > 0 ? grips_.rows() : 0;
-  auto right = right_.head(rows_there);
+  const bool drifts = cut_per_N > 0.0;
+  auto right = right_.col(0).head(rows_there);
+  auto drifting = right_.col(1).head(rows_there);
   auto column = column_.topRows(rows_there);
   auto solved = solved_.topRows(rows_there);
   if (n > 0) {
@@ -90,8 +117,14 @@ bool ContactSystem::solve(TipRows held) {
     grips_.across(right.head(n), right.tail(grips_.spring_rows()));
     right = -right;
     right.head(n) += free.segment(3, n);
-    grips_.begin(right);
-    grips_.finish(right);
+    if (drifts) {
+      drifting.head(n) = drift.segment(3, n);
+      grips_.across(drifting.head(n), drifting.tail(grips_.spring_rows()));
+    }
+    auto both = right_.topLeftCorner(rows_there, drifts ? 2 : 1);
+    grips_.begin(both);
+    grips_.finish(both);
+    if (drifts) right -= cut_due * drifting;
   }
 
   // The tip: its three rows with the others taken out.
@@ -106,6 +139,13 @@ bool ContactSystem::solve(TipRows held) {
   if (n > 0) {
     corner.noalias() -= column.transpose().lazyProduct(solved);
     rest.noalias() -= column.transpose().lazyProduct(right);
+  }
+  if (drifts) {
+    const Vec3 t = Q.col(2);
+    Vec3 own_drift = drift.head<3>();
+    rest -= (cut_due + cut_per_N * t.dot(lent * free.head<3>())) * own_drift;
+    if (n > 0) own_drift.noalias() -= column.transpose().lazyProduct(drifting);
+    corner.noalias() += cut_per_N * own_drift * (t.transpose() - t.transpose() * lent * N_tip);
   }
   // Rows that are not held carry nothing any more: λ = 0.
   Mat3 left = Q.transpose() * corner * Q;
@@ -124,6 +164,7 @@ bool ContactSystem::solve(TipRows held) {
   forces.head<3>() = push.head<3>() + lent * (free.head<3>() - N_tip * change);
   if (n > 0) {
     right.noalias() -= solved.lazyProduct(change);
+    if (drifts) right -= cut_per_N * Q.col(2).dot(change) * drifting;
     push.segment(3, n) = now.segment(3, n) + right.head(n);
     forces.tail(n) = push.segment(3, n);
     grips_.add_lent(right.tail(grips_.spring_rows()), forces.tail(n));

@@ -40,6 +40,12 @@ class ContactSystem {
   std::vector<LentSpring> spring;  ///< at the tip only where it is the only contact
   bool supported = false;          ///< springs are lent
 
+  // A cut goes on by so much as the tip's axial force says, which takes the tip to where the tissue's compliance is
+  // another one: all gaps change.
+  VecX drift;              ///< [mm/mm] by how much the gaps change as the cut goes on, beyond what D says of it
+  double cut_per_N = 0.0;  ///< [mm/N] by which the cut goes on with the tip's axial force; 0: it does not
+  double cut_due = 0.0;    ///< [mm] by which it is behind λ_now
+
   VecX lambda;  ///< [N] contact forces on the tissue, in the frames
   VecX push;    ///< [N] p
 
@@ -53,10 +59,21 @@ class ContactSystem {
   /// The first `contacts` of those in the matrix are all there are now. False where it must be made anew.
   [[nodiscard]] bool keep_first(int contacts);
 
+  /// The needle's part of the equations for steps to come, made beside the one in use.
+  struct Prepared {
+    int count = 0;  ///< contacts, the first of those there
+    MatX N;
+    std::vector<LentSpring> spring;
+    bool supported = false;
+  };
+  Prepared prepared;
+  /// The matrix of that, with A and D of now. False where it is singular.
+  [[nodiscard]] bool factorise_prepared();
+  /// Both are in use from now on.
+  void take_prepared();
+
   /// Adds the tip with A and N as they are now: good for as long as neither the tip nor the matrix changes much.
   void add_tip();
-  /// The matrix has been made anew, or has grown or shrunk, since.
-  [[nodiscard]] bool lacks_tip() const { return lacks_tip_; }
 
   /// λ and p for D, shift and gap of now. False where the matrix is singular.
   [[nodiscard]] bool solve(TipRows held);
@@ -86,12 +103,13 @@ class ContactSystem {
   }
 
   GripMatrix grips_;
+  GripMatrix prepared_grips_;
   bool lacks_tip_ = true;
   std::uint64_t solved_for_ = 0;  ///< version of the matrix that solved_ is of
   MatX column_;                   ///< (rows × 3) of the grips and springs, columns of the tip: also its rows
   MatX begun_;                    ///< (rows × 3) the same, half solved
   MatX solved_;                   ///< (rows × 3) B⁻¹ of them
-  VecX right_;                    ///< right-hand side of the grips and springs, then their π and f
+  MatX right_;                    ///< right-hand side of the grips and springs and their drift, then B⁻¹ of both
   VecX work_;
 };
 

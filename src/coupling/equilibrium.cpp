@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/dense_kernels.hpp"
 #include "core/largest.hpp"
 #include "insertion_parts.hpp"
 
@@ -20,7 +21,12 @@ constexpr int kMaxToggles = 6;
 /// An old matrix is made anew before the next step when it took more iterations than this, …
 constexpr int kManyIterations = 5;
 constexpr int kManyQuiet = 3;   ///< … or than this where no state changed, …
-constexpr double kSlow = 0.08;  ///< … and the last one left more than this part of the error: it is the matrix's fault
+constexpr double kSlow = 0.08;  ///< … and the last one left more than this part of the error, which is its fault, …
+constexpr double kSlowish = 0.02;  ///< … or than this where many were taken and no state changed
+/// Where they leave more than this part of the error the next ones are begun, beside them, …
+constexpr double kWorn = 0.01;
+/// … after balances of no more iterations than this; a cut takes the time of one.
+constexpr int kTimeLeft = 2;
 /// A tangent costs as much as some iterations with an old one, so many more are waited for.
 constexpr int kWorthATangent = 6;
 /// [of the largest force] From nearer than this to the balance, the first iteration's success says nothing about the
@@ -29,8 +35,6 @@ constexpr double kNear = 1e-4;
 /// Where states have changed, one of this balance serves on while no more than this part of the error is left each
 /// time.
 constexpr double kFalls = 0.3;
-constexpr int kTryWithout = 16;  ///< tangents on springs, then one without
-constexpr int kFewSprings = 6;
 constexpr double kNeedleShare = 0.1;  ///< of the tolerance: out-of-balance moment over the largest force × the length
 constexpr double kTiny = 1e-12;
 constexpr double kNoLength_mm = 1e-6;  ///< a contact with less than this carries no friction
@@ -44,13 +48,17 @@ constexpr double kLeastViscosity = 1e-9;
 /// slides.
 constexpr double kFlat = 1e-3;
 
-/// Newton's iteration takes the tissue's compliance at the tip as it is, not as it changes with the cut. Where it
-/// changes fast (next to held tissue) the cut would jump to and fro: it is followed the more slowly the longer that
-/// lasts.
-double damping_of_cut(int iteration) {
-  constexpr int patience = 6;
-  return iteration < patience ? 1.0 : iteration < 2 * patience ? 0.5 : 0.25;
-}
+/// [mm] A cut so short says nothing about how compliance changes, one so long is none.
+constexpr double kLeastCut_mm = 1e-4;
+constexpr double kMostCut_mm = 1.0;
+constexpr double kAlong = 0.9;  ///< [of the tip's way] and one that is more of a way sideways says little
+/// Gaps that change by as much as the tip goes on could close of themselves: the tip's rows would be singular.
+constexpr double kMostDrift = 0.5;
+
+/// Where compliance changes fast with the cut (next to held tissue) the cut would jump to and fro: it is followed the
+/// more slowly the longer that lasts.
+constexpr int kSmoothCut = 6;
+double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : iteration < 2 * kSmoothCut ? 0.5 : 0.25; }
 }  // namespace
 
 double Insertion::Parts::arc_of(int load) const {
@@ -71,9 +79,9 @@ void Insertion::Parts::gather_forces() {
 
 Vec3 Insertion::Parts::tissue_displacement(int point) const {
   Vec3 u = Vec3::Zero();
-  const auto row = compliance.matrix().middleRows<3>(3 * point);
-  u.noalias() += row.middleCols<3>(0) * tip.force;
-  for (const Grip& grip : grips) u.noalias() += row.middleCols<3>(3 * grip.point) * grip.force;
+  const auto columns = compliance.matrix().middleCols<3>(3 * point);  // or rows: A is symmetric
+  u.noalias() += columns.topRows<3>().transpose() * tip.force;
+  for (const Grip& grip : grips) u.noalias() += columns.middleRows<3>(3 * grip.point).transpose() * grip.force;
   if (memory.on()) u = memory.share() * u + memory.displacement(compliance, point);
   return u;
 }
@@ -111,6 +119,7 @@ void Insertion::Parts::soften_rows(double h) {
     Vec3 shift = Vec3::Zero();
     yield.along = Q.col(2);
     if (c == 0) {
+      system.cut_per_N = 0.0;
       yield.lateral = tip_lateral_rows() ? tip_lateral_softness() : 0.0;
       yield.axial = settings.axial_compliance_mm_per_N;
       shift.head<2>().noalias() = yield.lateral * (Q.leftCols<2>().transpose() * bevel_force());
@@ -118,6 +127,10 @@ void Insertion::Parts::soften_rows(double h) {
         const double slip = h / std::max(settings.tip_viscosity_Ns_per_mm, kTiny);
         yield.axial += slip;
         shift[2] = slip * tip.cutting + tip.advance;
+        if (foresees_cut && tip.touching) {
+          system.cut_per_N = slip;
+          system.cut_due = slip * (Q.col(2).dot(tip.force) - tip.cutting) - tip.advance;
+        }
       }
     } else {
       Grip& grip = grips[static_cast<std::size_t>(c - 1)];
@@ -171,6 +184,49 @@ void Insertion::Parts::append_contact(int load) {
   matrix_fits = matrix_fits && system.append();
 }
 
+/// A's columns and rows of the tip, number by number: they change with every cut. How much, the last cut tells.
+/// @param same so many contacts are those of before
+void Insertion::Parts::gather_tip_columns(double share, int same) {
+  const Vec3 way = tip.x - system_tip;
+  const double cut = tip.direction.dot(way);
+  const bool told = way.norm() < kMostCut_mm && std::abs(cut) > std::max(kLeastCut_mm, kAlong * way.norm()) &&
+                    share == system_share && !tip.stale && !system_stale;
+  system_tip = tip.x;
+  system_stale = tip.stale;
+  if (told) slope_at = tip.x;
+  if ((tip.x - slope_at).norm() > kMostCut_mm) tip_slope.setZero();  // that was another place
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double* const from = compliance.matrix().col(3 * ContactCompliance::kTip + k).data();
+    double* const column = system.A.col(k).data();
+    double* const slope = tip_slope.col(k).data();
+    for (int c = 0; c < load_count(); ++c) {
+      for (int i = 3 * c; i < 3 * c + 3; ++i) {
+        const double now = share * from[3 * point_of(c) + i - 3 * c];
+        if (c >= same) {
+          slope[i] = 0.0;
+        } else if (told) {
+          slope[i] = (now - column[i]) / cut;
+        }
+        column[i] = now;
+      }
+    }
+    const Eigen::Index size = 3 * static_cast<Eigen::Index>(load_count());
+    system.A.row(k).head(size) = system.A.col(k).head(size).transpose();
+  }
+}
+
+/// By how much the gaps change as the cut goes on: the tip moves in the direction of the cut, which need not be that of
+/// the needle, and its compliance is another one there. What viscous tissue remembers is left out.
+void Insertion::Parts::gather_drift() {
+  const auto size = 3 * static_cast<Eigen::Index>(load_count());
+  const auto slope = tip_slope.topRows(size);
+  auto drift = system.drift.head(size);
+  drift.noalias() = slope.lazyProduct(system.now.head<3>());
+  drift.head<3>() += slope.bottomRows(size - 3).transpose().lazyProduct(system.now.segment(3, size - 3));
+  drift.head<3>() += tip.direction - frames[0].col(2);
+  if (!(drift.lpNorm<Eigen::Infinity>() < kMostDrift)) drift.setZero();
+}
+
 /// What the linear equations are about: tissue's compliance among the contacts, their forces, and how far tissue and
 /// needle are apart.
 void Insertion::Parts::gather_system() {
@@ -180,11 +236,12 @@ void Insertion::Parts::gather_system() {
   const double share = memory.share();
   const int same = renew_contacts();
   const bool whole = system_version != compliance.version() || system_share != share;
-  for (int c = 0; c < count; ++c) {
-    for (int d = whole || c == 0 ? c : std::max(c, same); d < count; ++d) {
+  gather_tip_columns(share, same);
+  for (int c = 1; c < count; ++c) {
+    for (int d = whole ? c : std::max(c, same); d < count; ++d) {
       const Mat3 block = share * compliance(point_of(c), point_of(d));
       // A contact laid ahead of the shaft changes nothing among those there, unless it changes the mesh.
-      if (c > 0 && d < same && block != system.A.block<3, 3>(3 * c, 3 * d)) matrix_fits = false;
+      if (d < same && block != system.A.block<3, 3>(3 * c, 3 * d)) matrix_fits = false;
       system.A.block<3, 3>(3 * c, 3 * d) = block;
       system.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
     }
@@ -197,8 +254,10 @@ void Insertion::Parts::gather_system() {
   auto now = system.now.head(size);
   auto gap = system.gap.head(size);
   for (int c = 0; c < count; ++c) now.segment<3>(3 * c) = force_of(c);
-  gap.noalias() = system.A.topLeftCorner(size, size) * now;
-  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) += unloaded(c) - shaft[static_cast<std::size_t>(c)];
+  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) = shaft[static_cast<std::size_t>(c)] - unloaded(c);
+  dense::subtract_product(gap, system.A.topLeftCorner(size, size), now);
+  gap = -gap;
+  if (tip.touching) gather_drift();
 }
 
 /// The needle's tangent at its present shape, and the matrix made of it.
@@ -215,16 +274,18 @@ void Insertion::Parts::linearise() {
   if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness
     // At a few contacts that is enough as a rule, and cheaper; at all of them always.
     const std::span<const Mat3> lent(springs.data(), static_cast<std::size_t>(count));
-    lend_springs(kFewSprings);
+    lend_springs(kFewSprings, system.spring);
     const bool more = count > kFewSprings + 1;
     if (!needle->linearise(loads, compliance_of_needle, motion, lent, more ? Indefinite::give_up : Indefinite::shift) &&
         more) {
-      lend_springs(count);
+      lend_springs(count, system.spring);
       needle->linearise(loads, compliance_of_needle, motion, lent);
     }
   }
   tangent_fits = true;
   matrix_fits = false;
+  forget_preparation();
+  preparation.worn_mm = 0.0;
 }
 
 /// The needle's step with the tangent of before. False where that is another needle's.
@@ -235,8 +296,8 @@ bool Insertion::Parts::relax_needle() {
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
 /// the needle on them does not buckle where needle and tissue together do not.
-/// @param most of them, evenly spread, the last contact's among them
-void Insertion::Parts::lend_springs(int most) {
+/// @param most of them, evenly spread, the last contact's among them @param lent written, at each contact
+void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
   constexpr double hardest_mm_per_N = 1e-3;
   const int count = load_count();
   const int every = (std::max(count - 1, 1) + most - 1) / most;
@@ -249,7 +310,7 @@ void Insertion::Parts::lend_springs(int most) {
       own += grips[static_cast<std::size_t>(c - 1)].softness;
       lend = (count - 1 - c) % every == 0;
     }
-    LentSpring& spring = system.spring[static_cast<std::size_t>(c)];
+    LentSpring& spring = lent[static_cast<std::size_t>(c)];
     spring = {frames[static_cast<std::size_t>(c)].col(2), lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0};
     springs[static_cast<std::size_t>(c)] = spring.matrix();
   }
@@ -454,6 +515,7 @@ void Insertion::Parts::begin_balance(int most_toggles) {
 
 void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
+  take_prepared_tangent();
   bool from_start = !going_on || force_share == 0.0;
   if (going_on) go_on();
 
@@ -472,11 +534,14 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   bool quiet = true;      // no state has changed
   Index border_tet = -1;  // where the tip was when it was added to the matrix
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
+    foresees_cut = iteration < kSmoothCut;
     double error = look();
     if (iteration > 0 && !changed && error < 1.0) {
-      const bool slow = error > kSlow * before;
+      const bool slow = error > (quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
       if (slow && iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
       if (iteration > kManyIterations) steady = false;  // what took long to find says little about what comes next
+      if (iteration > 1 && error > kWorn * before) preparation.worn_mm = std::numeric_limits<double>::infinity();
+      if (iteration <= (tip.state == Tip::State::cut ? kTimeLeft - 1 : kTimeLeft)) prepare_tangent();
       return;
     }
     bool exact = old_matrix_failed;

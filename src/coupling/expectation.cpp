@@ -47,6 +47,7 @@ void Insertion::Parts::expect(const Pose& from, const Pose& to) {
   const Eigen::Vector<double, 6> now = motion(from, to, length());
   const Eigen::Vector<double, 6> before = last_motion;
   last_motion = now;
+  preparation.worn_mm += now.norm();
   if (steady && now.norm() > kBaseStill_mm && before.norm() > kBaseStill_mm) {
     const double share = now.dot(before) / before.squaredNorm();
     if (share > 0.0 && share < kMostShare && (now - share * before).norm() < kMostUnlike * now.norm())

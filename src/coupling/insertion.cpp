@@ -72,6 +72,8 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   past.resize(capacity + 1, Vec3::Zero());
   springs.resize(capacity + 1, Mat3::Zero());
   system_points.reserve(capacity + 1);
+  preparation.points.reserve(capacity + 1);
+  tip_slope = MatX::Zero(3 * (settings.capacity + 1), 3);
   kept.needle = shape_start = needle->state();
   shape_gained = shape_more = VecX::Zero(shape_start.size());
   kept.grips.resize(capacity);
@@ -120,6 +122,7 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   track.open = false;
   joined = -1;
   grips.clear();
+  forget_preparation();
   if (tip.at.tet >= 0) point_at[ContactCompliance::kTip] = tip.at;
   tip = Tip{};
   relaxing = memory.on();
@@ -235,6 +238,7 @@ void Insertion::place(const Pose& base) {
   parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->awaited_entry.reset();
   parts_->tangent_fits = false;
+  parts_->forget_preparation();
   parts_->last_way = parts_->last_cut = parts_->cut_more = 0.0;
   parts_->force_share = parts_->way_share = 0.0;
   parts_->last_motion.setZero();

@@ -68,6 +68,9 @@ struct Tip {
   Vec3 gained_more = Vec3::Zero();  ///< [N] … and how much of that was beyond what was in proportion to the one before
 };
 
+constexpr int kTryWithout = 16;  ///< tangents on springs, then one without
+constexpr int kFewSprings = 6;   ///< as a rule enough
+
 struct Insertion::Parts {
   Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_);
 
@@ -118,9 +121,21 @@ struct Insertion::Parts {
   std::vector<int> system_points;  ///< points whose compliance system.A holds, …
   unsigned system_version = 0;     ///< … as of this version of it, …
   double system_share = 0.0;       ///< … and times this share
-  int supported_for = 0;           ///< tangents on springs since one without was tried
-  bool tangent_fits = false;       ///< the needle's tangent is of these contacts
-  bool matrix_fits = false;        ///< the system's matrix is of that tangent and compliance
+  Vec3 system_tip = Vec3::Zero();  ///< [mm] where the tip was then, …
+  bool system_stale = false;       ///< … and its compliance was that of another place
+  MatX tip_slope;  ///< [1/N] (3 contacts × 3) by how much A's columns of the tip change per mm of cut …
+  Vec3 slope_at = Vec3::Zero();  ///< [mm] … where the tip was then
+  bool foresees_cut = true;      ///< the equations know that compliance changes as the cut goes on
+  int supported_for = 0;         ///< tangents on springs since one without was tried
+  bool tangent_fits = false;     ///< the needle's tangent is of these contacts
+  bool matrix_fits = false;      ///< the system's matrix is of that tangent and compliance
+  /// A tangent and matrix for steps to come: what of them is there.
+  struct Preparation {
+    enum class Stage { none, begun, tangent, compliance, matrix } stage = Stage::none;
+    int lent = 0;             ///< most springs, 0 = none
+    std::vector<int> points;  ///< of the contacts they are of
+    double worn_mm = 0.0;     ///< way of the base since those in use were made
+  } preparation;
   /// An iterate, before an old matrix is tried on it.
   struct Iterate {
     struct AtGrip {
@@ -139,6 +154,13 @@ struct Insertion::Parts {
 
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
   void solve_equilibrium(double h, StepReport& report);
+
+  // preparation.cpp: the next tangent, in pieces.
+  void prepare_tangent();
+  bool prepare_on_springs();
+  [[nodiscard]] bool prepared_contacts_are_there() const;
+  void take_prepared_tangent();
+  void forget_preparation() { preparation.stage = Preparation::Stage::none; }
 
   // expectation.cpp: where the balance is solved from.
   void keep_start();
@@ -184,10 +206,12 @@ struct Insertion::Parts {
   void soften_rows(double h);
   int renew_contacts();
   void append_contact(int load);
+  void gather_tip_columns(double share, int same);
+  void gather_drift();
   void gather_system();
   void linearise();
   [[nodiscard]] bool relax_needle();
-  void lend_springs(int most);
+  void lend_springs(int most, std::vector<LentSpring>& lent);
   [[nodiscard]] bool pivot(double h, StepReport& report, bool& changed);
   /// What a solution says of a contact.
   struct Trial {

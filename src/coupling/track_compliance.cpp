@@ -28,6 +28,7 @@ TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, c
   through_.resize(static_cast<std::size_t>(capacity) * static_cast<std::size_t>(capacity));
   changes_.reserve(static_cast<std::size_t>(capacity));
   tip_node_rows_.resize(static_cast<std::size_t>(kMostElementNodes * (capacity + 1)));
+  tip_row_ = VecX::Zero(9 * static_cast<Eigen::Index>(capacity));
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
   reset();
 }
@@ -317,13 +318,16 @@ void TrackCompliance::know_tip_node(int number) {
 /// The tip is interpolated, so its row is as well.
 void TrackCompliance::write_tip_row() {
   const Shape& shape = observables_[0].shape;
-  for (int d = 1; d < points_; ++d) {
-    Mat3 block = Mat3::Zero();
-    for (int i = 0; i < shape.count; ++i)
-      block += shape.weight[static_cast<std::size_t>(i)] * tip_node_row(tip_element_.number(i), d);
-    A_.block<3, 3>(0, 3 * d) = block;
-    A_.block<3, 3>(3 * d, 0) = block.transpose();
+  // The blocks of one node lie one behind the other, those of all points but the tip.
+  const Eigen::Index size = 9 * static_cast<Eigen::Index>(points_ - 1);
+  auto row = tip_row_.head(size);
+  row.setZero();
+  for (int i = 0; i < shape.count; ++i) {
+    const Mat3& first = tip_node_row(tip_element_.number(i), 1);
+    row += shape.weight[static_cast<std::size_t>(i)] * Eigen::Map<const VecX>(first.data(), size);
   }
+  A_.block(0, 3, 3, size / 3) = Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>>(row.data(), 3, size / 3);
+  A_.block(3, 0, size / 3, 3) = A_.block(0, 3, 3, size / 3).transpose();
   const Mat3 own = compliance(0, 0, static_cast<int>(splits_.size()));
   A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());  // rounding must not make it unsymmetric
 }

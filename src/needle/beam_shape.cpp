@@ -73,7 +73,7 @@ Vec3 BeamShape::point(const Station& at) const {
 
 Vec3 BeamShape::tangent(const Station& at) const {
   if (at.element < 0) return Vec3::UnitZ();
-  return frame_[at.element] * terms(at).rotation().col(2);
+  return frame_[at.element] * terms(at).tangent();
 }
 
 Vec3 BeamShape::point(double s) const {
@@ -92,7 +92,7 @@ AxisPlace BeamShape::place(double s) const {
   if (at.element < 0) return {point(at), tangent(at)};
   const Mat3& R = frame_[at.element];
   const RotationTerms inner = terms(at);
-  return {origin_[at.element] + at.local * (R * inner.chord()), R * inner.rotation().col(2)};
+  return {origin_[at.element] + at.local * (R * inner.chord()), R * inner.tangent()};
 }
 
 double BeamShape::energy() const {

@@ -2,6 +2,7 @@
 #include "needle/beam_tangent.hpp"
 
 #include "core/dense_cholesky.hpp"
+#include "core/dense_kernels.hpp"
 #include "core/largest.hpp"
 #include "needle/condense_columns.hpp"
 
@@ -11,7 +12,6 @@
 
 namespace stylet::beam {
 
-using dense::factorise;
 using dense::kTile;
 using dense::solve_lower;
 using dense::solve_upper;
@@ -67,6 +67,7 @@ void BeamTangent::reserve(Eigen::Index loads) {
   if (3 * loads <= Y_.cols()) return;
   Y_.setZero(dof(elements_), 3 * loads);
   force_.setZero(3 * loads);
+  less_.setZero(3 * loads);
   pulls_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
   acting_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
   next_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
@@ -77,6 +78,13 @@ void BeamTangent::reserve(Eigen::Index loads) {
 
 bool BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                            std::span<const Mat3> springs, Indefinite otherwise) {
+  if (!factorise(shape, base_rotation, loads, springs, otherwise)) return false;
+  solve();
+  return true;
+}
+
+bool BeamTangent::factorise(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                            std::span<const Mat3> springs, Indefinite otherwise) {
   reserve(static_cast<Eigen::Index>(loads.size()));
   keep_first(0);
   for (const PointLoad& load : loads) locate(shape, base_rotation, load);
@@ -84,11 +92,15 @@ bool BeamTangent::assemble(const BeamShape& shape, const Mat3& base_rotation, st
   for (Eigen::Index c = 0; c < load_count(); ++c) assemble_jacobian(base_rotation, c);
   if (!springs.empty()) add_springs(springs);
   factorised_ = factorise_shifted(otherwise);
-  if (!factorised_) return false;
+  return factorised_;
+}
+
+void BeamTangent::solve() {
   z_ = g_;
   solve_lower(L_, 0, z_);
-  solve_jacobian();
-  return true;
+  for_groups([&](Eigen::Index first, Eigen::Index count, Eigen::Index reach) {
+    solve_lower(L_, Y_.rows() - reach, Y_.middleCols(first, count));
+  });
 }
 
 /// Virtual work of the loads per curvature of each element. The same question comes twice in an iteration.
@@ -152,7 +164,10 @@ bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::
   for (std::size_t c = 0; c < loads.size(); ++c) force_.segment<3>(3 * static_cast<Eigen::Index>(c)) = loads[c].force;
   z_ = g_;
   solve_lower(L_, 0, z_);
-  free.noalias() = Y_.leftCols(free.size()).transpose() * z_;
+  for_groups([&](Eigen::Index first, Eigen::Index count, Eigen::Index reach) {
+    dense::transposed_product(free.segment(first, count), Y_.block(Y_.rows() - reach, first, reach, count),
+                              z_.tail(reach));
+  });
   free = -free;
   return true;
 }
@@ -240,7 +255,7 @@ bool BeamTangent::factorise_shifted(Indefinite otherwise) {
     L_.triangularView<Eigen::Lower>() = H_;
     L_.diagonal().array() += shift;
     elastic_shift_ = shift;
-    return factorise(L_);
+    return dense::factorise(L_);
   };
   if (attempt(0.0)) return true;
   if (otherwise == Indefinite::give_up) return false;
@@ -289,12 +304,13 @@ void BeamTangent::add_springs(std::span<const Mat3> springs) {
   }
 }
 
-void BeamTangent::solve_jacobian() {
-  const Eigen::Index count = load_count();
+/// For the columns of some loads at a time: first of them, how many, and how many of the last rows are not zero.
+template <class Function>
+void BeamTangent::for_groups(Function&& function) const {
   constexpr Eigen::Index stride = kTile / 3;
-  for (Eigen::Index c = 0; c < count; c += stride) {
-    const Eigen::Index last = std::min(count, c + stride);
-    solve_lower(L_, start(c, last), Y_.middleCols(3 * c, 3 * (last - c)));
+  for (Eigen::Index c = 0; c < load_count(); c += stride) {
+    const Eigen::Index last = std::min(load_count(), c + stride);
+    function(3 * c, 3 * (last - c), Y_.rows() - start(c, last));
   }
 }
 
@@ -312,18 +328,19 @@ void BeamTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) c
       Y_, z_, load_count(), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); }, compliance, free);
 }
 
+void BeamTangent::condense(Eigen::Ref<MatX> compliance) { condense(compliance, less_.head(3 * load_count())); }
+
 void BeamTangent::step(std::span<const PointLoad> loads, BeamShape& shape) {
   assert(loads.size() == last_moved_.size());
-  step_ = -z_;
-  const std::size_t count = std::min(loads.size(), last_moved_.size());
-  for (std::size_t c = 0; c < count; ++c) {
+  for (std::size_t c = 0; c < loads.size(); ++c) {
     const auto i = 3 * static_cast<Eigen::Index>(c);
-    const Vec3 change = loads[c].force - force_.segment<3>(i);
-    const int e = last_moved_[c];
-    if (e < 0) continue;
-    const Eigen::Index reach = Y_.rows() - row(e);
-    step_.tail(reach).noalias() += Y_.middleCols<3>(i).bottomRows(reach).lazyProduct(change);
+    less_.segment<3>(i) = force_.segment<3>(i) - loads[c].force;
   }
+  step_ = -z_;
+  for_groups([&](Eigen::Index first, Eigen::Index count, Eigen::Index reach) {
+    dense::subtract_product(step_.tail(reach), Y_.block(Y_.rows() - reach, first, reach, count),
+                            less_.segment(first, count));
+  });
   solve_upper(L_, step_);
   for (int e = 0; e < elements_; ++e)
     shape.curvature.segment<3>(dof(e)) += scale_[static_cast<std::size_t>(e)].cwiseProduct(step_.segment<3>(row(e)));

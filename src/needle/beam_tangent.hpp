@@ -21,9 +21,14 @@ class BeamTangent {
   /// @return false where it was given up: there is no factor then
   bool assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                 std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift);
+  /// The same in two pieces: all but L⁻¹Jᵀ, then that.
+  bool factorise(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
+                 std::span<const Mat3> springs, Indefinite otherwise);
+  void solve();
 
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
+  void condense(Eigen::Ref<MatX> compliance);  ///< the first of both
 
   /// Adds a load after the first ones there: its column of Jᵀ for where it is now, with the levers, the Hessian and the
   /// other columns of assemble().
@@ -62,7 +67,8 @@ class BeamTangent {
   [[nodiscard]] bool factorise_shifted(Indefinite otherwise);
   void assemble_jacobian(const Mat3& base_rotation, Eigen::Index load);
   void add_springs(std::span<const Mat3> springs);
-  void solve_jacobian();
+  template <class Function>
+  void for_groups(Function&& function) const;
   [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
 
@@ -79,6 +85,7 @@ class BeamTangent {
   std::vector<int> last_pull_;         ///< (w) where in pulls_ each load's pulls end
   std::vector<int> last_moved_;        ///< (w) element nearest the tip that moves the load point, -1 = none
   VecX force_;                         ///< [N] (3w) LPS
+  VecX less_;                          ///< [N] (3w) by how much forces have fallen since
   MatX H_, L_;                         ///< (3n × 3n) lower triangles, of L_ with its tiles' inverses
   VecX g_, z_, step_;                  ///< (3n) gradient, L⁻¹ g, work
   MatX spin_, shift_;                  ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip

@@ -46,11 +46,11 @@ bool GuidedNeedle::find_crossing() {
   if (before_plane(low) < 0.0 || before_plane(high) > 0.0) return false;
   double s = std::clamp(meeting_.s, low, high);
   for (int round = 0; round < kMostRounds; ++round) {
-    const double ahead = before_plane(s);
+    const AxisPlace at = inner_->place(s);
+    const double ahead = axis_.dot(centre_ - at.point);
     if (std::abs(ahead) < kOnPlane_mm) break;
     (ahead > 0.0 ? low : high) = s;
-    const double advance = axis_.dot(inner_->tangent(s));
-    double next = s + ahead / advance;
+    double next = s + ahead / axis_.dot(at.tangent);
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     if (next == s) break;
     s = next;
@@ -64,11 +64,11 @@ void GuidedNeedle::meet() {
   meeting_ = {};
   meeting_.s = s;
   if (!placed_ || !find_crossing()) return;
-  const Vec3 t = inner_->tangent(meeting_.s);
+  const auto [point, t] = inner_->place(meeting_.s);
   const double cosine = axis_.dot(t);
   if (cosine < kMostOblique) return;
   meeting_.crosses = true;
-  const Vec3 away = inner_->point(meeting_.s) - centre_;
+  const Vec3 away = point - centre_;
   meeting_.offset = away - axis_ * axis_.dot(away);
   const double d = meeting_.offset.norm();
   meeting_.beyond = std::max(0.0, d - hole_.clearance_mm);
@@ -90,33 +90,55 @@ std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> l
   return loads_;
 }
 
-bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
-                             std::span<const Mat3> springs, Indefinite otherwise) {
-  held_ = holds();
-  if (!held_) return inner_->linearise(loads, compliance, free, springs, otherwise);
-  held_with_ = guide_load();
-  held_stiffness_ = meeting_.stiffness;
-  assert(springs.empty() || springs.size() == loads.size());
-  springs_.assign(loads.size() + 1, Mat3::Zero());
+/// @param springs one for each of the loads, or none
+std::span<const Mat3> GuidedNeedle::with_guide(std::span<const Mat3> springs, std::size_t loads) {
+  assert(springs.empty() || springs.size() == loads);
+  springs_.assign(loads + 1, Mat3::Zero());
   springs_.front() = meeting_.stiffness;
   std::copy(springs.begin(), springs.end(), springs_.begin() + 1);
+  return springs_;
+}
+
+bool GuidedNeedle::linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
+                             std::span<const Mat3> springs, Indefinite otherwise) {
+  held_ = hold();
+  if (!held_.on) return inner_->linearise(loads, compliance, free, springs, otherwise);
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
-  const bool definite = inner_->linearise(with_guide(loads, held_with_), N_.topLeftCorner(size + 3, size + 3),
-                                          free_.head(size + 3), springs_, otherwise);
+  const bool definite = inner_->linearise(with_guide(loads, held_.with), N_.topLeftCorner(size + 3, size + 3),
+                                          free_.head(size + 3), with_guide(springs, loads.size()), otherwise);
   if (!definite && otherwise == Indefinite::give_up) return false;
   compliance = N_.block(3, 3, size, size);
   free = free_.segment(3, size);
   return definite;
 }
 
+bool GuidedNeedle::prepare(std::span<const PointLoad> loads, std::span<const Mat3> springs, Indefinite otherwise) {
+  prepared_ = hold();
+  if (!prepared_.on) return inner_->prepare(loads, springs, otherwise);
+  return inner_->prepare(with_guide(loads, prepared_.with), with_guide(springs, loads.size()), otherwise);
+}
+
+bool GuidedNeedle::prepared_compliance(Eigen::Ref<MatX> compliance) {
+  if (!prepared_.on) return inner_->prepared_compliance(compliance);
+  const Eigen::Index size = compliance.rows();
+  if (!inner_->prepared_compliance(N_.topLeftCorner(size + 3, size + 3))) return false;
+  compliance = N_.block(3, 3, size, size);
+  return true;
+}
+
+void GuidedNeedle::take_prepared() {
+  inner_->take_prepared();
+  held_ = prepared_;
+}
+
 bool GuidedNeedle::fits() const {
-  if (held_ != holds()) return false;
-  return !held_ || (meeting_.stiffness - held_stiffness_).norm() <= kTurned * held_stiffness_.norm();
+  if (held_.on != holds()) return false;
+  return !held_.on || (meeting_.stiffness - held_.stiffness).norm() <= kTurned * held_.stiffness.norm();
 }
 
 bool GuidedNeedle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) {
   if (!fits()) return false;
-  if (!held_) return inner_->append(loads, compliance);
+  if (!held_.on) return inner_->append(loads, compliance);
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   auto rows = N_.topLeftCorner(3, size + 3);
   if (!inner_->append(with_guide(loads, guide_load()), rows)) return false;
@@ -126,16 +148,16 @@ bool GuidedNeedle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> com
 
 bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
   if (!fits()) return false;
-  if (!held_) return inner_->relax(loads, free);
+  if (!held_.on) return inner_->relax(loads, free);
   const auto size = 3 * static_cast<Eigen::Index>(loads.size());
   if (!inner_->relax(with_guide(loads, guide_load()), free_.head(size + 3))) return false;
-  held_with_ = guide_load();
+  held_.with = guide_load();
   free = free_.segment(3, size);
   return true;
 }
 
 void GuidedNeedle::advance(std::span<const PointLoad> loads) {
-  inner_->advance(held_ ? with_guide(loads, held_with_) : loads);
+  inner_->advance(held_.on ? with_guide(loads, held_.with) : loads);
   meet();
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle/rod_chain_parts.hpp"
 
+#include <cassert>
+#include <utility>
+
 namespace stylet {
 
 RodChain::RodChain(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -38,6 +41,28 @@ bool RodChain::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> complia
 
 bool RodChain::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
   return parts_->tangent.relax(parts_->shape, parts_->base_rotation, loads, free);
+}
+
+bool RodChain::prepare(std::span<const PointLoad> loads, std::span<const Mat3> springs, Indefinite otherwise) {
+  parts_->solved = false;
+  return parts_->prepared.factorise(parts_->shape, parts_->base_rotation, loads, springs, otherwise) &&
+         parts_->prepared.elastic_shift() == 0.0;
+}
+
+bool RodChain::prepared_compliance(Eigen::Ref<MatX> compliance) {
+  if (!parts_->solved) {
+    parts_->prepared.solve();
+    parts_->solved = true;
+    return false;
+  }
+  parts_->prepared.condense(compliance);
+  return true;
+}
+
+void RodChain::take_prepared() {
+  assert(parts_->solved);
+  std::swap(parts_->tangent, parts_->prepared);
+  parts_->solved = false;
 }
 
 void RodChain::advance(std::span<const PointLoad> loads) {

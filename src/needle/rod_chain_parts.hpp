@@ -12,7 +12,8 @@ struct RodChain::Parts {
   Parts(const NeedleSection& section, int elements, int load_capacity, beam::ElementKind kind)
       : length(section.length_mm),
         shape(elements, section.length_mm, section.bending_stiffness_Nmm2, section.torsion_stiffness_Nmm2, kind),
-        tangent(shape, load_capacity) {
+        tangent(shape, load_capacity),
+        prepared(shape, load_capacity) {
     bend_rest(section);
   }
 
@@ -37,6 +38,8 @@ struct RodChain::Parts {
   Mat3 base_rotation = Mat3::Identity();
   beam::BeamShape shape;
   beam::BeamTangent tangent;
+  beam::BeamTangent prepared;  ///< beside the one in use
+  bool solved = false;         ///< that one, for the motions of its loads
 };
 
 }  // namespace stylet

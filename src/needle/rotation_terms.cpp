@@ -49,33 +49,12 @@ std::array<double, 8> stumpff(double x) {
   return c;
 }
 
-Mat3 RotationTerms::series(int k) const {
-  const double a = c_[k];
-  const double b = c_[k + 1];
-  Mat3 m = b * phi_ * phi_.transpose() + a * cross(phi_);
-  m.diagonal().array() += 1.0 - b * x_;
-  return m;
-}
-
-Vec3 RotationTerms::chord() const {
-  const double b = c_[chord_];
-  const double c = c_[chord_ + 1];
-  return {b * phi_.y() + c * phi_.z() * phi_.x(), -b * phi_.x() + c * phi_.z() * phi_.y(),
-          1.0 - c * (phi_.x() * phi_.x() + phi_.y() * phi_.y())};
-}
-
-Mat3 RotationTerms::chord_derivative() const {
-  const Vec3 z = Vec3::UnitZ();
-  const Vec3 turned = phi_.cross(z);
-  const Vec3 twice = phi_ * phi_.z() - x_ * z;
-  Mat3 m = (2.0 * (first(chord_) * turned + first(chord_ + 1) * twice) - 2.0 * c_[chord_ + 1] * z) * phi_.transpose();
-  m.col(2) += c_[chord_ + 1] * phi_;
-  m.diagonal().array() += c_[chord_ + 1] * phi_.z();
-  return m - c_[chord_] * cross(z);
-}
-
 Mat3 RotationTerms::hessian(int k, const Mat3& E) const {
   // E : (I + a [φ]× + b [φ]×²) = tr E + a(x) v·φ + b(x) φᵀSφ,  S = sym E - tr E I.
+  const std::array<double, 8> c = stumpff(x_);
+  const auto second = [&c](int i) {  // d²c_i/dx²
+    return 0.25 * (c[i + 2] - (2 * i + 1) * c[i + 3] + i * (i + 2) * c[i + 4]);
+  };
   const Vec3 v(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
   Mat3 S = 0.5 * (E + E.transpose());
   S.diagonal().array() -= E.trace();

@@ -19,28 +19,28 @@ constexpr const char* kFromScenario = "scenario";
 constexpr std::string_view kElements = "needle.elements";
 
 /// A key whose value a report shows, and why its default is what it is.
-struct Documented {
+struct Shown {
   const char* path;
   const char* source;
 };
 
 constexpr std::array kShown{
-    Documented{"needle.model", "most accurate for its cost"},
-    Documented{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
-    Documented{"needle.diameter_mm", "18 gauge"},
-    Documented{"needle.stylet", "seeds and spacers lie where it would be"},
-    Documented{"needle.bevel_deg", "stated: a symmetric tip"},
-    Documented{"needle.bow_mm", "a straight needle"},
-    Documented{kElements.data(), "numerical: no visible change of the needle's shape with more"},
-    Documented{"coupling.method", "force does not depend on the mesh"},
-    Documented{"coupling.rule", "old compliances do not change when a node is added"},
-    Documented{"coupling.engine", "cost does not depend on the size of the mesh"},
-    Documented{"coupling.solver", "no damping to choose"},
-    Documented{"coupling.spacing_mm", "numerical: about three needle diameters"},
-    Documented{"coupling.tip_viscosity_Ns_per_m",
-               "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
-    Documented{"coupling.grazing_deg", "stated, no measurement known"},
-    Documented{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
+    Shown{"needle.model", "most accurate for its cost"},
+    Shown{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
+    Shown{"needle.diameter_mm", "18 gauge"},
+    Shown{"needle.stylet", "seeds and spacers lie where it would be"},
+    Shown{"needle.bevel_deg", "stated: a symmetric tip"},
+    Shown{"needle.bow_mm", "a straight needle"},
+    Shown{kElements.data(), "numerical: no visible change of the needle's shape with more"},
+    Shown{"coupling.method", "force does not depend on the mesh"},
+    Shown{"coupling.rule", "old compliances do not change when a node is added"},
+    Shown{"coupling.engine", "cost does not depend on the size of the mesh"},
+    Shown{"coupling.solver", "no damping to choose"},
+    Shown{"coupling.spacing_mm", "numerical: about three needle diameters"},
+    Shown{"coupling.tip_viscosity_Ns_per_m",
+          "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
+    Shown{"coupling.grazing_deg", "stated, no measurement known"},
+    Shown{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
 };
 
 std::string as_shown(const ScenarioValue& value) {
@@ -144,7 +144,7 @@ RunInfo Model::info(std::size_t insertion) const {
   info.parameters.push_back({"tissue.relaxation_s", fmt::format("{:g}", scenario_.tissue_model.relaxation_s), "s",
                              scenario_.tissue_model.relaxation_s == 0.0 ? "stated: elastic" : kFromScenario});
   const Scenario standard;
-  for (const Documented& shown : kShown) {
+  for (const Shown& shown : kShown) {
     const auto value = scenario_value(scenario_, shown.path);
     if (!value) continue;
     std::string text = as_shown(*value);

@@ -39,6 +39,7 @@ struct Equations {
         system.gap[i] = 0.2 * std::cos(3.0 * static_cast<double>(i));
         system.free[i] = 0.1 * std::sin(0.7 * static_cast<double>(i));
         system.shift[i] = 0.05 * std::cos(static_cast<double>(i));
+        system.drift[i] = 0.1 * std::sin(0.3 + static_cast<double>(i));
       }
     }
     system.supported = lend_springs;
@@ -69,6 +70,12 @@ struct Equations {
     left.bottomRightCorner(rows, rows) = Q.transpose() * N;
     right.tail(rows) =
         Q.transpose() * (A * now + N * now + system.free.head(rows) - system.gap.head(rows)) + system.shift.head(rows);
+    // As the cut goes on with the tip's axial force the gaps change.
+    const VecX drift = Q.transpose() * system.drift.head(rows);
+    const Vec3 t = system.frame[0].col(2);
+    left.bottomLeftCorner(rows, 3) += system.cut_per_N * drift * t.transpose();
+    right.tail(rows) -=
+        (system.cut_per_N > 0.0 ? system.cut_due - system.cut_per_N * t.dot(now.head<3>()) : 0.0) * drift;
     for (int k = 0; k < 3; ++k) {
       const bool is_held = held == TipRows::all || (held == TipRows::axial && k == 2);
       if (is_held) continue;
@@ -101,6 +108,35 @@ TEST_P(ContactEquations, are_solved_whatever_of_the_tip_is_held) {
     for (const TipRows held : {TipRows::all, TipRows::axial, TipRows::none})
       equations.expect_solved(held, std::to_string(contacts).c_str());
   }
+}
+
+TEST_P(ContactEquations, are_solved_while_compliance_changes_with_the_cut) {
+  for (const int contacts : {1, 2, 9, 31}) {
+    Equations equations(contacts, GetParam());
+    equations.system.cut_per_N = 0.7;
+    equations.system.cut_due = 0.3;
+    ASSERT_TRUE(equations.system.factorise());
+    for (const TipRows held : {TipRows::all, TipRows::axial})
+      equations.expect_solved(held, std::to_string(contacts).c_str());
+  }
+}
+
+TEST_P(ContactEquations, are_solved_with_a_tangent_that_was_prepared_when_there_were_fewer_contacts) {
+  Equations equations(12, GetParam());
+  ContactSystem& system = equations.system;
+  ASSERT_TRUE(system.factorise());
+  system.prepared.count = 9;
+  system.prepared.N = 1.3 * system.N;
+  system.prepared.spring = system.spring;
+  for (LentSpring& spring : system.prepared.spring) spring.stiffness *= 0.8;
+  system.prepared.supported = GetParam();
+  ASSERT_TRUE(system.factorise_prepared());
+  equations.expect_solved(TipRows::all, "beside it, the one in use");
+  system.take_prepared();
+  equations.rows = 27;
+  equations.expect_solved(TipRows::all, "the one that was prepared");
+  system.yield[6].axial = 5.0;
+  equations.expect_solved(TipRows::axial, "a contact slides");
 }
 
 TEST_P(ContactEquations, are_solved_with_contacts_that_slide_or_hold_since_the_matrix_was_made) {

@@ -131,6 +131,28 @@ TEST_P(NeedleInAGuide, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
   EXPECT_LT((free - expected_free).norm(), 1e-11 * expected.norm());
 }
 
+TEST_P(NeedleInAGuide, IsPartOfATangentThatIsPrepared) {
+  const auto needle = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
+  const std::vector<PointLoad> loads{{kLength, {0.1, 0.02, -0.1}}, {120.0, {0.05, 0.1, 0}}};
+  MatX compliance(6, 6);
+  MatX expected(6, 6);
+  VecX free(6);
+  VecX expected_free(6);
+  needle->linearise({}, compliance.topLeftCorner(0, 0), free.head(0));
+  settle(*needle, loads);
+  ASSERT_GT(needle->guide_load().force.norm(), 0.1);
+  needle->linearise(loads, expected, expected_free);
+  ASSERT_EQ(needle->prepares(), model() != "tet");  // that one makes each at once
+  if (!needle->prepares()) return;
+  EXPECT_TRUE(needle->prepare(loads, {}, Indefinite::give_up));
+  while (!needle->prepared_compliance(compliance)) {
+  }
+  EXPECT_EQ(compliance, expected);
+  needle->take_prepared();
+  ASSERT_TRUE(needle->relax(loads, free));
+  EXPECT_LT((free - expected_free).norm(), 1e-11 * expected.norm());
+}
+
 TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
   // Clamped and propped half way the shaft bears more than free: Euler's load of the free half alone is four times as
   // much, and the two halves turn each other.

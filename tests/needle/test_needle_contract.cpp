@@ -246,6 +246,40 @@ TEST_P(NeedleContract, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
   EXPECT_FALSE(needle->append(spread_loads(8), two)) << "two at once";
 }
 
+TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
+  const auto needle = make();
+  const auto other = make();
+  const auto loads = spread_loads(6);
+  MatX compliance(18, 18);
+  VecX free(18);
+  VecX old_free(18);
+  for (Needle* n : {needle.get(), other.get()}) {
+    n->set_base(somewhere());
+    n->linearise(loads, compliance, free);
+    n->advance(loads);
+  }
+  if (!needle->prepares()) {
+    EXPECT_EQ(model(), "tet");  // this one makes each at once
+    return;
+  }
+  MatX prepared(18, 18);
+  EXPECT_TRUE(needle->prepare(loads, {}, Indefinite::give_up));
+  int pieces = 1;
+  while (!needle->prepared_compliance(prepared)) ++pieces;
+  EXPECT_LT(pieces, 10);
+  ASSERT_TRUE(needle->relax(loads, free));
+  ASSERT_TRUE(other->relax(loads, old_free));
+  EXPECT_EQ(free, old_free);
+  needle->take_prepared();
+  ASSERT_TRUE(needle->relax(loads, free));
+  other->linearise(loads, compliance, old_free);
+  EXPECT_EQ(prepared, compliance);
+  EXPECT_LT((free - old_free).norm(), 1e-12 * compliance.norm());
+  needle->advance(spread_loads(6));
+  other->advance(spread_loads(6));
+  EXPECT_LT((needle->state() - other->state()).norm(), 1e-12 * other->state().norm());
+}
+
 TEST_P(NeedleContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
   const auto needle = make();
   const auto full = spread_loads(7);

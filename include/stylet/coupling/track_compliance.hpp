@@ -116,6 +116,7 @@ class TrackCompliance final : public ContactCompliance {
   TipElement tip_element_;
   std::vector<Mat3>
       tip_node_rows_;  ///< (numbers × points) A of the nodes of the tip's element and the points but the tip
+  VecX tip_row_;       ///< (9 × points but the tip) blocks of the tip, one behind the other
 };
 
 }  // namespace stylet

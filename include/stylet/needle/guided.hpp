@@ -43,6 +43,10 @@ class GuidedNeedle final : public Needle {
                  std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) override;
   bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) override;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
+  [[nodiscard]] bool prepares() const override { return inner_->prepares(); }
+  bool prepare(std::span<const PointLoad> loads, std::span<const Mat3> springs, Indefinite otherwise) override;
+  bool prepared_compliance(Eigen::Ref<MatX> compliance) override;
+  void take_prepared() override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
   void straighten() override;
@@ -62,12 +66,21 @@ class GuidedNeedle final : public Needle {
     Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
   };
 
+  /// How the hole held when a tangent was made.
+  struct Hold {
+    bool on = false;
+    PointLoad with;
+    Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
+  };
+
   void meet();
   /// The tangent is one with the hole as it holds now.
   [[nodiscard]] bool fits() const;
   [[nodiscard]] bool holds() const { return meeting_.crosses && (meeting_.beyond > 0.0 || hole_.clearance_mm == 0.0); }
   [[nodiscard]] bool find_crossing();
   std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const;
+  [[nodiscard]] Hold hold() const { return {holds(), guide_load(), meeting_.stiffness}; }
+  std::span<const Mat3> with_guide(std::span<const Mat3> springs, std::size_t loads);
 
   std::unique_ptr<Needle> inner_;
   GuideHole hole_;
@@ -75,9 +88,8 @@ class GuidedNeedle final : public Needle {
   Vec3 centre_ = Vec3::Zero();  ///< [mm] LPS
   Vec3 axis_ = Vec3::UnitZ();   ///< unit, LPS
   Meeting meeting_;
-  bool held_ = false;                   ///< at the last linearise()
-  PointLoad held_with_;                 ///< and with what
-  Mat3 held_stiffness_ = Mat3::Zero();  ///< [N/mm] of the hole then
+  Hold held_;      ///< at the last linearise()
+  Hold prepared_;  ///< at the last prepare()
 
   mutable std::vector<PointLoad> loads_;  ///< the hole's, then the caller's
   std::vector<Mat3> springs_;

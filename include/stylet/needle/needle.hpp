@@ -80,6 +80,24 @@ class Needle {
   // NOLINTNEXTLINE(performance-unnecessary-value-param): others write through the view
   virtual bool append(std::span<const PointLoad> /*loads*/, Eigen::Ref<MatX> /*compliance*/) { return false; }
 
+  /// Whether a tangent can be made beside the one in use.
+  [[nodiscard]] virtual bool prepares() const { return false; }
+
+  /// The first piece of linearise(), beside the tangent in use, which stays. The others are in prepared_compliance();
+  /// all may come in different steps. Nothing is in use before take_prepared().
+  /// @return true when that tangent was positive definite as it is; with Indefinite::give_up there is none otherwise
+  virtual bool prepare(std::span<const PointLoad> /*loads*/, std::span<const Mat3> /*springs*/,
+                       Indefinite /*otherwise*/) {
+    return false;
+  }
+  /// The next piece. @param compliance [mm/N] (3w × 3w) of the tangent that is prepared, written by the last one
+  /// @return whether this was the last piece
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): others write through the view
+  virtual bool prepared_compliance(Eigen::Ref<MatX> /*compliance*/) { return true; }
+  /// That tangent, once complete, is from now on the one of the last linearise(). To be followed by relax() or
+  /// append().
+  virtual void take_prepared() {}
+
   /// Takes the step of the last linearise() or relax() with these loads in place of those given there (same s, same
   /// order).
   virtual void advance(std::span<const PointLoad> loads) = 0;

@@ -26,6 +26,10 @@ class RodChain : public Needle {
                  std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) final;
   bool append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) final;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) final;
+  [[nodiscard]] bool prepares() const final { return true; }
+  bool prepare(std::span<const PointLoad> loads, std::span<const Mat3> springs, Indefinite otherwise) final;
+  bool prepared_compliance(Eigen::Ref<MatX> compliance) final;
+  void take_prepared() final;
   void advance(std::span<const PointLoad> loads) final;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const final;
   void straighten() final;

@@ -15,28 +15,31 @@ Mat3 free_surface_image(const Vec3& r, const SurfacePair& surface, double epsilo
   const Vec3 along = r - n.dot(r) * n;  // x, y of Mindlin's paper
   const double sum = z + c;
   const double R2 = std::sqrt(along.squaredNorm() + sum * sum + epsilon * epsilon);
-  const double R = R2 + sum;
   const double inverse = 1.0 / R2;
+  const double inverse_sum = 1.0 / (R2 + sum);
   const double cube = inverse * inverse * inverse;
-  const double fifth = cube * inverse * inverse;
   const double k = 3.0 - 4.0 * nu;
   const double m = 4.0 * (1.0 - nu) * (1.0 - 2.0 * nu);
-  const double near = m * inverse / R;  // 4(1−ν)(1−2ν) / (R₂ (R₂ + z + c))
+  const double near = m * inverse * inverse_sum;  // 4(1−ν)(1−2ν) / (R₂ (R₂ + z + c))
+  const double twice = 2.0 * c * z * cube;
+  const double sixfold = 3.0 * twice * inverse * inverse;  // 6 c z / R₂⁵
 
   // Force along the surface.
-  const double tangential = inverse + 2.0 * c * z * cube + m / R;
-  const double dyad = k * cube - 6.0 * c * z * fifth - near / R;
+  const double tangential = inverse + twice + m * inverse_sum;
+  const double dyad = k * cube - sixfold - near * inverse_sum;
   // Displacement along the normal of a force along the surface, and the other way round.
-  const double down = k * (z - c) * cube - 6.0 * c * z * sum * fifth + near;
-  const double out = k * (z - c) * cube + 6.0 * c * z * sum * fifth - near;
+  const double down = k * (z - c) * cube - sixfold * sum + near;
+  const double out = k * (z - c) * cube + sixfold * sum - near;
   // Force along the normal.
-  const double normal = (8.0 * (1.0 - nu) * (1.0 - nu) - k) * inverse + (k * sum * sum - 2.0 * c * z) * cube +
-                        6.0 * c * z * sum * sum * fifth;
+  const double normal =
+      (8.0 * (1.0 - nu) * (1.0 - nu) - k) * inverse + k * sum * sum * cube - twice + sixfold * sum * sum;
 
   const double scale = 1.0 / (16.0 * std::numbers::pi * medium.mu * (1.0 - nu));
-  Mat3 image = tangential * (Mat3::Identity() - n * n.transpose()) + dyad * along * along.transpose() +
-               down * n * along.transpose() + out * along * n.transpose() + normal * n * n.transpose();
-  return scale * image;
+  const Vec3 by_along = scale * (dyad * along + down * n);
+  const Vec3 by_normal = scale * (out * along + (normal - tangential) * n);
+  Mat3 image = by_along * along.transpose() + by_normal * n.transpose();
+  image.diagonal().array() += scale * tangential;
+  return image;
 }
 
 namespace {

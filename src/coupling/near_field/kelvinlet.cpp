@@ -34,16 +34,22 @@ struct Lags {
   }
 };
 
-/// Antiderivatives in τ.
-Lags once(double tau, double m) {
-  const double r = std::hypot(tau, m);
-  const double arc = std::asinh(tau / m);
-  return {arc, tau / (m * m * r), -1.0 / r, arc - tau / r};
+/// Integrals from one τ to a larger one.
+Lags from_to(double from, double to, double m) {
+  const double r_from = std::sqrt(from * from + m * m);
+  const double r_to = std::sqrt(to * to + m * m);
+  // asinh(to / m) - asinh(from / m) as one logarithm, of sums and not of differences: (r - τ)(r + τ) = m².
+  const double above = from >= 0.0 ? (to + r_to) / (from + r_from)
+                       : to <= 0.0 ? (r_from - from) / (r_to - to)
+                                   : (to + r_to) * (r_from - from) / (m * m);
+  const double arc = std::log(above);
+  const double slope = to / r_to - from / r_from;
+  return {arc, slope / (m * m), 1.0 / r_from - 1.0 / r_to, arc - slope};
 }
 
-/// Antiderivatives of these.
+/// Antiderivatives, twice.
 Lags twice(double tau, double m) {
-  const double r = std::hypot(tau, m);
+  const double r = std::sqrt(tau * tau + m * m);
   const double arc = std::asinh(tau / m);
   return {tau * arc - r, r / (m * m), -arc, tau * arc - 2.0 * r};
 }
@@ -52,12 +58,12 @@ Lags twice(double tau, double m) {
 Lags mean(double tau, double m, double one, double two) {
   Lags sum;
   if (one == 0.0) {
-    const double r = std::hypot(tau, m);
+    const double r = std::sqrt(tau * tau + m * m);
     const double cube = 1.0 / (r * r * r);
     return {1.0 / r, cube, tau * cube, tau * tau * cube};
   }
   if (two == 0.0) {
-    sum.add(1.0, once(tau + 0.5 * one, m)).add(-1.0, once(tau - 0.5 * one, m));
+    sum = from_to(tau - 0.5 * one, tau + 0.5 * one, m);
     const double share = 1.0 / one;
     return {share * sum.inverse, share * sum.cube, share * sum.first, share * sum.second};
   }
@@ -87,9 +93,9 @@ Mat3 kelvinlet(const Segment& at, const Segment& on, const Vec3& direction, doub
   const Vec3 across = between - tau * direction;
   const double m = std::sqrt(across.squaredNorm() + epsilon * epsilon);
   const Lags I = mean(tau, m, std::max(at.length, on.length), std::min(at.length, on.length));
-  const Mat3 mixed = across * direction.transpose();
-  Mat3 G = b * (I.cube * across * across.transpose() + I.first * (mixed + mixed.transpose()) +
-                I.second * direction * direction.transpose());
+  const Vec3 by_across = b * (I.cube * across + I.first * direction);
+  const Vec3 by_direction = b * (I.first * across + I.second * direction);
+  Mat3 G = by_across * across.transpose() + by_direction * direction.transpose();
   G.diagonal().array() += (a - b) * I.inverse + 0.5 * a * epsilon * epsilon * I.cube;
   return G;
 }

@@ -140,13 +140,14 @@ Mat3 NearFieldCompliance::correction(const Place& at, const Place& on, const OfM
   if (distance2 < edge * edge && !neighbours(at.shape, on.shape)) return Mat3::Zero();  // across a gap of air
   const double share = at.moves * on.moves;
   if (share == 0.0) return Mat3::Zero();
-  const auto in_medium_of = [&](const Place& place) -> Mat3 {
-    const Medium medium = scaled(kernel_->medium(place.medium), place.young_MPa);
-    return needle_kernel(at.piece, at.skin, on.piece, on.skin, std::sqrt(at.epsilon * on.epsilon), medium) -
-           g(place.medium) / place.young_MPa;
+  const double epsilon = std::sqrt(at.epsilon * on.epsilon);
+  const auto for_unit = [&](int medium) -> Mat3 {  // both are inversely proportional to Young's modulus
+    return needle_kernel(at.piece, at.skin, on.piece, on.skin, epsilon, kernel_->medium(medium)) - g(medium);
   };
-  if (at.medium == on.medium && at.young_MPa == on.young_MPa) return share * in_medium_of(at);
-  return 0.5 * share * (in_medium_of(at) + in_medium_of(on));
+  const double of_at = 0.5 * share / at.young_MPa;
+  const double of_on = 0.5 * share / on.young_MPa;
+  if (at.medium == on.medium) return (of_at + of_on) * for_unit(at.medium);
+  return of_at * for_unit(at.medium) + of_on * for_unit(on.medium);
 }
 
 template <class OfMesh>
@@ -193,9 +194,9 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   }
   write_block(kTip, kTip, [&](int medium) { return of_mesh(tip.shape, tip.shape, medium); });
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
-  const Medium medium = scaled(kernel_->medium(tip.medium), tip.young_MPa);
   if (tip.skin.inwards.dot(entry_) > 0.0)  // not the far surface, from inside
-    A_.topLeftCorner<3, 3>() += tip.moves * needle_.dent(tip.skin, press_N_, medium);
+    A_.topLeftCorner<3, 3>() +=
+        tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa));
   return true;
 }
 
