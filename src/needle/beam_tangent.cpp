@@ -328,6 +328,7 @@ void BeamTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) c
       Y_, z_, load_count(), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); }, compliance, free);
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): written through the view
 void BeamTangent::condense(Eigen::Ref<MatX> compliance) { condense(compliance, less_.head(3 * load_count())); }
 
 void BeamTangent::step(std::span<const PointLoad> loads, BeamShape& shape) {
