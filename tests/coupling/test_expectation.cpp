@@ -17,7 +17,7 @@ TEST(Expectation, a_needle_that_goes_on_as_before_takes_little_more_than_one_ite
   int iterations = 0;
   int steps = 0;
   while (run.depth < 38.0) {
-    run.go(run.depth + 20.0 * test::kStep_s);
+    run.go(run.depth + 0.02, 20.0, 1e-3);
     iterations += run.report.iterations;
     ++steps;
   }
