@@ -98,7 +98,7 @@ TEST(PreparedTangent, changes_no_balance_wherever_the_needle_is_put_meanwhile) {
   ASSERT_EQ(prepared.forces.size(), at_once.forces.size());
   for (std::size_t k = 0; k < prepared.forces.size(); ++k)
     ASSERT_NEAR(prepared.forces[k], at_once.forces[k], 1e-6 * prepared.peak) << "step " << k;
-  EXPECT_LT(prepared.iterations_after_turns, 0 + at_once.iterations_after_turns);
+  EXPECT_LT(prepared.iterations_after_turns, at_once.iterations_after_turns);
   EXPECT_GT(prepared.steps_with_tangents, 3 * at_once.steps_with_tangents);
   EXPECT_EQ(prepared.most_tangents, 1) << "pieces in a step";
 }
