@@ -65,10 +65,12 @@ void solve_upper(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
     const Eigen::Index nk = std::min(kTile, n - k);
     const Eigen::Index below = n - k - nk;
     auto tile = Y.middleRows(k, nk);
-    for (Eigen::Index c = 0; c < Y.cols(); ++c) {
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kTile, 1> known(nk);
-      transposed_product(known, L.block(k + nk, k, below, nk), Y.col(c).tail(below));
-      tile.col(c) -= known;
+    constexpr int kColumns = 6;
+    for (Eigen::Index c = 0; c < Y.cols() && below > 0; c += kColumns) {
+      const Eigen::Index count = std::min<Eigen::Index>(kColumns, Y.cols() - c);
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kTile, kColumns> known(nk, count);
+      transposed_product(known, L.block(k + nk, k, below, nk), Y.block(k + nk, c, below, count));
+      tile.middleCols(c, count) -= known;
     }
     solve_inverted_tile_transposed(L.block(k, k, nk, nk), tile);
   }

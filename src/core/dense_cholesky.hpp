@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "core/dense_kernels.hpp"
 #include "stylet/core/types.hpp"
 
 /// Dense Cholesky in place, cut into tiles so small that Eigen's products keep their work space on the stack at any
@@ -8,8 +9,6 @@
 /// inverses are written, with which solve_lower() and solve_upper() are quick. These take a factor of the functions
 /// here, the whole of it or its first columns and rows; their tiles begin at multiples of kTile.
 namespace stylet::dense {
-
-inline constexpr Eigen::Index kTile = 24;
 
 /// A = L Lᵀ, L over A. @return false if A is not positive definite (A is then spoilt)
 [[nodiscard]] bool factorise(Eigen::Ref<MatX> A);

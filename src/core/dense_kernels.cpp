@@ -2,6 +2,7 @@
 #include "core/dense_kernels.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -128,6 +129,7 @@ STYLET_FOR_PROCESSORS
 void dot(double* c, Size ldc, const double* a, Size lda, const double* b, Size ldb, Size rows, Size columns,
          Size depth) {
   Size j = 0;
+  for (; j + 3 <= columns; j += 3) dot_columns<3>(c + j * ldc, ldc, a, lda, b + j * ldb, ldb, rows, depth);
   for (; j + 2 <= columns; j += 2) dot_columns<2>(c + j * ldc, ldc, a, lda, b + j * ldb, ldb, rows, depth);
   if (j < columns) dot_columns<1>(c + j * ldc, ldc, a, lda, b + j * ldb, ldb, rows, depth);
 }
@@ -181,16 +183,31 @@ void upper(const double* u, Size ldu, Size n, double* y, Size ldy, Size columns)
   }
 }
 
-/// Column i of L⁻ᵀ is −1/L_ii Σ_(m < i) L_im × column m, that of m ending with 1/L_mm.
+/// A small upper triangle with all its numbers, zeros below: rows are taken by fours whatever their number.
+struct Triangle {
+  static_assert(kTile % (2 * kFour) == 0);
+  double at[kTile * kTile] = {};
+
+  STYLET_INLINE double* column(Size j) { return at + j * kTile; }
+};
+
+/// Column i of L⁻ᵀ is −1/L_ii Σ_(m < i) L_im × column m, that of m ending with 1/L_mm. For four columns at a time all
+/// that the columns before these give, then what they give each other.
 STYLET_FOR_PROCESSORS
 void invert(double* tile, Size ld, Size n) {
-  for (Size i = 1; i < n; ++i) {
-    double* const column = tile + i * ld;
-    for (Size m = 0; m < i; ++m) column[m] = -tile[i + m * ld] / tile[m + m * ld];
-    for (Size m = 1; m < i; ++m) subtract_multiple(column, tile + m * ld, tile[i + m * ld], m);
-    const double inverse = 1.0 / column[i];
-    for (Size k = 0; k < i; ++k) column[k] *= inverse;
+  Triangle inverse;
+  for (Size first = 0; first < n; first += kFour) {
+    const Size count = std::min(kFour, n - first);
+    subtract_any(inverse.column(first), kTile, inverse.at, kTile, tile + first, ld, 1, first, count, first);
+    for (Size i = first; i < first + count; ++i) {
+      double* const column = inverse.column(i);
+      for (Size m = first; m < i; ++m) subtract_multiple(column, inverse.column(m), tile[i + m * ld], first + kFour);
+      const double last = 1.0 / tile[i + i * ld];
+      for (Size k = 0; k < first + kFour; k += kFour) four(column + k) *= last;
+      column[i] = last;
+    }
   }
+  for (Size i = 1; i < n; ++i) std::copy_n(inverse.column(i), i, tile + i * ld);
 }
 
 /// So many columns. Last rows first: row i needs those above it as they were.
@@ -221,30 +238,65 @@ STYLET_INLINE void inverted_columns(const double* tile, Size ld, Size n, double*
   }
 }
 
+/// Many columns: L⁻¹ as a whole, so that its rows are taken eight at a time. Last ones first, as above.
+STYLET_INLINE void inverted_many(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
+  constexpr Size kRows = 2 * kFour;
+  Triangle less;  // −L⁻¹, the triangle below
+  for (Size k = 0; k < n; ++k) {
+    less.column(k)[k] = -1.0 / tile[k + k * ld];
+    for (Size i = k + 1; i < n; ++i) less.column(k)[i] = -tile[k + i * ld];
+  }
+  for (Size i = n; i > 0;) {
+    const Size first = (i - 1) / kRows * kRows;
+    for (Size j = 0; j < columns; j += kFour) {
+      const Size count = std::min(kFour, columns - j);
+      double result[kRows * kFour] = {};
+      subtract_any(result, kRows, less.at + first, kTile, y + j * ldy, 1, ldy, i - first, count, i);
+      for (Size c = 0; c < count; ++c) std::copy_n(result + c * kRows, i - first, y + first + (j + c) * ldy);
+    }
+    i = first;
+  }
+}
+
 STYLET_FOR_PROCESSORS
 void inverted(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
+  if (columns > kFour) {
+    inverted_many(tile, ld, n, y, ldy, columns);
+    return;
+  }
   Size c = 0;
   for (; c + 2 <= columns; c += 2) inverted_columns<2>(tile, ld, n, y + c * ldy, ldy);
   if (c < columns) inverted_columns<1>(tile, ld, n, y + c * ldy, ldy);
 }
 
-/// First rows first: those above take of a row what it was. Four rows at once, then what they take of each other.
-STYLET_FOR_PROCESSORS
-void inverted_transposed(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
-  for (Size c = 0; c < columns; ++c) {
-    double* const x = y + c * ldy;
-    for (Size i = 0; i < n; i += kFour) {
-      const Size count = std::min(kFour, n - i);
-      double less[kFour];
-      for (Size r = 0; r < count; ++r) less[r] = -x[i + r];
-      subtract_columns<1>(x, ldy, tile + i * ld, ld, less, 1, count, i, count);
+/// So many columns. First rows first: those above take of a row what it was. Four rows at once, then what they take of
+/// each other.
+template <int Columns>
+STYLET_INLINE void inverted_transposed_columns(const double* tile, Size ld, Size n, double* y, Size ldy) {
+  for (Size i = 0; i < n; i += kFour) {
+    const Size count = std::min(kFour, n - i);
+    double less[Columns][kFour];
+    for (int c = 0; c < Columns; ++c) {
+      for (Size r = 0; r < count; ++r) less[c][r] = -y[i + r + c * ldy];
+    }
+    subtract_columns<Columns>(y, ldy, tile + i * ld, ld, less[0], 1, kFour, i, count);
+    for (int c = 0; c < Columns; ++c) {
+      double* const x = y + i + c * ldy;
       for (Size r = 0; r < count; ++r) {
         const double* const column = tile + (i + r) * ld + i;
-        for (Size k = 0; k < r; ++k) x[i + k] -= column[k] * less[r];
-        x[i + r] = -less[r] / column[r];
+        for (Size k = 0; k < r; ++k) x[k] -= column[k] * less[c][r];
+        x[r] = -less[c][r] / column[r];
       }
     }
   }
+}
+
+STYLET_FOR_PROCESSORS
+void inverted_transposed(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
+  Size c = 0;
+  for (; c + 4 <= columns; c += 4) inverted_transposed_columns<4>(tile, ld, n, y + c * ldy, ldy);
+  for (; c + 2 <= columns; c += 2) inverted_transposed_columns<2>(tile, ld, n, y + c * ldy, ldy);
+  if (c < columns) inverted_transposed_columns<1>(tile, ld, n, y + c * ldy, ldy);
 }
 
 STYLET_FOR_PROCESSORS
@@ -317,9 +369,13 @@ void solve_lower_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y) {
   lower(L.data(), L.outerStride(), L.rows(), Y.data(), Y.outerStride(), Y.cols());
 }
 
-void invert_tile(Eigen::Ref<MatX> L) { invert(L.data(), L.outerStride(), L.rows()); }
+void invert_tile(Eigen::Ref<MatX> L) {
+  assert(L.rows() <= kTile);
+  invert(L.data(), L.outerStride(), L.rows());
+}
 
 void solve_inverted_tile(const Eigen::Ref<const MatX>& tile, Eigen::Ref<MatX> Y) {
+  assert(tile.rows() <= kTile);
   inverted(tile.data(), tile.outerStride(), tile.rows(), Y.data(), Y.outerStride(), Y.cols());
 }
 

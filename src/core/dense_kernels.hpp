@@ -7,8 +7,16 @@
 
 /// The inner loops of the dense solvers: small matrices, column after column in memory, no work space. On processors
 /// that multiply and add at once (FMA) its instructions are used, and all of these give the same results: sums are
-/// taken in the same order everywhere. Older ones round each product.
+/// taken in the same order everywhere, which may be another one for one column than for many. Older ones round each
+/// product.
 namespace stylet::dense {
+
+/// Tiles have no more rows and columns.
+inline constexpr Eigen::Index kTile = 24;
+
+/// Rows that a matrix of so many rows had best have: columns that begin at other places in the processor's registers
+/// each are slow to load.
+constexpr Eigen::Index column_length(Eigen::Index rows) { return (rows + 3) / 4 * 4; }
 
 /// C ← C − A B, element (i, j) over k = 0, 1, … in turn.
 void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
@@ -22,7 +30,7 @@ void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, con
 /// Y ← L⁻¹ Y for a small lower triangle L whose diagonal counts as ones.
 void solve_lower_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y);
 
-/// Writes L⁻ᵀ of a small lower triangle L over it, without its diagonal: above that of L.
+/// Writes L⁻ᵀ of a lower triangle, at most a tile, L over it, without its diagonal: above that of L.
 void invert_tile(Eigen::Ref<MatX> L);
 
 /// Y ← L⁻¹ Y for such a tile. It has no chain of divisions, each of which waits for the one before.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact_system.hpp"
 
+#include "core/dense_kernels.hpp"
+
 #include <Eigen/LU>
 
 #include <utility>
@@ -10,14 +12,14 @@ namespace stylet {
 ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1), prepared_grips_(contacts - 1) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
   const Eigen::Index most_springs = 2 * static_cast<Eigen::Index>(contacts);
-  A = N = prepared.N = MatX::Zero(n, n);
+  A = N = prepared.N = MatX::Zero(dense::column_length(n), n);
   free = now = gap = shift = drift = lambda = push = work_ = VecX::Zero(n);
   frame.assign(static_cast<std::size_t>(contacts), Mat3::Identity());
   yield.assign(static_cast<std::size_t>(contacts), Yield{});
   spring.assign(static_cast<std::size_t>(contacts), LentSpring{});
   prepared.spring = spring;
-  column_ = begun_ = solved_ = MatX::Zero(n + most_springs, 3);
-  right_ = MatX::Zero(n + most_springs, 2);
+  column_ = begun_ = MatX::Zero(n + most_springs, 3);
+  solved_ = MatX::Zero(n + most_springs, 5);
 }
 
 bool ContactSystem::factorise() {
@@ -40,15 +42,16 @@ bool ContactSystem::keep_first(int contacts) {
   return grips_.keep_first(contacts - 1);
 }
 
-bool ContactSystem::factorise_prepared() {
+void ContactSystem::fill_prepared() {
   const auto grips = static_cast<std::size_t>(prepared.count - 1);
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(grips);
-  if (n == 0) return true;
   const auto springs = prepared.supported ? std::span<const LentSpring>(prepared.spring).subspan(1, grips)
                                           : std::span<const LentSpring>();
-  return prepared_grips_.factorise(A.block(3, 3, n, n), prepared.N.block(3, 3, n, n), springs,
-                                   std::span<const Yield>(yield).subspan(1, grips));
+  prepared_grips_.fill(A.block(3, 3, n, n), prepared.N.block(3, 3, n, n), springs,
+                       std::span<const Yield>(yield).subspan(1, grips));
 }
+
+bool ContactSystem::factorise_prepared() { return prepared_grips_.factorise_filled(); }
 
 void ContactSystem::take_prepared() {
   lacks_tip_ = true;
@@ -102,16 +105,11 @@ bool ContactSystem::solve(TipRows held) {
   // The grips and springs by themselves: B⁻¹ of the tip's columns, of the right-hand side and of the drift.
   const Eigen::Index rows_there = n > 0 ? grips_.rows() : 0;
   const bool drifts = cut_per_N > 0.0;
-  auto right = right_.col(0).head(rows_there);
-  auto drifting = right_.col(1).head(rows_there);
   auto column = column_.topRows(rows_there);
-  auto solved = solved_.topRows(rows_there);
+  auto solved = solved_.topLeftCorner(rows_there, 3);
+  auto right = solved_.col(3).head(rows_there);
+  auto drifting = solved_.col(4).head(rows_there);
   if (n > 0) {
-    if (solved_for_ != grips_.version()) {
-      solved = begun_.topRows(rows_there);
-      grips_.finish(solved);
-      solved_for_ = grips_.version();
-    }
     for (int c = 1; c < count; ++c)
       right.segment<3>(3 * c - 3).noalias() = frame[static_cast<std::size_t>(c)] * error(c);
     grips_.across(right.head(n), right.tail(grips_.spring_rows()));
@@ -121,9 +119,12 @@ bool ContactSystem::solve(TipRows held) {
       drifting.head(n) = drift.segment(3, n);
       grips_.across(drifting.head(n), drifting.tail(grips_.spring_rows()));
     }
-    auto both = right_.topLeftCorner(rows_there, drifts ? 2 : 1);
-    grips_.begin(both);
-    grips_.finish(both);
+    const Eigen::Index rights = drifts ? 2 : 1;
+    grips_.begin(solved_.block(0, 3, rows_there, rights));
+    const bool all = solved_for_ != grips_.version();
+    if (all) solved = begun_.topRows(rows_there);
+    grips_.finish(all ? solved_.topLeftCorner(rows_there, 3 + rights) : solved_.block(0, 3, rows_there, rights));
+    solved_for_ = grips_.version();
     if (drifts) right -= cut_due * drifting;
   }
 

@@ -67,7 +67,8 @@ class ContactSystem {
     bool supported = false;
   };
   Prepared prepared;
-  /// The matrix of that, with A and D of now. False where it is singular.
+  /// The matrix of that, with A and D of now, and then its factor. False where it is singular.
+  void fill_prepared();
   [[nodiscard]] bool factorise_prepared();
   /// Both are in use from now on.
   void take_prepared();
@@ -108,8 +109,7 @@ class ContactSystem {
   std::uint64_t solved_for_ = 0;  ///< version of the matrix that solved_ is of
   MatX column_;                   ///< (rows × 3) of the grips and springs, columns of the tip: also its rows
   MatX begun_;                    ///< (rows × 3) the same, half solved
-  MatX solved_;                   ///< (rows × 3) B⁻¹ of them
-  MatX right_;                    ///< right-hand side of the grips and springs and their drift, then B⁻¹ of both
+  MatX solved_;                   ///< (rows × 5) B⁻¹ of them, of the right-hand side and of the drift
   VecX work_;
 };
 

@@ -51,12 +51,12 @@ GripMatrix::GripMatrix(int grips)
   const Eigen::Index s = 2 * static_cast<Eigen::Index>(grips);
   springs_.reserve(static_cast<std::size_t>(grips));
   flexibility_.reserve(static_cast<std::size_t>(grips));
-  factor_ = MatX::Zero(n + s, n + s);
-  changing_ = MatX::Zero(n, n);
+  factor_ = MatX::Zero(dense::column_length(n + s), n + s);
+  changing_ = MatX::Zero(dense::column_length(n), n);
   by_springs_ = MatX::Zero(n, s);
   left_ = MatX::Zero(s, s);
   work_ = MatX::Zero(n + s, kMostColumns);
-  turned_ = MatX::Zero(n, 3);
+  sum_ = turned_ = MatX::Zero(n, 3);
 }
 
 void GripMatrix::take_springs(std::span<const LentSpring> springs) {
@@ -91,9 +91,10 @@ void GripMatrix::order(std::span<const Yield> yields) {
 void GripMatrix::fill_contacts(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N) {
   for (int h = 0; h < grips_; ++h) {
     const Eigen::Index down = grip_rows() - 3 * h;
+    auto both = sum_.topRows(down);
+    both.noalias() = A.block(3 * h, 3 * h, down, 3) + N.block(3 * h, 3 * h, down, 3);
     auto columns = turned_.topRows(down);
-    columns.noalias() = A.block(3 * h, 3 * h, down, 3).lazyProduct(frame(h));
-    columns.noalias() += N.block(3 * h, 3 * h, down, 3).lazyProduct(frame(h));
+    columns.noalias() = both.lazyProduct(frame(h));
     for (int g = h; g < grips_; ++g) {
       const Mat3 block = frame(g).transpose() * columns.middleRows<3>(3 * (g - h));
       if (g == h) own_[static_cast<std::size_t>(h)] = block.trace() / 3.0;
@@ -128,6 +129,12 @@ void GripMatrix::fill_springs(const Eigen::Ref<const MatX>& A) {
 
 bool GripMatrix::factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
                            std::span<const LentSpring> springs, std::span<const Yield> yields) {
+  fill(A, N, springs, yields);
+  return factorise_filled();
+}
+
+void GripMatrix::fill(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
+                      std::span<const LentSpring> springs, std::span<const Yield> yields) {
   grips_ = static_cast<int>(A.rows() / 3);
   std::copy(yields.begin(), yields.end(), yields_.begin());
   for (int g = 0; g < grips_; ++g)
@@ -139,8 +146,9 @@ bool GripMatrix::factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<con
   appended_ = 0;
   current_ = false;
   current_before_ = 0;
-  return dense::factorise_first(factor_.topLeftCorner(rows(), rows()), staying_);
 }
+
+bool GripMatrix::factorise_filled() { return dense::factorise_first(factor_.topLeftCorner(rows(), rows()), staying_); }
 
 bool GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, const Yield& yield) {
   assert(A.rows() == grip_rows() + 3 && N.rows() == grip_rows() + 3);

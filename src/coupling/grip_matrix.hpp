@@ -49,6 +49,10 @@ class GripMatrix {
   /// @return false where the matrix is found singular; change() may still find it
   [[nodiscard]] bool factorise(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N,
                                std::span<const LentSpring> springs, std::span<const Yield> yields);
+  /// The same in two pieces.
+  void fill(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& N, std::span<const LentSpring> springs,
+            std::span<const Yield> yields);
+  [[nodiscard]] bool factorise_filled();
 
   /// Adds a contact after those there, without a spring.
   /// @param A, N [mm/N] (3g × 3g) with it
@@ -81,7 +85,7 @@ class GripMatrix {
   void begin(Eigen::Ref<MatX> Y);
   /// The rest of it, with D of now. @param Y as begin() left it
   void finish(Eigen::Ref<MatX> Y);
-  static constexpr int kMostColumns = 4;
+  static constexpr int kMostColumns = 5;
 
   /// D of a contact as it is in the matrix.
   [[nodiscard]] const Yield& yield(int grip) const { return yields_[static_cast<std::size_t>(grip)]; }
@@ -133,7 +137,8 @@ class GripMatrix {
   MatX left_;                ///< (s × s) what is left for the springs: L and U
   std::vector<int> pivots_;  ///< (s)
   MatX work_;                ///< (rows × most columns)
-  MatX turned_;              ///< (3g × 3) columns of a contact, in its frame
+  MatX sum_;                 ///< (3g × 3) columns of a contact in A + N, …
+  MatX turned_;              ///< … and in its frame
 };
 
 }  // namespace stylet

@@ -131,7 +131,7 @@ struct Insertion::Parts {
   bool matrix_fits = false;      ///< the system's matrix is of that tangent and compliance
   /// A tangent and matrix for steps to come: what of them is there.
   struct Preparation {
-    enum class Stage { none, begun, tangent, compliance, matrix } stage = Stage::none;
+    enum class Stage { none, begun, tangent, compliance, filled, matrix } stage = Stage::none;
     int lent = 0;             ///< most springs, 0 = none
     std::vector<int> points;  ///< of the contacts they are of
     double worn_mm = 0.0;     ///< way of the base since those in use were made
@@ -152,8 +152,45 @@ struct Insertion::Parts {
   MatX forces;                                  ///< (3 × points) on the tissue
   std::vector<MaterialPoint> point_at;          ///< (points) where they are; the tip's is where it was held last
 
+  // gathering.cpp: where contacts and forces are, and the equations among them.
+  [[nodiscard]] double arc_of(int load) const;
+  [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
+  [[nodiscard]] Vec3 tissue_displacement(int point) const;
+  void gather_forces();
+  void set_frames();
+  void fill_loads();
+  [[nodiscard]] double slip_of_cut(double h) const;  ///< [mm/N] by which the tip goes on in a sub-step
+  void soften_rows(double h);
+  int renew_contacts();
+  void append_contact(int load);
+  void gather_tip_columns(double share, int same);
+  void gather_drift();
+  void gather_system();
+
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
   void solve_equilibrium(double h, StepReport& report);
+  void begin_balance(int most_toggles);
+  void keep_iterate();
+  void go_back();
+  void linearise();
+  [[nodiscard]] bool relax_needle();
+  void lend_springs(int most, std::vector<LentSpring>& lent);
+  [[nodiscard]] bool pivot(double h, StepReport& report, bool& changed);
+  /// What a solution says of a contact.
+  struct Trial {
+    double axial = 0.0;    ///< [N] force on the tissue
+    double slides = 0.0;   ///< [mm] in this sub-step, in the sense of its state
+    double opening = 0.0;  ///< [N] what an open tip would take if it were held
+  };
+  [[nodiscard]] Trial trial(int load) const;
+  [[nodiscard]] double contradiction(int load, const Trial& trial) const;
+  [[nodiscard]] static double way(const Grip& grip, double axial);
+  void change_state(int load, const Trial& trial, StepReport& report);
+  void change_and_tell(int load, StepReport& report);
+  void slide(int load);
+  [[nodiscard]] ContactSystem::TipRows tip_rows() const;
+  [[nodiscard]] double equation_error() const;
+  [[nodiscard]] double imbalance_over_tolerance() const;
 
   // preparation.cpp: the next tangent, in pieces.
   void prepare_tangent();
@@ -181,8 +218,6 @@ struct Insertion::Parts {
   bool cut(bool nearly);
   void bend_needle();
 
-  [[nodiscard]] Vec3 tissue_displacement(int point) const;
-  void gather_forces();
   [[nodiscard]] double length() const { return needle->length(); }
   [[nodiscard]] int load_count() const { return 1 + static_cast<int>(grips.size()); }
   [[nodiscard]] int point_of(int load) const {
@@ -196,38 +231,6 @@ struct Insertion::Parts {
   }
   /// Where the tissue at a contact would be without the forces of now.
   [[nodiscard]] Vec3 unloaded(int load) const { return material_of(load) + past[static_cast<std::size_t>(load)]; }
-  [[nodiscard]] double arc_of(int load) const;
-  [[nodiscard]] Vec3 shaft_point(int load) const;  ///< [mm] needle at a contact; past its ends, straight on
-  void keep_iterate();
-  void go_back();
-  void begin_balance(int most_toggles);
-  void set_frames();
-  void fill_loads();
-  void soften_rows(double h);
-  int renew_contacts();
-  void append_contact(int load);
-  void gather_tip_columns(double share, int same);
-  void gather_drift();
-  void gather_system();
-  void linearise();
-  [[nodiscard]] bool relax_needle();
-  void lend_springs(int most, std::vector<LentSpring>& lent);
-  [[nodiscard]] bool pivot(double h, StepReport& report, bool& changed);
-  /// What a solution says of a contact.
-  struct Trial {
-    double axial = 0.0;    ///< [N] force on the tissue
-    double slides = 0.0;   ///< [mm] in this sub-step, in the sense of its state
-    double opening = 0.0;  ///< [N] what an open tip would take if it were held
-  };
-  [[nodiscard]] Trial trial(int load) const;
-  [[nodiscard]] double contradiction(int load, const Trial& trial) const;
-  [[nodiscard]] static double way(const Grip& grip, double axial);
-  void change_state(int load, const Trial& trial, StepReport& report);
-  void change_and_tell(int load, StepReport& report);
-  void slide(int load);
-  [[nodiscard]] ContactSystem::TipRows tip_rows() const;
-  [[nodiscard]] double equation_error() const;
-  [[nodiscard]] double imbalance_over_tolerance() const;
 
   // bevel.cpp: what an asymmetric tip does.
   [[nodiscard]] Vec3 lead_of_bevel(const Vec3& tangent) const;

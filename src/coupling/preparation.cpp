@@ -40,6 +40,12 @@ void Insertion::Parts::prepare_tangent() {
     }
     case Stage::compliance: {
       const InPhase in_phase(phases, StepPhase::factorise);
+      system.fill_prepared();
+      preparation.stage = Stage::filled;
+      break;
+    }
+    case Stage::filled: {
+      const InPhase in_phase(phases, StepPhase::factorise);
       preparation.stage = system.factorise_prepared() ? Stage::matrix : Stage::none;
       break;
     }

@@ -12,7 +12,6 @@
 
 namespace stylet::beam {
 
-using dense::kTile;
 using dense::solve_lower;
 using dense::solve_upper;
 
@@ -164,11 +163,7 @@ bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::
   for (std::size_t c = 0; c < loads.size(); ++c) force_.segment<3>(3 * static_cast<Eigen::Index>(c)) = loads[c].force;
   z_ = g_;
   solve_lower(L_, 0, z_);
-  for_groups([&](Eigen::Index first, Eigen::Index count, Eigen::Index reach) {
-    dense::transposed_product(free.segment(first, count), Y_.block(Y_.rows() - reach, first, reach, count),
-                              z_.tail(reach));
-  });
-  free = -free;
+  move_loads(free);
   return true;
 }
 
@@ -307,9 +302,8 @@ void BeamTangent::add_springs(std::span<const Mat3> springs) {
 /// For the columns of some loads at a time: first of them, how many, and how many of the last rows are not zero.
 template <class Function>
 void BeamTangent::for_groups(Function&& function) const {
-  constexpr Eigen::Index stride = kTile / 3;
-  for (Eigen::Index c = 0; c < load_count(); c += stride) {
-    const Eigen::Index last = std::min(load_count(), c + stride);
+  for (Eigen::Index c = 0; c < load_count(); c += kCondensed) {
+    const Eigen::Index last = std::min(load_count(), c + kCondensed);
     function(3 * c, 3 * (last - c), Y_.rows() - start(c, last));
   }
 }
@@ -324,12 +318,19 @@ Eigen::Index BeamTangent::start(Eigen::Index first_load, Eigen::Index last_load)
 }
 
 void BeamTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const {
-  condense_columns(
-      Y_, z_, load_count(), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); }, compliance, free);
+  condense(compliance, 0, load_count());
+  move_loads(free);
 }
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): written through the view
-void BeamTangent::condense(Eigen::Ref<MatX> compliance) { condense(compliance, less_.head(3 * load_count())); }
+void BeamTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Index first, Eigen::Index last) const {
+  condense_columns(
+      Y_, first, last, [this](Eigen::Index a, Eigen::Index b) { return start(a, b); }, compliance);
+}
+
+void BeamTangent::move_loads(Eigen::Ref<VecX>& free) const {
+  condense_gradient(
+      Y_, z_, load_count(), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); }, free);
+}
 
 void BeamTangent::step(std::span<const PointLoad> loads, BeamShape& shape) {
   assert(loads.size() == last_moved_.size());

@@ -28,7 +28,11 @@ class BeamTangent {
 
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
-  void condense(Eigen::Ref<MatX> compliance);  ///< the first of both
+  /// Of the first of both the rows and columns of loads first … last − 1, as far as they are of those and the loads
+  /// before them. @param first a multiple of kCondensed
+  void condense(Eigen::Ref<MatX> compliance, Eigen::Index first, Eigen::Index last) const;
+
+  [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
 
   /// Adds a load after the first ones there: its column of Jᵀ for where it is now, with the levers, the Hessian and the
   /// other columns of assemble().
@@ -61,12 +65,12 @@ class BeamTangent {
   void reserve(Eigen::Index loads);
   void keep_first(std::size_t loads);
   void sum_work(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
-  [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
   void locate(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load);
   void assemble_energy(const BeamShape& shape);
   [[nodiscard]] bool factorise_shifted(Indefinite otherwise);
   void assemble_jacobian(const Mat3& base_rotation, Eigen::Index load);
   void add_springs(std::span<const Mat3> springs);
+  void move_loads(Eigen::Ref<VecX>& free) const;
   template <class Function>
   void for_groups(Function&& function) const;
   [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }

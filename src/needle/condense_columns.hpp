@@ -8,25 +8,25 @@
 #include <algorithm>
 #include <cassert>
 
+/// What the needle's tangent H = L Lᵀ means for its load points, from Y = L⁻¹ Jᵀ and z = L⁻¹ g.
+/// start(a, b) is the row of Y before which the columns of loads a … b − 1 are zero.
 namespace stylet {
 
-/// What the needle's tangent H = L Lᵀ means for its load points, from Y = L⁻¹ Jᵀ and z = L⁻¹ g: compliance = Yᵀ Y
-/// [mm/N] (3w × 3w) and free = -Yᵀ z [mm] (3w).
-/// @param start start(a, b): row of Y before which the columns of loads a … b - 1 are zero
+/// So many loads' columns are taken at once.
+inline constexpr Eigen::Index kCondensed = dense::kTile / 3;
+
+/// Compliance Yᵀ Y [mm/N] (3w × 3w): its rows and columns of loads first … last − 1 with those and the loads before
+/// them. @param first a multiple of kCondensed
 template <class Start>
-void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const Start& start,
-                      Eigen::Ref<MatX>& compliance, Eigen::Ref<VecX>& free) {
-  assert(compliance.rows() == 3 * loads && compliance.cols() == 3 * loads && free.size() == 3 * loads);
-  constexpr Eigen::Index stride = dense::kTile / 3;
-  for (Eigen::Index a = 0; a < loads; a += stride) {
-    const Eigen::Index na = std::min(stride, loads - a);
+void condense_columns(const MatX& Y, Eigen::Index first, Eigen::Index last, const Start& start,
+                      Eigen::Ref<MatX>& compliance) {
+  assert(first % kCondensed == 0 && compliance.rows() >= 3 * last && compliance.cols() >= 3 * last);
+  for (Eigen::Index a = first; a < last; a += kCondensed) {
+    const Eigen::Index na = std::min(kCondensed, last - a);
     const Eigen::Index start_a = start(a, a + na);
     const auto columns = Y.middleCols(3 * a, 3 * na);
-    auto motion = free.segment(3 * a, 3 * na);
-    motion.noalias() = columns.transpose() * z;
-    motion = -motion;
-    for (Eigen::Index b = 0; b <= a; b += stride) {
-      const Eigen::Index nb = std::min(stride, loads - b);
+    for (Eigen::Index b = 0; b <= a; b += kCondensed) {
+      const Eigen::Index nb = std::min(kCondensed, last - b);
       constexpr Eigen::Index four = 4;  // numbers are multiplied side by side
       const Eigen::Index reach = Y.rows() - std::max(start_a, start(b, b + nb));
       const Eigen::Index depth = std::min(Y.rows(), (reach + four - 1) / four * four);
@@ -39,6 +39,19 @@ void condense_columns(const MatX& Y, const VecX& z, Eigen::Index loads, const St
       }
     }
   }
+}
+
+/// The loads' motion by the Newton step, −Yᵀ z [mm] (3w).
+template <class Start>
+void condense_gradient(const MatX& Y, const VecX& z, Eigen::Index loads, const Start& start, Eigen::Ref<VecX>& free) {
+  assert(free.size() == 3 * loads);
+  for (Eigen::Index c = 0; c < loads; c += kCondensed) {
+    const Eigen::Index count = std::min(kCondensed, loads - c);
+    const Eigen::Index reach = Y.rows() - start(c, c + count);
+    dense::transposed_product(free.segment(3 * c, 3 * count), Y.block(Y.rows() - reach, 3 * c, reach, 3 * count),
+                              z.tail(reach));
+  }
+  free = -free;
 }
 
 }  // namespace stylet

@@ -24,6 +24,7 @@ GuidedNeedle::GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole,
   springs_.reserve(loads);
   const auto size = 3 * static_cast<Eigen::Index>(loads);
   N_.setZero(size, size);
+  prepared_N_ = N_;
   free_.setZero(size);
 }
 
@@ -121,8 +122,8 @@ bool GuidedNeedle::prepare(std::span<const PointLoad> loads, std::span<const Mat
 bool GuidedNeedle::prepared_compliance(Eigen::Ref<MatX> compliance) {
   if (!prepared_.on) return inner_->prepared_compliance(compliance);
   const Eigen::Index size = compliance.rows();
-  if (!inner_->prepared_compliance(N_.topLeftCorner(size + 3, size + 3))) return false;
-  compliance = N_.block(3, 3, size, size);
+  if (!inner_->prepared_compliance(prepared_N_.topLeftCorner(size + 3, size + 3))) return false;
+  compliance = prepared_N_.block(3, 3, size, size);
   return true;
 }
 

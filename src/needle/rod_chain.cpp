@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "needle/condense_columns.hpp"
 #include "needle/rod_chain_parts.hpp"
 
 #include <cassert>
@@ -44,25 +45,40 @@ bool RodChain::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) {
 }
 
 bool RodChain::prepare(std::span<const PointLoad> loads, std::span<const Mat3> springs, Indefinite otherwise) {
-  parts_->solved = false;
+  parts_->preparing = Parts::Preparing::solution;
   return parts_->prepared.factorise(parts_->shape, parts_->base_rotation, loads, springs, otherwise) &&
          parts_->prepared.elastic_shift() == 0.0;
 }
 
 bool RodChain::prepared_compliance(Eigen::Ref<MatX> compliance) {
-  if (!parts_->solved) {
-    parts_->prepared.solve();
-    parts_->solved = true;
-    return false;
+  using Preparing = Parts::Preparing;
+  assert(parts_->preparing != Preparing::nothing);
+  beam::BeamTangent& tangent = parts_->prepared;
+  // Seven tenths of many loads are half of the triangle; of few none.
+  const Eigen::Index half = tangent.load_count() * 7 / 10 / kCondensed * kCondensed;
+  switch (parts_->preparing) {
+    case Preparing::solution:
+      tangent.solve();
+      parts_->preparing = half > 0 ? Preparing::first_loads : Preparing::last_loads;
+      break;
+    case Preparing::first_loads:
+      tangent.condense(compliance, 0, half);
+      parts_->preparing = Preparing::last_loads;
+      break;
+    case Preparing::last_loads:
+      tangent.condense(compliance, half, tangent.load_count());
+      parts_->preparing = Preparing::complete;
+      break;
+    default:
+      break;
   }
-  parts_->prepared.condense(compliance);
-  return true;
+  return parts_->preparing == Preparing::complete;
 }
 
 void RodChain::take_prepared() {
-  assert(parts_->solved);
+  assert(parts_->preparing == Parts::Preparing::complete);
   std::swap(parts_->tangent, parts_->prepared);
-  parts_->solved = false;
+  parts_->preparing = Parts::Preparing::nothing;
 }
 
 void RodChain::advance(std::span<const PointLoad> loads) {

@@ -39,7 +39,8 @@ struct RodChain::Parts {
   beam::BeamShape shape;
   beam::BeamTangent tangent;
   beam::BeamTangent prepared;  ///< beside the one in use
-  bool solved = false;         ///< that one, for the motions of its loads
+  /// What comes next of that one: L⁻¹Jᵀ, then the compliance in two parts.
+  enum class Preparing { nothing, solution, first_loads, last_loads, complete } preparing = Preparing::nothing;
 };
 
 }  // namespace stylet

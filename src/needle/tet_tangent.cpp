@@ -150,8 +150,7 @@ bool TetTangent::relax(const TetShape& shape, const Mat3& base_rotation, std::sp
   assemble_gradient(shape, base_rotation, loads);
   reduce_gradient();
   band_.solve_lower(0, z_.data());
-  free.noalias() = Y_.leftCols(free.size()).transpose() * z_;
-  free = -free;
+  move_loads(free);
   return true;
 }
 
@@ -275,8 +274,15 @@ Eigen::Index TetTangent::start(Eigen::Index first_load, Eigen::Index last_load) 
 
 void TetTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const {
   condense_columns(
+      Y_, 0, static_cast<Eigen::Index>(loads_.size()), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); },
+      compliance);
+  move_loads(free);
+}
+
+void TetTangent::move_loads(Eigen::Ref<VecX>& free) const {
+  condense_gradient(
       Y_, z_, static_cast<Eigen::Index>(loads_.size()), [this](Eigen::Index a, Eigen::Index b) { return start(a, b); },
-      compliance, free);
+      free);
 }
 
 void TetTangent::step(std::span<const PointLoad> loads, TetShape& shape) {

@@ -61,6 +61,7 @@ class TetTangent {
   [[nodiscard]] bool eliminate_middle(int segment);
   void add_segment(int segment);
   void add_springs(const Mat3& base_rotation, std::span<const Mat3> springs);
+  void move_loads(Eigen::Ref<VecX>& free) const;
   [[nodiscard]] bool factorise_shifted(const Mat3& base_rotation, std::span<const Mat3> springs, Indefinite otherwise);
   void reduce_gradient();
   [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;

@@ -12,7 +12,7 @@ namespace stylet {
 namespace {
 
 /// Sizes around those of the tiles.
-constexpr std::array<Eigen::Index, 9> kSizes{1, 2, 23, 24, 25, 48, 71, 123, 180};
+constexpr std::array<Eigen::Index, 13> kSizes{1, 2, 3, 5, 8, 13, 23, 24, 25, 48, 71, 123, 180};
 
 /// The same on every run, entries between −1 and 1.
 MatX some_matrix(Eigen::Index rows, Eigen::Index columns) {
@@ -33,7 +33,7 @@ TEST(DenseCholesky, solves_for_one_and_for_several_columns) {
     const MatX A = root * root.transpose() + static_cast<double>(n) * MatX::Identity(n, n);
     MatX L = A;
     ASSERT_TRUE(dense::factorise(L)) << n;
-    for (const Eigen::Index columns : {1, 4, 30}) {
+    for (const Eigen::Index columns : {1, 3, 4, 5, 7, 30}) {
       const MatX b = some_matrix(n, columns);
       MatX x = b;
       dense::solve_lower(L, 0, x);

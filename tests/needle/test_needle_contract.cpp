@@ -249,10 +249,10 @@ TEST_P(NeedleContract, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
 TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
   const auto needle = make();
   const auto other = make();
-  const auto loads = spread_loads(6);
-  MatX compliance(18, 18);
-  VecX free(18);
-  VecX old_free(18);
+  const auto loads = spread_loads(20);
+  MatX compliance(60, 60);
+  VecX free(60);
+  VecX old_free(60);
   for (Needle* n : {needle.get(), other.get()}) {
     n->set_base(somewhere());
     n->linearise(loads, compliance, free);
@@ -262,7 +262,7 @@ TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
     EXPECT_EQ(model(), "tet");  // this one makes each at once
     return;
   }
-  MatX prepared(18, 18);
+  MatX prepared(60, 60);
   EXPECT_TRUE(needle->prepare(loads, {}, Indefinite::give_up));
   int pieces = 1;
   while (!needle->prepared_compliance(prepared)) ++pieces;
@@ -275,8 +275,8 @@ TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
   other->linearise(loads, compliance, old_free);
   EXPECT_EQ(prepared, compliance);
   EXPECT_LT((free - old_free).norm(), 1e-12 * compliance.norm());
-  needle->advance(spread_loads(6));
-  other->advance(spread_loads(6));
+  needle->advance(spread_loads(20));
+  other->advance(spread_loads(20));
   EXPECT_LT((needle->state() - other->state()).norm(), 1e-12 * other->state().norm());
 }
 

@@ -93,8 +93,9 @@ class GuidedNeedle final : public Needle {
 
   mutable std::vector<PointLoad> loads_;  ///< the hole's, then the caller's
   std::vector<Mat3> springs_;
-  MatX N_;     ///< [mm/N] (3w + 3)²
-  VecX free_;  ///< [mm] (3w + 3)
+  MatX N_;           ///< [mm/N] (3w + 3)²
+  VecX free_;        ///< [mm] (3w + 3)
+  MatX prepared_N_;  ///< the first of both, of the tangent that is prepared
 };
 
 }  // namespace stylet

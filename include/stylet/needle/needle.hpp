@@ -90,7 +90,8 @@ class Needle {
                        Indefinite /*otherwise*/) {
     return false;
   }
-  /// The next piece. @param compliance [mm/N] (3w × 3w) of the tangent that is prepared, written by the last one
+  /// The next piece. @param compliance [mm/N] (3w × 3w) of the tangent that is prepared, written by several: the same
+  /// place each time, whole after the last one
   /// @return whether this was the last piece
   // NOLINTNEXTLINE(performance-unnecessary-value-param): others write through the view
   virtual bool prepared_compliance(Eigen::Ref<MatX> /*compliance*/) { return true; }
