@@ -238,6 +238,22 @@ TEST(Insertion, force_does_not_depend_on_the_time_step) {
   }
 }
 
+TEST(Insertion, what_the_usual_tolerance_leaves_does_not_add_up) {
+  const auto forces = [](double tolerance) {
+    BlockOptions options;
+    options.coupling.tolerance = tolerance;
+    NeedleInBlock run(options);
+    run.aim({4, 11, 0});
+    for (const double to : {24.0, 20.0, 27.0, 12.0}) run.go(to);
+    EXPECT_EQ(run.flags, 0u);
+    return std::pair(run.forces, run.peak());
+  };
+  const auto [usual, peak] = forces(CouplingSettings{}.tolerance);
+  const auto [exact, exact_peak] = forces(1e-12);
+  ASSERT_EQ(usual.size(), exact.size());
+  for (std::size_t k = 0; k < usual.size(); ++k) ASSERT_NEAR(usual[k], exact[k], 1e-7 * peak) << "step " << k;
+}
+
 TEST(Insertion, contacts_denser_than_elements_do_not_make_the_system_singular) {
   for (const auto method : {CouplingSettings::Method::near_field, CouplingSettings::Method::node_addition,
                             CouplingSettings::Method::embedded}) {

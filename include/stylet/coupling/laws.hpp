@@ -83,7 +83,7 @@ struct CouplingSettings {
   double relaxation_s = 0.0;  ///< of the tissue (Kelvin–Voigt); 0 = elastic
   int capacity = 96;          ///< largest number of contacts
   int spare_nodes = 1500;     ///< whose compliance is kept beyond what was there before
-  double tolerance = 1e-9;    ///< coupled solver: error of a balance, as a force over the largest one or 1 N
+  double tolerance = 1e-8;    ///< coupled solver: error of a balance, as a force over the largest one or 1 N
   double damping = 1.0;       ///< of the staggered solver: springs on the needle, over the tissue's own stiffness there
   double needle_node_mm = 0.0;  ///< staggered: forces go to the nearest multiple of this along the needle; 0 = where
                                 ///< they act

@@ -133,7 +133,7 @@ struct Scenario {
     int corridor_nodes = 3500;
     int spare_nodes = 1500;
     int contacts = 96;
-    double tolerance = 1e-9;
+    double tolerance = 1e-8;
     bool operator==(const Coupling&) const = default;
   } coupling;
   TemplateGrid grid;
