@@ -317,6 +317,7 @@ Eigen::Index BeamTangent::start(Eigen::Index first_load, Eigen::Index last_load)
   return first_row;
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): written through the view
 void BeamTangent::condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const {
   condense(compliance, 0, load_count());
   move_loads(free);
