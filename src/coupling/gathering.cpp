@@ -11,7 +11,7 @@
 namespace stylet {
 
 namespace {
-constexpr double kNoViscosity = 1e-12;  ///< [N s/mm] stands for none in a division: of the tip, [N s/mm²] of the shaft
+constexpr double kNoViscosity = 1e-12;  ///< [N s/mm] stands for none in a division
 /// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined: at 100 mm/s this adds 1e-7
 /// N/mm.
 constexpr double kLeastViscosity = 1e-9;
