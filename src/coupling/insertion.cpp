@@ -122,6 +122,8 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   track.open = false;
   joined = -1;
   grips.clear();
+  system.supported = false;  // in air a needle needs no springs
+  supported_for = 0;
   forget_preparation();
   if (tip.at.tet >= 0) point_at[ContactCompliance::kTip] = tip.at;
   tip = Tip{};
@@ -235,7 +237,7 @@ void Insertion::place(const Pose& base) {
   StepReport unused;
   if (parts_->phase != TipPhase::air) parts_->finish_insertion(unused);
   if (parts_->relaxing) parts_->forget_tissue();
-  parts_->prepared_at.setConstant(std::numeric_limits<double>::infinity());
+  parts_->rows_complete_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->awaited_entry.reset();
   parts_->tangent_fits = false;
   parts_->forget_preparation();
@@ -311,12 +313,12 @@ void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;
   const Vec3 tip = p.needle->point(p.length());
   const bool waits = p.tip_waits() || p.contact_waits() || p.awaited_entry.has_value();
-  const bool as_left = p.tissue.store->arrived() == p.rows_prepared;
-  if (!waits && as_left && (tip - p.prepared_at).norm() < 0.25 * radius_mm) return;
+  const bool as_left = p.tissue.store->arrived() == p.rows_arrived;
+  if (!waits && as_left && (tip - p.rows_complete_at).norm() < 0.25 * radius_mm) return;
   p.supply.work_through(p.compliance, p.whereabouts(),
                         {.radius_mm = radius_mm, .ahead_mm = 0.0, .spare_nodes = p.settings.spare_nodes});
-  p.prepared_at = tip;
-  p.rows_prepared = p.tissue.store->arrived();
+  p.rows_complete_at = tip;
+  p.rows_arrived = p.tissue.store->arrived();
 }
 
 const ComplianceStore& Insertion::store() const { return *parts_->tissue.store; }

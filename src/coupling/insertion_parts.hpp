@@ -7,6 +7,7 @@
 #include "tissue_memory.hpp"
 
 #include <deque>
+#include <limits>
 #include <optional>
 
 namespace stylet {
@@ -106,8 +107,8 @@ struct Insertion::Parts {
   bool going_on = false;      ///< the balance is solved from there
   bool steady = false;        ///< the last sub-step was balanced soon, and the tip kept its state in it
   double candidate_xi = 0.0;  ///< next place on the track where a contact may be laid
-  Vec3 prepared_at = Vec3::Constant(1e30);
-  std::uint64_t rows_prepared = 0;                 ///< ComplianceStore::arrived() then
+  Vec3 rows_complete_at = Vec3::Constant(std::numeric_limits<double>::infinity());  ///< the tip in the last prepare() …
+  std::uint64_t rows_arrived = 0;                  ///< … and ComplianceStore::arrived()
   std::optional<NeedleWhereabouts> awaited_entry;  ///< surface met where no compliance is there yet
   PhaseObserver* phases = nullptr;
 
