@@ -68,6 +68,14 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
+/// Opens a file to read it. A checksum that is wrong is damage.
+Handle open_file(const char* path);
+/// The same of a file that another process may be writing (SWMR), or was when it was killed. A wrong checksum may be of
+/// a block that is half written, so HDF5 reads it again, for a seventh of a second at most.
+Handle open_growing_file(const char* path);
+bool has_attribute(hid_t object, const char* name);
+bool has_link(hid_t parent, const char* name);
+
 Handle group(hid_t parent, const char* name);  ///< created
 Handle open_group(hid_t parent, const char* name);
 Handle dataset(hid_t parent, const char* name);  ///< opened

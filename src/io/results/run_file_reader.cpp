@@ -164,9 +164,8 @@ Result<RunRecording> read_recording(const fs::path& path) {
   if (!fs::is_regular_file(path, code)) return refuse("no such file");
   const h5::LibraryTurn turn;
   try {
-    const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), "open"),
-                          H5Fclose);
-    demand(H5Aexists(file, "format") > 0 && h5::read_text_attribute(file, "format") == kRunFileFormat,
+    const h5::Handle file = h5::open_growing_file(path.c_str());
+    demand(h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kRunFileFormat,
            "an HDF5 file, but not a recorded run");
     const auto version = h5::read_int_attribute(file, "format_version");
     demand(version.size() == 1 && version[0] <= kRunFileVersion, "written by a newer version of stylet");

@@ -300,3 +300,30 @@ TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
   std::ofstream(half, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
   ASSERT_FALSE(read_recording(half).ok());
 }
+
+TEST(RunFile, a_damaged_head_is_refused_whether_or_not_the_run_has_ended) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5", bad = folder.path() / "bad.h5";
+  auto writer = RunFileWriter::create(path, run.info, run.mesh);
+  ASSERT_TRUE(writer.ok() && writer->append_steps(run.steps).ok() && writer->flush().ok());
+  const std::string growing = stylet::testing::file_text(path);
+  ASSERT_TRUE(writer->close().ok());
+  const std::string ended = stylet::testing::file_text(path);
+  constexpr std::size_t mark = 11;  // of a file that is being written: must differ, or one case is tested twice
+  EXPECT_NE(growing.at(mark), ended.at(mark));
+  for (const std::string& whole : {growing, ended}) {
+    std::ofstream(bad, std::ios::binary) << whole;
+    EXPECT_TRUE(read_recording(bad).ok());
+    for (const std::size_t at : {12, 16, 24, 60, 100}) {  // of the superblock, then of the root group
+      std::string bytes = whole;
+      bytes.at(at) ^= 64;
+      std::ofstream(bad, std::ios::binary) << bytes;
+      const auto back = read_recording(bad);
+      ASSERT_FALSE(back.ok()) << at;
+      EXPECT_EQ(back.error().kind, ErrorKind::input);
+      EXPECT_NE(back.error().message().find("bad.h5"), std::string::npos);
+      EXPECT_NE(back.error().what.find("checksum"), std::string::npos) << back.error().what;
+    }
+  }
+}
