@@ -15,7 +15,7 @@ struct InfoArguments {
 };
 
 Result<Description> description_of(const InfoArguments& arguments) {
-  if (is_model_file(arguments.file)) {
+  if (is_meant_as_model(arguments.file)) {
     const Result<ModelFile> model = read_model_file(arguments.file);
     if (!model) return model.error();
     return describe(*model);

@@ -149,7 +149,7 @@ Result<Json> written_summary(const std::filesystem::path& folder) {
 
 /// A recording with its steps, or a scenario or saved model without any.
 Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress& progress) {
-  if (is_hdf5_file(arguments.scenario) && !is_model_file(arguments.scenario))
+  if (is_hdf5_file(arguments.scenario) && !is_meant_as_model(arguments.scenario))
     return recorded_run(arguments.scenario, arguments.settings, progress);
   auto prepared = prepared_model(arguments.scenario, arguments.settings, progress);
   if (!prepared) return prepared.error();

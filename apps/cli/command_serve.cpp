@@ -88,7 +88,7 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
         return input_error(input, "there is no scenario (.toml) and no saved model (.stylet) in this folder",
                            "Name a folder with some, or a file");
       std::move(cases.begin(), cases.end(), std::back_inserter(session.cases));
-    } else if (is_hdf5_file(input) && !is_model_file(input)) {
+    } else if (is_hdf5_file(input) && !is_meant_as_model(input)) {
       const fs::path file = fs::absolute(input);
       if (file.filename() != "run.h5")
         return input_error(input, "a recording is a folder with a run.h5", "Name the run.h5 in its folder");

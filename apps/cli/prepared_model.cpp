@@ -56,7 +56,7 @@ Result<PreparedModel> compiled(const std::string& file, const Scenario& scenario
 
 Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
                                      const Progress& progress, const ModelCache* cache) {
-  if (is_hdf5_file(file)) return saved(file, settings, progress);
+  if (is_hdf5_file(file) || is_meant_as_model(file)) return saved(file, settings, progress);
   const Result<Scenario> scenario = read_scenario(file, settings);
   if (!scenario) return scenario.error();
   if (cache == nullptr) return compiled(file, *scenario, progress);

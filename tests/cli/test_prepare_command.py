@@ -56,6 +56,30 @@ class Prepare(InFolder):
                 self.refuse(command, f"{name}.stylet", says=[f"{name}.stylet"])
         self.refuse("insert", "bad.stylet", says=["damaged", "stylet prepare"])
 
+    def test_files_cut_or_with_a_damaged_head(self):
+        self.prepare()
+        self.succeed("insert", "case.stylet", "-o", "out", *FAST)
+
+        def damaged(file):
+            whole = (self.folder / file).read_bytes()
+            for size in (64, len(whole) // 2, len(whole) - 1):
+                yield f"cut_{size}", whole[:size]
+            for at in (12, 16, 24, 100, 1000):
+                bad = bytearray(whole)
+                bad[at] ^= 64
+                yield f"bad_{at}", bytes(bad)
+
+        # refuse() sees to it that HDF5 itself says nothing.
+        for file, ending, cure in (("case.stylet", "stylet", "stylet prepare"),
+                                   ("out/run.h5", "h5", "run.h5 that `stylet insert` wrote")):
+            for name, content in damaged(file):
+                (self.folder / f"{name}.{ending}").write_bytes(content)
+                for command in ("insert", "info"):
+                    with self.subTest(command=command, name=name, ending=ending):
+                        self.refuse(command, f"{name}.{ending}", says=[f"{name}.{ending}", cure])
+        (self.folder / "bad_3.stylet").write_bytes(b"\x89HDf" + (self.folder / "case.stylet").read_bytes()[4:])
+        self.refuse("insert", "bad_3.stylet", says=["not a saved model", "stylet prepare"])
+
     def test_what_cannot_be_prepared(self):
         self.refuse("prepare", "case.toml", "-o", "case.h5", says=["case.h5", ".stylet"])
         self.refuse("prepare", "none.toml", "-o", "case.stylet", says=["none.toml"])

@@ -55,6 +55,10 @@ Result<std::shared_ptr<const Model>> compile_model(ModelFile file, const std::fi
 /// True for an HDF5 file that says it holds a model; what is in it may still be damaged.
 bool is_model_file(const std::filesystem::path& path);
 
+/// The same, and true also for a file that is too damaged to say what it holds but is named like a model (.stylet):
+/// read_model_file() has the message for it.
+bool is_meant_as_model(const std::filesystem::path& path);
+
 /// True for any HDF5 file, by its first bytes.
 bool is_hdf5_file(const std::filesystem::path& path);
 

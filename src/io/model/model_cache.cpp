@@ -2,6 +2,7 @@
 #include "stylet/io/model_cache.hpp"
 
 #include "model/digest.hpp"
+#include "model/model_format.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 
@@ -17,7 +18,6 @@ using detail::Digest;
 
 namespace {
 
-constexpr const char* kExtension = ".stylet";
 constexpr std::size_t kPiece = 1 << 20;
 constexpr std::size_t kHeader = 1 << 16;  ///< of an image, at most
 
@@ -106,7 +106,7 @@ std::optional<fs::path> ModelCache::find(const std::string& key) const {
   std::vector<fs::path> places = others_;
   if (!folder_.empty()) places.insert(places.begin(), folder_);
   for (const fs::path& place : places) {
-    const fs::path file = place / (key + kExtension);
+    const fs::path file = place / (key + detail::kModelExtension);
     if (!is_model_file(file)) continue;
     std::error_code ignored;  // a folder that is only to be read has no times to keep
     fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
@@ -125,7 +125,7 @@ Result<> ModelCache::keep(const Model& model, const std::string& key, std::span<
   fs::create_directories(folder_, code);
   if (code)
     return failure(folder_.string(), "cannot be made: " + code.message(), "Check the permissions, or choose another");
-  const fs::path file = folder_ / (key + kExtension);
+  const fs::path file = folder_ / (key + detail::kModelExtension);
   if (auto saved = save_model(model, file, notes, progress); !saved) return saved;
   forget_oldest(file);
   return Ok{};
@@ -143,7 +143,7 @@ void ModelCache::forget_oldest(const fs::path& newest) const {
   for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
     std::error_code gone;
     const Kept one{entry->last_write_time(gone), entry->path(), entry->file_size(gone)};
-    if (gone || one.file.extension() != kExtension) continue;
+    if (gone || one.file.extension() != detail::kModelExtension) continue;
     total += one.bytes;
     if (one.file != newest) kept.push_back(one);
   }

@@ -8,6 +8,7 @@ namespace stylet::detail {
 
 inline constexpr int kModelFileVersion = 1;
 inline constexpr const char* kModelFileFormat = "stylet-model";
+inline constexpr const char* kModelExtension = ".stylet";
 /// Columns of the compliance that are written and read together.
 inline constexpr Eigen::Index kPanel = 64;
 /// Numbers of a row of /motions/N: time, place, quaternion x y z w.

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <fstream>
+#include <optional>
 
 namespace stylet {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ class Reader {
     file.notes = h5::read_texts(file_, "notes");
     file.mesh = mesh();
     const h5::Handle motions = h5::open_group(file_, "motions");
-    for (int i = 0; H5Lexists(motions, fmt::format("{}", i).c_str(), H5P_DEFAULT) > 0; ++i) {
+    for (int i = 0; h5::has_link(motions, fmt::format("{}", i).c_str()); ++i) {
       const auto rows = array<double>(motions, fmt::format("{}", i).c_str(), {0, kMotionNumbers}, H5T_NATIVE_DOUBLE);
       file.motions.push_back(motion_of(rows));
     }
@@ -111,12 +112,19 @@ class Reader {
   std::uintmax_t bytes_;
 };
 
-h5::Handle open(const fs::path& path) {
-  return {h5::check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open"), H5Fclose};
+bool says_model(hid_t file) {
+  return h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kModelFileFormat;
 }
 
-bool says_model(hid_t file) {
-  return H5Aexists(file, "format") > 0 && h5::read_text_attribute(file, "format") == kModelFileFormat;
+/// Whether an HDF5 file says that it holds a model; nothing where it cannot be asked.
+std::optional<bool> model_in(const fs::path& path) {
+  if (!is_hdf5_file(path)) return std::nullopt;
+  const h5::LibraryTurn turn;
+  try {
+    return says_model(h5::open_file(path.c_str()));
+  } catch (const h5::Failure&) {
+    return std::nullopt;
+  }
 }
 
 /// Tables whose outcome is in the file: settings there would do nothing.
@@ -141,14 +149,11 @@ bool is_hdf5_file(const fs::path& path) {
   return std::string_view(begin.data(), begin.size()) == signature;
 }
 
-bool is_model_file(const fs::path& path) {
-  if (!is_hdf5_file(path)) return false;
-  const h5::LibraryTurn turn;
-  try {
-    return says_model(open(path));
-  } catch (const h5::Failure&) {
-    return false;
-  }
+bool is_model_file(const fs::path& path) { return model_in(path).value_or(false); }
+
+bool is_meant_as_model(const fs::path& path) {
+  std::error_code code;
+  return fs::is_regular_file(path, code) && model_in(path).value_or(path.extension() == kModelExtension);
 }
 
 Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress) {
@@ -158,7 +163,7 @@ Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress
   if (!is_hdf5_file(path)) return refuse("this is not a saved model");
   const h5::LibraryTurn turn;
   try {
-    const h5::Handle file = open(path);
+    const h5::Handle file = h5::open_file(path.c_str());
     if (!says_model(file)) return refuse("this is an HDF5 file, but not a saved model");
     const auto format = h5::read_int_attribute(file, "format_version");
     demand(format.size() == 1, "format_version");

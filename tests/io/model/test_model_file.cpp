@@ -220,6 +220,35 @@ TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
   EXPECT_SAYS(refusal(folder / "box.stylet"), "version 2 of the format");
 }
 
+TEST(SavedModel, ADamagedOneIsKnownByItsName) {
+  const Folder folder;
+  save(*test::compiled(saved_box()), folder / "box.stylet");
+  const std::string whole = test::content_of(folder / "box.stylet");
+  std::vector<std::string> damaged{whole.substr(0, whole.size() / 2), whole.substr(0, 64), whole.substr(0, 4),
+                                   whole.substr(0, whole.size() - 1)};
+  for (const std::size_t at : {3, 12, 16, 24, 100}) {
+    damaged.push_back(whole);
+    damaged.back().at(at) ^= 64;
+  }
+  for (const std::string& bytes : damaged) {
+    test::write_file(folder / "bad.stylet", bytes);
+    test::write_file(folder / "bad.h5", bytes);
+    EXPECT_SAYS(refusal(folder / "bad.stylet"), "stylet prepare");
+    EXPECT_TRUE(is_meant_as_model(folder / "bad.stylet"));
+    EXPECT_FALSE(is_meant_as_model(folder / "bad.h5"));
+    EXPECT_FALSE(is_model_file(folder / "bad.stylet"));
+  }
+  test::write_file(folder / "model.h5", whole);
+  EXPECT_TRUE(is_meant_as_model(folder / "model.h5"));
+  {
+    const h5::Handle other(H5Fcreate((folder / "run.stylet").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Fclose);
+    h5::write_attribute(other, "format", std::string("stylet-run"));
+  }
+  EXPECT_FALSE(is_meant_as_model(folder / "run.stylet"));
+  EXPECT_FALSE(is_meant_as_model(folder / "none.stylet"));
+}
+
 TEST(SavedModel, IsNotWrittenWhereItWouldNotBeWhole) {
   const Folder folder;
   Scenario scenario = saved_box();
