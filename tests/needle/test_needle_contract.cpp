@@ -390,7 +390,7 @@ TEST_P(NeedleContract, NoCallAfterBuildAllocates) {
   }
 }
 
-TEST(AllocationCount, SeesMallocNewAndEigen) {
+TEST(AllocationCount, SeesMallocNewEigenAndWhatIsGivenBack) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
   // Through volatile pointers, so that the compiler cannot leave the pairs out.
   void* (*volatile allocate)(std::size_t) = std::malloc;
@@ -398,14 +398,23 @@ TEST(AllocationCount, SeesMallocNewAndEigen) {
   void* (*volatile make)(std::size_t) = ::operator new;
   void (*volatile destroy)(void*) = ::operator delete;
   const test::AllocationCount allocations;
-  release(allocate(8));
+  void* block = allocate(8);
   EXPECT_EQ(allocations.count(), 1);
-  destroy(make(8));
+  release(block);
   EXPECT_EQ(allocations.count(), 2);
-  const volatile Eigen::Index size = 10;
-  const MatX matrix = MatX::Zero(size, size);
+  release(nullptr);
+  EXPECT_EQ(allocations.count(), 2);
+  block = make(8);
   EXPECT_EQ(allocations.count(), 3);
-  EXPECT_EQ(matrix.sum(), 0.0);
+  destroy(block);
+  EXPECT_EQ(allocations.count(), 4);
+  const volatile Eigen::Index size = 10;
+  {
+    const MatX matrix = MatX::Zero(size, size);
+    EXPECT_EQ(allocations.count(), 5);
+    EXPECT_EQ(matrix.sum(), 0.0);
+  }
+  EXPECT_EQ(allocations.count(), 6);
 }
 
 TEST(FindEquilibrium, SaysWhatIsLeftAndWhatToDoWhenItCannotConverge) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// AllocationCount for C: allocations of the thread so far, -1 where they cannot be counted.
+// AllocationCount for C: what the thread has allocated and given back so far, -1 where they cannot be counted.
 #include "support/count_allocations.hpp"
 
 extern "C" long allocations_so_far(void);

@@ -4,8 +4,9 @@
 namespace stylet::test {
 
 /// Counts the calls of this thread to the malloc family (malloc, calloc, realloc, aligned_alloc, memalign,
-/// posix_memalign, and so operator new and Eigen) while it lives. Scopes nest: an outer one counts the inner one's too.
-/// A test program that uses it compiles count_allocations.cpp in, which replaces those functions.
+/// posix_memalign, and so operator new and Eigen) while it lives, and those that give a block back (free). Scopes nest:
+/// an outer one counts the inner one's too. A test program that uses it compiles count_allocations.cpp in, which
+/// replaces those functions.
 class AllocationCount {
  public:
   AllocationCount();

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What must hold for as long as a session may last.
+#include "needle_in_block.hpp"
+#include "support/count_allocations.hpp"
+
+using namespace stylet;
+using namespace stylet::test;
+using Kind = InsertionEventKind;
+
+TEST(Step, neither_takes_nor_gives_back_memory_in_a_hundred_thousand) {
+  if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
+  NeedleInBlock run;
+  // In and out, beside where it was each time but every eighth, which goes into the track before: more tracks than are
+  // remembered.
+  constexpr double kDeep_mm = 40.0, kOut_mm = -2.0, kWay_mm = 0.08;
+  constexpr int kSteps = 100'000;
+  int insertions = 0, places = 0;
+  const auto next = [&] {
+    if (insertions++ % 8 != 7) ++places;
+    run.point = {-14.0 + 3.5 * (places % 9), -15.0 + 3.5 * (places / 9 % 9), 0.0};
+  };
+  run.aim({3, 2, 0});
+  next();
+  int punctures = 0, withdrawn = 0, most_contacts = 0;
+  long heap_calls = 0;
+  unsigned flags = 0;
+  double way = kWay_mm;
+  for (int k = 0; k < kSteps; ++k) {
+    run.depth += way;
+    if (run.depth > kDeep_mm) way = -kWay_mm;
+    if (run.depth < kOut_mm) {
+      way = kWay_mm;
+      next();
+    }
+    const Pose pose = run.pose();
+    run.insertion->prepare(8.0);
+    const AllocationCount counter;
+    const StepReport report = run.insertion->step(pose, 1e-3);
+    heap_calls += counter.count();
+    flags |= report.flags & ~StepReport::too_fast;  // aside, in the air
+    most_contacts = std::max(most_contacts, report.contacts);
+    for (int e = 0; e < report.events; ++e) {
+      const InsertionEvent& event = report.event[static_cast<std::size_t>(e)];
+      punctures += event.kind == Kind::puncture && event.region == 0 ? 1 : 0;
+      withdrawn += event.kind == Kind::withdrawn ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(heap_calls, 0);
+  EXPECT_EQ(flags, 0u);
+  EXPECT_GE(withdrawn, insertions - 1);
+  EXPECT_EQ(punctures, places);
+  EXPECT_GT(punctures, 64);
+  EXPECT_GT(most_contacts, 7);
+}
