@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 namespace stylet::cli {
 
 namespace {
@@ -28,12 +30,15 @@ Json spread_json(const validate::Spread& spread) {
 /// How much cheaper than Woodbury a contact is on the same mesh, and how much dearer on the finest mesh.
 struct Ratios {
   double woodbury_over_event = 0.0;
-  double finest_over_coarsest = 0.0;
+  std::optional<double> finest_over_coarsest;  ///< of one mesh there is none
 };
 Ratios ratios(const validate::EventBench& bench, const std::string& rule, bool cold) {
   const auto median = [&](const validate::EventRow& row) { return cold ? row.cold_us.p50 : row.warm_us.p50; };
-  const double coarsest = median(*bench.coarsest(rule));
-  return {bench.woodbury_us.p50 / coarsest, median(*bench.finest(rule)) / coarsest};
+  const validate::EventRow& coarsest = *bench.coarsest(rule);
+  const validate::EventRow& finest = *bench.finest(rule);
+  Ratios result{bench.woodbury_us.p50 / median(coarsest), {}};
+  if (finest.nodes != coarsest.nodes) result.finest_over_coarsest = median(finest) / median(coarsest);
+  return result;
 }
 
 void add_events(const validate::EventBench& bench, Json& json) {
@@ -50,8 +55,9 @@ void add_events(const validate::EventBench& bench, Json& json) {
   for (const std::string& rule : kRules) {
     for (const bool cold : {false, true}) {
       const Ratios r = ratios(bench, rule, cold);
-      json["event_ratios"][rule][cold ? "cold" : "warm"] = {{"woodbury_over_event", r.woodbury_over_event},
-                                                            {"finest_over_coarsest", r.finest_over_coarsest}};
+      json["event_ratios"][rule][cold ? "cold" : "warm"] = {
+          {"woodbury_over_event", r.woodbury_over_event},
+          {"finest_over_coarsest", r.finest_over_coarsest ? Json(*r.finest_over_coarsest) : Json(nullptr)}};
     }
   }
 }
@@ -73,10 +79,13 @@ void say_events(const validate::EventBench& bench, Console& console) {
   for (const std::string& rule : kRules) {
     const Ratios warm = ratios(bench, rule, false);
     const Ratios cold = ratios(bench, rule, true);
-    console.say(
-        fmt::format("{}: 1/{:.0f} of that, cold 1/{:.0f}; at {} nodes {:.2f} times what it is at {}, cold {:.2f}.",
-                    rule, warm.woodbury_over_event, cold.woodbury_over_event, bench.finest(rule)->nodes,
-                    warm.finest_over_coarsest, bench.woodbury_nodes, cold.finest_over_coarsest));
+    std::string text =
+        fmt::format("{}: 1/{:.0f} of that, cold 1/{:.0f}", rule, warm.woodbury_over_event, cold.woodbury_over_event);
+    if (warm.finest_over_coarsest && cold.finest_over_coarsest) {
+      text += fmt::format("; at {} nodes {:.2f} times what it is at {}, cold {:.2f}", bench.finest(rule)->nodes,
+                          *warm.finest_over_coarsest, bench.coarsest(rule)->nodes, *cold.finest_over_coarsest);
+    }
+    console.say(text + ".");
   }
 }
 

@@ -145,7 +145,7 @@ Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
   console.say(
       "The insertion of `bench scale`: processor time of a step with nearly all contacts; clock: by how much reading "
       "the clock\n"
-      "in every phase, in a second run, makes it longer.");
+      "in every phase makes it longer, each step the shortest of four runs with it and of four without.");
   console.say(times.text());
   console.say("What of it goes where, in all steps and in the slowest hundredth:");
   console.say(phases.text());

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace stylet::cli {
 
@@ -133,7 +135,30 @@ Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   return console.write_json(json);
 }
 
+/// Refuses an option that what is measured does not take: it would change nothing.
+Result<> check_options(const BenchArguments& arguments) {
+  struct Option {
+    const char* name;
+    bool given;
+    std::vector<std::string> taken_by;
+  };
+  const Option options[] = {
+      {"--nodes", arguments.nodes > 0, {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display"}},
+      {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
+      {"--steps", arguments.steps > 0, {"scale"}},
+      {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
+      {"--speed", arguments.speed > 0.0, {"supply"}}};
+  for (const Option& option : options) {
+    const std::vector<std::string>& by = option.taken_by;
+    if (!option.given || std::find(by.begin(), by.end(), arguments.what) != by.end()) continue;
+    return input_error(option.name, fmt::format("bench {} does not take it", arguments.what),
+                       fmt::format("Leave it out; it is an option of bench {}", fmt::join(by, ", ")));
+  }
+  return Ok{};
+}
+
 Result<> run_bench(const BenchArguments& arguments, Console& console) {
+  if (auto checked = check_options(arguments); !checked) return checked;
   if (arguments.what == "needle") return run_needle(console);
   if (arguments.what == "coupling") return run_coupling(arguments, console);
   if (arguments.what == "scale") return bench_scale_command(arguments, console);
@@ -196,7 +221,7 @@ Command add_bench_command(CLI::App& program) {
   app->add_option("--contacts", arguments->contacts,
                   "With about so many; scale: only (default 20, 40 and 60), loop and viewers (default 40)")
       ->type_name("N")
-      ->check(whole_number_between(5, 200));
+      ->check(whole_number_between(5, validate::most_driven_contacts()));
   app->add_option("--steps", arguments->steps,
                   "scale: repeat insertion and withdrawal until there are so many steps in each row (default: once)")
       ->type_name("N")

@@ -18,6 +18,7 @@ constexpr double kDrivenSpeed_mm_per_s = 20.0;
 constexpr double kBackAndForth_mm = 15.0;
 constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
+constexpr double kDeepest_mm = kDrivenDepth_mm + kCycles * kFurther_mm;
 /// Steps with fewer of the most contacts are not of that number.
 constexpr double kShare = 0.85;
 
@@ -128,11 +129,13 @@ BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double s
   return BaseMotion(std::move(samples));
 }
 
+int most_driven_contacts() { return 1 + static_cast<int>(kDeepest_mm / demo_scenario().needle.diameter_mm); }
+
 Scenario driven_scenario(int contacts) {
   Scenario scenario = demo_scenario();
-  scenario.coupling.spacing_mm = (kDrivenDepth_mm + kCycles * kFurther_mm) / (contacts - 1);  // the tip is one of them
+  scenario.coupling.spacing_mm = kDeepest_mm / (contacts - 1);  // the tip is one of them
   scenario.coupling.contacts = std::max(scenario.coupling.contacts, contacts + 20);
-  scenario.insertions.front().depth_mm = kDrivenDepth_mm + kCycles * kFurther_mm;
+  scenario.insertions.front().depth_mm = kDeepest_mm;
   scenario.output.frames_per_s = 0.0;
   return scenario;
 }

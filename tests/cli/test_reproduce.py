@@ -86,7 +86,7 @@ class Bench(InFolder):
             for times in (event["warm_us"], event["cold_us"]):
                 self.assertTrue(0 < times["p5"] <= times["p50"] <= times["p95"] <= times["max"])
             ratios = result["event_ratios"][event["rule"]]
-            self.assertEqual(ratios["warm"]["finest_over_coarsest"], 1)
+            self.assertIsNone(ratios["warm"]["finest_over_coarsest"])  # of one mesh
             self.assertGreater(ratios["warm"]["woodbury_over_event"], 1)
         self.assertEqual(result["event_woodbury"]["nodes"], result["events"][0]["nodes"])
 
@@ -100,6 +100,13 @@ class Bench(InFolder):
 
     def test_an_unknown_subject_is_refused_with_those_there_are(self):
         self.refuse("bench", "remsh", says=["remsh", "remesh", "coupling"])
+
+    def test_an_option_of_another_subject_is_refused_with_those_that_take_it(self):
+        self.refuse("bench", "step", "--contacts", "20", says=["--contacts", "step", "scale, loop, viewers"])
+        self.refuse("bench", "scale", "--seconds", "3", says=["--seconds", "scale", "loop, viewers"])
+        self.refuse("bench", "scale", "--speed", "4", says=["--speed", "scale", "supply"])
+        self.refuse("bench", "loop", "--steps", "1000", says=["--steps", "loop", "scale"])
+        self.refuse("bench", "needle", "--nodes", "600", says=["--nodes", "needle", "remesh", "display"])
 
 
 if __name__ == "__main__":

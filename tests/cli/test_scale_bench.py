@@ -31,6 +31,11 @@ class ScaleBench(InFolder):
         self.assertEqual(again[0]["flagged"], 0)
         self.assertIsNone(again[0]["all_longest_median_us"])  # too few repeats for a median
         self.refuse("bench", "scale", "--nodes", "570", "--contacts", "3", says=["--contacts", "'3'"])
+        # 93 mm deep, so many contacts are just further apart than the needle is thick, 1.27 mm.
+        densest = self.json_of("bench", "scale", "--nodes", "570", "--contacts", "74")["rows"]
+        self.assertGreaterEqual(densest[0]["spacing_mm"], 1.27)
+        for bench in ("scale", "loop", "viewers"):
+            self.refuse("bench", bench, "--nodes", "570", "--contacts", "75", says=["--contacts", "'75'", "74"])
         self.refuse("bench", "scale", "--nodes", "569", says=["--nodes", "569", "570"])
 
 

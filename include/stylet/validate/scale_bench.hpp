@@ -55,6 +55,9 @@ struct ScaleBenchOptions {
   long steps = 0;  ///< the way is gone again until there are so many, of the same needle and of a new one by turns
 };
 
+/// How many contacts there can be: with more they would be nearer each other than the needle is thick.
+int most_driven_contacts();
+
 /// The demo patient on meshes of 570, 5,000, 20,000 and 100,000 nodes; on each the default scenario's needle goes 90 mm
 /// in, back and forth by 15 mm at the deepest point, further in each time, and out, with contacts as near each other as
 /// give 20, 40 and 60 of them, or as many as are asked for.

@@ -19,15 +19,15 @@ struct StepRow {
   double mean_us = 0.0;                             ///< of the same
   std::array<double, kStepPhases> phase_us{};       ///< mean of all steps (StepPhase)
   std::array<double, kStepPhases> slow_phase_us{};  ///< mean of the slowest hundredth
-  double clock_share = 0.0;                         ///< by which reading the clock makes the mean step longer, of that
+  double clock_share = 0.0;                         ///< by which reading the clock makes the mean step longer
 };
 
 struct StepBenchOptions {
   Index nodes = 5000;
 };
 
-/// The insertion of bench_scale on one mesh, with 20, 40 and 60 contacts, each three times: once for the times of
-/// steps, twice with the clock read at every change of phase. All runs take the very same steps.
+/// The insertion of bench_scale on one mesh, with 20, 40 and 60 contacts, each eight times: by turns as it is and with
+/// the clock read at every change of phase. The first is that of the times of steps. All runs take the very same steps.
 Result<std::vector<StepRow>> bench_step(const StepBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::validate
