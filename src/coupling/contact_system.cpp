@@ -18,8 +18,9 @@ ContactSystem::ContactSystem(int contacts) : grips_(contacts - 1), prepared_grip
   yield.assign(static_cast<std::size_t>(contacts), Yield{});
   spring.assign(static_cast<std::size_t>(contacts), LentSpring{});
   prepared.spring = spring;
-  column_ = begun_ = MatX::Zero(n + most_springs, 3);
-  solved_ = MatX::Zero(n + most_springs, 5);
+  beyond_ = MatX::Zero(dense::column_length(n), 3);
+  column_ = begun_ = MatX::Zero(n + most_springs, kRight);
+  solved_ = MatX::Zero(n + most_springs, kDrift + 1);
 }
 
 bool ContactSystem::factorise() {
@@ -67,15 +68,18 @@ void ContactSystem::add_tip() {
   solved_for_ = 0;
   const Eigen::Index n = grip_rows();
   if (n == 0) return;
+  // Of a push at the tip, and of a force of its spring, which is the tissue's alone.
   auto column = column_.topRows(grips_.rows());
   for (int k = 0; k < 3; ++k) {
-    column.col(k).head(n) = A.block(3, k, n, 1);
-    grips_.across(column.col(k).head(n), column.col(k).tail(grips_.spring_rows()));
+    auto of_spring = column.col(k);
+    of_spring.head(n) = A.block(3, k, n, 1);
+    grips_.across(of_spring.head(n), of_spring.tail(grips_.spring_rows()));
   }
-  column.topRows(n) += N.block(3, 0, n, 3);
-  auto begun = begun_.topRows(grips_.rows());
-  begun = column;
-  grips_.begin(begun);
+  column.rightCols<3>() = column.leftCols<3>();
+  column.rightCols<3>().topRows(n) += N.block(3, 0, n, 3);
+  begun_.topRows(grips_.rows()) = column;
+  grips_.begin(begun_.block(0, kTip, grips_.rows(), 3));
+  if (lends_at_tip()) grips_.begin(begun_.block(0, kSpring, grips_.rows(), 3));
 }
 
 Vec3 ContactSystem::error(int contact) const {
@@ -97,75 +101,151 @@ Vec3 ContactSystem::own_yield(int contact) const {
   return result;
 }
 
-bool ContactSystem::solve(TipRows held) {
+/// The grips and springs by themselves: B⁻¹ of the tip's columns, of the right-hand side and of the drift.
+bool ContactSystem::solve_grips() {
   const Eigen::Index n = grip_rows();
   if (n > 0 && !grips_.change(grip_yields()) && !(factorise() && grips_.change(grip_yields()))) return false;
   if (lacks_tip_) add_tip();
+  if (n == 0) return true;
 
-  // The grips and springs by themselves: B⁻¹ of the tip's columns, of the right-hand side and of the drift.
-  const Eigen::Index rows_there = n > 0 ? grips_.rows() : 0;
-  const bool drifts = cut_per_N > 0.0;
-  auto column = column_.topRows(rows_there);
-  auto solved = solved_.topLeftCorner(rows_there, 3);
-  auto right = solved_.col(3).head(rows_there);
-  auto drifting = solved_.col(4).head(rows_there);
-  if (n > 0) {
-    for (int c = 1; c < count; ++c)
-      right.segment<3>(3 * c - 3).noalias() = frame[static_cast<std::size_t>(c)] * error(c);
-    grips_.across(right.head(n), right.tail(grips_.spring_rows()));
-    right = -right;
-    right.head(n) += free.segment(3, n);
-    if (drifts) {
-      drifting.head(n) = drift.segment(3, n);
-      grips_.across(drifting.head(n), drifting.tail(grips_.spring_rows()));
-    }
-    const Eigen::Index rights = drifts ? 2 : 1;
-    grips_.begin(solved_.block(0, 3, rows_there, rights));
-    const bool all = solved_for_ != grips_.version();
-    if (all) solved = begun_.topRows(rows_there);
-    grips_.finish(all ? solved_.topLeftCorner(rows_there, 3 + rights) : solved_.block(0, 3, rows_there, rights));
-    solved_for_ = grips_.version();
-    if (drifts) right -= cut_due * drifting;
+  const Eigen::Index all = grips_.rows();
+  auto right = solved_.col(kRight).head(all);
+  for (int c = 1; c < count; ++c) right.segment<3>(3 * c - 3).noalias() = frame[static_cast<std::size_t>(c)] * error(c);
+  grips_.across(right.head(n), right.tail(grips_.spring_rows()));
+  right = -right;
+  right.head(n) += free.segment(3, n);
+  if (drifts()) {
+    auto drifting = solved_.col(kDrift).head(all);
+    drifting.head(n) = drift.segment(3, n);
+    grips_.across(drifting.head(n), drifting.tail(grips_.spring_rows()));
   }
+  const Eigen::Index rights = drifts() ? 2 : 1;
+  grips_.begin(solved_.block(0, kRight, all, rights));
+  const bool anew = solved_for_ != grips_.version();
+  if (anew) solved_.block(0, kTip, all, 3) = begun_.block(0, kTip, all, 3);
+  const Eigen::Index from = anew ? kTip : kRight;
+  grips_.finish(solved_.block(0, from, all, kRight + rights - from));
+  if (anew && lends_at_tip()) {
+    solved_.block(0, kSpring, all, 3) = begun_.block(0, kSpring, all, 3);
+    grips_.finish(solved_.block(0, kSpring, all, 3));
+  }
+  solved_for_ = grips_.version();
+  if (drifts()) right -= cut_due * solved_.col(kDrift).head(all);
+  return true;
+}
 
-  // The tip: its three rows with the others taken out.
+/// The tip: its three rows with the others taken out.
+/// @return π of the tip, and the force φ of the spring there
+std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
+  const Eigen::Index n = grip_rows();
+  const Eigen::Index all = n > 0 ? grips_.rows() : 0;
+  const auto column = column_.block(0, kTip, all, 3);
+  const auto solved = solved_.block(0, kTip, all, 3);
+  const auto of_spring = solved_.block(0, kSpring, all, 3);
+  const auto right = solved_.col(kRight).head(all);
+  const auto drifting = solved_.col(kDrift).head(all);
   const Mat3& Q = frame.front();
+  const Vec3 t = Q.col(2);
+  const Mat3 N_tip = N.topLeftCorner<3, 3>();
+
+  // What π and φ push the tissue by, and where the tip is off.
   const Yield& tip = yield.front();
   Mat3 own = A.topLeftCorner<3, 3>();
   own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();
-  const Mat3 N_tip = N.topLeftCorner<3, 3>();
-  const Mat3 lent = n == 0 && supported ? spring.front().matrix() : Mat3::Zero();
-  Mat3 corner = own - own * lent * N_tip + N_tip;
-  Vec3 rest = free.head<3>() - own * (lent * free.head<3>()) - Q * error(0);
+  Mat3 corner = N_tip;
+  Vec3 rest = free.head<3>() - Q * error(0);
+  if (drifts()) {
+    own.noalias() += cut_per_N * drift.head<3>() * t.transpose();
+    rest -= cut_due * drift.head<3>();
+  }
   if (n > 0) {
     corner.noalias() -= column.transpose().lazyProduct(solved);
     rest.noalias() -= column.transpose().lazyProduct(right);
+    if (drifts()) {
+      const Vec3 by_grips = column.transpose().lazyProduct(drifting);
+      own.noalias() -= cut_per_N * by_grips * t.transpose();
+    }
   }
-  if (drifts) {
-    const Vec3 t = Q.col(2);
-    Vec3 own_drift = drift.head<3>();
-    rest -= (cut_due + cut_per_N * t.dot(lent * free.head<3>())) * own_drift;
-    if (n > 0) own_drift.noalias() -= column.transpose().lazyProduct(drifting);
-    corner.noalias() += cut_per_N * own_drift * (t.transpose() - t.transpose() * lent * N_tip);
+  corner += own;
+
+  Along lent;  // φ
+  if (lends_at_tip()) {
+    const Mat3 G = spring.front().matrix();
+    Along moves = {free.head<3>(), N_tip};
+    Mat3 borne = Mat3::Identity();
+    if (n > 0) {
+      const Mat3 per_lent = subtract_grips(N.block(3, 0, n, 3), moves);
+      own.noalias() -= column.transpose().lazyProduct(of_spring);
+      borne.noalias() += G * per_lent;
+    }
+    const Eigen::PartialPivLU<Mat3> carried(borne);
+    lent = {carried.solve(G * moves.at), carried.solve(G * moves.per)};
+    corner.noalias() -= own * lent.per;
+    rest.noalias() -= own * lent.at;
   }
+
   // Rows that are not held carry nothing any more: λ = 0.
   Mat3 left = Q.transpose() * corner * Q;
   Vec3 given = Q.transpose() * rest;
-  const Mat3 free_row = Q.transpose() * (Mat3::Identity() - lent * N_tip) * Q;
-  const Vec3 carried = Q.transpose() * (now.head<3>() + lent * free.head<3>());
+  const Mat3 free_row = Q.transpose() * (Mat3::Identity() - lent.per) * Q;
+  const Vec3 carried = Q.transpose() * (now.head<3>() + lent.at);
   const int held_from = held == TipRows::all ? 0 : held == TipRows::axial ? 2 : 3;
   for (int k = 0; k < held_from; ++k) {
     left.row(k) = free_row.row(k);
     given[k] = -carried[k];
   }
+  if (turns(held)) {
+    // The force turns with the direction, and more or less of how far the tip is aside is along it.
+    const Eigen::Index g = 3 * static_cast<Eigen::Index>(behind);
+    Along turn = {free.head<3>() - free.segment<3>(g), N_tip - N.block<3, 3>(g, 0)};
+    beyond_.topRows(n) = N.block(3, 0, n, 3) - N.block(3, g, n, 3);
+    const Mat3 per_lent = subtract_grips(beyond_.topRows(n), turn);
+    turn.at -= per_lent * lent.at;
+    turn.per -= per_lent * lent.per;
+    const double pressed = t.dot(now.head<3>()) / behind_mm;
+    const Vec3 aside = Q.leftCols<2>() * error(0).head<2>() / behind_mm;
+    left.topRows<2>() += pressed * Q.leftCols<2>().transpose() * turn.per * Q;
+    given.head<2>() += pressed * Q.leftCols<2>().transpose() * turn.at;
+    left.row(2) -= aside.transpose() * turn.per * Q;
+    given[2] -= aside.dot(turn.at);
+  }
   const Vec3 change = Q * Eigen::PartialPivLU<Mat3>(left).solve(given);
+  return {change, lent.at - lent.per * change};
+}
+
+/// Takes off what of a motion at − per π_0 is due to the grips' pushes.
+/// @param columns of N that give the motion of those pushes
+/// @return what the motion has of the tip's spring by way of the grips: − (…) φ
+Mat3 ContactSystem::subtract_grips(const Eigen::Ref<const MatX>& columns, Along& moves) const {
+  const Eigen::Index n = grip_rows();
+  const auto row = columns.transpose();
+  moves.per -= Mat3(row.lazyProduct(solved_.block(0, kTip, n, 3)));
+  moves.at -= Vec3(row.lazyProduct(solved_.col(kRight).head(n)));
+  Mat3 per_lent = Mat3::Zero();
+  if (lends_at_tip()) per_lent = -Mat3(row.lazyProduct(solved_.block(0, kSpring, n, 3)));
+  if (drifts()) {
+    const Vec3 more = row.lazyProduct(solved_.col(kDrift).head(n));
+    const Mat3 per_force = cut_per_N * more * frame.front().col(2).transpose();
+    moves.per -= per_force;
+    per_lent -= per_force;
+  }
+  return per_lent;
+}
+
+bool ContactSystem::solve(TipRows held) {
+  if (!solve_grips()) return false;
+  const auto [change, lent] = solve_tip(held);
   push.head<3>() = now.head<3>() + change;
 
+  const Eigen::Index n = grip_rows();
   auto forces = work_.head(rows());
-  forces.head<3>() = push.head<3>() + lent * (free.head<3>() - N_tip * change);
+  forces.head<3>() = push.head<3>() + lent;
   if (n > 0) {
-    right.noalias() -= solved.lazyProduct(change);
-    if (drifts) right -= cut_per_N * Q.col(2).dot(change) * drifting;
+    const Eigen::Index all = grips_.rows();
+    auto right = solved_.col(kRight).head(all);
+    right.noalias() -= solved_.block(0, kTip, all, 3).lazyProduct(change);
+    if (lends_at_tip()) right.noalias() -= solved_.block(0, kSpring, all, 3).lazyProduct(lent);
+    if (drifts()) right -= cut_per_N * frame.front().col(2).dot(change + lent) * solved_.col(kDrift).head(all);
     push.segment(3, n) = now.segment(3, n) + right.head(n);
     forces.tail(n) = push.segment(3, n);
     grips_.add_lent(right.tail(grips_.spring_rows()), forces.tail(n));
@@ -173,7 +253,7 @@ bool ContactSystem::solve(TipRows held) {
   for (int c = 0; c < count; ++c)
     lambda.segment<3>(3 * c).noalias() = frame[static_cast<std::size_t>(c)].transpose() * forces.segment<3>(3 * c);
   if (held == TipRows::none) lambda.head<3>().setZero();
-  if (held == TipRows::axial) lambda.head<2>().setZero();
+  if (held == TipRows::axial && !turns(held)) lambda.head<2>().setZero();
   return push.head(rows()).allFinite();
 }
 

@@ -3,6 +3,7 @@
 
 #include "grip_matrix.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace stylet {
@@ -37,7 +38,7 @@ class ContactSystem {
   VecX shift;                      ///< [mm] in the frames
   std::vector<Mat3> frame;         ///< columns n1, n2, t of each contact
   std::vector<Yield> yield;        ///< D
-  std::vector<LentSpring> spring;  ///< at the tip only where it is the only contact
+  std::vector<LentSpring> spring;  ///< at the tip in all directions: `along` is zero
   bool supported = false;          ///< springs are lent
 
   // A cut goes on by so much as the tip's axial force says, which takes the tip to where the tissue's compliance is
@@ -45,6 +46,11 @@ class ContactSystem {
   VecX drift;              ///< [mm/mm] by how much the gaps change as the cut goes on, beyond what D says of it
   double cut_per_N = 0.0;  ///< [mm/N] by which the cut goes on with the tip's axial force; 0: it does not
   double cut_due = 0.0;    ///< [mm] by which it is behind λ_now
+
+  // A tip that is held along the needle only: its direction, and so its force, turns as the needle does, by so much as
+  // the tip moves aside of a contact behind it, over the way between them.
+  int behind = 0;          ///< that contact; 0 = none, the direction stays
+  double behind_mm = 0.0;  ///< [mm] along the shaft
 
   VecX lambda;  ///< [N] contact forces on the tissue, in the frames
   VecX push;    ///< [N] p
@@ -95,6 +101,19 @@ class ContactSystem {
   [[nodiscard]] double opening() const;
 
  private:
+  /// A quantity at − per π_0, π_0 being the tip's.
+  struct Along {
+    Vec3 at = Vec3::Zero();
+    Mat3 per = Mat3::Zero();
+  };
+
+  [[nodiscard]] bool solve_grips();
+  [[nodiscard]] std::pair<Vec3, Vec3> solve_tip(TipRows held);
+  [[nodiscard]] Mat3 subtract_grips(const Eigen::Ref<const MatX>& columns, Along& moves) const;
+
+  [[nodiscard]] bool drifts() const { return cut_per_N > 0.0; }
+  [[nodiscard]] bool lends_at_tip() const { return supported && spring.front().stiffness > 0.0; }
+  [[nodiscard]] bool turns(TipRows held) const { return held == TipRows::axial && behind > 0; }
   [[nodiscard]] Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(count); }
   [[nodiscard]] Eigen::Index grip_rows() const { return rows() - 3; }
   [[nodiscard]] std::span<const Yield> grip_yields() const { return std::span(yield).subspan(1, grip_count()); }
@@ -107,9 +126,15 @@ class ContactSystem {
   GripMatrix prepared_grips_;
   bool lacks_tip_ = true;
   std::uint64_t solved_for_ = 0;  ///< version of the matrix that solved_ is of
-  MatX column_;                   ///< (rows × 3) of the grips and springs, columns of the tip: also its rows
-  MatX begun_;                    ///< (rows × 3) the same, half solved
-  MatX solved_;                   ///< (rows × 5) B⁻¹ of them, of the right-hand side and of the drift
+  /// Columns beside B, solved in one go: of a force of the tip's spring, of a push at the tip, …
+  static constexpr Eigen::Index kSpring = 0;
+  static constexpr Eigen::Index kTip = 3;
+  static constexpr Eigen::Index kRight = 6;  ///< … the right-hand side, …
+  static constexpr Eigen::Index kDrift = 7;  ///< … and the drift
+  MatX column_;                              ///< (rows × 6) those of the tip; kTip's are its rows, too
+  MatX begun_;                               ///< (rows × 6) the same, half solved
+  MatX solved_;                              ///< (rows × 8) B⁻¹ of all
+  MatX beyond_;                              ///< (rows × 3) N's columns of the tip, less those of the contact behind
   VecX work_;
 };
 

@@ -42,6 +42,9 @@ constexpr double kStill_mm = 1e-9;     ///< less is not sliding
 /// On either side of the speed where friction stops growing its two laws agree; so little says nothing about the side.
 constexpr double kSameSpeed_mm = 1e-6;
 
+/// Forces that have grown to so many times what they were, without a balance, come from iterations that went astray.
+constexpr double kMostGrowth = 2.0;
+
 /// Where compliance changes fast with the cut (next to held tissue) the cut would jump to and fro: it is followed the
 /// more slowly the longer that lasts.
 constexpr int kSmoothCut = 6;
@@ -83,7 +86,9 @@ bool Insertion::Parts::relax_needle() {
 }
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
-/// the needle on them does not buckle where needle and tissue together do not.
+/// the needle on them does not buckle where needle and tissue together do not. Where all contacts have one the tip has
+/// one in all directions: a needle that has buckled bears less the further it is pushed, and only what holds its end
+/// keeps it.
 /// @param most of them, evenly spread, the last contact's among them @param lent written, at each contact
 void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
   constexpr double hardest_mm_per_N = 1e-3;
@@ -93,13 +98,14 @@ void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
     double own = system.A.block<3, 3>(3 * c, 3 * c).trace() / 3.0;
     bool lend = true;
     if (c == 0) {
-      lend = grips.empty() && tip.touching && tip.state != Tip::State::open;
+      lend = every == 1 && tip.touching && tip.state != Tip::State::open;
     } else {
       own += grips[static_cast<std::size_t>(c - 1)].softness;
       lend = (count - 1 - c) % every == 0;
     }
     LentSpring& spring = lent[static_cast<std::size_t>(c)];
-    spring = {frames[static_cast<std::size_t>(c)].col(2), lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0};
+    spring.along = c == 0 ? Vec3::Zero() : Vec3(frames[static_cast<std::size_t>(c)].col(2));
+    spring.stiffness = lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0;
     springs[static_cast<std::size_t>(c)] = spring.matrix();
   }
 }
@@ -248,6 +254,13 @@ double Insertion::Parts::equation_error() const {
   return error;
 }
 
+/// [N] of tip and grips, at least 1; not a number where one is none.
+double Insertion::Parts::largest_force() const {
+  double largest = larger_or_nan(1.0, tip.force.norm());
+  for (const Grip& grip : grips) largest = larger_or_nan(largest, grip.force.norm());
+  return largest;
+}
+
 /// How far needle, tissue and laws are from balance: 1 is the tolerance.
 double Insertion::Parts::imbalance_over_tolerance() const {
   const InPhase in_phase(phases, StepPhase::balance);
@@ -304,6 +317,7 @@ void Insertion::Parts::begin_balance(int most_toggles) {
 void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
   begin_balance(kMaxToggles);
   take_prepared_tangent();
+  const double largest_at_start = largest_force();
   bool from_start = !going_on || force_share == 0.0;
   if (going_on) go_on();
 
@@ -401,7 +415,10 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
     }
   }
   steady = false;
-  if (changed || !(look() < 1e3)) report.flags |= StepReport::not_converged;
+  if (changed || !(look() < 1e3)) {
+    report.flags |= StepReport::not_converged;
+    if (!(largest_force() < kMostGrowth * largest_at_start)) stay();
+  }
 }
 
 }  // namespace stylet

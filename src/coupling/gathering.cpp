@@ -25,6 +25,8 @@ constexpr double kMostCut_mm = 1.0;
 constexpr double kAlong = 0.9;  ///< [of the tip's way] and one that is more of a way sideways says little
 /// Gaps that change by as much as the tip goes on could close of themselves: the tip's rows would be singular.
 constexpr double kMostDrift = 0.5;
+/// From a contact nearer than this to the tip its direction is not told.
+constexpr double kLeastTurn_mm = 1.0;
 }  // namespace
 
 double Insertion::Parts::arc_of(int load) const {
@@ -144,8 +146,6 @@ void Insertion::Parts::append_contact(int load) {
   const int count = load + 1;
   const Eigen::Index before = 3 * static_cast<Eigen::Index>(load);
   auto rows = system.N.block(before, 0, 3, before + 3);
-  // What was lent at the tip alone is not for a matrix with grips.
-  if (system.supported && system.spring.front().stiffness > 0.0) tangent_fits = false;
   tangent_fits = tangent_fits && needle->append({loads.data(), static_cast<std::size_t>(count)}, rows);
   if (!tangent_fits) return;
   system.N.block(0, before, before, 3) = rows.leftCols(before).transpose();
@@ -228,6 +228,11 @@ void Insertion::Parts::gather_system() {
   dense::subtract_product(gap, system.A.topLeftCorner(size, size), now);
   gap = -gap;
   if (tip.touching) gather_drift();
+  system.behind = 0;
+  for (int c = count - 1; tip.touching && c > 0 && system.behind == 0; --c) {
+    system.behind_mm = loads.front().s - loads[static_cast<std::size_t>(c)].s;
+    if (system.behind_mm > kLeastTurn_mm) system.behind = c;
+  }
 }
 
 }  // namespace stylet

@@ -12,7 +12,7 @@ namespace stylet {
 
 /// What a contact gives way by itself: D = lateral I + (axial − lateral) t tᵀ.
 struct Yield {
-  Vec3 along = Vec3::UnitZ();  ///< t, unit, LPS
+  Vec3 along = Vec3::UnitZ();  ///< t, unit, LPS; zero: in all directions, at the tip only
   double lateral = 0.0;        ///< [mm/N]
   double axial = 0.0;          ///< [mm/N]
 
@@ -23,7 +23,7 @@ struct Yield {
 
 /// A spring that is lent to the needle at a contact, across it: G = k (I − t tᵀ).
 struct LentSpring {
-  Vec3 along = Vec3::UnitZ();  ///< t, unit, LPS
+  Vec3 along = Vec3::UnitZ();  ///< t, unit, LPS; zero: in all directions, at the tip only
   double stiffness = 0.0;      ///< k [N/mm]; 0 = none
 
   [[nodiscard]] Mat3 matrix() const { return stiffness * (Mat3::Identity() - along * along.transpose()); }

@@ -192,6 +192,7 @@ struct Insertion::Parts {
   [[nodiscard]] ContactSystem::TipRows tip_rows() const;
   [[nodiscard]] double equation_error() const;
   [[nodiscard]] double imbalance_over_tolerance() const;
+  [[nodiscard]] double largest_force() const;
 
   // preparation.cpp: the next tangent, in pieces.
   void prepare_tangent();

@@ -11,9 +11,13 @@ namespace {
 
 using TipRows = ContactSystem::TipRows;
 
+/// Where the needle is lent springs.
+enum class Springs { none, at_grips, everywhere };
+
 /// Contacts along a curved needle in a medium whose compliance falls off with distance.
 struct Equations {
-  explicit Equations(int contacts, bool lend_springs) : system(contacts) {
+  explicit Equations(int contacts, Springs springs) : system(contacts) {
+    const bool lend_springs = springs != Springs::none;
     system.count = contacts;
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
     for (int c = 0; c < contacts; ++c) {
@@ -33,6 +37,7 @@ struct Equations {
       // Lent a while ago, so a little off the contact's direction of now.
       if (lend_springs && (c > 0 || contacts == 1) && c % 5 != 2)
         system.spring[static_cast<std::size_t>(c)] = {(yield.along + Vec3(0.01, -0.02, 0.0)).normalized(), 0.4};
+      if (c == 0 && springs == Springs::everywhere) system.spring.front() = {Vec3::Zero(), 0.7};
       for (int k = 0; k < 3; ++k) {
         const Eigen::Index i = 3 * c + k;
         system.now[i] = 0.1 * std::sin(1.0 + 2.0 * static_cast<double>(i));
@@ -76,12 +81,32 @@ struct Equations {
     left.bottomLeftCorner(rows, 3) += system.cut_per_N * drift * t.transpose();
     right.tail(rows) -=
         (system.cut_per_N > 0.0 ? system.cut_due - system.cut_per_N * t.dot(now.head<3>()) : 0.0) * drift;
+    // The direction of a tip held along the needle only: t + w, w = ((r − r_now) of the tip − that behind it)/way.
+    const bool turns = held == TipRows::axial && system.behind > 0;
+    MatX w_of_p = MatX::Zero(3, rows);
+    Vec3 w = Vec3::Zero();
+    if (turns) {
+      const Eigen::Index g = 3 * static_cast<Eigen::Index>(system.behind);
+      w_of_p = -(N.topRows<3>() - N.middleRows<3>(g)) / system.behind_mm;
+      w = (system.free.head<3>() - system.free.segment<3>(g)) / system.behind_mm - w_of_p * now;
+    }
     for (int k = 0; k < 3; ++k) {
       const bool is_held = held == TipRows::all || (held == TipRows::axial && k == 2);
-      if (is_held) continue;
+      if (is_held) {  // how far it is aside now comes to be along t + w
+        const Vec3 aside = system.error(0)[0] * Q.block<3, 1>(0, 0) + system.error(0)[1] * Q.block<3, 1>(0, 1);
+        if (turns) {
+          left.row(rows + k).tail(rows) += aside.transpose() * w_of_p;
+          right[rows + k] -= aside.dot(w);
+        }
+        continue;
+      }
+      // n·λ = 0, n turning with t: n·λ = (n·w) (t·λ_now).
+      const Vec3 across = Q.block<3, 1>(0, k);
+      const double pressed = t.dot(now.head<3>());
       left.row(rows + k).setZero();
-      left.row(rows + k).head<3>() = Q.block<3, 3>(0, 0).col(k).transpose();
-      right[rows + k] = 0.0;
+      left.row(rows + k).head<3>() = across.transpose();
+      left.row(rows + k).tail(rows) -= pressed * across.transpose() * w_of_p;
+      right[rows + k] = pressed * across.dot(w);
     }
     const VecX solution = left.partialPivLu().solve(right);
     return {Q.transpose() * solution.head(rows), solution.tail(rows)};
@@ -98,7 +123,7 @@ struct Equations {
   Eigen::Index rows;
 };
 
-class ContactEquations : public testing::TestWithParam<bool> {};
+class ContactEquations : public testing::TestWithParam<Springs> {};
 
 TEST_P(ContactEquations, are_solved_whatever_of_the_tip_is_held) {
   for (const int contacts : {1, 2, 9, 31}) {
@@ -121,6 +146,23 @@ TEST_P(ContactEquations, are_solved_while_compliance_changes_with_the_cut) {
   }
 }
 
+TEST_P(ContactEquations, are_solved_while_the_tip_turns_with_the_needle) {
+  for (const int contacts : {2, 9, 31}) {
+    for (const bool cuts : {false, true}) {
+      Equations equations(contacts, GetParam());
+      ContactSystem& system = equations.system;
+      system.now.head<3>() = 8.0 * system.frame[0].col(2);
+      system.behind = contacts - 1;
+      system.behind_mm = 3.0;
+      system.cut_per_N = cuts ? 0.7 : 0.0;
+      system.cut_due = cuts ? 0.3 : 0.0;
+      ASSERT_TRUE(system.factorise());
+      for (const TipRows held : {TipRows::axial, TipRows::all, TipRows::none})
+        equations.expect_solved(held, std::to_string(contacts).c_str());
+    }
+  }
+}
+
 TEST_P(ContactEquations, are_solved_with_a_tangent_that_was_prepared_when_there_were_fewer_contacts) {
   for (const int fewer : {1, 2, 9}) {
     Equations equations(12, GetParam());
@@ -130,7 +172,7 @@ TEST_P(ContactEquations, are_solved_with_a_tangent_that_was_prepared_when_there_
     system.prepared.N = 1.3 * system.N;
     system.prepared.spring = system.spring;
     for (LentSpring& spring : system.prepared.spring) spring.stiffness *= 0.8;
-    system.prepared.supported = GetParam();
+    system.prepared.supported = GetParam() != Springs::none;
     system.fill_prepared();
     ASSERT_TRUE(system.factorise_prepared());
     equations.expect_solved(TipRows::all, "beside it, the one in use");
@@ -171,11 +213,11 @@ TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_conta
   ContactSystem& system = equations.system;
   ASSERT_TRUE(system.factorise());
   const Mat3 more = 0.3 * Mat3::Identity();
-  if (!GetParam()) {
+  if (GetParam() == Springs::none) {
     system.yield[6].axial = 5.0;
     ASSERT_TRUE(system.solve(TipRows::all));
   }
-  const bool last_has_a_spring = GetParam();
+  const bool last_has_a_spring = GetParam() != Springs::none;
   EXPECT_EQ(system.keep_first(9), !last_has_a_spring);
   if (last_has_a_spring) {
     ASSERT_TRUE(system.factorise());
@@ -251,8 +293,18 @@ TEST_P(ContactEquations, tell_how_far_the_needle_is_beyond_the_tissue_where_the_
   EXPECT_NEAR(system.opening(), system.frame[0].col(2).dot(way.head<3>()), 1e-10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Needle, ContactEquations, testing::Values(false, true),
-                         [](const auto& tested) { return tested.param ? "on_springs" : "by_itself"; });
+INSTANTIATE_TEST_SUITE_P(Needle, ContactEquations,
+                         testing::Values(Springs::none, Springs::at_grips, Springs::everywhere),
+                         [](const auto& tested) -> std::string {
+                           switch (tested.param) {
+                             case Springs::none:
+                               return "by_itself";
+                             case Springs::at_grips:
+                               return "on_springs";
+                             default:
+                               return "on_springs_and_one_at_its_tip";
+                           }
+                         });
 
 }  // namespace
 }  // namespace stylet

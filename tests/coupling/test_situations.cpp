@@ -39,6 +39,49 @@ TEST(Situation, bone_cannot_be_cut_and_the_force_rises) {
   EXPECT_EQ(run.count(Kind::withdrawn), 1);
 }
 
+namespace {
+
+/// Presses a needle that enters obliquely 20 mm further on bone, where it bows out between hand and skin.
+struct OnBone : NeedleInBlock {
+  explicit OnBone(double needle_length_mm) : NeedleInBlock(options(needle_length_mm)) {
+    aim({3, 2, 0}, Vec3(0.05, 0.02, 1.0));
+    go(39.0);
+    while (depth < 60.0) {
+      go(depth + 0.02, 20.0, 1e-3);
+      iterations += report.iterations;
+      most = std::max(most, report.iterations);
+      ++steps;
+    }
+  }
+  static BlockOptions options(double needle_length_mm) {
+    BlockOptions result = with_bone();
+    result.needle_length = needle_length_mm;
+    return result;
+  }
+  int iterations = 0;
+  int most = 0;  ///< in a step
+  int steps = 0;
+};
+
+}  // namespace
+
+TEST(Situation, a_needle_bows_between_hand_and_bone_in_a_few_iterations_a_step) {
+  // Its end is held along the needle only: its direction, and so the force, turns as the needle bows.
+  const OnBone run(220.0);
+  EXPECT_EQ(run.report.tip, TipPhase::bone);
+  EXPECT_GT(run.peak(), 10.0);
+  EXPECT_EQ(run.flags, 0u);
+  EXPECT_LT(run.iterations, 6 * run.steps);
+  EXPECT_LT(run.most, 15);
+}
+
+TEST(Situation, a_balance_that_is_not_found_leaves_no_force_beyond_those_that_were) {
+  // A short needle bears more than its end does: it snaps off the bone again and again, and has no balance on the way.
+  const OnBone run(150.0);
+  EXPECT_TRUE(run.flags & StepReport::not_converged) << "the situation this is about has not come about";
+  for (const double force : run.forces) ASSERT_LT(std::abs(force), 40.0);
+}
+
 TEST(Situation, bone_under_the_skin_is_touched_without_a_puncture) {
   BlockOptions options = with_bone();
   options.region_at = [](const Vec3& x) { return x.z() < 20 ? 1 : 0; };
