@@ -87,7 +87,8 @@ bool Insertion::Parts::relax_needle() {
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
 /// the needle on them does not buckle where needle and tissue together do not. Where all contacts have one so has
-/// the tip, in all directions: the shaft's contacts alone do not keep a needle that has bowed out between hand and bone.
+/// the tip, in all directions: the shaft's contacts alone do not keep a needle that has bowed out between hand and
+/// bone.
 /// @param most of them, evenly spread, the last contact's among them @param lent written, at each contact
 void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
   constexpr double hardest_mm_per_N = 1e-3;
