@@ -286,6 +286,25 @@ typedef struct stylet_rt_event {
 STYLET_RT_API stylet_rt_status stylet_rt_sim_read_events(const stylet_rt_sim* sim, stylet_rt_event* events, size_t room,
                                                          size_t* count) STYLET_RT_NOEXCEPT;
 
+/* Room that was set aside before the first step, since no step allocates. */
+enum {
+  STYLET_RT_CAPACITY_CONTACTS = 0,    /* on the shaft; one more: STYLET_RT_OUT_OF_CONTACTS */
+  STYLET_RT_CAPACITY_SPARE_NODES = 1, /* whose compliance came while the needle moved; for more the furthest go */
+  STYLET_RT_CAPACITY_TRACKS = 2,      /* of earlier insertions; for one more the oldest is forgotten */
+  STYLET_RT_CAPACITY_EVENTS = 3       /* of needle and tissue in one step; further ones are not told */
+};
+
+/* 8 bytes. */
+typedef struct stylet_rt_capacity {
+  int32_t most; /* that was ever in use since the simulation was created */
+  int32_t room;
+} stylet_rt_capacity;
+
+/* How much of it was needed. [real time]
+ * @param which STYLET_RT_CAPACITY_CONTACTS, ... */
+STYLET_RT_API stylet_rt_status stylet_rt_sim_read_capacity(const stylet_rt_sim* sim, int32_t which,
+                                                           stylet_rt_capacity* capacity) STYLET_RT_NOEXCEPT;
+
 #ifdef __cplusplus
 }
 #endif

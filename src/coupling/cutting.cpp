@@ -167,9 +167,13 @@ void Insertion::Parts::commit_tip(StepReport& report) {
 }
 
 /// The tip is in the air and moved from `from` to `to`: does it meet the outer surface?
-/// @return false when it does where no compliance is there: it has yet to enter
+/// @return false when it does where no compliance is there: it has yet to enter, or, far inside by the time there is
+/// some, to be drawn out. Tissue that would have gone with it did not, so to press on it now would be a blow.
 bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& report) {
+  const bool waited = awaited_entry.has_value();
+  const bool went_too_far = entered_too_soon;
   awaited_entry.reset();
+  entered_too_soon = false;
   const auto crossing = tissue.locator->first_entry(from, to);
   if (!crossing) return true;
   const Vec3 x = from + crossing->t * (to - from);
@@ -179,7 +183,8 @@ bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& repor
     add_event(report, InsertionEventKind::grazed, region);
     return true;
   }
-  if (!compliance.available(crossing->tet)) {
+  entered_too_soon = waited && (went_too_far || (to - x).norm() > settings.merge_mm);
+  if (entered_too_soon || !compliance.available(crossing->tet)) {
     report.flags |= StepReport::compliance_missing;
     awaited_entry = {x, needle->tangent(length()), crossing->tet};
     return false;

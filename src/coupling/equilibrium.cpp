@@ -52,7 +52,7 @@ double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : ite
 }  // namespace
 
 /// The needle's tangent at its present shape, and the matrix made of it.
-void Insertion::Parts::linearise() {
+void Insertion::Parts::linearise(Effort& effort) {
   const InPhase in_phase(phases, StepPhase::needle_tangent);
   const int count = load_count();
   const auto size = static_cast<Eigen::Index>(3 * count);
@@ -60,16 +60,19 @@ void Insertion::Parts::linearise() {
   auto motion = system.free.head(size);
   // What needed springs will need them again while it is pushed on; now and then it is tried without.
   const bool expected = system.supported && last_way > 0.0 && ++supported_for < kTryWithout;
+  if (!expected) effort.spend(effort.needle());
   system.supported = expected || !needle->linearise(loads, compliance_of_needle, motion, {}, Indefinite::give_up);
   if (!expected) supported_for = 0;
   if (system.supported) {  // pressed harder than it can bear on its own: lend it the tissue's stiffness
     // At a few contacts that is enough as a rule, and cheaper; at all of them always.
     const std::span<const Mat3> lent(springs.data(), static_cast<std::size_t>(count));
     lend_springs(kFewSprings, system.spring);
+    effort.spend(effort.needle());
     const bool more = count > kFewSprings + 1;
     if (!needle->linearise(loads, compliance_of_needle, motion, lent, more ? Indefinite::give_up : Indefinite::shift) &&
         more) {
       lend_springs(count, system.spring);
+      effort.spend(effort.needle() + effort.matrix_on_all_springs() - effort.matrix());
       needle->linearise(loads, compliance_of_needle, motion, lent);
     }
   }
@@ -79,6 +82,17 @@ void Insertion::Parts::linearise() {
   preparation.worn_mm = 0.0;
 }
 
+/// Between hand and bone a needle bows until it finds another shape all at once, or snaps off: on the way there is no
+/// balance. Its damping makes that a motion of some milliseconds, each step of which has one.
+void Insertion::Parts::damp_needle(double h) {
+  const double before = damping;
+  damping = on_bone() ? settings.bone_damping_s / h : 0.0;
+  if (damping > 0.0 || before > 0.0) needle->damp(damping);
+  if (damping == before) return;
+  tangent_fits = false;
+  forget_preparation();
+}
+
 /// The needle's step with the tangent of before. False where that is another needle's.
 bool Insertion::Parts::relax_needle() {
   const InPhase in_phase(phases, StepPhase::needle_relax);
@@ -86,9 +100,9 @@ bool Insertion::Parts::relax_needle() {
 }
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
-/// the needle on them does not buckle where needle and tissue together do not. Where all contacts have one so has
-/// the tip, in all directions: the shaft's contacts alone do not keep a needle that has bowed out between hand and
-/// bone.
+/// the needle on them does not buckle where needle and tissue together do not. A few stand for all, each for so many
+/// and as stiff as those together. The tip has one, too, where it is held: the shaft's contacts alone do not keep a
+/// needle that has bowed out between hand and bone.
 /// @param most of them, evenly spread, the last contact's among them @param lent written, at each contact
 void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
   constexpr double hardest_mm_per_N = 1e-3;
@@ -98,14 +112,14 @@ void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
     double own = system.A.block<3, 3>(3 * c, 3 * c).trace() / 3.0;
     bool lend = true;
     if (c == 0) {
-      lend = every == 1 && tip.touching && tip.state != Tip::State::open;
+      lend = tip.touching && tip.state != Tip::State::open;
     } else {
       own += grips[static_cast<std::size_t>(c - 1)].softness;
       lend = (count - 1 - c) % every == 0;
     }
     LentSpring& spring = lent[static_cast<std::size_t>(c)];
     spring.along = c == 0 ? Vec3::Zero() : Vec3(frames[static_cast<std::size_t>(c)].col(2));
-    spring.stiffness = lend ? 1.0 / std::max(own, hardest_mm_per_N) : 0.0;
+    spring.stiffness = lend ? every / std::max(own, hardest_mm_per_N) : 0.0;
     springs[static_cast<std::size_t>(c)] = spring.matrix();
   }
 }
@@ -199,12 +213,17 @@ void Insertion::Parts::change_and_tell(int load, StepReport& report) {
 /// Solves the held rows, then lets every state that contradicts its own law change, until none does.
 /// @param changed whether a state has
 /// @return false when the matrix is singular
-bool Insertion::Parts::pivot(double h, StepReport& report, bool& changed) {
+bool Insertion::Parts::pivot(double h, Effort& effort, StepReport& report, bool& changed) {
   const InPhase in_phase(phases, StepPhase::solve);
   changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
+    if (round > 0) {
+      if (!effort.allows(effort.solution())) break;
+      effort.spend(effort.solution());
+    }
     soften_rows(h);
     if (round == kAllAtOnce) {  // what an old matrix is off by may make states go to and fro
+      effort.spend(effort.matrix());
       matrix_fits = system.factorise();
       if (!matrix_fits) return false;
     }
@@ -314,7 +333,7 @@ void Insertion::Parts::begin_balance(int most_toggles) {
   if (tip.touching) aim_tip();
 }
 
-void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
+void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& report) {
   begin_balance(kMaxToggles);
   take_prepared_tangent();
   const double largest_at_start = largest_force();
@@ -361,17 +380,20 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
         error = look();
       }
     }
+    if (iteration > 0 && !effort.allows(effort.iteration() + (exact ? effort.tangent() : 0.0))) break;
+    effort.spend(effort.iteration());
     before = iteration == 0 ? std::max(error, kNear / settings.tolerance) : error;
     ++report.iterations;
     old_matrix = !exact && relax_needle();
     if (old_matrix) {
       keep_iterate();
     } else {
-      linearise();
+      linearise(effort);
       new_tangent = true;
     }
     if (!matrix_fits) {
       const InPhase in_phase(phases, StepPhase::factorise);
+      effort.spend(effort.matrix());
       matrix_fits = system.factorise();
     }
     if (matrix_fits && (iteration == 0 || !old_matrix || border_tet != tip.at.tet)) {
@@ -379,7 +401,7 @@ void Insertion::Parts::solve_equilibrium(double h, StepReport& report) {
       const InPhase in_phase(phases, StepPhase::solve);
       system.add_tip();
     }
-    if (!matrix_fits || !pivot(h, report, changed)) {
+    if (!matrix_fits || !pivot(h, effort, report, changed)) {
       if (!old_matrix) {  // needle and tissue have no balance nearby: they stay as they were
         steady = false;
         stay();

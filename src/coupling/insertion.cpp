@@ -79,6 +79,11 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   kept.grips.resize(capacity);
   forces = MatX::Zero(3, most_points(settings) + 1);
   point_at.resize(static_cast<std::size_t>(most_points(settings)) + 1);
+  nodes_at_start = tissue.store->stored_nodes();
+  capacities.contacts.room = settings.capacity;
+  capacities.spare_nodes.room = settings.spare_nodes;
+  capacities.tracks.room = static_cast<int>(kOldTracks);
+  capacities.events.room = static_cast<int>(StepReport{}.event.size());
   if (settings.solver == CouplingSettings::Solver::staggered)
     staggered = std::make_unique<paper::Staggered>(settings.capacity + 1, needle->state().size());
 }
@@ -125,6 +130,7 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   system.supported = false;  // in air a needle needs no springs
   supported_for = 0;
   forget_preparation();
+  needle->damp(damping = 0.0);
   if (tip.at.tet >= 0) point_at[ContactCompliance::kTip] = tip.at;
   tip = Tip{};
   relaxing = memory.on();
@@ -153,16 +159,18 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     share_length();
   }
   keep_start();
+  damp_needle(h);
   expect(before, pose);
   steady = settings.solver == CouplingSettings::Solver::coupled;
   bool broke = false;
   int surfaces = 0;
+  Effort effort(load_count());
   double cut = 0.0;
   do {
     if (settings.solver == CouplingSettings::Solver::staggered) {
       solve_staggered(h, report);
     } else {
-      solve_equilibrium(h, report);
+      solve_equilibrium(h, effort, report);
     }
     // What is held by a surface for the rest of a sub-step pushes it on; viscous tissue resists that at once, and with
     // more than the surface bears.
@@ -199,6 +207,12 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
   if (grips.empty() && (!tip.touching || tip.state == Tip::State::open) && t.dot(track.entry - tip_now) > 0.0) {
     finish_insertion(report);
   }
+}
+
+void Insertion::Parts::note_use() {
+  capacities.contacts.note(static_cast<int>(grips.size()));
+  capacities.spare_nodes.note(static_cast<int>(tissue.store->stored_nodes() - nodes_at_start));
+  capacities.tracks.note(static_cast<int>(old_count));
 }
 
 void Insertion::Parts::summarise(StepReport& report) const {
@@ -239,6 +253,7 @@ void Insertion::place(const Pose& base) {
   if (parts_->relaxing) parts_->forget_tissue();
   parts_->rows_complete_at.setConstant(std::numeric_limits<double>::infinity());
   parts_->awaited_entry.reset();
+  parts_->entered_too_soon = false;
   parts_->tangent_fits = false;
   parts_->forget_preparation();
   parts_->last_way = parts_->last_cut = parts_->cut_more = 0.0;
@@ -286,6 +301,8 @@ StepReport Insertion::step(const Pose& base, double dt) {
     const std::size_t after = p.compliance.remeshing().size();
     report.remeshings = after >= before ? report.remeshings + static_cast<int>(after - before) : 0;
   }
+  p.note_use();
+  p.capacities.events.note(report.events);
   p.summarise(report);
   return report;
 }
@@ -317,6 +334,7 @@ void Insertion::prepare(double radius_mm) {
   if (!waits && as_left && (tip - p.rows_complete_at).norm() < 0.25 * radius_mm) return;
   p.supply.work_through(p.compliance, p.whereabouts(),
                         {.radius_mm = radius_mm, .ahead_mm = 0.0, .spare_nodes = p.settings.spare_nodes});
+  p.note_use();
   p.rows_complete_at = tip;
   p.rows_arrived = p.tissue.store->arrived();
 }
@@ -327,6 +345,7 @@ const Needle& Insertion::needle() const { return *parts_->needle; }
 const ContactCompliance& Insertion::compliance() const { return parts_->compliance; }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }
 void Insertion::observe_phases(PhaseObserver* observer) { parts_->phases = observer; }
+const CapacityUses& Insertion::capacities() const { return parts_->capacities; }
 const Track& Insertion::track() const { return parts_->track; }
 std::span<const Track> Insertion::old_tracks() const { return {parts_->old_tracks.data(), parts_->old_count}; }
 

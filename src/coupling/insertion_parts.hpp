@@ -2,10 +2,12 @@
 #pragma once
 
 #include "contact_system.hpp"
+#include "effort.hpp"
 #include "paper/staggered.hpp"
 #include "stylet/coupling/insertion.hpp"
 #include "tissue_memory.hpp"
 
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -110,6 +112,9 @@ struct Insertion::Parts {
   Vec3 rows_complete_at = Vec3::Constant(std::numeric_limits<double>::infinity());  ///< the tip in the last prepare() …
   std::uint64_t rows_arrived = 0;                  ///< … and ComplianceStore::arrived()
   std::optional<NeedleWhereabouts> awaited_entry;  ///< surface met where no compliance is there yet
+  bool entered_too_soon = false;                   ///< … and gone too far beyond: it is to be drawn out first
+  CapacityUses capacities;
+  Index nodes_at_start = 0;  ///< in the store
   PhaseObserver* phases = nullptr;
 
   // Scratch of the equilibrium, sized once.
@@ -126,6 +131,7 @@ struct Insertion::Parts {
   bool system_stale = false;       ///< … and its compliance was that of another place
   MatX tip_slope;  ///< [1/N] (3 contacts × 3) by how much A's columns of the tip change per mm of cut …
   Vec3 slope_at = Vec3::Zero();  ///< [mm] … where the tip was then
+  double damping = 0.0;          ///< Needle::damp() of this sub-step
   bool foresees_cut = true;      ///< the equations know that compliance changes as the cut goes on
   int supported_for = 0;         ///< tangents on springs since one without was tried
   bool tangent_fits = false;     ///< the needle's tangent is of these contacts
@@ -169,14 +175,14 @@ struct Insertion::Parts {
   void gather_system();
 
   // equilibrium.cpp: one sub-step's balance of needle, tissue, friction and cutting.
-  void solve_equilibrium(double h, StepReport& report);
+  void solve_equilibrium(double h, Effort& effort, StepReport& report);
   void begin_balance(int most_toggles);
   void keep_iterate();
   void go_back();
-  void linearise();
+  void linearise(Effort& effort);
   [[nodiscard]] bool relax_needle();
   void lend_springs(int most, std::vector<LentSpring>& lent);
-  [[nodiscard]] bool pivot(double h, StepReport& report, bool& changed);
+  [[nodiscard]] bool pivot(double h, Effort& effort, StepReport& report, bool& changed);
   /// What a solution says of a contact.
   struct Trial {
     double axial = 0.0;    ///< [N] force on the tissue
@@ -193,6 +199,8 @@ struct Insertion::Parts {
   [[nodiscard]] double equation_error() const;
   [[nodiscard]] double imbalance_over_tolerance() const;
   [[nodiscard]] double largest_force() const;
+
+  void damp_needle(double h);
 
   // preparation.cpp: the next tangent, in pieces.
   void prepare_tangent();
@@ -220,6 +228,7 @@ struct Insertion::Parts {
   bool cut(bool nearly);
   void bend_needle();
 
+  [[nodiscard]] bool on_bone() const { return tip.touching && tip.state == Tip::State::stick && std::isinf(tip.limit); }
   [[nodiscard]] double length() const { return needle->length(); }
   [[nodiscard]] int load_count() const { return 1 + static_cast<int>(grips.size()); }
   [[nodiscard]] int point_of(int load) const {
@@ -274,6 +283,7 @@ struct Insertion::Parts {
   void relax();
   void forget_tissue();
 
+  void note_use();
   void sub_step(const Pose& pose, double h, StepReport& report);
   void summarise(StepReport& report) const;
   static void add_event(StepReport& report, InsertionEventKind kind, int region,

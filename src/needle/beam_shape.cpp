@@ -8,6 +8,7 @@ namespace stylet::beam {
 BeamShape::BeamShape(int elements, double length, double bending_stiffness, double torsion_stiffness, ElementKind kind)
     : curvature(VecX::Zero(dof(elements))),
       rest(VecX::Zero(dof(elements))),
+      damped_from(VecX::Zero(dof(elements))),
       kind_(kind),
       clamp_weight_(kind == ElementKind::rod ? 2.0 : 1.0),
       elements_(elements),

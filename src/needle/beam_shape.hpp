@@ -53,6 +53,10 @@ class BeamShape {
   /// [1/mm] (3 elements) curvature of the unloaded shape, 0 for a straight needle.
   VecX rest;
 
+  /// Damping, over the elastic stiffness, and the curvature [1/mm] it resists a change from.
+  double damping = 0.0;
+  VecX damped_from;
+
   [[nodiscard]] int elements() const { return elements_; }
   [[nodiscard]] double length() const { return elements_ * element_length_; }
   [[nodiscard]] double element_length() const { return element_length_; }
@@ -60,6 +64,11 @@ class BeamShape {
   [[nodiscard]] Vec3 kappa(int e) const { return curvature.segment<3>(dof(e)); }
   /// Curvature beyond that of the unloaded shape [1/mm].
   [[nodiscard]] Vec3 strain(int e) const { return kappa(e) - rest.segment<3>(dof(e)); }
+
+  /// D times this is the moment: strain, and what damping adds to it [1/mm].
+  [[nodiscard]] Vec3 moment_strain(int e) const {
+    return strain(e) + damping * (kappa(e) - damped_from.segment<3>(dof(e)));
+  }
 
   /// Elastic energy of element e is ½ elastic_weight l Δκᵀ D Δκ, Δκ its strain: 2 for the joint of rods at the clamp,
   /// else 1.

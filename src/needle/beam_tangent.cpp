@@ -143,7 +143,7 @@ double BeamTangent::largest_imbalance(const BeamShape& shape, const Mat3& base_r
   sum_work(shape, base_rotation, loads);
   double largest = 0.0;
   for (int e = 0; e < elements_; ++e) {
-    const Vec3 moment = shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.strain(e)) -
+    const Vec3 moment = shape.elastic_weight(e) * shape.stiffness().cwiseProduct(shape.moment_strain(e)) -
                         work_[static_cast<std::size_t>(e)] / shape.element_length();
     largest = larger_or_nan(largest, moment.norm());
   }
@@ -158,7 +158,7 @@ bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::
   for (int e = 0; e < elements_; ++e) {
     const Vec3& scale = scale_[static_cast<std::size_t>(e)];
     g_.segment<3>(row(e)) =
-        shape.strain(e).cwiseQuotient(scale) - scale.cwiseProduct(work_[static_cast<std::size_t>(e)]);
+        shape.moment_strain(e).cwiseQuotient(scale) - scale.cwiseProduct(work_[static_cast<std::size_t>(e)]);
   }
   for (std::size_t c = 0; c < loads.size(); ++c) force_.segment<3>(3 * static_cast<Eigen::Index>(c)) = loads[c].force;
   z_ = g_;
@@ -234,8 +234,8 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
       beyond.add(pull);
     }
 
-    g_.segment<3>(i) = shape.strain(e).cwiseQuotient(scale_[static_cast<std::size_t>(e)]) - generalised;
-    H_.block<3, 3>(i, i) = Mat3::Identity() - scale * second * scale;
+    g_.segment<3>(i) = shape.moment_strain(e).cwiseQuotient(scale_[static_cast<std::size_t>(e)]) - generalised;
+    H_.block<3, 3>(i, i) = (1.0 + shape.damping) * Mat3::Identity() - scale * second * scale;
     lever_[e] = lever;
   }
   // An element a nearer the base turns the whole lever of element e: ∂²Π/∂y_a∂y_e = Ω_aᵀ Σ_c [f_c]× ∂r_c/∂y_e.

@@ -90,6 +90,11 @@ double RodChain::residual(std::span<const PointLoad> loads) const {
   return parts_->tangent.largest_imbalance(parts_->shape, parts_->base_rotation, loads);
 }
 
+void RodChain::damp(double ratio) {
+  parts_->shape.damped_from = parts_->shape.curvature;
+  parts_->shape.damping = ratio;
+}
+
 void RodChain::straighten() {
   parts_->shape.curvature = parts_->shape.rest;
   parts_->shape.update();

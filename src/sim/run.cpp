@@ -92,6 +92,7 @@ class Runner {
       summary_.residual_force_balance /= peak_N_;
       summary_.residual_torque_balance /= peak_N_;
     }
+    summary_.capacity = simulation_.insertion().capacities();
     std::sort(step_us_.begin(), step_us_.end());
     summary_.step_us_p50 = quantile(step_us_, 0.5);
     summary_.step_us_p99 = quantile(step_us_, 0.99);

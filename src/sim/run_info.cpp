@@ -39,6 +39,7 @@ constexpr std::array kShown{
     Shown{"coupling.spacing_mm", "numerical: about three needle diameters"},
     Shown{"coupling.tip_viscosity_Ns_per_m",
           "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
+    Shown{"coupling.bone_damping_ms", "numerical: a needle that snaps on bone does so within milliseconds"},
     Shown{"coupling.grazing_deg", "stated, no measurement known"},
     Shown{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
 };

@@ -10,6 +10,7 @@ using stylet::EventKind;
 
 static_assert(sizeof(stylet_rt_contact) == 72);
 static_assert(sizeof(stylet_rt_event) == 32);
+static_assert(sizeof(stylet_rt_capacity) == 8);
 
 static_assert(STYLET_RT_EVENT_SKIN_CONTACT == static_cast<int>(EventKind::skin_contact));
 static_assert(STYLET_RT_EVENT_PUNCTURE == static_cast<int>(EventKind::puncture));
@@ -25,6 +26,21 @@ static_assert(STYLET_RT_EVENT_GRAZED == static_cast<int>(EventKind::grazed));
 int32_t number_of(const std::vector<std::string>& regions, const std::string& name) noexcept {
   const auto found = std::find(regions.begin(), regions.end(), name);
   return found == regions.end() ? -1 : static_cast<int32_t>(found - regions.begin());
+}
+
+const stylet::CapacityUse* use_of(const stylet::CapacityUses& uses, int32_t which) noexcept {
+  switch (which) {
+    case STYLET_RT_CAPACITY_CONTACTS:
+      return &uses.contacts;
+    case STYLET_RT_CAPACITY_SPARE_NODES:
+      return &uses.spare_nodes;
+    case STYLET_RT_CAPACITY_TRACKS:
+      return &uses.tracks;
+    case STYLET_RT_CAPACITY_EVENTS:
+      return &uses.events;
+    default:
+      return nullptr;
+  }
 }
 
 }  // namespace
@@ -76,6 +92,15 @@ stylet_rt_status stylet_rt_sim_read_events(const stylet_rt_sim* sim, stylet_rt_e
                  number_of(regions, event.region)};
   }
   *count = found.size();
+  return STYLET_RT_OK;
+}
+
+stylet_rt_status stylet_rt_sim_read_capacity(const stylet_rt_sim* sim, int32_t which,
+                                             stylet_rt_capacity* capacity) noexcept {
+  if (sim == nullptr || capacity == nullptr) return STYLET_RT_BAD_ARGUMENT;
+  const stylet::CapacityUse* use = use_of(sim->simulation.insertion().capacities(), which);
+  if (use == nullptr) return STYLET_RT_BAD_ARGUMENT;
+  *capacity = {use->most, use->room};
   return STYLET_RT_OK;
 }
 

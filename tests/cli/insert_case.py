@@ -99,7 +99,7 @@ def check_results(test, folder, summary=None, pictures=False):
     if summary is not None:
         test.assertEqual(written, summary)
     for key in ("version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                "target_shift_mm", "residual", "step_us", "contacts_max", "mesh_changes", "warnings"):
+                "target_shift_mm", "residual", "step_us", "contacts_max", "capacity", "mesh_changes", "warnings"):
         test.assertIn(key, written)
     test.assertEqual(set(written["mesh"]), {"nodes", "tets"})
     test.assertEqual(set(written["peak_force_N"]), {"axial", "sagittal", "lateral"})
@@ -117,6 +117,11 @@ def check_results(test, folder, summary=None, pictures=False):
         test.assertTrue(all(math.isfinite(v) for k, v in line.items() if k != "tip_state"), line)
     test.assertAlmostEqual(max(abs(line["force_axial_N"]) for line in lines), written["peak_force_N"]["axial"], places=8)
     test.assertEqual(max(line["contacts"] for line in lines), written["contacts_max"])
+    test.assertEqual(set(written["capacity"]), {"contacts", "spare_nodes", "tracks", "events"})
+    for use in written["capacity"].values():
+        test.assertLessEqual(use["most"], use["room"])
+    shaft = written["capacity"]["contacts"]["most"]  # the tip is not among them
+    test.assertTrue(written["contacts_max"] - 1 <= shaft <= written["contacts_max"], written["capacity"])
 
     report = (folder / "report.html").read_text(encoding="utf-8")
     test.assertIn("<html", report)

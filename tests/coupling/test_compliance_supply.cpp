@@ -261,7 +261,7 @@ TEST(ComplianceSupply, a_surface_met_without_compliance_is_entered_when_it_has_c
   WithWorker run;
   run.rounds_every = 0;
   run.aim({3, 2, 0});
-  run.go_on(2.0);
+  run.go_on(1.2);
   EXPECT_TRUE(run.report.flags & StepReport::compliance_missing);
   EXPECT_EQ(run.report.tip, TipPhase::air);
   EXPECT_EQ(run.peak(), 0.0);
@@ -273,6 +273,44 @@ TEST(ComplianceSupply, a_surface_met_without_compliance_is_entered_when_it_has_c
   run.rounds_every = 1;
   run.go_on(30);
   EXPECT_EQ(run.count(Kind::puncture, 0), 1);
+}
+
+TEST(ComplianceSupply, a_needle_far_inside_when_the_first_compliance_comes_is_to_be_drawn_out) {
+  // Pressed on the skin from there it would get the force of a dent tens of millimetres deep.
+  WithWorker run;
+  run.rounds_every = 0;
+  run.aim({3, 2, 0});
+  run.go_on(30.0);
+  run.rounds_every = 1;
+  run.go_on(40.0);
+  EXPECT_TRUE(run.report.flags & StepReport::compliance_missing);
+  EXPECT_EQ(run.report.tip, TipPhase::air);
+  run.go_on(-1.0);
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_EQ(run.peak(), 0.0);
+  EXPECT_TRUE(run.happened.empty());
+
+  run.go_on(30.0);
+  WithWorker other;
+  other.aim({3, 2, 0});
+  other.rest();
+  other.go_on(30.0);
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_EQ(run.count(Kind::puncture, 0), 1);
+  EXPECT_NEAR(run.forces.back(), other.forces.back(), 1e-3 * other.forces.back());
+}
+
+TEST(ComplianceSupply, what_came_beyond_the_rows_of_the_start_is_counted) {
+  WithWorker run(fine_block(), little_room());
+  run.aim({3, 2, 0});
+  run.rest();
+  const int at_skin = run.insertion->capacities().spare_nodes.most;
+  run.go_on(60.0);
+  const CapacityUses& in_use = run.insertion->capacities();
+  EXPECT_GT(at_skin, 0);
+  EXPECT_GT(in_use.spare_nodes.most, at_skin);
+  EXPECT_LE(in_use.spare_nodes.most, in_use.spare_nodes.room);
+  EXPECT_EQ(in_use.contacts.most, static_cast<int>(run.insertion->contacts().size()) - 1) << "the tip is the other";
 }
 
 TEST(ComplianceSupply, a_needle_that_turns_away_before_it_entered_has_touched_nothing) {

@@ -43,7 +43,9 @@ namespace {
 
 /// Presses a needle that enters obliquely 20 mm further on bone, where it bows out between hand and skin.
 struct OnBone : NeedleInBlock {
-  explicit OnBone(double needle_length_mm) : NeedleInBlock(options(needle_length_mm)) {
+  explicit OnBone(double needle_length_mm, double damping_s = CouplingSettings{}.bone_damping_s,
+                  double spacing_mm = 4.0)
+      : NeedleInBlock(options(needle_length_mm, damping_s, spacing_mm)) {
     aim({3, 2, 0}, Vec3(0.05, 0.02, 1.0));
     go(39.0);
     while (depth < 60.0) {
@@ -53,11 +55,15 @@ struct OnBone : NeedleInBlock {
       ++steps;
     }
   }
-  static BlockOptions options(double needle_length_mm) {
+  static BlockOptions options(double needle_length_mm, double damping_s, double spacing_mm) {
     BlockOptions result = with_bone();
     result.needle_length = needle_length_mm;
+    result.coupling.bone_damping_s = damping_s;
+    result.coupling.spacing_mm = spacing_mm;
     return result;
   }
+  /// [mm] how far the tip is beside the needle's line.
+  [[nodiscard]] double bow() const { return axis.cross(report.tip_position - point).norm(); }
   int iterations = 0;
   int most = 0;  ///< in a step
   int steps = 0;
@@ -75,10 +81,32 @@ TEST(Situation, a_needle_bows_between_hand_and_bone_in_a_few_iterations_a_step) 
   EXPECT_LT(run.most, 15);
 }
 
-TEST(Situation, a_balance_that_is_not_found_leaves_no_force_beyond_those_that_were) {
-  // A short needle bears more than its end does: it snaps off the bone again and again, and has no balance on the way.
-  const OnBone run(150.0);
+TEST(Situation, a_needle_that_snaps_off_bone_has_a_balance_in_every_step) {
+  // A short needle bears more than its end does. Its damping makes the snap a motion.
+  for (const double spacing : {1.4, 4.0}) {
+    const OnBone run(150.0, CouplingSettings{}.bone_damping_s, spacing);
+    EXPECT_EQ(run.flags, 0u);
+    EXPECT_LT(run.iterations, 3 * run.steps);
+    EXPECT_LT(run.most, 12);
+  }
+}
+
+TEST(Situation, damping_on_bone_leaves_a_needle_at_rest_where_it_would_be_without) {
+  OnBone damped(220.0);
+  OnBone undamped(220.0, 0.0);
+  EXPECT_NEAR(damped.forces.back(), undamped.forces.back(), 0.05 * undamped.forces.back());
+  damped.wait(0.2);
+  undamped.wait(0.2);
+  EXPECT_NEAR(damped.forces.back(), undamped.forces.back(), 1e-4 * undamped.forces.back());
+  // Which way it bows is decided by next to nothing, and creeps; not how far.
+  EXPECT_NEAR(damped.bow(), undamped.bow(), 0.01 * undamped.bow());
+}
+
+TEST(Situation, a_balance_that_is_not_found_is_broken_off_and_leaves_no_force_beyond_those_that_were) {
+  // Without damping there is none on the way to the next shape.
+  const OnBone run(150.0, 0.0);
   EXPECT_TRUE(run.flags & StepReport::not_converged) << "the situation this is about has not come about";
+  EXPECT_LT(run.most, 20);
   for (const double force : run.forces) ASSERT_LT(std::abs(force), 40.0);
 }
 

@@ -247,6 +247,7 @@ static int arguments_that_make_no_sense_are_statuses(void) {
   stylet_rt_result result;
   stylet_rt_contact contact;
   stylet_rt_event event;
+  stylet_rt_capacity capacity;
   double points[6];
   size_t count = 0;
   char error[512];
@@ -320,6 +321,10 @@ static int arguments_that_make_no_sense_are_statuses(void) {
   CHECK(stylet_rt_sim_read_events(NULL, &event, 1, &count) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_sim_read_events(sim, NULL, 1, &count) == STYLET_RT_BAD_ARGUMENT);
   CHECK(stylet_rt_sim_read_events(sim, &event, 1, NULL) == STYLET_RT_BAD_ARGUMENT);
+  CHECK(stylet_rt_sim_read_capacity(NULL, STYLET_RT_CAPACITY_EVENTS, &capacity) == STYLET_RT_BAD_ARGUMENT);
+  CHECK(stylet_rt_sim_read_capacity(sim, -1, &capacity) == STYLET_RT_BAD_ARGUMENT);
+  CHECK(stylet_rt_sim_read_capacity(sim, 4, &capacity) == STYLET_RT_BAD_ARGUMENT);
+  CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_EVENTS, NULL) == STYLET_RT_BAD_ARGUMENT);
   stylet_rt_sim_destroy(sim);
   stylet_rt_model_destroy(model);
   return 0;
@@ -383,6 +388,7 @@ static int what_there_is_no_room_for_is_left_out(void) {
   stylet_rt_contact contacts[4], all[MOST_CONTACTS];
   stylet_rt_event events[2];
   stylet_rt_result result;
+  stylet_rt_capacity capacity;
   double points[9];
   size_t count = 0, k;
   int step, events_seen = 0;
@@ -408,6 +414,12 @@ static int what_there_is_no_room_for_is_left_out(void) {
   CHECK(stylet_rt_sim_read_needle(sim, points, 3) == STYLET_RT_OK);
   CHECK(memcmp(points, result.base_mm, sizeof result.base_mm) == 0);
   CHECK(memcmp(points + 6, result.tip_mm, sizeof result.tip_mm) == 0);
+  CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_CONTACTS, &capacity) == STYLET_RT_OK);
+  CHECK(capacity.most >= result.contacts - 1 && capacity.most < capacity.room);
+  CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_EVENTS, &capacity) == STYLET_RT_OK);
+  CHECK(capacity.most >= 1 && capacity.most < capacity.room);
+  CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_TRACKS, &capacity) == STYLET_RT_OK);
+  CHECK(capacity.most == 0 && capacity.room > 0);
   stylet_rt_sim_destroy(sim);
   stylet_rt_model_destroy(model);
   return 0;
@@ -421,6 +433,7 @@ static double all_real_time_calls(const stylet_rt_model* model, stylet_rt_sim* s
   stylet_rt_model_info info;
   stylet_rt_pose base;
   stylet_rt_result result;
+  stylet_rt_capacity capacity;
   double most_N = 0.0;
   size_t count;
   int k;
@@ -432,6 +445,7 @@ static double all_real_time_calls(const stylet_rt_model* model, stylet_rt_sim* s
     stylet_rt_sim_read_contacts(sim, contacts, MOST_CONTACTS, &count);
     stylet_rt_sim_read_events(sim, events, STYLET_RT_MAX_EVENTS, &count);
     stylet_rt_sim_read_needle(sim, points, POINTS);
+    stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_SPARE_NODES, &capacity);
     if (result.force_axial_N > most_N) most_N = result.force_axial_N;
     if (result.flags != 0) return -1.0;
     base.position_mm[0] = NAN;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/coupling/capacity_use.hpp"
 #include "stylet/coupling/compliance_supply.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/laws.hpp"
@@ -46,10 +47,11 @@ struct InsertionEvent {
 /// What a step came to. Flags tell what to do: nothing is repaired in silence.
 struct StepReport {
   enum Flag : unsigned {
-    not_converged = 1u << 0,       ///< the last iterate was kept; use a smaller time step
+    not_converged = 1u << 0,       ///< the balance was broken off, the last iterate kept; use a smaller time step
     contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step
     compliance_missing = 1u << 2,  ///< not there yet where the needle is: that of the tip's last place stood in, and
-                                   ///< contacts wait; prepare() between steps, or let a worker (supply()) keep ahead
+                                   ///< contacts wait; prepare() between steps, or let a worker (supply()) keep ahead.
+                                   ///< A tip in the air: it went in before there was any, and is to be drawn out
     out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
     too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
     invalid_input = 1u << 5        ///< a pose that is not finite, or dt ≤ 0: the step was not taken
@@ -129,6 +131,8 @@ class Insertion {
   [[nodiscard]] const Needle& needle() const;
   [[nodiscard]] const ContactCompliance& compliance() const;
   [[nodiscard]] const CouplingSettings& settings() const;
+  /// What there is room for, and the most that was ever in use.
+  [[nodiscard]] const CapacityUses& capacities() const;
 
   /// Contacts now, the tip first when it touches. Allocates.
   [[nodiscard]] std::vector<ContactState> contacts() const;

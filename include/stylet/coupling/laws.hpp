@@ -74,6 +74,8 @@ struct CouplingSettings {
   double independence = 0.05;  ///< a contact must keep this share of its own compliance when its neighbours are held
   double tip_viscosity_Ns_per_mm =
       2e-3;  ///< cutting force grows by this times the speed of cutting; makes a puncture's drop a motion
+  double bone_damping_s =
+      3e-3;  ///< of the needle's bending while its tip stands on bone; makes a snap there a motion, as above
   double zero_band_mm_per_s = 0.005;  ///< Karnopp: slower sliding than this is sticking
   double grazing_cos = 0.17;  ///< the tip slides off where |axis · surface normal| is smaller (80° from the normal)
   double max_advance_mm = 0.25;             ///< of the base in one sub-step

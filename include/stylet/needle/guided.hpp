@@ -49,6 +49,7 @@ class GuidedNeedle final : public Needle {
   void take_prepared() override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
+  void damp(double ratio) override { inner_->damp(ratio); }
   void straighten() override;
   /// Elastic energy of shape and hole.
   [[nodiscard]] double energy() const override;

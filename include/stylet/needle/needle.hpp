@@ -106,6 +106,12 @@ class Needle {
   /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium.
   [[nodiscard]] virtual double residual(std::span<const PointLoad> loads) const = 0;
 
+  /// From now on bending and twist also resist every change from the shape of now, `ratio` times as stiffly as they
+  /// are: what internal damping with a time constant τ (Kelvin–Voigt) does within a step of τ / ratio, taken
+  /// implicitly. 0, as at first: they do not. Of tangents only those made afterwards know. Models without damping do
+  /// nothing.
+  virtual void damp(double /*ratio*/) {}
+
   /// Takes the stress-free shape: straight, or with the bow it was built with. The base is kept.
   virtual void straighten() = 0;
 

@@ -32,6 +32,7 @@ class RodChain : public Needle {
   void take_prepared() final;
   void advance(std::span<const PointLoad> loads) final;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const final;
+  void damp(double ratio) final;
   void straighten() final;
   [[nodiscard]] double energy() const final;
   [[nodiscard]] Eigen::Ref<const VecX> state() const final;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/types.hpp"
+#include "stylet/coupling/capacity_use.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
 
 #include <string>
@@ -135,6 +136,7 @@ struct Summary {
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;
+  CapacityUses capacity;
   double compliance_condition = 1.0;  ///< of the compliance among the contacts, largest of the frames
   struct Blur {
     double smallest_mm = 0, median_mm = 0, largest_mm = 0;

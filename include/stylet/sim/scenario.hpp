@@ -128,6 +128,7 @@ struct Scenario {
     std::string projection = "exact";
     double spacing_mm = 4.0;
     double tip_viscosity_Ns_per_m = 2.0;
+    double bone_damping_ms = 3.0;
     double grazing_deg = 80.0;
     double corridor_mm = 8.0;
     int corridor_nodes = 3500;

@@ -20,6 +20,9 @@ std::optional<Enum> word(const std::string& name, Enum last) {
   return std::nullopt;
 }
 
+Json in_use(const CapacityUse& use) { return {{"most", use.most}, {"room", use.room}}; }
+CapacityUse use_of(const Json& json) { return {json.at("most").get<int>(), json.at("room").get<int>()}; }
+
 double number(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
@@ -60,6 +63,11 @@ std::string summary_json(const Summary& s) {
       {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
       {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
       {"contacts_max", s.contacts_max},
+      {"capacity",
+       {{"contacts", in_use(s.capacity.contacts)},
+        {"spare_nodes", in_use(s.capacity.spare_nodes)},
+        {"tracks", in_use(s.capacity.tracks)},
+        {"events", in_use(s.capacity.events)}}},
       {"compliance_condition", s.compliance_condition},
       {"mesh_blur_mm",
        {{"min", s.mesh_blur.smallest_mm},
@@ -106,6 +114,9 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     s.step_us_p999 = number(step.at("p999"));
     s.step_us_max = number(step.at("max"));
     s.contacts_max = json.at("contacts_max").get<int>();
+    const Json& capacity = json.at("capacity");
+    s.capacity = {use_of(capacity.at("contacts")), use_of(capacity.at("spare_nodes")), use_of(capacity.at("tracks")),
+                  use_of(capacity.at("events"))};
     s.compliance_condition = number(json.at("compliance_condition"));
     const Json& blur = json.at("mesh_blur_mm");
     s.mesh_blur = {number(blur.at("min")), number(blur.at("median")), number(blur.at("max")),

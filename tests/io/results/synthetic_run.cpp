@@ -245,6 +245,7 @@ Summary summarise(const SyntheticRun& run) {
     s.step_us_max = std::max(s.step_us_max, step.step_us);
     s.contacts_max = std::max(s.contacts_max, step.contacts);
   }
+  s.capacity = {{s.contacts_max, 96}, {12, 1500}, {1, 64}, {3, 16}};
   s.events = events();
   s.tip_deflection_mm = 2.64;
   s.target_shift_centroid_mm = {0.21, -0.48, 2.66};

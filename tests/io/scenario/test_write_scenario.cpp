@@ -74,7 +74,7 @@ TEST(ToToml, reads_back_whatever_is_set) {
   s.needle.bevel_deg = 22.5;
   s.needle.bevel_law = "force";
   s.needle.elements = 200;
-  s.coupling = {"embedded", "paper", "staggered", "bcs", 1.25, "nearest-node", 49.999999999999, 0.01, 30, 1.5, 8};
+  s.coupling = {"embedded", "paper", "staggered", "bcs", 1.25, "nearest-node", 49.999999999999, 0.01, 0.75, 30, 1.5, 8};
   s.grid.pitch_mm = 4.2;
   s.grid.centre_mm = {-0.1, 1e4};
   s.grid.columns = {"α", "D"};
