@@ -169,12 +169,13 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_planned_base(const stylet_rt_sim* s
                                                           stylet_rt_pose* base) STYLET_RT_NOEXCEPT;
 
 /* What a step has to say of itself (stylet_rt_result.flags), and what to do. */
-#define STYLET_RT_NOT_CONVERGED UINT32_C(0x01)      /* no balance found, the force is not the model's: smaller dt */
-#define STYLET_RT_CONTACT_CYCLING UINT32_C(0x02)    /* a contact was kept as it was for one sub-step: nothing to do */
-#define STYLET_RT_COMPLIANCE_MISSING UINT32_C(0x04) /* the tip left the prepared corridor: prepare */
-#define STYLET_RT_OUT_OF_CONTACTS UINT32_C(0x08)    /* forces miss a piece of shaft: raise coupling.contacts */
-#define STYLET_RT_TOO_FAST UINT32_C(0x10)           /* the base moved too far for one step: smaller dt, or slower */
-#define STYLET_RT_INVALID_INPUT UINT32_C(0x20)      /* the step was not taken: pose or dt are no good */
+#define STYLET_RT_NOT_CONVERGED UINT32_C(0x01)   /* no balance found, the force is not the model's: smaller dt */
+#define STYLET_RT_CONTACT_CYCLING UINT32_C(0x02) /* a contact was kept as it was for one sub-step: nothing to do */
+#define STYLET_RT_COMPLIANCE_MISSING \
+  UINT32_C(0x04)                                 /* the tip left the prepared corridor: prepare; in the air: draw out */
+#define STYLET_RT_OUT_OF_CONTACTS UINT32_C(0x08) /* forces miss a piece of shaft: raise coupling.contacts */
+#define STYLET_RT_TOO_FAST UINT32_C(0x10)        /* the base moved too far for one step: smaller dt, or slower */
+#define STYLET_RT_INVALID_INPUT UINT32_C(0x20)   /* the step was not taken: pose or dt are no good */
 /* With any of these the force must not reach a hand. */
 #define STYLET_RT_DISTRUSTED (STYLET_RT_NOT_CONVERGED | STYLET_RT_INVALID_INPUT)
 

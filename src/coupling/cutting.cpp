@@ -170,10 +170,17 @@ void Insertion::Parts::commit_tip(StepReport& report) {
 /// @return false when it does where no compliance is there: it has yet to enter, or, far inside by the time there is
 /// some, to be drawn out. Tissue that would have gone with it did not, so to press on it now would be a blow.
 bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& report) {
+  if (went_past_surface) {
+    if (tissue.locator->find(to)) {
+      report.flags |= StepReport::compliance_missing;
+      return false;
+    }
+    awaited_entry.reset();
+    went_past_surface = false;
+    return true;
+  }
   const bool waited = awaited_entry.has_value();
-  const bool went_too_far = entered_too_soon;
   awaited_entry.reset();
-  entered_too_soon = false;
   const auto crossing = tissue.locator->first_entry(from, to);
   if (!crossing) return true;
   const Vec3 x = from + crossing->t * (to - from);
@@ -183,8 +190,8 @@ bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& repor
     add_event(report, InsertionEventKind::grazed, region);
     return true;
   }
-  entered_too_soon = waited && (went_too_far || (to - x).norm() > settings.merge_mm);
-  if (entered_too_soon || !compliance.available(crossing->tet)) {
+  went_past_surface = waited && (to - x).norm() > settings.merge_mm;
+  if (went_past_surface || !compliance.available(crossing->tet)) {
     report.flags |= StepReport::compliance_missing;
     awaited_entry = {x, needle->tangent(length()), crossing->tet};
     return false;

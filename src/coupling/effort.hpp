@@ -5,22 +5,22 @@
 
 namespace stylet {
 
-/// What a balance may take before it is broken off, so that no step is late whatever becomes of it: the next one goes
-/// on from there. It is counted by what was done and not by a clock, so a step is the same on every machine. The unit
-/// is about a microsecond of the machine of docs/realtime.md; where the costs come from is in docs/theory/coupling.md
-/// §4.
+/// What a balance of a sub-step may take before it is broken off, flagged; the next one goes on from there. So a step
+/// of up to 40 contacts takes about a millisecond at the most, whatever becomes of it; with more it takes longer. It is
+/// counted by what was done and not by a clock: a step is the same on every machine. The unit is about a microsecond of
+/// the machine of docs/realtime.md, for needles of rods; docs/theory/coupling.md §4 has more.
 class Effort {
  public:
   /// @param contacts tip included
   explicit Effort(int contacts)
       : square_(contacts * static_cast<double>(contacts)),
-        left_(std::max(kMost, 3.0 * tangent() + 6.0 * iteration())) {}
+        left_(std::max(kLeast, 3.0 * tangent() + 6.0 * iteration())) {}
 
-  /// All of an iteration but the next two, …
+  /// An iteration with the tangent of before, …
   [[nodiscard]] double iteration() const { return 10.0 + 0.015 * square_; }
-  /// … a new tangent of the needle and the matrix made of it, …
+  /// … what a new tangent of the needle and the matrix made of it add, …
   [[nodiscard]] double tangent() const { return needle() + matrix(); }
-  /// … and further solutions, after states have changed.
+  /// … and what each further solution adds, after states have changed.
   [[nodiscard]] double solution() const { return 2.0 + 0.02 * square_; }
   /// The parts of a tangent, each of which may be wanted more than once.
   [[nodiscard]] double needle() const { return 20.0 + 0.04 * square_; }
@@ -30,14 +30,16 @@ class Effort {
 
   [[nodiscard]] bool allows(double more) const { return more <= left_; }
   void spend(double some) { left_ -= some; }
+  void end() { ended_ = true; }
+  [[nodiscard]] bool ended() const { return ended_; }
 
  private:
-  /// A balance of 40 contacts has 700 microseconds, of more the time for three tangents: with fewer a needle that bows
-  /// or snaps is not followed.
-  static constexpr double kMost = 700.0;
+  /// That of up to some 40 contacts. Three tangents always: with fewer a needle that bows or snaps is not followed.
+  static constexpr double kLeast = 700.0;
 
   double square_;
   double left_;
+  bool ended_ = false;
 };
 
 }  // namespace stylet

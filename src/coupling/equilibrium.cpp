@@ -42,6 +42,16 @@ constexpr double kStill_mm = 1e-9;     ///< less is not sliding
 /// On either side of the speed where friction stops growing its two laws agree; so little says nothing about the side.
 constexpr double kSameSpeed_mm = 1e-6;
 
+/// So much more or less damping, over all that is elastic, asks for another tangent.
+constexpr double kOtherDamping = 0.25;
+
+constexpr double kDampedShare = 0.1;  ///< of the time the tip has been on bone: the needle follows it all the same
+/// What a balance not found changes the damping by, what one that is, over that on bone: when it ends, the most.
+constexpr double kMoreDamping = 4.0;
+constexpr double kWearsOff = 0.8;
+constexpr double kNoDamping = 0.05;
+constexpr double kMostDamping = 1e3;
+
 /// Forces that have grown to so many times what they were, without a balance, come from iterations that went astray.
 constexpr double kMostGrowth = 2.0;
 
@@ -82,13 +92,26 @@ void Insertion::Parts::linearise(Effort& effort) {
   preparation.worn_mm = 0.0;
 }
 
-/// Between hand and bone a needle bows until it finds another shape all at once, or snaps off: on the way there is no
-/// balance. Its damping makes that a motion of some milliseconds, each step of which has one.
-void Insertion::Parts::damp_needle(double h) {
-  const double before = damping;
-  damping = on_bone() ? settings.bone_damping_s / h : 0.0;
-  if (damping > 0.0 || before > 0.0) needle->damp(damping);
-  if (damping == before) return;
+/// The needle's damping in a sub-step, as a time constant. Between hand and bone a needle bows until it finds another
+/// shape all at once, or snaps off: on the way there is no balance. Damping makes that a motion, each step of which has
+/// one. When the tip strikes bone there is none yet, or the force would overshoot. Where a balance was not found all
+/// the same it grows, until the needle hardly changes its shape and there is one, and wears off again.
+double Insertion::Parts::damping_s(double h) {
+  on_bone_for = on_bone() ? on_bone_for + h : 0.0;
+  const double most = settings.bone_damping_s;
+  rescue_s = balanced ? kWearsOff * rescue_s : std::max(kMoreDamping * rescue_s, most);
+  if (rescue_s < kNoDamping * most) rescue_s = 0.0;
+  rescue_s = std::min(rescue_s, kMostDamping * most);
+  return std::max(rescue_s, std::min(most, kDampedShare * on_bone_for));
+}
+
+void Insertion::Parts::damp_needle(double ratio) {
+  if (settings.solver != CouplingSettings::Solver::coupled || (ratio == 0.0 && damping_ratio == 0.0)) return;
+  damping_ratio = ratio;
+  needle->damp(ratio);
+  // A tangent of another damping converges, the more slowly the more it is another one.
+  if (std::abs(ratio - tangent_damping) <= kOtherDamping * (1.0 + tangent_damping)) return;
+  tangent_damping = ratio;
   tangent_fits = false;
   forget_preparation();
 }
@@ -101,8 +124,8 @@ bool Insertion::Parts::relax_needle() {
 
 /// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
 /// the needle on them does not buckle where needle and tissue together do not. A few stand for all, each for so many
-/// and as stiff as those together. The tip has one, too, where it is held: the shaft's contacts alone do not keep a
-/// needle that has bowed out between hand and bone.
+/// and as stiff as those together. The tip has one, too, as much stiffer, where it is held: the shaft's contacts alone
+/// do not keep a needle that has bowed out between hand and bone.
 /// @param most of them, evenly spread, the last contact's among them @param lent written, at each contact
 void Insertion::Parts::lend_springs(int most, std::vector<LentSpring>& lent) {
   constexpr double hardest_mm_per_N = 1e-3;
@@ -212,18 +235,22 @@ void Insertion::Parts::change_and_tell(int load, StepReport& report) {
 
 /// Solves the held rows, then lets every state that contradicts its own law change, until none does.
 /// @param changed whether a state has
+/// @param effort has ended where it was broken off
 /// @return false when the matrix is singular
 bool Insertion::Parts::pivot(double h, Effort& effort, StepReport& report, bool& changed) {
   const InPhase in_phase(phases, StepPhase::solve);
   changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
     if (round > 0) {
-      if (!effort.allows(effort.solution())) break;
-      effort.spend(effort.solution());
+      const double anew = round == kAllAtOnce ? effort.matrix() : 0.0;
+      if (!effort.allows(anew + effort.solution())) {
+        effort.end();
+        return true;
+      }
+      effort.spend(anew + effort.solution());
     }
     soften_rows(h);
     if (round == kAllAtOnce) {  // what an old matrix is off by may make states go to and fro
-      effort.spend(effort.matrix());
       matrix_fits = system.factorise();
       if (!matrix_fits) return false;
     }
@@ -414,6 +441,7 @@ void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& r
       old_matrix_failed = true;
       continue;
     }
+    if (effort.ended()) break;  // the states are not those of the solution
     quiet = quiet && !changed;
     steady = steady && tip.toggles == 0;
 

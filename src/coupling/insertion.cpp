@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace stylet {
 
@@ -130,7 +131,10 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   system.supported = false;  // in air a needle needs no springs
   supported_for = 0;
   forget_preparation();
-  needle->damp(damping = 0.0);
+  forget_entry();
+  balanced = true;
+  rescue_s = on_bone_for = 0.0;
+  damp_needle(0.0);
   if (tip.at.tet >= 0) point_at[ContactCompliance::kTip] = tip.at;
   tip = Tip{};
   relaxing = memory.on();
@@ -159,13 +163,14 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     share_length();
   }
   keep_start();
-  damp_needle(h);
+  damp_needle(damping_s(h) / h);
   expect(before, pose);
   steady = settings.solver == CouplingSettings::Solver::coupled;
   bool broke = false;
   int surfaces = 0;
   Effort effort(load_count());
   double cut = 0.0;
+  const unsigned flags_before = std::exchange(report.flags, 0u);
   do {
     if (settings.solver == CouplingSettings::Solver::staggered) {
       solve_staggered(h, report);
@@ -180,6 +185,8 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     commit_tip(report);
     broke = met && tip.touching && tip.force.norm() > tip.limit;
   } while (broke && ++surfaces < kMostSurfaces);
+  balanced = (report.flags & StepReport::not_converged) == 0;
+  report.flags |= flags_before;
   keep_gains(cut);
   for (Grip& grip : grips) {
     const double speed = std::abs(grip.slid) / h;
@@ -196,6 +203,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     const Vec3 now = tip_now - shift;
     if (ahead > 0.0 && phase == TipPhase::exited) {
       phase = TipPhase::in_track;
+      forget_entry();
       add_event(report, InsertionEventKind::re_entered, region_of(track.end_at.tet));
     } else if (ahead <= 0.0 && phase == TipPhase::in_track) {
       phase = TipPhase::exited;
@@ -252,8 +260,7 @@ void Insertion::place(const Pose& base) {
   if (parts_->phase != TipPhase::air) parts_->finish_insertion(unused);
   if (parts_->relaxing) parts_->forget_tissue();
   parts_->rows_complete_at.setConstant(std::numeric_limits<double>::infinity());
-  parts_->awaited_entry.reset();
-  parts_->entered_too_soon = false;
+  parts_->forget_entry();
   parts_->tangent_fits = false;
   parts_->forget_preparation();
   parts_->last_way = parts_->last_cut = parts_->cut_more = 0.0;

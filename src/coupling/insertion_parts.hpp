@@ -112,7 +112,11 @@ struct Insertion::Parts {
   Vec3 rows_complete_at = Vec3::Constant(std::numeric_limits<double>::infinity());  ///< the tip in the last prepare() …
   std::uint64_t rows_arrived = 0;                  ///< … and ComplianceStore::arrived()
   std::optional<NeedleWhereabouts> awaited_entry;  ///< surface met where no compliance is there yet
-  bool entered_too_soon = false;                   ///< … and gone too far beyond: it is to be drawn out first
+  bool went_past_surface = false;                  ///< … and gone too far beyond: it is to be drawn out first
+  void forget_entry() {
+    awaited_entry.reset();
+    went_past_surface = false;
+  }
   CapacityUses capacities;
   Index nodes_at_start = 0;  ///< in the store
   PhaseObserver* phases = nullptr;
@@ -131,7 +135,11 @@ struct Insertion::Parts {
   bool system_stale = false;       ///< … and its compliance was that of another place
   MatX tip_slope;  ///< [1/N] (3 contacts × 3) by how much A's columns of the tip change per mm of cut …
   Vec3 slope_at = Vec3::Zero();  ///< [mm] … where the tip was then
-  double damping = 0.0;          ///< Needle::damp() of this sub-step
+  double damping_ratio = 0.0;    ///< Needle::damp() of this sub-step, …
+  double tangent_damping = 0.0;  ///< … and of the one whose tangent is in use
+  double on_bone_for = 0.0;      ///< [s] the tip, without a break
+  bool balanced = true;          ///< the last sub-step
+  double rescue_s = 0.0;         ///< damping since one was not
   bool foresees_cut = true;      ///< the equations know that compliance changes as the cut goes on
   int supported_for = 0;         ///< tangents on springs since one without was tried
   bool tangent_fits = false;     ///< the needle's tangent is of these contacts
@@ -200,7 +208,8 @@ struct Insertion::Parts {
   [[nodiscard]] double imbalance_over_tolerance() const;
   [[nodiscard]] double largest_force() const;
 
-  void damp_needle(double h);
+  [[nodiscard]] double damping_s(double h);
+  void damp_needle(double ratio);
 
   // preparation.cpp: the next tangent, in pieces.
   void prepare_tangent();

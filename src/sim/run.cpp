@@ -238,7 +238,7 @@ class Runner {
         "did not converge to the full tolerance; a smaller run.dt_ms helps",
         "a stick/slip state was frozen for one sub-step",
         "compliance was missing where the needle left the prepared corridor, and that of the tip's last place stood in "
-        "for it; raise coupling.corridor_mm or coupling.spare_nodes",
+        "for it, or at the skin none; raise coupling.corridor_mm or coupling.spare_nodes",
         "there was no room for another contact; raise coupling.contacts",
         "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
         "the pose of the base was not finite and the step was not taken"};

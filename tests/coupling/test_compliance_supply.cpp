@@ -300,8 +300,34 @@ TEST(ComplianceSupply, a_needle_far_inside_when_the_first_compliance_comes_is_to
   EXPECT_NEAR(run.forces.back(), other.forces.back(), 1e-3 * other.forces.back());
 }
 
+TEST(ComplianceSupply, a_needle_that_went_past_the_skin_may_leave_sideways_and_enter_elsewhere) {
+  WithWorker run;
+  run.rounds_every = 0;
+  run.aim({3, 2, 0});
+  run.go_on(30.0);
+  run.rounds_every = 1;
+  while (run.sideways.x() < 80.0) {  // out through the block's side
+    run.sideways.x() += 0.1;
+    run.one_step();
+    if (run.sideways.x() < 45.0) {
+      ASSERT_TRUE(run.report.flags & StepReport::compliance_missing);
+    }
+  }
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_EQ(run.peak(), 0.0);
+  EXPECT_TRUE(run.happened.empty()) << "not grazed either, from within";
+  run.go_on(-1.0);
+  run.sideways.x() = -20.0;
+  run.one_step();
+  run.rest();
+  run.go_on(30.0);
+  EXPECT_EQ(run.count(Kind::puncture, 0), 1);
+}
+
 TEST(ComplianceSupply, what_came_beyond_the_rows_of_the_start_is_counted) {
-  WithWorker run(fine_block(), little_room());
+  BlockOptions options = fine_block();
+  options.coupling.spare_nodes = kLittle;
+  WithWorker run(options, little_room());
   run.aim({3, 2, 0});
   run.rest();
   const int at_skin = run.insertion->capacities().spare_nodes.most;
@@ -309,7 +335,8 @@ TEST(ComplianceSupply, what_came_beyond_the_rows_of_the_start_is_counted) {
   const CapacityUses& in_use = run.insertion->capacities();
   EXPECT_GT(at_skin, 0);
   EXPECT_GT(in_use.spare_nodes.most, at_skin);
-  EXPECT_LE(in_use.spare_nodes.most, in_use.spare_nodes.room);
+  EXPECT_EQ(in_use.spare_nodes.room, kLittle);
+  EXPECT_LE(in_use.spare_nodes.most, kLittle);
   EXPECT_EQ(in_use.contacts.most, static_cast<int>(run.insertion->contacts().size()) - 1) << "the tip is the other";
 }
 

@@ -416,10 +416,12 @@ static int what_there_is_no_room_for_is_left_out(void) {
   CHECK(memcmp(points + 6, result.tip_mm, sizeof result.tip_mm) == 0);
   CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_CONTACTS, &capacity) == STYLET_RT_OK);
   CHECK(capacity.most >= result.contacts - 1 && capacity.most < capacity.room);
+  CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_SPARE_NODES, &capacity) == STYLET_RT_OK);
+  CHECK(capacity.most >= 0 && capacity.room == 1500); /* coupling.spare_nodes */
   CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_EVENTS, &capacity) == STYLET_RT_OK);
   CHECK(capacity.most >= 1 && capacity.most < capacity.room);
   CHECK(stylet_rt_sim_read_capacity(sim, STYLET_RT_CAPACITY_TRACKS, &capacity) == STYLET_RT_OK);
-  CHECK(capacity.most == 0 && capacity.room > 0);
+  CHECK(capacity.most == 0 && capacity.room == 64);
   stylet_rt_sim_destroy(sim);
   stylet_rt_model_destroy(model);
   return 0;

@@ -108,7 +108,8 @@ class Needle {
 
   /// From now on bending and twist also resist every change from the shape of now, `ratio` times as stiffly as they
   /// are: what internal damping with a time constant τ (Kelvin–Voigt) does within a step of τ / ratio, taken
-  /// implicitly. 0, as at first: they do not. Of tangents only those made afterwards know. Models without damping do
+  /// implicitly. 0, as at first: they do not. residual(), linearise() and relax() are of the damped needle, energy()
+  /// and find_equilibrium() are not; with a tangent of before, relax() converges more slowly. Models without damping do
   /// nothing.
   virtual void damp(double /*ratio*/) {}
 

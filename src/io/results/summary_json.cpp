@@ -114,9 +114,11 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     s.step_us_p999 = number(step.at("p999"));
     s.step_us_max = number(step.at("max"));
     s.contacts_max = json.at("contacts_max").get<int>();
-    const Json& capacity = json.at("capacity");
-    s.capacity = {use_of(capacity.at("contacts")), use_of(capacity.at("spare_nodes")), use_of(capacity.at("tracks")),
-                  use_of(capacity.at("events"))};
+    if (json.contains("capacity")) {  // not in older ones
+      const Json& capacity = json.at("capacity");
+      s.capacity = {use_of(capacity.at("contacts")), use_of(capacity.at("spare_nodes")), use_of(capacity.at("tracks")),
+                    use_of(capacity.at("events"))};
+    }
     s.compliance_condition = number(json.at("compliance_condition"));
     const Json& blur = json.at("mesh_blur_mm");
     s.mesh_blur = {number(blur.at("min")), number(blur.at("median")), number(blur.at("max")),

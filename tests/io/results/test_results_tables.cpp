@@ -144,6 +144,17 @@ TEST(SummaryJson, a_value_that_is_not_finite_becomes_null) {
   EXPECT_TRUE(std::isnan(back->target_shift_max_mm));
 }
 
+TEST(SummaryJson, one_of_before_there_were_capacities_is_read) {
+  Summary summary;
+  summary.contacts_max = 7;
+  auto json = nlohmann::json::parse(summary_json(summary));
+  json.erase("capacity");
+  const auto back = parse_summary_json(json.dump(), "test");
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back->capacity.contacts.room, 0);
+  EXPECT_EQ(back->contacts_max, 7);
+}
+
 TEST(SummaryJson, foreign_json_is_refused_with_its_place) {
   const auto bad = parse_summary_json("{\"version\": \"1\"}", "run.h5");
   ASSERT_FALSE(bad.ok());
