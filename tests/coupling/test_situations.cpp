@@ -121,7 +121,7 @@ TEST(Situation, a_balance_that_is_not_found_is_broken_off_and_leaves_no_force_be
   // Without damping there is none on the way to the next shape.
   const OnBone run(150.0, 0.0);
   EXPECT_TRUE(run.flags & StepReport::not_converged) << "the situation this is about has not come about";
-  EXPECT_LT(run.most, 25) << "as many as it may take";
+  EXPECT_LT(run.most, 25) << "it was not broken off";
   EXPECT_LE(run.grown, 2.0);
 }
 
