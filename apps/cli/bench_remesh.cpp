@@ -36,7 +36,8 @@ Ratios ratios(const validate::EventBench& bench, const std::string& rule, bool c
   const auto median = [&](const validate::EventRow& row) { return cold ? row.cold_us.p50 : row.warm_us.p50; };
   const validate::EventRow& coarsest = *bench.coarsest(rule);
   const validate::EventRow& finest = *bench.finest(rule);
-  Ratios result{bench.woodbury_us.p50 / median(coarsest), {}};
+  const validate::Spread& woodbury = cold ? bench.woodbury_cold_us : bench.woodbury_us;
+  Ratios result{woodbury.p50 / median(coarsest), {}};
   if (finest.nodes != coarsest.nodes) result.finest_over_coarsest = median(finest) / median(coarsest);
   return result;
 }
@@ -51,7 +52,9 @@ void add_events(const validate::EventBench& bench, Json& json) {
                               {"warm_us", spread_json(row.warm_us)},
                               {"cold_us", spread_json(row.cold_us)}});
   }
-  json["event_woodbury"] = {{"nodes", bench.woodbury_nodes}, {"update_us", spread_json(bench.woodbury_us)}};
+  json["event_woodbury"] = {{"nodes", bench.woodbury_nodes},
+                            {"update_us", spread_json(bench.woodbury_us)},
+                            {"update_cold_us", spread_json(bench.woodbury_cold_us)}};
   for (const std::string& rule : kRules) {
     for (const bool cold : {false, true}) {
       const Ratios r = ratios(bench, rule, cold);
@@ -70,19 +73,22 @@ void say_events(const validate::EventBench& bench, Console& console) {
                number(row.cold_us.p50, 1), number(row.cold_us.p95, 1), number(row.cold_us.max, 1)});
   }
   console.say(
-      "A contact laid in the demo patient, all that the loop does for it: search, border, compliances with all other "
-      "points.\n"
+      "A contact laid in the demo patient where the tip is, all that the loop does for it: search, border, compliances "
+      "with all other points.\n"
       "interior, paper: node addition; near-field: the default, without a node; cold: nothing of it in the caches.");
   console.say(table.text());
-  console.say(fmt::format("Woodbury's update of the full inverse at {} nodes: {:.0f} µs ({:.0f} … {:.0f}).",
-                          bench.woodbury_nodes, bench.woodbury_us.p50, bench.woodbury_us.p5, bench.woodbury_us.p95));
+  const auto spread = [](const validate::Spread& of) {
+    return fmt::format("{:.0f} µs ({:.0f} … {:.0f})", of.p50, of.p5, of.p95);
+  };
+  console.say(fmt::format("Woodbury's update of the full inverse at {} nodes: warm {}, cold {}.", bench.woodbury_nodes,
+                          spread(bench.woodbury_us), spread(bench.woodbury_cold_us)));
   for (const std::string& rule : kRules) {
     const Ratios warm = ratios(bench, rule, false);
     const Ratios cold = ratios(bench, rule, true);
-    std::string text =
-        fmt::format("{}: 1/{:.0f} of that, cold 1/{:.0f}", rule, warm.woodbury_over_event, cold.woodbury_over_event);
+    std::string text = fmt::format("{}: warm 1/{:.0f} of that, cold 1/{:.0f}", rule, warm.woodbury_over_event,
+                                   cold.woodbury_over_event);
     if (warm.finest_over_coarsest && cold.finest_over_coarsest) {
-      text += fmt::format("; at {} nodes {:.2f} times what it is at {}, cold {:.2f}", bench.finest(rule)->nodes,
+      text += fmt::format("; at {} nodes {:.2f} times what it is at {} warm, {:.2f} cold", bench.finest(rule)->nodes,
                           *warm.finest_over_coarsest, bench.coarsest(rule)->nodes, *cold.finest_over_coarsest);
     }
     console.say(text + ".");

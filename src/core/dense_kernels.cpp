@@ -347,6 +347,24 @@ bool lu_panel(double* a, Size lda, Size n, Size first, Size count, double tiny, 
   return true;
 }
 
+/// C += Σ_k A_k B_k for blocks of three by three, nine numbers each, one behind the other.
+STYLET_FOR_PROCESSORS
+void add_products(double* c, const double* a, const double* b, std::size_t count) {
+  Four sum[3][3] = {};  // [column of C][column of A]: nine sums that do not wait for each other
+  for (std::size_t k = 0; k < count; ++k, a += 9, b += 9) {
+    // A column is three of four numbers; the last is taken from one before it, or the end would be passed.
+    const Four last = four(a + 5);
+    const Four column[3] = {four(a), four(a + 3), __builtin_shufflevector(last, last, 1, 2, 3, 0)};
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) sum[j][i] += column[i] * b[3 * j + i];
+    }
+  }
+  for (int j = 0; j < 3; ++j) {
+    const Four total = sum[j][0] + sum[j][1] + sum[j][2];
+    for (int i = 0; i < 3; ++i) c[3 * j + i] += total[i];
+  }
+}
+
 }  // namespace
 
 // NOLINTBEGIN(performance-unnecessary-value-param): the results are written through the views
@@ -359,6 +377,13 @@ void subtract_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const
 void subtract_product_transposed(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {
   subtract(C.data(), C.outerStride(), A.data(), A.outerStride(), B.data(), B.outerStride(), 1, C.rows(), C.cols(),
            A.cols());
+}
+
+Mat3 sum_of_products(std::span<const Mat3> A, std::span<const Mat3> B) {
+  assert(A.size() == B.size());
+  Mat3 sum = Mat3::Zero();
+  if (!A.empty()) add_products(sum.data(), A.front().data(), B.front().data(), A.size());
+  return sum;
 }
 
 void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B) {

@@ -27,6 +27,9 @@ void subtract_product_transposed(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX
 /// C ← Aᵀ B
 void transposed_product(Eigen::Ref<MatX> C, const Eigen::Ref<const MatX>& A, const Eigen::Ref<const MatX>& B);
 
+/// Σ_k A_k B_k over pairs of blocks; as many of one as of the other.
+[[nodiscard]] Mat3 sum_of_products(std::span<const Mat3> A, std::span<const Mat3> B);
+
 /// Y ← L⁻¹ Y for a small lower triangle L whose diagonal counts as ones.
 void solve_lower_tile(const Eigen::Ref<const MatX>& L, Eigen::Ref<MatX> Y);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/coupling/track_compliance.hpp"
 
+#include "core/dense_kernels.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -8,8 +10,13 @@
 namespace stylet {
 
 namespace {
-/// Vertices a split may have: two elements that share a face.
-constexpr int kObservablesPerPoint = 6;
+/// Vertices of two elements that share a face.
+constexpr int kBorderVertices = 5;
+/// A point, and those vertices.
+constexpr int kObservablesPerPoint = 1 + kBorderVertices;
+
+/// Rounding must not make a block of the diagonal unsymmetric.
+Mat3 symmetric_part(const Mat3& block) { return 0.5 * (block + block.transpose()); }
 
 /// The displacement of a node itself.
 Shape single_node(Index node) { return {.count = 1, .node = {node}, .weight = {1.0}}; }
@@ -25,7 +32,15 @@ TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, c
   point_observable_.reserve(static_cast<std::size_t>(capacity) + 1);
   z_.resize(observables * static_cast<std::size_t>(capacity));
   hat_.assign(observables * static_cast<std::size_t>(capacity), 0.0);
-  through_.resize(static_cast<std::size_t>(capacity) * static_cast<std::size_t>(capacity));
+  passed_on_.resize(static_cast<std::size_t>(capacity) * static_cast<std::size_t>(capacity));
+  nodes_.reserve(observables * kMostElementNodes);
+  field_.resize(observables * kMostElementNodes);
+  amplitude_.resize(static_cast<std::size_t>(capacity) + 1);
+  borders_.reserve(static_cast<std::size_t>(capacity * kBorderVertices));
+  constexpr int most_loads = kBorderVertices * kMostElementNodes;
+  load_node_.reserve(static_cast<std::size_t>(capacity * most_loads));
+  load_.reserve(static_cast<std::size_t>(capacity * most_loads));
+  blocks_.resize(static_cast<std::size_t>(most_loads));
   changes_.reserve(static_cast<std::size_t>(capacity));
   tip_node_rows_.resize(static_cast<std::size_t>(kMostElementNodes * (capacity + 1)));
   tip_row_ = VecX::Zero(9 * static_cast<Eigen::Index>(capacity));
@@ -37,6 +52,10 @@ void TrackCompliance::reset() {
   mesh_.reset();
   observables_.assign(static_cast<std::size_t>(kFirstFree), Observable{});
   vertex_of_.assign(static_cast<std::size_t>(kFirstFree), -1);
+  nodes_.clear();
+  borders_.clear();
+  load_node_.clear();
+  load_.clear();
   splits_.clear();
   node_point_.clear();
   point_observable_.assign(1, 0);
@@ -70,40 +89,92 @@ Mat3 TrackCompliance::base_block(const Observable& a, const Observable& b) const
   return sum;
 }
 
-Mat3 TrackCompliance::compliance(int a, int b, int splits) const {
+Mat3 TrackCompliance::base_moved(Index node, const Split& split) {
+  const auto nodes = split.loads.of(load_node_);
+  for (std::size_t k = 0; k < nodes.size(); ++k) blocks_[k] = store_->block(node, nodes[k]);
+  return dense::sum_of_products(std::span(blocks_).first(nodes.size()), split.loads.of(load_));
+}
+
+Mat3 TrackCompliance::at_nodes(const Observable& o) const {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(o.shape.count); ++i)
+    sum += o.shape.weight[i] * field_[static_cast<std::size_t>(o.number[i])];
+  return sum;
+}
+
+Mat3 TrackCompliance::compliance(int a, int b) const {
   Mat3 sum = base_block(observables_[static_cast<std::size_t>(a)], observables_[static_cast<std::size_t>(b)]);
-  for (int p = 0; p < splits; ++p) {
-    const Split& split = splits_[static_cast<std::size_t>(p)];
-    if (split.vertices == 0) {  // inside an element z_p = b_p I
-      const double product = hat(a, p) * hat(b, p);
-      if (product != 0.0) sum += product * split.flexibility;
-    } else {
-      sum.noalias() += z(a, p) * split.flexibility * z(b, p).transpose();
+  for (int p = 0; p < static_cast<int>(splits_.size()); ++p) sum.noalias() += z(a, p) * amplitude(b, p);
+  return sum;
+}
+
+Mat3 TrackCompliance::amplitude(int observable, int split) const {
+  const Split& of = splits_[static_cast<std::size_t>(split)];
+  if (of.inside()) return hat(observable, split) * of.flexibility;  // inside an element z_p = b_p I
+  return of.flexibility * z(observable, split).transpose();
+}
+
+void TrackCompliance::load_by(const Split& split) {
+  for (std::size_t m = 0; m < nodes_.size(); ++m) field_[m] = base_moved(nodes_[m], split);
+}
+
+void TrackCompliance::load_by(int observable) {
+  const Shape& shape = observables_[static_cast<std::size_t>(observable)].shape;
+  for (std::size_t m = 0; m < nodes_.size(); ++m) {
+    field_[m].setZero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
+      if (shape.weight[i] != 0.0) field_[m] += shape.weight[i] * store_->block(nodes_[m], shape.node[i]);
     }
+  }
+  for (std::size_t p = 0; p < splits_.size(); ++p) amplitude_[p] = amplitude(observable, static_cast<int>(p));
+}
+
+Mat3 TrackCompliance::moved_by_hats(int observable) const {
+  // With nodes inside elements only z_p = b_p I, and few b_p are not zero.
+  if (!borders_.empty())
+    return dense::sum_of_products({&z(observable, 0), splits_.size()}, std::span(amplitude_).first(splits_.size()));
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t p = 0; p < splits_.size(); ++p) {
+    const double b = hat(observable, static_cast<int>(p));
+    if (b != 0.0) sum += b * amplitude_[p];
   }
   return sum;
 }
 
-void TrackCompliance::extend(int observable, int splits) {
-  Observable& o = observables_[static_cast<std::size_t>(observable)];
-  for (int p = o.known; p < splits; ++p) {
-    const Split& split = splits_[static_cast<std::size_t>(p)];
-    Mat3 value = hat(observable, p) * Mat3::Identity();
-    // Σ_j A_{p−1}(x,j) k_jp, the hats in A_{p−1} taken together.
-    for (int j = 0; j < split.vertices; ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      value.noalias() -= base_block(o, observables_[static_cast<std::size_t>(split.vertex[k])]) * split.border[k];
-    }
-    for (int q = 0; split.vertices > 0 && q < p; ++q)
-      value.noalias() -= z(observable, q) * splits_[static_cast<std::size_t>(q)].flexibility * through(q, p);
-    z(observable, p) = value;
+void TrackCompliance::set_z(int observable, int split, const Mat3& base) {
+  Mat3 value = hat(observable, split) * Mat3::Identity() - base;
+  if (!splits_[static_cast<std::size_t>(split)].inside()) {
+    const auto earlier = static_cast<std::size_t>(split);
+    value -= dense::sum_of_products({&z(observable, 0), earlier}, {&passed_on(0, split), earlier});
   }
-  o.known = std::max(o.known, splits);
+  z(observable, split) = value;
+  observables_[static_cast<std::size_t>(observable)].known = split + 1;
+}
+
+void TrackCompliance::extend(int observable) {
+  const Observable& o = observables_[static_cast<std::size_t>(observable)];
+  for (int p = o.known; p < static_cast<int>(splits_.size()); ++p) {
+    Mat3 base = Mat3::Zero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(o.shape.count); ++i) {
+      if (o.shape.weight[i] != 0.0)
+        base += o.shape.weight[i] * base_moved(o.shape.node[i], splits_[static_cast<std::size_t>(p)]);
+    }
+    set_z(observable, p, base);
+  }
 }
 
 int TrackCompliance::new_observable(const Shape& shape, Index vertex) {
   const int number = static_cast<int>(observables_.size());
-  observables_.push_back({shape, 0});
+  Observable o{.shape = shape, .nodes_before = nodes_.size()};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
+    // The nodes that came last are those of elements near by.
+    const auto found = std::find(nodes_.rbegin(), nodes_.rend(), shape.node[i]);
+    o.number[i] = static_cast<int>(nodes_.rend() - found) - 1;
+    if (found != nodes_.rend()) continue;
+    o.number[i] = static_cast<int>(nodes_.size());
+    nodes_.push_back(shape.node[i]);
+  }
+  observables_.push_back(o);
   vertex_of_.push_back(vertex);
   for (int p = 0; p < capacity_; ++p) hat(number, p) = 0.0;
   return number;
@@ -116,7 +187,18 @@ int TrackCompliance::vertex_observable(Index vertex) {
   }
   const auto found = std::find(vertex_of_.begin() + kFirstFree, vertex_of_.end(), vertex);
   if (found != vertex_of_.end()) return static_cast<int>(found - vertex_of_.begin());
-  return new_observable(single_node(vertex), vertex);
+  const int number = new_observable(single_node(vertex), vertex);
+  for (int i = 0; i < tip_element_.count(); ++i) {
+    const int of_tip = tip_element_.number(i);
+    if (tip_element_.node(of_tip) == vertex) copy_z(kTipNodes + of_tip, number);
+  }
+  return number;
+}
+
+void TrackCompliance::copy_z(int from, int to) {
+  const int known = observables_[static_cast<std::size_t>(from)].known;
+  std::copy_n(&z(from, 0), known, &z(to, 0));
+  observables_[static_cast<std::size_t>(to)].known = known;
 }
 
 void TrackCompliance::interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) {
@@ -152,14 +234,33 @@ void TrackCompliance::add_border(Split& split, const SplitMesh::Leaf& leaf, int 
   for (int j = 0; j < 4; ++j) {
     const int observable = vertex_observable(leaf.vertices[static_cast<std::size_t>(j)]);
     const Mat3 block = -element_block(g, volume, material, j, opposite);
-    const auto end = split.vertex.begin() + split.vertices;
-    const auto found = std::find(split.vertex.begin(), end, observable);
-    if (found == end) {
-      split.vertex[static_cast<std::size_t>(split.vertices)] = observable;
-      split.border[static_cast<std::size_t>(split.vertices)] = block;
-      ++split.vertices;
-    } else {
-      split.border[static_cast<std::size_t>(found - split.vertex.begin())] += block;
+    const auto borders = split.border.of(borders_);
+    const auto found =
+        std::find_if(borders.begin(), borders.end(), [&](const Border& border) { return border.vertex == observable; });
+    if (found != borders.end()) {
+      found->k += block;
+      continue;
+    }
+    borders_.push_back({observable, block});
+    ++split.border.count;
+  }
+}
+
+void TrackCompliance::gather_loads(Split& split) {
+  for (const Border& border : split.border.of(borders_)) {
+    const Shape& shape = observables_[static_cast<std::size_t>(border.vertex)].shape;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
+      if (shape.weight[i] == 0.0) continue;
+      const Mat3 load = shape.weight[i] * border.k;
+      const auto nodes = split.loads.of(load_node_);
+      const auto found = std::find(nodes.begin(), nodes.end(), shape.node[i]);
+      if (found != nodes.end()) {
+        split.loads.of(load_)[static_cast<std::size_t>(found - nodes.begin())] += load;
+        continue;
+      }
+      load_node_.push_back(shape.node[i]);
+      load_.push_back(load);
+      ++split.loads.count;
     }
   }
 }
@@ -226,7 +327,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
     }
   }
 
-  Split split;
+  Split split{.border = {borders_.size()}, .loads = {load_.size()}};
   Mat3 stiffness = Mat3::Zero();
   add_hat_stiffness(stiffness, one, weights_one);
   add_border(split, one, local_one);
@@ -234,39 +335,39 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
     add_hat_stiffness(stiffness, two, weights_two);
     add_border(split, two, local_two);
   }
+  gather_loads(split);
   const int p = static_cast<int>(splits_.size());
-  Mat3 reduced = stiffness;
-  for (int i = 0; i < split.vertices; ++i) extend(split.vertex[static_cast<std::size_t>(i)], p);
-  // Σ_ij k_ipᵀ A_{p−1}(i,j) k_jp, again the hats taken together.
-  for (int i = 0; i < split.vertices; ++i) {
-    const auto a = static_cast<std::size_t>(i);
-    Mat3 moved = Mat3::Zero();  // vertex i, by the base compliance
-    for (int j = 0; j < split.vertices; ++j) {
-      const auto b = static_cast<std::size_t>(j);
-      moved.noalias() += base_block(observables_[static_cast<std::size_t>(split.vertex[a])],
-                                    observables_[static_cast<std::size_t>(split.vertex[b])]) *
-                         split.border[b];
-    }
-    reduced.noalias() -= split.border[a].transpose() * moved;
-  }
+  const auto borders = split.border.of(borders_);
+  for (const Border& border : borders) extend(border.vertex);
   for (int q = 0; q < p; ++q) {
-    Mat3& sum = through(q, p);
-    sum.setZero();
-    for (int j = 0; j < split.vertices; ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      sum.noalias() += z(split.vertex[k], q).transpose() * split.border[k];
-    }
-    reduced.noalias() -= sum.transpose() * splits_[static_cast<std::size_t>(q)].flexibility * sum;
+    Mat3 sum = Mat3::Zero();
+    for (const Border& border : borders) sum.noalias() += z(border.vertex, q).transpose() * border.k;
+    passed_on(q, p).noalias() = splits_[static_cast<std::size_t>(q)].flexibility * sum;
   }
-  split.flexibility = reduced.inverse();
-  split.flexibility = 0.5 * (split.flexibility + split.flexibility.transpose()).eval();
+  splits_.push_back(split);
+  load_by(split);
+  // The new hat vanishes at the vertices, so z_p = −Σ_j A_{p−1}(i,j) k_jp there, and s_p = k_pp + Σ_i k_ipᵀ z_p(i).
+  for (const Border& border : borders) {
+    set_z(border.vertex, p, at_nodes(observables_[static_cast<std::size_t>(border.vertex)]));
+    stiffness.noalias() += border.k.transpose() * z(border.vertex, p);
+  }
+  Mat3& flexibility = splits_.back().flexibility;
+  flexibility = symmetric_part(stiffness.inverse());
 
   const Vec4 base_weights = locator.weights(one_tet, x);
   const int observable = new_observable(store_->tissue().shape(one_tet, base_weights), -1);
   interpolate_hats(observable, one, weights_one);
   hat(observable, p) = 1.0;
+  // What was linear in the element that is split is interpolated.
+  for (int q = 0; q <= p; ++q) {
+    Mat3& value = z(observable, q);
+    value = (q == p ? 1.0 : 0.0) * Mat3::Identity();
+    for (int v = 0; v < 4; ++v) {
+      if (v != local_one) value += weights_one[v] * z(vertex_observable(one.vertices[static_cast<std::size_t>(v)]), q);
+    }
+  }
+  observables_[static_cast<std::size_t>(observable)].known = p + 1;
   mesh_.split_face(one, local_one, two, local_two, x);
-  splits_.push_back(split);
   node_point_.push_back(points_);
 
   const bool inner = two.base_tet >= 0;
@@ -277,45 +378,86 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
                       .elements = inner ? 6 : 3});
 
   // The new hat lets the old points move more: A += z s⁻¹ zᵀ.
-  for (int c = 0; c < points_; ++c) extend(point_observable_[static_cast<std::size_t>(c)], p + 1);
-  if (tip_.tet >= 0) {
-    for (int i = 0; i < tip_element_.count(); ++i) know_tip_node(tip_element_.number(i));
+  for (int c = 1; c < points_; ++c) {
+    const int of = point_observable_[static_cast<std::size_t>(c)];
+    const Observable& o = observables_[static_cast<std::size_t>(of)];
+    if (o.known <= p) set_z(of, p, at_nodes(o));
+    amplitude_[static_cast<std::size_t>(c)] = amplitude(of, p);
   }
-  for (int c = 0; c < points_; ++c) {
-    const Mat3 left = z(point_observable_[static_cast<std::size_t>(c)], p) * splits_.back().flexibility;
-    for (int d = c; d < points_; ++d) {
-      const Mat3 more = left * z(point_observable_[static_cast<std::size_t>(d)], p).transpose();
+  for (int c = 1; c < points_; ++c) {
+    const Mat3& left = z(point_observable_[static_cast<std::size_t>(c)], p);
+    A_.block<3, 3>(3 * c, 3 * c) += symmetric_part(left * amplitude_[static_cast<std::size_t>(c)]);
+    for (int d = c + 1; d < points_; ++d) {
+      const Mat3 more = left * amplitude_[static_cast<std::size_t>(d)];
       A_.block<3, 3>(3 * c, 3 * d) += more;
-      if (d > c) A_.block<3, 3>(3 * d, 3 * c) += more.transpose();
+      A_.block<3, 3>(3 * d, 3 * c) += more.transpose();
     }
   }
+  for (int i = 0; i < tip_element_.count(); ++i) {
+    const int number = tip_element_.number(i);
+    extend(kTipNodes + number);
+    for (int c = 1; c < points_; ++c)
+      tip_node_row(number, c).noalias() += z(kTipNodes + number, p) * amplitude_[static_cast<std::size_t>(c)];
+  }
+  interpolate_tip(p);
+  A_.topLeftCorner<3, 3>() += symmetric_part(z(0, p) * amplitude(0, p));
   return {finish_point(observable), Refusal::none};
 }
 
 int TrackCompliance::finish_point(int observable) {
   ++version_;
-  extend(observable, static_cast<int>(splits_.size()));
+  extend(observable);
   point_observable_.push_back(observable);
   ++points_;
+  load_by(observable);
   write_row(points_ - 1);
-  const int splits = static_cast<int>(splits_.size());
   for (int i = 0; i < tip_element_.count(); ++i) {
-    const int number = tip_element_.number(i);
-    extend(kTipNodes + number, splits);
-    tip_node_row(number, points_ - 1) = compliance(kTipNodes + number, observable, splits);
+    const int node = kTipNodes + tip_element_.number(i);
+    tip_node_row(tip_element_.number(i), points_ - 1) =
+        base_block(observables_[static_cast<std::size_t>(node)], observables_[static_cast<std::size_t>(observable)]) +
+        moved_by_hats(node);
   }
+  write_tip_row();
   return points_ - 1;
+}
+
+/// A of a point, whose load is what moves the nodes now, and all points but the tip.
+void TrackCompliance::write_row(int point) {
+  for (int d = 1; d < points_; ++d) {
+    const int of = point_observable_[static_cast<std::size_t>(d)];
+    const Mat3 block = at_nodes(observables_[static_cast<std::size_t>(of)]) + moved_by_hats(of);
+    A_.block<3, 3>(3 * d, 3 * point) = block;
+    A_.block<3, 3>(3 * point, 3 * d) = block.transpose();
+  }
+  const Mat3 own = A_.block<3, 3>(3 * point, 3 * point);
+  A_.block<3, 3>(3 * point, 3 * point) = symmetric_part(own);
 }
 
 /// A of a node of the tip's element and all points.
 void TrackCompliance::know_tip_node(int number) {
-  const int splits = static_cast<int>(splits_.size());
-  extend(kTipNodes + number, splits);
-  for (int c = 1; c < points_; ++c)
-    tip_node_row(number, c) = compliance(kTipNodes + number, point_observable_[static_cast<std::size_t>(c)], splits);
+  const auto vertex = std::find(vertex_of_.begin() + kFirstFree, vertex_of_.end(), tip_element_.node(number));
+  if (vertex != vertex_of_.end()) copy_z(static_cast<int>(vertex - vertex_of_.begin()), kTipNodes + number);
+  extend(kTipNodes + number);
+  load_by(kTipNodes + number);
+  for (int c = 1; c < points_; ++c) {
+    const int of = point_observable_[static_cast<std::size_t>(c)];
+    tip_node_row(number, c) = (at_nodes(observables_[static_cast<std::size_t>(of)]) + moved_by_hats(of)).transpose();
+  }
 }
 
-/// The tip is interpolated, so its row is as well.
+/// The tip is interpolated, so z_p is as well, from one split on.
+void TrackCompliance::interpolate_tip(int from) {
+  Observable& tip = observables_[0];
+  for (int p = from; p < static_cast<int>(splits_.size()); ++p) {
+    Mat3& value = z(0, p);
+    value.setZero();
+    for (int i = 0; i < tip.shape.count; ++i)
+      value += tip.shape.weight[static_cast<std::size_t>(i)] * z(kTipNodes + tip_element_.number(i), p);
+  }
+  tip.known = static_cast<int>(splits_.size());
+}
+
+/// And its row of A but for its own block.
 void TrackCompliance::write_tip_row() {
   const Shape& shape = observables_[0].shape;
   // The blocks of one node lie one behind the other, those of all points but the tip.
@@ -328,22 +470,6 @@ void TrackCompliance::write_tip_row() {
   }
   A_.block(0, 3, 3, size / 3) = Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>>(row.data(), 3, size / 3);
   A_.block(3, 0, size / 3, 3) = A_.block(0, 3, 3, size / 3).transpose();
-  const Mat3 own = compliance(0, 0, static_cast<int>(splits_.size()));
-  A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());  // rounding must not make it unsymmetric
-}
-
-void TrackCompliance::write_row(int point) {
-  const int splits = static_cast<int>(splits_.size());
-  const int observable = point_observable_[static_cast<std::size_t>(point)];
-  for (int d = 0; d < points_; ++d) {
-    // In this order the store is read along the columns of this point's few nodes.
-    const Mat3 block = compliance(point_observable_[static_cast<std::size_t>(d)], observable, splits);
-    A_.block<3, 3>(3 * d, 3 * point) = block;
-    A_.block<3, 3>(3 * point, 3 * d) = block.transpose();
-  }
-  // Rounding must not make the diagonal block unsymmetric.
-  const Mat3 own = A_.block<3, 3>(3 * point, 3 * point);
-  A_.block<3, 3>(3 * point, 3 * point) = 0.5 * (own + own.transpose());
 }
 
 TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3& x, Placement placement,
@@ -360,14 +486,15 @@ bool TrackCompliance::move_tip(const MaterialPoint& at, const Vec3& /*x*/) {
   const Shape shape = store_->tissue().shape(at.tet, at.weights);
   if (at.tet != tip_.tet) {
     for (const int number : tip_element_.enter(shape)) {
-      observables_[static_cast<std::size_t>(kTipNodes + number)] = {single_node(tip_element_.node(number)), 0};
+      observables_[static_cast<std::size_t>(kTipNodes + number)] = {.shape = single_node(tip_element_.node(number))};
       know_tip_node(number);
     }
   }
   tip_ = at;
-  observables_[0] = {shape, 0};
-  extend(0, static_cast<int>(splits_.size()));
+  observables_[0] = {.shape = shape};
+  interpolate_tip(0);
   write_tip_row();
+  A_.topLeftCorner<3, 3>() = symmetric_part(compliance(0, 0));
   return true;
 }
 
@@ -379,6 +506,7 @@ void TrackCompliance::mark_nodes(std::span<unsigned> stamps, unsigned stamp) con
 }
 
 void TrackCompliance::remove_last_embedded() {
+  nodes_.resize(observables_.back().nodes_before);
   observables_.pop_back();
   vertex_of_.pop_back();
   point_observable_.pop_back();
@@ -405,12 +533,11 @@ TrackCompliance::Nodes TrackCompliance::nodes(const Eigen::Ref<const MatX>& forc
 
 Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) const {
   if (tip_.tet < 0) return Mat3::Zero();
-  const int splits = static_cast<int>(splits_.size());
   const ShapeGradients shape = store_->tissue().shape_gradients(tip_.tet, tip_.weights);
   Mat3 gradient = Mat3::Zero();
   for (int i = 0; i < shape.count; ++i) {
     const int number = tip_element_.number(i);
-    Vec3 u = compliance(kTipNodes + number, 0, splits) * forces.col(kTip);
+    Vec3 u = compliance(kTipNodes + number, 0) * forces.col(kTip);
     for (int c = 1; c < points_; ++c) u.noalias() += tip_node_row(number, c) * forces.col(c);
     gradient.noalias() += u * shape.gradient.col(i).transpose();
   }
@@ -423,17 +550,14 @@ VecX TrackCompliance::base_load(const Eigen::Ref<const MatX>& forces) const {
   // Condense the hats, last first: a hat's amplitude w loads the vertices of its border by −k_jp w.
   for (int p = static_cast<int>(splits_.size()) - 1; p >= 0; --p) {
     const Split& split = splits_[static_cast<std::size_t>(p)];
-    if (split.vertices == 0) continue;
+    if (split.inside()) continue;
     Vec3 work = Vec3::Zero();
     for (std::size_t o = 0; o < observables_.size(); ++o) {
       if (load.col(static_cast<Eigen::Index>(o)).isZero(0.0)) continue;
       work.noalias() += z(static_cast<int>(o), p).transpose() * load.col(static_cast<Eigen::Index>(o));
     }
     const Vec3 amplitude = split.flexibility * work;
-    for (int j = 0; j < split.vertices; ++j) {
-      load.col(split.vertex[static_cast<std::size_t>(j)]).noalias() -=
-          split.border[static_cast<std::size_t>(j)] * amplitude;
-    }
+    for (const Border& border : split.border.of(borders_)) load.col(border.vertex).noalias() -= border.k * amplitude;
   }
   VecX result = VecX::Zero(3 * store_->tissue().displacement_nodes());
   for (std::size_t o = 0; o < observables_.size(); ++o) {

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 
 namespace stylet::validate {
 
@@ -104,55 +105,84 @@ Result<Ground> ground_of(const TetMesh& mesh, const Progress& progress) {
   return ground;
 }
 
-using Laying = std::function<void(std::size_t)>;
+/// One way of changing what the needle holds, place after place.
+struct Way {
+  std::string rule;
+  std::size_t places = 0;
+  std::function<void()> begin;            ///< nothing is laid
+  std::function<void(std::size_t)> come;  ///< the tip comes to the k-th place, as in every step
+  std::function<void(std::size_t)> lay;   ///< what is timed
+  std::vector<double> warm_s{};
+  std::vector<double> cold_s{};
 
-/// Lays `count` contacts round by round and times each one.
-std::vector<double> time_rounds(ContactCompliance& compliance, std::size_t count, int rounds, const Laying& lay,
-                                ColdCaches* cold) {
-  std::vector<double> seconds;
-  seconds.reserve(count * static_cast<std::size_t>(rounds));
-  for (int round = 0; round < rounds; ++round) {
-    compliance.reset();
-    for (std::size_t k = 0; k < count; ++k) {
+  /// @param seconds gets what each event took @param cold if given, empties the caches before each
+  void go(std::vector<double>& seconds, ColdCaches* cold) {
+    begin();
+    for (std::size_t k = 0; k < places; ++k) {
+      come(k);
       if (cold != nullptr) cold->make();
       const double started = reproduce::thread_cpu_s();
       lay(k);
       seconds.push_back(reproduce::thread_cpu_s() - started);
     }
   }
-  return seconds;
-}
+};
 
-EventRow measure(const Ground& ground, const std::string& rule, ContactCompliance& compliance, std::size_t count,
-                 const EventBenchOptions& options, const Laying& lay) {
+/// Goes all ways by turns: what else the machine does then falls on all alike.
+void time_by_turns(std::vector<Way>& ways, const EventBenchOptions& options) {
+  constexpr int rounds_in_turn = 5;
+  for (int turn = 0; turn < options.turns; ++turn) {
+    for (Way& way : ways) {
+      std::vector<double> after_another_way;  // which leaves little of this one in the caches
+      way.go(after_another_way, nullptr);
+      for (int round = 0; round < rounds_in_turn; ++round) way.go(way.warm_s, nullptr);
+    }
+  }
   ColdCaches caches;
-  EventRow row;
-  row.nodes = ground.model->mesh().node_count();
-  row.rule = rule;
-  row.points = static_cast<int>(count);
-  auto warm = time_rounds(compliance, count, options.rounds, lay, nullptr);
-  row.events = static_cast<long>(warm.size());
-  row.warm_us = spread(std::move(warm));
-  row.cold_us = spread(time_rounds(compliance, count, std::max(1, options.rounds / 5), lay, &caches));
-  return row;
+  for (int turn = 0; turn < options.cold_turns; ++turn) {
+    for (Way& way : ways) way.go(way.cold_s, &caches);
+  }
 }
 
-/// Contacts as Insertion lays them: the search starts where the tip is.
-void measure_all(const Ground& ground, std::size_t inside, std::size_t on_faces, std::size_t places,
-                 const EventBenchOptions& options, std::vector<EventRow>& rows) {
+/// How many places each rule has, the same on every mesh, for the cost grows with their number.
+struct Places {
+  std::size_t inside = kMostPoints;
+  std::size_t on_faces = kMostPoints;
+  std::size_t near_field = kMostPoints;
+};
+
+/// Contacts as Insertion lays them: the search starts where the tip is. And, where it is asked for, nodes on faces in
+/// the full inverse.
+void measure(const Ground& ground, const Places& places, const EventBenchOptions& options, bool with_woodbury,
+             EventBench& bench) {
   const Locator& locator = ground.model->locator();
   const Vec3 travel = (ground.way.to - ground.way.from).normalized();
-  TrackCompliance track(ground.way.store, locator, kMostPoints);
-  rows.push_back(measure(ground, "interior", track, inside, options, [&](std::size_t k) {
-    const Index hint = ground.inside[k == 0 ? 0 : k - 1].at.tet;
-    const auto at = locator.find(ground.inside[k].x, hint, -travel);
-    track.add(*at, ground.inside[k].x, Placement::interior, travel);
-  }));
-  rows.push_back(measure(ground, "paper", track, on_faces, options, [&](std::size_t k) {
-    const reproduce::AddedNode& node = ground.on_faces[k];
-    // The march of the tip tells through which element's face it goes.
-    track.add({node.at.tet, locator.weights(node.at.tet, node.x)}, node.x, Placement::face, travel);
-  }));
+  std::vector<Way> ways;
+
+  TrackCompliance inside(ground.way.store, locator, kMostPoints);
+  ways.push_back({.rule = "interior",
+                  .places = places.inside,
+                  .begin = [&] { inside.reset(); },
+                  .come = [&](std::size_t k) { inside.move_tip(ground.inside[k].at, ground.inside[k].x); },
+                  .lay =
+                      [&](std::size_t k) {
+                        const Index hint = ground.inside[k == 0 ? 0 : k - 1].at.tet;
+                        const auto at = locator.find(ground.inside[k].x, hint, -travel);
+                        inside.add(*at, ground.inside[k].x, Placement::interior, travel);
+                      }});
+
+  TrackCompliance on_faces(ground.way.store, locator, kMostPoints);
+  ways.push_back(
+      {.rule = "paper",
+       .places = places.on_faces,
+       .begin = [&] { on_faces.reset(); },
+       .come = [&](std::size_t k) { on_faces.move_tip(ground.on_faces[k].at, ground.on_faces[k].x); },
+       .lay =
+           [&](std::size_t k) {
+             const reproduce::AddedNode& node = ground.on_faces[k];
+             // The march of the tip tells through which element's face it goes.
+             on_faces.add({node.at.tet, locator.weights(node.at.tet, node.x)}, node.x, Placement::face, travel);
+           }});
 
   const Model& model = *ground.near_field;
   const CouplingSettings& settings = model.coupling();
@@ -161,39 +191,57 @@ void measure_all(const Ground& ground, std::size_t inside, std::size_t on_faces,
                                  NeedleKernel{settings.needle_radius_mm, kSpacing_mm}, kMostPoints);
   std::array<int, ContactCompliance::kNeighbours> neighbours{};
   double kept = 0.0;
-  rows.push_back(measure(ground, "near-field", near_field, places, options, [&](std::size_t k) {
-    const Place& place = ground.places[k];
-    const auto at = model.locator().find(place.x, place.hint, -travel);
-    const auto added = near_field.add(*at, place.x, Placement::embedded, travel);
-    int count = 0;
-    for (int point = added.point - 1; point > 0 && count < ContactCompliance::kNeighbours; --point)
-      neighbours[static_cast<std::size_t>(count++)] = point;
-    // Insertion takes a contact back that follows from its neighbours.
-    kept += near_field.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)});
-  }));
-}
+  ways.push_back(
+      {.rule = "near-field",
+       .places = places.near_field,
+       .begin = [&] { near_field.reset(); },
+       .come = [&](std::size_t k) { near_field.move_tip(ground.places[k].at, ground.places[k].x); },
+       .lay =
+           [&](std::size_t k) {
+             const Place& place = ground.places[k];
+             const auto at = model.locator().find(place.x, place.hint, -travel);
+             const auto added = near_field.add(*at, place.x, Placement::embedded, travel);
+             int count = 0;
+             for (int point = added.point - 1; point > 0 && count < ContactCompliance::kNeighbours; --point)
+               neighbours[static_cast<std::size_t>(count++)] = point;
+             // Insertion takes a contact back that follows from its neighbours.
+             kept += near_field.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)});
+           }});
 
-/// The same nodes on faces in the full inverse.
-Result<Spread> woodbury(const Ground& ground, const EventBenchOptions& options) {
   const Tissue& tissue = ground.model->tissue();
-  const auto inverse = std::make_shared<const MatX>(paper::full_inverse(tissue));
-  const auto room = static_cast<int>(ground.on_faces.size());
-  paper::DenseInverse changed(paper::DenseInverse::Engine::woodbury, inverse, room);
-  std::vector<double> seconds;
-  for (int round = 0; round < options.rounds; ++round) {
-    changed.reset();
-    Index hint = ground.on_faces.front().at.tet;
-    for (const reproduce::AddedNode& node : ground.on_faces) {
-      const double started = reproduce::thread_cpu_s();
-      const auto at = ground.model->locator().find(node.x, hint, node.travel);
-      const MatX change = reproduce::stiffness_change(tissue, node);
-      changed.append_node();
-      changed.change(node.dofs, change);
-      seconds.push_back(reproduce::thread_cpu_s() - started);
-      hint = at->tet;
-    }
+  std::optional<paper::DenseInverse> inverse;
+  if (with_woodbury) {
+    inverse.emplace(paper::DenseInverse::Engine::woodbury, std::make_shared<const MatX>(paper::full_inverse(tissue)),
+                    static_cast<int>(places.on_faces));
+    ways.push_back({.rule = "woodbury",
+                    .places = places.on_faces,
+                    .begin = [&] { inverse->reset(); },
+                    .come = [](std::size_t) {},
+                    .lay =
+                        [&](std::size_t k) {
+                          const reproduce::AddedNode& node = ground.on_faces[k];
+                          const auto at = locator.find(node.x, ground.on_faces[k == 0 ? 0 : k - 1].at.tet, node.travel);
+                          kept += at->weights[0];
+                          inverse->append_node();
+                          inverse->change(node.dofs, reproduce::stiffness_change(tissue, node));
+                        }});
   }
-  return spread(std::move(seconds));
+
+  time_by_turns(ways, options);
+  for (Way& way : ways) {
+    if (way.rule == "woodbury") {
+      bench.woodbury_nodes = ground.model->mesh().node_count();
+      bench.woodbury_us = spread(std::move(way.warm_s));
+      bench.woodbury_cold_us = spread(std::move(way.cold_s));
+      continue;
+    }
+    bench.rows.push_back({.nodes = ground.model->mesh().node_count(),
+                          .rule = way.rule,
+                          .points = static_cast<int>(way.places),
+                          .events = static_cast<long>(way.warm_s.size()),
+                          .warm_us = spread(std::move(way.warm_s)),
+                          .cold_us = spread(std::move(way.cold_s))});
+  }
 }
 
 }  // namespace
@@ -219,27 +267,20 @@ Result<EventBench> bench_events(const EventBenchOptions& options, const Progress
     if (!ground) return ground.error();
     grounds.push_back(std::move(*ground));
   }
-  // As many points on every mesh, for the cost grows with their number.
-  std::size_t inside = kMostPoints;
-  std::size_t on_faces = kMostPoints;
-  std::size_t places = kMostPoints;
+  Places places;
   for (const Ground& ground : grounds) {
-    inside = std::min(inside, ground.inside.size());
-    on_faces = std::min(on_faces, ground.on_faces.size());
-    places = std::min(places, ground.places.size());
+    places.inside = std::min(places.inside, ground.inside.size());
+    places.on_faces = std::min(places.on_faces, ground.on_faces.size());
+    places.near_field = std::min(places.near_field, ground.places.size());
   }
-  if (grounds.empty() || inside == 0 || on_faces == 0 || places == 0)
+  if (grounds.empty() || places.inside == 0 || places.on_faces == 0 || places.near_field == 0)
     return failure("timing changes of the mesh", "no node can be added on the needle's way", "Choose a finer mesh");
 
   EventBench bench;
   for (std::size_t k = 0; k < grounds.size(); ++k) {
     report(progress, "timing changes of the mesh", static_cast<double>(k) / static_cast<double>(grounds.size()));
-    measure_all(grounds[k], inside, on_faces, places, options, bench.rows);
+    measure(grounds[k], places, options, k == 0, bench);
   }
-  const auto of_inverse = woodbury(grounds.front(), options);
-  if (!of_inverse) return of_inverse.error();
-  bench.woodbury_nodes = grounds.front().model->mesh().node_count();
-  bench.woodbury_us = *of_inverse;
   report(progress, "timing changes of the mesh", 1.0);
   return bench;
 }

@@ -140,5 +140,20 @@ TEST(DenseProduct, is_subtracted_whatever_the_sizes) {
   }
 }
 
+TEST(DenseProduct, of_small_blocks_is_summed_up) {
+  for (const std::size_t count : {0, 1, 2, 7}) {
+    std::vector<Mat3> A;
+    std::vector<Mat3> B;
+    Mat3 sum = Mat3::Zero();
+    for (std::size_t k = 0; k < count; ++k) {
+      const MatX both = some_matrix(3, 6) * static_cast<double>(k + 1);
+      A.emplace_back(both.leftCols(3));
+      B.emplace_back(both.rightCols(3));
+      sum += A.back() * B.back();
+    }
+    EXPECT_LT((dense::sum_of_products(A, B) - sum).norm(), 1e-14 * (1.0 + sum.norm())) << count;
+  }
+}
+
 }  // namespace
 }  // namespace stylet

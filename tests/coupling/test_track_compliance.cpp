@@ -31,6 +31,46 @@ double difference_to_refactorised(const Block& block, const TrackCompliance& tra
   return (ours - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 }
 
+/// A straight line through the block, from face to face of its elements.
+class LineThroughFaces {
+ public:
+  explicit LineThroughFaces(const Block& block) : block_(block), tet_(block.locator->find(x_, -1, direction_)->tet) {
+    leave();
+  }
+  [[nodiscard]] const Vec3& x() const { return x_; }  ///< on a face of at().tet
+  [[nodiscard]] MaterialPoint at() const { return {tet_, block_.locator->weights(tet_, x_)}; }
+  [[nodiscard]] const Vec3& direction() const { return direction_; }
+
+  /// Goes on through the element beyond. @return false where there is none
+  bool next() {
+    const Index beyond = block_.topology->neighbour[static_cast<std::size_t>(tet_)][static_cast<std::size_t>(local_)];
+    if (beyond < 0) return false;
+    tet_ = beyond;
+    leave();
+    return true;
+  }
+
+ private:
+  void leave() {
+    const Vec4 here = block_.locator->weights(tet_, x_);
+    const Vec4 there = block_.locator->weights(tet_, x_ + 40.0 * direction_);
+    double first = 2.0;
+    for (int i = 0; i < 4; ++i) {
+      if (there[i] < -1e-9 && here[i] / (here[i] - there[i]) < first && here[i] > 1e-9) {
+        first = here[i] / (here[i] - there[i]);
+        local_ = i;
+      }
+    }
+    x_ += first * 40.0 * direction_;
+  }
+
+  const Block& block_;
+  Vec3 direction_ = Vec3(0.13, 0.08, 1.0).normalized();
+  Vec3 x_{17.3, 18.1, 0.0};
+  Index tet_;
+  int local_ = 0;
+};
+
 }  // namespace
 
 TEST(NodeAddition, hundred_interior_nodes_by_the_shortcut_equal_a_refactorised_mesh) {
@@ -82,32 +122,66 @@ TEST(NodeAddition, hundred_face_nodes_by_the_bordered_update_equal_a_refactorise
 TEST(NodeAddition, a_needle_track_of_face_nodes_equals_a_refactorised_mesh) {
   const Block block(6);
   TrackCompliance track(block.store, *block.locator, 60);
-  const Vec3 direction = Vec3(0.13, 0.08, 1.0).normalized();
-  Vec3 x(17.3, 18.1, 0.0);
-  auto at = block.locator->find(x, -1, direction);
-  ASSERT_TRUE(at.has_value());
-  Index tet = at->tet;
+  LineThroughFaces line(block);
   int added = 0;
-  for (int step = 0; step < 60; ++step) {
-    // Leave the element through the face the line crosses.
-    const Vec4 here = block.locator->weights(tet, x);
-    const Vec4 there = block.locator->weights(tet, x + 40.0 * direction);
-    int local = -1;
-    double first = 2.0;
-    for (int i = 0; i < 4; ++i) {
-      if (there[i] < -1e-9 && here[i] / (here[i] - there[i]) < first && here[i] > 1e-9) {
-        first = here[i] / (here[i] - there[i]);
-        local = i;
-      }
-    }
-    ASSERT_GE(local, 0);
-    x += first * 40.0 * direction;
-    if (track.add({tet, block.locator->weights(tet, x)}, x, Placement::face, direction).point >= 0) ++added;
-    tet = block.topology->neighbour[static_cast<std::size_t>(tet)][static_cast<std::size_t>(local)];
-    if (tet < 0) break;
-  }
+  do {
+    if (track.add(line.at(), line.x(), Placement::face, line.direction()).point >= 0) ++added;
+  } while (line.next());
   EXPECT_GE(added, 8);
   EXPECT_LT(difference_to_refactorised(block, track), 1e-8);
+}
+
+// What is known of the tip's element and of the vertices of split ones is passed from one to the other, kept from
+// element to element and changed by every node.
+TEST(NodeAddition, a_track_with_its_tip_and_interpolated_points_among_nodes_equals_a_refactorised_mesh) {
+  const Block block(6);
+  TrackCompliance track(block.store, *block.locator, 60);
+  LineThroughFaces line(block);
+  std::vector<MaterialPoint> place(1);  // of the tip and the points
+  std::vector<Index> node(1, -1);       // that a point has for its own
+  int nodes = 0;
+  const auto lay = [&](const MaterialPoint& at, const Vec3& x, Placement placement) {
+    if (track.add(at, x, placement, line.direction()).point < 0) return;
+    place.push_back(at);
+    node.push_back(placement == Placement::embedded ? -1 : block.tissue->mesh().node_count() + nodes++);
+  };
+  for (int face = 0;; ++face) {
+    // The tip is behind the face, at it, or beyond it when the node is laid.
+    const Vec3 tip = line.x() + (face % 3 - 1) * 1.3 * line.direction();
+    if (const auto at = block.locator->find(tip, line.at().tet)) {
+      ASSERT_TRUE(track.move_tip(*at, tip));
+      place.front() = *at;
+    }
+    lay(line.at(), line.x(), Placement::face);
+    const MaterialPoint in_element{line.at().tet, Vec4(0.4, 0.3, 0.2, 0.1)};
+    if (face % 2 == 0) lay(in_element, Vec3::Zero(), Placement::embedded);
+    if (face % 4 == 1) {
+      ASSERT_GE(track.add(in_element, Vec3::Zero(), Placement::embedded).point, 0);
+      track.remove_last_embedded();
+    }
+    if (!line.next()) break;
+  }
+  ASSERT_GE(nodes, 8);
+  ASSERT_GE(track.points(), nodes + 5);
+
+  const TetMesh split = track.mesh().materialise();
+  const auto fresh = Tissue::build(split, block.materials, block.fixed);
+  ASSERT_TRUE(fresh.ok());
+  MatX load = MatX::Zero(3 * split.node_count(), 3 * track.points());
+  for (int c = 0; c < track.points(); ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    if (node[k] >= 0) {
+      load.block<3, 3>(3 * node[k], 3 * c) = Mat3::Identity();
+      continue;
+    }
+    const Shape shape = block.tissue->shape(place[k].tet, place[k].weights);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i)
+      load.block<3, 3>(3 * shape.node[i], 3 * c) = shape.weight[i] * Mat3::Identity();
+  }
+  const MatX reference = load.transpose() * fresh->solve(load);
+  const MatX ours = track.matrix().topLeftCorner(reference.rows(), reference.cols());
+  EXPECT_LT((ours - reference).cwiseAbs().maxCoeff(), 1e-8 * reference.cwiseAbs().maxCoeff());
+  EXPECT_EQ((ours - ours.transpose()).cwiseAbs().maxCoeff(), 0.0);
 }
 
 TEST(NodeAddition, interior_nodes_leave_old_compliances_bit_for_bit_unchanged) {

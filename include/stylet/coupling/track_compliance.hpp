@@ -50,15 +50,31 @@ class TrackCompliance final : public ContactCompliance {
  private:
   /// Something whose displacement can be asked for: a point, or a vertex of a split element.
   struct Observable {
-    Shape shape;    ///< on the base nodes
-    int known = 0;  ///< z_p is up to date for splits p < known
+    Shape shape;                                  ///< on the base nodes
+    int known = 0;                                ///< z_p is up to date for splits p < known
+    std::size_t nodes_before = 0;                 ///< nodes in use before it came
+    std::array<int, kMostElementNodes> number{};  ///< of its nodes among those in use; the tip's have none
+  };
+  /// What belongs to one split among that of all.
+  struct Range {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    template <class T>
+    [[nodiscard]] auto of(T& all) const {
+      return std::span(all).subspan(first, count);
+    }
+  };
+  struct Border {
+    int vertex = 0;         ///< observable j
+    Mat3 k = Mat3::Zero();  ///< k_jp [N/mm]
   };
   /// An added node.
   struct Split {
-    int vertices = 0;                 ///< of the border, 0 inside an element
-    std::array<int, 8> vertex{};      ///< observables
-    std::array<Mat3, 8> border{};     ///< k_jp [N/mm]
+    Range border;
+    Range loads;                      ///< the same on the base nodes that the vertices are interpolated from
     Mat3 flexibility = Mat3::Zero();  ///< s_p⁻¹ [mm/N]
+
+    [[nodiscard]] bool inside() const { return border.count == 0; }  ///< of an element: no border
   };
 
   static constexpr int kTipNodes = 1;  ///< observables from 1: the displacement nodes of the tip's element, by number
@@ -70,27 +86,45 @@ class TrackCompliance final : public ContactCompliance {
   [[nodiscard]] const Mat3& z(int observable, int split) const {
     return z_[static_cast<std::size_t>(observable * capacity_ + split)];
   }
-  /// Σ_j z_q(j)ᵀ k_jp over the border of split p, for an earlier split q: what earlier hats do to it.
-  Mat3& through(int q, int p) { return through_[static_cast<std::size_t>(p * capacity_ + q)]; }
-  [[nodiscard]] const Mat3& through(int q, int p) const {
-    return through_[static_cast<std::size_t>(p * capacity_ + q)];
+  /// s_q⁻¹ Σ_j z_q(j)ᵀ k_jp over the border of split p, for an earlier split q: what the load k_jp makes of its hat.
+  Mat3& passed_on(int q, int p) { return passed_on_[static_cast<std::size_t>(p * capacity_ + q)]; }
+  [[nodiscard]] const Mat3& passed_on(int q, int p) const {
+    return passed_on_[static_cast<std::size_t>(p * capacity_ + q)];
   }
   double& hat(int observable, int split) { return hat_[static_cast<std::size_t>(observable * capacity_ + split)]; }
   [[nodiscard]] double hat(int observable, int split) const {
     return hat_[static_cast<std::size_t>(observable * capacity_ + split)];
   }
-  [[nodiscard]] Mat3 compliance(int a, int b, int splits) const;
-  void extend(int observable, int splits);
+  [[nodiscard]] Mat3 compliance(int a, int b) const;
+
+  /// What the base compliance makes of a split's loads at a base node.
+  Mat3 base_moved(Index node, const Split& split);
+  /// s_p⁻¹ z_pᵀ: what a force on an observable makes of a split's hat.
+  [[nodiscard]] Mat3 amplitude(int observable, int split) const;
+  /// What a split's loads, or a force on an observable, make of the nodes in use, field_, and, of the latter, of the
+  /// hats, amplitude_. Many observables share nodes, so each block of the store is read once.
+  void load_by(const Split& split);
+  void load_by(int observable);
+  /// The displacement of an observable by that of its nodes, and by that of the hats.
+  [[nodiscard]] Mat3 at_nodes(const Observable& o) const;
+  [[nodiscard]] Mat3 moved_by_hats(int observable) const;
+  /// @param base what the base compliance makes of the split's loads there
+  void set_z(int observable, int split, const Mat3& base);
+  void extend(int observable);
+  /// For observables at the same node.
+  void copy_z(int from, int to);
   int new_observable(const Shape& shape, Index vertex);
   void interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights);
   Added place_inside(const MaterialPoint& at, const Vec3& x);
   Added place_on_face(const MaterialPoint& at, const Vec3& x, const Vec3& travel);
   void add_hat_stiffness(Mat3& stiffness, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) const;
   void add_border(Split& split, const SplitMesh::Leaf& leaf, int opposite);
+  void gather_loads(Split& split);
   int finish_point(int observable);
   int vertex_observable(Index vertex);
   void write_row(int point);
   void know_tip_node(int number);
+  void interpolate_tip(int from);
   void write_tip_row();
   Mat3& tip_node_row(int number, int point) {
     return tip_node_rows_[static_cast<std::size_t>(number * (capacity_ + 1) + point)];
@@ -110,7 +144,14 @@ class TrackCompliance final : public ContactCompliance {
   std::vector<int> node_point_;        ///< (splits) point that sits on an added node
   std::vector<Mat3> z_;
   std::vector<double> hat_;
-  std::vector<Mat3> through_;
+  std::vector<Mat3> passed_on_;
+  std::vector<Border> borders_;
+  std::vector<Index> load_node_;
+  std::vector<Mat3> load_;       ///< Σ_j (weight of the node at vertex j) k_jp [N/mm]
+  std::vector<Mat3> blocks_;     ///< (loads of a split) of the store, side by side
+  std::vector<Index> nodes_;     ///< base nodes of all observables but the tip's, each once
+  std::vector<Mat3> field_;      ///< (nodes_) [mm/N], or of a split's loads [1]
+  std::vector<Mat3> amplitude_;  ///< (splits) [1/N], of a new split (points)
   std::vector<RemeshEvent> changes_;
   MaterialPoint tip_;
   TipElement tip_element_;

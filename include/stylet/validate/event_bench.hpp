@@ -33,6 +33,7 @@ struct EventBench {
   std::vector<EventRow> rows;
   Index woodbury_nodes = 0;  ///< of the smallest mesh, on which the full inverse is changed
   Spread woodbury_us;        ///< search, ΔK, and all of K⁻¹ by the matrix inversion lemma on one triangle
+  Spread woodbury_cold_us;   ///< the same with nothing of it in the caches
 
   /// The row of a rule on the smallest or the largest mesh; null where there is none.
   [[nodiscard]] const EventRow* coarsest(const std::string& rule) const;
@@ -41,7 +42,8 @@ struct EventBench {
 
 struct EventBenchOptions {
   Index largest = 20000;  ///< meshes with more nodes are left out
-  int rounds = 15;        ///< of the whole way
+  int turns = 25;         ///< in each the whole way is gone several times by one rule, then by the next
+  int cold_turns = 4;     ///< emptying the caches takes long
 };
 
 /// The demo patient on meshes of 570, 5,000 and 20,000 nodes; contacts are laid along the demo's
