@@ -104,7 +104,13 @@ Mat3 TrackCompliance::at_nodes(const Observable& o) const {
 
 Mat3 TrackCompliance::compliance(int a, int b) const {
   Mat3 sum = base_block(observables_[static_cast<std::size_t>(a)], observables_[static_cast<std::size_t>(b)]);
-  for (int p = 0; p < static_cast<int>(splits_.size()); ++p) sum.noalias() += z(a, p) * amplitude(b, p);
+  for (int p = 0; p < static_cast<int>(splits_.size()); ++p) {
+    if (!splits_[static_cast<std::size_t>(p)].inside()) {
+      sum.noalias() += z(a, p) * amplitude(b, p);
+    } else if (const double product = hat(a, p) * hat(b, p); product != 0.0) {
+      sum += product * splits_[static_cast<std::size_t>(p)].flexibility;
+    }
+  }
   return sum;
 }
 
@@ -114,11 +120,11 @@ Mat3 TrackCompliance::amplitude(int observable, int split) const {
   return of.flexibility * z(observable, split).transpose();
 }
 
-void TrackCompliance::load_by(const Split& split) {
+void TrackCompliance::load_nodes_by(const Split& split) {
   for (std::size_t m = 0; m < nodes_.size(); ++m) field_[m] = base_moved(nodes_[m], split);
 }
 
-void TrackCompliance::load_by(int observable) {
+void TrackCompliance::load_nodes_by(int observable) {
   const Shape& shape = observables_[static_cast<std::size_t>(observable)].shape;
   for (std::size_t m = 0; m < nodes_.size(); ++m) {
     field_[m].setZero();
@@ -126,6 +132,9 @@ void TrackCompliance::load_by(int observable) {
       if (shape.weight[i] != 0.0) field_[m] += shape.weight[i] * store_->block(nodes_[m], shape.node[i]);
     }
   }
+}
+
+void TrackCompliance::load_hats_by(int observable) {
   for (std::size_t p = 0; p < splits_.size(); ++p) amplitude_[p] = amplitude(observable, static_cast<int>(p));
 }
 
@@ -154,13 +163,18 @@ void TrackCompliance::set_z(int observable, int split, const Mat3& base) {
 void TrackCompliance::extend(int observable) {
   const Observable& o = observables_[static_cast<std::size_t>(observable)];
   for (int p = o.known; p < static_cast<int>(splits_.size()); ++p) {
+    const Split& split = splits_[static_cast<std::size_t>(p)];
     Mat3 base = Mat3::Zero();
     for (std::size_t i = 0; i < static_cast<std::size_t>(o.shape.count); ++i) {
-      if (o.shape.weight[i] != 0.0)
-        base += o.shape.weight[i] * base_moved(o.shape.node[i], splits_[static_cast<std::size_t>(p)]);
+      if (o.shape.weight[i] != 0.0 && !split.inside()) base += o.shape.weight[i] * base_moved(o.shape.node[i], split);
     }
     set_z(observable, p, base);
   }
+}
+
+void TrackCompliance::extend_all() {
+  for (int c = 1; c < points_; ++c) extend(point_observable_[static_cast<std::size_t>(c)]);
+  for (int i = 0; i < tip_element_.count(); ++i) extend(kTipNodes + tip_element_.number(i));
 }
 
 int TrackCompliance::new_observable(const Shape& shape, Index vertex) {
@@ -278,6 +292,7 @@ TrackCompliance::Added TrackCompliance::place_inside(const MaterialPoint& at, co
   hat(observable, static_cast<int>(splits_.size())) = 1.0;
   mesh_.split_inside(leaf, x);
   splits_.push_back(split);
+  extend_all();
   node_point_.push_back(points_);
   changes_.push_back({.kind = RemeshEvent::Kind::added_inside,
                       .point = points_,
@@ -302,6 +317,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   if (first && second) {
     two = mesh_.leaf_at(second->tet, ahead);
     if (!stored(second->tet)) return {-1, Refusal::missing};
+    if (two.vertices == one.vertices) return {-1, Refusal::geometry};  // travel is along the face
   }
   if (!stored(one_tet)) return {-1, Refusal::missing};
 
@@ -310,6 +326,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   weights_one.cwiseAbs().minCoeff(&local_one);
   if (std::abs(weights_one[local_one]) > 1e-4) return {-1, Refusal::geometry};  // x is not on a face
   weights_one[local_one] = 0.0;
+  weights_one /= weights_one.sum();
   for (int q = 0; q < 4; ++q) {
     if (q != local_one && weights_one[q] < kSmallestFaceWeight) return {-1, Refusal::geometry};
   }
@@ -319,6 +336,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
     weights_two = mesh_.weights(two, x);
     weights_two.cwiseAbs().minCoeff(&local_two);
     weights_two[local_two] = 0.0;
+    weights_two /= weights_two.sum();
     for (int q = 0; q < 4; ++q) {  // both leaves must have the same three vertices on the face
       if (q == local_two) continue;
       const Index vertex = two.vertices[static_cast<std::size_t>(q)];
@@ -339,13 +357,14 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   const int p = static_cast<int>(splits_.size());
   const auto borders = split.border.of(borders_);
   for (const Border& border : borders) extend(border.vertex);
+  extend_all();
   for (int q = 0; q < p; ++q) {
     Mat3 sum = Mat3::Zero();
     for (const Border& border : borders) sum.noalias() += z(border.vertex, q).transpose() * border.k;
     passed_on(q, p).noalias() = splits_[static_cast<std::size_t>(q)].flexibility * sum;
   }
   splits_.push_back(split);
-  load_by(split);
+  load_nodes_by(split);
   // The new hat vanishes at the vertices, so z_p = −Σ_j A_{p−1}(i,j) k_jp there, and s_p = k_pp + Σ_i k_ipᵀ z_p(i).
   for (const Border& border : borders) {
     set_z(border.vertex, p, at_nodes(observables_[static_cast<std::size_t>(border.vertex)]));
@@ -381,7 +400,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   for (int c = 1; c < points_; ++c) {
     const int of = point_observable_[static_cast<std::size_t>(c)];
     const Observable& o = observables_[static_cast<std::size_t>(of)];
-    if (o.known <= p) set_z(of, p, at_nodes(o));
+    if (o.known == p) set_z(of, p, at_nodes(o));  // no vertex of this border
     amplitude_[static_cast<std::size_t>(c)] = amplitude(of, p);
   }
   for (int c = 1; c < points_; ++c) {
@@ -409,23 +428,49 @@ int TrackCompliance::finish_point(int observable) {
   extend(observable);
   point_observable_.push_back(observable);
   ++points_;
-  load_by(observable);
-  write_row(points_ - 1);
+  const Observable& o = observables_[static_cast<std::size_t>(observable)];
+  load_hats_by(observable);
   for (int i = 0; i < tip_element_.count(); ++i) {
     const int node = kTipNodes + tip_element_.number(i);
     tip_node_row(tip_element_.number(i), points_ - 1) =
-        base_block(observables_[static_cast<std::size_t>(node)], observables_[static_cast<std::size_t>(observable)]) +
-        moved_by_hats(node);
+        base_block(observables_[static_cast<std::size_t>(node)], o) + moved_by_hats(node);
+  }
+  if (const auto weights = tip_element_.weights(o.shape)) {
+    interpolate_row(observable, *weights);
+  } else {
+    load_nodes_by(observable);
+    write_row(points_ - 1, [&](int /*point*/, int of) { return at_nodes(observables_[static_cast<std::size_t>(of)]); });
   }
   write_tip_row();
   return points_ - 1;
 }
 
-/// A of a point, whose load is what moves the nodes now, and all points but the tip.
-void TrackCompliance::write_row(int point) {
+/// A of a point in the tip's element, whose nodes' rows are known: nothing of the store is needed.
+/// @param weights of the tip's nodes, by their numbers
+void TrackCompliance::interpolate_row(int observable, const TipElement::Weights& weights) {
+  combine_tip_rows(weights);
+  // The nodes have their share of hats from splits with a border. What is left is the point's own.
+  for (std::size_t p = 0; p < splits_.size(); ++p) {
+    if (splits_[p].inside()) continue;
+    Mat3 interpolated = Mat3::Zero();
+    for (int i = 0; i < tip_element_.count(); ++i) {
+      const int number = tip_element_.number(i);
+      interpolated += weights[static_cast<std::size_t>(number)] * z(kTipNodes + number, static_cast<int>(p));
+    }
+    const Mat3 own = z(observable, static_cast<int>(p)) - interpolated;
+    amplitude_[p].noalias() = splits_[p].flexibility * own.transpose();
+  }
+  write_row(points_ - 1, [&](int point, int /*of*/) -> Mat3 {
+    return Eigen::Map<const Mat3>(tip_row_.data() + 9 * static_cast<Eigen::Index>(point - 1)).transpose();
+  });
+}
+
+/// A of a point and all points but the tip: of each what is given of it and its number, and what the hats add.
+template <class Rest>
+void TrackCompliance::write_row(int point, const Rest& rest) {
   for (int d = 1; d < points_; ++d) {
     const int of = point_observable_[static_cast<std::size_t>(d)];
-    const Mat3 block = at_nodes(observables_[static_cast<std::size_t>(of)]) + moved_by_hats(of);
+    const Mat3 block = rest(d, of) + moved_by_hats(of);
     A_.block<3, 3>(3 * d, 3 * point) = block;
     A_.block<3, 3>(3 * point, 3 * d) = block.transpose();
   }
@@ -438,7 +483,8 @@ void TrackCompliance::know_tip_node(int number) {
   const auto vertex = std::find(vertex_of_.begin() + kFirstFree, vertex_of_.end(), tip_element_.node(number));
   if (vertex != vertex_of_.end()) copy_z(static_cast<int>(vertex - vertex_of_.begin()), kTipNodes + number);
   extend(kTipNodes + number);
-  load_by(kTipNodes + number);
+  load_nodes_by(kTipNodes + number);
+  load_hats_by(kTipNodes + number);
   for (int c = 1; c < points_; ++c) {
     const int of = point_observable_[static_cast<std::size_t>(c)];
     tip_node_row(number, c) = (at_nodes(observables_[static_cast<std::size_t>(of)]) + moved_by_hats(of)).transpose();
@@ -447,29 +493,36 @@ void TrackCompliance::know_tip_node(int number) {
 
 /// The tip is interpolated, so z_p is as well, from one split on.
 void TrackCompliance::interpolate_tip(int from) {
-  Observable& tip = observables_[0];
+  const Observable& tip = observables_[0];
   for (int p = from; p < static_cast<int>(splits_.size()); ++p) {
+    if (splits_[static_cast<std::size_t>(p)].inside()) continue;  // the tip has no hat
     Mat3& value = z(0, p);
     value.setZero();
     for (int i = 0; i < tip.shape.count; ++i)
       value += tip.shape.weight[static_cast<std::size_t>(i)] * z(kTipNodes + tip_element_.number(i), p);
   }
-  tip.known = static_cast<int>(splits_.size());
 }
 
-/// And its row of A but for its own block.
-void TrackCompliance::write_tip_row() {
-  const Shape& shape = observables_[0].shape;
+/// Σ (weight of the node) × (its row), into tip_row_.
+void TrackCompliance::combine_tip_rows(const TipElement::Weights& weights) {
   // The blocks of one node lie one behind the other, those of all points but the tip.
   const Eigen::Index size = 9 * static_cast<Eigen::Index>(points_ - 1);
   auto row = tip_row_.head(size);
   row.setZero();
-  for (int i = 0; i < shape.count; ++i) {
-    const Mat3& first = tip_node_row(tip_element_.number(i), 1);
-    row += shape.weight[static_cast<std::size_t>(i)] * Eigen::Map<const VecX>(first.data(), size);
+  for (int i = 0; i < tip_element_.count(); ++i) {
+    const int number = tip_element_.number(i);
+    row += weights[static_cast<std::size_t>(number)] * Eigen::Map<const VecX>(tip_node_row(number, 1).data(), size);
   }
-  A_.block(0, 3, 3, size / 3) = Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>>(row.data(), 3, size / 3);
-  A_.block(3, 0, size / 3, 3) = A_.block(0, 3, 3, size / 3).transpose();
+}
+
+/// And its row of A but for its own block.
+void TrackCompliance::write_tip_row() {
+  const auto weights = tip_element_.weights(observables_[0].shape);
+  if (!weights) return;  // nowhere yet
+  combine_tip_rows(*weights);
+  const Eigen::Index columns = 3 * static_cast<Eigen::Index>(points_ - 1);
+  A_.block(0, 3, 3, columns) = Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>>(tip_row_.data(), 3, columns);
+  A_.block(3, 0, columns, 3) = A_.block(0, 3, 3, columns).transpose();
 }
 
 TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3& x, Placement placement,

@@ -111,9 +111,10 @@ struct Way {
   std::size_t places = 0;
   std::function<void()> begin;            ///< nothing is laid
   std::function<void(std::size_t)> come;  ///< the tip comes to the k-th place, as in every step
-  std::function<void(std::size_t)> lay;   ///< what is timed
+  std::function<bool(std::size_t)> lay;   ///< what is timed; false where nothing could be laid
   std::vector<double> warm_s{};
   std::vector<double> cold_s{};
+  int refused = 0;
 
   /// @param seconds gets what each event took @param cold if given, empties the caches before each
   void go(std::vector<double>& seconds, ColdCaches* cold) {
@@ -122,7 +123,7 @@ struct Way {
       come(k);
       if (cold != nullptr) cold->make();
       const double started = reproduce::thread_cpu_s();
-      lay(k);
+      refused += lay(k) ? 0 : 1;
       seconds.push_back(reproduce::thread_cpu_s() - started);
     }
   }
@@ -153,8 +154,8 @@ struct Places {
 
 /// Contacts as Insertion lays them: the search starts where the tip is. And, where it is asked for, nodes on faces in
 /// the full inverse.
-void measure(const Ground& ground, const Places& places, const EventBenchOptions& options, bool with_woodbury,
-             EventBench& bench) {
+Result<> measure(const Ground& ground, const Places& places, const EventBenchOptions& options, bool with_woodbury,
+                 EventBench& bench) {
   const Locator& locator = ground.model->locator();
   const Vec3 travel = (ground.way.to - ground.way.from).normalized();
   std::vector<Way> ways;
@@ -168,21 +169,21 @@ void measure(const Ground& ground, const Places& places, const EventBenchOptions
                       [&](std::size_t k) {
                         const Index hint = ground.inside[k == 0 ? 0 : k - 1].at.tet;
                         const auto at = locator.find(ground.inside[k].x, hint, -travel);
-                        inside.add(*at, ground.inside[k].x, Placement::interior, travel);
+                        return inside.add(*at, ground.inside[k].x, Placement::interior, travel).point > 0;
                       }});
 
   TrackCompliance on_faces(ground.way.store, locator, kMostPoints);
-  ways.push_back(
-      {.rule = "paper",
-       .places = places.on_faces,
-       .begin = [&] { on_faces.reset(); },
-       .come = [&](std::size_t k) { on_faces.move_tip(ground.on_faces[k].at, ground.on_faces[k].x); },
-       .lay =
-           [&](std::size_t k) {
-             const reproduce::AddedNode& node = ground.on_faces[k];
-             // The march of the tip tells through which element's face it goes.
-             on_faces.add({node.at.tet, locator.weights(node.at.tet, node.x)}, node.x, Placement::face, travel);
-           }});
+  ways.push_back({.rule = "paper",
+                  .places = places.on_faces,
+                  .begin = [&] { on_faces.reset(); },
+                  .come = [&](std::size_t k) { on_faces.move_tip(ground.on_faces[k].at, ground.on_faces[k].x); },
+                  .lay =
+                      [&](std::size_t k) {
+                        const reproduce::AddedNode& node = ground.on_faces[k];
+                        // The march of the tip tells through which element's face it goes.
+                        const MaterialPoint at{node.at.tet, locator.weights(node.at.tet, node.x)};
+                        return on_faces.add(at, node.x, Placement::face, travel).point > 0;
+                      }});
 
   const Model& model = *ground.near_field;
   const CouplingSettings& settings = model.coupling();
@@ -190,23 +191,22 @@ void measure(const Ground& ground, const Places& places, const EventBenchOptions
                                  model.store()->shared_tissue(), model.kernel(),
                                  NeedleKernel{settings.needle_radius_mm, kSpacing_mm}, kMostPoints);
   std::array<int, ContactCompliance::kNeighbours> neighbours{};
-  double kept = 0.0;
-  ways.push_back(
-      {.rule = "near-field",
-       .places = places.near_field,
-       .begin = [&] { near_field.reset(); },
-       .come = [&](std::size_t k) { near_field.move_tip(ground.places[k].at, ground.places[k].x); },
-       .lay =
-           [&](std::size_t k) {
-             const Place& place = ground.places[k];
-             const auto at = model.locator().find(place.x, place.hint, -travel);
-             const auto added = near_field.add(*at, place.x, Placement::embedded, travel);
-             int count = 0;
-             for (int point = added.point - 1; point > 0 && count < ContactCompliance::kNeighbours; --point)
-               neighbours[static_cast<std::size_t>(count++)] = point;
-             // Insertion takes a contact back that follows from its neighbours.
-             kept += near_field.independence(added.point, {neighbours.data(), static_cast<std::size_t>(count)});
-           }});
+  ways.push_back({.rule = "near-field",
+                  .places = places.near_field,
+                  .begin = [&] { near_field.reset(); },
+                  .come = [&](std::size_t k) { near_field.move_tip(ground.places[k].at, ground.places[k].x); },
+                  .lay =
+                      [&](std::size_t k) {
+                        const Place& place = ground.places[k];
+                        const auto at = model.locator().find(place.x, place.hint, -travel);
+                        const auto added = near_field.add(*at, place.x, Placement::embedded, travel);
+                        int count = 0;
+                        for (int point = added.point - 1; point > 0 && count < ContactCompliance::kNeighbours; --point)
+                          neighbours[static_cast<std::size_t>(count++)] = point;
+                        // Insertion takes a contact back that follows from its neighbours.
+                        const std::span<const int> near(neighbours.data(), static_cast<std::size_t>(count));
+                        return near_field.independence(added.point, near) > 0.0;
+                      }});
 
   const Tissue& tissue = ground.model->tissue();
   std::optional<paper::DenseInverse> inverse;
@@ -221,14 +221,16 @@ void measure(const Ground& ground, const Places& places, const EventBenchOptions
                         [&](std::size_t k) {
                           const reproduce::AddedNode& node = ground.on_faces[k];
                           const auto at = locator.find(node.x, ground.on_faces[k == 0 ? 0 : k - 1].at.tet, node.travel);
-                          kept += at->weights[0];
                           inverse->append_node();
                           inverse->change(node.dofs, reproduce::stiffness_change(tissue, node));
+                          return at.has_value();
                         }});
   }
 
   time_by_turns(ways, options);
   for (Way& way : ways) {
+    if (way.refused > 0)
+      return failure("timing changes of the mesh", "a node was refused where it had been laid before", "Report this");
     if (way.rule == "woodbury") {
       bench.woodbury_nodes = ground.model->mesh().node_count();
       bench.woodbury_us = spread(std::move(way.warm_s));
@@ -242,6 +244,7 @@ void measure(const Ground& ground, const Places& places, const EventBenchOptions
                           .warm_us = spread(std::move(way.warm_s)),
                           .cold_us = spread(std::move(way.cold_s))});
   }
+  return Ok{};
 }
 
 }  // namespace
@@ -279,7 +282,8 @@ Result<EventBench> bench_events(const EventBenchOptions& options, const Progress
   EventBench bench;
   for (std::size_t k = 0; k < grounds.size(); ++k) {
     report(progress, "timing changes of the mesh", static_cast<double>(k) / static_cast<double>(grounds.size()));
-    measure(grounds[k], places, options, k == 0, bench);
+    const auto measured = measure(grounds[k], places, options, k == 0, bench);
+    if (!measured) return measured.error();
   }
   report(progress, "timing changes of the mesh", 1.0);
   return bench;

@@ -4,6 +4,7 @@
 #include "stylet/fem/shape.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 namespace stylet {
@@ -44,6 +45,23 @@ class TipElement {
   [[nodiscard]] int count() const { return count_; }
   /// Number of the i-th node of the element.
   [[nodiscard]] int number(int i) const { return number_[static_cast<std::size_t>(i)]; }
+  /// By the numbers of the nodes.
+  using Weights = std::array<double, kMostElementNodes>;
+  /// What a shape has of each node; nothing where it has others as well, or the tip is nowhere.
+  [[nodiscard]] std::optional<Weights> weights(const Shape& shape) const {
+    if (count_ == 0) return std::nullopt;
+    Weights result{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
+      if (shape.weight[i] == 0.0) continue;
+      const auto numbers = std::span(number_).first(static_cast<std::size_t>(count_));
+      const auto found =
+          std::find_if(numbers.begin(), numbers.end(), [&](int number) { return node(number) == shape.node[i]; });
+      if (found == numbers.end()) return std::nullopt;
+      result[static_cast<std::size_t>(*found)] = shape.weight[i];
+    }
+    return result;
+  }
+
   /// Displacement node of a number.
   [[nodiscard]] Index node(int number) const { return node_[static_cast<std::size_t>(number)]; }
 

@@ -21,7 +21,7 @@ namespace stylet {
 /// A(p,p) = Λ A Λᵀ + k_pp⁻¹, and old compliances do not change. On a face k_jp = −K^T_{j o} summed over the one or two
 /// elements T, o being the vertex opposite the face. docs/theory/coupling.md derives both.
 ///
-/// Point 0 is the needle's tip: always embedded, moved at will. No call after construction allocates.
+/// Point 0 is the needle's tip: always embedded, moved at will. After construction nothing allocates but what says so.
 class TrackCompliance final : public ContactCompliance {
  public:
   /// @param store compliance of base nodes; must hold every node asked for
@@ -101,16 +101,20 @@ class TrackCompliance final : public ContactCompliance {
   Mat3 base_moved(Index node, const Split& split);
   /// s_p⁻¹ z_pᵀ: what a force on an observable makes of a split's hat.
   [[nodiscard]] Mat3 amplitude(int observable, int split) const;
-  /// What a split's loads, or a force on an observable, make of the nodes in use, field_, and, of the latter, of the
-  /// hats, amplitude_. Many observables share nodes, so each block of the store is read once.
-  void load_by(const Split& split);
-  void load_by(int observable);
+  /// What a split's loads, or a force on an observable, make of the nodes in use, field_. Many observables share nodes,
+  /// so each block of the store is read once.
+  void load_nodes_by(const Split& split);
+  void load_nodes_by(int observable);
+  /// And what the force makes of the hats, amplitude_.
+  void load_hats_by(int observable);
   /// The displacement of an observable by that of its nodes, and by that of the hats.
   [[nodiscard]] Mat3 at_nodes(const Observable& o) const;
   [[nodiscard]] Mat3 moved_by_hats(int observable) const;
   /// @param base what the base compliance makes of the split's loads there
   void set_z(int observable, int split, const Mat3& base);
   void extend(int observable);
+  /// All points and the nodes of the tip's element.
+  void extend_all();
   /// For observables at the same node.
   void copy_z(int from, int to);
   int new_observable(const Shape& shape, Index vertex);
@@ -122,9 +126,12 @@ class TrackCompliance final : public ContactCompliance {
   void gather_loads(Split& split);
   int finish_point(int observable);
   int vertex_observable(Index vertex);
-  void write_row(int point);
+  void interpolate_row(int observable, const TipElement::Weights& weights);
+  template <class Rest>
+  void write_row(int point, const Rest& rest);
   void know_tip_node(int number);
   void interpolate_tip(int from);
+  void combine_tip_rows(const TipElement::Weights& weights);
   void write_tip_row();
   Mat3& tip_node_row(int number, int point) {
     return tip_node_rows_[static_cast<std::size_t>(number * (capacity_ + 1) + point)];
@@ -151,7 +158,7 @@ class TrackCompliance final : public ContactCompliance {
   std::vector<Mat3> blocks_;     ///< (loads of a split) of the store, side by side
   std::vector<Index> nodes_;     ///< base nodes of all observables but the tip's, each once
   std::vector<Mat3> field_;      ///< (nodes_) [mm/N], or of a split's loads [1]
-  std::vector<Mat3> amplitude_;  ///< (splits) [1/N], of a new split (points)
+  std::vector<Mat3> amplitude_;  ///< (splits) [mm/N], or those of a new split by (points)
   std::vector<RemeshEvent> changes_;
   MaterialPoint tip_;
   TipElement tip_element_;
