@@ -15,6 +15,11 @@ constexpr int kBorderVertices = 5;
 /// A point, and those vertices.
 constexpr int kObservablesPerPoint = 1 + kBorderVertices;
 
+/// How far from a face, by the weight of the node opposite, a point may be that is given as on it.
+constexpr double kOnFace = 1e-4;
+/// Weights that are rounding errors.
+constexpr double kNoWeight = 1e-12;
+
 /// Rounding must not make a block of the diagonal unsymmetric.
 Mat3 symmetric_part(const Mat3& block) { return 0.5 * (block + block.transpose()); }
 
@@ -324,7 +329,7 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   Vec4 weights_one = mesh_.weights(one, x);
   int local_one = 0;
   weights_one.cwiseAbs().minCoeff(&local_one);
-  if (std::abs(weights_one[local_one]) > 1e-4) return {-1, Refusal::geometry};  // x is not on a face
+  if (std::abs(weights_one[local_one]) > kOnFace) return {-1, Refusal::geometry};  // x is not on a face
   weights_one[local_one] = 0.0;
   weights_one /= weights_one.sum();
   for (int q = 0; q < 4; ++q) {
@@ -373,7 +378,10 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   Mat3& flexibility = splits_.back().flexibility;
   flexibility = symmetric_part(stiffness.inverse());
 
-  const Vec4 base_weights = locator.weights(one_tet, x);
+  // On a face of the base mesh the node opposite has no part, and the element beyond, where the tip is, has all others.
+  Vec4 base_weights = locator.weights(one_tet, x);
+  base_weights = (base_weights.array().abs() < kNoWeight).select(0.0, base_weights);
+  base_weights /= base_weights.sum();
   const int observable = new_observable(store_->tissue().shape(one_tet, base_weights), -1);
   interpolate_hats(observable, one, weights_one);
   hat(observable, p) = 1.0;

@@ -22,6 +22,8 @@ namespace {
 constexpr double kDepth_mm = 90.0;
 constexpr double kSpacing_mm = 2.25;
 constexpr int kMostPoints = 40;
+/// The tip has passed a face when the node is laid there: half of a step at 50 mm/s and 1 kHz.
+constexpr double kBeyondFace_mm = 0.025;
 
 Spread spread(std::vector<double> seconds) {
   if (seconds.empty()) return {};
@@ -110,7 +112,7 @@ struct Way {
   std::string rule;
   std::size_t places = 0;
   std::function<void()> begin;            ///< nothing is laid
-  std::function<void(std::size_t)> come;  ///< the tip comes to the k-th place, as in every step
+  std::function<bool(std::size_t)> come;  ///< the tip comes to the k-th place, as in every step; false: it cannot
   std::function<bool(std::size_t)> lay;   ///< what is timed; false where nothing could be laid
   std::vector<double> warm_s{};
   std::vector<double> cold_s{};
@@ -120,7 +122,7 @@ struct Way {
   void go(std::vector<double>& seconds, ColdCaches* cold) {
     begin();
     for (std::size_t k = 0; k < places; ++k) {
-      come(k);
+      refused += come(k) ? 0 : 1;
       if (cold != nullptr) cold->make();
       const double started = reproduce::thread_cpu_s();
       refused += lay(k) ? 0 : 1;
@@ -164,7 +166,7 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
   ways.push_back({.rule = "interior",
                   .places = places.inside,
                   .begin = [&] { inside.reset(); },
-                  .come = [&](std::size_t k) { inside.move_tip(ground.inside[k].at, ground.inside[k].x); },
+                  .come = [&](std::size_t k) { return inside.move_tip(ground.inside[k].at, ground.inside[k].x); },
                   .lay =
                       [&](std::size_t k) {
                         const Index hint = ground.inside[k == 0 ? 0 : k - 1].at.tet;
@@ -176,7 +178,13 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
   ways.push_back({.rule = "paper",
                   .places = places.on_faces,
                   .begin = [&] { on_faces.reset(); },
-                  .come = [&](std::size_t k) { on_faces.move_tip(ground.on_faces[k].at, ground.on_faces[k].x); },
+                  .come =
+                      [&](std::size_t k) {
+                        const reproduce::AddedNode& node = ground.on_faces[k];
+                        const Vec3 beyond = node.x + kBeyondFace_mm * travel;
+                        const auto at = locator.find(beyond, node.at.tet, travel);
+                        return at && on_faces.move_tip(*at, beyond);
+                      },
                   .lay =
                       [&](std::size_t k) {
                         const reproduce::AddedNode& node = ground.on_faces[k];
@@ -194,12 +202,13 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
   ways.push_back({.rule = "near-field",
                   .places = places.near_field,
                   .begin = [&] { near_field.reset(); },
-                  .come = [&](std::size_t k) { near_field.move_tip(ground.places[k].at, ground.places[k].x); },
+                  .come = [&](std::size_t k) { return near_field.move_tip(ground.places[k].at, ground.places[k].x); },
                   .lay =
                       [&](std::size_t k) {
                         const Place& place = ground.places[k];
                         const auto at = model.locator().find(place.x, place.hint, -travel);
                         const auto added = near_field.add(*at, place.x, Placement::embedded, travel);
+                        if (added.point < 0) return false;
                         int count = 0;
                         for (int point = added.point - 1; point > 0 && count < ContactCompliance::kNeighbours; --point)
                           neighbours[static_cast<std::size_t>(count++)] = point;
@@ -216,7 +225,7 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
     ways.push_back({.rule = "woodbury",
                     .places = places.on_faces,
                     .begin = [&] { inverse->reset(); },
-                    .come = [](std::size_t) {},
+                    .come = [](std::size_t) { return true; },
                     .lay =
                         [&](std::size_t k) {
                           const reproduce::AddedNode& node = ground.on_faces[k];
