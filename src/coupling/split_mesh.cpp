@@ -1,7 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/coupling/split_mesh.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace stylet {
+
+namespace {
+/// How far from a face, by the weight of the node opposite, a point may be that is given as on it.
+constexpr double kOnFace = 1e-4;
+
+/// Lays x on the face of a leaf that it is nearest to.
+/// @return whether it was next to nothing away from that face
+bool put_on_face(SplitMesh::Part& part) {
+  const double off = part.weights.cwiseAbs().minCoeff(&part.opposite);
+  part.weights[part.opposite] = 0.0;
+  part.weights /= part.weights.sum();
+  return off <= kOnFace;
+}
+
+/// Whether two leaves have the same vertices on their faces.
+bool share_face(const SplitMesh::Part& one, const SplitMesh::Part& two) {
+  for (int q = 0; q < 4; ++q) {
+    if (q == two.opposite) continue;
+    const auto found =
+        std::find(one.leaf.vertices.begin(), one.leaf.vertices.end(), two.leaf.vertices[static_cast<std::size_t>(q)]);
+    if (found == one.leaf.vertices.end() || found - one.leaf.vertices.begin() == one.opposite) return false;
+  }
+  return true;
+}
+}  // namespace
 
 SplitMesh::SplitMesh(const Locator& locator, int capacity)
     : locator_(&locator), base_nodes_(locator.mesh().node_count()), capacity_(static_cast<std::size_t>(capacity)) {
@@ -65,6 +93,35 @@ SplitMesh::Leaf SplitMesh::leaf_at(Index base_tet, const Vec3& x) const {
   return leaf;
 }
 
+std::optional<SplitMesh::Place> SplitMesh::place_inside(Index base_tet, const Vec3& x, double smallest) const {
+  Part part{.leaf = leaf_at(base_tet, x)};
+  part.weights = weights(part.leaf, x);
+  if (part.weights.minCoeff() < smallest) return std::nullopt;
+  return Place{.x = x, .part = {part}, .count = 1};
+}
+
+std::optional<SplitMesh::Place> SplitMesh::place_on_face(Index base_tet, const Vec3& x, const Vec3& travel,
+                                                         double smallest) const {
+  const Vec3 nudge = 1e-6 * std::cbrt(std::abs(tet_volume(locator_->mesh(), base_tet))) * travel.normalized();
+  Place place{.x = x};
+  for (const Vec3& beside : {Vec3{x - nudge}, Vec3{x + nudge}}) {
+    const auto found = locator_->find(beside, base_tet);
+    if (!found) continue;
+    Part& part = place.part[static_cast<std::size_t>(place.count++)];
+    part.leaf = leaf_at(found->tet, beside);
+    part.weights = weights(part.leaf, x);
+    if (!put_on_face(part)) return std::nullopt;
+  }
+  if (place.count == 0) return std::nullopt;
+  const auto& [one, two] = place.part;
+  // Of a path along the face both leaves are the same, and do not share it.
+  if (place.count == 2 && (two.leaf.vertices == one.leaf.vertices || !share_face(one, two))) return std::nullopt;
+  for (int q = 0; q < 4; ++q) {
+    if (q != one.opposite && one.weights[q] < smallest) return std::nullopt;
+  }
+  return place;
+}
+
 Index SplitMesh::cell_of(const Leaf& leaf) {
   if (leaf.cell >= 0) return leaf.cell;
   const Index cell = static_cast<Index>(cells_.size());
@@ -74,7 +131,7 @@ Index SplitMesh::cell_of(const Leaf& leaf) {
   return cell;
 }
 
-void SplitMesh::split(Index parent, Index vertex, int skip) {
+void SplitMesh::split_cell(Index parent, Index vertex, int skip) {
   const Cell whole = cells_[static_cast<std::size_t>(parent)];
   cells_[static_cast<std::size_t>(parent)].first_child = static_cast<Index>(cells_.size());
   for (int q = 0; q < 4; ++q) {
@@ -86,20 +143,11 @@ void SplitMesh::split(Index parent, Index vertex, int skip) {
   }
 }
 
-Index SplitMesh::split_inside(const Leaf& leaf, const Vec3& x) {
+Index SplitMesh::split(const Place& place) {
   if (positions_.size() == capacity_) return -1;
   const Index vertex = base_nodes_ + static_cast<Index>(positions_.size());
-  positions_.push_back(x);
-  split(cell_of(leaf), vertex, -1);
-  return vertex;
-}
-
-Index SplitMesh::split_face(const Leaf& one, int local1, const Leaf& two, int local2, const Vec3& x) {
-  if (positions_.size() == capacity_) return -1;
-  const Index vertex = base_nodes_ + static_cast<Index>(positions_.size());
-  positions_.push_back(x);
-  split(cell_of(one), vertex, local1);
-  if (two.base_tet >= 0) split(cell_of(two), vertex, local2);
+  positions_.push_back(place.x);
+  for (const Part& part : place.parts()) split_cell(cell_of(part.leaf), vertex, part.opposite);
   return vertex;
 }
 

@@ -2,6 +2,7 @@
 #include "stylet/coupling/track_compliance.hpp"
 
 #include "core/dense_kernels.hpp"
+#include "coupling/hat_stiffness.hpp"
 
 #include <Eigen/LU>
 
@@ -15,8 +16,6 @@ constexpr int kBorderVertices = 5;
 /// A point, and those vertices.
 constexpr int kObservablesPerPoint = 1 + kBorderVertices;
 
-/// How far from a face, by the weight of the node opposite, a point may be that is given as on it.
-constexpr double kOnFace = 1e-4;
 /// Weights that are rounding errors.
 constexpr double kNoWeight = 1e-12;
 
@@ -220,47 +219,28 @@ void TrackCompliance::copy_z(int from, int to) {
   observables_[static_cast<std::size_t>(to)].known = known;
 }
 
-void TrackCompliance::interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) {
+void TrackCompliance::interpolate_hats(int observable, const SplitMesh::Part& part) {
   for (int v = 0; v < 4; ++v) {
-    const Index vertex = leaf.vertices[static_cast<std::size_t>(v)];
+    const Index vertex = part.leaf.vertices[static_cast<std::size_t>(v)];
     if (!mesh_.is_added(vertex)) continue;
     const int of_vertex = vertex_observable(vertex);
     for (std::size_t p = 0; p < splits_.size(); ++p) {
-      hat(observable, static_cast<int>(p)) += leaf_weights[v] * hat(of_vertex, static_cast<int>(p));
+      hat(observable, static_cast<int>(p)) += part.weights[v] * hat(of_vertex, static_cast<int>(p));
     }
   }
 }
 
-void TrackCompliance::add_hat_stiffness(Mat3& stiffness, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) const {
-  // The child that replaces vertex q has volume V l_q and hat gradient g_q / l_q.
-  const Material material = material_of(leaf.base_tet);
-  const auto g = mesh_.gradients(leaf);
-  const double volume = mesh_.volume(leaf);
-  for (int q = 0; q < 4; ++q) {
-    if (leaf_weights[q] == 0.0) continue;
-    const Vec3 gq = g.col(q);
-    stiffness += (volume / leaf_weights[q]) * ((material.lambda() + material.mu()) * gq * gq.transpose() +
-                                               material.mu() * gq.squaredNorm() * Mat3::Identity());
-  }
-}
-
-void TrackCompliance::add_border(Split& split, const SplitMesh::Leaf& leaf, int opposite) {
-  // Σ over the children of volume × hat gradient = V Σ_{q ≠ o} g_q = −V g_o, so the border is −K_jo of the whole
-  // element.
-  const Material material = material_of(leaf.base_tet);
-  const auto g = mesh_.gradients(leaf);
-  const double volume = mesh_.volume(leaf);
-  for (int j = 0; j < 4; ++j) {
-    const int observable = vertex_observable(leaf.vertices[static_cast<std::size_t>(j)]);
-    const Mat3 block = -element_block(g, volume, material, j, opposite);
+void TrackCompliance::add_border(Split& split, const SplitMesh::Leaf& leaf, std::span<const Mat3, 4> k) {
+  for (std::size_t j = 0; j < 4; ++j) {
+    const int observable = vertex_observable(leaf.vertices[j]);
     const auto borders = split.border.of(borders_);
     const auto found =
         std::find_if(borders.begin(), borders.end(), [&](const Border& border) { return border.vertex == observable; });
     if (found != borders.end()) {
-      found->k += block;
+      found->k += k[j];
       continue;
     }
-    borders_.push_back({observable, block});
+    borders_.push_back({observable, k[j]});
     ++split.border.count;
   }
 }
@@ -284,79 +264,47 @@ void TrackCompliance::gather_loads(Split& split) {
   }
 }
 
-TrackCompliance::Added TrackCompliance::place_inside(const MaterialPoint& at, const Vec3& x) {
-  const SplitMesh::Leaf leaf = mesh_.leaf_at(at.tet, x);
-  const Vec4 weights = mesh_.weights(leaf, x);
-  if (weights.minCoeff() < kSmallestWeight) return {-1, Refusal::geometry};
-  Split split;
-  Mat3 stiffness = Mat3::Zero();
-  add_hat_stiffness(stiffness, leaf, weights);
-  split.flexibility = stiffness.inverse();
-  const int observable = new_observable(store_->tissue().shape(at.tet, at.weights), -1);
-  interpolate_hats(observable, leaf, weights);
-  hat(observable, static_cast<int>(splits_.size())) = 1.0;
-  mesh_.split_inside(leaf, x);
-  splits_.push_back(split);
+int TrackCompliance::add_inside(const SplitMesh::Place& place, const Shape& shape) {
+  const SplitMesh::Part& part = place.part[0];
+  const int p = static_cast<int>(splits_.size());
+  const int observable = new_observable(shape, -1);
+  interpolate_hats(observable, part);
+  hat(observable, p) = 1.0;
+  splits_.push_back({.flexibility = hat_stiffness(mesh_, part, material_of(part.leaf.base_tet)).own.inverse()});
   extend_all();
-  node_point_.push_back(points_);
-  changes_.push_back({.kind = RemeshEvent::Kind::added_inside,
-                      .point = points_,
-                      .node = mesh_.locator().mesh().node_count() + static_cast<Index>(splits_.size()) - 1,
-                      .dimension = 15,
-                      .elements = 4});
-  return {finish_point(observable), Refusal::none};
+  split_mesh(place);
+  return finish_point(observable);
 }
 
-TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, const Vec3& x, const Vec3& travel) {
-  const Locator& locator = mesh_.locator();
-  const double nudge = 1e-6 * std::cbrt(std::abs(tet_volume(locator.mesh(), at.tet)));
-  const Vec3 ahead = x + nudge * travel.normalized();
-  const Vec3 behind = x - nudge * travel.normalized();
-  const auto first = locator.find(behind, at.tet);
-  const auto second = locator.find(ahead, at.tet);
-  if (!first && !second) return {-1, Refusal::geometry};
-  // At the outer surface only one element exists; call it the first.
-  const Index one_tet = first ? first->tet : second->tet;
-  const SplitMesh::Leaf one = mesh_.leaf_at(one_tet, first ? behind : ahead);
-  SplitMesh::Leaf two;
-  if (first && second) {
-    two = mesh_.leaf_at(second->tet, ahead);
-    if (!stored(second->tet)) return {-1, Refusal::missing};
-    if (two.vertices == one.vertices) return {-1, Refusal::geometry};  // travel is along the face
-  }
-  if (!stored(one_tet)) return {-1, Refusal::missing};
+int TrackCompliance::add_on_face(const SplitMesh::Place& place, const Shape& shape) {
+  const int p = static_cast<int>(splits_.size());
+  add_split(place);
+  const int observable = new_observable(shape, -1);
+  interpolate_from_face(observable, place.part[0]);
+  split_mesh(place);
+  loosen_points(p);
+  return finish_point(observable);
+}
 
-  Vec4 weights_one = mesh_.weights(one, x);
-  int local_one = 0;
-  weights_one.cwiseAbs().minCoeff(&local_one);
-  if (std::abs(weights_one[local_one]) > kOnFace) return {-1, Refusal::geometry};  // x is not on a face
-  weights_one[local_one] = 0.0;
-  weights_one /= weights_one.sum();
-  for (int q = 0; q < 4; ++q) {
-    if (q != local_one && weights_one[q] < kSmallestFaceWeight) return {-1, Refusal::geometry};
-  }
-  Vec4 weights_two = Vec4::Zero();
-  int local_two = -1;
-  if (two.base_tet >= 0) {
-    weights_two = mesh_.weights(two, x);
-    weights_two.cwiseAbs().minCoeff(&local_two);
-    weights_two[local_two] = 0.0;
-    weights_two /= weights_two.sum();
-    for (int q = 0; q < 4; ++q) {  // both leaves must have the same three vertices on the face
-      if (q == local_two) continue;
-      const Index vertex = two.vertices[static_cast<std::size_t>(q)];
-      const auto found = std::find(one.vertices.begin(), one.vertices.end(), vertex);
-      if (found == one.vertices.end() || found - one.vertices.begin() == local_one) return {-1, Refusal::geometry};
-    }
-  }
+/// The node is the next point's.
+void TrackCompliance::split_mesh(const SplitMesh::Place& place) {
+  const Index node = mesh_.split(place);
+  node_point_.push_back(points_);
+  const auto kind = place.inside() ? RemeshEvent::Kind::added_inside : RemeshEvent::Kind::added_on_face;
+  const int vertices = 4 + place.count;  // of the elements together, the new one among them
+  const int children = place.inside() ? 4 : 3;
+  changes_.push_back(
+      {.kind = kind, .point = points_, .node = node, .dimension = 3 * vertices, .elements = place.count * children});
+}
 
+/// A split with a border, and z of the border's vertices.
+void TrackCompliance::add_split(const SplitMesh::Place& place) {
   Split split{.border = {borders_.size()}, .loads = {load_.size()}};
   Mat3 stiffness = Mat3::Zero();
-  add_hat_stiffness(stiffness, one, weights_one);
-  add_border(split, one, local_one);
-  if (two.base_tet >= 0) {
-    add_hat_stiffness(stiffness, two, weights_two);
-    add_border(split, two, local_two);
+  for (const SplitMesh::Part& part : place.parts()) {
+    const HatStiffness of_part = hat_stiffness(mesh_, part, material_of(part.leaf.base_tet));
+    stiffness += of_part.own;
+    add_border(split, part.leaf, of_part.border);
   }
   gather_loads(split);
   const int p = static_cast<int>(splits_.size());
@@ -375,36 +323,28 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
     set_z(border.vertex, p, at_nodes(observables_[static_cast<std::size_t>(border.vertex)]));
     stiffness.noalias() += border.k.transpose() * z(border.vertex, p);
   }
-  Mat3& flexibility = splits_.back().flexibility;
-  flexibility = symmetric_part(stiffness.inverse());
+  splits_.back().flexibility = symmetric_part(stiffness.inverse());
+}
 
-  // On a face of the base mesh the node opposite has no part, and the element beyond, where the tip is, has all others.
-  Vec4 base_weights = locator.weights(one_tet, x);
-  base_weights = (base_weights.array().abs() < kNoWeight).select(0.0, base_weights);
-  base_weights /= base_weights.sum();
-  const int observable = new_observable(store_->tissue().shape(one_tet, base_weights), -1);
-  interpolate_hats(observable, one, weights_one);
+/// Hats and z of the node of the last split, which is on a face.
+void TrackCompliance::interpolate_from_face(int observable, const SplitMesh::Part& part) {
+  const int p = static_cast<int>(splits_.size()) - 1;
+  interpolate_hats(observable, part);
   hat(observable, p) = 1.0;
   // What was linear in the element that is split is interpolated.
   for (int q = 0; q <= p; ++q) {
     Mat3& value = z(observable, q);
     value = (q == p ? 1.0 : 0.0) * Mat3::Identity();
     for (int v = 0; v < 4; ++v) {
-      if (v != local_one) value += weights_one[v] * z(vertex_observable(one.vertices[static_cast<std::size_t>(v)]), q);
+      if (v == part.opposite) continue;
+      value += part.weights[v] * z(vertex_observable(part.leaf.vertices[static_cast<std::size_t>(v)]), q);
     }
   }
   observables_[static_cast<std::size_t>(observable)].known = p + 1;
-  mesh_.split_face(one, local_one, two, local_two, x);
-  node_point_.push_back(points_);
+}
 
-  const bool inner = two.base_tet >= 0;
-  changes_.push_back({.kind = RemeshEvent::Kind::added_on_face,
-                      .point = points_,
-                      .node = mesh_.locator().mesh().node_count() + p,
-                      .dimension = inner ? 18 : 15,
-                      .elements = inner ? 6 : 3});
-
-  // The new hat lets the old points move more: A += z s⁻¹ zᵀ.
+/// The hat of split p, for whose loads field_ is, lets the points move more: A += z s⁻¹ zᵀ.
+void TrackCompliance::loosen_points(int p) {
   for (int c = 1; c < points_; ++c) {
     const int of = point_observable_[static_cast<std::size_t>(c)];
     const Observable& o = observables_[static_cast<std::size_t>(of)];
@@ -428,7 +368,6 @@ TrackCompliance::Added TrackCompliance::place_on_face(const MaterialPoint& at, c
   }
   interpolate_tip(p);
   A_.topLeftCorner<3, 3>() += symmetric_part(z(0, p) * amplitude(0, p));
-  return {finish_point(observable), Refusal::none};
 }
 
 int TrackCompliance::finish_point(int observable) {
@@ -536,10 +475,28 @@ void TrackCompliance::write_tip_row() {
 TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3& x, Placement placement,
                                             const Vec3& travel) {
   if (points_ > capacity_ || static_cast<int>(splits_.size()) == capacity_) return {-1, Refusal::capacity};
-  if (placement == Placement::face) return place_on_face(at, x, travel);
+  if (placement == Placement::face) {
+    const auto place = mesh_.place_on_face(at.tet, x, travel, kSmallestFaceWeight);
+    if (!place) return {-1, Refusal::geometry};
+    const auto parts = place->parts();
+    if (!std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return stored(part.leaf.base_tet); }))
+      return {-1, Refusal::missing};
+    return {add_on_face(*place, shape_on_face(parts.front().leaf.base_tet, x)), Refusal::none};
+  }
   if (!stored(at.tet)) return {-1, Refusal::missing};
-  if (placement == Placement::interior) return place_inside(at, x);
-  return {finish_point(new_observable(store_->tissue().shape(at.tet, at.weights), -1)), Refusal::none};
+  const Shape shape = store_->tissue().shape(at.tet, at.weights);
+  if (placement == Placement::embedded) return {finish_point(new_observable(shape, -1)), Refusal::none};
+  const auto place = mesh_.place_inside(at.tet, x, kSmallestWeight);
+  if (!place) return {-1, Refusal::geometry};
+  return {add_inside(*place, shape), Refusal::none};
+}
+
+/// On a face of the base mesh the node opposite has no part, and the element beyond, where the tip is, has all others.
+Shape TrackCompliance::shape_on_face(Index base_tet, const Vec3& x) const {
+  Vec4 weights = mesh_.locator().weights(base_tet, x);
+  weights = (weights.array().abs() < kNoWeight).select(0.0, weights);
+  weights /= weights.sum();
+  return store_->tissue().shape(base_tet, weights);
 }
 
 bool TrackCompliance::move_tip(const MaterialPoint& at, const Vec3& /*x*/) {

@@ -3,6 +3,8 @@
 
 #include "stylet/geom/locator.hpp"
 
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace stylet {
@@ -33,12 +35,32 @@ class SplitMesh {
   [[nodiscard]] Eigen::Matrix<double, 3, 4> gradients(const Leaf& leaf) const;
   [[nodiscard]] double volume(const Leaf& leaf) const;  ///< [mm³]
 
-  /// Splits a leaf into four at an interior point. Returns the new node's number, or -1 when the capacity is used up.
-  Index split_inside(const Leaf& leaf, const Vec3& x);
+  /// A leaf that a new node splits.
+  struct Part {
+    Leaf leaf;
+    Vec4 weights = Vec4::Zero();  ///< of the node in it, sum 1
+    int opposite = -1;            ///< vertex opposite the face that the node is on, its weight 0; -1 = inside
+  };
+  /// Where a node can be added: inside a leaf, or on the face of two (one at the outer surface).
+  struct Place {
+    Vec3 x = Vec3::Zero();  ///< [mm] LPS
+    std::array<Part, 2> part{};
+    int count = 0;  ///< leaves that are split
 
-  /// Splits the two leaves that share a face (one at the outer surface: pass a second leaf with base_tet = -1) into
-  /// three each at a point on that face. @param local1, local2 the vertex opposite the face in each leaf
-  Index split_face(const Leaf& one, int local1, const Leaf& two, int local2, const Vec3& x);
+    [[nodiscard]] bool inside() const { return part.front().opposite < 0; }
+    [[nodiscard]] std::span<const Part> parts() const { return std::span(part).first(static_cast<std::size_t>(count)); }
+  };
+  /// A place inside the leaf of `base_tet` that contains x. Empty where a weight is less than `smallest`.
+  [[nodiscard]] std::optional<Place> place_inside(Index base_tet, const Vec3& x, double smallest) const;
+  /// A place on the face that a path through x along `travel` crosses there: the leaf left comes first, at the outer
+  /// surface the only one. Empty where there is no such face, or a weight on it is less than `smallest`.
+  /// @param base_tet a base tetrahedron that the face belongs to
+  [[nodiscard]] std::optional<Place> place_on_face(Index base_tet, const Vec3& x, const Vec3& travel,
+                                                   double smallest) const;
+
+  /// Adds a node: a leaf becomes four if the node is inside, three if it is on a face. Returns the new node's number,
+  /// or -1 when the capacity is used up.
+  Index split(const Place& place);
 
   [[nodiscard]] Vec3 position(Index vertex) const;  ///< [mm] LPS, base or added
   [[nodiscard]] bool is_added(Index vertex) const { return vertex >= base_nodes_; }
@@ -60,7 +82,7 @@ class SplitMesh {
     int children = 0;
   };
   Index cell_of(const Leaf& leaf);
-  void split(Index cell, Index vertex, int skip);
+  void split_cell(Index cell, Index vertex, int skip);
 
   const Locator* locator_;
   Index base_nodes_;

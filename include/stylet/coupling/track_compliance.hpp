@@ -118,12 +118,16 @@ class TrackCompliance final : public ContactCompliance {
   /// For observables at the same node.
   void copy_z(int from, int to);
   int new_observable(const Shape& shape, Index vertex);
-  void interpolate_hats(int observable, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights);
-  Added place_inside(const MaterialPoint& at, const Vec3& x);
-  Added place_on_face(const MaterialPoint& at, const Vec3& x, const Vec3& travel);
-  void add_hat_stiffness(Mat3& stiffness, const SplitMesh::Leaf& leaf, const Vec4& leaf_weights) const;
-  void add_border(Split& split, const SplitMesh::Leaf& leaf, int opposite);
+  void interpolate_hats(int observable, const SplitMesh::Part& part);
+  int add_inside(const SplitMesh::Place& place, const Shape& shape);
+  int add_on_face(const SplitMesh::Place& place, const Shape& shape);
+  [[nodiscard]] Shape shape_on_face(Index base_tet, const Vec3& x) const;
+  void split_mesh(const SplitMesh::Place& place);
+  void add_split(const SplitMesh::Place& place);
+  void add_border(Split& split, const SplitMesh::Leaf& leaf, std::span<const Mat3, 4> k);
   void gather_loads(Split& split);
+  void interpolate_from_face(int observable, const SplitMesh::Part& part);
+  void loosen_points(int p);
   int finish_point(int observable);
   int vertex_observable(Index vertex);
   void interpolate_row(int observable, const TipElement::Weights& weights);
