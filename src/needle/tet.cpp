@@ -103,6 +103,8 @@ double TetNeedle::residual(std::span<const PointLoad> loads) const {
   return tet::largest_imbalance(parts_->shape, parts_->base_rotation, loads, parts_->imbalance);
 }
 
+void TetNeedle::damp(double ratio) { parts_->shape.damp(ratio); }
+
 void TetNeedle::straighten() {
   parts_->shape.displacement = parts_->shape.rest();
   parts_->shape.update();

@@ -14,7 +14,8 @@ TetShape::TetShape(SegmentMesh mesh, int segments, double segment_length, double
       curve_(segments, segment_length),
       lambda_(young_modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))),
       mu_(young_modulus / (2.0 * (1.0 + poisson))),
-      states_(static_cast<std::size_t>(segments) * mesh_.elements.size()) {
+      states_(static_cast<std::size_t>(segments) * mesh_.elements.size()),
+      damped_from_(states_.size(), Mat3::Zero()) {
   const Eigen::Index unknowns = 3 * segments * (mesh_.middle_nodes() + kLayerNodes);
   displacement.setZero(unknowns);
   rest_.setZero(unknowns);
@@ -54,11 +55,18 @@ void TetShape::scale_modulus(double factor) {
   update();
 }
 
+void TetShape::damp(double ratio) {
+  damping_ = ratio;
+  for (std::size_t e = 0; e < states_.size(); ++e) damped_from_[e] = states_[e].elastic;
+  update();
+}
+
 void TetShape::update() {
   ++revision_;
   energy_ = 0.0;
   force_.setZero();
   auto state = states_.begin();
+  auto from = damped_from_.begin();
   std::array<Vec3, kMostNodes> u;
   std::array<Vec3, kMostNodes> f;
   const int nodes = static_cast<int>(mesh_.nodes.size());
@@ -78,6 +86,8 @@ void TetShape::update() {
       S.diagonal().array() += lambda_ * strain.trace();
       energy_ += 0.5 * element.volume * S.cwiseProduct(strain).sum();
       state->F = H + Mat3::Identity();
+      state->elastic = S;
+      if (damping_ > 0.0) S += damping_ * (S - *from);
       state->S = S;
       const Mat3 P = element.volume * state->F * S;
       Vec3 sum = Vec3::Zero();
@@ -88,6 +98,7 @@ void TetShape::update() {
       }
       f[element.node[0]] -= sum;
       ++state;
+      ++from;
     }
     for (int i = 0; i < nodes; ++i) {
       const Eigen::Index d = dof(k, i);

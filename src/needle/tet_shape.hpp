@@ -15,7 +15,8 @@ namespace stylet::tet {
 /// What update() knows of one element: deformation gradient and second Piola–Kirchhoff stress.
 struct ElementState {
   Mat3 F = Mat3::Identity();
-  Mat3 S = Mat3::Zero();  ///< [MPa]
+  Mat3 elastic = Mat3::Zero();  ///< [MPa]
+  Mat3 S = Mat3::Zero();        ///< [MPa] elastic, and what damping adds
 };
 
 /// Displacements of all nodes in base axes from where they are in a straight needle, with stresses, nodal forces and
@@ -34,6 +35,11 @@ class TetShape {
   void bend_rest(const Vec3& curvature);
   /// [mm] of the unloaded shape, as displacement.
   [[nodiscard]] const VecX& rest() const { return rest_; }
+
+  /// From now on strain also resists every change from that of now, `ratio` times as stiffly as it is; Needle::damp().
+  /// energy() stays what is stored.
+  void damp(double ratio);
+  [[nodiscard]] double damping() const { return damping_; }
 
   /// Multiplies Young's modulus (and stresses, forces, energy).
   void scale_modulus(double factor);
@@ -86,10 +92,12 @@ class TetShape {
   double lambda_;
   double mu_;
   double energy_ = 0.0;
+  double damping_ = 0.0;
   long revision_ = 0;
   VecX rest_;
   std::vector<Element> bowed_;  ///< of a bowed needle, segment by segment; a straight one's segments are all alike
   std::vector<ElementState> states_;
+  std::vector<Mat3> damped_from_;  ///< [MPa] elastic stress of each element
   VecX force_;
 };
 

@@ -94,16 +94,19 @@ bool TetTangent::assemble(const TetShape& shape, const Mat3& base_rotation, std:
 
 /// Blocks of the tangent of St. Venant–Kirchhoff's law between nodes a and b of an element, with G = F g:
 ///   V (λ G_a G_bᵀ + μ G_b G_aᵀ + μ (g_a·g_b) F Fᵀ)  +  V (g_a·S g_b) I
-/// (material and geometric part; Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008, §9.4).
+/// (material and geometric part, the former with what damping adds; Bonet & Wood, Nonlinear Continuum Mechanics for
+/// Finite Element Analysis, 2008, §9.4).
 void TetTangent::assemble_segment(const TetShape& shape, int segment) {
   SegmentStiffness& K = stiffness_[static_cast<std::size_t>(segment)];
   K.material.setZero();
   K.geometric.setZero();
+  const double stiffer = 1.0 + shape.damping();
   for (int e = 0; e < static_cast<int>(mesh_.elements.size()); ++e) {
     const Element& element = shape.unloaded(segment, e);
-    const auto& [F, S] = shape.element(segment, e);
-    const double lambda = element.volume * shape.lambda();
-    const double mu = element.volume * shape.mu();
+    const Mat3& F = shape.element(segment, e).F;
+    const Mat3& S = shape.element(segment, e).S;
+    const double lambda = stiffer * element.volume * shape.lambda();
+    const double mu = stiffer * element.volume * shape.mu();
     const Mat3 FFt = mu * F * F.transpose();
     std::array<Vec3, 4> G;
     std::array<Vec3, 4> Sg;

@@ -182,7 +182,7 @@ void describe_coupling(ScenarioEntries& keys) {
               "growth of the cutting force with the speed of cutting",
               [](auto& s, const Slot&) { return &s.coupling.tip_viscosity_Ns_per_m; });
   keys.number("coupling.bone_damping_ms", "ms", 0, 100,
-              "time constant of the needle's internal damping while its tip stands on bone; tet needles have none",
+              "time constant of the needle's internal damping while its tip stands on bone",
               [](auto& s, const Slot&) { return &s.coupling.bone_damping_ms; });
   keys.number("coupling.grazing_deg", "degree", 30, 89,
               "a needle flatter to the skin than this (angle to the normal) slides off",

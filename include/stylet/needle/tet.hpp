@@ -45,6 +45,7 @@ class TetNeedle final : public Needle {
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
   void advance(std::span<const PointLoad> loads) override;
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
+  void damp(double ratio) override;
   void straighten() override;
   [[nodiscard]] double energy() const override;
   [[nodiscard]] Eigen::Ref<const VecX> state() const override;
