@@ -3,24 +3,29 @@
 
 namespace stylet {
 
-HatStiffness hat_stiffness(const SplitMesh& mesh, const SplitMesh::Part& part, const Material& material) {
-  HatStiffness stiffness;
-  stiffness.border.fill(Mat3::Zero());
-  const auto g = mesh.gradients(part.leaf);
-  const double volume = mesh.volume(part.leaf);
+Mat3 hat_stiffness(const Eigen::Matrix<double, 3, 4>& gradients, double volume, const Material& material,
+                   const Vec4& weights) {
   // The child that replaces vertex q has volume V l_q and hat gradient g_q / l_q.
+  Mat3 k = Mat3::Zero();
+  double diagonal = 0.0;
   for (int q = 0; q < 4; ++q) {
-    if (q == part.opposite) continue;
-    const Vec3 gq = g.col(q);
-    stiffness.own += (volume / part.weights[q]) * ((material.lambda() + material.mu()) * gq * gq.transpose() +
-                                                   material.mu() * gq.squaredNorm() * Mat3::Identity());
+    if (weights[q] == 0.0) continue;
+    const Vec3 g = gradients.col(q);
+    k.noalias() += ((material.lambda() + material.mu()) / weights[q]) * g * g.transpose();
+    diagonal += material.mu() / weights[q] * g.squaredNorm();
   }
-  if (part.opposite < 0) return stiffness;
+  k.diagonal().array() += diagonal;
+  return volume * k;
+}
+
+std::array<Mat3, 4> hat_border(const Eigen::Matrix<double, 3, 4>& gradients, double volume, const Material& material,
+                               int opposite) {
   // Σ over the children of volume × hat gradient = V Σ_{q ≠ o} g_q = −V g_o, so the border is −K_jo of the whole
   // element.
+  std::array<Mat3, 4> border;
   for (int j = 0; j < 4; ++j)
-    stiffness.border[static_cast<std::size_t>(j)] = -element_block(g, volume, material, j, part.opposite);
-  return stiffness;
+    border[static_cast<std::size_t>(j)] = -element_block(gradients, volume, material, j, opposite);
+  return border;
 }
 
 }  // namespace stylet

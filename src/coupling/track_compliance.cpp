@@ -270,24 +270,26 @@ int TrackCompliance::add_inside(const SplitMesh::Place& place, const Shape& shap
   const int observable = new_observable(shape, -1);
   interpolate_hats(observable, part);
   hat(observable, p) = 1.0;
-  splits_.push_back({.flexibility = hat_stiffness(mesh_, part, material_of(part.leaf.base_tet)).own.inverse()});
+  const Mat3 stiffness =
+      hat_stiffness(mesh_.gradients(part.leaf), mesh_.volume(part.leaf), material_of(part.leaf.base_tet), part.weights);
+  splits_.push_back({.flexibility = stiffness.inverse()});
   extend_all();
-  split_mesh(place);
+  split_elements(place);
   return finish_point(observable);
 }
 
 int TrackCompliance::add_on_face(const SplitMesh::Place& place, const Shape& shape) {
   const int p = static_cast<int>(splits_.size());
-  add_split(place);
+  add_bordered_split(place);
   const int observable = new_observable(shape, -1);
   interpolate_from_face(observable, place.part[0]);
-  split_mesh(place);
+  split_elements(place);
   loosen_points(p);
   return finish_point(observable);
 }
 
 /// The node is the next point's.
-void TrackCompliance::split_mesh(const SplitMesh::Place& place) {
+void TrackCompliance::split_elements(const SplitMesh::Place& place) {
   const Index node = mesh_.split(place);
   node_point_.push_back(points_);
   const auto kind = place.inside() ? RemeshEvent::Kind::added_inside : RemeshEvent::Kind::added_on_face;
@@ -298,13 +300,15 @@ void TrackCompliance::split_mesh(const SplitMesh::Place& place) {
 }
 
 /// A split with a border, and z of the border's vertices.
-void TrackCompliance::add_split(const SplitMesh::Place& place) {
+void TrackCompliance::add_bordered_split(const SplitMesh::Place& place) {
   Split split{.border = {borders_.size()}, .loads = {load_.size()}};
   Mat3 stiffness = Mat3::Zero();
   for (const SplitMesh::Part& part : place.parts()) {
-    const HatStiffness of_part = hat_stiffness(mesh_, part, material_of(part.leaf.base_tet));
-    stiffness += of_part.own;
-    add_border(split, part.leaf, of_part.border);
+    const auto gradients = mesh_.gradients(part.leaf);
+    const double volume = mesh_.volume(part.leaf);
+    const Material material = material_of(part.leaf.base_tet);
+    stiffness += hat_stiffness(gradients, volume, material, part.weights);
+    add_border(split, part.leaf, hat_border(gradients, volume, material, part.opposite));
   }
   gather_loads(split);
   const int p = static_cast<int>(splits_.size());
@@ -483,12 +487,14 @@ TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3&
       return {-1, Refusal::missing};
     return {add_on_face(*place, shape_on_face(parts.front().leaf.base_tet, x)), Refusal::none};
   }
+  std::optional<SplitMesh::Place> inside;
+  if (placement == Placement::interior) {
+    inside = mesh_.place_inside(at.tet, x, kSmallestWeight);
+    if (!inside) return {-1, Refusal::geometry};
+  }
   if (!stored(at.tet)) return {-1, Refusal::missing};
   const Shape shape = store_->tissue().shape(at.tet, at.weights);
-  if (placement == Placement::embedded) return {finish_point(new_observable(shape, -1)), Refusal::none};
-  const auto place = mesh_.place_inside(at.tet, x, kSmallestWeight);
-  if (!place) return {-1, Refusal::geometry};
-  return {add_inside(*place, shape), Refusal::none};
+  return {inside ? add_inside(*inside, shape) : finish_point(new_observable(shape, -1)), Refusal::none};
 }
 
 /// On a face of the base mesh the node opposite has no part, and the element beyond, where the tip is, has all others.

@@ -61,7 +61,7 @@ class TetShape {
   [[nodiscard]] const Element& unloaded(int segment, int e) const {
     return bowed_.empty() ? mesh_.elements[static_cast<std::size_t>(e)] : bowed_[number(segment, e)];
   }
-  /// ∂energy/∂displacement [N]
+  /// [N] of the stress on the nodes, damping's included; else ∂energy/∂displacement
   [[nodiscard]] const VecX& force() const { return force_; }
 
   /// Centreline in base axes.

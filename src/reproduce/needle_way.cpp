@@ -164,19 +164,4 @@ MatX stiffness_change(const Tissue& tissue, const AddedNode& node) {
   return change;
 }
 
-Mat3 hat_stiffness(const Eigen::Matrix<double, 3, 4>& gradients, double volume, const Material& material,
-                   const Vec4& weights) {
-  const double lambda = material.lambda();
-  const double mu = material.mu();
-  Mat3 k = Mat3::Zero();
-  double diagonal = 0.0;
-  for (int q = 0; q < 4; ++q) {
-    const Vec3 g = gradients.col(q);
-    k.noalias() += ((lambda + mu) / weights[q]) * g * g.transpose();
-    diagonal += mu / weights[q] * g.squaredNorm();
-  }
-  k.diagonal().array() += diagonal;
-  return volume * k;
-}
-
 }  // namespace stylet::reproduce

@@ -22,9 +22,4 @@ std::vector<AddedNode> nodes_along(const NeedleWay& way, const RemeshCostOptions
 /// ΔK [N/mm] (k × k): the elements put in their place, less those taken away. @param dofs as in AddedNode
 MatX stiffness_change(const Tissue& tissue, const AddedNode& node);
 
-/// Stiffness of the hat function of a node at weights l inside a homogeneous element [N/mm]:
-/// V Σ_q (1/l_q) [(λ + μ) g_q g_qᵀ + μ |g_q|² I].
-Mat3 hat_stiffness(const Eigen::Matrix<double, 3, 4>& gradients, double volume, const Material& material,
-                   const Vec4& weights);
-
 }  // namespace stylet::reproduce

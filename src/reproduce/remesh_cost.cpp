@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/reproduce/remesh_cost.hpp"
 
+#include "coupling/hat_stiffness.hpp"
 #include "fem/blas_threads.hpp"
 #include "needle_way.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"

@@ -114,6 +114,7 @@ TEST(OnBone, a_needle_that_snaps_off_bone_is_balanced_in_nearly_every_step) {
 TEST(OnBone, needles_of_every_model_snap_off_bone_into_the_same_shape) {
   PressedOnBone beam(150.0);
   beam.wait(0.2);
+  EXPECT_GT(beam.peak(), 1.2 * beam.forces.back()) << "it has not snapped";
   for (const std::string& model : needle_models()) {
     SCOPED_TRACE(model);
     if (kSanitized && model == "tet") continue;  // minutes; tests/needle look at its memory
@@ -131,15 +132,20 @@ TEST(OnBone, needles_of_every_model_snap_off_bone_into_the_same_shape) {
   }
 }
 
-TEST(OnBone, steps_of_changing_length_lead_to_the_same_shape) {
-  PressedOnBone even(150.0);
-  even.wait(0.2);
+TEST(OnBone, steps_of_changing_length_bend_a_needle_alike) {
+  PressedOnBone even(220.0);
   for (const std::vector<double>& ways : {std::vector<double>{0.01, 0.04}, {0.02, 0.1}}) {
-    PressedOnBone uneven(PressedOnBone::options(150.0), ways);
-    EXPECT_LE(uneven.unbalanced, 1);
-    uneven.wait(0.2);
-    EXPECT_NEAR(uneven.forces.back(), even.forces.back(), 1e-3 * even.forces.back());
-    EXPECT_NEAR(uneven.bow(), even.bow(), 1e-3 * even.bow());
+    PressedOnBone uneven(PressedOnBone::options(220.0), ways);
+    EXPECT_EQ(uneven.unbalanced, 0);
+    // On the way, where damping moves the force by tens of millinewtons, at depths that both come by.
+    int compared = 0;
+    for (std::size_t k = 0, j = 0; k < uneven.depths.size(); ++k) {
+      while (j + 1 < even.depths.size() && even.depths[j] < uneven.depths[k] - 1e-6) ++j;
+      if (uneven.depths[k] < 41.0 || std::abs(even.depths[j] - uneven.depths[k]) > 1e-6) continue;
+      ASSERT_NEAR(uneven.forces[k], even.forces[j], 1e-3 * even.peak()) << uneven.depths[k] << " mm";
+      ++compared;
+    }
+    EXPECT_GT(compared, 100);
   }
 }
 

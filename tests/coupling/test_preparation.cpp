@@ -29,6 +29,7 @@ class UnpreparedNeedle final : public Needle {
   }
   void advance(std::span<const PointLoad> loads) override { inner_->advance(loads); }
   [[nodiscard]] double residual(std::span<const PointLoad> loads) const override { return inner_->residual(loads); }
+  void damp(double ratio) override { inner_->damp(ratio); }
   void straighten() override { inner_->straighten(); }
   [[nodiscard]] double energy() const override { return inner_->energy(); }
   [[nodiscard]] Eigen::Ref<const VecX> state() const override { return inner_->state(); }

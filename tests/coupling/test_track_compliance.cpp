@@ -312,20 +312,36 @@ TEST(NodeAddition, nodal_load_of_contact_forces_gives_the_displacement_of_the_re
 }
 
 TEST(NodeAddition, refuses_what_it_cannot_do_and_says_why) {
+  using Refusal = TrackCompliance::Refusal;
   const Block block;
-  auto empty = std::make_shared<const ComplianceStore>(block.tissue);
-  TrackCompliance no_store(empty, *block.locator, 4);
-  const Vec3 x(13.0, 11.0, 9.0);
-  const auto at = *block.locator->find(x);
-  EXPECT_EQ(no_store.add(at, x, Placement::interior).refusal, TrackCompliance::Refusal::missing);
-  EXPECT_FALSE(no_store.move_tip(at, x));
+  const TetMesh& mesh = block.tissue->mesh();
+  const Index tet = block.locator->find(Vec3(13.0, 11.0, 9.0))->tet;
+  const auto add = [&](TrackCompliance& track, const Vec4& weights, Placement placement) {
+    Vec3 x = Vec3::Zero();
+    for (int v = 0; v < 4; ++v)
+      x += weights[v] * mesh.nodes[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][v])];
+    const Vec3 outwards = block.locator->face_normal(tet, 3);
+    return track.add({tet, weights}, x, placement, outwards).refusal;
+  };
+  const Vec4 inside = Vec4::Constant(0.25);
+  const Vec4 on_face(0.3, 0.3, 0.4, 0.0);
+  const Vec4 near_edge(0.49, 0.5, 0.01, 0.0);
 
-  TrackCompliance track(block.store, *block.locator, 1);
-  const Vec3 node =
-      block.tissue->mesh()
-          .nodes[static_cast<std::size_t>(block.tissue->mesh().tets[static_cast<std::size_t>(at.tet)][0])];
-  EXPECT_EQ(track.add({at.tet, Vec4(1, 0, 0, 0)}, node, Placement::interior).refusal,
-            TrackCompliance::Refusal::geometry);
-  ASSERT_GE(track.add(at, x, Placement::embedded).point, 0);
-  EXPECT_EQ(track.add(at, x, Placement::embedded).refusal, TrackCompliance::Refusal::capacity);
+  TrackCompliance without(std::make_shared<const ComplianceStore>(block.tissue), *block.locator, 4);
+  EXPECT_EQ(add(without, inside, Placement::embedded), Refusal::missing);
+  EXPECT_EQ(add(without, inside, Placement::interior), Refusal::missing);
+  EXPECT_EQ(add(without, on_face, Placement::face), Refusal::missing);
+  EXPECT_FALSE(without.move_tip({tet, inside}, Vec3::Zero()));
+
+  // What cannot be split is refused as that, whether or not compliance is there.
+  TrackCompliance track(block.store, *block.locator, 3);
+  for (TrackCompliance* either : {&without, &track}) {
+    EXPECT_EQ(add(*either, on_face, Placement::interior), Refusal::geometry);
+    EXPECT_EQ(add(*either, near_edge, Placement::face), Refusal::geometry);
+    EXPECT_EQ(add(*either, inside, Placement::face), Refusal::geometry);
+  }
+  EXPECT_EQ(add(track, inside, Placement::interior), Refusal::none);
+  EXPECT_EQ(add(track, on_face, Placement::face), Refusal::none);
+  EXPECT_EQ(add(track, near_edge, Placement::embedded), Refusal::none);
+  EXPECT_EQ(add(track, inside, Placement::embedded), Refusal::capacity);
 }

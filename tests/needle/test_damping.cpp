@@ -60,8 +60,9 @@ TEST(NeedleDamping, makes_the_tangent_definite_and_exact_beyond_the_buckling_loa
     MatX compliance(3, 3);
     VecX free(3);
     // Tetrahedra buckle by stress, which has to be there first.
-    balance(*needle, {{kLength, {0, 0, -3.0 * critical}}}, 1e-10);
+    balance(*needle, {{kLength, {0, 0, -3.0 * critical}}}, 1e-2);
     EXPECT_FALSE(needle->linearise(loads, compliance, free, {}, Indefinite::give_up)) << needle->model();
+    needle->straighten();
     needle->damp(4.0);
     EXPECT_TRUE(needle->linearise(loads, compliance, free, {}, Indefinite::give_up)) << needle->model();
     // What the compliance says of another load is what the next balance has: Newton's step is exact.
@@ -72,7 +73,7 @@ TEST(NeedleDamping, makes_the_tangent_definite_and_exact_beyond_the_buckling_loa
     std::vector<PointLoad> changed = loads;
     changed.front().force.y() += more_N;
     balance(*needle, changed, 1e-10);
-    EXPECT_NEAR((needle->point(kLength) - before).y(), compliance(1, 1) * more_N, 1e-4 * compliance(1, 1) * more_N)
+    EXPECT_NEAR((needle->point(kLength) - before).y(), compliance(1, 1) * more_N, 1e-6 * compliance(1, 1) * more_N)
         << needle->model();
     EXPECT_LE(balance(*needle, loads, 1e-10), 4) << needle->model();
   }
@@ -88,10 +89,12 @@ TEST(NeedleDamping, an_old_tangent_finds_the_same_shape) {
     needle->damp(2.0);
     (*other)->damp(2.0);
     balance(*needle, loads, 1e-10);
-    // Tetrahedra have to start from near by: they stretch where they are turned.
-    const std::vector<PointLoad> nearly = {{loads[0].s, 0.98 * loads[0].force}, {loads[1].s, 0.98 * loads[1].force}};
-    balance(**other, nearly, 1e-10);
-    test::compliance_of(**other, nearly);
+    if (needle->model() == "tet") {  // has to start from near by: tetrahedra stretch where they are turned
+      const std::vector<PointLoad> nearly = {{loads[0].s, 0.98 * loads[0].force}, {loads[1].s, 0.98 * loads[1].force}};
+      balance(**other, nearly, 1e-10);
+    }
+    test::compliance_of(**other, loads);
+    (*other)->advance(loads);
     VecX free(6);
     for (int k = 0; k < 30; ++k) {
       ASSERT_TRUE((*other)->relax(loads, free));

@@ -377,6 +377,9 @@ TEST_P(NeedleContract, NoCallAfterBuildAllocates) {
         sink += needle->residual(loads) + needle->energy() + needle->point(33.0).x() + needle->tangent(44.0).x();
       }
       needle->linearise(loads, compliance, free, springs);
+      needle->damp(2.0);
+      needle->linearise(loads, compliance, free);
+      needle->damp(0.0);
       // Beyond buckling too.
       loads.back().force = pose.rotation * Vec3(0.1, 0.0, -50.0);
       needle->linearise(loads, compliance, free);

@@ -233,7 +233,8 @@ TEST(TetNeedle, NewtonConvergesQuadraticallyFromANearbyShape) {
 }
 
 TEST(TetNeedle, RoundingLeavesLessThanTheCoupledSolverAsksFor) {
-  // 1e-10 × largest force or 1 N × length, for short and long needles, nearly straight and much bent.
+  // A tenth of its tolerance (1e-9 … 1e-8) × largest force or 1 N × length, for short and long needles, nearly straight
+  // and much bent.
   for (const double length : {20.0, 100.0, 200.0, 400.0}) {
     for (const double deflection : {0.01, 0.4}) {
       const auto needle = tets(60, Segment::symmetric, {.length_mm = length});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/hat_stiffness.hpp"
 #include "reproduce/needle_way.hpp"
 #include "stylet/coupling/paper/inverse_updates.hpp"
 #include "stylet/reproduce/measure.hpp"

@@ -52,8 +52,8 @@ class SplitMesh {
   };
   /// A place inside the leaf of `base_tet` that contains x. Empty where a weight is less than `smallest`.
   [[nodiscard]] std::optional<Place> place_inside(Index base_tet, const Vec3& x, double smallest) const;
-  /// A place on the face that a path through x along `travel` crosses there: the leaf left comes first, at the outer
-  /// surface the only one. Empty where there is no such face, or a weight on it is less than `smallest`.
+  /// A place on the face that a path through x along `travel` crosses there: the leaf that it leaves comes first, at
+  /// the outer surface there is only one. Empty where there is no such face, or a weight on it is less than `smallest`.
   /// @param base_tet a base tetrahedron that the face belongs to
   [[nodiscard]] std::optional<Place> place_on_face(Index base_tet, const Vec3& x, const Vec3& travel,
                                                    double smallest) const;

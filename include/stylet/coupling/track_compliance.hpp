@@ -122,8 +122,8 @@ class TrackCompliance final : public ContactCompliance {
   int add_inside(const SplitMesh::Place& place, const Shape& shape);
   int add_on_face(const SplitMesh::Place& place, const Shape& shape);
   [[nodiscard]] Shape shape_on_face(Index base_tet, const Vec3& x) const;
-  void split_mesh(const SplitMesh::Place& place);
-  void add_split(const SplitMesh::Place& place);
+  void split_elements(const SplitMesh::Place& place);
+  void add_bordered_split(const SplitMesh::Place& place);
   void add_border(Split& split, const SplitMesh::Leaf& leaf, std::span<const Mat3, 4> k);
   void gather_loads(Split& split);
   void interpolate_from_face(int observable, const SplitMesh::Part& part);

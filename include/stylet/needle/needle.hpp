@@ -106,8 +106,8 @@ class Needle {
   /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium.
   [[nodiscard]] virtual double residual(std::span<const PointLoad> loads) const = 0;
 
-  /// From now on bending and twist also resist every change from the shape of now, `ratio` times as stiffly as they
-  /// are: what internal damping with a time constant τ (Kelvin–Voigt) does within a step of τ / ratio, taken
+  /// From now on whatever is elastic also resists every change from the shape of now, `ratio` times as stiffly as it
+  /// is: what internal damping with a time constant τ (Kelvin–Voigt) does within a step of τ / ratio, taken
   /// implicitly. 0, as at first: they do not. residual(), linearise() and relax() are of the damped needle, energy()
   /// and find_equilibrium() are not; with a tangent of before, relax() converges more slowly. Models without damping do
   /// nothing.
