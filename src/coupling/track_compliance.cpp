@@ -272,7 +272,7 @@ int TrackCompliance::add_inside(const SplitMesh::Place& place, const Shape& shap
   hat(observable, p) = 1.0;
   const Mat3 stiffness =
       hat_stiffness(mesh_.gradients(part.leaf), mesh_.volume(part.leaf), material_of(part.leaf.base_tet), part.weights);
-  splits_.push_back({.flexibility = stiffness.inverse()});
+  splits_.push_back({.border = {}, .loads = {}, .flexibility = stiffness.inverse()});
   extend_all();
   split_elements(place);
   return finish_point(observable);
