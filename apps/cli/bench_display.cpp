@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace stylet::cli {
 
 Result<> bench_display_command(const BenchArguments& arguments, Console& console) {
@@ -28,25 +26,24 @@ Result<> bench_display_command(const BenchArguments& arguments, Console& console
                number(1e-3 * row.slice_us.max, 2), number(1e-3 * row.solve_us, 1), number(row.largest_mm, 2),
                fmt::format("{:.1e}", row.error_mm), fmt::format("{:.1e}", row.stated_error_mm),
                number(row.coarse_error_mm, 2), number(row.prepare_s, 1), number(row.megabytes, 0)});
-    json["rows"].push_back(
-        {{"nodes", row.nodes},
-         {"element", row.element},
-         {"surface_nodes", row.surface_nodes},
-         {"slice_triangles", row.slice_triangles},
-         {"zone_dofs", row.zone_dofs},
-         {"columns", row.columns},
-         {"frames", row.frames},
-         {"surface_us", times_json(row.surface_us)},
-         {"slice_us", times_json(row.slice_us)},
-         {"solve_us", row.solve_us},
-         {"largest_mm", row.largest_mm},
-         {"error_mm", row.error_mm},
-         {"stated_error_mm", row.stated_error_mm},
-         {"stated_error_mm_per_N", row.stated_error_mm_per_N},
-         {"left_out_N", row.left_out_N},
-         {"coarse_error_mm", std::isfinite(row.coarse_error_mm) ? Json(row.coarse_error_mm) : Json(nullptr)},
-         {"prepare_s", row.prepare_s},
-         {"memory_mb", row.megabytes}});
+    json["rows"].push_back({{"nodes", row.nodes},
+                            {"element", row.element},
+                            {"surface_nodes", row.surface_nodes},
+                            {"slice_triangles", row.slice_triangles},
+                            {"zone_dofs", row.zone_dofs},
+                            {"columns", row.columns},
+                            {"frames", row.frames},
+                            {"surface_us", times_json(row.surface_us)},
+                            {"slice_us", times_json(row.slice_us)},
+                            {"solve_us", row.solve_us},
+                            {"largest_mm", row.largest_mm},
+                            {"error_mm", row.error_mm},
+                            {"stated_error_mm", row.stated_error_mm},
+                            {"stated_error_mm_per_N", row.stated_error_mm_per_N},
+                            {"left_out_N", row.left_out_N},
+                            {"coarse_error_mm", or_null(row.coarse_error_mm)},
+                            {"prepare_s", row.prepare_s},
+                            {"memory_mb", row.megabytes}});
   }
   json["machine"] = machine_json();
   console.say(

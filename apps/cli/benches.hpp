@@ -42,4 +42,7 @@ Json times_json(const validate::StepTimes& times);
 /// A number with so many digits after the point; "-" where there is none.
 std::string number(double value, int digits);
 
+/// The same in JSON: null where there is none.
+Json or_null(double value);
+
 }  // namespace stylet::cli

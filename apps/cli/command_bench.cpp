@@ -47,7 +47,7 @@ Result<> run_needle(Console& console) {
                             {"error_small_tip", row.small_tip},
                             {"error_elastica_deflection", row.elastica},
                             {"error_elastica_shortening", row.shortening},
-                            {"axial_N_per_mm", stretches ? Json(row.axial_N_per_mm) : Json(nullptr)},
+                            {"axial_N_per_mm", or_null(row.axial_N_per_mm)},
                             {"solve_us", row.solve_us}});
   }
   json["machine"] = machine_json();
@@ -60,8 +60,6 @@ Result<> run_needle(Console& console) {
   console.say(table.text());
   return console.write_json(json);
 }
-
-Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json coupling_json(const validate::CouplingRow& row) {
   constexpr double every_s = 0.01;  // of the curve, for a picture
@@ -189,6 +187,8 @@ Json machine_json() {
 std::string number(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("-");
 }
+
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json times_json(const validate::StepTimes& times) {
   return {{"p50", times.p50}, {"p99", times.p99}, {"p999", times.p999}, {"max", times.max}};

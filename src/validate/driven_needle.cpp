@@ -70,7 +70,11 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
   const double start = simulation.record().base_depth_mm;
   const std::vector<double> way = driven_depths(start);
   const double wanted = static_cast<double>(std::max(least, static_cast<long>(way.size())));
-  steps.reserve(steps.size() + way.size());
+  if (steps.empty()) {
+    // Memory that is moved or first written between steps is the system's work long afterwards, within them.
+    steps.resize(static_cast<std::size_t>(least) + way.size());
+    steps.clear();
+  }
   for (const double depth : way) {
     Pose base = first;
     base.origin += (depth - start) * plan.direction;

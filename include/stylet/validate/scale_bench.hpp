@@ -43,6 +43,9 @@ struct ScaleRow {
   /// The longest of all steps when each is given the median of its repeats, which do the same work: what is left
   /// without the system's interruptions, which count as the thread's time too. NaN with fewer than three repeats.
   double all_longest_median_us = std::numeric_limits<double>::quiet_NaN();
+  /// Of the steps above a millisecond, the longest median of their repeats: whether it was the step or an interruption.
+  /// NaN without such steps, or with fewer than three repeats of one.
+  double over_1ms_median_us = std::numeric_limits<double>::quiet_NaN();
   double mesh_s = 0.0;     ///< from contours, wall clock
   double factor_s = 0.0;   ///< of the stiffness
   double store_s = 0.0;    ///< compliance and kernel of the corridor, and everything else before the first step
