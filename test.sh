@@ -19,7 +19,7 @@ machine_paths() { scripts/check_machine_paths; }
 build()         { scripts/build release; }
 unit_tests()    { ctest --preset release --parallel "$(nproc)" --label-regex unit; }
 tests()         { ctest --preset release --parallel "$(nproc)"; }
-sanitizers()    { scripts/build sanitize; ctest --preset sanitize --parallel "$(nproc)" --label-regex unit; }
+sanitizers()    { scripts/build sanitize; ctest --preset sanitize --parallel "$(nproc)" --label-regex 'unit|long'; }
 threads()       { scripts/build threads; ctest --preset threads; }
 lint()          { scripts/check_lint; }
 
@@ -30,8 +30,8 @@ declare -A about=(
   [machine_paths]="no path of one machine in the sources"
   [build]="release build into build/"
   [unit_tests]="unit tests"
-  [tests]="all tests: unit, command line, browser, real data, slow, installed library"
-  [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit tests"
+  [tests]="all tests: unit, long, command line, browser, real data, slow, installed library"
+  [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit and long tests"
   [threads]="what runs in several threads under the thread sanitizer"
   [lint]="clang-tidy on core to realtime and stylet_rt"
 )
