@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace stylet {
 namespace {
@@ -14,7 +13,6 @@ namespace {
 constexpr double kTie = 1e-10;  // a weight this close to 0 lies on the face: rounding of x is far below, 1 nm far above
 constexpr double kRounding = 1e-12;  // returned weights are no lower than minus this
 constexpr double kTangent = 1e-9;    // slope, against the steepest of the element, below which a path runs along a face
-constexpr Index kLeafSize = 6;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // Weights clamped to the element when they were below it by a tie's width; their sum stays 1.
@@ -92,47 +90,9 @@ bool meets(const Eigen::AlignedBox3d& box, const Vec3& a, const Vec3& d) {
   return enter <= leave;
 }
 
-// Halving at the median keeps the tree's depth under 32 for any mesh an Index can count.
-using Stack = std::array<Index, 64>;
-
 }  // namespace
 
-Locator::Locator(const TetMesh& mesh, const Topology& topology) : mesh_(&mesh), topology_(&topology) {
-  const Index m = mesh.tet_count();
-  order_.resize(static_cast<std::size_t>(m));
-  std::iota(order_.begin(), order_.end(), 0);
-  std::vector<Vec3> centroid(static_cast<std::size_t>(m));
-  for (Index t = 0; t < m; ++t) {
-    centroid[t].setZero();
-    for (const Index a : mesh.tets[t]) centroid[t] += 0.25 * mesh.nodes[a];
-  }
-
-  const auto box_of = [&](Index first, Index count) {
-    Eigen::AlignedBox3d box;
-    for (Index i = first; i < first + count; ++i) {
-      for (const Index a : mesh.tets[order_[i]]) box.extend(mesh.nodes[a]);
-    }
-    const Vec3 margin = Vec3::Constant(1e-8 * (box.isEmpty() ? 0.0 : box.diagonal().norm()));
-    return Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
-  };
-  tree_.push_back({box_of(0, m), 0, m});
-  for (std::size_t i = 0; i < tree_.size(); ++i) {
-    const Index first = tree_[i].first;
-    const Index count = tree_[i].count;
-    if (count <= kLeafSize) continue;
-    int axis = 0;
-    tree_[i].box.sizes().maxCoeff(&axis);
-    const Index half = count / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count,
-                     [&](Index p, Index q) {
-                       return centroid[p][axis] != centroid[q][axis] ? centroid[p][axis] < centroid[q][axis] : p < q;
-                     });
-    tree_[i].first = static_cast<Index>(tree_.size());
-    tree_[i].count = -1;
-    tree_.push_back({box_of(first, half), first, half});
-    tree_.push_back({box_of(first + half, count - half), first + half, count - half});
-  }
-}
+Locator::Locator(const TetMesh& mesh, const Topology& topology) : mesh_(&mesh), topology_(&topology), tree_(mesh) {}
 
 Vec4 Locator::weights(Index t, const Vec3& x) const {
   const auto& tet = mesh_->tets[t];
@@ -177,28 +137,19 @@ std::optional<MaterialPoint> Locator::find(const Vec3& x, Index hint, const Vec3
   if (found < 0) {
     // The tetrahedron that contains x best, so that rounding at a face decides nothing.
     double best = -kTie;
-    Stack stack;
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-      const Box& node = tree_[stack[--top]];
-      if (!node.box.contains(x)) continue;
-      if (node.count < 0) {
-        stack[top++] = node.first + 1;
-        stack[top++] = node.first;
-        continue;
-      }
-      for (Index i = node.first; i < node.first + node.count; ++i) {
-        const Vec4 candidate = weights(order_[i], x);
-        const double least = candidate.minCoeff();
-        if (least > best || (least == best && (found < 0 || order_[i] < found))) {
-          best = least;
-          found = order_[i];
-          w = candidate;
-        }
-      }
-      if (best > kTie) break;
-    }
+    tree_.visit([&](const Eigen::AlignedBox3d& box) { return box.contains(x); },
+                [&](std::span<const Index> tets) {
+                  for (const Index candidate : tets) {
+                    const Vec4 there = weights(candidate, x);
+                    const double least = there.minCoeff();
+                    if (least > best || (least == best && (found < 0 || candidate < found))) {
+                      best = least;
+                      found = candidate;
+                      w = there;
+                    }
+                  }
+                  return best <= kTie;
+                });
   }
   if (found < 0) return std::nullopt;
 
@@ -308,19 +259,8 @@ std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) c
   std::optional<Crossing> first;
   double steepest = 0.0;  // slope of the face found, decides between faces met at one edge
 
-  Stack stack;
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const Box& node = tree_[stack[--top]];
-    if (!meets(node.box, from, d)) continue;
-    if (node.count < 0) {
-      stack[top++] = node.first + 1;
-      stack[top++] = node.first;
-      continue;
-    }
-    for (Index i = node.first; i < node.first + node.count; ++i) {
-      const Index t = order_[i];
+  const auto nearer_entry = [&](std::span<const Index> tets) {
+    for (const Index t : tets) {
       const auto& neighbour = topology_->neighbour[t];
       if (neighbour[0] >= 0 && neighbour[1] >= 0 && neighbour[2] >= 0 && neighbour[3] >= 0) continue;
       const Vec4 w = weights(t, from);
@@ -350,7 +290,9 @@ std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) c
         steepest = slope;
       }
     }
-  }
+    return true;
+  };
+  tree_.visit([&](const Eigen::AlignedBox3d& box) { return meets(box, from, d); }, nearer_entry);
   return first;
 }
 

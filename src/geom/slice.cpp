@@ -4,6 +4,7 @@
 #include "stylet/geom/topology.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace stylet {
@@ -28,7 +29,7 @@ constexpr std::array<Pairs, 6> kPairs{{{0b0011, {0, 1, 2, 3}},
 
 }  // namespace
 
-Slicer::Slicer(const TetMesh& mesh) : mesh_(&mesh), tet_edges_(mesh.tets.size()) {
+Slicer::Slicer(const TetMesh& mesh) : mesh_(&mesh), tree_(mesh), tet_edges_(mesh.tets.size()) {
   using Edge = std::pair<Index, Index>;
   const auto edge = [&](std::size_t t, int i, int j) {
     const auto& tet = mesh.tets[t];
@@ -117,37 +118,50 @@ void Slicer::cut(const Vec3& origin, const Vec3& normal) {
   nodes_.clear();
   vertices_.clear();
   triangles_.clear();
-  for (std::size_t n = 0; n < height_.size(); ++n) height_[n] = normal.dot(mesh_->nodes[n] - origin);
+  tree_.visit(
+      [&](const Eigen::AlignedBox3d& box) {
+        return std::abs(normal.dot(box.center() - origin)) <= 0.5 * normal.cwiseAbs().dot(box.sizes());
+      },
+      [&](std::span<const Index> tets) {
+        for (const Index t : tets) {
+          for (const Index n : mesh_->tets[static_cast<std::size_t>(t)]) {
+            height_[static_cast<std::size_t>(n)] = normal.dot(mesh_->nodes[static_cast<std::size_t>(n)] - origin);
+          }
+          cut(static_cast<std::size_t>(t));
+        }
+        return true;
+      });
+}
 
-  for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
-    const auto& tet = mesh_->tets[t];
-    unsigned front = 0;
-    for (std::size_t i = 0; i < 4; ++i) front |= height_[static_cast<std::size_t>(tet[i])] >= 0.0 ? 1U << i : 0U;
-    if (front == 0 || front == 0b1111) continue;
-    if (const auto pairs = std::find_if(kPairs.begin(), kPairs.end(), [&](const Pairs& p) { return p.front == front; });
-        pairs != kPairs.end()) {
-      const auto& v = pairs->v;
-      const Index one = vertex(t, v[0], v[2]);
-      const Index two = vertex(t, v[1], v[2]);
-      const Index three = vertex(t, v[1], v[3]);
-      const Index four = vertex(t, v[0], v[3]);
-      add(t, one, two, three);
-      add(t, one, three, four);
-      continue;
-    }
-    for (int i = 0; i < 4; ++i) {  // one vertex alone on its side
-      const bool alone_in_front = front == 1U << i;
-      if (!alone_in_front && front != (0b1111U ^ (1U << i))) continue;
-      const auto& o = kFaceVertices[static_cast<std::size_t>(i)];
-      if (alone_in_front) {
-        const Index one = vertex(t, i, o[0]);
-        const Index two = vertex(t, i, o[2]);
-        add(t, one, two, vertex(t, i, o[1]));
-      } else {
-        const Index one = vertex(t, o[0], i);
-        const Index two = vertex(t, o[1], i);
-        add(t, one, two, vertex(t, o[2], i));
-      }
+/// The plane through one element.
+void Slicer::cut(std::size_t t) {
+  const auto& tet = mesh_->tets[t];
+  unsigned front = 0;
+  for (std::size_t i = 0; i < 4; ++i) front |= height_[static_cast<std::size_t>(tet[i])] >= 0.0 ? 1U << i : 0U;
+  if (front == 0 || front == 0b1111) return;
+  if (const auto pairs = std::find_if(kPairs.begin(), kPairs.end(), [&](const Pairs& p) { return p.front == front; });
+      pairs != kPairs.end()) {
+    const auto& v = pairs->v;
+    const Index one = vertex(t, v[0], v[2]);
+    const Index two = vertex(t, v[1], v[2]);
+    const Index three = vertex(t, v[1], v[3]);
+    const Index four = vertex(t, v[0], v[3]);
+    add(t, one, two, three);
+    add(t, one, three, four);
+    return;
+  }
+  for (int i = 0; i < 4; ++i) {  // one vertex alone on its side
+    const bool alone_in_front = front == 1U << i;
+    if (!alone_in_front && front != (0b1111U ^ (1U << i))) continue;
+    const auto& o = kFaceVertices[static_cast<std::size_t>(i)];
+    if (alone_in_front) {
+      const Index one = vertex(t, i, o[0]);
+      const Index two = vertex(t, i, o[2]);
+      add(t, one, two, vertex(t, i, o[1]));
+    } else {
+      const Index one = vertex(t, o[0], i);
+      const Index two = vertex(t, o[1], i);
+      add(t, one, two, vertex(t, o[2], i));
     }
   }
 }

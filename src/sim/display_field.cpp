@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace stylet {
@@ -20,6 +21,7 @@ constexpr Eigen::Index kBatch = 192;      ///< right-hand sides solved for at on
 constexpr Eigen::Index kOversample = 20;  ///< random rows more than columns
 constexpr Eigen::Index kChecks = 60;      ///< columns the error is measured on
 constexpr double kSafety = 2.0;  ///< over what was measured: columns are single degrees of freedom, not all of them
+constexpr double kRows_mm_per_N = 1e-4;  ///< what a cluster's rows may be off by, being kept at low rank
 constexpr unsigned kSeed = 20050101;
 
 double seconds_now() {
@@ -70,7 +72,11 @@ Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, 
 /// Every degree of freedom of the zone is in the skeleton: nothing is approximated.
 void DisplayField::keep_all(const Progress& progress) {
   for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(zone_.size()); ++i) skeleton_.push_back(i);
-  columns_ = solve_columns(skeleton_, progress).transpose();
+  keep_rows(solve_columns(skeleton_, progress), 0.0, progress);
+}
+
+void DisplayField::keep_rows(const Eigen::MatrixXf& columns, double tolerance, const Progress& progress) {
+  rows_ = LowRankRows(model_->mesh().nodes, columns.transpose(), tolerance, progress);
 }
 
 /// M = Ωᵀ K⁻¹(F,Z) (rows × 3Z): random combinations of the rows of the nodes that the store does not reach.
@@ -139,7 +145,10 @@ void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Pro
     skeleton_.push_back(order[j]);
     to_skeleton_.col(order[j]) = Eigen::VectorXf::Unit(k, j);
   }
-  columns_ = columns.leftCols(k).transpose();
+  // A force has three components, each of which comes to a column of T on the skeleton.
+  statistics_.error_mm_per_N +=
+      std::numbers::sqrt3 * kRows_mm_per_N * static_cast<double>(to_skeleton_.colwise().norm().maxCoeff());
+  keep_rows(columns.leftCols(k), kRows_mm_per_N, progress);
 }
 
 /// Near the ways the skeleton would not do; what it gives is brought to what the store says.
@@ -154,12 +163,14 @@ void DisplayField::keep_near_rows() {
     near_slot_[static_cast<std::size_t>(node)] = static_cast<Index>(near.size());
     near.push_back(node);
   }
-  near_rows_.resize(3 * static_cast<Eigen::Index>(zone_.size()), 3 * static_cast<Eigen::Index>(near.size()));
+  near_nodes_ = static_cast<Eigen::Index>(near.size());
+  near_blocks_.resize(3, 3 * near_nodes_ * static_cast<Eigen::Index>(zone_.size()));
   for (std::size_t r = 0; r < near.size(); ++r) {
-    auto rows = near_rows_.middleCols<3>(3 * static_cast<Eigen::Index>(r));
-    for (std::size_t z = 0; z < zone_.size(); ++z)
-      rows.middleRows<3>(3 * static_cast<Eigen::Index>(z)) = store.block(zone_[z], near[r]).cast<float>();
-    rows.noalias() -= to_skeleton_.transpose() * columns_.middleCols<3>(3 * Eigen::Index{near[r]});
+    const Eigen::MatrixXf shown = rows_.transposed(near[r]).transpose() * to_skeleton_;
+    for (std::size_t z = 0; z < zone_.size(); ++z) {
+      near_blocks_.middleCols<3>(near_block(static_cast<Index>(z), static_cast<Index>(r))) =
+          store.block(near[r], zone_[z]).cast<float>() - shown.middleCols<3>(3 * static_cast<Eigen::Index>(z));
+    }
   }
 }
 
@@ -183,8 +194,8 @@ Result<std::shared_ptr<const DisplayField>> DisplayField::prepare(std::shared_pt
   Statistics& s = field->statistics_;
   s.columns = static_cast<int>(field->skeleton_.size());
   s.seconds = seconds_now() - started;
-  const auto floats = field->columns_.size() + field->to_skeleton_.size() + field->near_rows_.size();
-  s.megabytes = static_cast<double>(floats) * sizeof(float) / 1048576.0;
+  const auto floats = static_cast<std::size_t>(field->to_skeleton_.size() + field->near_blocks_.size());
+  s.megabytes = static_cast<double>(field->rows_.bytes() + floats * sizeof(float)) / 1048576.0;
   return std::shared_ptr<const DisplayField>(std::move(field));
 }
 
@@ -201,7 +212,8 @@ DisplayField::Load DisplayField::make_load() const {
   Load load;
   load.zone_ = Eigen::VectorXf::Zero(3 * static_cast<Eigen::Index>(zone_.size()));
   load.loaded_.reserve(zone_.size());
-  load.skeleton_ = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(skeleton_.size()));
+  load.skeleton_ = rows_.make_product();
+  load.near_.reserve(static_cast<std::size_t>(std::max<Eigen::Index>(1, near_nodes_)));
   return load;
 }
 
@@ -227,30 +239,37 @@ void DisplayField::set(std::span<const TissueForce> forces, Load& load) const {
       there += on_node.cast<float>();
     }
   }
+  load.skeleton_.forget();
+  Eigen::VectorXf& on_skeleton = load.skeleton_.vector();
   if (to_skeleton_.size() == 0) {
-    load.skeleton_ = load.zone_;
+    on_skeleton = load.zone_;
     return;
   }
-  load.skeleton_.setZero();
+  on_skeleton.setZero();
   for (const Index slot : load.loaded_)
-    load.skeleton_.noalias() +=
+    on_skeleton.noalias() +=
         to_skeleton_.middleCols<3>(3 * Eigen::Index{slot}).lazyProduct(load.zone_.segment<3>(3 * Eigen::Index{slot}));
 }
 
-void DisplayField::displacement(std::span<const Index> nodes, const Load& load,
-                                Eigen::Ref<Eigen::Matrix3Xf> out) const {
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Eigen::Index node = nodes[i];
-    Eigen::Vector3f u;
-    for (int axis = 0; axis < 3; ++axis) u[axis] = columns_.col(3 * node + axis).dot(load.skeleton_);
-    const Index near = near_slot_.empty() ? -1 : near_slot_[static_cast<std::size_t>(node)];
-    if (near >= 0) {
-      for (const Index slot : load.loaded_)
-        u.noalias() += near_rows_.block<3, 3>(3 * Eigen::Index{slot}, 3 * Eigen::Index{near}).transpose() *
-                       load.zone_.segment<3>(3 * Eigen::Index{slot});
+void DisplayField::displacement(std::span<const Index> nodes, Load& load, Eigen::Ref<Eigen::Matrix3Xf> out) const {
+  // Force by force, not node by node: blocks of one force lie side by side.
+  const auto correct_near = [&] {
+    for (const Index slot : load.loaded_) {
+      const Eigen::Vector3f force = load.zone_.segment<3>(3 * Eigen::Index{slot});
+      for (const auto& [place, near] : load.near_)
+        out.col(place).noalias() += near_blocks_.middleCols<3>(near_block(slot, near)) * force;
     }
-    out.col(static_cast<Eigen::Index>(i)) = u;
+    load.near_.clear();
+  };
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(i);
+    out.col(place) = rows_.times(nodes[i], load.skeleton_);
+    const Index near = near_slot_.empty() ? -1 : near_slot_[static_cast<std::size_t>(nodes[i])];
+    if (near < 0) continue;
+    load.near_.emplace_back(place, near);
+    if (load.near_.size() == load.near_.capacity()) correct_near();
   }
+  correct_near();
 }
 
 }  // namespace stylet

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/geom/tet_tree.hpp"
 #include "stylet/geom/topology.hpp"
 
 #include <optional>
@@ -56,12 +57,7 @@ class Locator {
  private:
   const TetMesh* mesh_;
   const Topology* topology_;
-  struct Box {
-    Eigen::AlignedBox3d box;
-    Index first, count;  ///< leaf: range in order_; inner: count = -1, first = left child (right = first + 1)
-  };
-  std::vector<Box> tree_;  ///< boxes over all tetrahedra
-  std::vector<Index> order_;
+  TetTree tree_;
 };
 
 }  // namespace stylet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/geom/tet_mesh.hpp"
+#include "stylet/geom/tet_tree.hpp"
 
 #include <span>
 
@@ -45,16 +45,18 @@ class Slicer {
   void positions(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement, Eigen::Ref<Eigen::Matrix3Xf> out) const;
 
  private:
+  void cut(std::size_t tet);
   Index node(Index of_mesh);
   Index vertex(std::size_t tet, int above, int below);
   void add(std::size_t tet, Index a, Index b, Index c);
 
   const TetMesh* mesh_;
+  TetTree tree_;
   std::vector<std::array<Index, 6>> tet_edges_;  ///< (m) number of the edge between two local vertices
-  std::vector<double> height_;                   ///< (n) along the normal; scaled by its length
-  std::vector<Index> node_slot_;                 ///< (n) in nodes_, -1
-  std::vector<Index> node_vertex_;               ///< (n) vertex at a node, -1
-  std::vector<Index> edge_vertex_;               ///< (edges) vertex on an edge, -1
+  std::vector<double> height_;      ///< (n) along the normal, scaled by its length; of elements near the plane
+  std::vector<Index> node_slot_;    ///< (n) in nodes_, -1
+  std::vector<Index> node_vertex_;  ///< (n) vertex at a node, -1
+  std::vector<Index> edge_vertex_;  ///< (edges) vertex on an edge, -1
   std::vector<Index> edges_cut_;
   std::vector<Index> nodes_;
   std::vector<SliceVertex> vertices_;

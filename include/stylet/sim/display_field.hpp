@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/sim/low_rank_rows.hpp"
 #include "stylet/sim/model.hpp"
 
 #include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace stylet {
 
@@ -21,7 +24,8 @@ struct DisplayFieldOptions {
 /// the skeleton. Where Z has no more degrees of freedom than `columns`, S is all of it and u exact but for single
 /// precision. Otherwise S and T come from a pivoted QR of random combinations of the rows of K⁻¹(F,Z), F being the
 /// nodes further away than the compliance store reaches (Halko, Martinsson & Tropp 2011); rows nearer by are exact,
-/// from the store. Forces on the skeleton are exact everywhere. docs/theory/display.md has the whole story.
+/// from the store. Forces on the skeleton are exact everywhere, but for 1e-4 mm/N that K⁻¹(R,S) may be off by as it is
+/// kept (LowRankRows). docs/theory/display.md has the whole story.
 ///
 /// Immutable once prepared: any number of threads may read, each with a Load of its own. Reading does not allocate.
 class DisplayField {
@@ -42,9 +46,11 @@ class DisplayField {
 
    private:
     friend class DisplayField;
-    Eigen::VectorXf zone_;       ///< [N] f_Z
-    std::vector<Index> loaded_;  ///< slots in the zone with a force
-    Eigen::VectorXf skeleton_;   ///< [N] T f_Z
+    Eigen::VectorXf zone_;           ///< [N] f_Z
+    std::vector<Index> loaded_;      ///< slots in the zone with a force
+    LowRankRows::Product skeleton_;  ///< K⁻¹(R,S) times T f_Z [N]
+    std::vector<std::pair<Eigen::Index, Index>>
+        near_;  ///< room for nodes of near_slot_, and their places in what is read
     double left_out_N_ = 0.0;
     double shown_N_ = 0.0;
   };
@@ -56,7 +62,7 @@ class DisplayField {
   /// Displacement [mm] LPS of nodes of the mesh: what the mesh represents, without the needle's near field
   /// (ContactCompliance::mesh_displacement).
   /// @param out (3 × nodes)
-  void displacement(std::span<const Index> nodes, const Load& load, Eigen::Ref<Eigen::Matrix3Xf> out) const;
+  void displacement(std::span<const Index> nodes, Load& load, Eigen::Ref<Eigen::Matrix3Xf> out) const;
 
   /// Whether forces on a node of the mesh are shown without error everywhere.
   [[nodiscard]] bool exact_on(Index node) const;
@@ -80,16 +86,20 @@ class DisplayField {
   void choose_skeleton(const DisplayFieldOptions& options, const Progress& progress);
   [[nodiscard]] MatX random_rows(Eigen::Index rows, const Progress& progress) const;
   [[nodiscard]] Eigen::MatrixXf solve_columns(std::span<const Eigen::Index> dofs, const Progress& progress) const;
+  void keep_rows(const Eigen::MatrixXf& columns, double tolerance, const Progress& progress);
   void keep_near_rows();
+  /// First column of near_blocks_ of a force on a node of the zone and a near node.
+  [[nodiscard]] Eigen::Index near_block(Index slot, Index near) const { return 3 * (near_nodes_ * slot + near); }
 
   std::shared_ptr<const Model> model_;
   std::vector<Index> zone_;             ///< nodes of Z, none of them held
   std::vector<Index> slot_;             ///< (displacement nodes) in zone_, -1
   std::vector<Eigen::Index> skeleton_;  ///< degrees of freedom of Z that are in S
-  Eigen::MatrixXf columns_;             ///< (S × 3 mesh nodes) [mm/N] K⁻¹(S,R)
+  LowRankRows rows_;                    ///< (3 mesh nodes × S) [mm/N] K⁻¹(R,S)
   Eigen::MatrixXf to_skeleton_;         ///< (S × 3Z) T; empty: the identity
-  std::vector<Index> near_slot_;        ///< (mesh nodes) in near_rows_, -1; empty where nothing is left out
-  Eigen::MatrixXf near_rows_;           ///< (3Z × 3 near nodes) [mm/N] K⁻¹ − what the skeleton gives
+  std::vector<Index> near_slot_;        ///< (mesh nodes) number among near nodes, -1; empty where nothing is left out
+  Eigen::Index near_nodes_ = 0;
+  Eigen::Matrix3Xf near_blocks_;  ///< (3 × 3 near nodes Z) [mm/N] K⁻¹ − what the skeleton gives
   Statistics statistics_;
 };
 
