@@ -2,7 +2,6 @@
 #include "stylet/geom/locator.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

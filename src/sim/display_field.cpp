@@ -72,11 +72,7 @@ Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, 
 /// Every degree of freedom of the zone is in the skeleton: nothing is approximated.
 void DisplayField::keep_all(const Progress& progress) {
   for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(zone_.size()); ++i) skeleton_.push_back(i);
-  keep_rows(solve_columns(skeleton_, progress), 0.0, progress);
-}
-
-void DisplayField::keep_rows(const Eigen::MatrixXf& columns, double tolerance, const Progress& progress) {
-  rows_ = LowRankRows(model_->mesh().nodes, columns.transpose(), tolerance, progress);
+  rows_ = LowRankRows(model_->mesh().nodes, solve_columns(skeleton_, progress), 0.0, progress);
 }
 
 /// M = Ωᵀ K⁻¹(F,Z) (rows × 3Z): random combinations of the rows of the nodes that the store does not reach.
@@ -148,7 +144,7 @@ void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Pro
   // A force has three components, each of which comes to a column of T on the skeleton.
   statistics_.error_mm_per_N +=
       std::numbers::sqrt3 * kRows_mm_per_N * static_cast<double>(to_skeleton_.colwise().norm().maxCoeff());
-  keep_rows(columns.leftCols(k), kRows_mm_per_N, progress);
+  rows_ = LowRankRows(model_->mesh().nodes, columns.leftCols(k), kRows_mm_per_N, progress);
 }
 
 /// Near the ways the skeleton would not do; what it gives is brought to what the store says.

@@ -77,9 +77,9 @@ std::optional<Factors> factorise(const Eigen::MatrixXf& M, double tolerance) {
 
 }  // namespace
 
-LowRankRows::LowRankRows(std::span<const Vec3> points, const Eigen::MatrixXf& transposed, double tolerance,
+LowRankRows::LowRankRows(std::span<const Vec3> points, const Eigen::Ref<const Eigen::MatrixXf>& rows, double tolerance,
                          const Progress& progress)
-    : columns_(transposed.rows()), place_(points.size()) {
+    : columns_(rows.cols()), place_(points.size()) {
   std::vector<Index> nodes(points.size());
   std::iota(nodes.begin(), nodes.end(), 0);
   std::vector<std::span<const Index>> members;
@@ -94,7 +94,8 @@ LowRankRows::LowRankRows(std::span<const Vec3> points, const Eigen::MatrixXf& tr
     Cluster& cluster = clusters_[c];
     Eigen::MatrixXf M(columns_, 3 * static_cast<Eigen::Index>(members[c].size()));
     for (std::size_t i = 0; i < members[c].size(); ++i)
-      M.middleCols<3>(3 * static_cast<Eigen::Index>(i)) = transposed.middleCols<3>(3 * Eigen::Index{members[c][i]});
+      M.middleCols<3>(3 * static_cast<Eigen::Index>(i)) =
+          rows.middleRows<3>(3 * Eigen::Index{members[c][i]}).transpose();
     if (auto factors = tolerance > 0.0 ? factorise(M, tolerance) : std::nullopt) {
       cluster.is_compressed = true;
       cluster.basis = std::move(factors->basis);

@@ -3,6 +3,7 @@
 #include "support/count_allocations.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/SVD>
 
 #include <cmath>
 #include <random>
@@ -24,30 +25,29 @@ std::vector<Vec3> points_in_a_box() {
 
 /// What forces along a line do to points about it: like 1/r, but finite.
 Eigen::MatrixXf smooth(const std::vector<Vec3>& points) {
-  Eigen::MatrixXf transposed(kColumns, 3 * static_cast<Eigen::Index>(points.size()));
+  Eigen::MatrixXf A(3 * static_cast<Eigen::Index>(points.size()), kColumns);
   for (Eigen::Index j = 0; j < kColumns; ++j) {
     const Vec3 source(0.0, 0.0, -50.0 + 100.0 * static_cast<double>(j) / static_cast<double>(kColumns));
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3 r = points[i] - source;
-      transposed.row(j).segment<3>(3 * static_cast<Eigen::Index>(i)) =
+      A.col(j).segment<3>(3 * static_cast<Eigen::Index>(i)) =
           (Vec3(r.x() * r.z(), r.y() * r.z(), r.squaredNorm() + r.z() * r.z()) / std::pow(r.squaredNorm() + 4.0, 1.5))
-              .transpose()
               .cast<float>();
     }
   }
-  return transposed;
+  return A;
 }
 
 Eigen::MatrixXf rough() {
   std::mt19937 random(2);
   std::normal_distribution<float> normal;
-  Eigen::MatrixXf transposed(kColumns, 3 * static_cast<Eigen::Index>(kNodes));
-  for (float& value : transposed.reshaped()) value = normal(random);
-  return transposed;
+  Eigen::MatrixXf A(3 * static_cast<Eigen::Index>(kNodes), kColumns);
+  for (float& value : A.reshaped()) value = normal(random);
+  return A;
 }
 
 /// Of all nodes, and of vectors of length 1.
-double largest_error(const LowRankRows& rows, const Eigen::MatrixXf& transposed) {
+double largest_error(const LowRankRows& rows, const Eigen::MatrixXf& A) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
   auto product = rows.make_product();
@@ -57,7 +57,7 @@ double largest_error(const LowRankRows& rows, const Eigen::MatrixXf& transposed)
     product.vector().normalize();
     product.forget();
     for (Index node = 0; node < static_cast<Index>(kNodes); ++node) {
-      const Eigen::Vector3f expected = transposed.middleCols<3>(3 * Eigen::Index{node}).transpose() * product.vector();
+      const Eigen::Vector3f expected = A.middleRows<3>(3 * Eigen::Index{node}) * product.vector();
       worst = std::max(worst, static_cast<double>((rows.times(node, product) - expected).norm()));
     }
   }
@@ -70,18 +70,32 @@ std::size_t bytes(const Eigen::MatrixXf& M) { return static_cast<std::size_t>(M.
 
 TEST(LowRankRows, keeps_smooth_rows_in_a_fraction_of_the_room_and_within_its_tolerance) {
   const auto points = points_in_a_box();
-  const Eigen::MatrixXf transposed = smooth(points);
+  const Eigen::MatrixXf A = smooth(points);
   double before = 1.0;
   for (const double tolerance : {0.1, 0.01, 0.001}) {
-    const LowRankRows rows(points, transposed, tolerance);
-    const double share = static_cast<double>(rows.bytes()) / static_cast<double>(bytes(transposed));
+    const LowRankRows rows(points, A, tolerance);
+    const double share = static_cast<double>(rows.bytes()) / static_cast<double>(bytes(A));
     EXPECT_LT(share, 0.5) << tolerance;
-    EXPECT_LT(largest_error(rows, transposed), tolerance);
+    EXPECT_LT(largest_error(rows, A), tolerance);
     if (tolerance < 0.1) {
       EXPECT_GT(share, before) << "room for a tolerance that was not asked for";
     }
     before = share;
   }
+}
+
+TEST(LowRankRows, the_worst_vector_for_a_cluster_is_within_the_tolerance) {
+  auto points = points_in_a_box();
+  points.resize(500);  // one cluster
+  const Eigen::MatrixXf A = smooth(points);
+  const double tolerance = 0.01;
+  const LowRankRows rows(points, A, tolerance);
+  Eigen::MatrixXf off = A;
+  for (Index node = 0; node < 500; ++node)
+    off.middleRows<3>(3 * Eigen::Index{node}) -= rows.transposed(node).transpose();
+  const double worst = Eigen::BDCSVD<Eigen::MatrixXf>(off).singularValues()[0];
+  EXPECT_LT(worst, tolerance);
+  EXPECT_GT(worst, 0.1 * tolerance) << "room for a tolerance that was not asked for";
 }
 
 TEST(LowRankRows, a_nodes_rows_are_those_that_are_multiplied_with) {
@@ -97,30 +111,30 @@ TEST(LowRankRows, a_nodes_rows_are_those_that_are_multiplied_with) {
 
 TEST(LowRankRows, what_does_not_compress_stays_as_it_is) {
   const auto points = points_in_a_box();
-  const Eigen::MatrixXf transposed = rough();
+  const Eigen::MatrixXf A = rough();
   for (const double tolerance : {0.0, 1e-3}) {
-    const LowRankRows rows(points, transposed, tolerance);
-    EXPECT_EQ(rows.bytes(), bytes(transposed));
-    EXPECT_LT(largest_error(rows, transposed), 1e-5);
+    const LowRankRows rows(points, A, tolerance);
+    EXPECT_EQ(rows.bytes(), bytes(A));
+    EXPECT_LT(largest_error(rows, A), 1e-5);
   }
 }
 
 TEST(LowRankRows, rows_that_are_zero_need_no_room) {
   const auto points = points_in_a_box();
-  const Eigen::MatrixXf transposed = Eigen::MatrixXf::Zero(kColumns, 3 * static_cast<Eigen::Index>(kNodes));
-  const LowRankRows rows(points, transposed, 1e-3);
+  const Eigen::MatrixXf A = Eigen::MatrixXf::Zero(3 * static_cast<Eigen::Index>(kNodes), kColumns);
+  const LowRankRows rows(points, A, 1e-3);
   EXPECT_EQ(rows.bytes(), 0U);
-  EXPECT_EQ(largest_error(rows, transposed), 0.0);
+  EXPECT_EQ(largest_error(rows, A), 0.0);
 }
 
 TEST(LowRankRows, a_single_node_or_no_column_is_no_special_case) {
   const std::vector<Vec3> one{Vec3(1, 2, 3)};
-  const Eigen::MatrixXf transposed = Eigen::MatrixXf::Constant(2, 3, 0.5F);
-  const LowRankRows rows(one, transposed, 1e-3);
+  const Eigen::MatrixXf A = Eigen::MatrixXf::Constant(3, 2, 0.5F);
+  const LowRankRows rows(one, A, 1e-3);
   auto product = rows.make_product();
   product.vector().setOnes();
   EXPECT_LT((rows.times(0, product) - Eigen::Vector3f::Ones()).norm(), 1e-3);
-  const LowRankRows empty(one, Eigen::MatrixXf(0, 3), 1e-3);
+  const LowRankRows empty(one, Eigen::MatrixXf(3, 0), 1e-3);
   auto nothing = empty.make_product();
   EXPECT_EQ(empty.times(0, nothing).norm(), 0.0F);
 }

@@ -86,7 +86,6 @@ class DisplayField {
   void choose_skeleton(const DisplayFieldOptions& options, const Progress& progress);
   [[nodiscard]] MatX random_rows(Eigen::Index rows, const Progress& progress) const;
   [[nodiscard]] Eigen::MatrixXf solve_columns(std::span<const Eigen::Index> dofs, const Progress& progress) const;
-  void keep_rows(const Eigen::MatrixXf& columns, double tolerance, const Progress& progress);
   void keep_near_rows();
   /// First column of near_blocks_ of a force on a node of the zone and a near node.
   [[nodiscard]] Eigen::Index near_block(Index slot, Index near) const { return 3 * (near_nodes_ * slot + near); }

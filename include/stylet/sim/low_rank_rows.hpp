@@ -21,9 +21,9 @@ class LowRankRows {
  public:
   LowRankRows() = default;
   /// @param points of the nodes, any unit
-  /// @param transposed Aᵀ (columns × 3 nodes)
+  /// @param rows A (3 nodes × columns)
   /// @param tolerance in the units of A; 0: A as it is
-  LowRankRows(std::span<const Vec3> points, const Eigen::MatrixXf& transposed, double tolerance,
+  LowRankRows(std::span<const Vec3> points, const Eigen::Ref<const Eigen::MatrixXf>& rows, double tolerance,
               const Progress& progress = {});
 
   /// A vector to multiply with, and what the clusters' bases made of it as far as they were asked.
@@ -46,7 +46,6 @@ class LowRankRows {
   /// Aᵀ of a node as it is kept (columns × 3). Allocates.
   [[nodiscard]] Eigen::Matrix<float, Eigen::Dynamic, 3> transposed(Index node) const;
 
-  [[nodiscard]] Eigen::Index columns() const { return columns_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
