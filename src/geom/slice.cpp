@@ -29,92 +29,97 @@ constexpr std::array<Pairs, 6> kPairs{{{0b0011, {0, 1, 2, 3}},
 
 }  // namespace
 
-Slicer::Slicer(const TetMesh& mesh) : mesh_(&mesh), tree_(mesh), tet_edges_(mesh.tets.size()) {
-  using Edge = std::pair<Index, Index>;
-  const auto edge = [&](std::size_t t, int i, int j) {
-    const auto& tet = mesh.tets[t];
-    return Edge(std::minmax(tet[static_cast<std::size_t>(i)], tet[static_cast<std::size_t>(j)]));
-  };
+Slicer::Slicer(const TetMesh& mesh) : tree_(mesh) {
+  std::vector<Index> number_of_node(mesh.nodes.size(), -1);
+  corners_.reserve(mesh.nodes.size());
+  using Edge = std::array<Index, 4>;  // its two nodes; the element's number, and the edge's in it
   std::vector<Edge> edges;
   edges.reserve(6 * mesh.tets.size());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    for (int i = 0; i < 4; ++i) {
-      for (int j = i + 1; j < 4; ++j) edges.push_back(edge(t, i, j));
+  elements_.reserve(mesh.tets.size());
+  for (const Index t : tree_.order()) {
+    Element element{{}, {}, t, mesh.tet_region[static_cast<std::size_t>(t)]};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto of_mesh = static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(t)][i]);
+      if (number_of_node[of_mesh] < 0) {
+        number_of_node[of_mesh] = static_cast<Index>(corners_.size());
+        corners_.push_back({mesh.nodes[of_mesh], 0.0, static_cast<Index>(of_mesh)});
+      }
+      element.nodes[i] = number_of_node[of_mesh];
     }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    for (int i = 0; i < 4; ++i) {
-      for (int j = i + 1; j < 4; ++j) {
-        const auto found = std::lower_bound(edges.begin(), edges.end(), edge(t, i, j));
-        const auto number = static_cast<std::size_t>(kEdge[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
-        tet_edges_[t][number] = static_cast<Index>(found - edges.begin());
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        const auto [a, b] = std::minmax(element.nodes[i], element.nodes[j]);
+        edges.push_back({a, b, static_cast<Index>(elements_.size()), kEdge[i][j]});
       }
     }
+    elements_.push_back(element);
   }
-  height_.resize(mesh.nodes.size());
-  node_slot_.assign(mesh.nodes.size(), -1);
-  node_vertex_.assign(mesh.nodes.size(), -1);
-  edge_vertex_.assign(edges.size(), -1);
-  edges_cut_.reserve(edges.size());
-  nodes_.reserve(mesh.nodes.size());
-  vertices_.reserve(edges.size() + mesh.nodes.size());
-  triangles_.reserve(2 * mesh.tets.size());
+  std::sort(edges.begin(), edges.end());
+  Index edge = -1;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto& [a, b, element, within] = edges[e];
+    if (e == 0 || a != edges[e - 1][0] || b != edges[e - 1][1]) ++edge;
+    elements_[static_cast<std::size_t>(element)].edges[static_cast<std::size_t>(within)] = edge;
+  }
+  const auto edge_count = static_cast<std::size_t>(edge + 1);
+  edge_vertex_.assign(edge_count, -1);
+  edges_cut_.reserve(edge_count);
+  nodes_.reserve(corners_.size());
+  corner_of_slot_.reserve(corners_.size());
+  vertices_.reserve(edge_count + corners_.size());
+  triangles_.reserve(2 * elements_.size());
 }
 
-Index Slicer::node(Index of_mesh) {
-  Index& slot = node_slot_[static_cast<std::size_t>(of_mesh)];
-  if (slot < 0) {
-    slot = static_cast<Index>(nodes_.size());
-    nodes_.push_back(of_mesh);
+Index Slicer::slot(Node& node) {
+  if (node.slot < 0) {
+    node.slot = static_cast<Index>(nodes_.size());
+    nodes_.push_back(node.of_mesh);
+    corner_of_slot_.push_back(static_cast<Index>(&node - corners_.data()));
   }
-  return slot;
+  return node.slot;
 }
 
 /// The plane's point on the edge from a local vertex in front to one behind.
-Index Slicer::vertex(std::size_t tet, int above, int below) {
-  const auto& corners = mesh_->tets[tet];
-  Index a = corners[static_cast<std::size_t>(above)];
-  Index b = corners[static_cast<std::size_t>(below)];
-  if (height_[static_cast<std::size_t>(a)] == 0.0) {
-    Index& at_node = node_vertex_[static_cast<std::size_t>(a)];
-    if (at_node < 0) {
-      at_node = static_cast<Index>(vertices_.size());
-      const Index slot = node(a);
-      vertices_.push_back({slot, slot, 0.0F});
+Index Slicer::vertex(const Element& element, int above, int below) {
+  Index a = element.nodes[static_cast<std::size_t>(above)];
+  Index b = element.nodes[static_cast<std::size_t>(below)];
+  if (Node& on_plane = corners_[static_cast<std::size_t>(a)]; on_plane.height == 0.0) {
+    if (on_plane.vertex < 0) {
+      on_plane.vertex = static_cast<Index>(vertices_.size());
+      const Index only = slot(on_plane);
+      vertices_.push_back({only, only, 0.0F});
     }
-    return at_node;
+    return on_plane.vertex;
   }
   const Index edge =
-      tet_edges_[tet]
-                [static_cast<std::size_t>(kEdge[static_cast<std::size_t>(above)][static_cast<std::size_t>(below)])];
+      element.edges[static_cast<std::size_t>(kEdge[static_cast<std::size_t>(above)][static_cast<std::size_t>(below)])];
   Index& on_edge = edge_vertex_[static_cast<std::size_t>(edge)];
   if (on_edge < 0) {
     on_edge = static_cast<Index>(vertices_.size());
     edges_cut_.push_back(edge);
     if (a > b) std::swap(a, b);  // the same numbers whichever element comes first
-    const double height_a = height_[static_cast<std::size_t>(a)];
-    const double height_b = height_[static_cast<std::size_t>(b)];
-    const Index slot_a = node(a);
-    const Index slot_b = node(b);
-    vertices_.push_back({slot_a, slot_b, static_cast<float>(height_a / (height_a - height_b))});
+    Node& from = corners_[static_cast<std::size_t>(a)];
+    Node& to = corners_[static_cast<std::size_t>(b)];
+    const Index slot_a = slot(from);
+    const Index slot_b = slot(to);
+    vertices_.push_back({slot_a, slot_b, static_cast<float>(from.height / (from.height - to.height))});
   }
   return on_edge;
 }
 
-void Slicer::add(std::size_t tet, Index a, Index b, Index c) {
+void Slicer::add(const Element& element, Index a, Index b, Index c) {
   if (a == b || b == c || c == a) return;  // the plane only touches this element, or a corner of it
-  triangles_.push_back({{a, b, c}, static_cast<Index>(tet), mesh_->tet_region[tet]});
+  triangles_.push_back({{a, b, c}, element.tet, element.region});
 }
 
 void Slicer::cut(const Vec3& origin, const Vec3& normal) {
   for (const Index edge : edges_cut_) edge_vertex_[static_cast<std::size_t>(edge)] = -1;
-  for (const Index n : nodes_) {
-    node_slot_[static_cast<std::size_t>(n)] = -1;
-    node_vertex_[static_cast<std::size_t>(n)] = -1;
+  for (const Index corner : corner_of_slot_) {
+    corners_[static_cast<std::size_t>(corner)].slot = -1;
+    corners_[static_cast<std::size_t>(corner)].vertex = -1;
   }
   edges_cut_.clear();
+  corner_of_slot_.clear();
   nodes_.clear();
   vertices_.clear();
   triangles_.clear();
@@ -123,31 +128,33 @@ void Slicer::cut(const Vec3& origin, const Vec3& normal) {
         return std::abs(normal.dot(box.center() - origin)) <= 0.5 * normal.cwiseAbs().dot(box.sizes());
       },
       [&](std::span<const Index> tets) {
-        for (const Index t : tets) {
-          for (const Index n : mesh_->tets[static_cast<std::size_t>(t)]) {
-            height_[static_cast<std::size_t>(n)] = normal.dot(mesh_->nodes[static_cast<std::size_t>(n)] - origin);
+        const auto first = static_cast<std::size_t>(tets.data() - tree_.order().data());
+        for (const Element& element : std::span(elements_).subspan(first, tets.size())) {
+          for (const Index n : element.nodes) {
+            Node& node = corners_[static_cast<std::size_t>(n)];
+            node.height = normal.dot(node.x - origin);
           }
-          cut(static_cast<std::size_t>(t));
+          cut(element);
         }
         return true;
       });
 }
 
 /// The plane through one element.
-void Slicer::cut(std::size_t t) {
-  const auto& tet = mesh_->tets[t];
+void Slicer::cut(const Element& element) {
   unsigned front = 0;
-  for (std::size_t i = 0; i < 4; ++i) front |= height_[static_cast<std::size_t>(tet[i])] >= 0.0 ? 1U << i : 0U;
+  for (std::size_t i = 0; i < 4; ++i)
+    front |= corners_[static_cast<std::size_t>(element.nodes[i])].height >= 0.0 ? 1U << i : 0U;
   if (front == 0 || front == 0b1111) return;
   if (const auto pairs = std::find_if(kPairs.begin(), kPairs.end(), [&](const Pairs& p) { return p.front == front; });
       pairs != kPairs.end()) {
     const auto& v = pairs->v;
-    const Index one = vertex(t, v[0], v[2]);
-    const Index two = vertex(t, v[1], v[2]);
-    const Index three = vertex(t, v[1], v[3]);
-    const Index four = vertex(t, v[0], v[3]);
-    add(t, one, two, three);
-    add(t, one, three, four);
+    const Index one = vertex(element, v[0], v[2]);
+    const Index two = vertex(element, v[1], v[2]);
+    const Index three = vertex(element, v[1], v[3]);
+    const Index four = vertex(element, v[0], v[3]);
+    add(element, one, two, three);
+    add(element, one, three, four);
     return;
   }
   for (int i = 0; i < 4; ++i) {  // one vertex alone on its side
@@ -155,13 +162,13 @@ void Slicer::cut(std::size_t t) {
     if (!alone_in_front && front != (0b1111U ^ (1U << i))) continue;
     const auto& o = kFaceVertices[static_cast<std::size_t>(i)];
     if (alone_in_front) {
-      const Index one = vertex(t, i, o[0]);
-      const Index two = vertex(t, i, o[2]);
-      add(t, one, two, vertex(t, i, o[1]));
+      const Index one = vertex(element, i, o[0]);
+      const Index two = vertex(element, i, o[2]);
+      add(element, one, two, vertex(element, i, o[1]));
     } else {
-      const Index one = vertex(t, o[0], i);
-      const Index two = vertex(t, o[1], i);
-      add(t, one, two, vertex(t, o[2], i));
+      const Index one = vertex(element, o[0], i);
+      const Index two = vertex(element, o[1], i);
+      add(element, one, two, vertex(element, o[2], i));
     }
   }
 }
@@ -170,7 +177,7 @@ void Slicer::positions(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement, E
   for (std::size_t k = 0; k < vertices_.size(); ++k) {
     const SliceVertex& v = vertices_[k];
     const auto at = [&](Index slot) -> Eigen::Vector3f {
-      const Vec3& x = mesh_->nodes[static_cast<std::size_t>(nodes_[static_cast<std::size_t>(slot)])];
+      const Vec3& x = corners_[static_cast<std::size_t>(corner_of_slot_[static_cast<std::size_t>(slot)])].x;
       return x.cast<float>() + displacement.col(slot);
     };
     out.col(static_cast<Eigen::Index>(k)) = (1.0F - v.t) * at(v.a) + v.t * at(v.b);

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kShownBeyond_mm = 10.0;  ///< of the planned depth
 constexpr Eigen::Index kBatch = 192;      ///< right-hand sides solved for at once
+constexpr std::size_t kNearBatch = 64;    ///< near nodes whose rows are corrected at once
 constexpr Eigen::Index kOversample = 20;  ///< random rows more than columns
 constexpr Eigen::Index kChecks = 60;      ///< columns the error is measured on
 constexpr double kSafety = 2.0;  ///< over what was measured: columns are single degrees of freedom, not all of them
@@ -50,6 +51,15 @@ void DisplayField::find_zone(double reach_mm) {
   statistics_.zone_dofs = static_cast<int>(3 * zone_.size());
 }
 
+void DisplayField::find_surface() {
+  const Topology& topology = model_->topology();
+  for (const auto* faces : {&topology.boundary, &topology.interfaces}) {
+    for (const Face& face : *faces) surface_.insert(surface_.end(), face.nodes.begin(), face.nodes.end());
+  }
+  std::sort(surface_.begin(), surface_.end());
+  surface_.erase(std::unique(surface_.begin(), surface_.end()), surface_.end());
+}
+
 /// Columns of K⁻¹ [mm/N] (3 mesh nodes × dofs) of degrees of freedom of the zone.
 Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, const Progress& progress) const {
   const Tissue& tissue = model_->tissue();
@@ -72,7 +82,7 @@ Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, 
 /// Every degree of freedom of the zone is in the skeleton: nothing is approximated.
 void DisplayField::keep_all(const Progress& progress) {
   for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(zone_.size()); ++i) skeleton_.push_back(i);
-  rows_ = LowRankRows(model_->mesh().nodes, solve_columns(skeleton_, progress), 0.0, progress);
+  rows_ = LowRankRows(model_->mesh().nodes, solve_columns(skeleton_, progress), 0.0, surface_, progress);
 }
 
 /// M = Ωᵀ K⁻¹(F,Z) (rows × 3Z): random combinations of the rows of the nodes that the store does not reach.
@@ -144,7 +154,7 @@ void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Pro
   // A force has three components, each of which comes to a column of T on the skeleton.
   statistics_.error_mm_per_N +=
       std::numbers::sqrt3 * kRows_mm_per_N * static_cast<double>(to_skeleton_.colwise().norm().maxCoeff());
-  rows_ = LowRankRows(model_->mesh().nodes, columns.leftCols(k), kRows_mm_per_N, progress);
+  rows_ = LowRankRows(model_->mesh().nodes, columns.leftCols(k), kRows_mm_per_N, surface_, progress);
 }
 
 /// Near the ways the skeleton would not do; what it gives is brought to what the store says.
@@ -159,13 +169,18 @@ void DisplayField::keep_near_rows() {
     near_slot_[static_cast<std::size_t>(node)] = static_cast<Index>(near.size());
     near.push_back(node);
   }
-  near_nodes_ = static_cast<Eigen::Index>(near.size());
-  near_blocks_.resize(3, 3 * near_nodes_ * static_cast<Eigen::Index>(zone_.size()));
-  for (std::size_t r = 0; r < near.size(); ++r) {
-    const Eigen::MatrixXf shown = rows_.transposed(near[r]).transpose() * to_skeleton_;
+  near_rows_.resize(3 * static_cast<Eigen::Index>(near.size()), 3 * static_cast<Eigen::Index>(zone_.size()));
+  for (std::size_t first = 0; first < near.size(); first += kNearBatch) {
+    const std::span<const Index> batch = std::span(near).subspan(first, std::min(kNearBatch, near.size() - first));
+    Eigen::MatrixXf shown(3 * static_cast<Eigen::Index>(batch.size()), to_skeleton_.rows());
+    for (std::size_t r = 0; r < batch.size(); ++r)
+      shown.middleRows<3>(3 * static_cast<Eigen::Index>(r)) = rows_.transposed(batch[r]).transpose();
+    auto rows = near_rows_.middleRows(3 * static_cast<Eigen::Index>(first), shown.rows());
+    rows.noalias() = -shown * to_skeleton_;
     for (std::size_t z = 0; z < zone_.size(); ++z) {
-      near_blocks_.middleCols<3>(near_block(static_cast<Index>(z), static_cast<Index>(r))) =
-          store.block(near[r], zone_[z]).cast<float>() - shown.middleCols<3>(3 * static_cast<Eigen::Index>(z));
+      for (std::size_t r = 0; r < batch.size(); ++r)
+        rows.block<3, 3>(3 * static_cast<Eigen::Index>(r), 3 * static_cast<Eigen::Index>(z)) +=
+            store.block(batch[r], zone_[z]).cast<float>();
     }
   }
 }
@@ -182,6 +197,7 @@ Result<std::shared_ptr<const DisplayField>> DisplayField::prepare(std::shared_pt
   if (auto good = check(*model); !good) return good.error();
   const double started = seconds_now();
   std::shared_ptr<DisplayField> field(new DisplayField(std::move(model)));
+  field->find_surface();
   field->find_zone(options.reach_mm);
   const auto& zone = field->statistics_.zone_dofs;
   zone <= options.columns ? field->keep_all(progress) : field->choose_skeleton(options, progress);
@@ -190,7 +206,7 @@ Result<std::shared_ptr<const DisplayField>> DisplayField::prepare(std::shared_pt
   Statistics& s = field->statistics_;
   s.columns = static_cast<int>(field->skeleton_.size());
   s.seconds = seconds_now() - started;
-  const auto floats = static_cast<std::size_t>(field->to_skeleton_.size() + field->near_blocks_.size());
+  const auto floats = static_cast<std::size_t>(field->to_skeleton_.size() + field->near_rows_.size());
   s.megabytes = static_cast<double>(field->rows_.bytes() + floats * sizeof(float)) / 1048576.0;
   return std::shared_ptr<const DisplayField>(std::move(field));
 }
@@ -209,7 +225,7 @@ DisplayField::Load DisplayField::make_load() const {
   load.zone_ = Eigen::VectorXf::Zero(3 * static_cast<Eigen::Index>(zone_.size()));
   load.loaded_.reserve(zone_.size());
   load.skeleton_ = rows_.make_product();
-  load.near_.reserve(static_cast<std::size_t>(std::max<Eigen::Index>(1, near_nodes_)));
+  load.near_ = Eigen::VectorXf::Zero(near_rows_.rows());
   return load;
 }
 
@@ -235,6 +251,7 @@ void DisplayField::set(std::span<const TissueForce> forces, Load& load) const {
       there += on_node.cast<float>();
     }
   }
+  load.near_is_there_ = false;
   load.skeleton_.forget();
   Eigen::VectorXf& on_skeleton = load.skeleton_.vector();
   if (to_skeleton_.size() == 0) {
@@ -247,25 +264,24 @@ void DisplayField::set(std::span<const TissueForce> forces, Load& load) const {
         to_skeleton_.middleCols<3>(3 * Eigen::Index{slot}).lazyProduct(load.zone_.segment<3>(3 * Eigen::Index{slot}));
 }
 
+/// Of all near nodes at once: columns of a few forces lie side by side, blocks of nodes that are asked for do not.
+void DisplayField::read_near_rows(Load& load) const {
+  load.near_.setZero();
+  for (const Index slot : load.loaded_)
+    load.near_.noalias() +=
+        near_rows_.middleCols<3>(3 * Eigen::Index{slot}).lazyProduct(load.zone_.segment<3>(3 * Eigen::Index{slot}));
+  load.near_is_there_ = true;
+}
+
 void DisplayField::displacement(std::span<const Index> nodes, Load& load, Eigen::Ref<Eigen::Matrix3Xf> out) const {
-  // Force by force, not node by node: blocks of one force lie side by side.
-  const auto correct_near = [&] {
-    for (const Index slot : load.loaded_) {
-      const Eigen::Vector3f force = load.zone_.segment<3>(3 * Eigen::Index{slot});
-      for (const auto& [place, near] : load.near_)
-        out.col(place).noalias() += near_blocks_.middleCols<3>(near_block(slot, near)) * force;
-    }
-    load.near_.clear();
-  };
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto place = static_cast<Eigen::Index>(i);
-    out.col(place) = rows_.times(nodes[i], load.skeleton_);
+    auto u = out.col(static_cast<Eigen::Index>(i));
+    u = rows_.times(nodes[i], load.skeleton_);
     const Index near = near_slot_.empty() ? -1 : near_slot_[static_cast<std::size_t>(nodes[i])];
     if (near < 0) continue;
-    load.near_.emplace_back(place, near);
-    if (load.near_.size() == load.near_.capacity()) correct_near();
+    if (!load.near_is_there_) read_near_rows(load);
+    u += load.near_.segment<3>(3 * Eigen::Index{near});
   }
-  correct_near();
 }
 
 }  // namespace stylet

@@ -78,17 +78,23 @@ std::optional<Factors> factorise(const Eigen::MatrixXf& M, double tolerance) {
 }  // namespace
 
 LowRankRows::LowRankRows(std::span<const Vec3> points, const Eigen::Ref<const Eigen::MatrixXf>& rows, double tolerance,
-                         const Progress& progress)
+                         std::span<const Index> together, const Progress& progress)
     : columns_(rows.cols()), place_(points.size()) {
   std::vector<Index> nodes(points.size());
   std::iota(nodes.begin(), nodes.end(), 0);
   std::vector<std::span<const Index>> members;
-  halve(points, nodes, [&](std::span<Index> of_one) {
+  std::vector<char> is_together(points.size(), 0);
+  for (const Index node : together) is_together[static_cast<std::size_t>(node)] = 1;
+  const auto others = std::stable_partition(
+      nodes.begin(), nodes.end(), [&](Index node) { return is_together[static_cast<std::size_t>(node)] != 0; });
+  const auto add_cluster = [&](std::span<Index> of_one) {
     std::sort(of_one.begin(), of_one.end());
     for (std::size_t i = 0; i < of_one.size(); ++i)
       place_[static_cast<std::size_t>(of_one[i])] = {static_cast<Index>(members.size()), static_cast<Index>(i)};
     members.emplace_back(of_one);
-  });
+  };
+  halve(points, {nodes.begin(), others}, add_cluster);
+  halve(points, {others, nodes.end()}, add_cluster);
   clusters_.resize(members.size());
   const auto compress = [&](std::size_t c) {
     Cluster& cluster = clusters_[c];

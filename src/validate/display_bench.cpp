@@ -23,21 +23,6 @@ constexpr double kDisplayedSpeed_mm_per_s = 20.0;
 constexpr double kDt_s = 1e-3;
 constexpr Index kNodalPressureFits = 50000;  ///< nodes; above, its factor is too large for most machines
 
-/// Nodes of the patient's surface and of all surfaces between organs.
-std::vector<Index> surface_nodes(const Topology& topology, Index nodes) {
-  std::vector<char> on(static_cast<std::size_t>(nodes), 0);
-  for (const auto* faces : {&topology.boundary, &topology.interfaces}) {
-    for (const Face& face : *faces) {
-      for (const Index node : face.nodes) on[static_cast<std::size_t>(node)] = 1;
-    }
-  }
-  std::vector<Index> result;
-  for (Index node = 0; node < nodes; ++node) {
-    if (on[static_cast<std::size_t>(node)]) result.push_back(node);
-  }
-  return result;
-}
-
 Vec3 place_of(const TetMesh& mesh, const MaterialPoint& at) {
   Vec3 x = Vec3::Zero();
   for (std::size_t i = 0; i < 4; ++i)
@@ -93,29 +78,23 @@ class Display {
         mesh_(field.model().mesh()),
         slicer_(mesh_),
         load_(field.make_load()),
-        surface_(surface_nodes(field.model().topology(), mesh_.node_count())),
         u_(3, mesh_.node_count()),
         x_(3, 2 * mesh_.tet_count()) {}
 
-  void surface(std::span<const TissueForce> forces) {
-    const double started = reproduce::thread_cpu_s();
-    field_.set(forces, load_);
-    const auto count = static_cast<Eigen::Index>(surface_.size());
-    auto u = u_.leftCols(count);
-    field_.displacement(surface_, load_, u);
-    for (Eigen::Index k = 0; k < count; ++k)
-      x_.col(k) = mesh_.nodes[static_cast<std::size_t>(surface_[static_cast<std::size_t>(k)])].cast<float>() + u.col(k);
-    surface_us_.push_back(1e6 * (reproduce::thread_cpu_s() - started));
-  }
-
-  void slice(std::span<const TissueForce> forces, const Vec3& origin, const Vec3& normal) {
-    const double started = reproduce::thread_cpu_s();
-    field_.set(forces, load_);
-    slicer_.cut(origin, normal);
-    auto u = u_.leftCols(static_cast<Eigen::Index>(slicer_.nodes().size()));
-    field_.displacement(slicer_.nodes(), load_, u);
-    slicer_.positions(u, x_.leftCols(static_cast<Eigen::Index>(slicer_.vertices().size())));
-    slice_us_.push_back(1e6 * (reproduce::thread_cpu_s() - started));
+  /// The surfaces, a slice, and both, each from forces it has not seen.
+  void show(std::span<const TissueForce> forces, const Vec3& origin, const Vec3& normal) {
+    const auto timed = [&](std::vector<double>& us, auto&& picture) {
+      const double started = reproduce::thread_cpu_s();
+      field_.set(forces, load_);
+      picture();
+      us.push_back(1e6 * (reproduce::thread_cpu_s() - started));
+    };
+    timed(surface_us_, [&] { show_surface(); });
+    timed(slice_us_, [&] { show_slice(origin, normal); });
+    timed(both_us_, [&] {
+      show_surface();
+      show_slice(origin, normal);
+    });
     triangles_ = std::max(triangles_, static_cast<int>(slicer_.triangles().size()));
   }
 
@@ -130,22 +109,39 @@ class Display {
 
   [[nodiscard]] const DisplayField::Load& load() const { return load_; }
   void write(DisplayRow& row) {
-    row.surface_nodes = static_cast<int>(surface_.size());
+    row.surface_nodes = static_cast<int>(field_.surface().size());
     row.slice_triangles = triangles_;
     row.surface_us = quantiles(std::move(surface_us_));
     row.slice_us = quantiles(std::move(slice_us_));
+    row.both_us = quantiles(std::move(both_us_));
   }
 
  private:
+  void show_surface() {
+    const auto count = static_cast<Eigen::Index>(field_.surface().size());
+    auto u = u_.leftCols(count);
+    field_.displacement(field_.surface(), load_, u);
+    for (Eigen::Index k = 0; k < count; ++k)
+      x_.col(k) =
+          mesh_.nodes[static_cast<std::size_t>(field_.surface()[static_cast<std::size_t>(k)])].cast<float>() + u.col(k);
+  }
+
+  void show_slice(const Vec3& origin, const Vec3& normal) {
+    slicer_.cut(origin, normal);
+    auto u = u_.leftCols(static_cast<Eigen::Index>(slicer_.nodes().size()));
+    field_.displacement(slicer_.nodes(), load_, u);
+    slicer_.positions(u, x_.leftCols(static_cast<Eigen::Index>(slicer_.vertices().size())));
+  }
+
   const DisplayField& field_;
   const TetMesh& mesh_;
   Slicer slicer_;
   DisplayField::Load load_;
-  std::vector<Index> surface_;
   Eigen::Matrix3Xf u_;
   Eigen::Matrix3Xf x_;
   std::vector<double> surface_us_;
   std::vector<double> slice_us_;
+  std::vector<double> both_us_;
   int triangles_ = 0;
 };
 
@@ -180,8 +176,7 @@ DisplayRow measure(const std::shared_ptr<const Model>& model, const DisplayField
     report(progress, "showing", static_cast<double>(k) / steps);
     const std::vector<TissueForce> forces = simulation.insertion().tissue_forces();
     const double turn = 2.0 * std::numbers::pi * row.frames / kFrames;
-    display.surface(forces);
-    display.slice(forces, simulation.record().tip_mm, Eigen::AngleAxisd(turn, plan.direction) * across);
+    display.show(forces, simulation.record().tip_mm, Eigen::AngleAxisd(turn, plan.direction) * across);
     ++row.frames;
 
     const double started = reproduce::thread_cpu_s();

@@ -98,6 +98,16 @@ TEST(LowRankRows, the_worst_vector_for_a_cluster_is_within_the_tolerance) {
   EXPECT_GT(worst, 0.1 * tolerance) << "room for a tolerance that was not asked for";
 }
 
+TEST(LowRankRows, nodes_that_are_read_together_are_as_right_as_the_others) {
+  const auto points = points_in_a_box();
+  const Eigen::MatrixXf A = smooth(points);
+  std::vector<Index> every_fifth;
+  for (Index node = 0; node < static_cast<Index>(kNodes); node += 5) every_fifth.push_back(node);
+  const LowRankRows rows(points, A, 0.01, every_fifth);
+  EXPECT_LT(largest_error(rows, A), 0.01);
+  EXPECT_LT(static_cast<double>(rows.bytes()), 0.6 * static_cast<double>(bytes(A)));
+}
+
 TEST(LowRankRows, a_nodes_rows_are_those_that_are_multiplied_with) {
   const auto points = points_in_a_box();
   const LowRankRows rows(points, smooth(points), 0.01);

@@ -29,7 +29,6 @@ struct SliceTriangle {
 /// Room for the largest slice there can be is taken at the start; cut() does not allocate. One thread at a time.
 class Slicer {
  public:
-  /// @param mesh must outlive the slicer
   explicit Slicer(const TetMesh& mesh);
 
   /// @param origin [mm] LPS, a point on the plane
@@ -45,19 +44,32 @@ class Slicer {
   void positions(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement, Eigen::Ref<Eigen::Matrix3Xf> out) const;
 
  private:
-  void cut(std::size_t tet);
-  Index node(Index of_mesh);
-  Index vertex(std::size_t tet, int above, int below);
-  void add(std::size_t tet, Index a, Index b, Index c);
+  /// Of the mesh, in the order of the tree, as are its nodes and edges: what a plane meets lies close together.
+  struct Element {
+    std::array<Index, 4> nodes;
+    std::array<Index, 6> edges;  ///< between two local vertices
+    Index tet;
+    int region;
+  };
+  struct Node {
+    Vec3 x;               ///< [mm] LPS
+    double height = 0.0;  ///< along the normal, scaled by its length; of elements near the plane
+    Index of_mesh = -1;
+    Index slot = -1;    ///< in nodes_
+    Index vertex = -1;  ///< at the node
+  };
 
-  const TetMesh* mesh_;
+  void cut(const Element& element);
+  Index slot(Node& node);
+  Index vertex(const Element& element, int above, int below);
+  void add(const Element& element, Index a, Index b, Index c);
+
   TetTree tree_;
-  std::vector<std::array<Index, 6>> tet_edges_;  ///< (m) number of the edge between two local vertices
-  std::vector<double> height_;      ///< (n) along the normal, scaled by its length; of elements near the plane
-  std::vector<Index> node_slot_;    ///< (n) in nodes_, -1
-  std::vector<Index> node_vertex_;  ///< (n) vertex at a node, -1
+  std::vector<Element> elements_;
+  std::vector<Node> corners_;       ///< (n)
   std::vector<Index> edge_vertex_;  ///< (edges) vertex on an edge, -1
   std::vector<Index> edges_cut_;
+  std::vector<Index> corner_of_slot_;  ///< (nodes_) number in corners_
   std::vector<Index> nodes_;
   std::vector<SliceVertex> vertices_;
   std::vector<SliceTriangle> triangles_;

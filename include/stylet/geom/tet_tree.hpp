@@ -16,8 +16,11 @@ class TetTree {
  public:
   explicit TetTree(const TetMesh& mesh);
 
-  /// Passes the tetrahedra of every leaf whose box, as all those around it, `meets` what is looked for. Does not
-  /// allocate.
+  /// All tetrahedra, those of a leaf side by side, and next to them those of the leaves beside it.
+  [[nodiscard]] std::span<const Index> order() const { return order_; }
+
+  /// Passes the tetrahedra of every leaf, a part of order(), whose box, as all those around it, `meets` what is looked
+  /// for. Does not allocate.
   /// @param meets (const Eigen::AlignedBox3d&) → bool
   /// @param look (std::span<const Index> tets) → bool, whether to go on
   template <class Meets, class Look>

@@ -49,8 +49,8 @@ class DisplayField {
     Eigen::VectorXf zone_;           ///< [N] f_Z
     std::vector<Index> loaded_;      ///< slots in the zone with a force
     LowRankRows::Product skeleton_;  ///< K⁻¹(R,S) times T f_Z [N]
-    std::vector<std::pair<Eigen::Index, Index>>
-        near_;  ///< room for nodes of near_slot_, and their places in what is read
+    Eigen::VectorXf near_;           ///< [mm] what near_rows_ make of f_Z, once a near node was asked for
+    bool near_is_there_ = false;
     double left_out_N_ = 0.0;
     double shown_N_ = 0.0;
   };
@@ -63,6 +63,9 @@ class DisplayField {
   /// (ContactCompliance::mesh_displacement).
   /// @param out (3 × nodes)
   void displacement(std::span<const Index> nodes, Load& load, Eigen::Ref<Eigen::Matrix3Xf> out) const;
+
+  /// Nodes of the patient's surface and of all surfaces between regions, ascending. They are the quickest to read.
+  [[nodiscard]] std::span<const Index> surface() const { return surface_; }
 
   /// Whether forces on a node of the mesh are shown without error everywhere.
   [[nodiscard]] bool exact_on(Index node) const;
@@ -81,24 +84,24 @@ class DisplayField {
 
  private:
   explicit DisplayField(std::shared_ptr<const Model> model) : model_(std::move(model)) {}
+  void find_surface();
   void find_zone(double reach_mm);
   void keep_all(const Progress& progress);
   void choose_skeleton(const DisplayFieldOptions& options, const Progress& progress);
   [[nodiscard]] MatX random_rows(Eigen::Index rows, const Progress& progress) const;
   [[nodiscard]] Eigen::MatrixXf solve_columns(std::span<const Eigen::Index> dofs, const Progress& progress) const;
   void keep_near_rows();
-  /// First column of near_blocks_ of a force on a node of the zone and a near node.
-  [[nodiscard]] Eigen::Index near_block(Index slot, Index near) const { return 3 * (near_nodes_ * slot + near); }
+  void read_near_rows(Load& load) const;
 
   std::shared_ptr<const Model> model_;
+  std::vector<Index> surface_;
   std::vector<Index> zone_;             ///< nodes of Z, none of them held
   std::vector<Index> slot_;             ///< (displacement nodes) in zone_, -1
   std::vector<Eigen::Index> skeleton_;  ///< degrees of freedom of Z that are in S
   LowRankRows rows_;                    ///< (3 mesh nodes × S) [mm/N] K⁻¹(R,S)
   Eigen::MatrixXf to_skeleton_;         ///< (S × 3Z) T; empty: the identity
   std::vector<Index> near_slot_;        ///< (mesh nodes) number among near nodes, -1; empty where nothing is left out
-  Eigen::Index near_nodes_ = 0;
-  Eigen::Matrix3Xf near_blocks_;  ///< (3 × 3 near nodes Z) [mm/N] K⁻¹ − what the skeleton gives
+  Eigen::MatrixXf near_rows_;           ///< (3 near nodes × 3Z) [mm/N] K⁻¹ − what the skeleton gives
   Statistics statistics_;
 };
 

@@ -23,8 +23,9 @@ class LowRankRows {
   /// @param points of the nodes, any unit
   /// @param rows A (3 nodes × columns)
   /// @param tolerance in the units of A; 0: A as it is
+  /// @param together nodes that are read together: they have clusters of their own, so that few are asked then
   LowRankRows(std::span<const Vec3> points, const Eigen::Ref<const Eigen::MatrixXf>& rows, double tolerance,
-              const Progress& progress = {});
+              std::span<const Index> together = {}, const Progress& progress = {});
 
   /// A vector to multiply with, and what the clusters' bases made of it as far as they were asked.
   class Product {

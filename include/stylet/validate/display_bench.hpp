@@ -21,6 +21,7 @@ struct DisplayRow {
   int frames = 0;
   StepTimes surface_us;     ///< thread CPU time: forces put together, displacement and position of every surface node
   StepTimes slice_us;       ///< forces put together, cut, displacement, positions
+  StepTimes both_us;        ///< surfaces and slice of the same forces
   double largest_mm = 0.0;  ///< displacement of a node in any frame
   double error_mm = 0.0;    ///< largest difference of a node from K⁻¹ f by the factor
   double stated_error_mm = 0.0;  ///< largest of what was stated for the forces of a frame
