@@ -7,21 +7,43 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 
 case "${1:-}" in
-  "") steps=(packages format module_order machine_paths build tests sanitizers threads lint) ;;
+  "") steps=(packages format module_order machine_paths build tests instrumented_build sanitizers threads lint) ;;
   --quick) steps=(packages build unit_tests) ;;
   *) echo "usage: ./test.sh [--quick]" >&2; exit 2 ;;
 esac
+
+# run_tests PRESET [CTEST OPTION…]: runs tests side by side and prints how long they took, label by label.
+run_tests() {
+  local times=$PWD/build/test_times/$1.xml
+  mkdir -p build/test_times
+  ctest --preset "$1" "${@:2}" --output-junit "$times" || return
+  scripts/test_times "$1" "$times"
+}
 
 packages()      { scripts/install_packages; }
 format()        { scripts/check_format; }
 module_order()  { scripts/check_module_order; }
 machine_paths() { scripts/check_machine_paths; }
 build()         { scripts/build release; }
-unit_tests()    { ctest --preset release --parallel "$(nproc)" --label-regex unit; }
-tests()         { ctest --preset release --parallel "$(nproc)"; }
-sanitizers()    { scripts/build sanitize; ctest --preset sanitize --parallel "$(nproc)" --label-regex 'unit|long'; }
-threads()       { scripts/build threads; ctest --preset threads; }
+unit_tests()    { run_tests release --parallel "$(nproc)" --label-regex unit; }
+sanitizers()    { run_tests sanitize --parallel "$(nproc)" --label-regex 'unit|long'; }
+threads()       { run_tests threads; }
 lint()          { scripts/check_lint; }
+
+# The tests leave a processor idle now and then: the instrumented programs are compiled there meanwhile.
+compiling=
+tests() {
+  { nice -n 15 scripts/build sanitize && nice -n 15 scripts/build threads; } > build/instrumented_build.log 2>&1 &
+  compiling=$!
+  run_tests release --parallel "$(nproc)"
+}
+instrumented_build() {
+  local status=0
+  wait "$compiling" || status=$?
+  compiling=
+  if [ $status -ne 0 ]; then tail -n 60 build/instrumented_build.log >&2; fi
+  return $status
+}
 
 declare -A about=(
   [packages]="installing what is missing"
@@ -31,20 +53,51 @@ declare -A about=(
   [build]="release build into build/"
   [unit_tests]="unit tests"
   [tests]="all tests: unit, long, command line, browser, real data, slow, installed library"
+  [instrumented_build]="the rest of the builds with sanitizers, begun beside the tests"
   [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit and long tests"
   [threads]="what runs in several threads under the thread sanitizer"
-  [lint]="clang-tidy on core to realtime and stylet_rt"
+  [lint]="clang-tidy on core to realtime, igtl and stylet_rt"
 )
 
-times=()
+# Puts the processor time (user and system) of all commands that have ended so far into processor_s [s]. The shell itself
+# has to ask: its children's time is not known in a subshell.
+measure() {
+  times > "$clock"
+  processor_s=$(awk -F '[ms ]+' 'NR == 2 { print int($1 * 60 + $2 + $3 * 60 + $4) }' "$clock")
+}
+# How many objects the compiler cache has handed out, and how many it could not: "hits misses".
+cache_counts() {
+  command -v ccache > /dev/null && ccache --print-stats |
+    awk '/^(direct|preprocessed)_cache_hit/ { hits += $2 } /^cache_miss/ { misses += $2 } END { print hits + 0, misses + 0 }'
+}
+
+finish() {
+  local status=$?
+  rm -f "$clock"
+  if [ -n "$compiling" ]; then kill "$compiling" 2> /dev/null || true; fi
+  [ $status -eq 0 ] || echo "test.sh: FAILED in step \"$step\" (${about[$step]:-})" >&2
+}
+
+rows=()
 step=
-trap 'status=$?; [ $status -eq 0 ] || echo "test.sh: FAILED in step \"$step\" (${about[$step]:-})" >&2' EXIT
+clock=$(mktemp)
+trap finish EXIT
+read -r hits misses < <(cache_counts || echo 0 0)
 for step in "${steps[@]}"; do
-  number=$((${#times[@]} + 1))
+  number=$((${#rows[@]} + 1))
   echo "[$number/${#steps[@]}] $step: ${about[$step]}"
   started=$SECONDS
+  measure
+  busy=$processor_s
   "$step"
-  times+=("$(printf '%6d s  %s' $((SECONDS - started)) "$step")")
+  measure
+  rows+=("$(printf '%6d s %12d s  %s' $((SECONDS - started)) $((processor_s - busy)) "$step")")
 done
-echo "test.sh: all passed in $SECONDS s"
-printf '%s\n' "${times[@]}"
+echo "test.sh: all passed in $SECONDS s, with $processor_s s of processor time"
+echo "    wall    processor  step"
+printf '%s\n' "${rows[@]}"
+read -r hits_now misses_now < <(cache_counts || echo 0 0)
+asked=$((hits_now - hits + misses_now - misses))
+if [ "$asked" -gt 0 ]; then
+  echo "compiler cache: $((100 * (hits_now - hits) / asked)) % of $asked objects were there already"
+fi
