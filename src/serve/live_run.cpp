@@ -38,6 +38,8 @@ LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_f
   if (open_.field) load_ = open_.field->make_load();
 }
 
+LiveRun::~LiveRun() { record_step(rests_.end()); }
+
 void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
   open_.field = std::move(field);
   load_ = open_.field->make_load();
@@ -84,10 +86,14 @@ void LiveRun::record(const Result<>& done) {
   recorder_.reset();
 }
 
+void LiveRun::record_step(const std::optional<StepRecord>& step) {
+  if (recorder_ && step) record(recorder_->add_step(*step));
+}
+
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
     for (const StepSnapshot& step : std::span(step_room_).first(count)) {
-      if (recorder_) record(recorder_->add_step(step_record(step)));
+      record_step(rests_.add(step_record(step)));
       const Sample sample{step.time_s,          step.base_depth_mm, step.force_axial_N, step.force_sagittal_N,
                           step.force_lateral_N, step.step_us,       step.tip_state,     step.flags};
       unsent_.push_back(sample);

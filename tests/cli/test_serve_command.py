@@ -5,6 +5,7 @@ server, are repeated by stylet insert to the last bit."""
 import os
 import signal
 import subprocess
+import time
 import unittest
 import urllib.error
 import urllib.request
@@ -28,13 +29,40 @@ class ServeCommand(Serve):
 
     def test_a_killed_server_leaves_a_recording_that_repeats(self):
         server, _ = self.start("case.toml", *SMALL)
-        self.until(lambda: self.steps() > 500)
+        self.until(self.recordings)
+        self.viewer().hand(40.0, 20.0)
+        self.until(lambda: self.steps() > 1000)
         server.kill()
         server.wait(PATIENCE_S)
         recording = str(self.recordings()[-1])
         said = self.succeed("insert", recording, "-o", "again").stdout
         self.assertIn("to the last bit", said)
         self.refuse("insert", recording, "-o", str(self.recordings()[-1].parent), says=["replaced", "-o"])
+
+    def test_a_needle_at_rest_takes_no_room_and_its_recording_repeats(self):
+        server, _ = self.start("case.toml", *SMALL)
+        self.until(self.recordings)
+        viewer = self.viewer()
+        viewer.hand(20.0, 100.0)
+        self.until(lambda: self.steps() > 100)
+        recording = self.recordings()[0]
+
+        def rests():
+            before = recording.stat().st_size
+            time.sleep(2)
+            return recording.stat().st_size == before
+        self.until(rests)
+        time.sleep(3)
+        viewer.hand(10.0, 100.0)
+        time.sleep(1)
+        server.terminate()
+        self.assertEqual(server.wait(PATIENCE_S), 0)
+        told = self.json_of("info", str(recording))
+        self.assertGreater(told["duration_s"], 4)
+        self.assertGreater(told["steps_at_rest"], 1000)
+        self.assertIn("to the last bit", self.succeed("insert", str(recording), "-o", "again").stdout)
+        with open(self.folder / "again" / "forces.csv") as repeated:
+            self.assertEqual(sum(1 for _ in repeated) - 1, told["steps"])
 
     def opened(self, *arguments):
         """Starts a server, waits until the needle moves, and ends it."""
