@@ -25,6 +25,7 @@ struct ServeArguments {
   std::string address = "127.0.0.1";
   int port = 8080;
   std::string token;
+  bool no_token = false;
   std::string recordings = "out/live";
   std::string models = ModelCache::users_folder().string();
   std::vector<std::string> settings;
@@ -128,6 +129,9 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.address = arguments.address;
   settings.port = static_cast<std::uint16_t>(arguments.port);
   settings.token = arguments.token;
+  settings.asks_for_token = !arguments.no_token;
+  if (const fs::path cache = ModelCache::users_folder(); !cache.empty())
+    settings.token_file = cache.parent_path() / "live_token";
   settings.session.recordings = arguments.recordings;
   if (auto added = add_inputs(arguments, settings.session, console); !added) return added;
   EndSignal end;
@@ -139,6 +143,7 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   if (!server) return server.error();
   (*server)->start();
   console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
+  if (arguments.no_token) console.warn("Every user of this machine can open this address and move the needle.");
   if (!igtl->warning.empty()) console.warn(igtl->warning);
   if (igtl->companion) console.say(igtl->said);
   Json json{{"url", (*server)->url()}, {"port", (*server)->port()}};
@@ -167,11 +172,16 @@ Command add_serve_command(CLI::App& program) {
       ->type_name("P")
       ->check(whole_number_between(0, 65535));
   app->add_option("--address", arguments->address,
-                  "Address to listen on. By default this machine only; 0.0.0.0: every network it is in, with a token")
+                  "Address to listen on. By default this machine only; 0.0.0.0: every network it is in")
       ->capture_default_str()
       ->type_name("IP");
-  app->add_option("--token", arguments->token, "Token that viewers must know; made at random where one is needed")
+  app->add_option("--token", arguments->token,
+                  "Token that viewers must know (default: a random one); better in the environment, where other users "
+                  "of this machine cannot read it")
+      ->envname("STYLET_TOKEN")
       ->type_name("TEXT");
+  app->add_flag("--no-token", arguments->no_token,
+                "Let every user of this machine in without a token, for example where nobody else can log in");
   app->add_option("-o,--output", arguments->recordings, "Folder for the recordings, one for each insertion")
       ->capture_default_str()
       ->type_name("OUT/");

@@ -240,13 +240,76 @@ TEST(Server, the_page_is_for_this_machine_and_its_own_origin) {
   EXPECT_EQ(get(serving.port(), "/nothing", host).result(), http::status::not_found);
 }
 
-TEST(Server, beyond_this_machine_it_asks_for_the_token) {
-  const Serving serving([](serve::ServerSettings& s) { s.token = "0123"; });
+TEST(Server, asks_also_on_this_machine_for_the_token) {
+  const Serving serving([](serve::ServerSettings& s) {
+    s.asks_for_token = true;
+    s.token = "0123";
+  });
+  EXPECT_EQ(get(serving.port(), "/").result(), http::status::ok) << "the page itself holds nothing of anybody";
   EXPECT_EQ(get(serving.port(), "/recordings").result(), http::status::unauthorized);
   EXPECT_EQ(get(serving.port(), "/recordings?token=0124").result(), http::status::unauthorized);
   EXPECT_EQ(get(serving.port(), "/recordings?token=0123").result(), http::status::ok);
   EXPECT_THROW(LiveClient client(serving.port()), boost::system::system_error);
+  EXPECT_THROW(LiveClient client(serving.port(), "/live?token=0124"), boost::system::system_error);
+  LiveClient client(serving.port(), "/live?token=0123");
+  EXPECT_TRUE(client.until([&] { return client.ready(); }));
   EXPECT_NE(serving.server->url().find("token=0123"), std::string::npos);
+}
+
+TEST(Server, makes_a_token_and_keeps_it_for_the_next_start) {
+  const Folder folder;
+  const auto token_with = [&](const std::filesystem::path& file) {
+    const Serving serving([&](serve::ServerSettings& s) {
+      s.asks_for_token = true;
+      s.token_file = file;
+    });
+    EXPECT_EQ(get(serving.port(), "/recordings").result(), http::status::unauthorized);
+    const std::string url = serving.server->url();
+    const std::string token = url.substr(url.find("?token=") + 7);
+    EXPECT_EQ(token.size(), 32u);
+    EXPECT_EQ(get(serving.port(), "/recordings?token=" + token).result(), http::status::ok);
+    return token;
+  };
+  const std::string first = token_with("");
+  EXPECT_NE(token_with(""), first);
+  const auto file = std::filesystem::temp_directory_path() / ("stylet-token-" + std::to_string(::getpid()));
+  const std::string kept = token_with(file);
+  EXPECT_EQ(token_with(file), kept);
+  std::filesystem::remove(file);
+}
+
+TEST(Server, a_holder_who_does_not_answer_any_more_loses_the_needle) {
+  const Serving serving([](serve::ServerSettings& s) { s.silence_s = 1.0; });
+  const auto watcher = ready_client(serving);
+  const auto holder = ready_client(serving);
+  holder->command(R"({"do":"take"})");
+  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  holder->hand(100.0F, 1.0F);
+  // From here on the holder reads nothing, so it answers no ping; its connection stays open.
+  ASSERT_TRUE(watcher->until([&] { return watcher->status.value("held", false); }));
+  const float moving = watcher->depth_mm;
+  ASSERT_TRUE(watcher->until([&] { return watcher->depth_mm > moving; }));
+  ASSERT_TRUE(watcher->until([&] { return !watcher->status.value("held", true); }));
+  EXPECT_EQ(watcher->status["viewers"], 1);
+  double then = watcher->time_s;
+  ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.1; }));
+  const float there = watcher->depth_mm;
+  EXPECT_LT(there, 90.0F);
+  then = watcher->time_s;
+  ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.3; }));
+  EXPECT_EQ(watcher->depth_mm, there) << "the needle stays where it was";
+  watcher->command(R"({"do":"take"})");
+  ASSERT_TRUE(watcher->until([&] { return watcher->status.value("you_hold", false); }));
+}
+
+TEST(Server, who_answers_pings_stays_however_little_it_says) {
+  const Serving serving([](serve::ServerSettings& s) { s.silence_s = 0.5; });
+  const auto holder = ready_client(serving);
+  holder->command(R"({"do":"take"})");
+  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  const double then = holder->time_s;
+  ASSERT_TRUE(holder->until([&] { return holder->time_s > then + 2.0; }));
+  EXPECT_EQ(holder->status["you_hold"], true);
 }
 
 TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
@@ -254,6 +317,13 @@ TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
   s.session.cases = {box_case("first")};
   s.address = "nowhere";
   EXPECT_SAYS(serve::Server::open(s).error().message(), "nowhere");
+  s.address = "0.0.0.0";
+  s.asks_for_token = false;
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "everybody who reaches 0.0.0.0");
+  s.asks_for_token = true;
+  s.token = "a b";
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "'a b' cannot stand in an address");
+  s.token.clear();
   const Serving serving;
   s.address = "127.0.0.1";
   s.port = serving.port();
