@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live_run.hpp"
 
+#include "private_files.hpp"
 #include "wire.hpp"
 
 #include "stylet/io/scenario_io.hpp"
@@ -68,10 +69,12 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   Scenario scenario = open.model->scenario();
   scenario.insertions = {scenario.insertions[insertion]};  // the one that this recording is of
   info.scenario_text = to_toml(scenario);
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
+  make_private_folder(folder.parent_path());
+  make_private_folder(folder);
   auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh());
   if (recorder) {
+    make_private(folder / "run.h5");
+    run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);
     run->recorder_ = std::move(*recorder);
   } else {
     run->problem_ = recorder.error().message();
@@ -84,6 +87,13 @@ void LiveRun::record(const Result<>& done) {
   if (done.ok()) return;
   problem_ = done.error().message();
   recorder_.reset();
+}
+
+void LiveRun::stop_recording(const std::string& why) {
+  if (!recorder_) return;
+  record_step(rests_.end());
+  recorder_.reset();
+  problem_ = why;
 }
 
 void LiveRun::record_step(const std::optional<StepRecord>& step) {

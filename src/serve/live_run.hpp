@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "folder_lock.hpp"
 #include "hand.hpp"
 #include "pick_up.hpp"
 #include "rests.hpp"
@@ -58,6 +59,8 @@ class LiveRun {
   /// Why the companion's device does not move the needle, as of the last show_to(); empty: it does, or a page.
   [[nodiscard]] std::string device_problem(const Companion& companion) const;
   [[nodiscard]] SessionStatus::Loop loop() const;
+  /// Ends the recording, and only that; what was recorded is whole.
+  void stop_recording(const std::string& why);
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
 
@@ -74,6 +77,7 @@ class LiveRun {
   std::shared_ptr<PageDevice> hand_;
   std::shared_ptr<PickUp> other_;  ///< the one of the two that is there moves the needle
   std::unique_ptr<RealtimeRunner> runner_;
+  FolderLock in_use_;  ///< the recording
   std::unique_ptr<RunRecorder> recorder_;
   Rests rests_;
   std::string problem_;                     ///< of the recording

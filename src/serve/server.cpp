@@ -38,7 +38,10 @@ constexpr std::size_t kKeptEvents = 1000;
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json json_of(const SessionStatus::Recording& recording) {
-  return {{"name", recording.name}, {"seconds", recording.seconds}, {"problem", recording.problem}};
+  return {{"name", recording.name},
+          {"seconds", recording.seconds},
+          {"problem", recording.problem},
+          {"warning", recording.warning}};
 }
 
 const char* name_of(SessionStatus::State state) {

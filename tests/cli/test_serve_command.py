@@ -68,6 +68,29 @@ class ServeCommand(Serve):
         with open(self.folder / "again" / "forces.csv") as repeated:
             self.assertEqual(sum(1 for _ in repeated) - 1, told["steps"])
 
+    def test_old_recordings_go_when_together_they_take_too_much(self):
+        live = self.folder / "out" / "live"
+        for name in ("2020-01-01-120000-old", "2020-01-02-120000-older-than-most", "kept"):
+            (live / name).mkdir(parents=True)
+            (live / name / "run.h5").write_bytes(bytes(2_000_000))
+        server, _ = self.start("case.toml", *SMALL, "--keep", "0.0035")
+        self.until(lambda: not (live / "2020-01-01-120000-old").exists())
+        self.assertTrue((live / "kept" / "run.h5").exists())
+        server.terminate()
+        self.assertEqual(server.wait(PATIENCE_S), 0)
+        self.assertIn("2020-01-01-120000-old was removed", server.stderr.read())
+        self.refuse("serve", "case.toml", "--keep", "-1", says=["--keep"])
+
+    def test_recordings_are_for_their_owner_only(self):
+        before = os.umask(0)
+        self.addCleanup(os.umask, before)
+        self.start("case.toml", *SMALL)
+        self.until(self.recordings)
+        recording = self.recordings()[0]
+        self.until(lambda: stat.S_IMODE(recording.stat().st_mode) == 0o600)
+        for folder in (recording.parent, recording.parent.parent):
+            self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700)
+
     def opened(self, *arguments):
         """Starts a server, waits until the needle moves, and ends it."""
         before = len(self.recordings())

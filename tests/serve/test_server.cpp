@@ -6,7 +6,11 @@
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 
+#include <sys/stat.h>
+
+#include <atomic>
 #include <bit>
+#include <mutex>
 #include <thread>
 
 using namespace stylet;
@@ -310,6 +314,79 @@ TEST(Server, who_answers_pings_stays_however_little_it_says) {
   const double then = holder->time_s;
   ASSERT_TRUE(holder->until([&] { return holder->time_s > then + 2.0; }));
   EXPECT_EQ(holder->status["you_hold"], true);
+}
+
+TEST(Server, recordings_can_be_read_by_nobody_else_whatever_the_umask) {
+  namespace fs = std::filesystem;
+  for (const mode_t mask : {mode_t{0}, mode_t{0777}}) {
+    const mode_t before = ::umask(mask);
+    {
+      const Serving serving;
+      ready_client(serving);
+      ::umask(before);
+      EXPECT_EQ(fs::status(serving.folder.path).permissions(), fs::perms(0700));
+      const auto recordings = recordings_of(serving);
+      ASSERT_EQ(recordings.size(), 1u);
+      EXPECT_EQ(fs::status(recordings[0]).permissions(), fs::perms(0700));
+      EXPECT_EQ(fs::status(recordings[0] / "run.h5").permissions(), fs::perms(0600));
+    }
+    ::umask(before);
+  }
+}
+
+TEST(Server, warns_of_a_disk_that_gets_full_and_goes_on_without_recording_when_it_is) {
+  std::atomic<std::uintmax_t> free = 500'000'000;
+  std::mutex mutex;
+  std::string said;
+  const Serving serving([&](serve::ServerSettings& s) {
+    s.session.free_bytes = [&](const std::filesystem::path&) { return free.load(); };
+    s.session.room_every_s = 0.05;
+    s.session.say = [&](const std::string& text) {
+      const std::lock_guard lock(mutex);
+      said += text + "\n";
+    };
+  });
+  const auto client = ready_client(serving);
+  const auto recording = [&](const char* key) { return client->status["recording"].value(key, ""); };
+  ASSERT_TRUE(client->until([&] { return !recording("warning").empty(); }));
+  EXPECT_SAYS(recording("warning"), "0.5 GB");
+  EXPECT_EQ(recording("problem"), "");
+  client->command(R"({"do":"take"})");
+  client->hand(5.0F, 100.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 4.9F; }));
+  free = 100'000'000;
+  ASSERT_TRUE(client->until([&] { return !recording("problem").empty(); }));
+  EXPECT_SAYS(recording("problem"), "nearly full");
+  client->hand(10.0F, 100.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 9.9F; })) << "the simulation goes on";
+  const auto run = read_recording(recordings_of(serving).at(0) / "run.h5");
+  ASSERT_TRUE(run.ok()) << run.error().message();
+  EXPECT_GT(run->steps.back().base_depth_mm, 4.0) << "what was recorded before is whole";
+  EXPECT_LT(run->steps.back().base_depth_mm, 9.0);
+  const std::lock_guard lock(mutex);
+  EXPECT_SAYS(said, "0.5 GB");
+  EXPECT_SAYS(said, "nearly full");
+}
+
+TEST(Server, removes_old_recordings_but_not_the_one_it_replays) {
+  const Serving serving([](serve::ServerSettings& s) {
+    s.session.keep_bytes = 1;  // less than any recording
+    s.session.room_every_s = 0.05;
+  });
+  const auto client = ready_client(serving);
+  const auto recording = [&](const char* key) { return client->status["recording"].value(key, ""); };
+  const std::string first = recording("name");
+  ASSERT_TRUE(client->until([&] { return !recording("problem").empty(); })) << "it takes more by itself";
+  EXPECT_SAYS(recording("problem"), "--keep");
+  client->command(R"({"do":"take"})");
+  client->command(R"({"do":"replay","name":")" + first + "\"}");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay"; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(std::filesystem::exists(serving.folder.path / first / "run.h5"));
+  client->command(R"({"do":"live"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && recording("name") != first; }));
+  ASSERT_TRUE(client->until([&] { return !std::filesystem::exists(serving.folder.path / first); }));
+  EXPECT_TRUE(std::filesystem::exists(serving.folder.path / recording("name") / "run.h5"));
 }
 
 TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
