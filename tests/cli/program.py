@@ -13,11 +13,14 @@ STYLET = os.environ["STYLET"]
 CACHE = tempfile.TemporaryDirectory(prefix="stylet-cache-")
 os.environ["XDG_CACHE_HOME"] = CACHE.name
 
+# Long past the longest command on a busy machine: a guard against a program that never ends, no limit on its speed.
+HANGS_AFTER_S = 900
+
 
 def run(*arguments, cwd=None):
     """The finished process, with text of standard output and standard error."""
     return subprocess.run([STYLET, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False,
-                          timeout=300, stdin=subprocess.DEVNULL)
+                          timeout=HANGS_AFTER_S, stdin=subprocess.DEVNULL)
 
 
 def commands():
