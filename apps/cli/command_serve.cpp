@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 
@@ -25,7 +26,9 @@ struct ServeArguments {
   std::string address = "127.0.0.1";
   int port = 8080;
   std::string token;
+  bool no_token = false;
   std::string recordings = "out/live";
+  double keep_GB = 5.0;
   std::string models = ModelCache::users_folder().string();
   std::vector<std::string> settings;
   IgtlArguments igtl;
@@ -103,6 +106,11 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
   return Ok{};
 }
 
+/// Of a limit in gigabytes, 0 for none: a limit however small stays one.
+std::uintmax_t keep_bytes(double keep_GB) {
+  return keep_GB > 0.0 ? static_cast<std::uintmax_t>(std::ceil(1e9 * keep_GB)) : 0;
+}
+
 /// Waits until the user or the system wants the program to end.
 class EndSignal {
  public:
@@ -128,17 +136,29 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   settings.address = arguments.address;
   settings.port = static_cast<std::uint16_t>(arguments.port);
   settings.token = arguments.token;
+  settings.asks_for_token = !arguments.no_token;
+  if (const fs::path cache = ModelCache::users_folder(); !cache.empty())
+    settings.token_file = cache.parent_path() / "live_token";
   settings.session.recordings = arguments.recordings;
+  settings.session.keep_bytes = keep_bytes(arguments.keep_GB);
+  settings.session.say = [&console](const std::string& text) { console.warn(text); };
   if (auto added = add_inputs(arguments, settings.session, console); !added) return added;
   EndSignal end;
   auto igtl = open_igtl(arguments.igtl);
   if (!igtl) return igtl.error();
   settings.session.companion = igtl->companion;
   if (arguments.igtl.hand == "igtl") settings.session.runner.late_after_s = kIgtlLateAfter_s;
+  const std::string recordings = settings.session.recordings.string();
   auto server = serve::Server::open(std::move(settings));
   if (!server) return server.error();
   (*server)->start();
   console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
+  const std::string limit =
+      arguments.keep_GB > 0.0
+          ? fmt::format("They may take {:g} GB together, then the oldest are removed (--keep).", arguments.keep_GB)
+          : "They may take all of the disk (--keep 0).";
+  console.say(fmt::format("Recordings go to {}. {}", recordings, limit));
+  if (arguments.no_token) console.warn("Every user of this machine can open this address and move the needle.");
   if (!igtl->warning.empty()) console.warn(igtl->warning);
   if (igtl->companion) console.say(igtl->said);
   Json json{{"url", (*server)->url()}, {"port", (*server)->port()}};
@@ -167,14 +187,25 @@ Command add_serve_command(CLI::App& program) {
       ->type_name("P")
       ->check(whole_number_between(0, 65535));
   app->add_option("--address", arguments->address,
-                  "Address to listen on. By default this machine only; 0.0.0.0: every network it is in, with a token")
+                  "Address to listen on. By default this machine only; 0.0.0.0: every network it is in")
       ->capture_default_str()
       ->type_name("IP");
-  app->add_option("--token", arguments->token, "Token that viewers must know; made at random where one is needed")
+  app->add_option("--token", arguments->token,
+                  "Token that viewers must know (default: a random one); better in the environment, where other users "
+                  "of this machine cannot read it")
+      ->envname("STYLET_TOKEN")
       ->type_name("TEXT");
+  app->add_flag("--no-token", arguments->no_token,
+                "Let every user of this machine in without a token, for example where nobody else can log in");
   app->add_option("-o,--output", arguments->recordings, "Folder for the recordings, one for each insertion")
       ->capture_default_str()
       ->type_name("OUT/");
+  app->add_option(
+         "--keep", arguments->keep_GB,
+         "Gigabytes that recordings may take together; the oldest are removed when they take more. 0: no limit")
+      ->capture_default_str()
+      ->type_name("GB")
+      ->check(CLI::Range(0.0, 1e6));
   app->add_option("--models", arguments->models,
                   "Folder in which compiled models are kept, so that a case opens at once the next time (default: "
                   "~/.cache/stylet/models); \"\": nowhere")

@@ -2,6 +2,8 @@
 #include "describe.hpp"
 #include "table.hpp"
 
+#include "stylet/sim/recorded_steps.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,6 +57,8 @@ Description describe(const RunRecording& run) {
   const Peaks peaks = peaks_of(run.steps);
   const double duration_s = run.steps.empty() ? 0 : run.steps.back().time_s;
   const bool finished = run.summary.has_value();
+  const std::int64_t step_count = RecordedSteps(run.steps).count();
+  const std::int64_t at_rest = step_count - static_cast<std::int64_t>(run.steps.size());
 
   Description out;
   out.json = {
@@ -64,7 +68,8 @@ Description describe(const RunRecording& run) {
       {"method", run.info.method},
       {"finished", finished},
       {"mesh", {{"nodes", run.mesh.node_count()}, {"tets", run.mesh.tet_count()}}},
-      {"steps", run.steps.size()},
+      {"steps", step_count},
+      {"steps_at_rest", at_rest},
       {"frames", run.frames.size()},
       {"duration_s", duration_s},
       {"depth_max_mm", peaks.depth_mm},
@@ -80,7 +85,9 @@ Description describe(const RunRecording& run) {
   facts.add("state", finished ? "finished" : "unfinished: still running, or stopped on the way");
   facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {} regions", run.mesh.node_count(), run.mesh.tet_count(),
                                 run.mesh.regions.size()));
-  facts.add("steps", fmt::format("{}, {:.2f} s simulated, {} frames", run.steps.size(), duration_s, run.frames.size()));
+  facts.add("steps", fmt::format("{}{}, {:.2f} s simulated, {} frames", step_count,
+                                 at_rest > 0 ? fmt::format(", {} of them at rest", at_rest) : "", duration_s,
+                                 run.frames.size()));
   facts.add("deepest", fmt::format("{:.1f} mm", peaks.depth_mm));
   facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.2f} N, lateral {:.2f} N", peaks.axial_N,
                                       peaks.sagittal_N, peaks.lateral_N));

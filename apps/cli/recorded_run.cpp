@@ -2,6 +2,7 @@
 #include "recorded_run.hpp"
 
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/sim/recorded_steps.hpp"
 
 #include <fmt/format.h>
 
@@ -49,19 +50,28 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
 }
 
 std::string compare_forces(std::span<const StepRecord> recorded, std::span<const StepRecord> repeated) {
-  const std::size_t count = std::min(recorded.size(), repeated.size());
+  const RecordedSteps all(recorded);
+  const std::size_t count = std::min(static_cast<std::size_t>(all.count()), repeated.size());
   std::size_t differ = 0;
+  std::size_t at_rest = 0;
   double first_s = 0.0;
   double most_N = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    const Forces a = forces(recorded[k]);
+    const StepRecord before = all.at(static_cast<std::int64_t>(k));
+    const Forces a = forces(before);
     const Forces b = forces(repeated[k]);
-    if (same_bits(a, b)) continue;
-    if (differ++ == 0) first_s = recorded[k].time_s;
+    const bool is_counted_only = !all.is_recorded(static_cast<std::int64_t>(k));
+    if (is_counted_only) ++at_rest;
+    if (is_counted_only ? is_at_rest(before, repeated[k]) : same_bits(a, b)) continue;
+    if (differ++ == 0) first_s = before.time_s;
     for (std::size_t c = 0; c < 3; ++c) most_N = std::max(most_N, std::abs(a[c] - b[c]));
   }
-  if (differ == 0 && recorded.size() == repeated.size())
-    return fmt::format("the forces of all {} steps are those of the recording, to the last bit", count);
+  if (differ == 0 && static_cast<std::size_t>(all.count()) == repeated.size())
+    return fmt::format("the forces of all {} steps are those of the recording, to the last bit{}", count,
+                       at_rest == 0 ? ""
+                                    : fmt::format("; {} of them were at rest, which it only counts, and stayed so to "
+                                                  "{:g} N",
+                                                  at_rest, kRestForce_N));
   return fmt::format("the forces of {} of {} steps differ from the recording's, first at {:.3f} s, by at most {:.3g} N",
                      differ, count, first_s, most_N);
 }

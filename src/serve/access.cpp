@@ -34,7 +34,8 @@ bool same(std::string_view a, std::string_view b) {
 }  // namespace
 
 Access::Verdict Access::check_open(std::string_view host) const {
-  return token_.empty() && !is_loopback_name(host) ? Verdict::foreign : Verdict::granted;
+  const bool any_name = names_ == Names::any && !token_.empty();
+  return !any_name && !is_loopback_name(host) ? Verdict::foreign : Verdict::granted;
 }
 
 Access::Verdict Access::check(std::string_view target, std::string_view host, std::string_view origin) const {
@@ -62,6 +63,11 @@ std::string_view query_value(std::string_view target, std::string_view key) {
     query.remove_prefix(end + 1);
   }
   return {};
+}
+
+bool is_plain_token(std::string_view token) {
+  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
+  return !token.empty() && token.find_first_not_of(plain) == std::string_view::npos;
 }
 
 std::string random_token() {

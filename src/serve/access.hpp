@@ -6,12 +6,14 @@
 
 namespace stylet::serve {
 
-/// Who may come in. On the loopback interface anybody of this machine, but no page of another origin and no name that
-/// somebody else has pointed here; elsewhere who knows the token.
+/// Who may come in: who knows the token, but no page of another origin, and on the loopback interface under no name
+/// that somebody else has pointed here. There, other users of this machine are kept out by the token alone.
 class Access {
  public:
-  /// @param token empty: none is asked for, the server listens on the loopback interface
-  explicit Access(std::string token) : token_(std::move(token)) {}
+  enum class Names { loopback, any };
+  /// @param token empty: none is asked for
+  /// @param names under which the server answers; a name that is not this machine's own needs a token
+  explicit Access(std::string token, Names names = Names::loopback) : token_(std::move(token)), names_(names) {}
 
   enum class Verdict { granted, foreign, no_token };
   /// @param target of the request, with its query
@@ -24,6 +26,7 @@ class Access {
 
  private:
   std::string token_;
+  Names names_;
 };
 
 /// The path of a request's target, without its query.
@@ -32,5 +35,7 @@ std::string_view path_of(std::string_view target);
 std::string_view query_value(std::string_view target, std::string_view key);
 /// 32 hexadecimal digits nobody can guess.
 std::string random_token();
+/// Whether a token is the same in an address: letters, digits and -._~, at least one.
+bool is_plain_token(std::string_view token);
 
 }  // namespace stylet::serve

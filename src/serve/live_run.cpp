@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live_run.hpp"
 
+#include "private_files.hpp"
 #include "wire.hpp"
 
 #include "stylet/io/scenario_io.hpp"
@@ -38,6 +39,8 @@ LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_f
   if (open_.field) load_ = open_.field->make_load();
 }
 
+LiveRun::~LiveRun() { record_step(rests_.end()); }
+
 void LiveRun::set_field(std::shared_ptr<const DisplayField> field) {
   open_.field = std::move(field);
   load_ = open_.field->make_load();
@@ -66,10 +69,12 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   Scenario scenario = open.model->scenario();
   scenario.insertions = {scenario.insertions[insertion]};  // the one that this recording is of
   info.scenario_text = to_toml(scenario);
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
+  make_private_folder(folder.parent_path());
+  make_private_folder(folder);
   auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh());
   if (recorder) {
+    make_private(folder / "run.h5");
+    run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);
     run->recorder_ = std::move(*recorder);
   } else {
     run->problem_ = recorder.error().message();
@@ -84,10 +89,21 @@ void LiveRun::record(const Result<>& done) {
   recorder_.reset();
 }
 
+void LiveRun::stop_recording(const std::string& why) {
+  if (!recorder_) return;
+  record_step(rests_.end());
+  recorder_.reset();
+  problem_ = why;
+}
+
+void LiveRun::record_step(const std::optional<StepRecord>& step) {
+  if (recorder_ && step) record(recorder_->add_step(*step));
+}
+
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
     for (const StepSnapshot& step : std::span(step_room_).first(count)) {
-      if (recorder_) record(recorder_->add_step(step_record(step)));
+      record_step(rests_.add(step_record(step)));
       const Sample sample{step.time_s,          step.base_depth_mm, step.force_axial_N, step.force_sagittal_N,
                           step.force_lateral_N, step.step_us,       step.tip_state,     step.flags};
       unsent_.push_back(sample);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "folder_lock.hpp"
 #include "hand.hpp"
 #include "pick_up.hpp"
+#include "rests.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
@@ -36,6 +38,10 @@ class LiveRun {
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other);
 
+  ~LiveRun();  ///< the recording is whole afterwards
+  LiveRun(const LiveRun&) = delete;
+  LiveRun& operator=(const LiveRun&) = delete;
+
   /// From here on pictures show how the tissue moves, and the recording has frames.
   void set_field(std::shared_ptr<const DisplayField> field);
   /// Passes on what has happened since: to the recording, and the events to `tell`. Often enough that no step is lost.
@@ -53,12 +59,15 @@ class LiveRun {
   /// Why the companion's device does not move the needle, as of the last show_to(); empty: it does, or a page.
   [[nodiscard]] std::string device_problem(const Companion& companion) const;
   [[nodiscard]] SessionStatus::Loop loop() const;
+  /// Ends the recording, and only that; what was recorded is whole.
+  void stop_recording(const std::string& why);
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
 
  private:
   LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
   void record(const Result<>& done);
+  void record_step(const std::optional<StepRecord>& step);
   void record_frame(const Snapshot& snapshot);
   [[nodiscard]] bool displacement_is_due() const;
   void compute_displacement();
@@ -68,7 +77,9 @@ class LiveRun {
   std::shared_ptr<PageDevice> hand_;
   std::shared_ptr<PickUp> other_;  ///< the one of the two that is there moves the needle
   std::unique_ptr<RealtimeRunner> runner_;
+  FolderLock in_use_;  ///< the recording
   std::unique_ptr<RunRecorder> recorder_;
+  Rests rests_;
   std::string problem_;                     ///< of the recording
   std::optional<DisplayField::Load> load_;  ///< with a field
   Eigen::Matrix3Xf shown_;                  ///< (3 × scene nodes)

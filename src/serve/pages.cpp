@@ -4,6 +4,7 @@
 #include "assets.hpp"
 
 #include "stylet/io/run_recorder.hpp"
+#include "stylet/sim/recorded_steps.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -67,7 +68,8 @@ HttpResponse Pages::recording(const HttpRequest& request, std::string_view path)
   const std::string name(path.substr(0, slash));
   const auto run = shelf_.read(name);
   if (!run) return refusal(request, http::status::not_found, run.error().message());
-  HttpResponse r = response(request, http::status::ok, "text/csv; charset=utf-8", forces_csv_text(run->steps));
+  HttpResponse r =
+      response(request, http::status::ok, "text/csv; charset=utf-8", forces_csv_text(with_ends_of_rests(run->steps)));
   r.set(http::field::content_disposition, "attachment; filename=\"" + name + ".csv\"");
   return r;
 }

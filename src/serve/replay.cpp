@@ -15,7 +15,7 @@ ContactSnapshot plain_contact(const ContactView& c) {
 }  // namespace
 
 Replay::Replay(RunRecording recording, std::vector<Index> scene_nodes)
-    : recording_(std::move(recording)), scene_nodes_(std::move(scene_nodes)) {}
+    : recording_(std::move(recording)), steps_(recording_.steps), scene_nodes_(std::move(scene_nodes)) {}
 
 double Replay::duration_s() const {
   const double steps = recording_.steps.empty() ? 0.0 : recording_.steps.back().time_s;
@@ -97,7 +97,7 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
     frame->tip_state = s->tip_state;
     frame->sticking = static_cast<std::uint32_t>(s->sticking);
     frame->iterations = static_cast<std::uint32_t>(s->iterations);
-    frame->steps = static_cast<std::uint32_t>(s - recording_.steps.data()) + 1;
+    frame->steps = static_cast<std::uint32_t>(steps_.last_at(time_s_)) + 1;
     frame->depth_mm = s->base_depth_mm;
     frame->force_axial_N = s->force_axial_N;
     frame->force_sagittal_N = s->force_sagittal_N;
@@ -107,7 +107,7 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
     if (s->base.origin.allFinite()) frame->base = s->base;  // not in recordings of the first version
   }
   if (whole_curve) {
-    for (const StepRecord& s : recording_.steps)
+    for (const StepRecord& s : with_ends_of_rests(recording_.steps))
       frame->samples.push_back({s.time_s, s.base_depth_mm, s.force_axial_N, s.force_sagittal_N, s.force_lateral_N,
                                 s.step_us, s.tip_state, 0});
   }

@@ -3,6 +3,7 @@
 
 #include "stylet/io/recording_io.hpp"
 #include "stylet/serve/picture.hpp"
+#include "stylet/sim/recorded_steps.hpp"
 
 #include <memory>
 #include <vector>
@@ -15,6 +16,8 @@ class Replay {
  public:
   /// @param scene_nodes of the mesh, those of the scene
   Replay(RunRecording recording, std::vector<Index> scene_nodes);
+  Replay(const Replay&) = delete;
+  Replay& operator=(const Replay&) = delete;
 
   [[nodiscard]] double duration_s() const;
   [[nodiscard]] double time_s() const { return time_s_; }
@@ -35,6 +38,7 @@ class Replay {
   void put_needle(LiveFrame& out) const;
 
   RunRecording recording_;
+  RecordedSteps steps_;  ///< of it
   std::vector<Index> scene_nodes_;
   double time_s_ = 0.0;
   double rate_ = 0.0;

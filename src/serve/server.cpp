@@ -4,6 +4,7 @@
 #include "access.hpp"
 #include "hand.hpp"
 #include "holding.hpp"
+#include "kept_token.hpp"
 #include "pages.hpp"
 #include "viewer.hpp"
 
@@ -35,6 +36,13 @@ constexpr std::size_t kRequestBytes = 16 * 1024;
 constexpr std::size_t kKeptEvents = 1000;
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json json_of(const SessionStatus::Recording& recording) {
+  return {{"name", recording.name},
+          {"seconds", recording.seconds},
+          {"problem", recording.problem},
+          {"warning", recording.warning}};
+}
 
 const char* name_of(SessionStatus::State state) {
   switch (state) {
@@ -86,9 +94,9 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
 
 /// Everything here happens in the io thread, but for the Audience's calls, which only post to it.
 struct Server::Parts final : public Audience, public ViewerDesk {
-  explicit Parts(ServerSettings settings_, std::string token)
+  Parts(ServerSettings settings_, Access access_)
       : settings(std::move(settings_)),
-        access(std::move(token)),
+        access(std::move(access_)),
         acceptor(io),
         retry(io),
         pages(access, settings.session.recordings),
@@ -189,35 +197,34 @@ struct Server::Parts final : public Audience, public ViewerDesk {
 
   void say_status() {
     const SessionStatus& s = status;
-    Json json{
-        {"state", name_of(s.state)},
-        {"stage", s.stage},
-        {"fraction", s.fraction < 0.0 ? Json(nullptr) : Json(s.fraction)},
-        {"message", s.failure.text},
-        {"cure", s.failure.cure},
-        {"mode", s.replay.name.empty() ? "live" : "replay"},
-        {"paused", s.paused},
-        {"insertion", s.insertion},
-        {"hole", s.hole},
-        {"held", holding.holder() != 0},
-        {"asking", holding.asking()},
-        {"viewers", viewers.size()},
-        {"device", s.device},
-        {"device_problem", s.device_problem},
-        {"recording", {{"name", s.recording.name}, {"seconds", s.recording.seconds}, {"problem", s.recording.problem}}},
-        {"replay",
-         {{"name", s.replay.name},
-          {"time_s", s.replay.time_s},
-          {"duration_s", s.replay.duration_s},
-          {"playing", s.replay.rate > 0.0},
-          {"rate", s.replay.rate}}},
-        {"loop",
-         {{"steps", s.loop.steps},
-          {"missed", s.loop.missed},
-          {"p50_us", s.loop.p50_us},
-          {"p99_us", s.loop.p99_us},
-          {"max_us", s.loop.max_us},
-          {"rights", s.loop.rights}}}};
+    Json json{{"state", name_of(s.state)},
+              {"stage", s.stage},
+              {"fraction", s.fraction < 0.0 ? Json(nullptr) : Json(s.fraction)},
+              {"message", s.failure.text},
+              {"cure", s.failure.cure},
+              {"mode", s.replay.name.empty() ? "live" : "replay"},
+              {"paused", s.paused},
+              {"insertion", s.insertion},
+              {"hole", s.hole},
+              {"held", holding.holder() != 0},
+              {"asking", holding.asking()},
+              {"viewers", viewers.size()},
+              {"device", s.device},
+              {"device_problem", s.device_problem},
+              {"recording", json_of(s.recording)},
+              {"replay",
+               {{"name", s.replay.name},
+                {"time_s", s.replay.time_s},
+                {"duration_s", s.replay.duration_s},
+                {"playing", s.replay.rate > 0.0},
+                {"rate", s.replay.rate}}},
+              {"loop",
+               {{"steps", s.loop.steps},
+                {"missed", s.loop.missed},
+                {"p50_us", s.loop.p50_us},
+                {"p99_us", s.loop.p99_us},
+                {"max_us", s.loop.max_us},
+                {"rights", s.loop.rights}}}};
     for (const auto& [id, viewer] : each()) {
       json["you_hold"] = holding.holder() == id;
       json["you_ask"] = holding.asks(id);
@@ -261,7 +268,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   void answer(const std::shared_ptr<beast::tcp_stream>& stream, const HttpRequest& request) {
     if (beast::websocket::is_upgrade(request) && path_of(target(request)) == "/live" &&
         pages.verdict(request) == Access::Verdict::granted && viewers.size() < settings.viewers) {
-      std::make_shared<Viewer>(++last_id, std::move(*stream), *this)->accept(request);
+      std::make_shared<Viewer>(++last_id, std::move(*stream), *this, settings.silence_s)->accept(request);
       return;
     }
     if (beast::websocket::is_upgrade(request) && viewers.size() >= settings.viewers)
@@ -285,6 +292,28 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   }
 };
 
+namespace {
+
+/// Who may come in. Who names a token may let a proxy ask for the page under another name.
+Result<Access> access_for(const ServerSettings& settings, bool is_loopback) {
+  const std::string& given = settings.token;
+  if (!settings.asks_for_token) {
+    if (is_loopback && given.empty()) return Access("");
+    return input_error("stylet serve",
+                       given.empty() ? fmt::format("everybody who reaches {} could move the needle", settings.address)
+                                     : "a token is given, and is not to be asked for",
+                       given.empty() ? "Ask for a token (leave --no-token away), or listen on 127.0.0.1"
+                                     : "Give either --token or --no-token");
+  }
+  if (!given.empty() && !is_plain_token(given))
+    return input_error("stylet serve", fmt::format("the token '{}' cannot stand in an address", given),
+                       "Use letters, digits and -._~ only");
+  if (!given.empty()) return Access(given, Access::Names::any);
+  return is_loopback ? Access(kept_token(settings.token_file)) : Access(random_token(), Access::Names::any);
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Server>> Server::open(ServerSettings settings) {
   const std::string where = fmt::format("stylet serve, {}:{}", settings.address, settings.port);
   if (settings.session.cases.empty() && settings.session.replay.empty())
@@ -294,9 +323,9 @@ Result<std::unique_ptr<Server>> Server::open(ServerSettings settings) {
   if (error)
     return input_error(where, fmt::format("'{}' is not an IP address", settings.address),
                        "Give one such as 127.0.0.1 (this machine only) or 0.0.0.0 (every network it is in)");
-  std::string token = settings.token;
-  if (token.empty() && !address.is_loopback()) token = random_token();
-  auto parts = std::make_unique<Parts>(std::move(settings), std::move(token));
+  auto access = access_for(settings, address.is_loopback());
+  if (!access) return access.error();
+  auto parts = std::make_unique<Parts>(std::move(settings), std::move(*access));
   const tcp::endpoint endpoint(address, parts->settings.port);
   const auto refused = [&](const char* what) {
     return failure(where, fmt::format("cannot {}: {}", what, error.message()),

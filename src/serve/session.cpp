@@ -2,8 +2,10 @@
 #include "stylet/serve/session.hpp"
 
 #include "field_maker.hpp"
+#include "folder_lock.hpp"
 #include "live_run.hpp"
 #include "replay.hpp"
+#include "room_watch.hpp"
 #include "scene.hpp"
 #include "shelf.hpp"
 
@@ -14,6 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -37,7 +40,11 @@ constexpr const char* kNoField = "there is too little memory to show how the tis
 
 struct Session::Parts {
   Parts(SessionSettings settings_, Audience& audience_)
-      : settings(std::move(settings_)), audience(audience_), shelf(settings.recordings) {}
+      : settings(std::move(settings_)),
+        audience(audience_),
+        shelf(settings.recordings),
+        room([this] { return look_after_room(); }, settings.say,
+             std::chrono::milliseconds(std::lround(1e3 * settings.room_every_s))) {}
 
   // What other threads reach.
   std::mutex mutex;
@@ -63,10 +70,12 @@ struct Session::Parts {
   bool page_has_drawn = false;  ///< any, ever: then no field waits
   std::unique_ptr<LiveRun> live;
   std::unique_ptr<Replay> replay;
+  FolderLock replayed;  ///< the recording that is replayed is not removed
   SessionStatus status;
   bool whole_curve = true;
   Clock::time_point next_status;
   Clock::time_point last_progress;
+  RoomWatch room;
 
   std::jthread thread;  ///< last: starts when the others exist
 
@@ -74,6 +83,8 @@ struct Session::Parts {
   void carry_out(const Request& request);
   void tick(double dt_s);
   void show_companion();
+  void heed_room();
+  [[nodiscard]] RoomReport look_after_room() const;
   void say_status();
   Progress progress();
   void fail(const Error& error) {
@@ -152,6 +163,7 @@ void Session::Parts::end_live() {
   set_hand(nullptr);
   if (live) live->pump([this](const LiveEvent& event) { audience.tell(event); });
   live.reset();
+  room.set_recording(false);
   status.recording = {};
   status.device_problem.clear();
 }
@@ -171,7 +183,6 @@ void Session::Parts::say_status() {
   if (live) {
     status.loop = live->loop();
     status.recording.seconds = live->time_s();
-    status.recording.problem = live->recording_problem();
   }
   if (replay) {
     status.replay.time_s = replay->time_s();
@@ -185,6 +196,7 @@ void Session::Parts::say_status() {
 void Session::Parts::place(const Request& request, std::size_t which) {
   end_live();
   replay.reset();
+  replayed = {};
   status.replay = {};
   insertion = which;
   const PlannedInsertion& plan = open.model->insertions()[which];
@@ -198,6 +210,7 @@ void Session::Parts::place(const Request& request, std::size_t which) {
     return fail(run.error());
   }
   live = std::move(*run);
+  room.set_recording(true);
   set_hand(live->hand());
   status.state = SessionStatus::State::ready;
   status.stage = field_maker ? kFieldStage : open.field ? "" : kNoField;
@@ -303,6 +316,7 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
 }
 
 Result<> Session::Parts::start_replay(const std::string& name) {
+  FolderLock in_use(shelf.folder(name), FolderLock::Kind::shared);  // before the live run lets go of it
   auto recording = shelf.read(name);
   if (!recording) return recording.error();
   auto scenario = parse_scenario(recording->info.scenario_text, name);
@@ -320,6 +334,7 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   audience.show(made.scene);
   for (const Event& e : recording->events)
     audience.tell(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
+  replayed = std::move(in_use);
   replay = std::make_unique<Replay>(std::move(*recording), std::move(made.nodes));
   status.state = SessionStatus::State::ready;
   status.replay = {.name = name, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
@@ -397,6 +412,23 @@ void Session::Parts::show_companion() {
   next_status = {};
 }
 
+RoomReport Session::Parts::look_after_room() const {
+  return make_room(settings.recordings, {.most_bytes = settings.keep_bytes},
+                   settings.free_bytes ? settings.free_bytes : free_bytes);
+}
+
+void Session::Parts::heed_room() {
+  const RoomReport report = room.report();
+  if (!report.stop.empty()) live->stop_recording(report.stop);
+  SessionStatus::Recording& told = status.recording;
+  const std::string& problem = live->recording_problem();
+  if (problem == told.problem && report.warning == told.warning) return;
+  if (problem != told.problem && settings.say) settings.say("The recording " + told.name + ": " + problem + ".");
+  told.problem = problem;
+  told.warning = report.warning;
+  next_status = {};
+}
+
 void Session::Parts::tick(double dt_s) {
   take_field();
   std::shared_ptr<const LiveFrame> frame;
@@ -404,6 +436,7 @@ void Session::Parts::tick(double dt_s) {
     live->pump([this](const LiveEvent& event) { audience.tell(event); });
     frame = live->picture(whole_curve);
     if (settings.companion) show_companion();
+    heed_room();
   } else if (replay) {
     const bool playing = replay->rate() > 0.0;
     replay->advance(dt_s);

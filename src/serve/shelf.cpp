@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <string_view>
 
 namespace stylet::serve {
 namespace fs = std::filesystem;
@@ -30,6 +31,13 @@ std::string Shelf::new_name(const std::string& of) const {
   std::string name = base;
   for (int k = 2; fs::exists(folder_ / name); ++k) name = fmt::format("{}-{}", base, k);
   return name;
+}
+
+bool Shelf::is_own_name(const std::string& name) {
+  constexpr std::string_view pattern = "0000-00-00-000000-";
+  if (name.size() < pattern.size()) return false;
+  return std::equal(pattern.begin(), pattern.end(), name.begin(),
+                    [](char p, char c) { return p == '0' ? c >= '0' && c <= '9' : c == p; });
 }
 
 std::vector<std::string> Shelf::names() const {

@@ -17,6 +17,8 @@ class Shelf {
 
   /// A name that nothing has yet: local date and time, and what it is of.
   [[nodiscard]] std::string new_name(const std::string& of) const;
+  /// Whether new_name() makes such names.
+  [[nodiscard]] static bool is_own_name(const std::string& name);
   [[nodiscard]] std::filesystem::path folder(const std::string& name) const { return folder_ / name; }
   /// Newest first.
   [[nodiscard]] std::vector<std::string> names() const;

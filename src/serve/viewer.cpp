@@ -20,17 +20,21 @@ constexpr std::size_t kMostSamples = 2000;   ///< in a picture
 
 }  // namespace
 
-Viewer::Viewer(std::uint64_t id, beast::tcp_stream stream, ViewerDesk& desk)
+Viewer::Viewer(std::uint64_t id, beast::tcp_stream stream, ViewerDesk& desk, double silence_s)
     : id_(id),
       socket_(std::move(stream)),
       desk_(desk),
+      silence_(
+          std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(silence_s))),
       allowance_(kMessagesPerSecond),
       last_message_(std::chrono::steady_clock::now()) {}
 
 void Viewer::accept(const HttpRequest& request) {
-  beast::get_lowest_layer(socket_)
-      .expires_never();  // the WebSocket has its own: a page that does not answer pings is gone
-  socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own
+  auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
+  timeout.idle_timeout = silence_;  // a ping at half of it
+  timeout.keep_alive_pings = true;
+  socket_.set_option(timeout);
   socket_.set_option(websocket::stream_base::decorator(
       [](websocket::response_type& r) { r.set(beast::http::field::sec_websocket_protocol, wire::kSubprotocol); }));
   socket_.read_message_max(wire::kLongestMessage);

@@ -31,7 +31,8 @@ class ViewerDesk {
 /// queue, of pictures and states only the newest.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(std::uint64_t id, boost::beast::tcp_stream stream, ViewerDesk& desk);
+  /// @param silence_s a page that has neither said anything nor answered a ping for so long is gone [s]
+  Viewer(std::uint64_t id, boost::beast::tcp_stream stream, ViewerDesk& desk, double silence_s);
   void accept(const HttpRequest& request);
   void close();
 
@@ -56,6 +57,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   std::uint64_t id_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
   ViewerDesk& desk_;
+  std::chrono::steady_clock::duration silence_;
   boost::beast::flat_buffer incoming_;
   bool open_ = false;
   bool ended_ = false;

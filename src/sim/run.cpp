@@ -3,6 +3,7 @@
 
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
+#include "stylet/sim/recorded_steps.hpp"
 #include "stylet/sim/target_motion.hpp"
 
 #include <fmt/format.h>
@@ -69,11 +70,12 @@ class Runner {
   }
 
   Result<Summary> recorded(std::span<const StepRecord> steps) {
+    const RecordedSteps all(steps);
     BaseSteps motion;
-    motion.count = static_cast<long>(steps.size());
+    motion.count = static_cast<long>(all.count());
     motion.duration_s = steps.back().time_s;
-    motion.base = [steps](long k) { return steps[static_cast<std::size_t>(k - 1)].base; };
-    motion.dt_s = [steps](long k) { return steps[static_cast<std::size_t>(k - 1)].dt_s; };
+    motion.base = [&all](long k) { return all.at(k - 1).base; };
+    motion.dt_s = [&all](long k) { return all.at(k - 1).dt_s; };
     total_s_ = motion.duration_s;
     choose_frames();
     if (auto done = one(model_->insertions().front(), motion); !done) return done.error();
@@ -280,6 +282,10 @@ Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::spa
       return input_error(fmt::format("recording, step {}", k),
                          "it does not say where the base was: the file was written by an earlier version",
                          "Record it again, or run its scenario");
+    if (steps[k].rest_steps < 0 || (k == 0 && steps[k].rest_steps != 0))
+      return input_error(fmt::format("recording, step {}", k),
+                         fmt::format("{} steps at rest cannot be before it", steps[k].rest_steps),
+                         "Give 0 or more, before the first step 0");
   }
   return Runner(model, observer, progress).recorded(steps);
 }

@@ -148,6 +148,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   auto script = std::make_shared<Script>(driven_motion(plan, start_mm, 2.0 * all_s));
   serve::ServerSettings settings;
   settings.port = 0;
+  settings.asks_for_token = false;
   settings.session.cases = {{"the demo", [&](const Progress&) { return model; }}};
   settings.session.recordings = folder.path;
   settings.session.companion = script;

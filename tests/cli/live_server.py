@@ -4,8 +4,10 @@ import json
 import os
 import subprocess
 import time
+from urllib.parse import urlsplit, urlunsplit
 
 from insert_case import PHANTOM
+from live_viewer import LiveViewer
 from program import InFolder
 
 PATIENCE_S = 120
@@ -33,6 +35,18 @@ class Serve(InFolder):
             text += line
         self.said = json.loads(text)
         return server, self.said["url"]
+
+    def address(self, path):
+        """Of a path of the server, with its token."""
+        at = urlsplit(self.said["url"])
+        return urlunsplit(at._replace(path="/" + path))
+
+    def viewer(self):
+        """One who holds the needle."""
+        viewer = LiveViewer(self.said["url"])
+        self.addCleanup(viewer.close)
+        viewer.command(do="take")
+        return viewer
 
     def until(self, true):
         end = time.monotonic() + PATIENCE_S

@@ -4,13 +4,18 @@
 server, are repeated by stylet insert to the last bit."""
 import os
 import signal
+import stat
 import subprocess
+import time
 import unittest
 import urllib.error
 import urllib.request
+from pathlib import Path
+from urllib.parse import urlsplit
 
 from insert_case import SMALL
 from live_server import PATIENCE_S, Serve
+from live_viewer import LiveViewer
 
 
 class ServeCommand(Serve):
@@ -20,7 +25,7 @@ class ServeCommand(Serve):
             with urllib.request.urlopen(url) as page:
                 self.assertIn("text/html", page.headers["Content-Type"])
                 self.assertIn('src="live.js"', page.read().decode())
-            with urllib.request.urlopen(url + "live.js") as script:
+            with urllib.request.urlopen(self.address("live.js")) as script:
                 self.assertGreater(len(script.read()), 100_000)
             self.until(self.recordings)
             server.send_signal(end)
@@ -28,13 +33,63 @@ class ServeCommand(Serve):
 
     def test_a_killed_server_leaves_a_recording_that_repeats(self):
         server, _ = self.start("case.toml", *SMALL)
-        self.until(lambda: self.steps() > 500)
+        self.until(self.recordings)
+        self.viewer().hand(40.0, 20.0)
+        self.until(lambda: self.steps() > 1000)
         server.kill()
         server.wait(PATIENCE_S)
         recording = str(self.recordings()[-1])
         said = self.succeed("insert", recording, "-o", "again").stdout
         self.assertIn("to the last bit", said)
         self.refuse("insert", recording, "-o", str(self.recordings()[-1].parent), says=["replaced", "-o"])
+
+    def test_a_needle_at_rest_takes_no_room_and_its_recording_repeats(self):
+        server, _ = self.start("case.toml", *SMALL)
+        self.until(self.recordings)
+        viewer = self.viewer()
+        viewer.hand(20.0, 100.0)
+        self.until(lambda: self.steps() > 100)
+        recording = self.recordings()[0]
+
+        def rests():
+            before = recording.stat().st_size
+            time.sleep(2)
+            return recording.stat().st_size == before
+        self.until(rests)
+        time.sleep(3)
+        viewer.hand(10.0, 100.0)
+        time.sleep(1)
+        server.terminate()
+        self.assertEqual(server.wait(PATIENCE_S), 0)
+        told = self.json_of("info", str(recording))
+        self.assertGreater(told["duration_s"], 4)
+        self.assertGreater(told["steps_at_rest"], 1000)
+        self.assertIn("to the last bit", self.succeed("insert", str(recording), "-o", "again").stdout)
+        with open(self.folder / "again" / "forces.csv") as repeated:
+            self.assertEqual(sum(1 for _ in repeated) - 1, told["steps"])
+
+    def test_old_recordings_go_when_together_they_take_too_much(self):
+        live = self.folder / "out" / "live"
+        for name in ("2020-01-01-120000-old", "2020-01-02-120000-older-than-most", "kept"):
+            (live / name).mkdir(parents=True)
+            (live / name / "run.h5").write_bytes(bytes(2_000_000))
+        server, _ = self.start("case.toml", *SMALL, "--keep", "0.0035")
+        self.until(lambda: not (live / "2020-01-01-120000-old").exists())
+        self.assertTrue((live / "kept" / "run.h5").exists())
+        server.terminate()
+        self.assertEqual(server.wait(PATIENCE_S), 0)
+        self.assertIn("2020-01-01-120000-old was removed", server.stderr.read())
+        self.refuse("serve", "case.toml", "--keep", "-1", says=["--keep"])
+
+    def test_recordings_are_for_their_owner_only(self):
+        before = os.umask(0)
+        self.addCleanup(os.umask, before)
+        self.start("case.toml", *SMALL)
+        self.until(self.recordings)
+        recording = self.recordings()[0]
+        self.until(lambda: stat.S_IMODE(recording.stat().st_mode) == 0o600)
+        for folder in (recording.parent, recording.parent.parent):
+            self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700)
 
     def opened(self, *arguments):
         """Starts a server, waits until the needle moves, and ends it."""
@@ -82,20 +137,47 @@ class ServeCommand(Serve):
 
     def test_a_port_that_is_taken(self):
         _, url = self.start("case.toml", *SMALL)
-        port = url.rstrip("/").rsplit(":", 1)[1]
+        port = str(urlsplit(url).port)
         done = subprocess.run([os.environ["STYLET"], "serve", "case.toml", "--port", port], cwd=self.folder, capture_output=True,
                               text=True, timeout=PATIENCE_S, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertIn("another port", done.stderr)
 
-    def test_beyond_this_machine_there_is_a_token(self):
-        _, url = self.start("case.toml", "--address", "0.0.0.0", *SMALL)
-        self.assertRegex(url, r"/\?token=[0-9a-f]{32}$")
-        port = url.split("/")[2].rsplit(":", 1)[1]
-        with self.assertRaises(urllib.error.HTTPError) as refused:
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/recordings")
-        refused.exception.close()
-        self.assertEqual(refused.exception.code, 401)
+    def test_nobody_comes_in_without_the_token(self):
+        for address in ("127.0.0.1", "0.0.0.0"):
+            _, url = self.start("case.toml", "--address", address, *SMALL)
+            self.assertRegex(url, r"/\?token=[0-9a-f]{32}$")
+            without = f"http://127.0.0.1:{urlsplit(url).port}/"
+            with self.assertRaises(urllib.error.HTTPError) as refused:
+                urllib.request.urlopen(without + "recordings")
+            refused.exception.close()
+            self.assertEqual(refused.exception.code, 401)
+            for wrong in (without, without + "?token=0123"):
+                with self.assertRaisesRegex(ConnectionError, " 401 "):
+                    LiveViewer(wrong)
+            LiveViewer(without + "?" + urlsplit(url).query).close()
+
+    def test_this_machine_keeps_its_token_and_a_network_gets_a_new_one(self):
+        here = [urlsplit(self.start("case.toml", *SMALL)[1]).query for _ in range(2)]
+        self.assertEqual(here[0], here[1])
+        token_file = Path(os.environ["XDG_CACHE_HOME"]) / "stylet" / "live_token"
+        self.assertEqual(stat.S_IMODE(token_file.stat().st_mode), 0o600)
+        everywhere = [urlsplit(self.start("case.toml", "--address", "0.0.0.0", *SMALL)[1]).query for _ in range(2)]
+        self.assertEqual(len({*here, *everywhere}), 3)
+
+    def test_a_token_of_ones_own_or_none(self):
+        os.environ["STYLET_TOKEN"] = "from-the-environment"
+        self.addCleanup(os.environ.pop, "STYLET_TOKEN")
+        self.assertTrue(self.start("case.toml", *SMALL)[1].endswith("/?token=from-the-environment"))
+        os.environ["STYLET_TOKEN"] = ""
+        server, url = self.start("case.toml", "--no-token", *SMALL)
+        self.assertNotIn("token", url)
+        LiveViewer(url).close()
+        server.terminate()
+        self.assertIn("Every user of this machine", server.stderr.read())
+        self.refuse("serve", "case.toml", "--no-token", "--address", "0.0.0.0", says=["0.0.0.0", "move the needle"])
+        self.refuse("serve", "case.toml", "--no-token", "--token", "mine", says=["--no-token"])
+        self.refuse("serve", "case.toml", "--token", "a b", says=["a b"])
 
 
 if __name__ == "__main__":

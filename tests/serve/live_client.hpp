@@ -48,11 +48,11 @@ inline http::response<http::string_body> get(std::uint16_t port, const std::stri
 /// A viewer without a browser: keeps the newest message of each kind.
 class LiveClient {
  public:
-  explicit LiveClient(std::uint16_t port) : socket_(connected(io_, port)) {
+  explicit LiveClient(std::uint16_t port, const std::string& target = "/live") : socket_(connected(io_, port)) {
     socket_.set_option(beast::websocket::stream_base::decorator([](beast::websocket::request_type& request) {
       request.set(http::field::sec_websocket_protocol, serve::wire::kSubprotocol);
     }));
-    socket_.handshake("localhost:" + std::to_string(port), "/live");
+    socket_.handshake("localhost:" + std::to_string(port), target);
     socket_.binary(true);
   }
 

@@ -44,6 +44,7 @@ struct Serving {
   explicit Serving(const std::function<void(serve::ServerSettings&)>& change = {}) {
     serve::ServerSettings s;
     s.port = 0;
+    s.asks_for_token = false;
     s.session.cases = {box_case("first"), box_case("second")};
     s.session.recordings = folder.path;
     s.session.runner.period_s = 4e-3;
@@ -59,6 +60,13 @@ struct Serving {
   }
   [[nodiscard]] std::uint16_t port() const { return server->port(); }
 };
+
+/// All that the page's session has recorded.
+inline std::vector<std::filesystem::path> recordings_of(const Serving& serving) {
+  std::vector<std::filesystem::path> folders;
+  for (const auto& entry : std::filesystem::directory_iterator(serving.folder.path)) folders.push_back(entry.path());
+  return folders;
+}
 
 inline std::unique_ptr<LiveClient> ready_client(const Serving& serving) {
   auto client = std::make_unique<LiveClient>(serving.port());

@@ -4,8 +4,13 @@
 
 #include "stylet/io/recording_io.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/sim/recorded_steps.hpp"
 
+#include <sys/stat.h>
+
+#include <atomic>
 #include <bit>
+#include <mutex>
 #include <thread>
 
 using namespace stylet;
@@ -149,20 +154,29 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   ASSERT_GT(run->steps.size(), 100u);
   EXPECT_FALSE(run->frames.empty());
   EXPECT_FALSE(run->events.empty());
-  // At rest nothing is recorded but where it ends.
+  // At rest nothing is recorded but where it ends; steps of another length are not the same.
   int at_rest = 0;
   for (const Frame& frame : run->frames)
     at_rest += frame.time_s > rests_from && frame.time_s < rests_from + 0.9 ? 1 : 0;
   EXPECT_LE(at_rest, 1);
+  std::int64_t rest = 0;
+  for (const StepRecord& step : run->steps) rest = std::max(rest, step.rest_steps);
+  EXPECT_GT(rest, 20) << "steps at rest are only counted";
   const auto scenario = parse_scenario(run->info.scenario_text, "recording");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message();
   Kept kept;
   const auto again = run_recorded(compiled(*scenario, run->mesh), run->steps, kept);
   ASSERT_TRUE(again.ok()) << again.error().message();
-  ASSERT_EQ(kept.steps.size(), run->steps.size());
+  const RecordedSteps recorded(run->steps);
+  ASSERT_EQ(static_cast<std::int64_t>(kept.steps.size()), recorded.count());
   for (std::size_t k = 0; k < kept.steps.size(); ++k) {
-    const StepRecord& a = run->steps[k];
+    const StepRecord a = recorded.at(static_cast<std::int64_t>(k));
     const StepRecord& b = kept.steps[k];
+    ASSERT_TRUE(same_bits(a.time_s, b.time_s));
+    if (!recorded.is_recorded(static_cast<std::int64_t>(k))) {
+      ASSERT_TRUE(is_at_rest(a, b)) << "step " << k << " of " << kept.steps.size();
+      continue;
+    }
     ASSERT_TRUE(same_bits(a.force_axial_N, b.force_axial_N) && same_bits(a.force_lateral_N, b.force_lateral_N) &&
                 same_bits(a.force_sagittal_N, b.force_sagittal_N) && same_bits(a.torque_Nmm.x(), b.torque_Nmm.x()) &&
                 same_bits(a.torque_Nmm.y(), b.torque_Nmm.y()) && same_bits(a.torque_Nmm.z(), b.torque_Nmm.z()))
@@ -230,13 +244,149 @@ TEST(Server, the_page_is_for_this_machine_and_its_own_origin) {
   EXPECT_EQ(get(serving.port(), "/nothing", host).result(), http::status::not_found);
 }
 
-TEST(Server, beyond_this_machine_it_asks_for_the_token) {
-  const Serving serving([](serve::ServerSettings& s) { s.token = "0123"; });
+TEST(Server, asks_also_on_this_machine_for_the_token) {
+  const Serving serving([](serve::ServerSettings& s) {
+    s.asks_for_token = true;
+    s.token = "0123";
+  });
+  EXPECT_EQ(get(serving.port(), "/").result(), http::status::ok) << "the page itself holds nothing of anybody";
   EXPECT_EQ(get(serving.port(), "/recordings").result(), http::status::unauthorized);
   EXPECT_EQ(get(serving.port(), "/recordings?token=0124").result(), http::status::unauthorized);
   EXPECT_EQ(get(serving.port(), "/recordings?token=0123").result(), http::status::ok);
   EXPECT_THROW(LiveClient client(serving.port()), boost::system::system_error);
+  EXPECT_THROW(LiveClient client(serving.port(), "/live?token=0124"), boost::system::system_error);
+  LiveClient client(serving.port(), "/live?token=0123");
+  EXPECT_TRUE(client.until([&] { return client.ready(); }));
   EXPECT_NE(serving.server->url().find("token=0123"), std::string::npos);
+}
+
+TEST(Server, makes_a_token_and_keeps_it_for_the_next_start) {
+  const Folder folder;
+  const auto token_with = [&](const std::filesystem::path& file) {
+    const Serving serving([&](serve::ServerSettings& s) {
+      s.asks_for_token = true;
+      s.token_file = file;
+    });
+    EXPECT_EQ(get(serving.port(), "/recordings").result(), http::status::unauthorized);
+    const std::string url = serving.server->url();
+    const std::string token = url.substr(url.find("?token=") + 7);
+    EXPECT_EQ(token.size(), 32u);
+    EXPECT_EQ(get(serving.port(), "/recordings?token=" + token).result(), http::status::ok);
+    return token;
+  };
+  const std::string first = token_with("");
+  EXPECT_NE(token_with(""), first);
+  const auto file = std::filesystem::temp_directory_path() / ("stylet-token-" + std::to_string(::getpid()));
+  const std::string kept = token_with(file);
+  EXPECT_EQ(token_with(file), kept);
+  std::filesystem::remove(file);
+}
+
+TEST(Server, a_holder_who_does_not_answer_any_more_loses_the_needle) {
+  const Serving serving([](serve::ServerSettings& s) { s.silence_s = 1.0; });
+  const auto watcher = ready_client(serving);
+  const auto holder = ready_client(serving);
+  holder->command(R"({"do":"take"})");
+  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  holder->hand(100.0F, 1.0F);
+  // From here on the holder reads nothing, so it answers no ping; its connection stays open.
+  ASSERT_TRUE(watcher->until([&] { return watcher->status.value("held", false); }));
+  const float moving = watcher->depth_mm;
+  ASSERT_TRUE(watcher->until([&] { return watcher->depth_mm > moving; }));
+  ASSERT_TRUE(watcher->until([&] { return !watcher->status.value("held", true); }));
+  EXPECT_EQ(watcher->status["viewers"], 1);
+  double then = watcher->time_s;
+  ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.1; }));
+  const float there = watcher->depth_mm;
+  EXPECT_LT(there, 90.0F);
+  then = watcher->time_s;
+  ASSERT_TRUE(watcher->until([&] { return watcher->time_s > then + 0.3; }));
+  EXPECT_EQ(watcher->depth_mm, there) << "the needle stays where it was";
+  watcher->command(R"({"do":"take"})");
+  ASSERT_TRUE(watcher->until([&] { return watcher->status.value("you_hold", false); }));
+}
+
+TEST(Server, who_answers_pings_stays_however_little_it_says) {
+  const Serving serving([](serve::ServerSettings& s) { s.silence_s = 0.5; });
+  const auto holder = ready_client(serving);
+  holder->command(R"({"do":"take"})");
+  ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
+  const double then = holder->time_s;
+  ASSERT_TRUE(holder->until([&] { return holder->time_s > then + 2.0; }));
+  EXPECT_EQ(holder->status["you_hold"], true);
+}
+
+TEST(Server, recordings_can_be_read_by_nobody_else_whatever_the_umask) {
+  namespace fs = std::filesystem;
+  for (const mode_t mask : {mode_t{0}, mode_t{0777}}) {
+    const mode_t before = ::umask(mask);
+    {
+      const Serving serving;
+      ready_client(serving);
+      ::umask(before);
+      EXPECT_EQ(fs::status(serving.folder.path).permissions(), fs::perms(0700));
+      const auto recordings = recordings_of(serving);
+      ASSERT_EQ(recordings.size(), 1u);
+      EXPECT_EQ(fs::status(recordings[0]).permissions(), fs::perms(0700));
+      EXPECT_EQ(fs::status(recordings[0] / "run.h5").permissions(), fs::perms(0600));
+    }
+    ::umask(before);
+  }
+}
+
+TEST(Server, warns_of_a_disk_that_gets_full_and_goes_on_without_recording_when_it_is) {
+  std::atomic<std::uintmax_t> free = 500'000'000;
+  std::mutex mutex;
+  std::string said;
+  const Serving serving([&](serve::ServerSettings& s) {
+    s.session.free_bytes = [&](const std::filesystem::path&) { return free.load(); };
+    s.session.room_every_s = 0.05;
+    s.session.say = [&](const std::string& text) {
+      const std::lock_guard lock(mutex);
+      said += text + "\n";
+    };
+  });
+  const auto client = ready_client(serving);
+  const auto recording = [&](const char* key) { return client->status["recording"].value(key, ""); };
+  ASSERT_TRUE(client->until([&] { return !recording("warning").empty(); }));
+  EXPECT_SAYS(recording("warning"), "0.5 GB");
+  EXPECT_EQ(recording("problem"), "");
+  client->command(R"({"do":"take"})");
+  client->hand(5.0F, 100.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 4.9F; }));
+  free = 100'000'000;
+  ASSERT_TRUE(client->until([&] { return !recording("problem").empty(); }));
+  EXPECT_SAYS(recording("problem"), "nearly full");
+  client->hand(10.0F, 100.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 9.9F; })) << "the simulation goes on";
+  const auto run = read_recording(recordings_of(serving).at(0) / "run.h5");
+  ASSERT_TRUE(run.ok()) << run.error().message();
+  EXPECT_GT(run->steps.back().base_depth_mm, 4.0) << "what was recorded before is whole";
+  EXPECT_LT(run->steps.back().base_depth_mm, 9.0);
+  const std::lock_guard lock(mutex);
+  EXPECT_SAYS(said, "0.5 GB");
+  EXPECT_SAYS(said, "nearly full");
+}
+
+TEST(Server, removes_old_recordings_but_not_the_one_it_replays) {
+  const Serving serving([](serve::ServerSettings& s) {
+    s.session.keep_bytes = 1;  // less than any recording
+    s.session.room_every_s = 0.05;
+  });
+  const auto client = ready_client(serving);
+  const auto recording = [&](const char* key) { return client->status["recording"].value(key, ""); };
+  const std::string first = recording("name");
+  ASSERT_TRUE(client->until([&] { return !recording("problem").empty(); })) << "it takes more by itself";
+  EXPECT_SAYS(recording("problem"), "--keep");
+  client->command(R"({"do":"take"})");
+  client->command(R"({"do":"replay","name":")" + first + "\"}");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay"; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(std::filesystem::exists(serving.folder.path / first / "run.h5"));
+  client->command(R"({"do":"live"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && recording("name") != first; }));
+  ASSERT_TRUE(client->until([&] { return !std::filesystem::exists(serving.folder.path / first); }));
+  EXPECT_TRUE(std::filesystem::exists(serving.folder.path / recording("name") / "run.h5"));
 }
 
 TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
@@ -244,6 +394,13 @@ TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
   s.session.cases = {box_case("first")};
   s.address = "nowhere";
   EXPECT_SAYS(serve::Server::open(s).error().message(), "nowhere");
+  s.address = "0.0.0.0";
+  s.asks_for_token = false;
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "everybody who reaches 0.0.0.0");
+  s.asks_for_token = true;
+  s.token = "a b";
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "'a b' cannot stand in an address");
+  s.token.clear();
   const Serving serving;
   s.address = "127.0.0.1";
   s.port = serving.port();

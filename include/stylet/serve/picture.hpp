@@ -87,7 +87,8 @@ struct SessionStatus {
   struct Recording {
     std::string name;
     double seconds = 0.0;
-    std::string problem;
+    std::string problem;  ///< why nothing is recorded; empty: it is
+    std::string warning;  ///< what may keep it from going on
   } recording;
   struct Replay {
     std::string name;  ///< empty: live

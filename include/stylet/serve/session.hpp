@@ -6,6 +6,7 @@
 #include "stylet/serve/companion.hpp"
 #include "stylet/serve/picture.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -23,14 +24,20 @@ struct CaseSource {
 };
 
 struct SessionSettings {
-  std::vector<CaseSource> cases;         ///< the first is opened; there must be one unless something is replayed
-  std::filesystem::path recordings;      ///< folder; every insertion makes a folder in it, with its run.h5
-  std::string replay;                    ///< name of a recording to start with; empty: live
-  RunnerSettings runner;                 ///< keep_steps is set
-  double pictures_per_s = 60.0;          ///< at most
-  double field_waits_s = 3.0;            ///< longest wait for a page to draw before the displacement field is made
-  double recorded_frames_per_s = 10;     ///< at most; fewer where a mesh makes them expensive
-  std::shared_ptr<Companion> companion;  ///< may be null
+  std::vector<CaseSource> cases;              ///< the first is opened; there must be one unless something is replayed
+  std::filesystem::path recordings;           ///< folder; every insertion makes a folder in it, with its run.h5
+  std::string replay;                         ///< name of a recording to start with; empty: live
+  RunnerSettings runner;                      ///< keep_steps is set
+  double pictures_per_s = 60.0;               ///< at most
+  double field_waits_s = 3.0;                 ///< longest wait for a page to draw before the displacement field is made
+  double recorded_frames_per_s = 10;          ///< at most; fewer where a mesh makes them expensive
+  std::shared_ptr<Companion> companion;       ///< may be null
+  std::uintmax_t keep_bytes = 5'000'000'000;  ///< recordings may take together, the oldest go first; 0: no limit
+  double room_every_s = 2.0;                  ///< looks after their room and the disk's
+  /// Free bytes of the disk that a folder is on; empty: as the system says.
+  std::function<std::uintmax_t(const std::filesystem::path&)> free_bytes;
+  /// Tells who started the session of what has become of recordings; may be empty. From any thread.
+  std::function<void(const std::string&)> say;
 };
 
 /// Who watches a session. Called from the session's thread; returns at once.

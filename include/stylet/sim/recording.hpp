@@ -5,6 +5,7 @@
 #include "stylet/coupling/capacity_use.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct StepRecord {
   int sticking = 0;
   int iterations = 0;
   double step_us = 0;  ///< thread CPU time of the step [µs]; the only number that differs between two runs
+  /// Steps at rest between the record before and this one: with its dt and base, and results as near as is_at_rest().
+  std::int64_t rest_steps = 0;
 };
 
 enum class EventKind {

@@ -58,6 +58,7 @@ StepRow to_row(const StepRecord& s) {
   row.sticking = s.sticking;
   row.iterations = s.iterations;
   row.step_us = s.step_us;
+  row.rest_steps = s.rest_steps;
   return row;
 }
 
@@ -78,6 +79,7 @@ StepRecord from_row(const StepRow& row) {
   s.sticking = row.sticking;
   s.iterations = row.iterations;
   s.step_us = row.step_us;
+  s.rest_steps = row.rest_steps;
   return s;
 }
 
@@ -107,6 +109,7 @@ h5::Handle step_row_type() {
   insert(type, "sticking", offsetof(StepRow, sticking), H5T_NATIVE_INT32);
   insert(type, "iterations", offsetof(StepRow, iterations), H5T_NATIVE_INT32);
   insert(type, "step_us", offsetof(StepRow, step_us), H5T_NATIVE_DOUBLE);
+  insert(type, "rest_steps", offsetof(StepRow, rest_steps), H5T_NATIVE_INT64);
   return type;
 }
 

@@ -10,12 +10,12 @@
 /// What run.h5 looks like inside (docs/results.md): row types shared by its writer and its reader.
 namespace stylet::results {
 
-inline constexpr int kRunFileVersion = 2;
+inline constexpr int kRunFileVersion = 3;
 inline constexpr const char* kRunFileFormat = "stylet-run";
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  ///< fill value of rows not yet on disk
 
-/// A row of /steps: the columns of forces.csv, and what the step was given. Files of version 1 have no dt_s and no
-/// base.
+/// A row of /steps: the columns of forces.csv, what the step was given, and the steps at rest before it. Files of
+/// version 1 have no dt_s and no base, those of version 2 no rest_steps.
 struct StepRow {
   double time_s = kMissing, dt_s = kMissing, base_depth_mm = kMissing;
   double base_x_mm = kMissing, base_y_mm = kMissing, base_z_mm = kMissing;
@@ -26,6 +26,7 @@ struct StepRow {
   std::int8_t tip_state = 0;
   std::int32_t contacts = 0, sticking = 0, iterations = 0;
   double step_us = kMissing;
+  std::int64_t rest_steps = 0;
 };
 StepRow to_row(const StepRecord& step);
 StepRecord from_row(const StepRow& row);

@@ -74,6 +74,14 @@ RunInfo read_info(hid_t file) {
   return info;
 }
 
+/// Whether the steps at rest between two records take as long as there is between them.
+bool rest_fits(const StepRow& before, const StepRow& row) {
+  if (row.rest_steps == 0) return true;
+  constexpr double tolerance_s = 1e-8;
+  const double rest_s = row.time_s - row.dt_s - before.time_s;
+  return row.rest_steps > 0 && std::abs(static_cast<double>(row.rest_steps) * before.dt_s - rest_s) <= tolerance_s;
+}
+
 /// Steps up to the first that had not reached the disk.
 std::vector<StepRecord> read_steps(hid_t file) {
   const h5::Handle set = h5::dataset(file, "steps");
@@ -84,6 +92,7 @@ std::vector<StepRecord> read_steps(hid_t file) {
   for (const StepRow& row : rows) {
     if (std::isnan(row.time_s)) break;
     demand(row.tip_state >= 0 && row.tip_state <= static_cast<std::int8_t>(TipState::exited), "/steps: tip_state");
+    demand(rest_fits(steps.empty() ? StepRow() : rows[steps.size() - 1], row), "/steps: rest_steps");
     steps.push_back(from_row(row));
   }
   return steps;

@@ -244,7 +244,7 @@ TEST(ResultFolder, a_full_disk_fails_the_run_and_leaves_no_half_file) {
     }
     // Files cannot grow beyond this: enough for everything but the report, which has its script and the tissue in it.
     std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{650000, 650000};
+    const rlimit limit{680000, 680000};
     setrlimit(RLIMIT_FSIZE, &limit);
     const auto done = (*writer)->finish(run.summary);
     if (done.ok()) return 13;

@@ -49,6 +49,7 @@ void expect_same_step(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.sticking, b.sticking);
   EXPECT_EQ(a.iterations, b.iterations);
   EXPECT_EQ(a.step_us, b.step_us);
+  EXPECT_EQ(a.rest_steps, b.rest_steps);
 }
 
 void expect_same_frame(const Frame& a, const Frame& b) {
@@ -117,6 +118,32 @@ TEST(RunFile, holds_everything_that_was_written) {
   ASSERT_TRUE(back->summary.has_value());
   EXPECT_EQ(back->summary->peak_axial_N, run.summary.peak_axial_N);
   EXPECT_EQ(back->summary->events.size(), run.summary.events.size());
+}
+
+TEST(RunFile, holds_steps_at_rest_as_a_number_and_refuses_one_that_does_not_fit_the_times) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  for (const std::int64_t rest_steps : {3, 4, -1}) {
+    {
+      auto writer = RunFileWriter::create(path, run.info, run.mesh);
+      ASSERT_TRUE(writer.ok()) << writer.error().message();
+      StepRecord first = run.steps[0];
+      first.dt_s = 1e-3;
+      StepRecord second = first;
+      second.time_s = first.time_s + 4e-3;
+      second.rest_steps = rest_steps;
+      ASSERT_TRUE(writer->append_steps(std::array{first, second}).ok());
+      ASSERT_TRUE(writer->close().ok());
+    }
+    const auto back = read_recording(path);
+    ASSERT_EQ(back.ok(), rest_steps == 3);
+    if (back.ok()) {
+      EXPECT_EQ(back->steps[1].rest_steps, 3);
+    } else {
+      EXPECT_NE(back.error().message().find("rest_steps"), std::string::npos) << back.error().message();
+    }
+  }
 }
 
 TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {

@@ -76,8 +76,8 @@ test('a browser without 3D: sections, curve and hand work all the same', async (
   await page.close();
 });
 
-test('a server beyond this machine: without its token it says where the address is', async () => {
-  server = await startServer(folder, { options: ['--address', '0.0.0.0', ...SMALL] });
+test('without the token it says where the address is', async () => {
+  server = await startServer(folder, { options: SMALL });
   const { page } = await openVisitor(withoutGl, `http://localhost:${server.port}/`);
   await page.getByText('open the address that stylet serve printed').waitFor();
   await page.goto(`http://localhost:${server.port}/${new URL(server.url).search}`);

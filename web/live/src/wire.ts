@@ -45,7 +45,7 @@ export interface Status {
   stage?: string; fraction?: number | null; message?: string; cure?: string;
   mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string;
   you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
-  recording?: { name: string; seconds: number; problem?: string } | null;
+  recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;
   loop?: { steps: number; missed: number; p50_us: number; p99_us: number; max_us: number; rights?: string } | null;
   dropped_messages?: number; skipped_frames?: number;

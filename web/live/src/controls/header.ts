@@ -71,9 +71,10 @@ export class Header {
     this.release.hidden = !holds || others === 0;
     const recording = status?.recording;
     const unrecorded = recording?.problem;
+    const soon = recording?.warning ? `, but ${recording.warning}` : '';
     this.recording.hidden = !connected || !recording || status?.state !== 'ready' || status.mode === 'replay';
-    this.recording.classList.toggle('problem', !!unrecorded);
-    this.write(this.recording, unrecorded ? `Not recording: ${unrecorded}` : recording ? `Recording ${recording.seconds.toFixed(0)} s` : '');
+    this.recording.classList.toggle('problem', !!unrecorded || !!soon);
+    this.write(this.recording, unrecorded ? `Not recording: ${unrecorded}` : recording ? `Recording ${recording.seconds.toFixed(0)} s${soon}` : '');
     this.recording.title = recording?.name ?? '';
   }
 

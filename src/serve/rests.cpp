@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rests.hpp"
+
+#include "stylet/sim/recorded_steps.hpp"
+
+#include <utility>
+
+namespace stylet::serve {
+
+std::optional<StepRecord> Rests::add(const StepRecord& step) {
+  last_ = step;
+  // Compared with the record, not with the step before, so that no drift can add up.
+  if (record_ && is_at_rest(*record_, step)) {
+    ++resting_;
+    return std::nullopt;
+  }
+  record_ = step;
+  record_->rest_steps = std::exchange(resting_, 0);
+  return record_;
+}
+
+std::optional<StepRecord> Rests::end() {
+  if (resting_ == 0) return std::nullopt;
+  last_.rest_steps = std::exchange(resting_, 0) - 1;
+  return last_;
+}
+
+}  // namespace stylet::serve

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/recording.hpp"
+
+#include <optional>
+
+namespace stylet::serve {
+
+/// Leaves out of a recording what a needle at rest repeats: steps that were given what the last record was given, bit
+/// for bit, and came to the same (is_at_rest). They are only counted (StepRecord::rest_steps), so whoever repeats a
+/// recording still takes every step that there was.
+class Rests {
+ public:
+  /// @return the record to write, with the steps at rest before it; nothing: the step is one of those
+  std::optional<StepRecord> add(const StepRecord& step);
+  /// Nothing comes any more. @return the last step, if it is at rest
+  std::optional<StepRecord> end();
+
+ private:
+  std::optional<StepRecord> record_;  ///< the last one
+  StepRecord last_;                   ///< step
+  std::int64_t resting_ = 0;          ///< steps since the last record
+};
+
+}  // namespace stylet::serve

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "room_watch.hpp"
+
+#include <utility>
+
+namespace stylet::serve {
+
+RoomWatch::RoomWatch(Look look, std::function<void(const std::string&)> say, std::chrono::milliseconds every)
+    : look_(std::move(look)),
+      say_(std::move(say)),
+      every_(every),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+void RoomWatch::set_recording(bool is_recording) {
+  {
+    const std::lock_guard lock(mutex_);
+    is_recording_ = is_recording;
+    report_ = {};
+    ++turn_;
+  }
+  wake_.notify_all();
+}
+
+RoomReport RoomWatch::report() const {
+  const std::lock_guard lock(mutex_);
+  return report_;
+}
+
+void RoomWatch::tell(const RoomReport& before, const RoomReport& now) const {
+  if (!say_) return;
+  for (const std::string& name : now.removed)
+    say_("The recording " + name + " was removed: it was the oldest (--keep).");
+  if (before.warning.empty() && !now.warning.empty()) say_("For recordings " + now.warning + ".");
+}
+
+void RoomWatch::run(const std::stop_token& stop) {
+  RoomReport told;
+  int seen = 0;
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    wake_.wait(lock, stop, [&] { return is_recording_; });
+    if (stop.stop_requested()) return;
+    seen = turn_;
+    lock.unlock();
+    RoomReport now = look_();
+    tell(told, now);
+    told = now;
+    lock.lock();
+    if (seen == turn_) report_ = std::move(now);
+    wake_.wait_for(lock, stop, every_, [&] { return seen != turn_; });
+  }
+}
+
+}  // namespace stylet::serve

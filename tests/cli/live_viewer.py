@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A viewer of stylet serve (docs/live_protocol.md) that says what its hand does and reads nothing, so it answers no ping either."""
+import base64
+import json
+import os
+import socket
+import struct
+from urllib.parse import urlsplit
+
+HAND, COMMAND = 16, 17
+
+
+class LiveViewer:
+    def __init__(self, url):
+        """url: as the server printed it. Raises ConnectionError where the server lets nobody in."""
+        at = urlsplit(url)
+        self.socket = socket.create_connection((at.hostname, at.port))
+        key = base64.b64encode(os.urandom(16)).decode()
+        self.socket.sendall(f"GET /live?{at.query} HTTP/1.1\r\nHost: {at.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                            f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
+                            "Sec-WebSocket-Protocol: stylet-live-1\r\n\r\n".encode())
+        answer = self.socket.recv(1024).decode(errors="replace")
+        if " 101 " not in answer.split("\r\n", 1)[0]:
+            self.socket.close()
+            raise ConnectionError(answer)
+
+    def close(self):
+        self.socket.close()
+
+    def _send(self, kind, body):
+        """One masked binary frame of less than 64 KB."""
+        data = struct.pack("<II", kind, 0) + body
+        mask = os.urandom(4)
+        size = bytes([0x80 | len(data)]) if len(data) < 126 else bytes([0x80 | 126]) + struct.pack(">H", len(data))
+        self.socket.sendall(b"\x82" + size + mask + bytes(b ^ mask[k % 4] for k, b in enumerate(data)))
+
+    def command(self, **what):
+        self._send(COMMAND, json.dumps(what).encode())
+
+    def hand(self, depth_mm, speed_mm_per_s):
+        self._send(HAND, struct.pack("<5f", depth_mm, speed_mm_per_s, 0, 0, 0))

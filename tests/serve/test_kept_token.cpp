@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kept_token.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+using stylet::serve::kept_token;
+
+namespace {
+
+struct KeptToken : testing::Test {
+  fs::path folder = fs::temp_directory_path() / ("stylet-kept-token-" + std::to_string(::getpid()));
+  fs::path file = folder / "stylet" / "live_token";
+  void SetUp() override { fs::remove_all(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+};
+
+}  // namespace
+
+TEST_F(KeptToken, stays_the_same_and_is_for_this_user_only) {
+  const std::string token = kept_token(file);
+  EXPECT_EQ(token.size(), 32u);
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0600));
+  EXPECT_EQ(kept_token(file), token);
+}
+
+TEST_F(KeptToken, that_others_could_read_or_that_is_damaged_is_replaced) {
+  const std::string token = kept_token(file);
+  fs::permissions(file, fs::perms(0644));
+  const std::string second = kept_token(file);
+  EXPECT_NE(second, token);
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0600));
+  std::ofstream(file) << "short";
+  EXPECT_EQ(kept_token(file).size(), 32u);
+  fs::remove(file);
+  fs::create_symlink(folder / "elsewhere", file);
+  EXPECT_EQ(kept_token(file).size(), 32u);
+  EXPECT_FALSE(fs::is_symlink(file));
+  EXPECT_FALSE(fs::exists(folder / "elsewhere"));
+}
+
+TEST_F(KeptToken, that_cannot_be_kept_is_a_new_one_each_time) {
+  EXPECT_NE(kept_token(""), kept_token(""));
+  fs::create_directories(folder);
+  std::ofstream(folder / "stylet") << "a file where the folder should be";
+  const std::string token = kept_token(file);
+  EXPECT_EQ(token.size(), 32u);
+  EXPECT_NE(kept_token(file), token);
+}
