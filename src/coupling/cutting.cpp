@@ -71,23 +71,38 @@ void Insertion::Parts::take_compliance() {
   if (!tip.stale) memory.keep_displacement(compliance, ContactCompliance::kTip, there);
 }
 
-/// Axial force of the hand when the tip's force reaches its limit, the shaft's being those of the trial solution.
+/// Axial force of the hand when the tip's force reached its limit: on the way from the balance before to that of now,
+/// or that of now where there was none before.
 double Insertion::Parts::force_at_break() const {
-  const Vec3 axis = base.rotation * Vec3::UnitZ();
-  double force = (tip.limit * frames[0].col(2) - needle->guide_load().force).dot(axis);
-  for (int c = 1; c < load_count(); ++c) {
-    force += (frames[static_cast<std::size_t>(c)] * system.lambda.segment<3>(3 * c)).dot(axis);
-  }
-  return force;
+  const Vec3 t = needle->tangent(length());
+  const double before = tip.force_start.dot(t);
+  const double now = tip.force.dot(t);
+  const double part = balanced && before < tip.limit ? (tip.limit - before) / (now - before) : 1.0;
+  return (hand_start + part * (hand_force() - hand_start)).dot(base.rotation * Vec3::UnitZ());
 }
 
-/// The force on the tip has reached its limit: a membrane breaks, or the cut simply goes on.
-void Insertion::Parts::start_cut(StepReport& report) {
+/// Whether a membrane bears more than it can, from a tip that points through it. To be asked of a balance only: what
+/// breaks does not heal, and the forces of an iterate on the way to a balance are no one's.
+bool Insertion::Parts::membrane_gives() const {
+  if (!tip_holds() || !tip.at_membrane) return false;
+  const Vec3 t = needle->tangent(length());
+  return tip.force.dot(t) > tip.limit && tip.through.dot(t) >= settings.grazing_cos;
+}
+
+/// The membrane breaks and the cut goes on behind it.
+void Insertion::Parts::break_membrane(StepReport& report) {
+  ++report.pivots;
+  ++tip.toggles;
   tip.state = Tip::State::cut;
-  if (!tip.at_membrane) return;
-  const int region = region_of(tip.next_tet);
-  add_event(report, InsertionEventKind::puncture, region, force_at_break());
+  add_event(report, InsertionEventKind::puncture, region_of(tip.next_tet), force_at_break());
   cross_surface(report);
+}
+
+/// The tip back to where the sub-step, or the cut behind a membrane, began.
+void Insertion::Parts::take_back_cut() {
+  if (!tip.touching) return;
+  if (tip.blocked) tip.state = Tip::State::cut;
+  if (tip.state == Tip::State::cut) march(0.0);
 }
 
 /// Goes over to the element behind the surface that x lies on.
@@ -147,6 +162,7 @@ void Insertion::Parts::commit_tip(StepReport& report) {
       } else {
         tip.at_membrane = true;
         tip.limit = membrane;
+        tip.through = tissue.locator->face_normal(tip.at.tet, tip.crossing.local);
         if (std::isinf(membrane)) add_event(report, InsertionEventKind::bone_contact, to);
       }
     }
@@ -201,6 +217,51 @@ bool Insertion::Parts::enter(const Vec3& from, const Vec3& to, StepReport& repor
   return true;
 }
 
+/// The old track that begins within the needle's diameter of a surface point, in the needle's direction, and goes on
+/// beneath that point; the nearest of several, -1 = none.
+int Insertion::Parts::old_track_at(const Vec3& x, const Vec3& direction) const {
+  constexpr double same_direction = 0.98;
+  int found = -1;
+  double nearest = settings.join_mm;
+  for (std::size_t k = 0; k < old_count; ++k) {
+    const Track& old = old_tracks[k];
+    const double distance = (old.entry - x).norm();
+    if (distance >= nearest || old.entry_direction.dot(direction) <= same_direction) continue;
+    if (old.end_xi <= old.entry_direction.dot(x - old.entry)) continue;
+    nearest = distance;
+    found = static_cast<int>(k);
+  }
+  return found;
+}
+
+void Insertion::Parts::begin_track(const Vec3& x, const Vec3& direction) {
+  joined = -1;
+  track.entry = x;
+  track.entry_direction = direction;
+  track.marks.clear();
+  track.end_xi = 0.0;
+  track.open = false;
+}
+
+/// Goes on in an old track. It begins where this needle has met the surface, which on curved or tilted skin is before
+/// or behind the old entry.
+void Insertion::Parts::join_track(int old, const Vec3& x) {
+  joined = old;
+  track = old_tracks[static_cast<std::size_t>(old)];
+  for (Track::Mark& mark : track.marks) mark.point = -1;
+  begin_at(x);
+}
+
+/// The track begins at another place of the surface, and its arc length there.
+void Insertion::Parts::begin_at(const Vec3& entry) {
+  const double later = track.entry_direction.dot(entry - track.entry);
+  track.entry = entry;
+  track.end_xi -= later;
+  track.air_from_xi -= later;
+  for (Track::Mark& mark : track.marks) mark.xi -= later;
+  std::erase_if(track.marks, [](const Track::Mark& mark) { return mark.xi <= 0.0; });
+}
+
 /// Starts a track at a surface point, or joins an old one that begins there.
 void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report,
                                      InsertionEventKind kind) {
@@ -214,29 +275,15 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
   tip.at = {crossing.tet, tissue.locator->weights(crossing.tet, x)};
 
   if (kind == InsertionEventKind::skin_contact) {
-    joined = -1;
-    double nearest = settings.join_mm;
-    for (std::size_t k = 0; k < old_count; ++k) {
-      const Track& old = old_tracks[k];
-      const double distance = (old.entry - x).norm();
-      if (distance >= nearest || old.entry_direction.dot(t) <= 0.98) continue;
-      nearest = distance;
-      joined = static_cast<int>(k);
-    }
-    if (joined >= 0) {
-      track = old_tracks[static_cast<std::size_t>(joined)];
-      for (Track::Mark& mark : track.marks) mark.point = -1;
+    if (const int old = old_track_at(x, t); old >= 0) {
+      join_track(old, x);
       tip.touching = !track.open;
       tip.x = track.end;
       tip.at = track.end_at;
       tip.state = Tip::State::open;
       phase = TipPhase::in_track;
     } else {
-      track.entry = x;
-      track.entry_direction = t;
-      track.marks.clear();
-      track.end_xi = 0.0;
-      track.open = false;
+      begin_track(x, t);
     }
     candidate_xi = track.end_xi + (joined >= 0 ? 1.0 : 0.5) * settings.spacing_mm;
   } else {
@@ -248,6 +295,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
     const double membrane = membrane_force(tissue.laws, -1, region);
     tip.next_tet = crossing.tet;
     tip.at_membrane = true;
+    tip.through = -tissue.locator->face_normal(crossing.tet, crossing.local);
     tip.cutting = tissue.laws[static_cast<std::size_t>(region)].cutting_N;
     tip.limit = std::max(membrane, tip.cutting);
     tip.state = Tip::State::stick;

@@ -54,6 +54,8 @@ constexpr double kMostDamping = 1e3;
 
 /// Forces that have grown to so many times what they were, without a balance, come from iterations that went astray.
 constexpr double kMostGrowth = 2.0;
+/// So has a needle whose tip has moved by this part of its length.
+constexpr double kMostMotion = 0.1;
 
 /// Where compliance changes fast with the cut (next to held tissue) the cut would jump to and fro: it is followed the
 /// more slowly the longer that lasts.
@@ -161,7 +163,7 @@ double Insertion::Parts::contradiction(int load, const Trial& trial) const {
       case Tip::State::open:
         return trial.opening;
       case Tip::State::stick:
-        return std::max(-axial, tip.blocked ? 0.0 : axial - tip.limit);
+        return std::max(-axial, tip.blocked || tip.at_membrane ? 0.0 : axial - tip.limit);  // membrane_gives()
       case Tip::State::cut:
         return tip.advance > 0.0 ? 0.0 : tip.cutting - axial;
     }
@@ -192,7 +194,7 @@ void Insertion::Parts::change_state(int load, const Trial& trial, StepReport& re
     } else if (trial.axial < 0.0) {
       tip.state = Tip::State::open;
     } else {
-      start_cut(report);
+      tip.state = Tip::State::cut;
     }
     return;
   }
@@ -360,6 +362,12 @@ void Insertion::Parts::begin_balance(int most_toggles) {
   if (tip.touching) aim_tip();
 }
 
+/// Whether an iterate is so far from where the sub-step began that it is no guide to the balance that was not found.
+bool Insertion::Parts::went_astray(double largest_at_start) const {
+  return !(largest_force() < kMostGrowth * largest_at_start &&
+           (needle->point(length()) - tip_start).norm() < kMostMotion * length());
+}
+
 void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& report) {
   begin_balance(kMaxToggles);
   take_prepared_tangent();
@@ -384,7 +392,12 @@ void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& r
   for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
     foresees_cut = iteration < kSmoothCut;
     double error = look();
-    if (iteration > 0 && !changed && error < 1.0) {
+    const bool found = iteration > 0 && !changed && error < 1.0;
+    if (found && membrane_gives()) {
+      break_membrane(report);
+      error = look();
+      before = std::numeric_limits<double>::infinity();  // another balance is looked for from here
+    } else if (found) {
       const bool slow = error > (quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
       if (slow && iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
       if (iteration > kManyIterations) steady = false;  // what took long to find says little about what comes next
@@ -467,7 +480,11 @@ void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& r
   steady = false;
   if (changed || !(look() < 1e3)) {
     report.flags |= StepReport::not_converged;
-    if (!(largest_force() < kMostGrowth * largest_at_start)) stay();
+    if (went_astray(largest_at_start)) {
+      stay();
+    } else {
+      take_back_cut();
+    }
   }
 }
 

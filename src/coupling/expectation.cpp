@@ -32,6 +32,7 @@ double further(double way, double more) { return (way + more) * way > 0.0 ? way 
 
 void Insertion::Parts::keep_start() {
   shape_start = needle->state();
+  tip_start = needle->point(length());
   tip.force_start = tip.force;
   for (Grip& grip : grips) {
     grip.s_start = grip.s;
@@ -80,19 +81,19 @@ void Insertion::Parts::go_on() {
   VecX& expected = kept.needle;  // no iterate is kept yet
   expected.noalias() = shape_start + force_share * shape_gained + force_trend * shape_more;
   needle->set_state(expected);
-  if (tip.touching && tip.state != Tip::State::open)
-    tip.force += force_share * tip.gained + force_trend * tip.gained_more;
+  if (tip_holds()) tip.force += force_share * tip.gained + force_trend * tip.gained_more;
   for (Grip& grip : grips) grip.force += force_share * grip.gained + force_trend * grip.gained_more;
 }
 
 void Insertion::Parts::stay() {
   needle->set_state(shape_start);
-  tip.force = tip.touching && tip.state != Tip::State::open ? tip.force_start : Vec3::Zero();
+  if (tip.touching && tip.state == Tip::State::open && !tip.force_start.isZero(0.0)) tip.state = Tip::State::stick;
+  tip.force = tip_holds() ? tip.force_start : Vec3::Zero();
   for (Grip& grip : grips) {
     grip.s = grip.s_start;
     grip.force = grip.force_start;
   }
-  if (tip.touching && tip.state == Tip::State::cut) march(0.0);
+  take_back_cut();
 }
 
 void Insertion::Parts::keep_gains(double cut) {

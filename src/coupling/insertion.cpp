@@ -109,12 +109,43 @@ void Insertion::Parts::settle_in_air(StepReport& report) {
   }
 }
 
+/// Whether a point of the tissue at rest is inside of it; a tip at its surface is not.
+bool Insertion::Parts::in_tissue(const Vec3& x) const {
+  constexpr double at_surface_mm = 1e-6;
+  return tissue.locator->find(x - at_surface_mm * needle->tangent(length())).has_value();
+}
+
+/// Where the way back along a straight needle from a tip inside the tissue comes out of it, if that is no further than
+/// its diameter.
+std::optional<Vec3> Insertion::Parts::surface_behind(const Vec3& tip_now) const {
+  if (!in_tissue(tip_now)) return std::nullopt;
+  const Vec3 from = needle->point(0.0);
+  const auto crossing = tissue.locator->first_entry(from, tip_now);
+  if (!crossing) return std::nullopt;
+  const Vec3 surface = from + crossing->t * (tip_now - from);
+  return (tip_now - surface).norm() <= settings.merge_mm ? std::optional(surface) : std::nullopt;
+}
+
+/// Whether the insertion is over: the needle holds no tissue, and its tip has come back out of it, or out of the mouth
+/// of its track sideways. On curved or tilted skin a tip beside its entry may be behind it and yet in the tissue.
+bool Insertion::Parts::has_left() const {
+  if (!grips.empty() || tip_holds()) return false;
+  const Vec3 t = needle->tangent(length());
+  const Vec3 from_entry = needle->point(length()) - track.entry;
+  const double deep = t.dot(from_entry);
+  const double beside = (from_entry - deep * t).norm();
+  if (deep < settings.spacing_mm && beside > settings.join_mm && phase != TipPhase::exited) return true;
+  return deep < 0.0 && !in_tissue(needle->point(length()));
+}
+
 /// The needle is out: the tissue model is what it was before the first contact, or goes back to it as it relaxes. The
 /// tracks stay known.
 void Insertion::Parts::finish_insertion(StepReport& report) {
   leave_memory_behind(1.0);
   if (track.end_xi > 0.0) {
-    if (joined < 0) {
+    if (joined >= 0) {  // needle after needle beside the one before would lead the hole across the skin
+      begin_at(old_tracks[static_cast<std::size_t>(joined)].entry);
+    } else {
       if (old_count < old_tracks.size()) {
         ++old_count;
       } else {  // no room: the oldest is forgotten
@@ -143,11 +174,15 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   settle_in_air(report);
   phase = TipPhase::air;
   air_tip = needle->point(length());
+  // It left its track sideways: it is to meet the surface where its shaft does, unless it is so far inside by now that
+  // this would be a blow. A bowed needle swings that far when it slips off.
+  if (const auto surface = surface_behind(air_tip)) air_tip = *surface;
   add_event(report, InsertionEventKind::withdrawn, -1);
 }
 
 void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) {
   const Pose before = needle->base();
+  hand_start = hand_force();
   needle->set_base(pose);
   memory.begin(h);
   if (phase == TipPhase::air) {
@@ -212,9 +247,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     if (phase != TipPhase::exited || enter(air_tip, now, report)) air_tip = now;
   }
   remember();
-  if (grips.empty() && (!tip.touching || tip.state == Tip::State::open) && t.dot(track.entry - tip_now) > 0.0) {
-    finish_insertion(report);
-  }
+  if (has_left()) finish_insertion(report);
 }
 
 void Insertion::Parts::note_use() {
@@ -223,19 +256,24 @@ void Insertion::Parts::note_use() {
   capacities.tracks.note(static_cast<int>(old_count));
 }
 
+Vec3 Insertion::Parts::hand_force() const {
+  Vec3 force = tip.force - needle->guide_load().force;
+  for (const Grip& grip : grips) force += grip.force;
+  return force;
+}
+
 void Insertion::Parts::summarise(StepReport& report) const {
   report.tip = phase;
   report.tip_position = needle->point(length());
-  const bool tip_holds = tip.touching && tip.state != Tip::State::open;
-  report.contacts = static_cast<int>(grips.size()) + (tip_holds ? 1 : 0);
+  report.contacts = static_cast<int>(grips.size()) + (tip_holds() ? 1 : 0);
   const PointLoad guide = needle->guide_load();
   report.guide_force = guide.force;
-  report.hand_force = tip.force - guide.force;
+  report.hand_force = hand_force();
   report.hand_torque = (needle->point(length()) - base.origin).cross(tip.force) -
                        (needle->point(guide.s) - base.origin).cross(guide.force);
   double sliding = 0.0;
+  double sliding_out = 0.0;
   for (const Grip& grip : grips) {
-    report.hand_force += grip.force;
     report.hand_torque +=
         (needle->point(loaded_arc(std::clamp(grip.s, 0.0, length()))) - base.origin).cross(grip.force);
     report.inserted_mm += grip.length;
@@ -243,10 +281,14 @@ void Insertion::Parts::summarise(StepReport& report) const {
       ++report.sticking;
     } else {
       sliding += grip.length;
+      if (grip.state == Grip::State::backward) sliding_out += grip.length;
     }
   }
-  if (tip_holds && tip.state == Tip::State::stick) ++report.sticking;
-  report.sliding_share = report.inserted_mm > 0.0 ? sliding / report.inserted_mm : 0.0;
+  if (tip_holds() && tip.state == Tip::State::stick) ++report.sticking;
+  if (report.inserted_mm > 0.0) {
+    report.sliding_share = sliding / report.inserted_mm;
+    report.sliding_out_share = sliding_out / report.inserted_mm;
+  }
 }
 
 Insertion::Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings)
@@ -311,6 +353,10 @@ StepReport Insertion::step(const Pose& base, double dt) {
   p.note_use();
   p.capacities.events.note(report.events);
   p.summarise(report);
+  const bool outside = p.phase == TipPhase::air || p.phase == TipPhase::exited;  // as far as the model knows
+  const bool explained = (report.flags & StepReport::compliance_missing) != 0;
+  if (outside && report.contacts == 0 && !explained && p.in_tissue(report.tip_position))
+    report.flags |= StepReport::no_contact_inside;
   return report;
 }
 

@@ -59,7 +59,8 @@ struct Tip {
   bool blocked = false;            ///< the cut met a surface in this sub-step
   Crossing crossing;               ///< that surface
   bool stale = false;              ///< its compliance is that of an earlier place, none is there where it is
-  bool at_membrane = false;        ///< x lies on a surface that has not been broken
+  bool at_membrane = false;        ///< x lies on a surface that has not been broken, …
+  Vec3 through = Vec3::Zero();     ///< … whose normal, towards what is behind it, this is
   Index next_tet = -1;             ///< element behind that surface, -1 = outside the patient
   double limit = 0.0;              ///< [N] force that starts the cut
   double cutting = 0.0;            ///< [N] force that keeps it going
@@ -96,12 +97,13 @@ struct Insertion::Parts {
   std::vector<Grip> grips;  ///< grip k sits on mark k of the track
   Tip tip;
   Eigen::Vector<double, 6> last_motion = Eigen::Vector<double, 6>::Zero();  ///< of the base in the last sub-step
-  double last_way = 0.0;     ///< [mm] of the base along its axis in the last sub-step …
-  double last_cut = 0.0;     ///< [mm] … and of the tip through tissue, …
-  double cut_more = 0.0;     ///< [mm] … of which beyond what was in proportion to the one before
-  VecX shape_start;          ///< Needle::state() at the start of the sub-step …
-  VecX shape_gained;         ///< … and by how much it changed in the last one, …
-  VecX shape_more;           ///< … of which beyond what was in proportion to the one before
+  double last_way = 0.0;          ///< [mm] of the base along its axis in the last sub-step …
+  double last_cut = 0.0;          ///< [mm] … and of the tip through tissue, …
+  double cut_more = 0.0;          ///< [mm] … of which beyond what was in proportion to the one before
+  Vec3 tip_start = Vec3::Zero();  ///< [mm] the needle's at the start of the sub-step, with the base of its end
+  VecX shape_start;               ///< Needle::state() at the start of the sub-step …
+  VecX shape_gained;              ///< … and by how much it changed in the last one, …
+  VecX shape_more;                ///< … of which beyond what was in proportion to the one before
   double force_share = 0.0;  ///< forces and shape are expected to change so many times as much as in the last sub-step,
   double force_trend = 0.0;  ///< and so many times what was beyond proportion then comes again; 0 = not known
   double way_share = 0.0;    ///< the same of slides and the cut
@@ -164,6 +166,7 @@ struct Insertion::Parts {
   } kept;
   std::unique_ptr<paper::Staggered> staggered;  ///< where that solver is chosen
   int toggle_limit = 0;                         ///< a contact that changes its state more often is frozen
+  Vec3 hand_start = Vec3::Zero();               ///< [N] of the hand at the start of the sub-step
   MatX forces;                                  ///< (3 × points) on the tissue
   std::vector<MaterialPoint> point_at;          ///< (points) where they are; the tip's is where it was held last
 
@@ -186,6 +189,7 @@ struct Insertion::Parts {
   void solve_equilibrium(double h, Effort& effort, StepReport& report);
   void begin_balance(int most_toggles);
   void keep_iterate();
+  [[nodiscard]] bool went_astray(double largest_at_start) const;
   void go_back();
   void linearise(Effort& effort);
   [[nodiscard]] bool relax_needle();
@@ -237,6 +241,8 @@ struct Insertion::Parts {
   bool cut(bool nearly);
   void bend_needle();
 
+  /// The tip is held by what is ahead of it.
+  [[nodiscard]] bool tip_holds() const { return tip.touching && tip.state != Tip::State::open; }
   [[nodiscard]] bool on_bone() const { return tip.touching && tip.state == Tip::State::stick && std::isinf(tip.limit); }
   [[nodiscard]] double length() const { return needle->length(); }
   [[nodiscard]] int load_count() const { return 1 + static_cast<int>(grips.size()); }
@@ -261,7 +267,9 @@ struct Insertion::Parts {
   // cutting.cpp: the tip, its track and surfaces.
   void aim_tip();
   void march(double advance);
-  void start_cut(StepReport& report);
+  [[nodiscard]] bool membrane_gives() const;
+  void break_membrane(StepReport& report);
+  void take_back_cut();
   void commit_tip(StepReport& report);
   void cross_surface(StepReport& report);
   bool enter(const Vec3& from, const Vec3& to, StepReport& report);
@@ -270,6 +278,10 @@ struct Insertion::Parts {
   [[nodiscard]] bool contact_waits() const;
   [[nodiscard]] NeedleWhereabouts whereabouts() const;
   void touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report, InsertionEventKind kind);
+  [[nodiscard]] int old_track_at(const Vec3& x, const Vec3& direction) const;
+  void begin_track(const Vec3& x, const Vec3& direction);
+  void join_track(int old, const Vec3& x);
+  void begin_at(const Vec3& entry);
   [[nodiscard]] int region_of(Index tet) const;
 
   // contacts.cpp: laying, waking and dropping of shaft contacts.
@@ -282,6 +294,7 @@ struct Insertion::Parts {
   void wake_and_drop(StepReport& report);
   [[nodiscard]] double passed_by(const Grip& grip) const;
   void share_length();
+  [[nodiscard]] bool has_left() const;
   void finish_insertion(StepReport& report);
   void settle_in_air(StepReport& report);
 
@@ -295,6 +308,9 @@ struct Insertion::Parts {
   void note_use();
   void sub_step(const Pose& pose, double h, StepReport& report);
   void summarise(StepReport& report) const;
+  [[nodiscard]] bool in_tissue(const Vec3& x) const;
+  [[nodiscard]] std::optional<Vec3> surface_behind(const Vec3& tip_now) const;
+  [[nodiscard]] Vec3 hand_force() const;
   static void add_event(StepReport& report, InsertionEventKind kind, int region,
                         double force_N = std::numeric_limits<double>::quiet_NaN());
   [[nodiscard]] double force_at_break() const;

@@ -185,8 +185,8 @@ class Runner {
     for (const RemeshEvent& change : changes.last(static_cast<std::size_t>(simulation_.report().remeshings)))
       summary_.mesh_changes.push_back({record.time_s, record.base_depth_mm, change});
     const unsigned flags = simulation_.report().flags;
-    for (int bit = 0; bit < 6; ++bit) {
-      if (flags & (1u << bit)) ++flag_counts_[static_cast<std::size_t>(bit)];
+    for (std::size_t bit = 0; bit < flag_counts_.size(); ++bit) {
+      if (flags & (1u << bit)) ++flag_counts_[bit];
     }
     return observer_.on_step(record);
   }
@@ -236,14 +236,17 @@ class Runner {
   }
 
   void note_flags() {
-    static const std::array<const char*, 6> texts{
+    static const std::array<const char*, kFlags> texts{
         "did not converge to the full tolerance; a smaller run.dt_ms helps",
         "a stick/slip state was frozen for one sub-step",
         "compliance was missing where the needle left the prepared corridor, and that of the tip's last place stood in "
         "for it, or at the skin none; raise coupling.corridor_mm or coupling.spare_nodes",
         "there was no room for another contact; raise coupling.contacts",
         "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
-        "the pose of the base was not finite and the step was not taken"};
+        "the pose of the base was not finite and the step was not taken",
+        "the tip was inside the tissue and no force acted on it: it started there, went in flat to the skin, or "
+        "slipped "
+        "off it; start the needle outside of the tissue, and enter it less flat to the skin"};
     for (std::size_t bit = 0; bit < texts.size(); ++bit) {
       if (flag_counts_[bit] > 0)
         summary_.warnings.push_back(
@@ -261,7 +264,8 @@ class Runner {
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
-  std::array<long, 6> flag_counts_{};
+  static constexpr std::size_t kFlags = 7;  ///< of StepReport
+  std::array<long, kFlags> flag_counts_{};
   Summary summary_;
 };
 

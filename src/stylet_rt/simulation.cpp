@@ -20,6 +20,7 @@ static_assert(STYLET_RT_COMPLIANCE_MISSING == StepReport::compliance_missing);
 static_assert(STYLET_RT_OUT_OF_CONTACTS == StepReport::out_of_contacts);
 static_assert(STYLET_RT_TOO_FAST == StepReport::too_fast);
 static_assert(STYLET_RT_INVALID_INPUT == StepReport::invalid_input);
+static_assert(STYLET_RT_NO_CONTACT_INSIDE == StepReport::no_contact_inside);
 
 static_assert(STYLET_RT_TIP_AIR == static_cast<int>(TipState::air));
 static_assert(STYLET_RT_TIP_PRESSING == static_cast<int>(TipState::pressing));

@@ -3,6 +3,8 @@
 #include "needle_in_block.hpp"
 #include "support/count_allocations.hpp"
 
+#include <numbers>
+
 using namespace stylet;
 using namespace stylet::test;
 using Kind = InsertionEventKind;
@@ -56,6 +58,7 @@ TEST(Situation, a_grazing_needle_slides_off_without_a_puncture) {
   EXPECT_EQ(run.count(Kind::puncture), 0);
   EXPECT_EQ(run.count(Kind::skin_contact), 0);
   EXPECT_EQ(run.peak(), 0.0);
+  EXPECT_EQ(run.report.flags, unsigned(StepReport::no_contact_inside)) << "no force, and it says so";
 }
 
 TEST(Situation, a_needle_leaves_through_the_far_side_and_comes_back) {
@@ -109,6 +112,50 @@ TEST(Situation, an_entry_near_an_old_track_joins_it_and_one_further_off_does_not
   run.go(20);
   EXPECT_EQ(run.count(Kind::puncture, 0), 1);
   EXPECT_EQ(run.flags, 0u);
+}
+
+TEST(Situation, a_track_joined_on_tilted_skin_begins_where_the_needle_met_the_skin) {
+  for (const double tilt_deg : {2.0, 20.0, 50.0}) {
+    SCOPED_TRACE(testing::Message() << tilt_deg << "° from the skin's normal");
+    const double tilt = tilt_deg * std::numbers::pi / 180.0;
+    const Vec3 axis(std::sin(tilt), 0.0, std::cos(tilt));
+    for (const double beside : {0.6, -0.6}) {  // the old entry is behind the new one, and ahead of it
+      NeedleInBlock run;
+      run.aim({-10, 2, 0}, axis);
+      run.go(25);
+      run.go(-1);
+      ASSERT_EQ(run.count(Kind::withdrawn), 1);
+      const double end_xi = run.insertion->old_tracks()[0].end_xi;
+      run.happened.clear();
+      run.aim({-10 + beside, 2, 0}, axis);
+      run.go(15);
+      EXPECT_EQ(run.count(Kind::withdrawn), 0) << "no hand has drawn it out";
+      EXPECT_EQ(run.count(Kind::puncture), 0);
+      EXPECT_EQ(run.report.tip, TipPhase::in_track);
+      EXPECT_GT(run.forces.back(), 0.05);
+      const Track& track = run.insertion->track();
+      EXPECT_LT((track.entry - Vec3(-10 + beside, 2, 0)).norm(), 1e-9);
+      EXPECT_NEAR(track.end_xi, end_xi - beside * std::sin(tilt), 0.02);
+      EXPECT_NEAR(run.report.inserted_mm, 15.0, 2.0);
+      run.go(-1);
+      EXPECT_EQ(run.count(Kind::withdrawn), 1);
+      EXPECT_EQ(run.flags, 0u);
+    }
+  }
+}
+
+TEST(Situation, a_tip_placed_in_the_tissue_says_that_no_force_acts_on_it) {
+  NeedleInBlock run;
+  run.aim({3, 2, 0}, Vec3::UnitZ(), 10.0);
+  run.go(20);
+  EXPECT_EQ(run.report.tip, TipPhase::air);
+  EXPECT_EQ(run.peak(), 0.0);
+  EXPECT_EQ(run.report.flags, unsigned(StepReport::no_contact_inside));
+  run.go(-1);
+  EXPECT_EQ(run.report.flags, 0u);
+  run.go(20);
+  EXPECT_EQ(run.report.flags, 0u);
+  EXPECT_EQ(run.count(Kind::puncture, 0), 1);
 }
 
 TEST(Situation, a_concave_organ_is_left_and_entered_again) {

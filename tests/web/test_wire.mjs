@@ -9,7 +9,7 @@ const f32 = (...values) => Float32Array.of(...values);
 
 function frame() {
   return {
-    time: 12.345678901, paused: true, replayed: false, trusted: true, shown: true, whole: true, approximate: true, flags: 6, tipState: 2, sticking: 3,
+    time: 12.345678901, paused: true, replayed: false, trusted: true, shown: true, whole: true, approximate: true, unfelt: false, flags: 6, tipState: 2, sticking: 3,
     iterations: 4, steps: 70000, missed: 5, depth: 31.5, force: f32(1, 2, 3), torque: f32(4, 5, 6), tip: f32(7, 8, 9), base: f32(10, 11, 12),
     orientation: f32(1, 0, 0, 0.5), hand: f32(15, -2, 3), hidden: 0.25, unit: 0.5, line: f32(0, 0, 0, 0, 0, 100),
     contacts: f32(1, 2, 3, 0, 4, 5, 6, 1, 7, 8, 9, 2), contactForces: f32(0, 0, 1, 0, 0, 2, 0, 0, 3),

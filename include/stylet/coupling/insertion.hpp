@@ -54,7 +54,10 @@ struct StepReport {
                                    ///< A tip in the air: it went in before there was any, and is to be drawn out
     out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
     too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
-    invalid_input = 1u << 5        ///< a pose that is not finite, or dt ≤ 0: the step was not taken
+    invalid_input = 1u << 5,       ///< a pose that is not finite, or dt ≤ 0: the step was not taken
+    no_contact_inside = 1u << 6    ///< nothing holds the needle, whose tip is inside the tissue: it was placed there,
+                                   ///< went in flat to the surface, or slipped off it; nothing resists it, and it is to
+                                   ///< be drawn out. Where compliance_missing says so already it is not said twice
   };
   unsigned flags = 0;
   int iterations = 0;  ///< of the solver, summed over sub-steps
@@ -62,7 +65,8 @@ struct StepReport {
   int remeshings = 0;  ///< changes of the mesh: ContactCompliance::remeshing() has them
   int contacts = 0;    ///< tip included when it touches
   int sticking = 0;
-  double sliding_share = 0.0;  ///< share of the inserted length that slides
+  double sliding_share = 0.0;      ///< share of the inserted length that slides, …
+  double sliding_out_share = 0.0;  ///< … and that slides out of the tissue
   TipPhase tip = TipPhase::air;
   Vec3 tip_position = Vec3::Zero();  ///< [mm] LPS
   Vec3 hand_force = Vec3::Zero();    ///< [N] LPS, exerted by the hand on the base

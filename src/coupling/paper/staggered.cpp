@@ -256,7 +256,12 @@ void Insertion::Parts::solve_staggered(double h, StepReport& report) {
       staggered->acceleration.restart();
       continue;
     }
-    if (cut(error < kNearly) && error < kTolerance) return;
+    if (cut(error < kNearly) && error < kTolerance) {
+      if (!membrane_gives()) return;
+      break_membrane(report);
+      staggered->acceleration.restart();
+      continue;
+    }
     bend_needle();
   }
   report.flags |= StepReport::not_converged;

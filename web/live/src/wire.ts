@@ -18,6 +18,7 @@ export interface Frame {
   shown: boolean;            // displacement follows
   whole: boolean;            // the samples are the whole curve: forget those before
   approximate: boolean;      // compliance is missing: the force is about right
+  unfelt: boolean;           // the tip is inside and nothing holds it: no force acts on it
   flags: number;
   tipState: number;
   sticking: number;
@@ -68,6 +69,7 @@ export type Message =
 export class WireError extends Error {}
 
 const COMPLIANCE_MISSING = 1 << 2;  // of StepReport
+const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
 const FRAME_HEADER = 148;
 const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000 };
@@ -129,7 +131,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
   return {
     time: view.getFloat64(8, true),
     paused: (bits & 1) !== 0, replayed: (bits & 2) !== 0, trusted: (bits & 4) !== 0, shown: (bits & 8) !== 0, whole: (bits & 16) !== 0,
-    approximate: (u(1) & COMPLIANCE_MISSING) !== 0, flags: u(1), tipState: u(2), sticking: u(3), iterations: u(4), steps: u(5), missed: u(6),
+    approximate: (u(1) & COMPLIANCE_MISSING) !== 0, unfelt: (u(1) & NO_CONTACT_INSIDE) !== 0, flags: u(1), tipState: u(2), sticking: u(3), iterations: u(4), steps: u(5), missed: u(6),
     depth: view.getFloat32(44, true),
     force: floats(48, 3), torque: floats(60, 3), tip: floats(72, 3), base: floats(84, 3), orientation: floats(96, 4), hand: floats(112, 3),
     hidden: view.getFloat32(124, true), unit: view.getFloat32(128, true),
