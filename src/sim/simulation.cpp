@@ -174,10 +174,11 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
     const double force = std::isfinite(event.force_N) ? event.force_N : record_.force_axial_N;
     add_event(event_kind(event.kind), force, event.region);
   }
-  if (!slipping_ && retracting_ && report_.inserted_mm > 0.0 && report_.sliding_share > 0.5) {
+  // Right after the turn what slid in still does: tissue springs back along the shaft. Then it sticks, and is taken
+  // along.
+  if (!slipping_ && retracting_ && report_.sliding_out_share > 0.5 && record_.force_axial_N < 0.0) {
     slipping_ = true;
-    add_event(EventKind::slip_start,
-              std::abs(force_before) > std::abs(record_.force_axial_N) ? force_before : record_.force_axial_N, -1);
+    add_event(EventKind::slip_start, std::min(force_before, record_.force_axial_N), -1);
   }
   return record_;
 }

@@ -372,6 +372,30 @@ TEST(HandForce, is_lateral_to_the_patients_left_and_sagittal_to_posterior) {
   EXPECT_LT(to_posterior.torque_Nmm.x() - before.torque_Nmm.x(), -5.0);  // z × y = −x
 }
 
+TEST(Run, slip_starts_when_the_shaft_slides_out_and_the_hand_pulls) {
+  for (const double out_mm : {0.05, 0.19}) {  // in a step: 12 and 47 mm/s, without a pause at the turn
+    SCOPED_TRACE(testing::Message() << out_mm << " mm a step");
+    ByHand hand;
+    hand.go(35.0);
+    ASSERT_GT(hand.simulation.record().force_axial_N, 0.0);
+    double most_sticking = 0.0;  // share of the contacts, until it slips
+    const Event* slip = nullptr;
+    while (slip == nullptr && hand.depth > 20.0) {
+      const std::size_t before = hand.events.size();
+      const StepRecord& record = hand.go(hand.depth - out_mm);
+      most_sticking = std::max(most_sticking, static_cast<double>(record.sticking) / record.contacts);
+      for (std::size_t k = before; k < hand.events.size(); ++k)
+        if (hand.events[k].kind == EventKind::slip_start) slip = &hand.events[k];
+    }
+    ASSERT_NE(slip, nullptr);
+    EXPECT_LT(slip->force_N, 0.0) << "a pull";
+    EXPECT_GT(most_sticking, 0.6) << "the tissue stuck to the needle first";
+    EXPECT_GT(hand.simulation.report().sliding_out_share, 0.5);
+    EXPECT_LT(slip->depth_mm, 35.0 - 0.3);
+    EXPECT_NEAR(slip->depth_mm, hand.depth, 1e-9);
+  }
+}
+
 TEST(HandForce, relaxes_in_a_pause_by_the_viscous_parts_only) {
   ByHand hand;
   const double depth = 35.0;
