@@ -175,15 +175,15 @@ std::vector<GmshLibrary::Elements> GmshLibrary::elements(int dimension, int enti
   return all;
 }
 
-std::string GmshLibrary::element_name(int type) const {
+GmshLibrary::ElementType GmshLibrary::element_type(int type) const {
   char* name = nullptr;
   double* local = nullptr;
   std::size_t numbers = 0;
-  int dimension = 0, order = 0, corners = 0, primary = 0, error = 0;
-  properties_(type, &name, &dimension, &order, &corners, &local, &numbers, &primary, &error);
+  int dimension = 0, order = 0, nodes = 0, primary = 0, error = 0;
+  properties_(type, &name, &dimension, &order, &nodes, &local, &numbers, &primary, &error);
   check(error);
   free_(local);
-  return taken(name);
+  return {taken(name), nodes};
 }
 
 }  // namespace stylet::detail

@@ -25,6 +25,10 @@ class GmshLibrary {
     int type = 0;
     std::vector<std::size_t> tags, nodes;  ///< nodes: those of an element follow each other
   };
+  struct ElementType {
+    std::string name;
+    int nodes = 0;
+  };
 
   /// The library; loads it the first time. Failure: it is not there, or it is another version.
   static Result<const GmshLibrary*> get();
@@ -42,7 +46,7 @@ class GmshLibrary {
   [[nodiscard]] std::string physical_name(int dimension, int group) const;
   [[nodiscard]] Nodes nodes() const;
   [[nodiscard]] std::vector<Elements> elements(int dimension, int entity) const;
-  [[nodiscard]] std::string element_name(int type) const;
+  [[nodiscard]] ElementType element_type(int type) const;
 
  private:
   explicit GmshLibrary(void* loaded);

@@ -2,6 +2,7 @@
 // gmsh MSH 1, 2.2, 4.1 (ASCII, binary) and MEDIT .mesh, by the gmsh library.
 #include "detail/text.hpp"
 #include "mesh/gmsh_library.hpp"
+#include "mesh/msh_numbers.hpp"
 #include "mesh/raw_mesh.hpp"
 
 #include <fmt/format.h>
@@ -39,6 +40,16 @@ class Regions {
   bool by_volume_ = true;
 };
 
+/// Numbers of all elements that gmsh took from a file, of every dimension.
+std::vector<std::size_t> element_numbers(const GmshLibrary& gmsh) {
+  std::vector<std::size_t> numbers;
+  for (const auto& [dimension, entity] : gmsh.entities(-1)) {
+    for (const auto& elements : gmsh.elements(dimension, entity))
+      numbers.insert(numbers.end(), elements.tags.begin(), elements.tags.end());
+  }
+  return numbers;
+}
+
 Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   RawMesh raw;
   const auto [tags, coordinates] = gmsh.nodes();
@@ -62,7 +73,7 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
       const std::size_t per_element = nodes.size() / count;
       const bool tets = type == tetrahedron_4 || type == tetrahedron_10;
       if (!tets) {
-        const std::string kind = gmsh.element_name(type);
+        const std::string kind = gmsh.element_type(type).name;
         raw.passed_over[fmt::format("element(s) of type {}", kind)] += static_cast<Index>(count);
       } else {
         raw.quadratic = raw.quadratic || type == tetrahedron_10;
@@ -143,6 +154,11 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
     gmsh.merge(source);
     problem = gmsh.first_error();
     if (problem.empty()) {
+      if (!medit) {  // which has no numbers
+        const auto nodes_of = [&gmsh](int type) { return gmsh.element_type(type).nodes; };
+        if (Result<> numbered = check_element_numbers(path, element_numbers(gmsh), nodes_of); !numbered)
+          return numbered.error();
+      }
       Result<RawMesh> raw = to_raw(gmsh, source);
       const std::size_t announced = medit ? announced_tetrahedra(path) : 0;
       if (raw && medit && raw->tets.size() != announced) {

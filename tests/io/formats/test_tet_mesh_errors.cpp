@@ -3,6 +3,8 @@
 #include "mesh_files.hpp"
 #include "stylet/io/mesh_io.hpp"
 
+#include <algorithm>
+
 using namespace stylet;
 using namespace stylet::test;
 
@@ -20,7 +22,77 @@ Result<TetMesh> changed(const std::function<void(TetMesh&)>& change) {
   return read_mesh("m.vtk", vtk_text(mesh));
 }
 
+/// A gmsh file of tetrahedra whose eighth element gets the number of the seventh.
+std::string with_seven_twice(std::string content, bool binary, bool of_version_4) {
+  if (!binary) {
+    const auto list = content.find(content.starts_with("$NOD") ? "$ELM" : "$Elements");
+    return content.substr(0, list) + replaced(content.substr(list), "\n8 ", "\n7 ");
+  }
+  std::size_t at = content.find("$Elements\n") + std::string("$Elements\n").size();
+  if (of_version_4) {
+    at += 4 * 8 + 3 * 4 + 8 + 7 * 5 * 8;  // head of the section, head of the block, seven elements
+  } else {
+    at = content.find('\n', at) + 1 + 7 * 10 * 4 + 3 * 4;  // announced number, seven elements, head of the eighth
+  }
+  EXPECT_EQ(content[at], 8) << "not where the number of the eighth element is";
+  content[at] = 7;
+  return content;
+}
+
+/// MSH 2.2, binary, by hand, in the byte order of this machine or the other.
+std::string msh22_binary(const TetMesh& mesh, bool swapped) {
+  std::string text = "$MeshFormat\n2.2 1 8\n";
+  const auto put = [&](auto value) {
+    std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+    if (swapped) std::reverse(bytes.begin(), bytes.end());
+    text += bytes;
+  };
+  put(1);
+  text += "\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.nodes.size()) + "\n";
+  for (Index a = 0; a < mesh.node_count(); ++a) {
+    put(static_cast<int>(a + 1));
+    for (int i = 0; i < 3; ++i) put(mesh.nodes[a][i]);
+  }
+  text += "\n$EndNodes\n$Elements\n" + std::to_string(mesh.tets.size()) + "\n";
+  for (const int head : {4, static_cast<int>(mesh.tets.size()), 2}) put(head);
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    put(static_cast<int>(t == 7 ? 7 : t + 1));
+    for (int k = 0; k < 2; ++k) put(mesh.tet_region[t] + 1);
+    for (const Index a : mesh.tets[t]) put(static_cast<int>(a + 1));
+  }
+  return text + "\n$EndElements\n";
+}
+
 }  // namespace
+
+TEST(TetMeshErrors, gmsh_elements_that_share_a_number_are_named) {
+  const Folder folder;
+  int files = 0;
+  for (const MeshFile& file : write_all_formats(two_region_box(), folder.path())) {
+    if (file.path.extension() != ".msh") continue;
+    SCOPED_TRACE(file.what);
+    const bool binary = file.what.starts_with("binary");
+    const bool of_version_4 = file.what.find("41") != std::string::npos;
+    const std::string content = with_seven_twice(content_of(file.path), binary, of_version_4);
+    expect_refused(read_tet_mesh(write_file(folder / "twice.msh", content)),
+                   {"twice.msh, element 7", "two elements have this number", "number of its own"});
+    ++files;
+  }
+  EXPECT_EQ(files, 6);
+  for (const bool swapped : {false, true}) {
+    expect_refused(read_tet_mesh(write_file(folder / "block.msh", msh22_binary(two_region_box(), swapped))),
+                   {"block.msh, element 7"});
+  }
+}
+
+TEST(TetMeshErrors, gmsh_elements_of_two_kinds_that_share_a_number_are_named) {
+  const TetMesh mesh = two_region_box();
+  const std::string count = std::to_string(mesh.tets.size());
+  const std::string more = std::to_string(mesh.tets.size() + 1);
+  std::string text = replaced(msh22_text(mesh), "$Elements\n" + count, "$Elements\n" + more);
+  text = replaced(text, "$EndElements", "9 2 2 3 3 1 2 3\n$EndElements");
+  expect_refused(read_mesh("m.msh", text), {"m.msh, element 9", "triangles"});
+}
 
 TEST(TetMeshErrors, some_inverted_tetrahedra_are_refused) {
   expect_refused(changed([](TetMesh& m) { std::swap(m.tets[7][0], m.tets[7][1]); }),
