@@ -35,6 +35,7 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
   if (!description) return description.error();
   Json json = {{"file", arguments.file}};
   json.update(description->json);
+  for (const std::string& warning : description->warnings) console.warn(arguments.file + ": " + warning);
   console.say(arguments.file + '\n' + description->text);
   return console.write_json(json);
 }

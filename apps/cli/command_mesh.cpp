@@ -7,6 +7,8 @@
 #include "patient_model.hpp"
 #include "validators.hpp"
 
+#include "stylet/geom/flat_tets.hpp"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -124,10 +126,14 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
   if (Result<> written = write_vtu(model->mesh, output); !written) return written;
 
+  std::vector<std::string> warnings;
+  if (const std::string flat = nearly_flat_warning(model->mesh); !flat.empty()) warnings.push_back(flat);
+  for (const std::string& warning : warnings) console.warn(arguments.output + ": " + warning);
   console.say(fmt::format("{} → {}", arguments.input, arguments.output));
   console.say(report_text(model->report));
   Json json = {{"input", arguments.input}, {"output", arguments.output}};
   json.update(report_json(model->report));
+  json["warnings"] = warnings;
   return console.write_json(json);
 }
 

@@ -22,6 +22,7 @@ namespace stylet::cli {
 struct Description {
   Json json;
   std::string text;
+  std::vector<std::string> warnings{};  ///< what is wrong with it though it can be used
 };
 
 Description describe(const ContourSet& contours);

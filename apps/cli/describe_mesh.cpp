@@ -2,6 +2,8 @@
 #include "describe.hpp"
 #include "table.hpp"
 
+#include "stylet/geom/flat_tets.hpp"
+
 #include <fmt/format.h>
 
 namespace stylet::cli {
@@ -34,6 +36,8 @@ Description describe(const TetMesh& mesh) {
   facts.add("dihedral angles", fmt::format("{:.1f}° … {:.1f}°", quality.dihedral_deg.min, quality.dihedral_deg.max));
   facts.add("radius ratio", fmt::format("≥ {:.3f} (1: regular)", quality.radius_ratio_min));
   out.text = facts.text() + "\n\n" + table.text();
+  if (const std::string flat = nearly_flat_warning(mesh); !flat.empty()) out.warnings.push_back(flat);
+  out.json["warnings"] = out.warnings;
   return out;
 }
 

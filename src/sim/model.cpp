@@ -5,6 +5,7 @@
 #include "planning.hpp"
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
+#include "stylet/geom/flat_tets.hpp"
 #include "stylet/needle/guided.hpp"
 #include "stylet/needle/make_needle.hpp"
 
@@ -238,6 +239,8 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     laws.organ = in_target || name == "urethra" ? 0 : -1;
     model->laws_.push_back(laws);
   }
+
+  if (std::string flat = nearly_flat_warning(mesh); !flat.empty()) model->warnings_.push_back(std::move(flat));
 
   // Where the needles go decides what must stay free, so plan first.
   Topology topology(mesh);

@@ -28,11 +28,15 @@ TIP_STATES = {"air", "pressing", "cutting", "in_track", "bone", "exited"}
 FULL_INSERTION = ["skin_contact", "puncture", "region_entered", "retraction_start", "slip_start", "withdrawn"]
 
 
-def block_mesh(path, cells=4, size=60.0, names=("tissue", "lump")):
-    """gmsh MSH 2.2 in mm: a cube from (0, 0, 0), six tetrahedra a cell; the second region is its middle."""
+def block_mesh(path, cells=4, size=60.0, names=("tissue", "lump"), last_layer=None):
+    """gmsh MSH 2.2 in mm: a cube from (0, 0, 0), six tetrahedra a cell; the second region is its middle. The cells
+    furthest along z are `last_layer` thick, where that is given."""
     n = cells + 1
     step = size / cells
-    nodes = [(i * step, j * step, k * step) for k in range(n) for j in range(n) for i in range(n)]
+    heights = [k * step for k in range(n)]
+    if last_layer is not None:
+        heights[-1] = heights[-2] + last_layer
+    nodes = [(i * step, j * step, z) for z in heights for j in range(n) for i in range(n)]
     tets = []
     for k in range(cells):
         for j in range(cells):

@@ -6,6 +6,7 @@ import math
 import unittest
 
 import samples
+from insert_case import block_mesh
 from program import InFolder
 
 
@@ -54,6 +55,16 @@ class Info(InFolder):
         self.assertEqual(set(volumes), {"upper", "lower"})
         for volume in volumes.values():
             self.assertAlmostEqual(volume, 1 / 6)
+
+    def test_nearly_flat_tetrahedra_are_warned_of(self):
+        block_mesh(self.folder / "good.msh")
+        self.assertEqual(self.json_of("info", "good.msh")["warnings"], [])
+        self.assertEqual(self.succeed("info", "good.msh").stderr, "")
+        block_mesh(self.folder / "flat.msh", last_layer=0.5)
+        warning, = self.json_of("info", "flat.msh")["warnings"]
+        for part in ("of 384 tetrahedra are nearly flat", "5°", "tetrahedron ", "'tissue'", "optimiser"):
+            self.assertIn(part, warning)
+        self.assertIn(f"stylet: warning: flat.msh: {warning}\n", self.succeed("info", "flat.msh").stderr)
 
     def test_unit_of_a_mesh(self):
         samples.tet_mesh(self.folder / "metres.msh", unit=1000)

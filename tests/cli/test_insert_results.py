@@ -43,6 +43,14 @@ class Insert(InFolder):
         lines = forces(self.folder / "out")
         self.assertEqual([line["time_s"] for line in lines], [(4 * (k + 1)) / 1000 for k in range(len(lines))])
 
+    def test_nearly_flat_tetrahedra_are_warned_of(self):
+        block_mesh(self.folder / "block.msh", last_layer=0.5)
+        done = self.succeed("insert", "block.toml", "-o", "out", *FAST)
+        self.assertRegex(done.stderr, r"stylet: warning: \d+ of 384 tetrahedra are nearly flat[^\n]*'tissue'")
+        summary = check_results(self, self.folder / "out")
+        self.assertEqual(sum("nearly flat" in warning for warning in summary["warnings"]), 1)
+        self.assertIn("of 384 tetrahedra are nearly flat", (self.folder / "out/report.html").read_text(encoding="utf-8"))
+
     def test_a_mesh_of_somebody_else_is_taken_as_it_is(self):
         done = self.succeed("insert", "block.toml", "-o", "out", *FAST)
         summary = check_results(self, self.folder / "out")

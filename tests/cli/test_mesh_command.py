@@ -9,6 +9,7 @@ import time
 import unittest
 
 import samples
+from insert_case import block_mesh
 from program import STYLET, InFolder
 
 
@@ -36,6 +37,14 @@ class Mesh(InFolder):
         model = self.json_of("info", "out/model.vtu")
         self.assertEqual((model["nodes"], model["tets"]), (report["nodes"], report["tets"]))
         self.assertEqual(set(model["regions"]), set(report["regions"]))
+
+    def test_nearly_flat_tetrahedra_are_warned_of(self):
+        block_mesh(self.folder / "flat.msh", last_layer=0.5)
+        warning, = self.json_of("mesh", "flat.msh", "-o", "flat.vtu")["warnings"]
+        self.assertIn("of 384 tetrahedra are nearly flat", warning)
+        self.assertIn(f"stylet: warning: flat.vtu: {warning}\n", self.succeed("mesh", "flat.msh", "-o", "flat.vtu").stderr)
+        block_mesh(self.folder / "good.msh")
+        self.assertEqual(self.json_of("mesh", "good.msh", "-o", "good.vtu")["warnings"], [])
 
     def test_paper_preset_has_the_papers_size(self):
         samples.contour_json(self.folder / "gland.json")

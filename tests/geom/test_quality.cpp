@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/geom/box_mesh.hpp"
+#include "stylet/geom/flat_tets.hpp"
 #include "stylet/geom/quality.hpp"
 
 #include <gtest/gtest.h>
@@ -46,6 +47,41 @@ TEST(MeshQuality, KuhnCellHasItsKnownAnglesEdgesAndRadii) {
   EXPECT_EQ(quality.region_tets[0], 24);
   EXPECT_EQ(quality.fraction_below_12_deg, 0.0);
   EXPECT_EQ(std::accumulate(quality.dihedral_histogram.begin(), quality.dihedral_histogram.end(), 0), 6 * 72);
+}
+
+TEST(NearlyFlatTets, TheWorstIsNamedWithItsAngleAndPlace) {
+  TetMesh mesh = box_mesh({0, 0, 0}, {30, 20, 20}, {3, 2, 2});
+  assign_regions(mesh, {"left", "right"}, [](const Vec3& x) { return x.x() < 10 ? 0 : 1; });
+  EXPECT_EQ(nearly_flat_tets(mesh).count, 0);
+  EXPECT_EQ(nearly_flat_warning(mesh), "");
+  // Two caps far from everything else: a right corner of 10 mm whose fourth node is 0.4 or 0.2 mm above its base.
+  for (const double height : {0.4, 0.2}) {
+    const Index first = mesh.node_count();
+    const double x = 100 / height;
+    for (const Vec3& corner : {Vec3(x, 0, 0), Vec3(x + 10, 0, 0), Vec3(x, 10, 0), Vec3(x, 0, height)})
+      mesh.nodes.push_back(corner);
+    mesh.tets.push_back({first, first + 1, first + 2, first + 3});
+    mesh.tet_region.push_back(1);
+  }
+  const NearlyFlatTets flat = nearly_flat_tets(mesh);
+  EXPECT_EQ(flat.count, 2);
+  EXPECT_EQ(flat.worst, 73);
+  // Between the base and the oblique face, whose foot is 10 / √2 from the corner.
+  EXPECT_NEAR(flat.angle_deg, std::atan(0.2 / (10.0 / std::sqrt(2.0))) * kDegree, 1e-9);
+  const std::string warning = nearly_flat_warning(mesh);
+  for (const char* part : {"2 of 74", "tetrahedron 73", "1.6°", "(502.5, 2.5, 0.1)", "'right'", "optimiser"})
+    EXPECT_NE(warning.find(part), std::string::npos) << warning << "\n  lacks: " << part;
+}
+
+TEST(NearlyFlatTets, BeginBelowFiveDegrees) {
+  for (const auto& [angle, count] : {std::pair(4.99, 1), std::pair(5.01, 0)}) {
+    TetMesh mesh;
+    mesh.regions = {"body"};
+    mesh.nodes = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10.0 / std::sqrt(2.0) * std::tan(angle / kDegree)}};
+    mesh.tets = {{0, 1, 2, 3}};
+    mesh.tet_region = {0};
+    EXPECT_EQ(nearly_flat_tets(mesh).count, count) << angle;
+  }
 }
 
 TEST(MeshQuality, SliversAreCounted) {
