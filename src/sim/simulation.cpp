@@ -202,11 +202,9 @@ Simulation::Balance Simulation::balance(double scale_N) const {
   const ContactCompliance::Nodes nodes = insertion_.nodes();
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
-  Vec3 contacts = Vec3::Zero();
   for (std::size_t k = 0; k < nodes.position.size(); ++k) {
     const auto node = static_cast<Index>(k);
     const Vec3 on_node = nodes.load.segment<3>(3 * node);
-    contacts += on_node;
     // What the contacts put on a held node goes straight to the support and deforms nothing.
     Vec3 f = nodes.support.segment<3>(3 * node);
     const bool fixed = node < model_->mesh().node_count() && model_->tissue().is_fixed(node);
@@ -214,8 +212,7 @@ Simulation::Balance Simulation::balance(double scale_N) const {
     force += f;
     torque += (nodes.position[k] - entry_).cross(f);
   }
-  const double hand = (contacts - report_.hand_force - report_.guide_force).norm();
-  return {std::max(force.norm(), hand) / scale_N, torque.norm() / (scale_N * 100.0)};
+  return {force.norm() / scale_N, torque.norm() / (scale_N * 100.0)};
 }
 
 }  // namespace stylet

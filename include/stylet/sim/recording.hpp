@@ -135,7 +135,7 @@ struct Summary {
   std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion
   Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< of the one that moved it furthest, as the next
   double target_shift_max_mm = 0;
-  double residual_force_balance = 0;  ///< |base force − sum of contact forces| / peak force, largest of the run
+  double residual_force_balance = 0;  ///< |supports + contacts on the tissue| / peak force, largest of the run
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;

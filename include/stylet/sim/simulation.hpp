@@ -32,9 +32,9 @@ class Simulation {
   /// Everything visible now. Solves for the whole displacement: not in the loop.
   [[nodiscard]] Frame frame(const std::string& label = {}) const;
 
-  /// Action against reaction (not in the loop). force: what the supports and the contacts exert on the tissue, or what
-  /// the hand, the guide and the contacts exert, whichever fails more to cancel, over `scale_N`; torque: the moments of
-  /// supports and contacts about the entry, over scale_N × 100 mm.
+  /// Action against reaction on the tissue (not in the loop). force: of supports and contacts together, over `scale_N`;
+  /// torque: their moments about the entry, over scale_N × 100 mm. The hand is not in it: its force is computed as the
+  /// sum of the contacts' and the guide's, so that those balance whatever the needle does.
   struct Balance {
     double force = 0.0;
     double torque = 0.0;

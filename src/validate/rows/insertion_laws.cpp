@@ -267,11 +267,10 @@ Result<Finding> balance(Context& context, bool torque) {
   finding.value = torque ? (*run)->summary.residual_torque_balance : (*run)->summary.residual_force_balance;
   finding.note = fmt::format(
       "The demo insertion, {} steps: what the supports and the contacts exert on the tissue{}, largest of the run over "
-      "the "
-      "peak force{}.",
-      (*run)->summary.steps,
-      torque ? ", moments about the entry" : "; what the hand and the contacts exert on the needle",
-      torque ? " × 100 mm" : "");
+      "the peak force{}. Nothing is said of the hand: its force and torque are computed as the sum of what the "
+      "contacts "
+      "exert, so that hand and contacts balance by definition; the row closed_loops checks the hand by its work.",
+      (*run)->summary.steps, torque ? ", moments about the entry" : "", torque ? " × 100 mm" : "");
   if (!torque) {
     Curve force{.label = "the demo", .x = {}, .y = {}};
     for (const StepRecord& s : (*run)->steps) {
@@ -301,9 +300,10 @@ std::vector<RowSpec> insertion_law_rows() {
        "continuity", "%", Accepted::at_most(0.1), true, contact_changes},
       {"energy", Group::analysis, "The hand puts in at least the energy that is stored", "dissipation ≥ 0", "",
        Accepted::at_most(1.0), true, energy},
-      {"force_balance", Group::analysis, "Action equals reaction: hand, contacts and supports balance",
+      {"force_balance", Group::analysis, "Action equals reaction on the tissue: supports and contacts balance",
        "Newton’s third law", "", Accepted::at_most(1e-9), false, [](Context& c) { return balance(c, false); }},
-      {"torque_balance", Group::analysis, "Moments of supports and contacts balance", "Newton’s third law", "",
+      {"torque_balance", Group::analysis,
+       "Action equals reaction on the tissue: moments of supports and contacts balance", "Newton’s third law", "",
        Accepted::at_most(1e-9), false, [](Context& c) { return balance(c, true); }},
   };
 }

@@ -71,8 +71,9 @@ std::string model_facts(const RunRecording& run) {
          pair("Direction", fmt::format("({:.3f}, {:.3f}, {:.3f})", run.info.direction.x(), run.info.direction.y(),
                                        run.info.direction.z())) +
          pair("Contacts, at most", fmt::format("{}", run.summary->contacts_max)) +
-         pair("Force balance", fmt::format("{:.1e} of the peak force", run.summary->residual_force_balance)) +
-         pair("Torque balance", fmt::format("{:.1e} relative", run.summary->residual_torque_balance));
+         pair("Balance of supports and contacts",
+              fmt::format("{:.1e} of the peak force", run.summary->residual_force_balance)) +
+         pair("Balance of their moments", fmt::format("{:.1e} relative", run.summary->residual_torque_balance));
 }
 
 std::string warning_box(const std::vector<std::string>& warnings) {
