@@ -116,11 +116,14 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   const MeshOptions options = mesher_options(arguments, *regions);
 
   const auto start = std::chrono::steady_clock::now();
-  const Result<PatientInput> input = read_patient(arguments.input, {.scale = arguments.scale}, options);
+  std::vector<std::string> remarks;
+  const Result<PatientInput> input =
+      read_patient(arguments.input, {.scale = arguments.scale, .notes = &remarks}, options);
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
       std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, *input);
   if (!model) return model.error();
+  model->report.notes.insert(model->report.notes.end(), remarks.begin(), remarks.end());
   model->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;

@@ -72,9 +72,14 @@ Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&
   options.regions = scenario.patient.regions;
   options.stiff_band = scenario.mesh.stiff_band;
   if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);
-  const Result<PatientInput> input = read_patient(scenario.patient.source, {.scale = scenario.patient.scale}, options);
+  std::vector<std::string> remarks;
+  const Result<PatientInput> input =
+      read_patient(scenario.patient.source, {.scale = scenario.patient.scale, .notes = &remarks}, options);
   if (!input) return input.error();
-  return std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, *input);
+  Result<MeshedAnatomy> model =
+      std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, *input);
+  if (model) model->report.notes.insert(model->report.notes.end(), remarks.begin(), remarks.end());
+  return model;
 }
 
 }  // namespace stylet::cli

@@ -38,6 +38,21 @@ class Mesh(InFolder):
         self.assertEqual((model["nodes"], model["tets"]), (report["nodes"], report["tets"]))
         self.assertEqual(set(model["regions"]), set(report["regions"]))
 
+    def test_what_is_passed_over_in_a_mesh_is_noted(self):
+        block_mesh(self.folder / "block.msh")
+        text = (self.folder / "block.msh").read_text()
+        text = text.replace("$Elements\n384\n", "$Elements\n385\n").replace("$EndElements", "385 2 2 3 3 1 2 7\n$EndElements")
+        (self.folder / "more.msh").write_text(text)
+        notes = self.json_of("mesh", "more.msh", "-o", "more.vtu")["notes"]
+        self.assertTrue(any("passed over, only tetrahedra are used" in note for note in notes), notes)
+
+    def test_elements_that_share_a_number_are_refused(self):
+        block_mesh(self.folder / "twice.msh")
+        text = (self.folder / "twice.msh").read_text()
+        (self.folder / "twice.msh").write_text(text.replace("\n8 4 2 ", "\n7 4 2 "))
+        for command in (("mesh", "twice.msh", "-o", "twice.vtu"), ("info", "twice.msh")):
+            self.refuse(*command, says=["twice.msh, element 7", "two elements have this number", "of its own"])
+
     def test_nearly_flat_tetrahedra_are_warned_of(self):
         block_mesh(self.folder / "flat.msh", last_layer=0.5)
         warning, = self.json_of("mesh", "flat.msh", "-o", "flat.vtu")["warnings"]
