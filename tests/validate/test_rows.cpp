@@ -37,6 +37,15 @@ TEST(Rows, of_one_group_follow_each_other) {
   EXPECT_EQ(rows.back().group, Group::independence);
 }
 
+TEST(Rows, say_so_where_their_source_has_not_been_verified) {
+  const auto& rows = all_rows();
+  const auto row = std::find_if(rows.begin(), rows.end(), [](const RowSpec& r) { return r.id == "motion_speed"; });
+  ASSERT_NE(row, rows.end());
+  EXPECT_NE(row->reference.find("NOT VERIFIED"), std::string::npos) << row->reference;
+  EXPECT_EQ(row->reference.find("McLaughlin"), std::string::npos)
+      << "McLaughlin et al. give no figure for slow needles: " << row->reference;
+}
+
 TEST(Rows, that_algebra_decides_pass) {
   ValidateOptions options;
   options.only = {"patch_test",       "rigid_motions",     "uniaxial_bar",

@@ -25,34 +25,46 @@ Result<RecordedRun> run_demo(Context& context, const Scenario& scenario) {
   return record_run(*model, context.progress());
 }
 
-/// Shift of the gland along the needle at the deepest point [mm], by the speed of insertion.
-Result<Finding> slow_against_fast(Context& context) {
+constexpr double kSlow_mm_per_s = 5.0;
+constexpr double kFast_mm_per_s = 150.0;
+
+/// Shift of the gland's centroid at the deepest point [mm] of a needle that goes in at a speed.
+Result<double> shift_at(Context& context, double speed_mm_per_s) {
+  Scenario scenario = demo_scenario();
+  InsertionPlan& plan = scenario.insertions.front();
+  plan.speed_mm_per_s = speed_mm_per_s;
+  plan.dwell_s = 0.0;
+  plan.retract = false;
+  scenario.run.dt_ms = std::clamp(0.1 / speed_mm_per_s * 1e3, 0.25, 10.0);
+  const auto run = run_demo(context, scenario);
+  if (!run) return run.error();
+  return run->summary.target_shift_centroid_mm.norm();
+}
+
+Result<Finding> fast_against_slow(Context& context) {
   Finding finding;
   Curve curve{.label = "shift of the gland", .x = {}, .y = {}};
-  for (const double speed : {1.0, 5.0, 20.0, 100.0, 400.0}) {
-    Scenario scenario = demo_scenario();
-    InsertionPlan& plan = scenario.insertions.front();
-    plan.speed_mm_per_s = speed;
-    plan.dwell_s = 0.0;
-    plan.retract = false;
-    scenario.run.dt_ms = std::clamp(0.1 / speed * 1e3, 0.25, 10.0);
-    const auto run = run_demo(context, scenario);
-    if (!run) return run.error();
-    curve.x.push_back(speed);
-    curve.y.push_back(run->summary.target_shift_centroid_mm.norm());
+  double slow = 0.0, fast = 0.0;
+  for (const double speed : {1.0, kSlow_mm_per_s, 20.0, 50.0, kFast_mm_per_s, 400.0}) {
+    const auto shift = shift_at(context, speed);
+    if (!shift) return shift.error();
+    curve.add(speed, *shift);
+    if (speed == kSlow_mm_per_s) slow = *shift;
+    if (speed == kFast_mm_per_s) fast = *shift;
   }
-  finding.value = curve.y.front() / curve.y.back();
+  finding.value = fast / slow;
   finding.note = fmt::format(
-      "{:.2f} mm at {:g} mm/s, {:.2f} mm at {:g} mm/s. In a phantom up to {:g} mm when pushed slowly, {:g} mm when "
-      "driven fast.",
-      curve.y.front(), curve.x.front(), curve.y.back(), curve.x.back(), prostate::kSlowShift_mm,
-      prostate::kFastShift_mm);
+      "{:.2f} mm at {:g} mm/s, {:.2f} mm at {:g} mm/s. The reference, {:g} mm pushed and {:g} mm tapped, is quoted at "
+      "second hand and NOT VERIFIED: its source has not been read. McLaughlin et al. (AAPM 2022) report of a phantom "
+      "built to be movable that high-speed needle placement moved it by up to {:g} mm and a pneumatic device by {:g} "
+      "mm; "
+      "they give no figure for slow needles, so the sign rests on the unverified source alone.",
+      slow, kSlow_mm_per_s, fast, kFast_mm_per_s, prostate::kPushedShift_mm, prostate::kTappedShift_mm,
+      prostate::kPhantomHighSpeed_mm, prostate::kPhantomPneumatic_mm);
   finding.why_missed =
-      "The tissue is quasi-static and friction grows with speed, so a faster needle drags more. What holds a real "
-      "gland back "
-      "in a fast insertion, its inertia, the tissue’s viscosity and a cutting force that falls with speed, is not in "
-      "the "
-      "default model.";
+      "The tissue is quasi-static and friction grows with speed, so a faster needle drags more; and the gland moves "
+      "far less than in patients at any speed. What holds a real gland back in a fast insertion, its inertia, the "
+      "tissue’s viscosity and a cutting force that falls with speed, is not in the default model.";
   finding.plot = {.x_label = "speed [mm/s]", .y_label = "shift of the gland [mm]", .log_x = true, .curves = {curve}};
   return finding;
 }
@@ -133,8 +145,10 @@ Result<Finding> markers(Context& context) {
   finding.value = run->largest_mm.cwiseQuotient(seen).maxCoeff();
   finding.note = fmt::format(
       "Largest displacement in the gland over six needles, one at a time: lateral {:.2f}, sagittal {:.2f}, axial "
-      "{:.2f} mm; "
-      "gold markers moved by up to {:g}, {:g} and {:g} mm. An upper bound only: a gland that hardly moves passes too.",
+      "{:.2f} mm; gold markers were displaced by up to {:g}, {:g} and {:g} mm, which is what an implant of many "
+      "needles "
+      "and two weeks leave behind, relative to the gland, and not its motion under a needle. An upper bound only: a "
+      "gland that hardly moves passes too.",
       run->largest_mm.x(), run->largest_mm.y(), run->largest_mm.z(), seen.x(), seen.y(), seen.z());
   return finding;
 }
@@ -143,13 +157,17 @@ Result<Finding> markers(Context& context) {
 
 std::vector<RowSpec> prostate_motion_rows() {
   return {
-      {"motion_speed", Group::measurements, "The gland moves further under a slow needle than under a fast one",
-       "McLaughlin et al., AAPM 2022: 2 cm slow, 1 mm fast, in a phantom", "", Accepted::at_least(1.0), false,
-       slow_against_fast},
+      {"motion_speed", Group::measurements, "The gland moves far less under a fast needle than under a slow one",
+       "NOT VERIFIED, source not read: Lagerburg et al., Radiother. Oncol. 2006, 0.9 mm tapped over 5.6 mm pushed, "
+       "about 1/6; 0.4 is let pass",
+       "", Accepted::at_most(0.4), false, fast_against_slow},
       {"motion_axis", Group::measurements, "The gland moves along the needle more than across it",
-       "seed misplacement by axis, 357 needles in 15 patients", "", Accepted::at_least(1.0), false, motion_by_axis},
-      {"motion_markers", Group::measurements, "No point of the gland moves further than markers did in patients",
-       "gold markers, 18 patients, Radiat. Oncol. 7 (2012) 24", "", Accepted::at_most(1.0), false, markers},
+       "seed misplacement by axis, 1,197 seeds of 357 needles in 15 patients", "", Accepted::at_least(1.0), false,
+       motion_by_axis},
+      {"motion_markers", Group::measurements,
+       "No point of the gland moves further than markers were displaced in patients",
+       "gold markers before and after an implant, 18 patients, Radiat. Oncol. 7 (2012) 24", "", Accepted::at_most(1.0),
+       false, markers},
   };
 }
 

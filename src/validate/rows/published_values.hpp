@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-/// Published measurements that rows are judged against; each is used as its source states it.
+/// Published measurements that rows are judged against. Each says how it was read: in its source, in the source's
+/// abstract, or at second hand, which is in the notes of others on the source; docs/validation.md has the list.
 namespace stylet::validate::published {
 
 struct Measured {
@@ -10,7 +11,7 @@ struct Measured {
 };
 
 /// Bovine liver ex vivo, bevelled 18G needle, 3 mm/s. A. M. Okamura, C. Simone, M. D. O'Leary, Force modeling for
-/// needle insertion into soft tissue, IEEE Trans. Biomed. Eng. 51 (2004) 1707–1716. @cite Okamura2004
+/// needle insertion into soft tissue, IEEE Trans. Biomed. Eng. 51 (2004) 1707–1716. Second hand. @cite Okamura2004
 namespace okamura {
 inline constexpr Measured kPuncture{2.304, 0.829};      ///< [N] 19 insertions
 inline constexpr Measured kPunctureDepth{16.65, 3.55};  ///< [mm]
@@ -33,7 +34,7 @@ inline double modulus_kPa(double diameter_mm, double poisson) {
 }  // namespace okamura
 
 /// PVC gel, 17G, 1 mm/s. S. P. DiMaio, S. E. Salcudean, Needle insertion modeling and simulation, IEEE Trans. Robot.
-/// Autom. 19 (2003) 864–875. @cite DiMaio2003
+/// Autom. 19 (2003) 864–875. Second hand. @cite DiMaio2003
 namespace dimaio {
 inline constexpr double kYoung_kPa = 25.3;
 inline constexpr double kPoisson = 0.48;
@@ -46,7 +47,7 @@ inline constexpr double kTipExcess_N = (68.0 - 34.0) * 5e-3;
 }  // namespace dimaio
 
 /// Medians over 99 papers. D. J. van Gerwen, J. Dankelman, J. J. van den Dobbelsteen, Needle–tissue interaction forces:
-/// a survey of experimental data, Med. Eng. Phys. 34 (2012) 665–680. @cite vanGerwen2012
+/// a survey of experimental data, Med. Eng. Phys. 34 (2012) 665–680. Second hand. @cite vanGerwen2012
 namespace vanGerwen {
 inline constexpr double kPeak_N = 5.0;
 inline constexpr double kPuncture_N = 1.22;
@@ -56,13 +57,23 @@ inline constexpr double kFriction_N = 1.0;
 
 /// Prostate in vivo and in a phantom.
 namespace prostate {
-inline constexpr double kSlowShift_mm = 20.0;  ///< largest, pushed slowly (McLaughlin et al., AAPM 2022)
-inline constexpr double kFastShift_mm = 1.0;   ///< driven fast
-/// Mean seed misplacement by axis [cm]: lateral, sagittal, axial (357 needles of 15 patients).
+/// Mean motion of the gland for one needle that is pushed, and for one that is tapped in. Lagerburg et al.,
+/// Radiother. Oncol. (2006). NOT VERIFIED: the source has not been read.
+inline constexpr double kPushedShift_mm = 5.6;
+inline constexpr double kTappedShift_mm = 0.9;
+/// Displacement towards the head of a phantom that was built to be movable: the most under needles placed at high
+/// speed, and what a pneumatic device reduced it to. For slow needles there is no figure. P. McLaughlin et al., The
+/// challenge of base depth needle placement in prostate brachytherapy, AAPM 2022. Abstract.
+inline constexpr double kPhantomHighSpeed_mm = 20.0;
+inline constexpr double kPhantomPneumatic_mm = 1.0;
+/// Mean seed misplacement by axis [cm]: lateral, sagittal, axial (1,197 seeds of 357 needles in 15 patients, all causes
+/// together). Abstract.
 inline constexpr double kSeedX_cm = 0.13;
 inline constexpr double kSeedY_cm = 0.15;
 inline constexpr double kSeedZ_cm = 0.38;
-/// Largest shift of gold markers [mm] by axis in 18 patients (Radiat. Oncol. 7 (2012) 24).
+/// Largest displacement of gold markers in the gland [mm] by axis in 18 patients, between scans two weeks apart that
+/// were laid over each other by the gland, with an implant of many needles between them (Radiat. Oncol. 7 (2012) 24).
+/// Abstract.
 inline constexpr double kMarkerLateral_mm = 7.0;
 inline constexpr double kMarkerSagittal_mm = 5.0;
 inline constexpr double kMarkerAxial_mm = 12.0;
