@@ -19,6 +19,7 @@ std::vector<RowSpec> needle_line_rows();
 std::vector<RowSpec> free_surface_rows();
 std::vector<RowSpec> viscosity_rows();
 std::vector<RowSpec> insertion_law_rows();
+std::vector<RowSpec> closed_loop_rows();
 std::vector<RowSpec> step_and_tolerance_rows();
 std::vector<RowSpec> insertion_over_meshes_rows();
 std::vector<RowSpec> other_software_rows();

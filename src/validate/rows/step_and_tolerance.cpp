@@ -13,7 +13,7 @@ namespace stylet::validate {
 
 namespace {
 
-Result<Finding> time_steps(Context&) {
+Result<Finding> force_over_time_steps(Context&) {
   const auto model = Block().compile();
   if (!model) return model.error();
   std::vector<ForceCurve> forces;
@@ -105,7 +105,7 @@ std::vector<RowSpec> step_and_tolerance_rows() {
       {"drag_time_step", Group::independence, "How far tissue is dragged along does not hang on the time step",
        "each other, 0.25 … 4 ms", "%", Accepted::at_most(1.0), true, drag_over_step},
       {"time_step", Group::independence, "A stick-slip insertion does not hang on the time step",
-       "each other, 0.25 … 2 ms", "%", Accepted::at_most(1.0), false, time_steps},
+       "each other, 0.25 … 2 ms", "%", Accepted::at_most(1.0), false, force_over_time_steps},
   };
 }
 
