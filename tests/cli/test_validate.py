@@ -7,6 +7,7 @@ import os
 import unittest
 
 from program import InFolder
+from readme import not_to_trust
 
 KEYS = {"id", "claim", "reference", "value", "unit", "tolerance", "pass", "note", "group", "verdict", "skipped",
         "seconds", "curves", "csv"}
@@ -50,6 +51,13 @@ class Validate(InFolder):
         missed = [row["id"] for row in rows.values() if row["pass"] is False]
         for name in missed:
             self.assertIn(f'<a href="#{name}">', page)
+        self.assertEqual(missed, [name for name in rows if name in not_to_trust()],
+                         "README.md, What not to trust yet: it names the rows that miss and no other")
+
+    def test_the_readme_names_rows_that_there_are_each_once(self):
+        named = not_to_trust()
+        self.assertEqual(len(named), len(set(named)))
+        self.assertLessEqual(set(named), {row["id"] for row in self.json_of("validate", "--list")["rows"]})
 
     def test_only_measures_the_rows_named_and_says_what_was_skipped(self):
         done = self.succeed("validate", "-o", "out", "--only", *SOME)
