@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace stylet {
 namespace {
@@ -44,33 +46,14 @@ constexpr std::array kSynonyms{Synonym{"prostate", "prostate"},
                                Synonym{"prostatect", "prostate"},
                                Synonym{"prostateus", "prostate"},
                                Synonym{"prostatetrus", "prostate"},
-                               Synonym{"peripheralzone", "peripheral_zone"},
-                               Synonym{"pz", "peripheral_zone"},
-                               Synonym{"prostatepz", "peripheral_zone"},
-                               Synonym{"pzprostate", "peripheral_zone"},
-                               Synonym{"prostateperipheralzone", "peripheral_zone"},
-                               Synonym{"periperalzone", "peripheral_zone"},
-                               Synonym{"transitionzone", "transition_zone"},
-                               Synonym{"transitionalzone", "transition_zone"},
-                               Synonym{"transitionzoneprostate", "transition_zone"},
-                               Synonym{"tz", "transition_zone"},
-                               Synonym{"prostatetz", "transition_zone"},
-                               Synonym{"prostatetransitionzone", "transition_zone"},
                                Synonym{"centralgland", "transition_zone"},
                                Synonym{"cg", "transition_zone"},
-                               Synonym{"centralzone", "central_zone"},
-                               Synonym{"cz", "central_zone"},
-                               Synonym{"prostatecz", "central_zone"},
-                               Synonym{"prostatecentralzone", "central_zone"},
-                               Synonym{"afs", "anterior_stroma"},
-                               Synonym{"afms", "anterior_stroma"},
-                               Synonym{"anteriorstroma", "anterior_stroma"},
-                               Synonym{"anteriorfibromuscularstroma", "anterior_stroma"},
-                               Synonym{"prostateafs", "anterior_stroma"},
                                Synonym{"urethra", "urethra"},
                                Synonym{"urethraprostatic", "urethra"},
                                Synonym{"prostaticurethra", "urethra"},
                                Synonym{"urethraprostate", "urethra"},
+                               Synonym{"distalprostaticurethra", "urethra"},
+                               Synonym{"dpu", "urethra"},
                                Synonym{"uretra", "urethra"},
                                Synonym{"urethre", "urethra"},
                                Synonym{"urètre", "urethra"},
@@ -173,6 +156,63 @@ std::string femur(const std::string& p) {
   return {};
 }
 
+/// The words of a name in lower case: "Transition_Zone", "transition zone" and "TransitionZone" have the same two.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words;
+  bool apart = true;
+  for (std::size_t n = 0; n < name.size(); ++n) {
+    const auto c = static_cast<unsigned char>(name[n]);
+    if (std::isalnum(c) == 0 && c < 0x80) {
+      apart = true;
+      continue;
+    }
+    const bool hump = n > 0 && std::isupper(c) != 0 && std::islower(static_cast<unsigned char>(name[n - 1])) != 0;
+    if (apart || hump) words.emplace_back();
+    words.back() += static_cast<char>(std::tolower(c));
+    apart = false;
+  }
+  return words;
+}
+
+/// A zone of the gland, also one half of it, as 3D Slicer's users and the coded terms of DICOM write it: "peripheral",
+/// "PZ_left", "Transition Zone", "Structure of peripheral zone of prostate", "AFS".
+std::string zone(std::string_view name) {
+  constexpr std::array<std::string_view, 13> beside{"left", "right", "l",        "r",         "lt",        "rt",  "of",
+                                                    "the",  "zone",  "prostate", "prostatic", "structure", "lobe"};
+  constexpr std::array<Synonym, 20> zones{{{"peripheral", "peripheral_zone"},
+                                           {"peripheralzone", "peripheral_zone"},
+                                           {"periperal", "peripheral_zone"},
+                                           {"pz", "peripheral_zone"},
+                                           {"transition", "transition_zone"},
+                                           {"transitional", "transition_zone"},
+                                           {"transitionzone", "transition_zone"},
+                                           {"transitionalzone", "transition_zone"},
+                                           {"tz", "transition_zone"},
+                                           {"central", "central_zone"},
+                                           {"centralzone", "central_zone"},
+                                           {"cz", "central_zone"},
+                                           {"afs", "anterior_stroma"},
+                                           {"afms", "anterior_stroma"},
+                                           {"anteriorstroma", "anterior_stroma"},
+                                           {"fibromuscularstroma", "anterior_stroma"},
+                                           {"anteriorfibromuscularstroma", "anterior_stroma"},
+                                           {"anteriorfibromuscular", "anterior_stroma"},
+                                           {"anteriorfibromuscularzone", "anterior_stroma"},
+                                           {"periperalzone", "peripheral_zone"}}};
+  std::string rest, before;
+  for (const std::string& word : words_of(name)) {
+    // "gland" alone is no filler: the central gland is the transition zone.
+    const bool filler =
+        std::find(beside.begin(), beside.end(), word) != beside.end() || (word == "gland" && before == "prostate");
+    if (!filler) rest += word;
+    before = word;
+  }
+  if (rest.starts_with("prostate")) rest.erase(0, 8);  // "prostatepz", in one word
+  if (rest.ends_with("prostate")) rest.erase(rest.size() - 8);
+  const auto* const found = std::find_if(zones.begin(), zones.end(), [&](const Synonym& s) { return s.plain == rest; });
+  return found == zones.end() ? std::string{} : std::string(found->canonical);
+}
+
 /// "PTV", "PTV1", "PTV_7800", "CTV 78 Gy", "CTVprostate".
 std::string planning_volume(std::string p) {
   if (p.size() < 3) return {};
@@ -193,6 +233,7 @@ std::string canonical_region(std::string_view name) {
     // A canonical name is its own synonym.
     if (p == s.plain || name == s.canonical) return std::string(s.canonical);
   }
+  if (std::string z = zone(name); !z.empty()) return z;
   if (std::string f = femur(p); !f.empty()) return f;
   return planning_volume(p);
 }

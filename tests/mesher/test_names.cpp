@@ -40,6 +40,28 @@ TEST(CanonicalRegion, UsualNamesAreRecognisedWhateverTheirCaseAndSeparators) {
   for (const auto& [name, canonical] : names) EXPECT_EQ(canonical_region(name), canonical) << name;
 }
 
+TEST(CanonicalRegion, ZonesAreRecognisedAsPeopleWriteThem) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> names{
+      {"peripheral_zone",
+       {"peripheral", "PZ", "pz", "peripheral zone", "Peripheral_Zone", "PeripheralZone", "PZ_left", "L PZ", "PZ-R",
+        "Prostate PZ", "prostatepz", "Left peripheral zone", "Peripheral zone of prostate", "peripheralzone_rt",
+        "Structure of peripheral zone of prostate gland"}},
+      {"transition_zone",
+       {"transition", "Transition_Zone", "transitional", "TZ", "TZ_right", "transition zone of the prostate", "CG",
+        "central gland", "TransitionZone"}},
+      {"central_zone", {"central", "CZ", "Central zone", "central zone of prostate", "CZ_L"}},
+      {"anterior_stroma",
+       {"AFS", "afms", "anterior fibromuscular stroma", "Anterior_Fibromuscular_Stroma", "fibromuscular stroma",
+        "Anterior fibromuscular stroma of prostate"}}};
+  for (const auto& [canonical, written] : names) {
+    for (const std::string& name : written) EXPECT_EQ(canonical_region(name), canonical) << name;
+  }
+  for (const std::string name :
+       {"peripheral nerve", "central artery", "optPZ", "PZ lesion", "zone", "left", "of the"}) {
+    EXPECT_EQ(canonical_region(name), "") << name;
+  }
+}
+
 TEST(CanonicalRegion, ACanonicalNameIsItsOwnSynonym) {
   for (const std::string name :
        {"prostate", "peripheral_zone", "transition_zone", "central_zone", "anterior_stroma", "urethra", "bladder",
