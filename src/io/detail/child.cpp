@@ -84,6 +84,7 @@ void write_all(int file, const char* data, std::size_t size) {
   ::dup2(noise, STDOUT_FILENO);
   ::dup2(noise, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);
+  ::prctl(PR_SET_DUMPABLE, 0);  // no crash report either: a system may collect those in spite of the limit
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(limits.cpu_s)));
 #ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves terabytes of address space

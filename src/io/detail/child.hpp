@@ -8,7 +8,7 @@
 namespace stylet::detail {
 
 struct ChildLimits {
-  double cpu_s = 10.0;                              ///< processor time
+  double cpu_s = 5.0;                               ///< processor time
   double wall_s = 60.0;                             ///< real time
   std::size_t memory_bytes = std::size_t{4} << 30;  ///< beyond what the parent already uses
 };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/file_kind.hpp"
 
+#include "detail/input_file.hpp"
 #include "detail/text.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -156,28 +156,15 @@ std::string name_of(FileKind kind) {
 }
 
 std::string readable_formats() {
-  return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage; tetrahedra in VTU, "
-         "legacy "
-         "VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB.";
+  return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage; tetrahedra "
+         "in "
+         "VTU, legacy VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB.";
 }
 
 Result<FileKind> identify(const fs::path& path) {
   const std::string where = path.string();
+  if (Result<> file = check_input_file(path); !file) return file.error();
   std::error_code code;
-  const fs::file_status status = fs::status(path, code);
-  if (!fs::exists(status)) {
-    return input_error(where,
-                       code && code != std::errc::no_such_file_or_directory ? code.message() : "there is no such file",
-                       "Check the name and the folder.");
-  }
-  if (fs::is_directory(status)) return input_error(where, "this is a folder, a file is expected", "Name a file in it.");
-  if (!fs::is_regular_file(status)) {
-    return input_error(where, "this is not a regular file", "Copy the data to a file first. " + readable_formats());
-  }
-  if (!std::ifstream(path, std::ios::binary)) {
-    return input_error(where, fmt::format("the file cannot be opened ({})", std::strerror(errno)),
-                       "Check its permissions.");
-  }
   const std::uintmax_t size = fs::file_size(path, code);
   if (size == 0) return input_error(where, "the file is empty", "Export it again. " + readable_formats());
   const std::string bytes = first_bytes(path);

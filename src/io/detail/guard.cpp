@@ -35,7 +35,7 @@ ChildLimits limits_for(const fs::path& path) {
   const std::uintmax_t size = fs::is_regular_file(path, code) ? fs::file_size(path, code) : 0;
   const double megabytes = code ? 0.0 : static_cast<double>(size) / 1e6;
   ChildLimits limits;
-  limits.cpu_s = 10.0 + 2.0 * megabytes;
+  limits.cpu_s = 5.0 + 2.0 * megabytes;
   limits.wall_s = 30.0 + 3.0 * limits.cpu_s;  // the machine may be busy
   limits.memory_bytes += static_cast<std::size_t>(40e6 * megabytes);
   return limits;

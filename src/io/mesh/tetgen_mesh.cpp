@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // TetGen .node and .ele (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line per node or
 // tetrahedron; '#' begins a comment; numbers start at 0 or 1.
+#include "detail/input_file.hpp"
 #include "detail/text.hpp"
 #include "mesh/raw_mesh.hpp"
 
@@ -144,10 +145,11 @@ Result<RawMesh> parse_tetgen_mesh(const fs::path& path) {
   const fs::path node_path = fs::path(path).replace_extension(".node"),
                  ele_path = fs::path(path).replace_extension(".ele");
   for (const fs::path& part : {node_path, ele_path}) {
-    std::error_code code;
-    if (!fs::is_regular_file(part, code)) {
-      return input_error(path.string(), fmt::format("its other half '{}' is not there", part.filename().string()),
-                         "A TetGen mesh needs both, the .node and the .ele file, side by side.");
+    if (Result<> file = check_input_file(part); !file) {
+      return input_error(
+          path.string(),
+          fmt::format("its other half '{}' cannot be read: {}", part.filename().string(), file.error().what),
+          "A TetGen mesh needs both, the .node and the .ele file, side by side.");
     }
   }
   NumberLines node_lines(node_path), ele_lines(ele_path);

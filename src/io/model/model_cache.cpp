@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/io/model_cache.hpp"
 
+#include "detail/input_file.hpp"
 #include "model/digest.hpp"
 #include "model/model_format.hpp"
 #include "stylet/io/model_file.hpp"
@@ -22,6 +23,7 @@ constexpr std::size_t kPiece = 1 << 20;
 constexpr std::size_t kHeader = 1 << 16;  ///< of an image, at most
 
 Result<> add_file(Digest& digest, const fs::path& path) {
+  if (Result<> readable = detail::check_input_file(path); !readable) return readable;
   std::ifstream file(path, std::ios::binary);
   std::vector<char> piece(kPiece);
   while (file) {
@@ -40,7 +42,7 @@ bool has_other_parts(const fs::path& path) {
   };
   const std::string kind = lower(path.extension().string());
   if (kind == ".mhd" || kind == ".nhdr" || kind == ".node" || kind == ".ele") return true;
-  if (kind != ".mha" && kind != ".nrrd") return false;
+  if ((kind != ".mha" && kind != ".nrrd") || !detail::check_input_file(path)) return false;
   std::ifstream file(path, std::ios::binary);
   std::string head(kHeader, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));

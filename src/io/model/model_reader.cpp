@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail/input_file.hpp"
 #include "h5.hpp"
 #include "model/model_format.hpp"
 #include "stylet/core/mirror.hpp"
@@ -143,6 +144,8 @@ Result<> check_settings(std::span<const std::string> settings, const std::string
 }  // namespace
 
 bool is_hdf5_file(const fs::path& path) {
+  std::error_code code;
+  if (!fs::is_regular_file(path, code)) return false;  // opening a named pipe would wait for its other end
   constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
   std::array<char, signature.size()> begin{};
   std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
@@ -159,7 +162,7 @@ bool is_meant_as_model(const fs::path& path) {
 Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress) {
   const auto refuse = [&](const std::string& what) { return input_error(path.string(), what, kPrepareAgain); };
   std::error_code code;
-  if (!fs::is_regular_file(path, code)) return refuse("no such file");
+  if (Result<> readable = detail::check_input_file(path); !readable) return refuse(readable.error().what);
   if (!is_hdf5_file(path)) return refuse("this is not a saved model");
   const h5::LibraryTurn turn;
   try {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail/input_file.hpp"
 #include "run_file_format.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "summary_json.hpp"
@@ -169,8 +170,7 @@ Result<RunRecording> read_recording(const fs::path& path) {
   const auto refuse = [&](const std::string& what) {
     return input_error(path.string(), what, "Give a run.h5 that `stylet insert` wrote.");
   };
-  std::error_code code;
-  if (!fs::is_regular_file(path, code)) return refuse("no such file");
+  if (Result<> readable = detail::check_input_file(path); !readable) return refuse(readable.error().what);
   const h5::LibraryTurn turn;
   try {
     const h5::Handle file = h5::open_growing_file(path.c_str());

@@ -158,8 +158,9 @@ TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
 }
 
 TEST(TetMeshErrors, half_a_tetgen_mesh_is_refused) {
-  expect_refused(read_mesh("m.ele", tetgen_texts(two_region_box()).second), {"'m.node' is not there", "side by side"});
-  expect_refused(read_mesh("m.node", tetgen_texts(two_region_box()).first), {"'m.ele' is not there"});
+  expect_refused(read_mesh("m.ele", tetgen_texts(two_region_box()).second),
+                 {"'m.node'", "no such file", "side by side"});
+  expect_refused(read_mesh("m.node", tetgen_texts(two_region_box()).first), {"'m.ele'", "no such file"});
 }
 
 TEST(TetMeshErrors, tetgen_files_in_disorder_are_refused_with_the_line) {
