@@ -12,6 +12,7 @@ namespace {
 struct InfoArguments {
   std::string file;
   double scale = 0;
+  int volume = 0;
 };
 
 Result<Description> description_of(const InfoArguments& arguments) {
@@ -25,7 +26,8 @@ Result<Description> description_of(const InfoArguments& arguments) {
     if (!run) return run.error();
     return describe(*run);
   }
-  const Result<PatientInput> input = read_input(arguments.file, {.scale = arguments.scale});
+  const Result<PatientInput> input =
+      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume});
   if (!input) return input.error();
   return std::visit([](const auto& content) { return describe(content); }, *input);
 }
@@ -46,11 +48,12 @@ Command add_info_command(CLI::App& program) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* app =
       program.add_subcommand("info", "Say what is in a contour set, mask, mesh, surface, saved model or recording");
-  app->add_option("FILE", arguments->file, "File, or folder with one DICOM RTSTRUCT in it")->required();
+  app->add_option("FILE", arguments->file, "File, or folder with one DICOM RTSTRUCT or SEG in it")->required();
   app->add_option("--scale", arguments->scale,
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
+  add_volume_option(*app, arguments->volume);
   return {app, [arguments](Console& console) { return run_info(*arguments, console); }};
 }
 

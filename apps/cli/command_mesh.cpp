@@ -28,6 +28,7 @@ struct MeshArguments {
   Index nodes = 0;     ///< 0 = not given
   std::string preset;  ///< empty = not given
   double scale = 0;    ///< 0 = not given
+  int volume = 0;      ///< 0 = not given
   std::vector<std::string> regions;
   double cull_mm = -1;  ///< < 0 = not given
   bool no_band = false;
@@ -69,6 +70,7 @@ MeshOptions mesher_options(const MeshArguments& arguments, const RegionNames& re
 Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, const MeshOptions& options,
                                Console& console) {
   if (arguments.scale > 0) return pointless(arguments, "--scale", "contours, which are in mm");
+  if (arguments.volume > 0) return pointless(arguments, "--volume", "contours");
   return mesh_contours(contours, options, console.progress());
 }
 
@@ -87,6 +89,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (!arguments.preset.empty()) return pointless(arguments, "--preset", kind);
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", kind);
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
+  if (arguments.volume > 0) return pointless(arguments, "--volume", kind);
 
   MeshedAnatomy out{.mesh = mesh, .report = {}};
   if (Result<> named = rename_regions(out.mesh, options.regions, arguments.input); !named) return named.error();
@@ -96,11 +99,12 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
 
 Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshArguments& arguments, const MeshOptions&,
                                Console&) {
-  return input_error(arguments.input,
-                     fmt::format("{} triangulated surface{}; surfaces are not meshed", surfaces.size(),
-                                 surfaces.size() == 1 ? "" : "s"),
-                     "Give contours (DICOM RTSTRUCT, contour JSON), a label mask (NIfTI, NRRD, MetaImage) or a "
-                     "tetrahedral mesh");
+  return input_error(
+      arguments.input,
+      fmt::format("{} triangulated surface{}; surfaces are not meshed", surfaces.size(),
+                  surfaces.size() == 1 ? "" : "s"),
+      "Give contours (DICOM RTSTRUCT, contour JSON), a label mask (NIfTI, NRRD, MetaImage, DICOM SEG) or a "
+      "tetrahedral mesh");
 }
 
 Result<> run_mesh(const MeshArguments& arguments, Console& console) {
@@ -117,8 +121,8 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
 
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::string> remarks;
-  const Result<PatientInput> input =
-      read_patient(arguments.input, {.scale = arguments.scale, .notes = &remarks}, options);
+  const Result<PatientInput> input = read_patient(arguments.input, {.scale = arguments.scale, .notes = &remarks},
+                                                  options, {.volume = arguments.volume});
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
       std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, *input);
@@ -146,10 +150,10 @@ Command add_mesh_command(CLI::App& program) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App* app = program.add_subcommand(
       "mesh", "Turn contours or a label mask into tetrahedra; or check and convert a tetrahedral mesh");
-  app->add_option(
-         "INPUT", arguments->input,
-         "Contours (DICOM RTSTRUCT or a folder with one, contour JSON), label mask (NIfTI, NRRD, MetaImage) or "
-         "tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
+  app->add_option("INPUT", arguments->input,
+                  "Contours (DICOM RTSTRUCT or a folder with one, contour JSON), label mask (NIfTI, NRRD, MetaImage, "
+                  "DICOM SEG) or "
+                  "tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
       ->required();
   app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.vtu")->required();
   app->add_option("--nodes", arguments->nodes, "Number of nodes, hit within 3 % (default: the preset's)")
@@ -163,6 +167,7 @@ Command add_mesh_command(CLI::App& program) {
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
+  add_volume_option(*app, arguments->volume);
   app->add_option("--region", arguments->regions,
                   "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
                   "repeated; for contours and masks those not named are then left out")

@@ -2,6 +2,8 @@
 #include "describe.hpp"
 #include "table.hpp"
 
+#include "stylet/mesher/mesher.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,6 +37,11 @@ std::map<int, Label> labels_of(const LabelImage& image) {
   return labels;
 }
 
+std::string text_of(const std::map<int, std::string>& texts, int label) {
+  const auto found = texts.find(label);
+  return found == texts.end() ? "" : found->second;
+}
+
 }  // namespace
 
 Description describe(const LabelImage& image) {
@@ -58,18 +65,21 @@ Description describe(const LabelImage& image) {
               {"slice_tilt_deg", tilt_deg},
               {"labels", Json::array()}};
 
-  Table table({"label", "name", "voxels", "extent mm", "volume cc"});
+  Table table({"label", "name", "taken as", "voxels", "extent mm", "volume cc"});
   for (const auto& [value, label] : labels_of(image)) {
-    const auto found = image.names.find(value);
-    const std::string name = found == image.names.end() ? "" : found->second;
+    const std::string name = text_of(image.names, value), meaning = text_of(image.meanings, value);
+    std::string taken_as = canonical_region(name);
+    if (taken_as.empty()) taken_as = canonical_region(meaning);
     const double volume_cc = static_cast<double>(label.voxels) * voxel_cc;
     out.json["labels"].push_back({{"label", value},
                                   {"name", name},
+                                  {"meaning", meaning},
+                                  {"taken_as", taken_as},
                                   {"voxels", label.voxels},
                                   {"extent_mm", extent_json(label.box)},
                                   {"volume_cc", volume_cc}});
-    table.row({fmt::to_string(value), name, fmt::to_string(label.voxels), extent_text(label.box),
-               fmt::format("{:.1f}", volume_cc)});
+    table.row({fmt::to_string(value), name.empty() ? meaning : name, taken_as, fmt::to_string(label.voxels),
+               extent_text(label.box), fmt::format("{:.1f}", volume_cc)});
   }
 
   Facts facts;
@@ -81,6 +91,8 @@ Description describe(const LabelImage& image) {
   facts.add("frame", fmt::format("{}, slices tilted by {:.1f}° against the patient's axes",
                                  left_handed ? "left-handed" : "right-handed", tilt_deg));
   out.text = facts.text() + "\n\n" + table.text();
+  for (const std::string& note : image.notes) out.text += "\n  note: " + note;
+  out.json["notes"] = image.notes;
   return out;
 }
 

@@ -17,8 +17,8 @@ bool used(const Roi& roi, const MeshOptions& options) {
 }  // namespace
 
 Result<PatientInput> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
-                                  const MeshOptions& mesh_options) {
-  Result<PatientInput> input = read_input(path, read_options);
+                                  const MeshOptions& mesh_options, const MaskReadOptions& mask_options) {
+  Result<PatientInput> input = read_input(path, read_options, mask_options);
   if (!input) return input;
   if (const auto* contours = std::get_if<ContourSet>(&*input)) {
     for (const Roi& roi : contours->rois) {

@@ -74,7 +74,8 @@ Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&
   if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);
   std::vector<std::string> remarks;
   const Result<PatientInput> input =
-      read_patient(scenario.patient.source, {.scale = scenario.patient.scale, .notes = &remarks}, options);
+      read_patient(scenario.patient.source, {.scale = scenario.patient.scale, .notes = &remarks}, options,
+                   {.volume = scenario.patient.volume});
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
       std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, *input);

@@ -54,4 +54,11 @@ CLI::Validator one_of(std::vector<std::string> words) {
           ""};
 }
 
+void add_volume_option(CLI::App& app, int& volume) {
+  app.add_option("--volume", volume,
+                 "Which volume of a mask file that holds several, counted from 1 (default: the only one)")
+      ->type_name("N")
+      ->check(whole_number_between(1, 1'000'000));
+}
+
 }  // namespace stylet::cli

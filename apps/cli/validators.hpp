@@ -18,4 +18,7 @@ CLI::Validator whole_number_between(long long lo, long long hi);
 /// Accepts one of these words; the refusal names them all and the nearest.
 CLI::Validator one_of(std::vector<std::string> words);
 
+/// Adds --volume, which chooses one volume of a mask file that holds several.
+void add_volume_option(CLI::App& app, int& volume);
+
 }  // namespace stylet::cli

@@ -2,6 +2,8 @@
 #include "stylet/io/input.hpp"
 
 #include "detail/file_kind.hpp"
+#include "detail/guard.hpp"
+#include "detail/parsers.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +11,7 @@ namespace stylet {
 
 namespace fs = std::filesystem;
 using detail::FileKind;
+using detail::guarded;
 
 namespace {
 
@@ -20,20 +23,28 @@ Result<PatientInput> as_input(Result<T> read) {
 
 }  // namespace
 
-Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mesh_options) {
+Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mesh_options,
+                                const MaskReadOptions& mask_options) {
   std::error_code code;
-  if (fs::is_directory(path, code)) return as_input(read_rtstruct(path));
+  if (fs::is_directory(path, code)) {
+    const Result<std::string> found = guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
+    return found ? read_input(*found, mesh_options, mask_options) : Result<PatientInput>(found.error());
+  }
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   switch (*kind) {
-    case FileKind::dicom:
-      return as_input(read_rtstruct(path));
+    case FileKind::dicom: {
+      const Result<bool> segmentation =
+          guarded<bool>(path, [&]() -> Result<bool> { return detail::is_dicom_seg(path); });
+      if (!segmentation) return segmentation.error();
+      return *segmentation ? as_input(read_label_image(path, mask_options)) : as_input(read_rtstruct(path));
+    }
     case FileKind::contour_json:
       return as_input(read_contour_json(path));
     case FileKind::nifti:
     case FileKind::nrrd:
     case FileKind::metaimage:
-      return as_input(read_label_image(path));
+      return as_input(read_label_image(path, mask_options));
     case FileKind::vtu:
     case FileKind::vtk_legacy:
     case FileKind::gmsh:

@@ -3,6 +3,7 @@
 #include "detail/file_kind.hpp"
 #include "detail/guard.hpp"
 #include "detail/parsers.hpp"
+#include "detail/reach.hpp"
 #include "mesh/gmsh_library.hpp"
 #include "mesh/raw_mesh.hpp"
 #include "mesh/surfaces.hpp"
@@ -23,37 +24,60 @@ Error wrong_kind(const fs::path& path, FileKind found, const char* wanted) {
                      detail::readable_formats());
 }
 
+/// Contours whose points are out of reach are refused, in whatever format they came.
+Result<ContourSet> within_reach(Result<ContourSet> read) {
+  if (!read) return read;
+  for (const Roi& roi : read->rois) {
+    for (std::size_t c = 0; c < roi.contours.size(); ++c) {
+      const std::vector<Vec3>& points = roi.contours[c].points;
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        if (detail::is_in_reach(points[p])) continue;
+        return detail::check_reach(fmt::format("{}, ROI '{}', contour {}", read->source, roi.name, c + 1), points[p],
+                                   fmt::format("point {}", p + 1))
+            .error();
+      }
+    }
+  }
+  return read;
+}
+
 }  // namespace
 
 Result<ContourSet> read_rtstruct(const fs::path& path) {
   std::error_code code;
-  if (!fs::is_directory(path, code)) {
-    Result<FileKind> kind = detail::identify(path);
-    if (!kind) return kind.error();
-    if (*kind != FileKind::dicom) return wrong_kind(path, *kind, "a DICOM RT Structure Set");
+  fs::path file = path;
+  if (fs::is_directory(path, code)) {
+    const Result<std::string> found = guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
+    if (!found) return found.error();
+    file = *found;
   }
-  return guarded<ContourSet>(path, [&] { return detail::parse_rtstruct(path); });
+  Result<FileKind> kind = detail::identify(file);
+  if (!kind) return kind.error();
+  if (*kind != FileKind::dicom) return wrong_kind(file, *kind, "a DICOM RT Structure Set");
+  return within_reach(guarded<ContourSet>(file, [&] { return detail::parse_rtstruct(file); }));
 }
 
 Result<ContourSet> read_contour_json(const fs::path& path) {
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   if (*kind != FileKind::contour_json) return wrong_kind(path, *kind, "a contour JSON file");
-  return guarded<ContourSet>(path, [&] { return detail::parse_contour_json(path); });
+  return within_reach(guarded<ContourSet>(path, [&] { return detail::parse_contour_json(path); }));
 }
 
-Result<LabelImage> read_label_image(const fs::path& path) {
+Result<LabelImage> read_label_image(const fs::path& path, const MaskReadOptions& options) {
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   switch (*kind) {
+    case FileKind::dicom:
+      return guarded<LabelImage>(path, [&] { return detail::parse_dicom_seg(path, options); });
     case FileKind::nifti:
-      return guarded<LabelImage>(path, [&] { return detail::parse_nifti(path); });
+      return guarded<LabelImage>(path, [&] { return detail::parse_nifti(path, options); });
     case FileKind::nrrd:
-      return guarded<LabelImage>(path, [&] { return detail::parse_nrrd(path); });
+      return guarded<LabelImage>(path, [&] { return detail::parse_nrrd(path, options); });
     case FileKind::metaimage:
-      return guarded<LabelImage>(path, [&] { return detail::parse_metaimage(path); });
+      return guarded<LabelImage>(path, [&] { return detail::parse_metaimage(path, options); });
     default:
-      return wrong_kind(path, *kind, "a label mask (NIfTI, NRRD, MetaImage)");
+      return wrong_kind(path, *kind, "a label mask (NIfTI, NRRD, MetaImage, DICOM SEG)");
   }
 }
 

@@ -121,6 +121,16 @@ std::vector<Vec3> boundary_points(const GridShape& g, double offset, const Slice
   return points;
 }
 
+/// The region that the file's name for a label, else the code beside the name, stands for; empty when neither is known.
+std::string region_named(const LabelImage& image, int label) {
+  for (const auto* texts : {&image.names, &image.meanings}) {
+    const auto text = texts->find(label);
+    if (text == texts->end()) continue;
+    if (std::string canonical = canonical_region(text->second); !canonical.empty()) return canonical;
+  }
+  return {};
+}
+
 /// Removes the pieces of the common solid that no member has kept.
 void drop_unclaimed_islands(GridShape& solid, const std::vector<Structure>& members) {
   const Islands islands = find_islands(solid);
@@ -144,6 +154,7 @@ void drop_unclaimed_islands(GridShape& solid, const std::vector<Structure>& memb
 Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, const Progress& progress) {
   Anatomy anatomy;
   anatomy.source = image.source.empty() ? "label mask" : image.source;
+  anatomy.notes = image.notes;
   auto slices = slices_of(image, anatomy.source);
   if (!slices) return slices.error();
   const Slices& s = *slices;
@@ -173,7 +184,7 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   } else {
     for (const auto& [label, count] : voxels) {
       const auto n = image.names.find(label);
-      const std::string canonical = n == image.names.end() ? "" : canonical_region(n->second);
+      const std::string canonical = region_named(image, label);
       named = named || is_target_region(canonical);
       region[label] = !canonical.empty()       ? canonical
                       : n != image.names.end() ? n->second

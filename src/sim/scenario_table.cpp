@@ -31,6 +31,9 @@ void describe_patient(ScenarioEntries& keys) {
       [](auto& s, const Slot&) { return &s.patient.source; }, {.standard = "required", .example = "\"phantom\""});
   keys.number("patient.scale", "mm", 0, 1e6, "length of a mesh file's unit; 0 = as the file says, else mm",
               [](auto& s, const Slot&) { return &s.patient.scale; });
+  keys.integer("patient.volume", 0, 1000000,
+               "which volume of a mask file that holds several, counted from 1; 0 = the only one",
+               [](auto& s, const Slot&) { return &s.patient.volume; });
   keys.text("patient.regions.<name>", "the region that a structure, by its name, or a label, by its number, stands for",
             [](auto& s, const Slot& slot) { return &region(s, slot); },
             {.standard = "by their names", .example = "\"peripheral_zone\""});

@@ -12,8 +12,10 @@ namespace stylet {
 /// Whatever a user may name as a patient.
 using PatientInput = std::variant<ContourSet, LabelImage, TetMesh, std::vector<Surface>>;
 
-/// Finds out what a file (or a directory with one RTSTRUCT in it) is, by content before extension, and reads it.
-/// Untrusted files go through a child process with limits on time and memory, so a parser's crash becomes an error.
-Result<PatientInput> read_input(const std::filesystem::path& path, const MeshReadOptions& mesh_options = {});
+/// Finds out what a file (or a directory with one RTSTRUCT or DICOM SEG in it) is, by content before extension, and
+/// reads it. Untrusted files go through a child process with limits on time and memory, so a parser's crash becomes an
+/// error.
+Result<PatientInput> read_input(const std::filesystem::path& path, const MeshReadOptions& mesh_options = {},
+                                const MaskReadOptions& mask_options = {});
 
 }  // namespace stylet

@@ -8,8 +8,13 @@
 
 namespace stylet {
 
-/// Reads a label mask: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd). The image frame
-/// (oblique, left-handed) is kept; NIfTI's RAS and NRRD's declared space become LPS.
-Result<LabelImage> read_label_image(const std::filesystem::path& path);
+struct MaskReadOptions {
+  int volume = 0;  ///< which volume of a file that holds several, counted from 1; 0 = the only one
+};
+
+/// Reads a label mask: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM SEG. The
+/// image frame (oblique, left-handed) is kept; NIfTI's RAS and NRRD's declared space become LPS. Where segments
+/// overlap, the smaller one has the voxel.
+Result<LabelImage> read_label_image(const std::filesystem::path& path, const MaskReadOptions& options = {});
 
 }  // namespace stylet

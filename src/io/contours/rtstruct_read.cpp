@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // DICOM RT Structure Set, reading (DICOM PS3.3 A.19, C.8.8.5, C.8.8.6, C.8.8.8).
+#include "detail/dicom.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 
-#include <dcmtk/config/osconfig.h>
-#include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
 
@@ -20,64 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(DcmItem& item, const DcmTagKey& tag) {
-  OFString value;
-  if (item.findAndGetOFStringArray(tag, value).bad()) return {};
-  return trimmed({value.data(), value.size()});
-}
-
-std::optional<int> integer_of(DcmItem& item, const DcmTagKey& tag) {
-  const auto number = to_number(text_of(item, tag));
-  if (!number || std::abs(*number) > 2e9 || *number != std::floor(*number)) return std::nullopt;
-  return static_cast<int>(*number);
-}
-
-/// The items of a sequence, none when it is absent.
-std::vector<DcmItem*> items_of(DcmItem& parent, const DcmTagKey& tag) {
-  std::vector<DcmItem*> items;
-  DcmSequenceOfItems* sequence = nullptr;
-  if (parent.findAndGetSequence(tag, sequence).bad() || sequence == nullptr) return items;
-  for (unsigned long i = 0; i < sequence->card(); ++i) {
-    if (DcmItem* item = sequence->getItem(i)) items.push_back(item);
-  }
-  return items;
-}
-
 /// "DICM" after the preamble of 128 bytes (DICOM PS3.10 7.1).
 bool has_dicom_mark(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 132> head{};
   return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
-}
-
-/// Modality and SOP class without the contours: quick even for a folder of a thousand slices.
-bool is_rtstruct(const fs::path& path) {
-  DcmFileFormat file;
-  if (file.loadFileUntilTag(path.c_str(), EXS_Unknown, EGL_noChange, 4096, ERM_autoDetect, DCM_Manufacturer).bad()) {
-    return false;
-  }
-  return text_of(*file.getDataset(), DCM_Modality) == "RTSTRUCT" ||
-         text_of(*file.getDataset(), DCM_SOPClassUID) == UID_RTStructureSetStorage;
-}
-
-Result<fs::path> only_rtstruct_in(const fs::path& folder) {
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && is_rtstruct(entry.path())) found.push_back(entry.path());
-  }
-  std::sort(found.begin(), found.end());
-  if (found.empty()) {
-    return input_error(folder.string(), "the folder holds no DICOM RT Structure Set",
-                       "Name the file itself, or the folder in which the RTSTRUCT file lies.");
-  }
-  if (found.size() > 1) {
-    std::string names;
-    for (const fs::path& path : found) names += (names.empty() ? "" : ", ") + path.filename().string();
-    return input_error(folder.string(),
-                       fmt::format("the folder holds {} RT Structure Sets, one is expected: {}", found.size(), names),
-                       "Name one of these files instead of the folder.");
-  }
-  return found.front();
 }
 
 /// Points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
@@ -162,14 +108,8 @@ Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
 
 }  // namespace
 
-Result<ContourSet> parse_rtstruct(const fs::path& given) {
+Result<ContourSet> parse_rtstruct(const fs::path& path) {
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-  fs::path path = given;
-  if (fs::is_directory(given)) {
-    Result<fs::path> found = only_rtstruct_in(given);
-    if (!found) return found.error();
-    path = *found;
-  }
   const std::string source = path.string();
 
   DcmFileFormat file;

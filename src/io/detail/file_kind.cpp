@@ -156,7 +156,7 @@ std::string name_of(FileKind kind) {
 }
 
 std::string readable_formats() {
-  return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage; tetrahedra "
+  return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage, DICOM SEG; tetrahedra "
          "in "
          "VTU, legacy VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB.";
 }

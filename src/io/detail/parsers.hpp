@@ -12,8 +12,14 @@ namespace stylet::detail {
 Result<ContourSet> parse_rtstruct(const std::filesystem::path& path);
 Result<ContourSet> parse_contour_json(const std::filesystem::path& path);
 
-Result<LabelImage> parse_nifti(const std::filesystem::path& path);
-Result<LabelImage> parse_nrrd(const std::filesystem::path& path);
-Result<LabelImage> parse_metaimage(const std::filesystem::path& path);
+Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskReadOptions& options);
+Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadOptions& options);
+Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const MaskReadOptions& options);
+Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const MaskReadOptions& options);
+
+/// Whether a DICOM file is a segmentation, by its SOP class.
+bool is_dicom_seg(const std::filesystem::path& path);
+/// The only RT Structure Set or segmentation in a folder.
+Result<std::string> only_patient_in(const std::filesystem::path& folder);
 
 }  // namespace stylet::detail

@@ -33,7 +33,9 @@ void fields(auto& wire, Error& e) { wire(e.kind, e.where, e.what, e.cure); }
 void fields(auto& wire, Contour& c) { wire(c.points); }
 void fields(auto& wire, Roi& r) { wire(r.name, r.number, r.type, r.colour, r.contours); }
 void fields(auto& wire, ContourSet& s) { wire(s.source, s.label, s.frame_of_reference, s.rois, s.notes); }
-void fields(auto& wire, LabelImage& i) { wire(i.source, i.size, i.origin, i.spacing, i.direction, i.labels, i.names); }
+void fields(auto& wire, LabelImage& i) {
+  wire(i.source, i.size, i.origin, i.spacing, i.direction, i.labels, i.names, i.meanings, i.notes);
+}
 void fields(auto& wire, TetMesh& m) { wire(m.nodes, m.tets, m.tet_region, m.regions); }
 void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
 void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }

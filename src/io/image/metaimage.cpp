@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // MetaImage; the header by MetaIO (the format's own library, part of VTK). Its frame is LPS, as ITK reads and writes
 // it.
+#include "detail/input_file.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 #include "image/voxels.hpp"
@@ -93,20 +94,61 @@ std::string inflated(std::string_view packed, std::size_t size) {
   return out;
 }
 
-/// The voxels' bytes as the file orders them. MetaIO itself leaves voxels uninitialised where a file ends too early.
-Result<std::string> read_voxels(const fs::path& path, MetaImage& image, std::size_t size) {
+/// What the header says of how to read the rest, looked at before MetaIO does: it takes NDims for the length of lists
+/// that have room for ten, and opens any data file.
+struct Announced {
+  double dimensions = 0;
+  std::string data_file;
+};
+
+Result<Announced> announced_in(const fs::path& path) {
   const std::string source = path.string();
-  const std::string name = image.ElementDataFileName();
-  const bool local = lower(name) == "local";
-  if (!image.BinaryData() || lower(name).starts_with("list") || name.find('%') != std::string::npos) {
-    return input_error(source, "voxels as text or in many files are not supported", "Export one binary .mha file.");
+  std::ifstream file(path, std::ios::binary);
+  Announced found;
+  for (std::string line; std::getline(file, line) && line.size() < 4096;) {
+    const auto equals = line.find('=');
+    if (equals == std::string::npos) continue;
+    const std::string key = lower(trimmed(line.substr(0, equals))), value = trimmed(line.substr(equals + 1));
+    if (key == "ndims") {
+      found.dimensions = to_number(value).value_or(0);
+      if (!(found.dimensions >= 2 && found.dimensions <= 5)) {
+        return input_error(source + ", NDims", fmt::format("the value is '{}', 3 is expected", value.substr(0, 40)),
+                           "Export one 3D label mask; the header is damaged.");
+      }
+    }
+    if (key == "elementdatafile") {  // the last line of a header
+      found.data_file = value;
+      break;
+    }
   }
-  const fs::path data_path = local ? path : path.parent_path() / name;
+  if (found.dimensions == 0 || found.data_file.empty()) {
+    return input_error(
+        source,
+        fmt::format("the header of the MetaImage file has no {}", found.dimensions == 0 ? "NDims" : "ElementDataFile"),
+        "Copy or export it again; it is truncated or damaged.");
+  }
+  return found;
+}
+
+/// The file in which the voxels are. Errors: a list or a pattern of files, and those of data_file_of().
+Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
+  if (lower(name) == "local") return path;
+  if (lower(name).starts_with("list") || name.find('%') != std::string::npos) {
+    return input_error(path.string() + ", ElementDataFile",
+                       fmt::format("'{}': voxels spread over many files are not supported", name.substr(0, 80)),
+                       "Export one binary .mha file.");
+  }
+  return data_file_of(path, name);
+}
+
+/// The voxels' bytes as the file orders them. MetaIO itself leaves voxels uninitialised where a file ends too early.
+Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path, MetaImage& image, std::size_t size) {
+  const std::string source = path.string();
+  if (!image.BinaryData()) {
+    return input_error(source, "voxels as text are not supported", "Export one binary .mha file.");
+  }
+  const bool local = data_path == path;
   std::ifstream file(data_path, std::ios::binary);
-  if (!file || fs::is_directory(data_path)) {
-    return input_error(source, fmt::format("its data file '{}' cannot be opened", name),
-                       "Keep header and data beside each other.");
-  }
   std::string bytes(std::istreambuf_iterator<char>(file), {});
   std::size_t start = local ? end_of_header(bytes) : static_cast<std::size_t>(std::max(image.HeaderSize(), 0));
   if (image.HeaderSize() < 0 && !image.CompressedData() && bytes.size() >= size)
@@ -122,20 +164,24 @@ Result<std::string> read_voxels(const fs::path& path, MetaImage& image, std::siz
 
 }  // namespace
 
-Result<LabelImage> parse_metaimage(const std::filesystem::path& path) {
+Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const MaskReadOptions& options) {
   const std::string source = path.string();
   const auto damaged = [&](const char* part) {
     return input_error(
         source, fmt::format("the {} of the MetaImage file cannot be read", part),
         "Copy or export it again (an .mhd header needs its data file beside it); it is truncated or damaged.");
   };
+  const Result<Announced> announced = announced_in(path);
+  if (!announced) return announced.error();
+  const Result<fs::path> data_path = voxel_file(path, announced->data_file);
+  if (!data_path) return data_path.error();
   MetaImage image;
   // The header first: a refusal must not wait for gigabytes, and says more than a failure in the data.
   if (!image.Read(path.c_str(), false)) return damaged("header");
   std::vector<std::size_t> sizes;
   for (int d = 0; d < image.NDims(); ++d) sizes.push_back(static_cast<std::size_t>(std::max(image.DimSize(d), 0)));
-  Result<> three = check_dimensions(sizes, source);
-  if (!three) return three.error();
+  const Result<std::size_t> volume = choose_volume(sizes, options.volume, source);
+  if (!volume) return volume.error();
   if (image.ElementNumberOfChannels() != 1) {
     return input_error(source, fmt::format("a voxel has {} components, 1 is expected", image.ElementNumberOfChannels()),
                        "Export a label mask, not a colour or vector image.");
@@ -145,22 +191,30 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path) {
 
   int voxel_bytes = 0;
   MET_SizeOfType(image.ElementType(), &voxel_bytes);
-  const double bytes = static_cast<double>(voxel_bytes) * static_cast<double>(sizes[0]) *
-                       static_cast<double>(sizes[1]) * static_cast<double>(sizes[2]);
-  if (bytes > 1e12) return damaged("size");
-  Result<std::string> data = read_voxels(path, image, static_cast<std::size_t>(bytes));
+  double count = 1;
+  for (const std::size_t n : sizes) count *= static_cast<double>(n);
+  if (count * voxel_bytes > 1e12) return damaged("size");
+  Result<std::string> data = read_voxels(path, *data_path, image, static_cast<std::size_t>(count) * voxel_bytes);
   if (!data) return data.error();
   image.ElementData(data->data(), false);
-  image.ElementByteOrderFix(static_cast<std::streamoff>(bytes) / voxel_bytes);
+  image.ElementByteOrderFix(static_cast<std::streamoff>(count));
 
   Voxels voxels;
   voxels.source = source;
   voxels.type = *type;
-  voxels.data = image.ElementData();
+  voxels.data = data->data() + *volume * sizes[0] * sizes[1] * sizes[2] * static_cast<std::size_t>(voxel_bytes);
+  voxels.origin_field = "Offset";
+  voxels.spacing_field = "ElementSpacing";
   const double unit = unit_mm(image.DistanceUnits());
   const int dimensions = image.NDims();
   for (int a = 0; a < 3; ++a) {
     voxels.size[a] = sizes[a];
+    if (!(image.ElementSpacing(a) > 0)) {
+      return input_error(source + ", ElementSpacing",
+                         fmt::format("the value along axis {} is {:g}, a number above 0 is expected", "ijk"[a],
+                                     image.ElementSpacing(a)),
+                         "Write the image again with its voxel spacing in mm, e.g. from 3D Slicer.");
+    }
     // Row a of TransformMatrix is the direction of image axis a.
     for (int row = 0; row < 3; ++row) {
       voxels.axes(row, a) = unit * image.TransformMatrix()[a * dimensions + row] * image.ElementSpacing(a);

@@ -12,20 +12,17 @@
 #include <vtkNew.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 namespace stylet::detail {
 
 namespace {
 
 Result<VoxelType> voxel_type(vtkImageData& image, const std::string& source) {
-  if (image.GetNumberOfScalarComponents() != 1) {
-    return input_error(source,
-                       fmt::format("a voxel has {} components, 1 is expected", image.GetNumberOfScalarComponents()),
-                       "Export a label mask, not a colour or vector image.");
-  }
   switch (image.GetScalarType()) {
     case VTK_CHAR:
     case VTK_SIGNED_CHAR:
@@ -70,6 +67,16 @@ double unit_mm(int code) {
   }
 }
 
+/// One component of all voxels, out of several that lie beside each other.
+std::vector<char> component_of(vtkImageData& image, std::size_t component) {
+  const std::size_t bytes = static_cast<std::size_t>(image.GetScalarSize());
+  const std::size_t step = bytes * static_cast<std::size_t>(image.GetNumberOfScalarComponents());
+  const auto* from = static_cast<const char*>(image.GetScalarPointer()) + component * bytes;
+  std::vector<char> values(static_cast<std::size_t>(image.GetNumberOfPoints()) * bytes);
+  for (std::size_t n = 0; n < values.size(); n += bytes, from += step) std::copy(from, from + bytes, &values[n]);
+  return values;
+}
+
 /// The file, unpacked, holds at least so many bytes. VTK fills what is missing with zeros and says nothing.
 bool holds_bytes(const std::filesystem::path& path, double wanted) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
@@ -86,7 +93,7 @@ bool holds_bytes(const std::filesystem::path& path, double wanted) {
 
 }  // namespace
 
-Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
+Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskReadOptions& options) {
   const std::string source = path.string();
   const auto messages = VtkMessages::install();
   const auto damaged = [&] {
@@ -103,8 +110,14 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
   const int dimensions = static_cast<int>(std::clamp<vtkTypeInt64>(header.GetDim(0), 0, 7));
   for (int d = 1; d <= dimensions; ++d)
     sizes.push_back(static_cast<std::size_t>(std::max<vtkTypeInt64>(header.GetDim(d), 0)));
-  Result<> three = check_dimensions(sizes, source);
-  if (!three) return three.error();
+  const Result<std::size_t> volume = choose_volume(sizes, options.volume, source);
+  if (!volume) return volume.error();
+  for (int a = 1; a <= 3; ++a) {
+    if (header.GetPixDim(a) >= 0 && std::isfinite(header.GetPixDim(a))) continue;
+    return input_error(fmt::format("{}, pixdim[{}]", source, a),
+                       fmt::format("the value is {:g}, a voxel spacing above 0 is expected", header.GetPixDim(a)),
+                       "Save the image again, e.g. from 3D Slicer.");
+  }
 
   // The standard's method 3 (sform) comes before method 2 (qform). VTK's matrices act on index × spacing.
   vtkMatrix4x4* form = header.GetSFormCode() > 0 ? reader->GetSFormMatrix() : nullptr;
@@ -133,6 +146,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
                        "Copy or export it again; it is truncated or damaged.");
   }
 
+  reader->TimeAsVectorOn();  // the volumes of a series become components, of which one is taken
   reader->Update();
   vtkImageData& image = *reader->GetOutput();
   if (messages->failed() || reader->GetErrorCode() != 0 || image.GetScalarPointer() == nullptr) return damaged();
@@ -142,7 +156,18 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path) {
   Result<VoxelType> type = voxel_type(image, source);
   if (!type) return type.error();
   voxels.type = *type;
-  voxels.data = image.GetScalarPointer();
+  std::size_t volumes = 1;
+  for (std::size_t d = 3; d < sizes.size(); ++d) volumes *= std::max<std::size_t>(sizes[d], 1);
+  const auto components = static_cast<std::size_t>(image.GetNumberOfScalarComponents());
+  if (components != volumes) {
+    return input_error(source, fmt::format("a voxel has {} components, 1 is expected", components / volumes),
+                       "Export a label mask, not a colour or vector image.");
+  }
+  const std::vector<char> chosen = volumes == 1 ? std::vector<char>() : component_of(image, *volume);
+  voxels.data = volumes == 1 ? image.GetScalarPointer() : chosen.data();
+  const bool by_sform = header.GetSFormCode() > 0;
+  voxels.origin_field = by_sform ? "sform" : "qform";
+  voxels.spacing_field = by_sform ? "sform" : "pixdim";
   if (reader->GetRescaleSlope() != 0.0 && std::isfinite(reader->GetRescaleSlope())) {  // 0 means "do not scale"
     voxels.slope = reader->GetRescaleSlope();
     voxels.intercept = reader->GetRescaleIntercept();

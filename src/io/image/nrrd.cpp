@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NRRD, also 3D Slicer's .seg.nrrd, by Teem (the format's own library).
+#include "detail/input_file.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
+#include "image/segments.hpp"
 #include "image/voxels.hpp"
 
 #include <fmt/format.h>
 #include <teem/nrrd.h>
 
+#include <cmath>
+#include <fstream>
+#include <map>
 #include <memory>
+#include <set>
 
 namespace stylet::detail {
 
@@ -97,74 +103,185 @@ std::optional<std::string> key_value(const Nrrd& nrrd, const std::string& key) {
   return value;
 }
 
-/// Names of 3D Slicer's segments: keys SegmentN_Name and SegmentN_LabelValue.
-std::map<int, std::string> segment_names(const Nrrd& nrrd) {
-  std::map<int, std::string> names;
+/// What 3D Slicer writes of one segment: keys SegmentN_Name, SegmentN_LabelValue and SegmentN_Layer.
+struct SegmentKeys {
+  std::string name;
+  int value = 0;  ///< in its layer
+  std::size_t layer = 0;
+};
+
+std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd) {
+  std::vector<SegmentKeys> segments;
   for (int n = 0; n < 65536; ++n) {
-    const auto name = key_value(nrrd, fmt::format("Segment{}_Name", n));
-    if (!name) break;
-    const auto label = key_value(nrrd, fmt::format("Segment{}_LabelValue", n));
-    const double value = label ? to_number(*label).value_or(0.0) : n + 1;
-    if (value >= 1 && value <= 65535) names[static_cast<int>(value)] = *name;
+    const auto key = [&](const char* what) { return key_value(nrrd, fmt::format("Segment{}_{}", n, what)); };
+    const auto name = key("Name"), value = key("LabelValue"), layer = key("Layer");
+    if (!name && !value) break;
+    const double number = value ? to_number(*value).value_or(0.0) : n + 1;
+    const double at = layer ? to_number(*layer).value_or(0.0) : 0.0;
+    if (number < 1 || number > 65535 || at < 0 || at > 65535) continue;
+    segments.push_back({name.value_or(""), static_cast<int>(number), static_cast<std::size_t>(at)});
   }
-  return names;
+  return segments;
 }
 
-Result<> check_layers(const Nrrd& nrrd, const std::string& source) {
-  std::vector<std::size_t> sizes;
-  for (unsigned d = 0; d < nrrd.dim; ++d) sizes.push_back(nrrd.axis[d].size);
-  if (nrrd.dim == 4 && nrrd.axis[0].size > 1 && nrrd.axis[0].kind == nrrdKindList) {
-    return input_error(
-        source, fmt::format("the segmentation has {} layers because its segments overlap, one is expected", sizes[0]),
-        "In 3D Slicer let the segments not overlap (Segment Editor, Masking, Overwrite all) and collapse the "
-        "layers, or export to one label map.");
+/// The axis that is none of the patient's: layers of segments, or volumes; -1 = there is none.
+int list_axis(const Nrrd& nrrd) {
+  if (nrrd.dim != 4) return -1;
+  for (const int axis : {0, 3}) {
+    if (!std::isfinite(nrrd.axis[axis].spaceDirection[0])) return axis;
   }
-  return check_dimensions(sizes, source);
+  return 3;
+}
+
+/// One volume of the file as it is.
+Result<NrrdPointer> slice_of(const Nrrd& nrrd, int axis, std::size_t at, const std::string& source) {
+  NrrdPointer slice(nrrdNew());
+  const int status = axis < 0 ? nrrdCopy(slice.get(), &nrrd) : nrrdSlice(slice.get(), &nrrd, axis, at);
+  if (status != 0) {
+    return input_error(source, fmt::format("a volume cannot be taken out of the NRRD file ({})", last_error()),
+                       "Export one 3D label mask.");
+  }
+  return slice;
+}
+
+Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& source) {
+  Result<VoxelType> type = voxel_type(nrrd.type, source);
+  if (!type) return type.error();
+  Voxels voxels;
+  voxels.source = source;
+  voxels.type = *type;
+  voxels.data = nrrd.data;
+  voxels.origin_field = "space origin";
+  voxels.spacing_field = "space directions";
+  for (unsigned a = 0; a < 3; ++a) {
+    const NrrdAxisInfo& axis = nrrd.axis[a];
+    const double unit = unit_mm(nrrd.spaceUnits[a]);
+    if (unit == 0.0) {
+      return input_error(source, fmt::format("the unit '{}' is unknown", nrrd.spaceUnits[a]),
+                         "Write 'space units: \"mm\" \"mm\" \"mm\"'.");
+    }
+    voxels.size[a] = axis.size;
+    for (unsigned row = 0; row < 3; ++row) {
+      voxels.axes(row, a) = lps[row] * unit_mm(nrrd.spaceUnits[row]) * axis.spaceDirection[row];
+    }
+    voxels.origin[a] = lps[a] * unit * nrrd.spaceOrigin[a];
+  }
+  return voxels;
+}
+
+/// The segments of all layers in one image. Each layer counts its labels from 1: where two have the same, the segments
+/// get their number in the file instead.
+Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, const std::vector<SegmentKeys>& keys, const Vec3& lps,
+                                const std::string& source) {
+  std::set<int> values;
+  for (const SegmentKeys& key : keys) values.insert(key.value);
+  const bool unique = values.size() == keys.size();
+  LabelImage image;
+  std::vector<Segment> segments;
+  for (std::size_t layer = 0; layer < nrrd.axis[axis].size; ++layer) {
+    Result<NrrdPointer> slice = slice_of(nrrd, axis, layer, source);
+    if (!slice) return slice.error();
+    Result<Voxels> voxels = voxels_of(**slice, lps, source);
+    if (!voxels) return voxels.error();
+    if (layer == 0) {
+      if (Result<> frame = set_frame(*voxels, image); !frame) return frame.error();
+      image.labels.resize((*voxels).size[0] * (*voxels).size[1] * (*voxels).size[2]);
+    }
+    Result<std::vector<std::uint16_t>> labels = labels_of(*voxels);
+    if (!labels) return labels.error();
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (keys[k].layer != layer) continue;
+      Segment segment{unique ? keys[k].value : static_cast<int>(k) + 1, keys[k].name, "", {}};
+      segment.inside.reserve(labels->size());
+      for (const std::uint16_t label : *labels) segment.inside.push_back(label == keys[k].value);
+      segments.push_back(std::move(segment));
+    }
+  }
+  image.notes.push_back(fmt::format("{} segments in {} layers were put into one mask{}", segments.size(),
+                                    nrrd.axis[axis].size,
+                                    unique ? ""
+                                           : "; layers use the same labels, so that segments are numbered 1, 2, … "
+                                             "in the order of the file"));
+  paint(std::move(segments), image);
+  if (Result<> extent = check_extent(image); !extent) return extent.error();
+  return image;
+}
+
+/// A line of the header that names the data's file or files; nothing when they follow the header. Teem would open
+/// whatever it names.
+Result<> check_data_files(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line) && line.size() < 65536 && !trimmed(line).empty();) {
+    const auto colon = line.find(':');
+    if (colon == std::string::npos || line.front() == '#') continue;
+    const std::string key = lower(trimmed(line.substr(0, colon))), name = trimmed(line.substr(colon + 1));
+    if (key != "data file" && key != "datafile") continue;
+    if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
+      return input_error(path.string() + ", data file",
+                         fmt::format("'{}': data spread over many files are not supported", name.substr(0, 80)),
+                         "Export one .nrrd file.");
+    }
+    if (Result<std::filesystem::path> data = data_file_of(path, name); !data) return data.error();
+  }
+  return Ok{};
+}
+
+/// Teem writes beyond the end of its own messages when a field holds a very long word.
+Result<> check_field_lengths(const std::filesystem::path& path) {
+  constexpr std::size_t kLongest = 512;
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  for (int number = 1; std::getline(file, line) && !trimmed(line).empty(); ++number) {
+    if (line.front() == '#' || line.find(":=") != std::string::npos || line.size() <= kLongest) continue;
+    return input_error(
+        fmt::format("{}, line {}", path.string(), number),
+        fmt::format("the header has a line of {} characters, at most {} are expected", line.size(), kLongest),
+        "Copy or export it again; it is damaged.");
+  }
+  return Ok{};
 }
 
 }  // namespace
 
-Result<LabelImage> parse_nrrd(const std::filesystem::path& path) {
+Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadOptions& options) {
   const std::string source = path.string();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NRRD file cannot be read ({})", last_error()),
                        "Copy or export it again; it is truncated or damaged.");
   };
+  if (Result<> lengths = check_field_lengths(path); !lengths) return lengths.error();
+  if (Result<> data = check_data_files(path); !data) return data.error();
   // The header first: a refusal must not wait for gigabytes, and says more than a failure in the data.
   const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> header_only(nrrdIoStateNew(), nrrdIoStateNix);
   nrrdIoStateSet(header_only.get(), nrrdIoStateSkipData, AIR_TRUE);
   NrrdPointer nrrd(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), header_only.get()) != 0) return damaged();
-  Result<> layers = check_layers(*nrrd, source);
-  if (!layers) return layers.error();
+  const int axis = list_axis(*nrrd);
+  std::vector<std::size_t> sizes;
+  for (unsigned d = 0; d < nrrd->dim; ++d) {
+    if (static_cast<int>(d) != axis) sizes.push_back(nrrd->axis[d].size);
+  }
+  if (axis >= 0) sizes.push_back(nrrd->axis[axis].size);
+  const std::vector<SegmentKeys> keys = segment_keys(*nrrd);
+  const bool layered = axis >= 0 && nrrd->axis[axis].size > 1 && !keys.empty() && options.volume == 0;
+  Result<std::size_t> volume =
+      choose_volume(layered ? std::span(sizes).first(3) : std::span(sizes), options.volume, source);
+  if (!volume) return volume.error();
   Result<Vec3> lps = to_lps(*nrrd, source);
   if (!lps) return lps.error();
 
   nrrd.reset(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), nullptr) != 0) return damaged();
-  Result<VoxelType> type = voxel_type(nrrd->type, source);
-  if (!type) return type.error();
-
-  Voxels voxels;
-  voxels.source = source;
-  voxels.type = *type;
-  voxels.data = nrrd->data;
-  const unsigned first = nrrd->dim == 4 && nrrd->axis[0].size == 1 ? 1 : 0;  // one layer written as a list of one
-  for (unsigned a = 0; a < 3; ++a) {
-    const NrrdAxisInfo& axis = nrrd->axis[first + a];
-    const double unit = unit_mm(nrrd->spaceUnits[a]);
-    if (unit == 0.0) {
-      return input_error(source, fmt::format("the unit '{}' is unknown", nrrd->spaceUnits[a]),
-                         "Write 'space units: \"mm\" \"mm\" \"mm\"'.");
-    }
-    voxels.size[a] = axis.size;
-    for (unsigned row = 0; row < 3; ++row) {
-      voxels.axes(row, a) = (*lps)[row] * unit_mm(nrrd->spaceUnits[row]) * axis.spaceDirection[row];
-    }
-    voxels.origin[a] = (*lps)[a] * unit * nrrd->spaceOrigin[a];
+  if (layered) return merge_layers(*nrrd, axis, keys, *lps, source);
+  Result<NrrdPointer> slice = slice_of(*nrrd, axis, *volume, source);
+  if (!slice) return slice.error();
+  Result<Voxels> voxels = voxels_of(**slice, *lps, source);
+  if (!voxels) return voxels.error();
+  Result<LabelImage> image = to_label_image(*voxels);
+  if (!image) return image;
+  for (const SegmentKeys& key : keys) {
+    if (axis < 0 || key.layer == *volume) image->names[key.value] = key.name;
   }
-  Result<LabelImage> image = to_label_image(voxels);
-  if (image) image->names = segment_names(*nrrd);
   return image;
 }
 

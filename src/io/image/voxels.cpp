@@ -1,118 +1,145 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/voxels.hpp"
 
+#include "detail/reach.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <optional>
+#include <unordered_set>
+#include <vector>
 
 namespace stylet::detail {
 
 namespace {
 
-constexpr std::size_t max_distinct_labels = 500;  // more is a grey-value picture
-constexpr double max_shear = 1e-3;                // |cosine| between two axes; headers are single precision
+// A mask is made of pieces, so that most neighbours have the same label; the grey values of a picture vary from voxel
+// to voxel. Above so many different values the one or the other decides; above the second number it is a picture
+// anyway.
+constexpr std::size_t kFewValues = 16;
+constexpr std::size_t kManyValues = 256;
+constexpr double kAlikeInMask = 1.0 / 3.0;   // share of neighbours along i that have the same label, outside background
+constexpr std::size_t kMostCounted = 65536;  // different values that are counted for a message
+constexpr double kWhole = 1e-3;              // from a whole number, in what counts as one
+constexpr double max_shear = 1e-3;           // |cosine| between two axes; headers are single precision
 
-const char* const mask_cure = "Name a label mask: 0 outside, one whole number per structure.";
+const char* const mask_cure =
+    "Name a label mask: 0 outside, one whole number per structure; a probability map must be cut at a threshold first, "
+    "e.g. in 3D Slicer.";
+
+/// The values of an image as numbers, whatever their type in the file.
+template <class T>
+struct Values {
+  const Voxels& voxels;
+  double operator()(std::size_t n) const {
+    return voxels.slope * static_cast<double>(static_cast<const T*>(voxels.data)[n]) + voxels.intercept;
+  }
+};
+
+std::string voxel_name(const Voxels& voxels, std::size_t n) {
+  const std::size_t nx = voxels.size[0], ny = voxels.size[1];
+  return fmt::format("voxel ({}, {}, {})", n % nx, n / nx % ny, n / (nx * ny));
+}
+
+/// Says how many different values there are, and within what.
+template <class T>
+Error is_picture(const Values<T>& value, std::size_t count, const std::string& why) {
+  std::unordered_set<double> different;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double v = value(n);
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+    if (different.size() <= kMostCounted) different.insert(v);
+  }
+  const bool more = different.size() > kMostCounted;
+  return input_error(value.voxels.source,
+                     fmt::format("this is an image, not a mask: it has {}{} different values from {:.6g} to {:.6g}{}",
+                                 more ? "more than " : "", more ? kMostCounted : different.size(), low, high, why),
+                     mask_cure);
+}
+
+/// Whether labels as many as these look like grey values.
+bool varies_like_picture(const std::vector<std::uint16_t>& labels, std::size_t different) {
+  if (different <= kFewValues) return false;
+  if (different > kManyValues) return true;
+  std::size_t pairs = 0, alike = 0;
+  for (std::size_t n = 1; n < labels.size(); ++n) {
+    if (labels[n] == 0 && labels[n - 1] == 0) continue;
+    ++pairs;
+    if (labels[n] == labels[n - 1]) ++alike;
+  }
+  return static_cast<double>(alike) < kAlikeInMask * static_cast<double>(pairs);
+}
 
 /// Copies values to labels; T is the file's type.
 template <class T>
-Result<> copy_labels(const Voxels& voxels, LabelImage& image) {
-  const T* data = static_cast<const T*>(voxels.data);
-  const std::size_t nx = voxels.size[0], ny = voxels.size[1];
-  std::set<double> distinct;
-  double last_seen = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t n = 0; n < image.labels.size(); ++n) {
-    const double value = voxels.slope * static_cast<double>(data[n]) + voxels.intercept;
-    if (value == last_seen) {  // runs of equal labels make up most of a mask
-      image.labels[n] = static_cast<std::uint16_t>(value);
+Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
+  const Values<T> value{voxels};
+  const std::size_t count = labels.size();
+  std::vector<bool> seen(std::numeric_limits<std::uint16_t>::max() + std::size_t{1});
+  std::size_t different = 0;
+  std::optional<std::size_t> outside;  // the first voxel whose value no label can have
+  for (std::size_t n = 0; n < count; ++n) {
+    const double v = value(n), whole = std::round(v);
+    if (!std::isfinite(v)) {
+      return input_error(fmt::format("{}, {}", voxels.source, voxel_name(voxels, n)),
+                         fmt::format("the value is {}, a whole number is expected", v), mask_cure);
+    }
+    if (std::abs(v - whole) > kWhole) {
+      return is_picture(value, count,
+                        fmt::format(", and {:.6g} at {} is not a whole number", v, voxel_name(voxels, n)));
+    }
+    if (whole < 0 || whole > std::numeric_limits<std::uint16_t>::max()) {
+      if (!outside) outside = n;
       continue;
     }
-    const auto where = [&] {
-      return fmt::format("{}, voxel ({}, {}, {})", voxels.source, n % nx, n / nx % ny, n / (nx * ny));
-    };
-    if (!std::isfinite(value) || value != std::floor(value)) {
-      return input_error(where(),
-                         fmt::format("the value {:.6g} is not a whole number: this is a picture or a "
-                                     "probability map, not a label mask",
-                                     value),
-                         mask_cure);
-    }
-    if (value < 0 || value > std::numeric_limits<std::uint16_t>::max()) {
-      return input_error(where(), fmt::format("the label {:.0f} is outside 0…65535", value), mask_cure);
-    }
-    distinct.insert(value);
-    if (distinct.size() > max_distinct_labels) {
-      return input_error(
-          voxels.source,
-          fmt::format("more than {} different values: this is a picture, not a label mask", max_distinct_labels),
-          mask_cure);
-    }
-    image.labels[n] = static_cast<std::uint16_t>(value);
-    last_seen = value;
+    labels[n] = static_cast<std::uint16_t>(whole);
+    if (!seen[labels[n]]) ++different;
+    seen[labels[n]] = true;
   }
+  if (outside) {
+    return is_picture(
+        value, count,
+        fmt::format(", and {:.6g} at {} is no label (0…65535)", value(*outside), voxel_name(voxels, *outside)));
+  }
+  if (varies_like_picture(labels, different)) return is_picture(value, count, "");
   return Ok{};
 }
 
-Result<> copy_labels(const Voxels& voxels, LabelImage& image) {
+Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
   switch (voxels.type) {
     case VoxelType::int8:
-      return copy_labels<std::int8_t>(voxels, image);
+      return copy_labels<std::int8_t>(voxels, labels);
     case VoxelType::uint8:
-      return copy_labels<std::uint8_t>(voxels, image);
+      return copy_labels<std::uint8_t>(voxels, labels);
     case VoxelType::int16:
-      return copy_labels<std::int16_t>(voxels, image);
+      return copy_labels<std::int16_t>(voxels, labels);
     case VoxelType::uint16:
-      return copy_labels<std::uint16_t>(voxels, image);
+      return copy_labels<std::uint16_t>(voxels, labels);
     case VoxelType::int32:
-      return copy_labels<std::int32_t>(voxels, image);
+      return copy_labels<std::int32_t>(voxels, labels);
     case VoxelType::uint32:
-      return copy_labels<std::uint32_t>(voxels, image);
+      return copy_labels<std::uint32_t>(voxels, labels);
     case VoxelType::int64:
-      return copy_labels<std::int64_t>(voxels, image);
+      return copy_labels<std::int64_t>(voxels, labels);
     case VoxelType::uint64:
-      return copy_labels<std::uint64_t>(voxels, image);
+      return copy_labels<std::uint64_t>(voxels, labels);
     case VoxelType::float32:
-      return copy_labels<float>(voxels, image);
+      return copy_labels<float>(voxels, labels);
     case VoxelType::float64:
-      return copy_labels<double>(voxels, image);
+      return copy_labels<double>(voxels, labels);
   }
   return Ok{};
 }
 
-/// Splits the steps into spacing and unit directions.
-Result<> set_frame(const Voxels& voxels, LabelImage& image) {
-  const char* const cure = "Write the image again with a valid orientation, e.g. from 3D Slicer.";
-  if (!voxels.axes.allFinite() || !voxels.origin.allFinite()) {
-    return input_error(voxels.source, "the image frame (origin, spacing, directions) holds values that are not finite",
-                       cure);
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = voxels.axes.col(axis).norm();
-    if (!(length > 0.0)) {
-      return input_error(voxels.source, fmt::format("the voxel spacing along axis {} is zero", "ijk"[axis]), cure);
-    }
-    image.spacing[axis] = length;
-    image.direction.col(axis) = voxels.axes.col(axis) / length;
-  }
-  for (int a = 0; a < 3; ++a) {
-    for (int b = a + 1; b < 3; ++b) {
-      const double cosine = image.direction.col(a).dot(image.direction.col(b));
-      if (std::abs(cosine) > max_shear) {
-        return input_error(voxels.source,
-                           fmt::format("the image axes {} and {} enclose {:.2f}°, 90° is expected (a sheared image)",
-                                       "ijk"[a], "ijk"[b], std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI),
-                           "Resample the mask to a regular grid, e.g. with 3D Slicer.");
-      }
-    }
-  }
-  image.origin = voxels.origin;
-  return Ok{};
-}
+}  // namespace
 
-/// The segmentation must not be empty and must have the size of something in a patient.
 Result<> check_extent(const LabelImage& image) {
   std::array<Index, 3> low = image.size, high{-1, -1, -1};
   std::size_t n = 0;
@@ -143,46 +170,97 @@ Result<> check_extent(const LabelImage& image) {
   return Ok{};
 }
 
-}  // namespace
-
-Result<> check_dimensions(std::span<const std::size_t> sizes, const std::string& source) {
-  std::size_t dimensions = sizes.size();
-  while (dimensions > 3 && sizes[dimensions - 1] == 1) --dimensions;
-  if (dimensions > 3) {
-    return input_error(
-        source, fmt::format("the image has {} dimensions ({}), 3 are expected", dimensions, fmt::join(sizes, " × ")),
-        "Export one 3D label mask; overlapping segments must be merged into one layer first.");
-  }
-  if (dimensions < 3 || std::any_of(sizes.begin(), sizes.begin() + 3, [](std::size_t n) { return n < 2; })) {
-    return input_error(
-        source,
-        fmt::format("the image has {} voxels, at least 2 along each of 3 axes are needed", fmt::join(sizes, " × ")),
-        "Export the whole volume, not one slice.");
-  }
-  return Ok{};
-}
-
-Result<LabelImage> to_label_image(const Voxels& voxels) {
-  Result<> dimensions = check_dimensions(voxels.size, voxels.source);
-  if (!dimensions) return dimensions.error();
-  const double count =
-      static_cast<double>(voxels.size[0]) * static_cast<double>(voxels.size[1]) * static_cast<double>(voxels.size[2]);
+Result<> set_frame(const Voxels& voxels, LabelImage& image) {
+  const char* const cure = "Write the image again with a valid orientation, in mm, e.g. from 3D Slicer.";
+  const std::array<std::size_t, 3>& size = voxels.size;
+  const double count = static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
   if (count > std::numeric_limits<Index>::max()) {
     return input_error(voxels.source,
                        fmt::format("the image has {:.3g} voxels, at most {:.3g} are supported", count,
                                    static_cast<double>(std::numeric_limits<Index>::max())),
                        "Crop it to the pelvis.");
   }
-  LabelImage image;
+  if (Result<> reach = check_reach(fmt::format("{}, {}", voxels.source, voxels.origin_field), voxels.origin,
+                                   "the image's first voxel");
+      !reach) {
+    return reach;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string where = fmt::format("{}, {}", voxels.source, voxels.spacing_field);
+    const double length = voxels.axes.col(axis).norm();
+    if (!(length >= kFinestVoxel_mm && length <= kCoarsestVoxel_mm)) {
+      return input_error(where,
+                         fmt::format("the voxel spacing along axis {} is {:.6g} mm, {:g} to {:g} mm is expected",
+                                     "ijk"[axis], length, kFinestVoxel_mm, kCoarsestVoxel_mm),
+                         cure);
+    }
+    if (length * static_cast<double>(size[axis]) > kLongestImage_mm) {
+      return input_error(
+          where,
+          fmt::format("the image is {:.6g} mm long along axis {} ({} voxels of {:.6g} mm), at most {:g} "
+                      "mm is expected",
+                      length * static_cast<double>(size[axis]), "ijk"[axis], size[axis], length, kLongestImage_mm),
+          cure);
+    }
+    image.spacing[axis] = length;
+    image.direction.col(axis) = voxels.axes.col(axis) / length;
+  }
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a + 1; b < 3; ++b) {
+      const double cosine = image.direction.col(a).dot(image.direction.col(b));
+      if (std::abs(cosine) > max_shear) {
+        return input_error(voxels.source,
+                           fmt::format("the image axes {} and {} enclose {:.2f}°, 90° is expected (a sheared image)",
+                                       "ijk"[a], "ijk"[b], std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI),
+                           "Resample the mask to a regular grid, e.g. with 3D Slicer.");
+      }
+    }
+  }
   image.source = voxels.source;
-  for (int a = 0; a < 3; ++a) image.size[a] = static_cast<Index>(voxels.size[a]);
-  Result<> frame = set_frame(voxels, image);
-  if (!frame) return frame.error();
-  image.labels.resize(static_cast<std::size_t>(count));
-  Result<> labels = copy_labels(voxels, image);
+  image.origin = voxels.origin;
+  for (int a = 0; a < 3; ++a) image.size[a] = static_cast<Index>(size[a]);
+  return Ok{};
+}
+
+Result<std::vector<std::uint16_t>> labels_of(const Voxels& voxels) {
+  std::vector<std::uint16_t> labels(voxels.size[0] * voxels.size[1] * voxels.size[2]);
+  if (Result<> copied = copy_labels(voxels, labels); !copied) return copied.error();
+  return labels;
+}
+
+Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen, const std::string& source) {
+  if (sizes.size() < 3 || std::any_of(sizes.begin(), sizes.begin() + 3, [](std::size_t n) { return n < 2; })) {
+    return input_error(
+        source,
+        fmt::format("the image has {} voxels, at least 2 along each of 3 axes are needed", fmt::join(sizes, " × ")),
+        "Export the whole volume, not one slice.");
+  }
+  double volumes = 1;
+  for (const std::size_t n : sizes.subspan(3)) volumes *= static_cast<double>(std::max<std::size_t>(n, 1));
+  if (volumes == 1 && chosen <= 1) return std::size_t{0};
+  if (chosen == 0) {
+    return input_error(
+        source,
+        fmt::format("the file holds {:.0f} volumes ({} voxels), one is needed", volumes, fmt::join(sizes, " × ")),
+        "Say which one, counted from 1: volume = 1 below [patient] in a scenario, --volume 1 with "
+        "stylet info and stylet mesh.");
+  }
+  if (chosen > volumes) {
+    return input_error(
+        source,
+        fmt::format("volume {} is chosen, the file holds {:.0f} ({} voxels)", chosen, volumes, fmt::join(sizes, " × ")),
+        volumes == 1 ? "Leave volume out." : fmt::format("Choose one from 1 to {:.0f}.", volumes));
+  }
+  return static_cast<std::size_t>(chosen - 1);
+}
+
+Result<LabelImage> to_label_image(const Voxels& voxels) {
+  LabelImage image;
+  if (Result<> frame = set_frame(voxels, image); !frame) return frame.error();
+  Result<std::vector<std::uint16_t>> labels = labels_of(voxels);
   if (!labels) return labels.error();
-  Result<> extent = check_extent(image);
-  if (!extent) return extent.error();
+  image.labels = std::move(*labels);
+  if (Result<> extent = check_extent(image); !extent) return extent.error();
   return image;
 }
 

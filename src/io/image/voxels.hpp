@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace stylet::detail {
 
@@ -20,17 +21,31 @@ struct Voxels {
   const void* data = nullptr;  ///< i fastest; size[0]*size[1]*size[2] values in the machine's byte order
   double slope = 1.0;          ///< label = slope * stored + intercept
   double intercept = 0.0;
-  Mat3 axes = Mat3::Identity();  ///< [mm] LPS, columns: steps from one voxel to the next along i, j, k
-  Vec3 origin = Vec3::Zero();    ///< [mm] LPS, centre of voxel (0,0,0)
+  Mat3 axes = Mat3::Identity();           ///< [mm] LPS, columns: steps from one voxel to the next along i, j, k
+  Vec3 origin = Vec3::Zero();             ///< [mm] LPS, centre of voxel (0,0,0)
+  std::string origin_field = "origin";    ///< what the format calls its origin
+  std::string spacing_field = "spacing";  ///< what the format calls its spacing
 };
 
-/// Turns an image into a segmentation, or says why it is none: 2D, no finite or a degenerate or sheared frame,
-/// negative, fractional or too many different values, nothing but background, extent of the segmentation < 1 mm or > 2
-/// m.
+/// Splits the frame of `voxels` into origin, spacing and directions of `image`, and sets its size. Errors: fewer than
+/// two voxels along an axis, too many voxels, a frame that is not finite, out of reach (detail/reach.hpp), degenerate
+/// or sheared; each with the format's own name of the field.
+Result<> set_frame(const Voxels& voxels, LabelImage& image);
+
+/// Refuses an empty segmentation and one that is < 1 mm or > 2 m long.
+Result<> check_extent(const LabelImage& image);
+
+/// The values as labels, or why they are none: not whole numbers (to 1e-3), outside 0…65535, or those of a picture.
+Result<std::vector<std::uint16_t>> labels_of(const Voxels& voxels);
+
+/// Turns an image into a segmentation, or says why it is none: the errors of set_frame(), labels_of() and
+/// check_extent().
 Result<LabelImage> to_label_image(const Voxels& voxels);
 
-/// Refuses an image that is not 3D, or a series of several 3D images.
-/// @param sizes (dimensions) voxels along each axis of the file
-Result<> check_dimensions(std::span<const std::size_t> sizes, const std::string& source);
+/// Which volume of a file is meant, counted from 0. Errors: not 3D, too few voxels, several volumes and none chosen,
+/// a number that the file does not have.
+/// @param sizes (dimensions) voxels along each axis of the file; volumes along the fourth and later ones
+/// @param chosen counted from 1, 0 = the only one
+Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen, const std::string& source);
 
 }  // namespace stylet::detail

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/raw_mesh.hpp"
 
+#include "detail/reach.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -131,6 +133,10 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
   }
   if (options.scale == 0.0 && raw.unit_mm == 0.0) {
     if (Result<> unit = check_unit(raw.nodes, source); !unit) return unit.error();
+  }
+  for (std::size_t a = 0; a < raw.nodes.size(); ++a) {
+    if (is_in_reach(raw.nodes[a])) continue;
+    return check_reach(source, raw.nodes[a], fmt::format("node {}", a)).error();
   }
   set_regions(raw, out.mesh);
   out.mesh.nodes = std::move(raw.nodes);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/surfaces.hpp"
 
+#include "detail/reach.hpp"
+
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellArrayIterator.h>
@@ -95,10 +97,10 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
   Eigen::AlignedBox3d box;
   for (const Surface& surface : surfaces) {
     for (std::size_t p = 0; p < surface.points.size(); ++p) {
-      if (!surface.points[p].allFinite() || surface.points[p].cwiseAbs().maxCoeff() > 1e9) {
-        return input_error(fmt::format("{}, surface '{}', point {}", source, surface.name, p),
-                           "a coordinate is not a finite number or too large", "Export the surface again.");
-      }
+      if (is_in_reach(surface.points[p])) continue;
+      return check_reach(fmt::format("{}, surface '{}'", source, surface.name), surface.points[p],
+                         fmt::format("point {}", p))
+          .error();
     }
     for (const auto& t : surface.triangles) {
       for (const Index p : t) box.extend(surface.points[p]);

@@ -33,7 +33,8 @@ TEST(LabelImageErrors, whole_numbers_in_floating_point_are_labels_others_are_not
   EXPECT_EQ(*std::max_element(image->labels.begin(), image->labels.end()), 2);
   expect_refused(
       read_mask("p.nii", typed<float>(nifti_float, [](std::uint8_t l) { return 0.5F * static_cast<float>(l); })),
-      {"voxel (2, 3, 2)", "0.5", "not a whole number", "probability"});
+      {"an image, not a mask", "3 different values from 0 to 1", "voxel (2, 3, 2)", "0.5", "not a whole number",
+       "probability"});
   expect_refused(read_mask("n.nii", typed<float>(nifti_float, [](std::uint8_t l) { return l != 0 ? NAN : 0.0F; })),
                  {"voxel (2, 3, 2)", "nan"});
 }
@@ -48,7 +49,37 @@ TEST(LabelImageErrors, a_grey_value_picture_is_refused) {
   int n = 0;
   expect_refused(read_mask("ct.nii", typed<std::int16_t>(nifti_int16,
                                                          [&](std::uint8_t) { return static_cast<std::int16_t>(++n); })),
-                 {"ct.nii", "different values", "picture"});
+                 {"ct.nii", "an image, not a mask", "960 different values from 1 to 960"});
+}
+
+TEST(LabelImageErrors, labels_scaled_or_nearly_whole_are_labels) {
+  const auto nearly = [](std::uint8_t l) { return static_cast<float>(l) + (l == 1 ? 9e-4F : -9e-4F); };
+  std::string scaled = nifti(Mask());
+  poke(scaled, 112, 2.0F);  // scl_slope
+  poke(scaled, 116, 0.0F);
+  const auto a = read_mask("near.nii", typed<float>(nifti_float, nearly)), b = read_mask("scaled.nii", scaled);
+  ASSERT_TRUE(a.ok() && b.ok()) << why(a) << why(b);
+  EXPECT_EQ(*std::max_element(a->labels.begin(), a->labels.end()), 2);
+  EXPECT_EQ(*std::max_element(b->labels.begin(), b->labels.end()), 4);
+  poke(scaled, 112, 0.3F);
+  expect_refused(read_mask("scaled.nii", scaled), {"an image, not a mask", "0.3"});
+  for (const char* type : {"float", "double"}) {
+    Mask mask;
+    std::string text = nrrd(mask, "ascii");
+    EXPECT_TRUE(read_mask("m.nrrd", replaced(text, "type: unsigned char", std::string("type: ") + type)).ok());
+  }
+}
+
+TEST(LabelImageErrors, a_picture_with_few_grey_values_is_one_and_a_mask_with_many_labels_is_not) {
+  Mask mask;
+  for (std::size_t n = 0; n < mask.labels.size(); ++n)
+    mask.labels[n] = static_cast<std::uint8_t>(101 * n);  // all bytes
+  expect_refused(read_mask("mr.nii", nifti(mask)), {"an image, not a mask", "256 different values from 0 to 255"});
+  for (std::uint8_t& v : mask.labels) v %= 40;
+  expect_refused(read_mask("mr.mha", metaimage(mask)), {"an image, not a mask", "40 different values from 0 to 39"});
+  for (std::size_t n = 0; n < mask.labels.size(); ++n) mask.labels[n] = static_cast<std::uint8_t>(n / 6);  // 160 pieces
+  const auto image = read_mask("parts.nrrd", nrrd(mask));
+  EXPECT_TRUE(image.ok()) << why(image);
 }
 
 TEST(LabelImageErrors, an_empty_mask_is_refused) {
@@ -93,7 +124,8 @@ TEST(LabelImageErrors, images_that_are_not_3d_are_refused) {
   poke<std::int16_t>(bytes, 40, 4);
   poke<std::int16_t>(bytes, 46, 4);
   poke<std::int16_t>(bytes, 48, 2);
-  expect_refused(read_mask("mask.nii", bytes), {"4 dimensions", "12 × 10 × 4 × 2", "one 3D label mask"});
+  expect_refused(read_mask("mask.nii", bytes),
+                 {"2 volumes", "12 × 10 × 4 × 2", "volume = 1 below [patient]", "--volume 1"});
   bytes = nifti(mask);
   poke<std::int16_t>(bytes, 46, 1);
   expect_refused(read_mask("mask.nii", bytes), {"12 × 10 × 1", "whole volume"});
@@ -101,13 +133,45 @@ TEST(LabelImageErrors, images_that_are_not_3d_are_refused) {
                  {"12 × 80 × 1"});
 }
 
-TEST(LabelImageErrors, overlapping_segments_in_layers_are_refused_with_the_way_out) {
+namespace {
+
+/// The mask as the second of two volumes; the first has nothing but label 5.
+std::string two_volumes(const Mask& mask, const std::string& one) {
+  return one.substr(0, one.size() - mask.labels.size()) + std::string(mask.labels.size(), '\5') +
+         one.substr(one.size() - mask.labels.size());
+}
+
+}  // namespace
+
+TEST(LabelImageErrors, one_volume_of_several_can_be_chosen) {
+  const Folder folder;
   const Mask mask;
-  std::string text = replaced(nrrd(mask), "dimension: 3", "dimension: 4");
-  text = replaced(text, "sizes: 12 10 8", "sizes: 2 6 10 8");
-  text = replaced(text, "space directions: (", "space directions: none (");
-  text = replaced(text, "kinds: domain", "kinds: list domain");
-  expect_refused(read_mask("case.seg.nrrd", text), {"2 layers", "overlap", "collapse"});
+  std::string bytes = nifti(mask);
+  poke<std::int16_t>(bytes, 40, 4);
+  poke<std::int16_t>(bytes, 48, 2);
+  write_file(folder / "m.nii", two_volumes(mask, bytes));
+  std::string text =
+      replaced(replaced(nrrd(mask), "dimension: 3", "dimension: 4"), "sizes: 12 10 8", "sizes: 12 10 8 2");
+  text = replaced(replaced(text, "(0,0,4)", "(0,0,4) none"), "domain domain domain", "domain domain domain list");
+  write_file(folder / "m.nrrd", two_volumes(mask, text));
+  text = replaced(replaced(metaimage(mask), "NDims = 3", "NDims = 4"), "DimSize = 12 10 8", "DimSize = 12 10 8 2");
+  text = replaced(replaced(text, "ElementSpacing = 2 2.5 4", "ElementSpacing = 2 2.5 4 1"), "Offset = -10 20 -30",
+                  "Offset = -10 20 -30 0");
+  text = replaced(text, "TransformMatrix = 1 0 0 0 1 0 0 0 1", "TransformMatrix = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  write_file(folder / "m.mha",
+             two_volumes(mask, replaced(text, "CenterOfRotation = 0 0 0", "CenterOfRotation = 0 0 0 0")));
+  for (const char* name : {"m.nii", "m.nrrd", "m.mha"}) {
+    SCOPED_TRACE(name);
+    expect_refused(read_label_image(folder / name), {name, "2 volumes", "12 × 10 × 8 × 2", "--volume 1"});
+    expect_refused(read_label_image(folder / name, {.volume = 3}), {name, "volume 3", "holds 2"});
+    const auto first = read_label_image(folder / name, {.volume = 1}),
+               second = read_label_image(folder / name, {.volume = 2});
+    ASSERT_TRUE(first.ok() && second.ok()) << why(first) << why(second);
+    EXPECT_EQ(std::count(first->labels.begin(), first->labels.end(), 5), 960);
+    EXPECT_EQ(second->labels, std::vector<std::uint16_t>(mask.labels.begin(), mask.labels.end()));
+    EXPECT_NEAR((second->voxel_centre(0, 0, 0) - mask.origin).norm(), 0, 1e-4);
+  }
+  expect_refused(read_label_image(write_file(folder / "one.nii", nifti(mask)), {.volume = 2}), {"volume 2", "holds 1"});
 }
 
 TEST(LabelImageErrors, an_image_that_does_not_say_where_it_lies_is_refused) {
@@ -126,7 +190,7 @@ TEST(LabelImageErrors, frames_that_are_no_frames_are_refused) {
   const Mask mask;
   std::string bytes = nifti(mask);
   poke(bytes, 280, NAN);
-  expect_refused(read_mask("mask.nii", bytes), {"mask.nii", "not finite"});
+  expect_refused(read_mask("mask.nii", bytes), {"mask.nii, sform", "nan mm"});
   bytes = nifti(mask);
   for (int row = 0; row < 3; ++row) poke(bytes, 284 + 16 * row, 0.0F);  // second column
   expect_refused(read_mask("mask.nii", bytes), {"mask.nii"});
@@ -136,13 +200,16 @@ TEST(LabelImageErrors, frames_that_are_no_frames_are_refused) {
   expect_refused(read_mask("mask.nrrd", replaced(nrrd(mask), "(2,0,0)", "(0,0,0)")), {"mask.nrrd"});
   expect_refused(read_mask("mask.nrrd", replaced(nrrd(mask), "(-10,20,-30)", "(-10,nan,-30)")), {"mask.nrrd"});
   expect_refused(read_mask("mask.mha", replaced(metaimage(mask), "ElementSpacing = 2 ", "ElementSpacing = 0 ")),
-                 {"spacing", "zero"});
+                 {"ElementSpacing", "above 0"});
 }
 
 TEST(LabelImageErrors, extents_off_by_1000_are_refused) {
-  for (const double factor : {1e-3, 1e3}) {
+  for (const double factor : {1e-3, 40.0}) {
     Mask mask;
+    mask.axes = Vec3(2.0, 2.5, 2.4).asDiagonal();
     mask.axes *= factor;
+    for (int i = 0; factor > 1 && i < 3; ++i) mask.size[i] *= 3;  // voxels of at most 100 mm
+    if (factor > 1) mask.labels.assign(mask.labels.size() * 27, 1);
     for (const auto& result :
          {read_mask("m.nii", nifti(mask)), read_mask("m.nrrd", nrrd(mask)), read_mask("m.mha", metaimage(mask))}) {
       expect_refused(result, {"1 mm to 2 m is expected", "not mm"});

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Segmentations with several, perhaps overlapping, segments: DICOM SEG and the layers of .seg.nrrd.
+#include "segmentation_files.hpp"
+#include "stylet/io/input.hpp"
+
+#include <dcmtk/dcmdata/dcrleerg.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+bool in_gland(int i, int j, int k) { return i >= 2 && i < 9 && j >= 2 && j < 8 && k >= 1 && k < 7; }
+bool in_urethra(int i, int j, int /*k*/) { return i >= 4 && i < 6 && j >= 4 && j < 6; }
+
+std::vector<Drawn> gland_and_urethra() { return {{"Prostate", "Prostate", in_gland}, {"duct", "Urethra", in_urethra}}; }
+
+/// The voxels of the grid of `frame` in a list, with 1 where `inside` holds.
+std::vector<std::uint8_t> voxels(const Mask& frame, const std::function<bool(int, int, int)>& inside) {
+  std::vector<std::uint8_t> values;
+  for (int k = 0; k < frame.size[2]; ++k) {
+    for (int j = 0; j < frame.size[1]; ++j) {
+      for (int i = 0; i < frame.size[0]; ++i) values.push_back(static_cast<std::uint8_t>(inside(i, j, k)));
+    }
+  }
+  return values;
+}
+
+/// The label that an image has at a place in the patient, 0 outside of it.
+int label_at(const LabelImage& image, const Vec3& place) {
+  const Vec3 index = (image.direction.transpose() * (place - image.origin)).cwiseQuotient(image.spacing);
+  std::array<Index, 3> voxel{};
+  for (int a = 0; a < 3; ++a) {
+    voxel[a] = static_cast<Index>(std::lround(index[a]));
+    EXPECT_NEAR(index[a], voxel[a], 1e-2) << "the grids differ";
+    if (voxel[a] < 0 || voxel[a] >= image.size[a]) return 0;
+  }
+  return image.labels[(static_cast<std::size_t>(voxel[2]) * image.size[1] + voxel[1]) * image.size[0] + voxel[0]];
+}
+
+/// Both images have the same labels everywhere in the grid of `frame`.
+void expect_same_labels(const LabelImage& a, const LabelImage& b, const Mask& frame) {
+  std::size_t differing = 0, labelled = 0;
+  for (int k = 0; k < frame.size[2]; ++k) {
+    for (int j = 0; j < frame.size[1]; ++j) {
+      for (int i = 0; i < frame.size[0]; ++i) {
+        const Vec3 place = frame.origin + frame.axes * Vec3(i, j, k);
+        differing += label_at(a, place) != label_at(b, place) ? 1 : 0;
+        labelled += label_at(b, place) != 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(differing, 0U);
+  EXPECT_GT(labelled, 200U);
+}
+
+bool notes_say(const LabelImage& image, const std::string& words) {
+  return std::any_of(image.notes.begin(), image.notes.end(),
+                     [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+}  // namespace
+
+TEST(DicomSeg, has_its_voxels_where_the_same_mask_in_nrrd_has_them) {
+  const Folder folder;
+  for (const Mat3& axes : {Mask().axes, oblique_axes(), left_handed_axes()}) {
+    Mask frame;
+    frame.axes = axes;
+    frame.labels = voxels(frame, in_gland);
+    for (std::size_t n = 0; n < frame.labels.size(); ++n) frame.labels[n] += voxels(frame, in_urethra)[n] != 0 ? 2 : 0;
+    for (std::uint8_t& label : frame.labels) label = label >= 2 ? 2 : label;
+    const auto seg = read_label_image(write_seg(folder / "seg.dcm", frame, gland_and_urethra()));
+    ASSERT_TRUE(seg.ok()) << why(seg);
+    const auto same = read_mask("same.nrrd", nrrd(frame));
+    ASSERT_TRUE(same.ok()) << why(same);
+    expect_same_labels(*seg, *same, frame);
+  }
+}
+
+TEST(DicomSeg, segments_carry_their_label_and_the_meaning_of_their_code) {
+  const Folder folder;
+  const auto input = read_input(write_seg(folder / "seg", Mask(), gland_and_urethra()));
+  ASSERT_TRUE(input.ok()) << why(input);
+  const auto& image = std::get<LabelImage>(*input);
+  EXPECT_EQ(image.names, (std::map<int, std::string>{{1, "Prostate"}, {2, "duct"}}));
+  EXPECT_EQ(image.meanings, (std::map<int, std::string>{{1, "Prostate"}, {2, "Urethra"}}));
+  EXPECT_TRUE(notes_say(image, "'duct' and 'Prostate' share 24 voxels"));
+}
+
+TEST(DicomSeg, slices_without_a_frame_are_empty) {
+  const Folder folder;
+  const Mask frame;
+  const auto gap = [](int i, int j, int k) { return in_gland(i, j, k) && k != 3; };
+  const auto image = read_label_image(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", gap}}));
+  ASSERT_TRUE(image.ok()) << why(image);
+  EXPECT_EQ(image->size, (std::array<Index, 3>{12, 10, 6}));
+  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 0);
+  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 4)), 1);
+}
+
+TEST(DicomSeg, a_fractional_segment_begins_at_one_half) {
+  const Folder folder;
+  for (const int most : {255, 100}) {
+    const auto value = [&](int i, int, int) { return i == 2 ? most / 2 - 1 : i == 3 ? (most + 1) / 2 : most; };
+    const Mask frame;
+    const auto image =
+        read_label_image(write_seg(folder / "seg.dcm", frame, {{"Prostate", "Prostate", in_gland}}, most, value));
+    ASSERT_TRUE(image.ok()) << why(image);
+    EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(2, 4, 3)), 0);
+    EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(3, 4, 3)), 1);
+    EXPECT_TRUE(notes_say(*image, "one half"));
+  }
+}
+
+TEST(DicomSeg, compressed_by_run_lengths_is_read) {
+  const Folder folder;
+  const Mask frame;
+  const auto full = [](int, int, int) { return 255; };
+  const fs::path plain = write_seg(folder / "a.dcm", frame, gland_and_urethra(), 255, full);
+  const auto before = read_label_image(plain);
+  DcmRLEEncoderRegistration::registerCodecs();
+  DcmFileFormat file;
+  ASSERT_TRUE(file.loadFile(plain.c_str()).good());
+  ASSERT_TRUE(file.getDataset()->chooseRepresentation(EXS_RLELossless, nullptr).good());
+  ASSERT_TRUE(file.saveFile((folder / "b.dcm").c_str(), EXS_RLELossless).good());
+  const auto after = read_label_image(folder / "b.dcm");
+  ASSERT_TRUE(before.ok() && after.ok()) << why(before) << why(after);
+  EXPECT_EQ(before->labels, after->labels);
+}
+
+TEST(DicomSeg, frames_that_are_no_regular_stack_are_refused) {
+  const Folder folder;
+  const auto moved = [&](const Vec3& by) {
+    return edit_dicom(write_seg(folder / "seg.dcm", Mask(), gland_and_urethra()), [&](DcmDataset& data) {
+      DcmItem& item = group_of_frame(data, 1, DCM_PlanePositionSequence);
+      const Vec3 at = Mask().origin + Mask().axes * Vec3(0, 0, 5) + by;
+      item.putAndInsertString(DCM_ImagePositionPatient, fmt::format("{}\\{}\\{}", at.x(), at.y(), at.z()).c_str());
+    });
+  };
+  expect_refused(read_input(moved({0, 0, 1})), {"seg.dcm, frame", "slice spacing", "Resample"});
+  expect_refused(read_input(moved({3, 0, 0})), {"frame 2", "sheared"});
+  expect_refused(read_input(moved({0, 0, 1e12})), {"frame 2, ImagePositionPatient", "1e+12", "at most"});
+}
+
+TEST(DicomSeg, damage_is_named) {
+  const Folder folder;
+  const auto changed = [&](const std::function<void(DcmDataset&)>& change) {
+    return read_input(edit_dicom(write_seg(folder / "seg.dcm", Mask(), gland_and_urethra()), change));
+  };
+  const auto put = [](const DcmTagKey& tag, const char* value) {
+    return [=](DcmDataset& data) { data.putAndInsertString(tag, value); };
+  };
+  expect_refused(changed(put(DCM_SegmentationType, "MAYBE")), {"SegmentationType", "MAYBE", "BINARY"});
+  expect_refused(changed(put(DCM_NumberOfFrames, "900")), {"bytes of pixels"});
+  expect_refused(changed([](DcmDataset& d) { d.putAndInsertUint16(DCM_Rows, 1); }), {"1 rows"});
+  expect_refused(changed([](DcmDataset& d) { d.findAndDeleteElement(DCM_PixelData); }), {"no pixels"});
+  expect_refused(changed([](DcmDataset& d) { d.findAndDeleteElement(DCM_SegmentSequence); }), {"no segments"});
+  expect_refused(changed([](DcmDataset& d) { d.findAndDeleteElement(DCM_SharedFunctionalGroupsSequence); }),
+                 {"frame 1", "ImageOrientationPatient"});
+  expect_refused(
+      changed([](DcmDataset& d) {
+        group_of_frame(d, 0, DCM_SegmentIdentificationSequence).putAndInsertUint16(DCM_ReferencedSegmentNumber, 9);
+      }),
+      {"frame 1", "segment 9"});
+  const std::string whole = content_of(write_seg(folder / "seg.dcm", Mask(), gland_and_urethra()));
+  for (const double share : {0.2, 0.5, 0.95}) {
+    expect_refused(
+        read_input(write_file(folder / "cut.dcm", whole.substr(0, static_cast<std::size_t>(share * whole.size())))),
+        {"cut.dcm"});
+  }
+}
+
+TEST(DicomSeg, a_folder_may_hold_it_but_not_beside_a_structure_set) {
+  const Folder folder;
+  write_seg(folder / "seg.dcm", Mask(), gland_and_urethra());
+  const auto input = read_input(folder.path());
+  ASSERT_TRUE(input.ok()) << why(input);
+  EXPECT_TRUE(std::holds_alternative<LabelImage>(*input));
+  ASSERT_TRUE(write_rtstruct(two_organs(), folder / "rs.dcm").ok());
+  expect_refused(read_input(folder.path()), {"rs.dcm, seg.dcm", "one is expected"});
+  expect_refused(read_label_image(folder / "rs.dcm"), {"RTSTRUCT", "segmentation (SEG) is expected"});
+}
+
+TEST(LayeredNrrd, the_smaller_of_two_overlapping_segments_has_the_voxel) {
+  const Mask frame;
+  const std::string keys =
+      "Segment0_Name:=urethra\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+      "Segment1_Name:=Prostate\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n"
+      "Segment2_Name:=nothing\nSegment2_LabelValue:=2\nSegment2_Layer:=1\n";
+  for (const bool gland_first : {false, true}) {
+    auto layers = std::vector{voxels(frame, in_urethra), voxels(frame, in_gland)};
+    std::string names = keys;
+    if (gland_first) {
+      std::swap(layers[0], layers[1]);
+      names = replaced(replaced(keys, "urethra", "P"), "Prostate", "urethra");
+    }
+    const auto image = read_mask("case.seg.nrrd", layered_nrrd(frame, layers, names));
+    ASSERT_TRUE(image.ok()) << why(image);
+    const Vec3 in_both = frame.origin + frame.axes * Vec3(4, 4, 3),
+               in_gland_only = frame.origin + frame.axes * Vec3(2, 2, 3);
+    EXPECT_EQ(image->names.at(label_at(*image, in_both)), "urethra");
+    EXPECT_EQ(image->names.at(label_at(*image, in_gland_only)), gland_first ? "P" : "Prostate");
+    EXPECT_TRUE(notes_say(*image, "share 24 voxels"));
+    EXPECT_TRUE(notes_say(*image, "3 segments in 2 layers"));
+    EXPECT_TRUE(notes_say(*image, "'nothing' is empty"));
+  }
+}
+
+TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {
+  const Mask frame;
+  auto urethra = voxels(frame, in_urethra);
+  for (std::uint8_t& v : urethra) v *= 7;
+  const auto image = read_mask("case.seg.nrrd", layered_nrrd(frame, {urethra, voxels(frame, in_gland)},
+                                                             "Segment0_Name:=urethra\nSegment0_LabelValue:=7\n"
+                                                             "Segment0_Layer:=0\nSegment1_Name:=gland\n"
+                                                             "Segment1_LabelValue:=1\nSegment1_Layer:=1\n"));
+  ASSERT_TRUE(image.ok()) << why(image);
+  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 7);
+  EXPECT_EQ(image->names.at(7), "urethra");
+}
