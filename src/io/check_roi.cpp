@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contours/self_crossing.hpp"
+#include "stylet/geom/structure_names.hpp"
 #include "stylet/io/contours_io.hpp"
 
 #include <fmt/format.h>
@@ -50,6 +51,19 @@ double thickness(const Contour& contour, const Vec3& normal) {
   return normal.dot(*high - *low);
 }
 
+/// Lengths of a contour's sides [mm].
+struct Sides {
+  double closing = 0.0;  ///< from the last point to the first
+  double other = 0.0;    ///< longest of the others
+};
+
+Sides sides_of(const Contour& contour) {
+  const auto& p = contour.points;
+  Sides sides{.closing = (p.front() - p.back()).norm(), .other = 0.0};
+  for (std::size_t k = 0; k + 1 < p.size(); ++k) sides.other = std::max(sides.other, (p[k + 1] - p[k]).norm());
+  return sides;
+}
+
 class RoiCheck {
  public:
   RoiCheck(const Roi& roi, const std::string& where)
@@ -68,7 +82,6 @@ class RoiCheck {
     normal_ = fitted_frame(*biggest).normal;
     for (std::size_t i = 0; i < roi_.contours.size(); ++i) {
       if (Result<> r = check_plane(i); !r) return r;
-      if (Result<> r = check_closed(i); !r) return r;
       if (Result<> r = check_simple(i); !r) return r;
     }
     return check_slices();
@@ -131,21 +144,6 @@ class RoiCheck {
     return Ok{};
   }
 
-  /// The closing edge is not in the file. When it is far longer than every other edge, the curve was left open.
-  Result<> check_closed(std::size_t i) const {
-    const auto& p = roi_.contours[i].points;
-    if (p.size() < 8) return Ok{};  // a coarse polygon says nothing about its own spacing
-    double longest = 0.0;
-    for (std::size_t k = 0; k + 1 < p.size(); ++k) longest = std::max(longest, (p[k + 1] - p[k]).norm());
-    const double gap = (p.front() - p.back()).norm();
-    if (gap <= std::max(5.0, 8.0 * longest)) return Ok{};
-    return input_error(
-        place(i),
-        fmt::format("the curve is open: its ends are {:.1f} mm apart, its other points at most {:.1f} mm", gap,
-                    longest),
-        "Close it in the contouring program; if a straight side is meant, add points along it.");
-  }
-
   Result<> check_simple(std::size_t i) const {
     const Contour& contour = roi_.contours[i];
     const Vec3 u = normal_.unitOrthogonal();
@@ -181,6 +179,29 @@ class RoiCheck {
 
 }  // namespace
 
-Result<> check_roi(const Roi& roi, const std::string& where) { return RoiCheck(roi, where).run(); }
+Result<> check_roi(const Roi& roi, const std::string& where) {
+  Result<> sound = RoiCheck(roi, where).run();
+  if (sound) return sound;
+  Error error = sound.error();
+  error.cure += or_skip(roi.name);
+  return error;
+}
+
+std::optional<std::string> long_closing_side(const Roi& roi) {
+  std::size_t contours = 0;
+  Sides longest;
+  for (const Contour& contour : roi.contours) {
+    if (contour.points.size() < 8) continue;  // a coarse polygon says nothing about its own spacing
+    const Sides sides = sides_of(contour);
+    if (sides.closing <= std::max(5.0, 8.0 * sides.other)) continue;
+    ++contours;
+    if (sides.closing > longest.closing) longest = sides;
+  }
+  if (contours == 0) return std::nullopt;
+  return fmt::format(
+      "structure '{}': {} of {} contours end far from where they began, by up to {:.1f} mm, with other points at most "
+      "{:.1f} mm apart; they are closed by a straight side",
+      roi.name, contours, roi.contours.size(), longest.closing, longest.other);
+}
 
 }  // namespace stylet

@@ -24,11 +24,11 @@ Result<PatientInput> as_input(Result<T> read) {
 }  // namespace
 
 Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mesh_options,
-                                const MaskReadOptions& mask_options) {
+                                const MaskReadOptions& mask_options, std::span<const std::string> skip) {
   std::error_code code;
   if (fs::is_directory(path, code)) {
     const Result<std::string> found = guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
-    return found ? read_input(*found, mesh_options, mask_options) : Result<PatientInput>(found.error());
+    return found ? read_input(*found, mesh_options, mask_options, skip) : Result<PatientInput>(found.error());
   }
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
@@ -37,10 +37,10 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
       const Result<bool> segmentation =
           guarded<bool>(path, [&]() -> Result<bool> { return detail::is_dicom_seg(path); });
       if (!segmentation) return segmentation.error();
-      return *segmentation ? as_input(read_label_image(path, mask_options)) : as_input(read_rtstruct(path));
+      return *segmentation ? as_input(read_label_image(path, mask_options)) : as_input(read_rtstruct(path, skip));
     }
     case FileKind::contour_json:
-      return as_input(read_contour_json(path));
+      return as_input(read_contour_json(path, skip));
     case FileKind::nifti:
     case FileKind::nrrd:
     case FileKind::metaimage:

@@ -7,6 +7,7 @@
 #include "mesh/gmsh_library.hpp"
 #include "mesh/raw_mesh.hpp"
 #include "mesh/surfaces.hpp"
+#include "stylet/geom/structure_names.hpp"
 
 #include <fmt/format.h>
 
@@ -24,26 +25,43 @@ Error wrong_kind(const fs::path& path, FileKind found, const char* wanted) {
                      detail::readable_formats());
 }
 
-/// Contours whose points are out of reach are refused, in whatever format they came.
-Result<ContourSet> within_reach(Result<ContourSet> read) {
-  if (!read) return read;
-  for (const Roi& roi : read->rois) {
-    for (std::size_t c = 0; c < roi.contours.size(); ++c) {
-      const std::vector<Vec3>& points = roi.contours[c].points;
-      for (std::size_t p = 0; p < points.size(); ++p) {
-        if (detail::is_in_reach(points[p])) continue;
-        return detail::check_reach(fmt::format("{}, ROI '{}', contour {}", read->source, roi.name, c + 1), points[p],
-                                   fmt::format("point {}", p + 1))
-            .error();
-      }
+/// A structure whose points are all in reach.
+Result<> check_reach(const ContourSet& set, const Roi& roi) {
+  for (std::size_t c = 0; c < roi.contours.size(); ++c) {
+    const std::vector<Vec3>& points = roi.contours[c].points;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (detail::is_in_reach(points[p])) continue;
+      Error error = detail::check_reach(fmt::format("{}, ROI '{}', contour {}", set.source, roi.name, c + 1), points[p],
+                                        fmt::format("point {}", p + 1))
+                        .error();
+      error.cure += or_skip(roi.name);
+      return error;
     }
   }
+  return Ok{};
+}
+
+/// Structures out of reach are refused, in whatever format they came, or left out where nobody will miss them.
+Result<ContourSet> within_reach(Result<ContourSet> read, std::span<const std::string> skip) {
+  if (!read) return read;
+  std::vector<Roi> in_reach;
+  for (Roi& roi : read->rois) {
+    const Result<> reach = check_reach(*read, roi);
+    if (reach) {
+      in_reach.push_back(std::move(roi));
+    } else if (is_listed(roi.name, skip)) {
+      read->passed_over.push_back({roi.name, "damaged, and named in [patient] skip"});
+    } else {
+      return reach.error();
+    }
+  }
+  read->rois = std::move(in_reach);
   return read;
 }
 
 }  // namespace
 
-Result<ContourSet> read_rtstruct(const fs::path& path) {
+Result<ContourSet> read_rtstruct(const fs::path& path, std::span<const std::string> skip) {
   std::error_code code;
   fs::path file = path;
   if (fs::is_directory(path, code)) {
@@ -54,14 +72,14 @@ Result<ContourSet> read_rtstruct(const fs::path& path) {
   Result<FileKind> kind = detail::identify(file);
   if (!kind) return kind.error();
   if (*kind != FileKind::dicom) return wrong_kind(file, *kind, "a DICOM RT Structure Set");
-  return within_reach(guarded<ContourSet>(file, [&] { return detail::parse_rtstruct(file); }));
+  return within_reach(guarded<ContourSet>(file, [&] { return detail::parse_rtstruct(file, skip); }), skip);
 }
 
-Result<ContourSet> read_contour_json(const fs::path& path) {
+Result<ContourSet> read_contour_json(const fs::path& path, std::span<const std::string> skip) {
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   if (*kind != FileKind::contour_json) return wrong_kind(path, *kind, "a contour JSON file");
-  return within_reach(guarded<ContourSet>(path, [&] { return detail::parse_contour_json(path); }));
+  return within_reach(guarded<ContourSet>(path, [&] { return detail::parse_contour_json(path, skip); }), skip);
 }
 
 Result<LabelImage> read_label_image(const fs::path& path, const MaskReadOptions& options) {

@@ -23,13 +23,20 @@ struct Roi {
   std::vector<Contour> contours;
 };
 
+/// A structure of the file that has no closed contour to offer.
+struct PassedOver {
+  std::string name;
+  std::string why;  ///< a few words: "empty", "only open curves or points"
+};
+
 /// Contours of one patient on parallel slices, all in one frame of reference.
 struct ContourSet {
   std::string source;              ///< file it was read from
   std::string label;               ///< structure set label
   std::string frame_of_reference;  ///< DICOM frame of reference UID, may be empty
   std::vector<Roi> rois;
-  std::vector<std::string> notes;  ///< what the reader passed over, in words for the user (empty ROIs, open curves)
+  std::vector<PassedOver> passed_over;  ///< structures of the file that are not among `rois`
+  std::vector<std::string> notes;       ///< what the reader left out of a structure, in words for the user
 };
 
 }  // namespace stylet

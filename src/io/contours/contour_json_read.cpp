@@ -3,6 +3,7 @@
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/geom/structure_names.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -125,6 +126,21 @@ Result<Roi> parse_structure(const Json& json, std::size_t position, const std::s
   return roi;
 }
 
+/// The name of a structure, whatever else may be wrong with it; empty where it has none.
+std::string name_of(const Json& structure) {
+  const bool named = structure.is_object() && structure.contains("name") && structure["name"].is_string();
+  return named ? trimmed(structure["name"].get<std::string>()) : std::string();
+}
+
+/// A structure, with the way to do without it where it cannot be read.
+Result<Roi> parse_named_structure(const Json& json, std::size_t position, const std::string& source) {
+  Result<Roi> roi = parse_structure(json, position, source);
+  if (roi || name_of(json).empty()) return roi;
+  Error error = roi.error();
+  error.cure += or_skip(name_of(json));
+  return error;
+}
+
 Result<> check_header(const Json& json, const std::string& source) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "stylet-contours") {
     return input_error(source, "this JSON file does not say \"format\": \"stylet-contours\"",
@@ -159,7 +175,7 @@ Result<> check_header(const Json& json, const std::string& source) {
 
 }  // namespace
 
-Result<ContourSet> parse_contour_json(const std::filesystem::path& path) {
+Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::span<const std::string> skip) {
   const std::string source = path.string();
   std::ifstream file(path, std::ios::binary);
   Json json;
@@ -190,13 +206,18 @@ Result<ContourSet> parse_contour_json(const std::filesystem::path& path) {
   std::set<std::string> names;
   const Json& structures = json["structures"];
   for (std::size_t i = 0; i < structures.size(); ++i) {
-    Result<Roi> roi = parse_structure(structures[i], i, source);
-    if (!roi) return roi.error();
+    Result<Roi> roi = parse_named_structure(structures[i], i, source);
+    if (!roi) {
+      const std::string name = name_of(structures[i]);
+      if (name.empty() || !is_listed(name, skip)) return roi.error();
+      set.passed_over.push_back({name, "damaged, and named in [patient] skip"});
+      continue;
+    }
     if (!names.insert(roi->name).second) {
       return input_error(source, fmt::format("two structures are called '{}'", roi->name), "Give each its own name.");
     }
     if (roi->contours.empty()) {
-      set.notes.push_back(fmt::format("structure '{}' is empty", roi->name));
+      set.passed_over.push_back({roi->name, "empty"});
       continue;
     }
     set.rois.push_back(std::move(*roi));

@@ -3,6 +3,7 @@
 #include "detail/dicom.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
+#include "stylet/geom/structure_names.hpp"
 
 #include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
@@ -70,8 +71,9 @@ struct RoiHeader {
   std::string frame_of_reference;
 };
 
-/// Reads the closed contours of one ROIContourSequence item into `roi`; says in `notes` what was passed over.
-Result<> read_contours(DcmItem& item, const std::string& source, Roi& roi, std::vector<std::string>& notes) {
+/// Reads the closed contours of one ROIContourSequence item into `roi`; says in the set what was passed over.
+Result<> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
+  const std::string& source = set.source;
   std::map<std::string, int> passed_over;
   int number = 0;
   for (DcmItem* contour_item : items_of(item, DCM_ContourSequence)) {
@@ -86,11 +88,14 @@ Result<> read_contours(DcmItem& item, const std::string& source, Roi& roi, std::
     if (!contour) return contour.error();
     roi.contours.push_back(std::move(*contour));
   }
-  for (const auto& [type, count] : passed_over) {
-    notes.push_back(fmt::format("ROI '{}': {} {} curve{} passed over (only closed planar contours bound a region)",
-                                roi.name, count, type, count == 1 ? "" : "s"));
+  if (roi.contours.empty()) {
+    set.passed_over.push_back({roi.name, passed_over.empty() ? "empty" : "only open curves or points"});
+    return Ok{};
   }
-  if (roi.contours.empty() && passed_over.empty()) notes.push_back(fmt::format("ROI '{}' is empty", roi.name));
+  for (const auto& [type, count] : passed_over) {
+    set.notes.push_back(fmt::format("ROI '{}': {} {} curve{} passed over (only closed planar contours bound a region)",
+                                    roi.name, count, type, count == 1 ? "" : "s"));
+  }
   return Ok{};
 }
 
@@ -106,9 +111,18 @@ Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
                      "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours.");
 }
 
+/// The first structure decides the frame of reference.
+Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& set) {
+  if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
+  if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
+  return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
+                     "its frame of reference differs from that of the structures before it",
+                     "Export structures of one registration only; Stylet does not register images.");
+}
+
 }  // namespace
 
-Result<ContourSet> parse_rtstruct(const fs::path& path) {
+Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::string> skip) {
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   const std::string source = path.string();
 
@@ -177,19 +191,23 @@ Result<ContourSet> parse_rtstruct(const fs::path& path) {
     for (std::size_t i = 0; colour.size() == 3 && i < 3; ++i) {
       roi.colour[i] = static_cast<int>(std::clamp(to_number(colour[i]).value_or(255.0), 0.0, 255.0));
     }
-    Result<> contours = read_contours(*item, source, roi, set.notes);
-    if (!contours) return contours.error();
-    if (roi.contours.empty()) continue;
-    if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
-    if (!header.frame_of_reference.empty() && header.frame_of_reference != set.frame_of_reference) {
-      return input_error(fmt::format("{}, ROI '{}'", source, roi.name),
-                         "its frame of reference differs from that of the structures before it",
-                         "Export structures of one registration only; Stylet does not register images.");
+    Result<> usable = read_contours(*item, roi, set);
+    if (usable && roi.contours.empty()) continue;
+    const bool may_go = is_listed(roi.name, skip);
+    if (usable && !(may_go && set.frame_of_reference.empty())) usable = in_the_sets_frame(roi, header, set);
+    if (!usable && may_go) {
+      set.passed_over.push_back({roi.name, "damaged, and named in [patient] skip"});
+      continue;
+    }
+    if (!usable) {
+      Error error = usable.error();
+      error.cure += or_skip(roi.name);
+      return error;
     }
     set.rois.push_back(std::move(roi));
   }
   for (const auto& [number, header] : headers) {
-    if (!has_contour_item.contains(number)) set.notes.push_back(fmt::format("ROI '{}' is empty", header.name));
+    if (!has_contour_item.contains(number)) set.passed_over.push_back({header.name, "empty"});
   }
   if (set.frame_of_reference.empty()) {
     const auto frames = items_of(data, DCM_ReferencedFrameOfReferenceSequence);

@@ -9,8 +9,8 @@
 /// die, and are therefore only called inside a child process (detail/guard.hpp).
 namespace stylet::detail {
 
-Result<ContourSet> parse_rtstruct(const std::filesystem::path& path);
-Result<ContourSet> parse_contour_json(const std::filesystem::path& path);
+Result<ContourSet> parse_rtstruct(const std::filesystem::path& path, std::span<const std::string> skip);
+Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::span<const std::string> skip);
 
 Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskReadOptions& options);
 Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadOptions& options);

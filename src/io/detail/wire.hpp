@@ -32,7 +32,10 @@ struct SurfacesWithNotes {
 void fields(auto& wire, Error& e) { wire(e.kind, e.where, e.what, e.cure); }
 void fields(auto& wire, Contour& c) { wire(c.points); }
 void fields(auto& wire, Roi& r) { wire(r.name, r.number, r.type, r.colour, r.contours); }
-void fields(auto& wire, ContourSet& s) { wire(s.source, s.label, s.frame_of_reference, s.rois, s.notes); }
+void fields(auto& wire, PassedOver& p) { wire(p.name, p.why); }
+void fields(auto& wire, ContourSet& s) {
+  wire(s.source, s.label, s.frame_of_reference, s.rois, s.passed_over, s.notes);
+}
 void fields(auto& wire, LabelImage& i) {
   wire(i.source, i.size, i.origin, i.spacing, i.direction, i.labels, i.names, i.meanings, i.notes);
 }

@@ -104,6 +104,21 @@ TEST(CheckRoi, refuses_metres_and_micrometres) {
   expect_refused(check(roi), {"4e+04 mm long", "micrometres"});
 }
 
+TEST(CheckRoi, refuses_a_curve_whose_closing_side_crosses_it) {
+  Contour spiral;  // nearly one and a half turns inwards
+  for (int i = 0; i <= 60; ++i) {
+    const double angle = 2.9 * M_PI * i / 60, radius = 20 - 0.2 * i;
+    spiral.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+  }
+  expect_refused(check(prism(spiral)), {"crosses itself"});
+}
+
+TEST(CheckRoi, says_how_to_do_without_a_broken_structure) {
+  Roi roi = ball();
+  roi.contours[4].points.resize(2);
+  expect_refused(check(roi), {"skip = [\"Prostate\"] below [patient]"});
+}
+
 TEST(CheckRoi, refuses_a_self_crossing_contour_and_says_where) {
   Roi roi = prism(polygon(0, {{0, 0}, {20, 20}, {20, 0}, {0, 20}}));  // bow tie
   expect_refused(check(roi), {"'Prism', contour 1 (slice z = 0.00 mm)", "crosses itself at (10.00, 10.00, 0.00)"});
@@ -137,14 +152,19 @@ TEST(CheckRoi, accepts_a_polygon_that_touches_itself) {
   EXPECT_TRUE(check(prism(polygon(0, {{0, 0}, {20, 0}, {20, 10}, {10, 0}, {0, 10}}))).ok());
 }
 
-TEST(CheckRoi, refuses_an_open_curve) {
+TEST(CheckRoi, closes_a_curve_by_a_straight_side_and_notes_a_long_one) {
   Roi roi = ball();
+  EXPECT_FALSE(long_closing_side(roi));
   roi.contours[3].points.clear();
   for (int i = 0; i <= 60; ++i) {  // three quarters of a circle
     const double angle = 1.5 * M_PI * i / 60;
     roi.contours[3].points.emplace_back(20 * std::cos(angle), 20 * std::sin(angle), 0.0);
   }
-  expect_refused(check(roi), {"contour 4", "open", "28.3 mm apart"});
+  EXPECT_TRUE(check(roi).ok()) << why(check(roi));
+  const auto note = long_closing_side(roi);
+  ASSERT_TRUE(note);
+  for (const char* part : {"'Prostate'", "1 of 7 contours", "28.3 mm", "straight side"})
+    EXPECT_NE(note->find(part), std::string::npos) << *note;
 }
 
 TEST(CheckRoi, accepts_coarse_polygons_with_sides_of_any_length) {

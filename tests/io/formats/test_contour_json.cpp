@@ -53,8 +53,8 @@ TEST(ContourJson, an_empty_structure_is_noted) {
   const Result<ContourSet> set = with("\"structures\": [", "\"structures\": [{\"name\": \"PTV\", \"contours\": []}, ");
   ASSERT_TRUE(set.ok()) << why(set);
   EXPECT_EQ(set->rois.size(), 1U);
-  ASSERT_EQ(set->notes.size(), 1U);
-  EXPECT_NE(set->notes[0].find("PTV"), std::string::npos);
+  ASSERT_EQ(set->passed_over.size(), 1U);
+  EXPECT_EQ(set->passed_over[0].name, "PTV");
 }
 
 TEST(ContourJson, an_unknown_key_is_refused_with_the_nearest_name) {
@@ -80,6 +80,20 @@ TEST(ContourJson, missing_and_mistyped_values_are_refused_with_their_place) {
   expect_refused(with("[10,10,5]", "[10,NaN,5]"), {"not valid JSON", "line 2"});
   expect_refused(with("[10,10,5]", "[10,1e999,5]"), {"not valid JSON"});
   expect_refused(with("}]}", "}]"), {"not valid JSON"});
+}
+
+TEST(ContourJson, a_damaged_structure_is_refused_with_the_way_to_do_without_it_and_skipped_where_asked) {
+  const Folder folder;
+  const fs::path file =
+      write_file(folder / "case.json",
+                 replaced(small, "\"structures\": [", R"("structures": [{"name": "Rectum", "contours": [[[0,0]]]}, )"));
+  expect_refused(read_contour_json(file), {"'Rectum'", "skip = [\"Rectum\"] below [patient]"});
+  const std::vector<std::string> skip{"RECTUM"};
+  const Result<ContourSet> set = read_contour_json(file, skip);
+  ASSERT_TRUE(set.ok()) << why(set);
+  EXPECT_EQ(set->rois.size(), 1U);
+  ASSERT_EQ(set->passed_over.size(), 1U);
+  EXPECT_EQ(set->passed_over[0].name, "Rectum");
 }
 
 TEST(ContourJson, two_structures_of_one_name_are_refused) {

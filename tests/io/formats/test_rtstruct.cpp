@@ -56,6 +56,7 @@ TEST(Rtstruct, what_is_written_comes_back_to_a_hundredth_of_a_millimetre) {
   EXPECT_EQ(back->rois[1].type, "ORGAN");
   EXPECT_EQ(back->rois[1].colour, set.rois[1].colour);
   EXPECT_TRUE(back->notes.empty());
+  EXPECT_TRUE(back->passed_over.empty());
 }
 
 TEST(Rtstruct, a_body_outline_longer_than_64_kB_survives) {
@@ -114,7 +115,7 @@ TEST(Rtstruct, every_uncompressed_transfer_syntax_is_read) {
   ASSERT_TRUE(bare.ok()) << "without the part 10 header: " << why(bare);
 }
 
-TEST(Rtstruct, empty_structures_and_open_curves_are_passed_over_with_a_note) {
+TEST(Rtstruct, empty_structures_and_open_curves_are_passed_over_with_the_reason) {
   const Folder folder;
   const Result<ContourSet> set = read_rtstruct(changed(folder, [](DcmDataset& data) {
     put(item(data, DCM_StructureSetROISequence, 2), DCM_ROINumber, "7");
@@ -129,10 +130,11 @@ TEST(Rtstruct, empty_structures_and_open_curves_are_passed_over_with_a_note) {
   }));
   ASSERT_TRUE(set.ok()) << why(set);
   EXPECT_EQ(set->rois.size(), 2U);
-  ASSERT_EQ(set->notes.size(), 2U);
-  EXPECT_NE(set->notes[0].find("needle A5"), std::string::npos);
-  EXPECT_NE(set->notes[0].find("OPEN_NONPLANAR"), std::string::npos);
-  EXPECT_NE(set->notes[1].find("'CTV' is empty"), std::string::npos);
+  ASSERT_EQ(set->passed_over.size(), 2U);
+  EXPECT_EQ(set->passed_over[0].name, "needle A5");
+  EXPECT_NE(set->passed_over[0].why.find("open curves"), std::string::npos);
+  EXPECT_EQ(set->passed_over[1].name, "CTV");
+  EXPECT_EQ(set->passed_over[1].why, "empty");
 }
 
 TEST(Rtstruct, names_are_trimmed_and_turned_into_utf8) {
@@ -171,6 +173,32 @@ TEST(Rtstruct, damaged_contours_are_refused_with_their_place) {
   expect_refused(data_is("0\\0\\0\\10\\1e999\\0\\10\\10\\0"), {"contour 3, point 2", "not a finite number"});
   expect_refused(data_is(""), {"contour 3", "no points"});
   expect_refused(data_is("0\\0\\0\\10\\0\\0\\10\\10\\0", "5"), {"announces 5 points and holds 3"});
+}
+
+TEST(Rtstruct, a_damaged_structure_is_refused_with_the_way_to_do_without_it_and_skipped_where_asked) {
+  const Folder folder;
+  const fs::path file = changed(folder, [](DcmDataset& data) { put(contour(data, 1, 2), DCM_ContourData, "0\\0\\x"); });
+  expect_refused(read_rtstruct(file), {"ROI 'Rectum'", "skip = [\"Rectum\"] below [patient]"});
+  const std::vector<std::string> skip{"rectum"};
+  const Result<ContourSet> set = read_rtstruct(file, skip);
+  ASSERT_TRUE(set.ok()) << why(set);
+  ASSERT_EQ(set->rois.size(), 1U);
+  EXPECT_EQ(set->rois[0].name, "Prostate");
+  ASSERT_EQ(set->passed_over.size(), 1U);
+  EXPECT_EQ(set->passed_over[0].name, "Rectum");
+}
+
+TEST(Rtstruct, a_skipped_structure_may_lie_in_another_frame) {
+  for (const long odd : {0L, 1L}) {
+    const Folder folder;
+    const fs::path file = changed(folder, [&](DcmDataset& d) {
+      put(item(d, DCM_StructureSetROISequence, odd), DCM_ReferencedFrameOfReferenceUID, "9.9");
+    });
+    const std::vector<std::string> skip{odd == 0 ? "Prostate" : "Rectum"};
+    const Result<ContourSet> set = read_rtstruct(file, skip);
+    ASSERT_TRUE(set.ok()) << why(set);
+    EXPECT_EQ(set->frame_of_reference, "1.2.3.4.5");
+  }
 }
 
 TEST(Rtstruct, contradicting_structures_are_refused) {

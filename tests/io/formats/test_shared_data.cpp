@@ -98,7 +98,7 @@ TEST_F(SharedData, eclipse_structure_set_survives_its_ten_empty_structures) {
     EXPECT_NEAR(volume_cc(roi), expected.at(roi.name).second, 0.06) << roi.name;
     EXPECT_TRUE(check_roi(roi, set.source).ok()) << why(check_roi(roi, set.source));
   }
-  EXPECT_EQ(set.notes.size(), 10U);
+  EXPECT_EQ(set.passed_over.size(), 10U);
   EXPECT_EQ(set.frame_of_reference.substr(0, 8), "1.2.840.");
 }
 
@@ -106,7 +106,7 @@ TEST_F(SharedData, vitesse_structure_set_gives_organs_and_notes_its_needles) {
   const auto set = read_rtstruct(data_folder() / "robustbrachy_hdr_phantom" / "SS001.dcm");
   ASSERT_TRUE(set.ok()) << why(set);
   ASSERT_EQ(set->rois.size(), 3U);
-  EXPECT_EQ(set->notes.size(), 14U);
+  EXPECT_EQ(set->passed_over.size(), 14U);
   const std::map<std::string, double> expected{{"Prostate", 49.7}, {"Urethra", 1.4}, {"Rectum", 6.3}};
   for (const Roi& roi : set->rois) {
     EXPECT_NEAR(volume_cc(roi), expected.at(roi.name), 0.06) << roi.name;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/geom/structure_names.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stylet {
+namespace {
+
+using Found = std::vector<std::size_t>;
+
+TEST(StructureNames, AnEqualNameGoesBeforeOneThatDiffersInCase) {
+  const std::vector<std::string> names{"PTV", "ptv", "Rectum", "rectum "};
+  EXPECT_EQ(find_named(names, "ptv"), (Found{1}));
+  EXPECT_EQ(find_named(names, "PTV"), (Found{0}));
+  EXPECT_EQ(find_named(names, "Ptv"), (Found{0, 1}));
+  EXPECT_EQ(find_named(names, "RECTUM"), (Found{2, 3}));
+  EXPECT_TRUE(find_named(names, "PTV 1").empty());
+}
+
+TEST(StructureNames, ListedNamesDifferInNothingButCase) {
+  const std::vector<std::string> words{"rectum", "X1"};
+  EXPECT_TRUE(is_listed("Rectum", words));
+  EXPECT_TRUE(is_listed("x1", words));
+  EXPECT_FALSE(is_listed("Rectum 2", words));
+  EXPECT_FALSE(is_listed("", words));
+}
+
+TEST(StructureNames, TheWayToDoWithoutNamesTheStructure) {
+  EXPECT_NE(or_skip("Rectum").find("skip = [\"Rectum\"] below [patient]"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stylet
