@@ -52,7 +52,8 @@ TissueParameters default_tissue(const std::string& region) {
     if (candidate.region == region) row = &candidate;
   }
   // Planning volumes and unnamed labels of a mask stand for the gland.
-  if (region == "ptv" || region == "ctv" || region == "gtv" || region.rfind("label_", 0) == 0) row = &kRows[1];
+  const bool planned = region == "ctv" || region == "target" || region == "ptv" || region == "gtv";
+  if (planned || region.rfind("label_", 0) == 0) row = &kRows[1];
   TissueParameters p;
   p.young_kPa = row->young_kPa;
   p.poisson = row->poisson;

@@ -43,7 +43,7 @@ std::vector<int> find_target(const TetMesh& mesh) {
     return found;
   };
   auto target = pick(is_gland);
-  for (const char* volume : {"ctv", "ptv", "gtv"}) {
+  for (const char* volume : {"ctv", "target", "ptv", "gtv"}) {
     if (target.empty()) target = pick([&](const std::string& r) { return r == volume; });
   }
   if (target.empty()) target = pick([](const std::string& r) { return r.rfind("label_", 0) == 0; });

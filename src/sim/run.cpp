@@ -198,7 +198,7 @@ class Runner {
     summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
     summary_.compliance_condition =
         std::max(summary_.compliance_condition, simulation_.insertion().compliance_condition());
-    if (label == "deepest") {
+    if (label == "deepest" && !model_->target_regions().empty()) {
       const auto measured = target_shift();
       if (!measured) return measured.error();
       const TargetShift& shift = *measured;

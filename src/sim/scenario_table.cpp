@@ -34,6 +34,10 @@ void describe_patient(ScenarioEntries& keys) {
   keys.integer("patient.volume", 0, 1000000,
                "which volume of a mask file that holds several, counted from 1; 0 = the only one",
                [](auto& s, const Slot&) { return &s.patient.volume; });
+  keys.texts("patient.skip", 0,
+             "structures, by their names, or labels, by their names or numbers, to leave out, such as one that is "
+             "drawn wrongly",
+             [](auto& s, const Slot&) { return &s.patient.skip; }, {.standard = "none", .example = "[\"Rectum\"]"});
   keys.text("patient.regions.<name>", "the region that a structure, by its name, or a label, by its number, stands for",
             [](auto& s, const Slot& slot) { return &region(s, slot); },
             {.standard = "by their names", .example = "\"peripheral_zone\""});

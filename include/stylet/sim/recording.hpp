@@ -132,7 +132,7 @@ struct Summary {
   double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
   std::vector<Event> events;
   double tip_deflection_mm = 0;                  ///< largest distance of the tip from the straight line of insertion
-  std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion
+  std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion; none without a target
   Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< of the one that moved it furthest, as the next
   double target_shift_max_mm = 0;
   double residual_force_balance = 0;  ///< |supports + contacts on the tissue| / peak force, largest of the run

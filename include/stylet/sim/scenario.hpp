@@ -78,6 +78,7 @@ struct Scenario {
   struct Patient {
     std::string source;                          ///< contours, mask or mesh; relative to the scenario file
     std::map<std::string, std::string> regions;  ///< ROI name or label → region name
+    std::vector<std::string> skip;               ///< structures or labels to leave out
     double scale = 0.0;                          ///< [mm] unit of a mesh file; 0 = as the file says
     int volume = 0;                              ///< of a mask file with several, counted from 1; 0 = the only one
     bool operator==(const Patient&) const = default;

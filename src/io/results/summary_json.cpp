@@ -23,6 +23,13 @@ std::optional<Enum> word(const std::string& name, Enum last) {
 Json in_use(const CapacityUse& use) { return {{"most", use.most}, {"room", use.room}}; }
 CapacityUse use_of(const Json& json) { return {json.at("most").get<int>(), json.at("room").get<int>()}; }
 
+/// How far the target was moved; null without a target.
+Json target_shift(const Summary& s) {
+  if (s.target_shifts.empty()) return nullptr;
+  const Vec3& centroid = s.target_shift_centroid_mm;
+  return {{"centroid", {centroid.x(), centroid.y(), centroid.z()}}, {"max", s.target_shift_max_mm}};
+}
+
 double number(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
@@ -50,7 +57,6 @@ std::string summary_json(const Summary& s) {
                        {"moved_mm", m.change.moved_mm},
                        {"condition", m.change.condition}});
   }
-  const Vec3& shift = s.target_shift_centroid_mm;
   const Json json = {
       {"version", s.version},
       {"scenario", s.scenario},
@@ -59,7 +65,7 @@ std::string summary_json(const Summary& s) {
       {"peak_force_N", {{"axial", s.peak_axial_N}, {"sagittal", s.peak_sagittal_N}, {"lateral", s.peak_lateral_N}}},
       {"events", events},
       {"tip_deflection_mm", s.tip_deflection_mm},
-      {"target_shift_mm", {{"centroid", {shift.x(), shift.y(), shift.z()}}, {"max", s.target_shift_max_mm}}},
+      {"target_shift_mm", target_shift(s)},
       {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
       {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
       {"contacts_max", s.contacts_max},
@@ -103,9 +109,12 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
                           e.at("region").get<std::string>()});
     }
     s.tip_deflection_mm = number(json.at("tip_deflection_mm"));
-    const Json& shift = json.at("target_shift_mm");
-    for (int k = 0; k < 3; ++k) s.target_shift_centroid_mm[k] = number(shift.at("centroid").at(static_cast<size_t>(k)));
-    s.target_shift_max_mm = number(shift.at("max"));
+    if (const Json& shift = json.at("target_shift_mm"); !shift.is_null()) {
+      for (int k = 0; k < 3; ++k)
+        s.target_shift_centroid_mm[k] = number(shift.at("centroid").at(static_cast<size_t>(k)));
+      s.target_shift_max_mm = number(shift.at("max"));
+      s.target_shifts.push_back({s.target_shift_centroid_mm, s.target_shift_max_mm});
+    }
     s.residual_force_balance = number(json.at("residual").at("force_balance"));
     s.residual_torque_balance = number(json.at("residual").at("torque_balance"));
     const Json& step = json.at("step_us");

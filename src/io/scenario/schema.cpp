@@ -23,10 +23,12 @@ struct TableText {
 constexpr std::array kTables{
     TableText{"patient", "[patient]",
               "Whose anatomy it is. The only table, with [[insertion]], that must be filled in."},
-    TableText{"patient.regions", "[patient.regions]",
-              "Which structures or labels to use, and as what. Without this table structures are recognised by their "
-              "names (prostate, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, "
-              "seminal_vesicles and the zones of the gland, in several spellings), and all labels of a mask are used."},
+    TableText{
+        "patient.regions", "[patient.regions]",
+        "What structures or labels stand for. Those not named here are recognised by their names (prostate, "
+        "urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles and the "
+        "zones of the gland, in several spellings); where no structure is the prostate, a CTV, target, PTV or GTV "
+        "is the gland. Without this table all labels of a mask are used."},
     TableText{"tissue", "[tissue]", "How all tissue is computed. No region may have the name of one of these keys."},
     TableText{"tissue.<region>", "[tissue.prostate]",
               "What a tissue is made of; one table for each region that is to differ from its defaults, which are "

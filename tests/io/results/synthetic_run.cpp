@@ -250,6 +250,7 @@ Summary summarise(const SyntheticRun& run) {
   s.tip_deflection_mm = 2.64;
   s.target_shift_centroid_mm = {0.21, -0.48, 2.66};
   s.target_shift_max_mm = 3.94;
+  s.target_shifts = {{s.target_shift_centroid_mm, s.target_shift_max_mm}};
   s.residual_force_balance = 3.1e-13;
   s.residual_torque_balance = 4.7e-13;
   s.step_us_p50 = 214;

@@ -137,11 +137,21 @@ TEST(SummaryJson, changes_of_the_mesh_survive_the_round_trip) {
 TEST(SummaryJson, a_value_that_is_not_finite_becomes_null) {
   Summary summary;
   summary.target_shift_max_mm = std::numeric_limits<double>::quiet_NaN();
+  summary.target_shifts.push_back({summary.target_shift_centroid_mm, summary.target_shift_max_mm});
   const auto json = nlohmann::json::parse(summary_json(summary));
   EXPECT_TRUE(json["target_shift_mm"]["max"].is_null());
   const auto back = parse_summary_json(summary_json(summary), "test");
   ASSERT_TRUE(back.ok());
   EXPECT_TRUE(std::isnan(back->target_shift_max_mm));
+}
+
+TEST(SummaryJson, without_a_target_nothing_has_moved_it) {
+  const Summary summary;
+  EXPECT_TRUE(nlohmann::json::parse(summary_json(summary))["target_shift_mm"].is_null());
+  const auto back = parse_summary_json(summary_json(summary), "test");
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_TRUE(back->target_shifts.empty());
+  EXPECT_EQ(summary_json(*back), summary_json(summary));
 }
 
 TEST(SummaryJson, one_of_before_there_were_capacities_is_read) {

@@ -114,10 +114,12 @@ std::string picture_section(const RunRecording& run, std::span<const RegionView>
       {{"before", moment_name("Before", run.frames[moments.before])},
        {"deepest", moment_name("Deepest", run.frames[moments.deepest])},
        {"after", moment_name("After", run.frames[moments.after])}}};
+  const bool has_target = !run.info.target_regions.empty();
   const std::array<std::pair<const char*, const char*>, 3> rows{
       {{"view", "anatomy from the left front"},
        {"sagittal", "sagittal section through the tip, seen from the left, needle projected"},
-       {"transverse", "transverse section through the target, seen from the feet"}}};
+       {"transverse", has_target ? "transverse section through the target, seen from the feet"
+                                 : "transverse section through the tip, seen from the feet"}}};
   std::string html = color_key(regions) + "<div class=\"stills\">";
   for (const auto& [file, what] : rows) {
     for (const auto& [moment, when] : columns) {
