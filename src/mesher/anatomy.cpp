@@ -16,13 +16,14 @@ constexpr double kOffsetRoom = 4.0;  // [mm] surfaces may be offset by up to thi
 }  // namespace
 
 int priority(std::string_view c) {
-  constexpr std::array<std::string_view, 17> order{"urethra",
+  constexpr std::array<std::string_view, 18> order{"urethra",
                                                    "anterior_stroma",
                                                    "central_zone",
                                                    "transition_zone",
                                                    "peripheral_zone",
                                                    "prostate",
                                                    "ctv",
+                                                   "target",
                                                    "gtv",
                                                    "ptv",
                                                    "seminal_vesicles",
@@ -164,6 +165,12 @@ double offset_for_volume(const Shape& shape, double volume) {
   return 0.5 * (low + high);
 }
 
+/// Whether it is no contradiction that one structure is drawn within another: anything lies in the body, the urethra
+/// and the zones lie in the gland, and a band ends in what it ties.
+bool belongs_inside(const Structure& inner, const Structure& outer) {
+  return outer.name == "body" || outer.name == "band" || (outer.target && (inner.target || inner.name == "urethra"));
+}
+
 }  // namespace
 
 void settle_overlaps(Anatomy& a) {
@@ -216,7 +223,8 @@ void settle_overlaps(Anatomy& a) {
     for (std::size_t h = 0; h < a.structures.size(); ++h) {
       const double cc = taken[h] * grid->spacing.prod() / 1000;
       const double smaller = std::min(a.structures[h].input_volume, layer.solid->volume(layer.offset)) / 1000;
-      if (name == "body" || !(cc > 0.01 * smaller) || cc < 0.005) continue;
+      if (belongs_inside(a.structures[h], a.structures[layer.members[0]])) continue;
+      if (!(cc > 0.01 * smaller) || cc < 0.005) continue;
       a.notes.push_back(fmt::format("'{}' and '{}' overlap by {:.2f} cc; it is meshed as '{}'", a.structures[h].name,
                                     name, cc, a.structures[h].name));
     }

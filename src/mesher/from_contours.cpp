@@ -3,6 +3,7 @@
 #include "body.hpp"
 #include "islands.hpp"
 #include "roi_choice.hpp"
+#include "stylet/geom/structure_names.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -33,7 +34,7 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   std::vector<Slice> slices = to_slices(culled, frame);
   if (slices.size() < 2) {
     return input_error(where, fmt::format("contours on {} slice; a solid needs at least two", slices.size()),
-                       "contour it on more slices or leave it out");
+                       "Contour it on more slices." + or_skip(roi.name));
   }
   const std::vector<double> thickness = slice_thickness(original);
   double largest = 0;
@@ -43,7 +44,7 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   }
   if (!(s.input_volume > 1.0)) {
     return input_error(where, fmt::format("the contours enclose {:.3g} mm³", s.input_volume),
-                       "check the units (mm expected) and the contours");
+                       "Check the units (mm expected) and the contours." + or_skip(roi.name));
   }
   // Grid fine enough for the structure, within bounds of memory; smoothing well below its thickness.
   const double radius = std::sqrt(largest / std::numbers::pi);
@@ -60,8 +61,9 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
     s.shape = grid;
   }
   if (!(s.shape->inner_radius() > 0)) {
-    return input_error(where, "the contours enclose nothing at the resolution of the mesher (0.5 mm)",
-                       "look at them: are they thinner than that, or do they cancel each other out?");
+    return input_error(
+        where, "the contours enclose nothing at the resolution of the mesher (0.5 mm)",
+        "Look at them: are they thinner than that, or do they cancel each other out?" + or_skip(roi.name));
   }
   return s;
 }
@@ -135,7 +137,7 @@ Result<Anatomy> anatomy_of(const ContourSet& set, const MeshOptions& options, co
       }
       return input_error(fmt::format("{}, ROI '{}'", anatomy.source, c.roi->name),
                          "a contour has fewer than three points or a point that is not a finite number",
-                         "export the structure again");
+                         "Export the structure again." + or_skip(c.roi->name));
     }
     rois.push_back(c.roi);
   }

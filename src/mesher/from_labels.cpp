@@ -2,9 +2,9 @@
 #include "anatomy.hpp"
 #include "body.hpp"
 #include "islands.hpp"
+#include "stylet/mesher/structures.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -121,16 +121,6 @@ std::vector<Vec3> boundary_points(const GridShape& g, double offset, const Slice
   return points;
 }
 
-/// The region that the file's name for a label, else the code beside the name, stands for; empty when neither is known.
-std::string region_named(const LabelImage& image, int label) {
-  for (const auto* texts : {&image.names, &image.meanings}) {
-    const auto text = texts->find(label);
-    if (text == texts->end()) continue;
-    if (std::string canonical = canonical_region(text->second); !canonical.empty()) return canonical;
-  }
-  return {};
-}
-
 /// Removes the pieces of the common solid that no member has kept.
 void drop_unclaimed_islands(GridShape& solid, const std::vector<Structure>& members) {
   const Islands islands = find_islands(solid);
@@ -163,34 +153,9 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   for (const auto l : image.labels) {
     if (l != 0) ++voxels[l];
   }
-  std::map<int, std::string> region;  // label → canonical name
-  bool named = false;
-  if (!options.regions.empty()) {
-    for (const auto& [text, name] : options.regions) {
-      const auto it = std::find_if(voxels.begin(), voxels.end(), [&](const auto& v) {
-        const auto n = image.names.find(v.first);
-        return std::to_string(v.first) == text || (n != image.names.end() && n->second == text);
-      });
-      if (it == voxels.end()) {
-        std::vector<int> labels;
-        for (const auto& v : voxels) labels.push_back(v.first);
-        return input_error(anatomy.source, fmt::format("there is no label '{}'; the mask has {}", text, labels),
-                           "name one of these");
-      }
-      const std::string canonical = canonical_region(name);
-      region[it->first] = canonical.empty() ? name : canonical;
-      named = named || is_target_region(canonical);
-    }
-  } else {
-    for (const auto& [label, count] : voxels) {
-      const auto n = image.names.find(label);
-      const std::string canonical = region_named(image, label);
-      named = named || is_target_region(canonical);
-      region[label] = !canonical.empty()       ? canonical
-                      : n != image.names.end() ? n->second
-                                               : fmt::format("label_{}", label);
-    }
-  }
+  const auto choice = choose_structures(image, options);
+  if (!choice) return choice.error();
+  const bool named = choice->has_target;
   if (!named) {
     if (!options.regions.empty()) {
       return input_error(anatomy.source,
@@ -199,19 +164,17 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     }
     anatomy.notes.push_back("no label is named as prostate or prostate zone: all labels together count as the target");
   }
-  if (options.preset == MeshPreset::paper) {
-    for (auto& [label, name] : region) {
-      if (!named || is_target_region(name)) name = "prostate";
-    }
-    std::erase_if(region, [](const auto& r) { return r.second != "prostate"; });
-  }
+  anatomy.notes.insert(anatomy.notes.end(), choice->notes.begin(), choice->notes.end());
 
   std::map<std::string, std::set<int>> labels;  // region → labels
   std::set<int> used;
-  for (const auto& [label, name] : region) {
-    labels[name].insert(label);
-    used.insert(label);
+  for (const StructureUse& use : choice->uses) {
+    if (use.region.empty()) continue;
+    labels[use.region].insert(use.number);
+    used.insert(use.number);
   }
+  if (used.empty())
+    return input_error(anatomy.source, "every label is left out", "take one of them out of [patient] skip");
   const double step = std::max(0.8 * std::min(s.spacing[0], s.spacing[1]), std::min(s.spacing[2], 1.0));
   const double sigma = 0.9 * std::max(s.spacing[0], s.spacing[1]);
   const auto volume_of = [&](const std::set<int>& set) {

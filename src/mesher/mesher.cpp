@@ -119,10 +119,11 @@ Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
         region[s] = static_cast<int>(m.regions.size());
         m.regions.push_back(structure.name);
       } else if (!structure.generated) {
-        return input_error(fmt::format("{}, region '{}'", a.source, structure.name),
-                           fmt::format("it has {:.3f} cc outside other structures and no element at {} nodes",
-                                       structure.input_volume / 1000, raw.nodes.size()),
-                           "ask for more nodes or leave the structure out");
+        return input_error(
+            fmt::format("{}, region '{}'", a.source, structure.name),
+            fmt::format("it has {:.3f} cc outside other structures and no element at {} nodes",
+                        structure.input_volume / 1000, raw.nodes.size()),
+            "Ask for more nodes, or leave the structure out (skip below [patient]; stylet mesh: --skip).");
       } else {
         a.notes.push_back(fmt::format("the generated region '{}' found no room", structure.name));
       }

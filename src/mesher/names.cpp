@@ -213,16 +213,24 @@ std::string zone(std::string_view name) {
   return found == zones.end() ? std::string{} : std::string(found->canonical);
 }
 
-/// "PTV", "PTV1", "PTV_7800", "CTV 78 Gy", "CTVprostate".
-std::string planning_volume(std::string p) {
-  if (p.size() < 3) return {};
-  const std::string head = p.substr(0, 3);
-  if (head != "ptv" && head != "ctv" && head != "gtv") return {};
-  std::string rest = p.substr(3);
+/// "PTV", "PTV1", "PTV_7800", "CTV 78 Gy", "CTVprostate", "Target", "Target volume 1".
+std::string planning_volume(const std::string& p) {
+  struct Word {
+    std::string_view start, canonical;
+  };
+  constexpr std::array<Word, 6> words{{{"ctv", "ctv"},
+                                       {"targetvolume", "target"},
+                                       {"target", "target"},
+                                       {"zielvolumen", "target"},
+                                       {"ptv", "ptv"},
+                                       {"gtv", "gtv"}}};
+  const auto word = std::find_if(words.begin(), words.end(), [&](const Word& w) { return p.starts_with(w.start); });
+  if (word == words.end()) return {};
+  std::string rest = p.substr(word->start.size());
   if (rest.starts_with("prostate")) rest.erase(0, 8);
   if (rest.ends_with("gy")) rest.erase(rest.size() - 2);
   const bool number = std::all_of(rest.begin(), rest.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-  return number ? head : std::string{};
+  return number ? std::string(word->canonical) : std::string{};
 }
 
 }  // namespace
@@ -240,7 +248,13 @@ std::string canonical_region(std::string_view name) {
 
 bool is_target_region(std::string_view c) {
   return c == "prostate" || c == "peripheral_zone" || c == "transition_zone" || c == "central_zone" ||
-         c == "anterior_stroma" || c == "ptv" || c == "ctv" || c == "gtv";
+         c == "anterior_stroma" || c == "ctv" || c == "target" || c == "ptv" || c == "gtv";
+}
+
+std::string region_meant(std::string_view name) {
+  const std::string canonical = canonical_region(name);
+  if (canonical == "target") return "prostate";
+  return canonical.empty() ? std::string(name) : canonical;
 }
 
 }  // namespace stylet

@@ -2,103 +2,65 @@
 #include "roi_choice.hpp"
 
 #include "anatomy.hpp"
+#include "structure_choice.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
 
-namespace stylet::meshing {
+namespace stylet {
+namespace meshing {
 namespace {
 
-using Choices = std::vector<RoiChoice>;
-
-bool has(const Choices& chosen, std::string_view region) {
-  return std::any_of(chosen.begin(), chosen.end(), [&](const RoiChoice& c) { return c.region == region; });
-}
-
-std::vector<std::string> names_of(const ContourSet& set) {
-  std::vector<std::string> names;
-  for (const Roi& r : set.rois) names.push_back(r.contours.empty() ? r.name + " (empty)" : r.name);
-  return names;
-}
-
-Result<Choices> as_asked(const ContourSet& set, const MeshOptions& options) {
-  Choices chosen;
-  for (const auto& [name, region] : options.regions) {
-    const auto roi = std::find_if(set.rois.begin(), set.rois.end(), [&](const Roi& r) { return r.name == name; });
-    if (roi == set.rois.end()) {
-      return input_error(set.source, fmt::format("there is no ROI '{}'; the file has {}", name, names_of(set)),
-                         "name one of these");
-    }
-    if (roi->contours.empty()) {
-      return input_error(fmt::format("{}, ROI '{}'", set.source, name), "the ROI has no closed contours",
-                         "leave it out or choose another");
-    }
-    const std::string canonical = canonical_region(region);
-    chosen.push_back({&*roi, canonical.empty() ? region : canonical});
-  }
-  return chosen;
-}
-
-Choices by_name(const ContourSet& set, std::vector<std::string>& notes) {
-  Choices chosen;
-  std::vector<std::string> passed;
+std::vector<Candidate> candidates_of(const ContourSet& set) {
+  std::vector<Candidate> all;
   for (const Roi& roi : set.rois) {
-    if (roi.contours.empty()) continue;  // the reader has noted it
-    const std::string region = canonical_region(roi.name);
-    if (region.empty()) {
-      passed.push_back(roi.name);
-    } else {
-      chosen.push_back({&roi, region});
-    }
+    all.push_back({.name = roi.name,
+                   .meaning = "",
+                   .number = roi.number,
+                   .type = roi.type,
+                   .word = "",
+                   .nothing = roi.contours.empty() ? "empty" : ""});
   }
-  if (!passed.empty()) notes.push_back(fmt::format("structures passed over, name not recognised: {}", passed));
-  // A planning volume stands in for the gland only where the gland itself was not drawn; the CTV is nearest to it.
-  std::string keep;
-  if (!has(chosen, "prostate") && !has(chosen, "peripheral_zone") && !has(chosen, "transition_zone")) {
-    keep = has(chosen, "ctv") ? "ctv" : has(chosen, "ptv") ? "ptv" : "gtv";
+  for (const PassedOver& passed : set.passed_over) {
+    all.push_back({.name = passed.name, .meaning = "", .number = 0, .type = "", .word = "", .nothing = passed.why});
   }
-  bool found = false;
-  std::erase_if(chosen, [&](const RoiChoice& c) {
-    if (c.region != "ptv" && c.region != "ctv" && c.region != "gtv") return false;
-    if (c.region == keep && !found) {
-      found = true;
-      notes.push_back(fmt::format("no prostate contours: '{}' stands in as the target", c.roi->name));
-      return false;
-    }
-    notes.push_back(fmt::format("'{}' is a planning volume, not anatomy: passed over", c.roi->name));
-    return true;
-  });
-  return chosen;
+  return all;
+}
+
+/// The gland in one piece, and what holds it.
+void keep_the_gland(std::vector<StructureUse>& uses) {
+  const bool whole = std::any_of(uses.begin(), uses.end(), [](const auto& u) { return u.region == "prostate"; });
+  for (StructureUse& use : uses) {
+    if (use.region.empty() || use.region == "band") continue;
+    if (whole ? use.region != "prostate" : !is_target_region(use.region)) leave_out(use, kPaperTakesTheGland);
+    if (!whole && use.region.ends_with("_zone")) use.region = "prostate";
+  }
 }
 
 }  // namespace
 
-Result<Choices> choose_rois(const ContourSet& set, const MeshOptions& options, std::vector<std::string>& notes) {
-  Choices chosen;
-  if (options.regions.empty()) {
-    chosen = by_name(set, notes);
-  } else {
-    auto asked = as_asked(set, options);
-    if (!asked) return asked.error();
-    chosen = *std::move(asked);
+Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOptions& options,
+                                           std::vector<std::string>& notes) {
+  const auto choice = choose_structures(set, options);
+  if (!choice) return choice.error();
+  if (!choice->has_target) {
+    std::vector<std::string> names;
+    for (const StructureUse& use : choice->uses) names.push_back(use.name);
+    for (const StructureUse& use : choice->empty) names.push_back(fmt::format("{} ({})", use.name, use.why));
+    return input_error(
+        set.source,
+        fmt::format("no target structure: none of {} is recognised as prostate, prostate zone, CTV, PTV or GTV", names),
+        "Say which one is the target: map its name to 'prostate' below [patient.regions].");
   }
-  if (std::none_of(chosen.begin(), chosen.end(), [](const RoiChoice& c) { return is_target_region(c.region); })) {
-    return input_error(set.source,
-                       fmt::format("no target structure: none of {} is recognised as prostate, prostate zone, CTV, PTV "
-                                   "or GTV",
-                                   names_of(set)),
-                       "say which one is the target, that is, map its name to 'prostate'");
+  notes.insert(notes.end(), choice->notes.begin(), choice->notes.end());
+  std::vector<const Roi*> drawn;  // those that choice->uses are of
+  for (const Roi& roi : set.rois) {
+    if (!roi.contours.empty()) drawn.push_back(&roi);
   }
-  if (options.preset == MeshPreset::paper) {
-    // The gland in one piece, and what holds it.
-    const bool whole = has(chosen, "prostate");
-    std::erase_if(chosen, [&](const RoiChoice& c) {
-      return c.region != "band" && (whole ? c.region != "prostate" : !is_target_region(c.region));
-    });
-    for (RoiChoice& c : chosen) {
-      if (!whole && c.region.ends_with("_zone")) c.region = "prostate";
-    }
+  std::vector<RoiChoice> chosen;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (!choice->uses[i].region.empty()) chosen.push_back({drawn[i], choice->uses[i].region});
   }
   std::stable_sort(chosen.begin(), chosen.end(), [](const RoiChoice& a, const RoiChoice& b) {
     return std::pair(priority(a.region), a.region) < std::pair(priority(b.region), b.region);
@@ -106,4 +68,15 @@ Result<Choices> choose_rois(const ContourSet& set, const MeshOptions& options, s
   return chosen;
 }
 
-}  // namespace stylet::meshing
+}  // namespace meshing
+
+Result<StructureChoice> choose_structures(const ContourSet& contours, const MeshOptions& options) {
+  const auto candidates = meshing::candidates_of(contours);
+  const std::string source = contours.source.empty() ? "contours" : contours.source;
+  auto uses = meshing::decide(candidates, options, source, "structure");
+  if (!uses) return uses.error();
+  if (options.preset == MeshPreset::paper) meshing::keep_the_gland(*uses);
+  return meshing::told(*std::move(uses), candidates, "structure");
+}
+
+}  // namespace stylet

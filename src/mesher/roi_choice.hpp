@@ -10,9 +10,8 @@ struct RoiChoice {
   std::string region;  ///< canonical name
 };
 
-/// Which ROIs of the set are meshed, and as what, by priority. With options.regions those; else every ROI whose name is
-/// recognised, a planning volume only where the gland itself was not drawn. Notes what is passed over.
-/// Errors: unknown or empty ROI asked for, no target.
+/// Which ROIs of the set are meshed, and as what (choose_structures()), by priority. Notes what is left out.
+/// Errors: those of choose_structures(), no target.
 Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOptions& options,
                                            std::vector<std::string>& notes);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slice_frame.hpp"
 
+#include "stylet/geom/structure_names.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -108,7 +110,7 @@ Result<SliceFrame> common_frame(const ContourSet& contours, const std::vector<co
                            fmt::format("the contour leaves the common slice plane by {:.2f} mm; at most 0.5 mm is "
                                        "expected of parallel planar contours",
                                        high - low),
-                           "draw all structures on the same parallel slices");
+                           "Draw all structures on the same parallel slices." + or_skip(roi->name));
       }
     }
   }

@@ -36,7 +36,9 @@ TEST(CanonicalRegion, UsualNamesAreRecognisedWhateverTheirCaseAndSeparators) {
                                                                {"PTV", "ptv"},
                                                                {"PTV_7800", "ptv"},
                                                                {"CTV 78 Gy", "ctv"},
-                                                               {"GTV1", "gtv"}};
+                                                               {"GTV1", "gtv"},
+                                                               {"Target", "target"},
+                                                               {"Target volume 1", "target"}};
   for (const auto& [name, canonical] : names) EXPECT_EQ(canonical_region(name), canonical) << name;
 }
 
@@ -63,9 +65,9 @@ TEST(CanonicalRegion, ZonesAreRecognisedAsPeopleWriteThem) {
 }
 
 TEST(CanonicalRegion, ACanonicalNameIsItsOwnSynonym) {
-  for (const std::string name :
-       {"prostate", "peripheral_zone", "transition_zone", "central_zone", "anterior_stroma", "urethra", "bladder",
-        "rectum", "pubic_arch", "femur_left", "femur_right", "band", "body", "seminal_vesicles", "ptv", "ctv", "gtv"}) {
+  for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "central_zone", "anterior_stroma",
+                                 "urethra", "bladder", "rectum", "pubic_arch", "femur_left", "femur_right", "band",
+                                 "body", "seminal_vesicles", "ctv", "target", "ptv", "gtv"}) {
     EXPECT_EQ(canonical_region(name), name);
   }
 }
@@ -79,7 +81,7 @@ TEST(CanonicalRegion, PlanningHelpersAndChannelsAreNotAnatomy) {
 }
 
 TEST(TargetRegion, GlandAndZonesAndPlanningVolumesAreTargetsAndOrgansAreNot) {
-  for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "ptv", "ctv", "gtv"}) {
+  for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "ctv", "target", "ptv", "gtv"}) {
     EXPECT_TRUE(is_target_region(name)) << name;
   }
   for (const std::string name : {"bladder", "urethra", "body", "band", ""})

@@ -21,9 +21,10 @@ struct MeshOptions {
   MeshPreset preset = MeshPreset::standard;
   Index nodes = 0;                 ///< wanted number of nodes, hit within 3 %; 0 = the preset's default (3,000 / 570)
   double cull_tolerance_mm = 0.3;  ///< contour points closer than this to the polygon without them are superfluous
-  /// Which input structures to mesh and under which canonical name: ROI name or "label number as text" → region name.
-  /// Empty: every structure whose name is recognised by its synonyms; all labels of a mask.
+  /// What input structures stand for: ROI name, or label's name or "number as text" → region name. The others are
+  /// recognised by their names (choose_structures()).
   std::map<std::string, std::string> regions;
+  std::vector<std::string> skip;  ///< names of input structures, or labels' numbers as text, to leave out
   bool stiff_band = true;  ///< without a pubic arch in the input: add the band from the gland's anterior-inferior end
 };
 
@@ -67,11 +68,16 @@ Contour cull(const Contour& contour, double tolerance_mm);
 
 /// Canonical name of a structure by its synonyms, case-insensitive, separators ignored: prostate, peripheral_zone,
 /// transition_zone, central_zone, anterior_stroma, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band,
-/// body, seminal_vesicles, and the planning volumes ptv, ctv, gtv; empty when not recognised. Whole names only:
+/// body, seminal_vesicles, and the planning volumes ctv, target, ptv, gtv; empty when not recognised. Whole names only:
 /// planning helpers such as "optBladder" are not anatomy.
 std::string canonical_region(std::string_view name);
 
-/// Regions whose union is the target (the gland): prostate or its zones, else a planning volume (PTV, CTV, GTV).
+/// What a user means who gives a structure this name: the canonical name where it is recognised, with "target" for the
+/// gland, else the name itself.
+std::string region_meant(std::string_view name);
+
+/// Regions whose union is the target (the gland): prostate or its zones, else a planning volume (CTV, target, PTV,
+/// GTV).
 bool is_target_region(std::string_view canonical);
 
 }  // namespace stylet

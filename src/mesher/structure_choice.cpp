@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "structure_choice.hpp"
+
+#include "stylet/core/nearest_name.hpp"
+#include "stylet/geom/structure_names.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+
+namespace stylet::meshing {
+namespace {
+
+/// Kinds of planning volumes, the likeliest gland first: the CTV of an implant is the gland; a target that does not say
+/// which kind it is, or a PTV, may have a margin around it; a GTV may be a lesion within it.
+struct Kind {
+  std::string_view name, caution;
+};
+constexpr std::array<Kind, 4> kPlanning{{{"ctv", ""},
+                                         {"target", ""},
+                                         {"ptv", "; a PTV often has a margin around the gland"},
+                                         {"gtv", "; a GTV is often only a lesion within the gland"}}};
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::size_t planning_rank(std::string_view kind) {
+  const auto found = std::find_if(kPlanning.begin(), kPlanning.end(), [&](const Kind& k) { return k.name == kind; });
+  return static_cast<std::size_t>(found - kPlanning.begin());
+}
+
+bool is_planning(std::string_view kind) { return planning_rank(kind) < kPlanning.size(); }
+
+/// The region that the name, else the coded term beside it, stands for; empty when neither is known.
+std::string region_named(const Candidate& candidate) {
+  std::string by_name = canonical_region(candidate.name);
+  return by_name.empty() ? canonical_region(candidate.meaning) : by_name;
+}
+
+/// Candidates, and what has been decided of them.
+class Decision {
+ public:
+  Decision(const std::vector<Candidate>& candidates, const MeshOptions& options, std::string source, std::string kind)
+      : candidates_(candidates), options_(options), source_(std::move(source)), kind_(std::move(kind)) {
+    for (const Candidate& c : candidates_) {
+      names_.push_back(c.name);
+      words_.push_back(c.word);
+      uses_.push_back({.name = c.name, .number = c.number, .region = "", .why = c.nothing});
+      open_.push_back(c.nothing.empty());
+    }
+  }
+
+  Result<std::vector<StructureUse>> made() {
+    if (auto done = skip_those_named(); !done) return done.error();
+    if (auto done = take_those_named(); !done) return done.error();
+    take_by_name();
+    find_gland();
+    find_body();
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+      if (open_[i]) leave(i, kNotRecognised);
+    }
+    return uses_;
+  }
+
+ private:
+  /// The candidates that a user's word means.
+  [[nodiscard]] Result<std::vector<std::size_t>> meant(const std::string& word, const std::string& key) const {
+    std::vector<std::size_t> found = find_named(names_, word);
+    if (found.empty()) found = find_named(words_, word);
+    if (!found.empty()) return found;
+    std::vector<std::string> known;
+    for (const Candidate& c : candidates_)
+      known.push_back(c.word.empty() || c.word == c.name ? c.name : fmt::format("{} ({})", c.name, c.word));
+    const std::string near = nearest_name(word, names_);
+    return input_error(source_, fmt::format("{}: there is no {} '{}'; the file has {}", key, kind_, word, known),
+                       near.empty() ? "Name one of these." : fmt::format("Did you mean '{}'?", near));
+  }
+
+  void leave(std::size_t i, std::string why) {
+    leave_out(uses_[i], std::move(why));
+    open_[i] = false;
+  }
+
+  void take(std::size_t i, std::string region, std::string why = {}) {
+    uses_[i].region = std::move(region);
+    uses_[i].why = std::move(why);
+    open_[i] = false;
+  }
+
+  Result<> skip_those_named() {
+    for (const std::string& word : options_.skip) {
+      const auto found = meant(word, "patient.skip");
+      if (!found) return found.error();
+      for (const std::size_t i : *found) {
+        if (candidates_[i].nothing.empty()) leave(i, "named in [patient] skip");
+      }
+    }
+    return Ok{};
+  }
+
+  Result<> take_those_named() {
+    for (const auto& [word, region] : options_.regions) {
+      const auto found = meant(word, "patient.regions");
+      if (!found) return found.error();
+      bool taken = false;
+      for (const std::size_t i : *found) {
+        if (!candidates_[i].nothing.empty()) continue;
+        if (!open_[i] && uses_[i].region.empty()) {
+          return input_error(source_,
+                             fmt::format("{} '{}' is named in patient.skip and in patient.regions", kind_, word),
+                             "Remove it from one of the two.");
+        }
+        take(i, region_meant(region), "named in [patient.regions]");
+        asked_.insert(uses_[i].region);
+        taken = true;
+      }
+      if (!taken) {
+        const std::string& nothing = candidates_[found->front()].nothing;
+        return input_error(fmt::format("{}, {} '{}'", source_, kind_, word),
+                           fmt::format("there is nothing in it to be meshed ({})", nothing),
+                           "Leave it out of patient.regions, or name another.");
+      }
+    }
+    return Ok{};
+  }
+
+  void take_by_name() {
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+      if (!open_[i]) continue;
+      const std::string region = region_named(candidates_[i]);
+      if (region.empty() || is_planning(region)) continue;
+      if (!asked_.contains(region)) {
+        take(i, region);
+      } else {
+        leave(i, fmt::format("{} is taken as {}", names_taken_as(region), region));
+      }
+    }
+  }
+
+  [[nodiscard]] std::string names_taken_as(const std::string& region) const {
+    std::vector<std::string> names;
+    for (const StructureUse& use : uses_) {
+      if (use.region == region) names.push_back(fmt::format("'{}'", use.name));
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
+  /// "ctv", "target", "ptv", "gtv", by name, else by type; empty for anything else.
+  [[nodiscard]] std::string planning_kind(const Candidate& c) const {
+    const std::string by_name = region_named(c);
+    if (!by_name.empty()) return is_planning(by_name) ? by_name : std::string();
+    const std::string by_type = lower(c.type);
+    return by_type != "target" && is_planning(by_type) ? by_type : std::string();
+  }
+
+  [[nodiscard]] bool has(const auto& wanted) const {
+    return std::any_of(uses_.begin(), uses_.end(), [&](const StructureUse& u) { return wanted(u.region); });
+  }
+
+  /// Planning volumes are no anatomy; one stands in where the gland itself is not drawn. Of several of a kind the one
+  /// of that very name is preferred, then one with a longer name, then one by its type, then the first.
+  void find_gland() {
+    const bool drawn =
+        has([](const std::string& r) { return r == "prostate" || r == "peripheral_zone" || r == "transition_zone"; });
+    const bool asked =
+        std::any_of(asked_.begin(), asked_.end(), [](const std::string& r) { return is_target_region(r); });
+    std::vector<std::pair<std::array<std::size_t, 3>, std::size_t>> volumes;  // rank, candidate
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+      if (!open_[i]) continue;
+      const std::string kind = planning_kind(candidates_[i]);
+      if (kind.empty()) continue;
+      const std::size_t naming = lower(candidates_[i].name) == kind ? 0 : region_named(candidates_[i]) == kind ? 1 : 2;
+      volumes.push_back({{planning_rank(kind), naming, i}, i});
+    }
+    if (volumes.empty()) return;
+    std::string why = "planning volume, and the gland is drawn";
+    if (asked) why = "planning volume, and another structure is named as the target";
+    if (!drawn && !asked) {
+      const auto& [rank, best] = *std::min_element(volumes.begin(), volumes.end());
+      take(best, "prostate",
+           fmt::format("taken as the gland, since no {} is named prostate{}", kind_, kPlanning[rank[0]].caution));
+      why = fmt::format("planning volume, and '{}' is taken as the gland", candidates_[best].name);
+    }
+    for (const auto& [rank, i] : volumes) {
+      if (open_[i]) leave(i, why);
+    }
+  }
+
+  void find_body() {
+    if (has([](const std::string& r) { return r == "body"; })) return;
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+      if (!open_[i] || lower(candidates_[i].type) != "external") continue;
+      take(i, "body", fmt::format("taken as the body, since no {} is named so", kind_));
+      return;
+    }
+  }
+
+  const std::vector<Candidate>& candidates_;
+  const MeshOptions& options_;
+  std::string source_, kind_;
+  std::vector<std::string> names_, words_;
+  std::vector<StructureUse> uses_;
+  std::vector<bool> open_;       ///< not decided yet
+  std::set<std::string> asked_;  ///< regions that MeshOptions::regions gives
+};
+
+/// "structures left out (empty): 'CTV', 'PROS'", one for each reason.
+std::vector<std::string> tell_left_out(const std::vector<StructureUse>& uses, const std::string& kind) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const StructureUse& use : uses) {
+    if (!use.region.empty()) continue;
+    auto reason = std::find_if(reasons.begin(), reasons.end(), [&](const auto& r) { return r.first == use.why; });
+    if (reason == reasons.end()) reason = reasons.insert(reasons.end(), {use.why, {}});
+    reason->second.push_back(fmt::format("'{}'", use.name));
+  }
+  std::vector<std::string> told;
+  for (const auto& [why, names] : reasons) {
+    told.push_back(
+        fmt::format("{}{} left out ({}): {}", kind, names.size() == 1 ? "" : "s", why, fmt::join(names, ", ")));
+  }
+  return told;
+}
+
+}  // namespace
+
+void leave_out(StructureUse& use, std::string why) {
+  use.region.clear();
+  use.why = std::move(why);
+}
+
+Result<std::vector<StructureUse>> decide(const std::vector<Candidate>& candidates, const MeshOptions& options,
+                                         const std::string& source, const std::string& kind) {
+  return Decision(candidates, options, source, kind).made();
+}
+
+StructureChoice told(std::vector<StructureUse> uses, const std::vector<Candidate>& candidates,
+                     const std::string& kind) {
+  StructureChoice choice;
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (!uses[i].region.empty() && uses[i].why.starts_with("taken as")) {
+      const std::string& type = candidates[i].type;
+      choice.notes.push_back(fmt::format("{} '{}'{} is {}", kind, uses[i].name,
+                                         type.empty() ? "" : fmt::format(" (type {})", type), uses[i].why));
+    }
+  }
+  for (std::string& note : tell_left_out(uses, kind)) choice.notes.push_back(std::move(note));
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    choice.has_target = choice.has_target || is_target_region(uses[i].region);
+    (candidates[i].nothing.empty() ? choice.uses : choice.empty).push_back(std::move(uses[i]));
+  }
+  return choice;
+}
+
+}  // namespace stylet::meshing

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What structures and labels are taken as, what is left out, and that it is said.
+#include "made_anatomy.hpp"
+#include "stylet/mesher/structures.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stylet {
+namespace {
+
+using testing::set_of;
+
+/// A structure that has a contour; nobody meshes it here.
+Roi roi(const std::string& name, const std::string& type = "") {
+  Roi r;
+  r.name = name;
+  r.type = type;
+  r.contours = {testing::circle(Vec3::Zero(), 10)};
+  return r;
+}
+
+StructureChoice chosen(const std::vector<Roi>& rois, const MeshOptions& options = {}) {
+  auto choice = choose_structures(set_of(rois), options);
+  EXPECT_TRUE(choice.ok()) << (choice.ok() ? "" : choice.error().message());
+  return choice.ok() ? *choice : StructureChoice{};
+}
+
+std::string refusal(const std::vector<Roi>& rois, const MeshOptions& options) {
+  const auto choice = choose_structures(set_of(rois), options);
+  return choice.ok() ? "" : choice.error().message();
+}
+
+std::vector<std::string> regions(const StructureChoice& choice) {
+  std::vector<std::string> all;
+  for (const StructureUse& use : choice.uses) all.push_back(use.region);
+  return all;
+}
+
+bool says(const StructureChoice& choice, const std::string& text) {
+  return std::any_of(choice.notes.begin(), choice.notes.end(),
+                     [&](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+using Regions = std::vector<std::string>;
+
+TEST(Structures, APlanningVolumeIsTheGlandWhereNoneIsDrawnAndThisIsSaid) {
+  const StructureChoice choice = chosen({roi("PTV", "PTV"), roi("Bladder", "AVOIDANCE")});
+  EXPECT_EQ(regions(choice), (Regions{"prostate", "bladder"}));
+  EXPECT_TRUE(choice.has_target);
+  EXPECT_TRUE(says(choice, "structure 'PTV' (type PTV) is taken as the gland, since no structure is named prostate"));
+}
+
+TEST(Structures, TheTypeTellsAPlanningVolumeWhoseNameDoesNot) {
+  const StructureChoice choice = chosen({roi("P+SV 76", "CTV"), roi("Rectum", "PTV")});
+  EXPECT_EQ(regions(choice), (Regions{"prostate", "rectum"})) << "a name that is recognised counts more than a type";
+  EXPECT_TRUE(says(choice, "'P+SV 76' (type CTV) is taken as the gland"));
+}
+
+TEST(Structures, AStructureCalledTargetIsOne) {
+  for (const char* name : {"Target", "target", "TARGET_1", "Zielvolumen"})
+    EXPECT_EQ(regions(chosen({roi(name)})), Regions{"prostate"}) << name;
+}
+
+TEST(Structures, TheLikeliestGlandIsPreferredAndTheOthersAreLeftOut) {
+  const StructureChoice choice = chosen({roi("GTV"), roi("PTV"), roi("Target"), roi("CTV 2"), roi("CTV")});
+  EXPECT_EQ(regions(choice), (Regions{"", "", "", "", "prostate"}));
+  EXPECT_TRUE(
+      says(choice, "left out (planning volume, and 'CTV' is taken as the gland): 'GTV', 'PTV', 'Target', 'CTV 2'"));
+  EXPECT_EQ(regions(chosen({roi("GTV"), roi("PTV"), roi("Target")})), (Regions{"", "", "prostate"}));
+  EXPECT_EQ(regions(chosen({roi("GTV"), roi("PTV")})), (Regions{"", "prostate"}));
+  EXPECT_TRUE(says(chosen({roi("GTV")}), "only a lesion"));
+}
+
+TEST(Structures, AnEmptyPlanningVolumeIsNoGland) {
+  Roi empty;
+  empty.name = "CTV";
+  ContourSet set = set_of({empty, roi("PTV")});
+  set.passed_over = {{"PROS", "empty"}, {"needle A5", "only open curves or points"}};
+  const auto choice = choose_structures(set, {});
+  ASSERT_TRUE(choice.ok());
+  EXPECT_EQ(regions(*choice), Regions{"prostate"});
+  EXPECT_EQ(choice->empty.size(), 3U);
+  EXPECT_TRUE(says(*choice, "structures left out (empty): 'CTV', 'PROS'"));
+  EXPECT_TRUE(says(*choice, "structure left out (only open curves or points): 'needle A5'"));
+}
+
+TEST(Structures, PlanningVolumesAreLeftOutWhereTheGlandIsDrawn) {
+  const StructureChoice choice = chosen({roi("Prostate", "CTV"), roi("PTV", "PTV"), roi("Boost", "GTV")});
+  EXPECT_EQ(regions(choice), (Regions{"prostate", "", ""}));
+  EXPECT_TRUE(says(choice, "left out (planning volume, and the gland is drawn): 'PTV', 'Boost'"));
+}
+
+TEST(Structures, OfTypeExternalIsTheBodyUnderAnyName) {
+  EXPECT_EQ(regions(chosen({roi("Prostate"), roi("Outer 3", "EXTERNAL")})), (Regions{"prostate", "body"}));
+  EXPECT_EQ(regions(chosen({roi("Prostate"), roi("Outer 3", "EXTERNAL"), roi("BODY")})),
+            (Regions{"prostate", "", "body"}));
+}
+
+TEST(Structures, NamingOneLeavesTheOthersRecognised) {
+  MeshOptions options;
+  options.regions = {{"my volume", "prostate"}};
+  const StructureChoice choice =
+      chosen({roi("my volume"), roi("Bladder"), roi("Rectum"), roi("X1"), roi("PTV"), roi("Prostate")}, options);
+  EXPECT_EQ(regions(choice), (Regions{"prostate", "bladder", "rectum", "", "", ""}));
+  EXPECT_TRUE(says(choice, "structure left out (name not recognised): 'X1'"));
+  EXPECT_TRUE(says(choice, "structure left out ('my volume' is taken as prostate): 'Prostate'"));
+  EXPECT_TRUE(says(choice, "'PTV'"));
+}
+
+TEST(Structures, NamesAreFoundWhateverTheirCase) {
+  MeshOptions options;
+  options.regions = {{"MY VOLUME", "target"}};
+  options.skip = {"bladder"};
+  const StructureChoice choice = chosen({roi("my volume"), roi("Bladder")}, options);
+  EXPECT_EQ(regions(choice), (Regions{"prostate", ""}));
+  EXPECT_TRUE(says(choice, "left out (named in [patient] skip): 'Bladder'"));
+}
+
+TEST(Structures, SkippedStructuresAreNoTargetEither) {
+  MeshOptions options;
+  options.skip = {"CTV"};
+  EXPECT_EQ(regions(chosen({roi("CTV"), roi("PTV")}, options)), (Regions{"", "prostate"}));
+  options.skip = {"PTV", "CTV"};
+  EXPECT_FALSE(chosen({roi("CTV"), roi("PTV")}, options).has_target);
+}
+
+TEST(Structures, ANameToSkipThatIsNotThereIsRefusedWithTheNearest) {
+  MeshOptions options;
+  options.skip = {"Rektum"};
+  EXPECT_NE(refusal({roi("Prostate"), roi("Rectum")}, options).find("Did you mean 'Rectum'?"), std::string::npos);
+  options.skip = {"Rectum"};
+  options.regions = {{"rectum", "bladder"}};
+  EXPECT_NE(refusal({roi("Prostate"), roi("Rectum")}, options).find("patient.skip and in patient.regions"),
+            std::string::npos);
+}
+
+TEST(Structures, WhatThePaperPresetLeavesOutIsSaid) {
+  MeshOptions options;
+  options.preset = MeshPreset::paper;
+  const StructureChoice choice = chosen({roi("PZ"), roi("TZ"), roi("Bladder"), roi("Band")}, options);
+  EXPECT_EQ(regions(choice), (Regions{"prostate", "prostate", "", "band"}));
+  EXPECT_TRUE(says(choice, "the gland only): 'Bladder'"));
+}
+
+LabelImage named_mask(const std::map<int, std::string>& names) {
+  LabelImage image = testing::two_zones();
+  image.labels[0] = 3;
+  image.labels[1] = 4;
+  image.names = names;
+  return image;
+}
+
+TEST(Structures, LabelsAreSkippedByNameOrNumber) {
+  const LabelImage image = named_mask({{1, "PZ"}, {2, "TZ"}, {3, "Bladder"}});
+  MeshOptions options;
+  options.skip = {"BLADDER", "4"};
+  const auto choice = choose_structures(image, options);
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice), (Regions{"peripheral_zone", "transition_zone", "", ""}));
+  EXPECT_TRUE(says(*choice, "labels left out (named in [patient] skip): 'Bladder', '4'"));
+  options.skip = {"Blader"};
+  const auto wrong = choose_structures(image, options);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.error().message().find("Did you mean 'Bladder'?"), std::string::npos);
+}
+
+TEST(Structures, NamingOneLabelLeavesTheOthersRecognised) {
+  MeshOptions options;
+  options.regions = {{"1", "prostate"}};
+  const auto choice = choose_structures(named_mask({{1, "blob"}, {2, "Bladder"}}), options);
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice), (Regions{"prostate", "bladder", "", ""}));
+  EXPECT_TRUE(says(*choice, "left out (name not recognised): '3', '4'"));
+}
+
+TEST(Structures, ALabelCalledTargetIsTheGland) {
+  const auto choice = choose_structures(named_mask({{1, "Target"}, {2, "Rectum"}}), {});
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice), (Regions{"prostate", "rectum", "label_3", "label_4"}));
+  EXPECT_TRUE(says(*choice, "label 'Target' is taken as the gland"));
+}
+
+}  // namespace
+}  // namespace stylet
