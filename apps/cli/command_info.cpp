@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "describe.hpp"
+#include "output_path.hpp"
+#include "scenario_draft.hpp"
 #include "validators.hpp"
 
 #include "stylet/io/input.hpp"
+
+#include <fmt/format.h>
 
 namespace stylet::cli {
 
@@ -13,6 +17,8 @@ struct InfoArguments {
   std::string file;
   double scale = 0;
   int volume = 0;
+  bool scenario = false;
+  std::string output;
 };
 
 Result<Description> description_of(const InfoArguments& arguments) {
@@ -32,7 +38,39 @@ Result<Description> description_of(const InfoArguments& arguments) {
   return std::visit([](const auto& content) { return describe(content); }, *input);
 }
 
+/// Writes a scenario to start from.
+Result<> run_draft(const InfoArguments& arguments, Console& console) {
+  if (is_meant_as_model(arguments.file) || is_hdf5_file(arguments.file)) {
+    return input_error(arguments.file, "a saved model or a recording holds its scenario already",
+                       "Run it as it is with stylet insert, or name the patient's file");
+  }
+  std::error_code code;
+  if (!arguments.output.empty() && std::filesystem::equivalent(arguments.file, arguments.output, code))
+    return input_error(arguments.output, "the scenario would replace the patient's file", "Name another file (-o)");
+  if (!arguments.output.empty()) {
+    if (Result<> writable = check_output_file(arguments.output); !writable) return writable;
+  }
+  const Result<PatientInput> input =
+      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume});
+  if (!input) return input.error();
+  const Result<ScenarioDraft> draft = draft_scenario(
+      *input, {arguments.file, source_for(arguments.file, arguments.output), arguments.scale, arguments.volume});
+  if (!draft) return draft.error();
+  for (const std::string& warning : draft->warnings) console.warn(warning);
+  if (arguments.output.empty()) {
+    console.say(draft->text);
+  } else {
+    if (Result<> written = write_text_file(arguments.output, draft->text + '\n'); !written) return written;
+    console.say(fmt::format("{} → {}", arguments.file, arguments.output));
+  }
+  return console.write_json({{"file", arguments.file},
+                             {"output", arguments.output},
+                             {"scenario", draft->text},
+                             {"warnings", draft->warnings}});
+}
+
 Result<> run_info(const InfoArguments& arguments, Console& console) {
+  if (arguments.scenario) return run_draft(arguments, console);
   const Result<Description> description = description_of(arguments);
   if (!description) return description.error();
   Json json = {{"file", arguments.file}};
@@ -54,6 +92,14 @@ Command add_info_command(CLI::App& program) {
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
+  CLI::Option* scenario = app->add_flag("--scenario", arguments->scenario,
+                                        "Write a commented scenario with this patient instead: what is taken as what, "
+                                        "what is left out and why, and one needle");
+  app->add_option("-o,--output", arguments->output,
+                  "With --scenario: the file to write, from which the patient is named relatively (default: standard "
+                  "output, with the patient's absolute path)")
+      ->type_name("FILE.toml")
+      ->needs(scenario);
   return {app, [arguments](Console& console) { return run_info(*arguments, console); }};
 }
 

@@ -106,10 +106,12 @@ std::string summary_text(const Summary& summary) {
   Facts facts;
   facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.3f} N, lateral {:.3f} N", summary.peak_axial_N,
                                       summary.peak_sagittal_N, summary.peak_lateral_N));
-  const Vec3& shift = summary.target_shift_centroid_mm;
-  facts.add("target moved", fmt::format("{:.2f} mm on average (left {:.2f}, posterior {:.2f}, superior {:.2f}), at "
-                                        "most {:.2f} mm, at the deepest point",
-                                        shift.norm(), shift.x(), shift.y(), shift.z(), summary.target_shift_max_mm));
+  if (!summary.target_shifts.empty()) {
+    const Vec3& shift = summary.target_shift_centroid_mm;
+    facts.add("target moved", fmt::format("{:.2f} mm on average (left {:.2f}, posterior {:.2f}, superior {:.2f}), at "
+                                          "most {:.2f} mm, at the deepest point",
+                                          shift.norm(), shift.x(), shift.y(), shift.z(), summary.target_shift_max_mm));
+  }
   facts.add("tip off its line", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));
   facts.add("balance", fmt::format("force {:.1e}, torque {:.1e} (relative)", summary.residual_force_balance,
                                    summary.residual_torque_balance));
@@ -186,26 +188,28 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (repeats && same_file(folder / "run.h5", arguments.scenario))
     return input_error(folder.string(), "the recording would be replaced by its repetition",
                        "Name another folder (-o)");
-  for (const std::string& note : prepared.notes) console.detail(note);
+  const std::vector<std::string> warnings = prepared.warnings();
+  for (const std::string& warning : warnings) console.warn(warning);
   const std::shared_ptr<const Model>& model = prepared.model;
   const Scenario& scenario = model->scenario();
-  for (const std::string& warning : model->warnings()) console.warn(warning);
 
   RunInfo info = model->info();
   info.scenario_text = to_toml(scenario);
-  info.warnings.insert(info.warnings.end(), prepared.notes.begin(), prepared.notes.end());
+  info.warnings = warnings;
   const Tissue& tissue = model->tissue();
   Result<std::unique_ptr<ResultsWriter>> writer =
       ResultsWriter::open(folder, info, model->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
   if (!writer) return writer.error();
   const Progress progress = console.progress();
   Recorder recorder(**writer);
-  const Result<Summary> summary =
+  Result<Summary> summary =
       repeats ? run_recorded(model, source->steps, recorder, progress) : run(model, recorder, progress);
   if (!summary) return summary.error();
+  // The run knows of the model's warnings and of its own.
+  summary->warnings.insert(summary->warnings.begin(), prepared.notes.begin(), prepared.notes.end());
   if (Result<> finished = (*writer)->finish(*summary, progress, scenario.output.pictures); !finished) return finished;
 
-  for (std::size_t i = model->warnings().size(); i < summary->warnings.size(); ++i) console.warn(summary->warnings[i]);
+  for (std::size_t i = warnings.size(); i < summary->warnings.size(); ++i) console.warn(summary->warnings[i]);
   console.say(
       fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario.name, summary->nodes, summary->tets, info.method));
   console.say(summary_text(*summary));

@@ -30,6 +30,7 @@ struct MeshArguments {
   double scale = 0;    ///< 0 = not given
   int volume = 0;      ///< 0 = not given
   std::vector<std::string> regions;
+  std::vector<std::string> skip;
   double cull_mm = -1;  ///< < 0 = not given
   bool no_band = false;
 };
@@ -62,6 +63,7 @@ MeshOptions mesher_options(const MeshArguments& arguments, const RegionNames& re
   options.preset = arguments.preset == "paper" ? MeshPreset::paper : MeshPreset::standard;
   options.nodes = arguments.nodes;
   options.regions = regions;
+  options.skip = arguments.skip;
   options.stiff_band = !arguments.no_band;
   if (arguments.cull_mm >= 0) options.cull_tolerance_mm = arguments.cull_mm;
   return options;
@@ -90,10 +92,12 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", kind);
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
   if (arguments.volume > 0) return pointless(arguments, "--volume", kind);
+  if (!arguments.skip.empty()) return pointless(arguments, "--skip", kind);
 
   MeshedAnatomy out{.mesh = mesh, .report = {}};
   if (Result<> named = rename_regions(out.mesh, options.regions, arguments.input); !named) return named.error();
   out.report = report_as_is(out.mesh);
+  out.report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
   return out;
 }
 
@@ -120,14 +124,13 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
   const MeshOptions options = mesher_options(arguments, *regions);
 
   const auto start = std::chrono::steady_clock::now();
-  std::vector<std::string> remarks;
-  const Result<PatientInput> input = read_patient(arguments.input, {.scale = arguments.scale, .notes = &remarks},
-                                                  options, {.volume = arguments.volume});
+  const Result<PatientFile> input =
+      read_patient(arguments.input, {.scale = arguments.scale}, options, {.volume = arguments.volume});
   if (!input) return input.error();
   Result<MeshedAnatomy> model =
-      std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, *input);
+      std::visit([&](const auto& content) { return model_of(content, arguments, options, console); }, input->content);
   if (!model) return model.error();
-  model->report.notes.insert(model->report.notes.end(), remarks.begin(), remarks.end());
+  model->report.notes.insert(model->report.notes.begin(), input->notes.begin(), input->notes.end());
   model->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
@@ -170,8 +173,13 @@ Command add_mesh_command(CLI::App& program) {
   add_volume_option(*app, arguments->volume);
   app->add_option("--region", arguments->regions,
                   "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
-                  "repeated; for contours and masks those not named are then left out")
+                  "repeated; those not named are recognised by their names")
       ->type_name("NAME=CANONICAL")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_option("--skip", arguments->skip,
+                  "Leave out the structure or label NAME, such as one that is drawn wrongly; may be repeated")
+      ->type_name("NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app->add_option("--cull", arguments->cull_mm,

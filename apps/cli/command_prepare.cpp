@@ -58,14 +58,12 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console.progress());
   if (!prepared) return prepared.error();
   const Model& model = *prepared->model;
-  for (const std::string& note : prepared->notes) console.detail(note);
-  for (const std::string& warning : model.warnings()) console.warn(warning);
-
   const auto start = std::chrono::steady_clock::now();
   if (Result<> made = make_folder(output.has_parent_path() ? output.parent_path() : "."); !made) return made;
   if (Result<> saved = save_model(model, output, prepared->notes, console.progress()); !saved) return saved;
   const double save_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  for (const std::string& warning : prepared->warnings()) console.warn(warning);
   const double megabytes = static_cast<double>(std::filesystem::file_size(output)) / 1048576.0;
   const auto& statistics = model.tissue().statistics();
   Facts facts;
@@ -92,7 +90,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
                              {"factor_mb", statistics.factor_mb},
                              {"peak_memory_mb", peak_mb()},
                              {"file_mb", megabytes},
-                             {"warnings", model.warnings()}});
+                             {"warnings", prepared->warnings()}});
 }
 
 }  // namespace

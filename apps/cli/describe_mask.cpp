@@ -2,7 +2,7 @@
 #include "describe.hpp"
 #include "table.hpp"
 
-#include "stylet/mesher/mesher.hpp"
+#include "stylet/mesher/structures.hpp"
 
 #include <fmt/format.h>
 
@@ -65,21 +65,24 @@ Description describe(const LabelImage& image) {
               {"slice_tilt_deg", tilt_deg},
               {"labels", Json::array()}};
 
+  std::map<int, std::string> taken_as;
+  const StructureChoice choice = *choose_structures(image, {});  // refuses wrong wishes only, and there are none
+  for (const StructureUse& use : choice.uses) taken_as[use.number] = use.region;
+
   Table table({"label", "name", "taken as", "voxels", "extent mm", "volume cc"});
   for (const auto& [value, label] : labels_of(image)) {
     const std::string name = text_of(image.names, value), meaning = text_of(image.meanings, value);
-    std::string taken_as = canonical_region(name);
-    if (taken_as.empty()) taken_as = canonical_region(meaning);
     const double volume_cc = static_cast<double>(label.voxels) * voxel_cc;
     out.json["labels"].push_back({{"label", value},
                                   {"name", name},
                                   {"meaning", meaning},
-                                  {"taken_as", taken_as},
+                                  {"taken_as", taken_as[value]},
                                   {"voxels", label.voxels},
                                   {"extent_mm", extent_json(label.box)},
                                   {"volume_cc", volume_cc}});
-    table.row({fmt::to_string(value), name.empty() ? meaning : name, taken_as, fmt::to_string(label.voxels),
-               extent_text(label.box), fmt::format("{:.1f}", volume_cc)});
+    const std::string& region = taken_as[value];
+    table.row({fmt::to_string(value), name.empty() ? meaning : name, region.empty() ? "(left out)" : region,
+               fmt::to_string(label.voxels), extent_text(label.box), fmt::format("{:.1f}", volume_cc)});
   }
 
   Facts facts;
@@ -91,8 +94,10 @@ Description describe(const LabelImage& image) {
   facts.add("frame", fmt::format("{}, slices tilted by {:.1f}° against the patient's axes",
                                  left_handed ? "left-handed" : "right-handed", tilt_deg));
   out.text = facts.text() + "\n\n" + table.text();
-  for (const std::string& note : image.notes) out.text += "\n  note: " + note;
-  out.json["notes"] = image.notes;
+  std::vector<std::string> notes = image.notes;
+  notes.insert(notes.end(), choice.notes.begin(), choice.notes.end());
+  for (const std::string& note : notes) out.text += "\n  note: " + note;
+  out.json["notes"] = notes;
   return out;
 }
 

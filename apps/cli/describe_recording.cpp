@@ -59,6 +59,7 @@ Description describe(const RunRecording& run) {
   const bool finished = run.summary.has_value();
   const std::int64_t step_count = RecordedSteps(run.steps).count();
   const std::int64_t at_rest = step_count - static_cast<std::int64_t>(run.steps.size());
+  const std::vector<std::string>& warnings = finished ? run.summary->warnings : run.info.warnings;
 
   Description out;
   out.json = {
@@ -75,7 +76,7 @@ Description describe(const RunRecording& run) {
       {"depth_max_mm", peaks.depth_mm},
       {"peak_force_N", {{"axial", peaks.axial_N}, {"sagittal", peaks.sagittal_N}, {"lateral", peaks.lateral_N}}},
       {"events", finished ? events_json(run.summary->events) : Json::array()},
-      {"warnings", run.info.warnings}};
+      {"warnings", warnings}};
 
   Facts facts;
   facts.add("kind", "recording of an insertion");
@@ -93,7 +94,7 @@ Description describe(const RunRecording& run) {
                                       peaks.sagittal_N, peaks.lateral_N));
   out.text = facts.text();
   if (finished) out.text += "\n\n" + events_text(run.summary->events);
-  for (const std::string& warning : run.info.warnings) out.text += "\n  warning: " + warning;
+  for (const std::string& warning : warnings) out.text += "\n  warning: " + warning;
   return out;
 }
 

@@ -17,7 +17,6 @@ MeshReport report_as_is(const TetMesh& mesh) {
                               .volume_cc = report.quality.region_volume_cc[region],
                               .input_volume_cc = report.quality.region_volume_cc[region]});
   }
-  report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
   return report;
 }
 

@@ -1,32 +1,70 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patient_input.hpp"
 
+#include "stylet/core/nearest_name.hpp"
+#include "stylet/geom/structure_names.hpp"
+#include "stylet/mesher/structures.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 namespace stylet::cli {
 
 namespace {
 
-/// Whether mesh_contours() would look at this structure.
-bool used(const Roi& roi, const MeshOptions& options) {
-  if (roi.contours.empty()) return false;
-  if (!options.regions.empty()) return options.regions.contains(roi.name);
-  const std::string canonical = canonical_region(roi.name);
-  if (options.preset == MeshPreset::paper) return is_target_region(canonical) || canonical == "band";
-  return !canonical.empty();
+/// Refuses structures that cannot be one where the mesher would use them; notes what looks odd about the others.
+Result<> check_used(const ContourSet& contours, const MeshOptions& options, std::vector<std::string>& notes) {
+  const auto choice = choose_structures(contours, options);
+  if (!choice) return choice.error();
+  auto use = choice->uses.begin();
+  for (const Roi& roi : contours.rois) {
+    if (roi.contours.empty() || (use++)->region.empty()) continue;
+    if (Result<> sound = check_roi(roi, contours.source); !sound) return sound;
+    if (auto note = long_closing_side(roi)) notes.push_back(*std::move(note));
+  }
+  return Ok{};
+}
+
+Result<> drop_skipped(std::vector<Surface>& surfaces, const std::vector<std::string>& skip, const std::string& where) {
+  std::vector<std::string> names;
+  for (const Surface& surface : surfaces) names.push_back(surface.name);
+  std::vector<bool> drop(surfaces.size(), false);
+  for (const std::string& word : skip) {
+    const auto found = find_named(names, word);
+    if (found.empty()) {
+      const std::string near = nearest_name(word, names);
+      return input_error(where, fmt::format("patient.skip: there is no surface '{}'; the file has {}", word, names),
+                         near.empty() ? "Name one of these." : fmt::format("Did you mean '{}'?", near));
+    }
+    for (const std::size_t i : found) drop[i] = true;
+  }
+  std::vector<Surface> kept;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!drop[i]) kept.push_back(std::move(surfaces[i]));
+  }
+  surfaces = std::move(kept);
+  return Ok{};
 }
 
 }  // namespace
 
-Result<PatientInput> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
-                                  const MeshOptions& mesh_options, const MaskReadOptions& mask_options) {
-  Result<PatientInput> input = read_input(path, read_options, mask_options);
-  if (!input) return input;
-  if (const auto* contours = std::get_if<ContourSet>(&*input)) {
-    for (const Roi& roi : contours->rois) {
-      if (!used(roi, mesh_options)) continue;
-      if (const Result<> sound = check_roi(roi, contours->source); !sound) return sound.error();
-    }
+Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
+                                 const MeshOptions& mesh_options, const MaskReadOptions& mask_options) {
+  PatientFile file;
+  MeshReadOptions with_notes = read_options;
+  with_notes.notes = &file.notes;
+  Result<PatientInput> input = read_input(path, with_notes, mask_options, mesh_options.skip);
+  if (!input) return input.error();
+  file.content = std::move(*input);
+  if (const auto* contours = std::get_if<ContourSet>(&file.content)) {
+    if (Result<> sound = check_used(*contours, mesh_options, file.notes); !sound) return sound.error();
   }
-  return input;
+  if (auto* surfaces = std::get_if<std::vector<Surface>>(&file.content)) {
+    if (Result<> done = drop_skipped(*surfaces, mesh_options.skip, path.string()); !done) return done.error();
+  }
+  return file;
 }
 
 }  // namespace stylet::cli

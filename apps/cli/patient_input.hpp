@@ -6,9 +6,15 @@
 
 namespace stylet::cli {
 
+/// A patient's file as it was read.
+struct PatientFile {
+  PatientInput content;
+  std::vector<std::string> notes;  ///< for the user: what was passed over, put right or looks odd
+};
+
 /// read_input() for a patient that is to be meshed: refuses as well contours that cannot be a structure (check_roi),
 /// but only those that the mesher would use; nobody has to repair a planning helper.
-Result<PatientInput> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
-                                  const MeshOptions& mesh_options, const MaskReadOptions& mask_options = {});
+Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
+                                 const MeshOptions& mesh_options, const MaskReadOptions& mask_options = {});
 
 }  // namespace stylet::cli

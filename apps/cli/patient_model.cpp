@@ -5,6 +5,7 @@
 #include "patient_input.hpp"
 
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/geom/structure_names.hpp"
 #include "stylet/io/input.hpp"
 #include "stylet/phantom/phantom.hpp"
 
@@ -15,16 +16,15 @@
 namespace stylet::cli {
 
 Result<> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>& names, const std::string& where) {
+  const std::vector<std::string> in_file = mesh.regions;
   for (const auto& [name, canonical] : names) {
-    const int region = mesh.region_index(name);
-    if (region < 0) {
-      const std::string nearest = nearest_name(name, mesh.regions);
-      return input_error(where,
-                         fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(mesh.regions, ", ")),
+    const auto found = find_named(in_file, name);
+    if (found.empty()) {
+      const std::string nearest = nearest_name(name, in_file);
+      return input_error(where, fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(in_file, ", ")),
                          nearest.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", nearest));
     }
-    const std::string known = canonical_region(canonical);
-    mesh.regions[static_cast<std::size_t>(region)] = known.empty() ? canonical : known;
+    for (const std::size_t region : found) mesh.regions[region] = region_meant(canonical);
   }
   for (auto region = mesh.regions.begin(); region != mesh.regions.end(); ++region) {
     if (std::find(mesh.regions.begin(), region, *region) != region) {
@@ -36,6 +36,12 @@ Result<> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>&
 }
 
 namespace {
+
+/// Whether a model has a region whose motion is told: the gland, its zones, a planning volume or an unnamed label.
+bool has_target(const TetMesh& mesh) {
+  return std::any_of(mesh.regions.begin(), mesh.regions.end(),
+                     [](const std::string& r) { return is_target_region(r) || r.starts_with("label_"); });
+}
 
 Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshOptions& options, const Scenario&,
                                const Progress& progress) {
@@ -49,9 +55,20 @@ Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshOptions& optio
 
 Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshOptions& options, const Scenario& scenario,
                                const Progress&) {
+  if (!options.skip.empty()) {
+    return input_error(scenario.patient.source,
+                       "patient.skip has no meaning for a tetrahedral mesh, all of which is used",
+                       "Remove it; [patient.regions] gives regions other names");
+  }
   MeshedAnatomy out{.mesh = mesh, .report = {}};
   if (Result<> named = rename_regions(out.mesh, options.regions, scenario.patient.source); !named) return named.error();
   out.report = report_as_is(out.mesh);
+  if (!has_target(out.mesh)) {
+    out.report.notes.push_back(
+        fmt::format("no region of the mesh ({}) is the target: its motion is not told, and the template stands before "
+                    "the middle of the mesh; [patient.regions] says which region is the prostate",
+                    fmt::join(out.mesh.regions, ", ")));
+  }
   return out;
 }
 
@@ -70,17 +87,16 @@ Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&
   options.nodes = scenario.mesh.nodes;
   options.cull_tolerance_mm = scenario.mesh.cull_mm;
   options.regions = scenario.patient.regions;
+  options.skip = scenario.patient.skip;
   options.stiff_band = scenario.mesh.stiff_band;
   if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);
-  std::vector<std::string> remarks;
-  const Result<PatientInput> input =
-      read_patient(scenario.patient.source, {.scale = scenario.patient.scale, .notes = &remarks}, options,
-                   {.volume = scenario.patient.volume});
-  if (!input) return input.error();
-  Result<MeshedAnatomy> model =
-      std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, *input);
-  if (model) model->report.notes.insert(model->report.notes.end(), remarks.begin(), remarks.end());
-  return model;
+  const Result<PatientFile> file = read_patient(scenario.patient.source, {.scale = scenario.patient.scale}, options,
+                                                {.volume = scenario.patient.volume});
+  if (!file) return file.error();
+  auto patient =
+      std::visit([&](const auto& content) { return model_of(content, options, scenario, progress); }, file->content);
+  if (patient) patient->report.notes.insert(patient->report.notes.begin(), file->notes.begin(), file->notes.end());
+  return patient;
 }
 
 }  // namespace stylet::cli

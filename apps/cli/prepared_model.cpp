@@ -54,6 +54,12 @@ Result<PreparedModel> compiled(const std::string& file, const Scenario& scenario
 
 }  // namespace
 
+std::vector<std::string> PreparedModel::warnings() const {
+  std::vector<std::string> all = notes;
+  all.insert(all.end(), model->warnings().begin(), model->warnings().end());
+  return all;
+}
+
 Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
                                      const Progress& progress, const ModelCache* cache) {
   if (is_hdf5_file(file) || is_meant_as_model(file)) return saved(file, settings, progress);

@@ -11,13 +11,16 @@
 
 namespace stylet::cli {
 
-/// A model ready for its first step, and what the mesher had to say.
+/// A model ready for its first step.
 struct PreparedModel {
   std::shared_ptr<const Model> model;
-  std::vector<std::string> notes;
-  std::string not_kept;  ///< why the cache has it not for the next time; empty: it has, or there is none
-  double mesh_s = 0.0;   ///< contours, mask or file to mesh
-  double model_s = 0.0;  ///< mesh to model, or a saved model to model
+  std::vector<std::string> notes;  ///< of the patient's file and the mesher: what was left out, added, put right
+  std::string not_kept;            ///< why the cache has it not for the next time; empty: it has, or there is none
+  double mesh_s = 0.0;             ///< contours, mask or file to mesh
+  double model_s = 0.0;            ///< mesh to model, or a saved model to model
+
+  /// All that a user should know before the first step: the notes, then the model's warnings.
+  [[nodiscard]] std::vector<std::string> warnings() const;
 };
 
 /// The model of a scenario file, meshed and compiled, or of a saved model.

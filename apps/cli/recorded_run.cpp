@@ -45,6 +45,11 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
   RecordedRun run;
   run.steps = std::move(recording->steps);
   run.prepared.model = std::move(*model);
+  const auto& of_model = run.prepared.model->warnings();
+  for (const std::string& warning : recording->info.warnings) {
+    if (std::find(of_model.begin(), of_model.end(), warning) != of_model.end()) continue;
+    run.prepared.notes.push_back(settings.empty() ? warning : "Said of the recording: " + warning);
+  }
   run.prepared.model_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
 }

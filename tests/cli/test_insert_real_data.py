@@ -55,8 +55,9 @@ speed_mm_per_s = 40
         self.check_in_and_out(summary, ["body"])
 
     def test_a_structure_set_with_a_planning_volume(self):
-        summary, _ = self.insert("slicerrt_rando_rtstruct", '[[insertion]]\nhole = "e3.5"\nspeed_mm_per_s = 40\n')
-        self.check_in_and_out(summary, ["body", "ptv"])
+        summary, done = self.insert("slicerrt_rando_rtstruct", '[[insertion]]\nhole = "e3.5"\nspeed_mm_per_s = 40\n')
+        self.check_in_and_out(summary, ["body", "prostate"])
+        self.assertIn("structure 'PTV' (type PTV) is taken as the gland", done.stderr)
 
     def test_a_structure_set_of_an_ultrasound_phantom(self):
         summary, _ = self.insert("robustbrachy_hdr_phantom/SS001.dcm", '[[insertion]]\nhole = "e3.5"\n',

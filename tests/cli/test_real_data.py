@@ -35,7 +35,7 @@ class RealData(InFolder):
 
     def test_structure_sets_have_the_organs_volumes(self):
         self.check_structures("slicerrt_rando_rtstruct", {
-            "BODY": ("body", 92, 10697.2), "Bladder": ("bladder", 21, 117.5), "PTV": ("ptv", 20, 49.2),
+            "BODY": ("body", 92, 10697.2), "Bladder": ("bladder", 21, 117.5), "PTV": ("prostate", 20, 49.2),
             "Femoral Head Lt": ("femur_left", 19, 49.4), "Femoral Head RT": ("femur_right", 18, 50.3),
             "Rectum": ("rectum", 40, 30.7)})
         self.check_structures("robustbrachy_hdr_phantom/SS001.dcm", {

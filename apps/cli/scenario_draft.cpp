@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scenario_draft.hpp"
+
+#include "contour_measures.hpp"
+
+#include "stylet/core/version.hpp"
+#include "stylet/mesher/structures.hpp"
+#include "stylet/sim/scenario.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace stylet::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kWidth = 100;
+
+std::string toml_text(const std::string& text) {
+  return to_string(ScenarioValue{.type = ScenarioValue::Type::text, .text = text});
+}
+
+/// Bytes of the character that starts here, by UTF-8's rules; 0 where it breaks them.
+std::size_t character_length(std::string_view rest) {
+  const auto first = static_cast<unsigned char>(rest.front());
+  const std::size_t length = first < 0x80                    ? 1
+                             : first >= 0xC2 && first < 0xE0 ? 2
+                             : first >= 0xE0 && first < 0xF0 ? 3
+                             : first >= 0xF0 && first < 0xF5 ? 4
+                                                             : 0;
+  if (length == 0 || length > rest.size()) return 0;
+  const bool whole = std::all_of(rest.begin() + 1, rest.begin() + static_cast<std::ptrdiff_t>(length),
+                                 [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; });
+  return whole ? length : 0;
+}
+
+/// Text as a comment can hold it: no line ends or other control characters, and UTF-8 throughout.
+std::string harmless(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    const auto first = static_cast<unsigned char>(text.front());
+    if (length == 0) {
+      out += '?';
+    } else {
+      out += length == 1 && (first < 0x20 || first == 0x7f) ? std::string(" ") : std::string(text.substr(0, length));
+    }
+    text.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return out;
+}
+
+bool is_text(const std::string& name) { return harmless(name) == name; }
+
+/// Lines of a comment.
+std::string comment(const std::string& text) {
+  std::string out, line = "#";
+  std::string rest = harmless(text);
+  for (std::size_t at = 0; at < rest.size();) {
+    const std::size_t blank = std::min(rest.find(' ', at), rest.size());
+    const std::string word = rest.substr(at, blank - at);
+    if (line.size() > 1 && line.size() + 1 + word.size() > kWidth) {
+      out += line + '\n';
+      line = "#";
+    }
+    line += ' ' + word;
+    at = blank + 1;
+  }
+  return out + line + '\n';
+}
+
+/// A line below [patient.regions].
+struct RegionLine {
+  std::string key;     ///< name or number in the file
+  std::string region;  ///< empty: to be filled in by the user, commented out
+  std::string remark;
+};
+
+/// What a kind of input has to say.
+struct Contents {
+  std::string kind;                  ///< "contours of 6 structures"
+  std::vector<std::string> remarks;  ///< behind the source
+  std::vector<std::string> skip;
+  std::vector<std::string> why_skip;  ///< one for each of `skip`
+  std::vector<RegionLine> regions;
+  std::vector<std::string> left_out;  ///< below the regions
+  std::string about_regions;          ///< above them
+  Eigen::AlignedBox3d target;         ///< [mm] LPS; empty without one
+  std::vector<std::string> warnings;
+};
+
+std::string size_text(double volume_cc) { return fmt::format("{:.1f} cc", volume_cc); }
+
+std::string remark_of(const StructureUse& use, double volume_cc) {
+  return use.why.empty() ? size_text(volume_cc) : fmt::format("{}; {}", size_text(volume_cc), use.why);
+}
+
+/// Structures that the mesher would use and that cannot be used, until none is left.
+Result<StructureChoice> choose_sound(const ContourSet& contours, MeshOptions& options, Contents& out) {
+  for (;;) {
+    auto choice = choose_structures(contours, options);
+    if (!choice) return choice.error();
+    const std::size_t before = options.skip.size();
+    auto use = choice->uses.begin();
+    for (const Roi& roi : contours.rois) {
+      if (roi.contours.empty() || (use++)->region.empty()) continue;
+      const Result<> sound = check_roi(roi, contours.source);
+      if (sound) continue;
+      options.skip.push_back(roi.name);
+      out.skip.push_back(roi.name);
+      out.why_skip.push_back(sound.error().what);
+    }
+    if (options.skip.size() == before) return choice;
+  }
+}
+
+Result<Contents> contents_of(const ContourSet& contours) {
+  Contents out;
+  MeshOptions options;
+  const auto choice = choose_sound(contours, options, out);
+  if (!choice) return choice.error();
+  out.kind = fmt::format("contours of {} structure{}", contours.rois.size(), contours.rois.size() == 1 ? "" : "s");
+  out.about_regions =
+      "What each structure is taken as. Change a region here, or write skip = [\"NAME\"] above to leave one out.";
+  out.remarks = contours.notes;
+  auto use = choice->uses.begin();
+  for (const Roi& roi : contours.rois) {
+    if (roi.contours.empty()) continue;
+    const StructureUse& taken = *use++;
+    if (taken.region.empty()) continue;
+    const RoiMeasures size = measure(roi);
+    if (is_target_region(taken.region)) out.target.extend(size.box);
+    out.regions.push_back({roi.name, taken.region, remark_of(taken, size.volume_cc)});
+    if (auto note = long_closing_side(roi)) out.remarks.push_back(*std::move(note));
+  }
+  for (const std::string& note : choice->notes) {
+    if (note.find("left out") != std::string::npos) out.left_out.push_back(note);
+  }
+  if (!choice->has_target) {
+    out.warnings.emplace_back("no structure is recognised as the gland: say which one it is below [patient.regions]");
+    out.about_regions = "No structure is recognised as the gland. Say which one it is: \"NAME\" = \"prostate\"";
+    for (const StructureUse& other : choice->uses) {
+      if (other.region.empty()) out.regions.push_back({other.name, "", other.why});
+    }
+  }
+  return out;
+}
+
+struct LabelSize {
+  std::int64_t voxels = 0;
+  Eigen::AlignedBox3d box;  ///< [mm] LPS, of the voxels' centres
+};
+
+std::map<int, LabelSize> sizes_of(const LabelImage& image) {
+  std::map<int, LabelSize> sizes;
+  std::size_t voxel = 0;
+  for (Index k = 0; k < image.size[2]; ++k) {
+    for (Index j = 0; j < image.size[1]; ++j) {
+      for (Index i = 0; i < image.size[0]; ++i, ++voxel) {
+        if (image.labels[voxel] == 0) continue;
+        LabelSize& size = sizes[image.labels[voxel]];
+        ++size.voxels;
+        size.box.extend(image.voxel_centre(i, j, k));
+      }
+    }
+  }
+  return sizes;
+}
+
+Result<Contents> contents_of(const LabelImage& image) {
+  const auto choice = choose_structures(image, {});
+  if (!choice) return choice.error();
+  Contents out;
+  auto sizes = sizes_of(image);
+  out.kind = fmt::format("label mask with {} label{}", sizes.size(), sizes.size() == 1 ? "" : "s");
+  out.about_regions =
+      choice->has_target
+          ? "What each label is taken as."
+          : "No label is known to be the gland: all labels together count as it. Where you know what they are, "
+            "take the # away and say so, for example \"peripheral_zone\", \"transition_zone\" or \"prostate\".";
+  for (const StructureUse& use : choice->uses) {
+    const LabelSize& size = sizes[use.number];
+    if (use.region.empty()) continue;
+    if (!choice->has_target || is_target_region(use.region)) out.target.extend(size.box);
+    const std::string number = std::to_string(use.number);
+    std::string remark = remark_of(use, static_cast<double>(size.voxels) * image.spacing.prod() / 1000);
+    if (use.name != number) remark = fmt::format("'{}', {}", use.name, remark);
+    out.regions.push_back({number, choice->has_target ? use.region : "", remark});
+  }
+  for (const std::string& note : choice->notes) {
+    if (note.find("left out") != std::string::npos) out.left_out.push_back(note);
+  }
+  return out;
+}
+
+Result<Contents> contents_of(const TetMesh& mesh) {
+  Contents out;
+  out.kind = fmt::format("tetrahedral mesh of {} nodes, used as it is", mesh.node_count());
+  out.about_regions =
+      "What each region of the mesh is. A name of one's own is fine: it has the tissue of the surroundings.";
+  std::set<std::string> taken(mesh.regions.begin(), mesh.regions.end());
+  std::vector<double> volume(mesh.regions.size(), 0.0);
+  std::vector<Eigen::AlignedBox3d> box(mesh.regions.size());
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const auto region = static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(t)]);
+    volume[region] += tet_volume(mesh, t) / 1000;
+    for (const Index node : mesh.tets[static_cast<std::size_t>(t)])
+      box[region].extend(mesh.nodes[static_cast<std::size_t>(node)]);
+  }
+  bool has_target = false;
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    const std::string& name = mesh.regions[r];
+    std::string region = region_meant(name);
+    if (region != name && !taken.insert(region).second) region = name;  // another one has that name
+    const bool known = !canonical_region(name).empty();
+    if (is_target_region(region)) out.target.extend(box[r]);
+    has_target = has_target || is_target_region(region) || region.starts_with("label_");
+    out.regions.push_back({name, region, size_text(volume[r]) + (known ? "" : "; name not recognised")});
+  }
+  if (!has_target) {
+    out.warnings.emplace_back("no region of the mesh is the gland: its motion is not told");
+    out.about_regions += " None is recognised as the gland: write \"prostate\" behind the one that is.";
+  }
+  return out;
+}
+
+Result<Contents> contents_of(const std::vector<Surface>& surfaces) {
+  Contents out;
+  out.kind = fmt::format("{} triangulated surface{}", surfaces.size(), surfaces.size() == 1 ? "" : "s");
+  out.warnings.emplace_back(
+      "surfaces are not meshed: give contours, a label mask or a tetrahedral mesh of the same patient as source");
+  out.about_regions = "What each surface would be taken as.";
+  for (const Surface& surface : surfaces) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : surface.points) box.extend(p);
+    const std::string region = canonical_region(surface.name);
+    if (is_target_region(region)) out.target.extend(box);
+    out.regions.push_back({surface.name, region, region.empty() ? "name not recognised" : ""});
+  }
+  return out;
+}
+
+/// A hole half way between the target's middle and its left side, beside the urethra.
+struct Hole {
+  std::string name;
+  double left_mm = 0.0;
+};
+
+Hole hole_for(const Eigen::AlignedBox3d& target) {
+  const TemplateGrid grid;
+  const double half = target.isEmpty() ? 0.0 : 0.5 * target.sizes().x();
+  const std::size_t middle = grid.columns.size() / 2;
+  const auto beside = static_cast<std::size_t>(std::clamp(std::lround(0.5 * half / grid.pitch_mm), 0L, 4L));
+  return {grid.columns[middle + beside] + grid.rows[grid.rows.size() / 2], static_cast<double>(beside) * grid.pitch_mm};
+}
+
+std::string regions_text(const Contents& contents) {
+  if (contents.regions.empty()) return {};
+  const bool any =
+      std::any_of(contents.regions.begin(), contents.regions.end(), [](const auto& r) { return !r.region.empty(); });
+  std::string out = '\n' + comment(contents.about_regions) + (any ? "[patient.regions]\n" : "#[patient.regions]\n");
+  std::set<std::string> written;
+  for (const RegionLine& line : contents.regions) {
+    const std::string remark = harmless(line.remark);
+    if (!is_text(line.key)) {
+      out += comment(fmt::format("'{}' is taken as {}: {} (its name cannot be written in a scenario)", line.key,
+                                 line.region, remark));
+      continue;
+    }
+    const bool active = !line.region.empty() && written.insert(line.key).second;
+    out +=
+        fmt::format("{}{} = {}{}\n", active ? "" : "#", toml_text(line.key),
+                    toml_text(line.region.empty() ? "prostate" : line.region), remark.empty() ? "" : "  # " + remark);
+  }
+  return out;
+}
+
+std::string patient_text(const Contents& contents, const DraftSource& source) {
+  std::string out = fmt::format("\n[patient]\nsource = {}  # {}\n", toml_text(source.source), contents.kind);
+  if (source.scale > 0.0) out += fmt::format("scale = {}  # mm, length of the file's unit\n", source.scale);
+  if (source.volume > 0) out += fmt::format("volume = {}  # of the volumes in the file\n", source.volume);
+  for (const std::string& remark : contents.remarks) out += comment(remark);
+  if (!contents.skip.empty()) {
+    out += comment("Left out, since they cannot be used as they are:");
+    for (std::size_t i = 0; i < contents.skip.size(); ++i)
+      out += comment(fmt::format("  {}: {}", contents.skip[i], contents.why_skip[i]));
+    std::vector<std::string> names;
+    std::transform(contents.skip.begin(), contents.skip.end(), std::back_inserter(names), toml_text);
+    out += fmt::format("skip = [{}]\n", fmt::join(names, ", "));
+  }
+  return out;
+}
+
+std::string insertion_text(const Contents& contents) {
+  const Hole hole = hole_for(contents.target);
+  const std::string centre = contents.target.isEmpty() ? "the patient" : "the gland";
+  const std::string where = hole.left_mm > 0.0
+                                ? fmt::format("hole {} is {:g} mm to the patient's left of the middle of {} (hole D4)",
+                                              hole.name, hole.left_mm, centre)
+                                : fmt::format("hole {} stands before the middle of {}", hole.name, centre);
+  return '\n' +
+         comment(fmt::format(
+             "One needle through the template, straight to superior: {}. Without depth_mm it goes to the far "
+             "end of the gland. Repeat the table for more needles.",
+             where)) +
+         fmt::format("[[insertion]]\nhole = \"{}\"\n#depth_mm = 60\n#speed_mm_per_s = 20", hole.name);
+}
+
+}  // namespace
+
+std::string source_for(const fs::path& file, const fs::path& output) {
+  const fs::path there = fs::absolute(file).lexically_normal();
+  if (output.empty()) return there.string();
+  const fs::path relative = there.lexically_relative(fs::absolute(output).lexically_normal().parent_path());
+  return relative.empty() ? there.string() : relative.string();
+}
+
+Result<ScenarioDraft> draft_scenario(const PatientInput& patient, const DraftSource& source) {
+  const Result<Contents> contents = std::visit([](const auto& content) { return contents_of(content); }, patient);
+  if (!contents) return contents.error();
+  ScenarioDraft draft;
+  draft.warnings = contents->warnings;
+  std::string name = fs::path(source.file).lexically_normal().stem().string();
+  if (name.empty() || !is_text(name)) name = "patient";
+  draft.text =
+      comment(fmt::format(
+          "A scenario for {}, drafted by stylet info --scenario (Stylet {}). Read it, change it, and run it with: "
+          "stylet insert THIS_FILE -o out",
+          source.file, version())) +
+      comment(
+          "All lengths are in mm. Directions are the patient's: DICOM LPS, x to the left, y to posterior, z to "
+          "superior. "
+          "stylet insert --print-schema prints all other keys with their defaults.");
+  for (const std::string& warning : contents->warnings) draft.text += comment("Note: " + warning + '.');
+  draft.text +=
+      fmt::format("\nname = {}\n", toml_text(name)) + patient_text(*contents, source) + regions_text(*contents);
+  for (const std::string& left_out : contents->left_out) draft.text += comment(left_out);
+  draft.text += insertion_text(*contents);
+  return draft;
+}
+
+}  // namespace stylet::cli
