@@ -77,6 +77,7 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
   json.update(description->json);
   for (const std::string& warning : description->warnings) console.warn(arguments.file + ": " + warning);
   console.say(arguments.file + '\n' + description->text);
+  if (const Result<> said = console.said(); !said) return said;
   return console.write_json(json);
 }
 

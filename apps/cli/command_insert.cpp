@@ -168,11 +168,11 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (arguments.print_schema) {
     console.say(schema_text());
-    return Ok{};
+    return console.said();
   }
   if (arguments.print_tissues) {
     console.say(tissues_text());
-    return Ok{};
+    return console.said();
   }
   if (arguments.scenario.empty())
     return input_error("insert", "no scenario is given", "Name a scenario file, for example scenarios/demo.toml");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -34,23 +35,30 @@ bool stderr_is_terminal() {
 
 struct Console::Parts {
   CommonOptions options;
+  bool output_is_open = true;
+  std::string output_lost;                 ///< why standard output takes no more
   int json_descriptor = -1;                ///< the real standard output while --json - keeps everyone else off it
   std::weak_ptr<ProgressDisplay> display;  ///< lives as long as someone may report progress to it
 
-  void line(std::FILE* stream, std::string_view prefix, std::string_view text) const {
+  /// @return why it could not be printed; empty when it was
+  std::string line(std::FILE* stream, std::string_view prefix, std::string_view text) const {
+    const std::string all = fmt::format("{}{}\n", prefix, text);
+    std::string reason;
     const auto print = [&] {
-      fmt::print(stream, "{}{}\n", prefix, text);
-      std::fflush(stream);
+      if (std::fwrite(all.data(), 1, all.size(), stream) == all.size() && std::fflush(stream) == 0) return;
+      reason = std::strerror(errno);
+      std::clearerr(stream);
     };
     if (const auto shown = display.lock()) {
       shown->interrupt(print);
     } else {
       print();
     }
+    return reason;
   }
 };
 
-Console::Console() : parts_(std::make_unique<Parts>()) {}
+Console::Console(bool output_is_open) : parts_(std::make_unique<Parts>()) { parts_->output_is_open = output_is_open; }
 
 Console::~Console() {
   if (parts_->json_descriptor >= 0) ::close(parts_->json_descriptor);
@@ -62,7 +70,7 @@ Result<> Console::configure(const CommonOptions& options) {
   if (options.json != "-") return check_output_file(options.json);
   // From here on what this program or a library prints to standard output lands on standard error.
   std::fflush(stdout);
-  parts_->json_descriptor = ::dup(STDOUT_FILENO);
+  if (parts_->output_is_open) parts_->json_descriptor = ::dup(STDOUT_FILENO);
   if (parts_->json_descriptor < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {
     return failure("--json -", "standard output is closed", "Give a file name instead of '-'");
   }
@@ -70,7 +78,14 @@ Result<> Console::configure(const CommonOptions& options) {
 }
 
 void Console::say(std::string_view text) {
-  if (!parts_->options.quiet) parts_->line(stdout, "", text);
+  if (parts_->options.quiet || !parts_->output_lost.empty()) return;
+  parts_->output_lost = parts_->line(stdout, "", text);
+  if (!parts_->output_lost.empty()) warn(said().error().message());
+}
+
+Result<> Console::said() const {
+  if (parts_->output_lost.empty()) return Ok{};
+  return failure("standard output", "it takes no more: " + parts_->output_lost, "Check where it is sent to");
 }
 
 void Console::detail(std::string_view text) {

@@ -26,7 +26,8 @@ struct CommonOptions {
 /// output carries the JSON and nothing else, whoever prints.
 class Console {
  public:
-  Console();
+  /// @param output_is_open whether the program was started with a standard output (standard_streams.hpp)
+  explicit Console(bool output_is_open = true);
   ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
@@ -35,7 +36,11 @@ class Console {
   Result<> configure(const CommonOptions& options);
 
   /// A result, one or more lines without the last line end. Nothing with --quiet.
+  /// Where standard output takes no more (a full disk, a reader that has gone), that is said once on standard error,
+  /// and the work goes on.
   void say(std::string_view text);
+  /// For commands whose result is what they say: an error where some of it was lost.
+  [[nodiscard]] Result<> said() const;
   /// Something only the curious want to know; only with --verbose.
   void detail(std::string_view text);
   void warn(std::string_view text);

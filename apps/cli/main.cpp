@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stylet program: reads the command line, runs one command, turns its outcome into an exit status.
 #include "command.hpp"
+#include "standard_streams.hpp"
 #include "threads.hpp"
 #include "usage.hpp"
 #include "validators.hpp"
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <exception>
+#include <iostream>
 #include <new>
 
 namespace {
@@ -60,7 +62,8 @@ int run(int argc, char** argv, Console& console) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    return program.exit(asked);
+    const int status = program.exit(asked);
+    return std::cout.flush() ? status : kFailed;
   } catch (const CLI::ParseError& error) {
     console.error(explain(error, program));
     return kBadInput;
@@ -82,7 +85,7 @@ int run(int argc, char** argv, Console& console) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Console console;
+  Console console(prepare_standard_streams());
   try {
     return run(argc, argv, console);
   } catch (const std::bad_alloc&) {

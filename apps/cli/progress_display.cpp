@@ -19,6 +19,12 @@ constexpr auto kRedrawEvery = 100ms;
 constexpr auto kLineEvery = 10s;  ///< plain lines within a stage
 constexpr int kStageWidth = 30;
 
+/// A standard error that takes no more is no reason to stop.
+void print(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 int terminal_width() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
@@ -64,11 +70,11 @@ void ProgressDisplay::show() {
   if (terminal_) {
     draw_bar();
   } else if (stage_ != announced_) {
-    fmt::print(stderr, "{} ...\n", stage_);
+    print(stage_ + " ...\n");
     announced_ = stage_;
     last_line_ = Clock::now();
   } else if (Clock::now() - last_line_ >= kLineEvery) {
-    fmt::print(stderr, "{}: {:.0f} %\n", stage_, 100 * fraction_);
+    print(fmt::format("{}: {:.0f} %\n", stage_, 100 * fraction_));
     last_line_ = Clock::now();
   }
 }
@@ -78,16 +84,14 @@ void ProgressDisplay::draw_bar() {
   const std::string numbers = fmt::format(" {:3.0f} % {:5.0f} s", 100 * fraction_, seconds);
   const int width = std::clamp(terminal_width() - kStageWidth - static_cast<int>(numbers.size()) - 4, 0, 50);
   const int full = static_cast<int>(fraction_ * width);
-  fmt::print(stderr, "\r{:<{}.{}} [{:#<{}}{:.<{}}]{}\x1b[K", stage_, kStageWidth, kStageWidth, "", full, "",
-             width - full, numbers);
-  std::fflush(stderr);
+  print(fmt::format("\r{:<{}.{}} [{:#<{}}{:.<{}}]{}\x1b[K", stage_, kStageWidth, kStageWidth, "", full, "",
+                    width - full, numbers));
   bar_visible_ = true;
 }
 
 void ProgressDisplay::clear_bar() {
   if (!bar_visible_) return;
-  fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  print("\r\x1b[K");
   bar_visible_ = false;
 }
 

@@ -29,9 +29,9 @@ struct Pipe {
   bool open() {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return false;
-    read = ends[0];
-    write = ends[1];
-    return true;
+    read = beyond_standard_streams(ends[0]);
+    write = beyond_standard_streams(ends[1]);
+    return read >= 0 && write >= 0;
   }
   void close_read() { close(read); }
   void close_write() { close(write); }
@@ -41,6 +41,15 @@ struct Pipe {
   }
 
  private:
+  /// Where standard streams are closed, a pipe would get their numbers, and with them what is printed.
+  static int beyond_standard_streams(int end) {
+    if (end > STDERR_FILENO) return end;
+    const int moved = ::fcntl(end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    const int reason = errno;
+    ::close(end);
+    errno = reason;
+    return moved;
+  }
   static void close(int& end) {
     if (end >= 0) ::close(end);
     end = -1;
