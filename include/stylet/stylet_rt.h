@@ -72,7 +72,8 @@ STYLET_RT_API const char* stylet_rt_status_text(stylet_rt_status status) STYLET_
 
 typedef struct stylet_rt_model stylet_rt_model;
 
-/* Loads a saved model (`stylet prepare SCENARIO.toml -o MODEL.stylet`).
+/* Loads a saved model (`stylet prepare SCENARIO.toml -o MODEL.stylet`). A file of which any bit has changed is refused.
+ * The scenario's text in it and the settings are parsed in a child process, which has ended when this returns.
  * @param settings keys of the scenario to change, "needle.length_mm=180", as --set of `stylet insert` takes them; those
  *        that the saved compliance depends on are refused. May be null with settings_count = 0
  * @param model written: the model, or null when it could not be loaded. To be given to stylet_rt_model_destroy */

@@ -3,7 +3,6 @@
 #include "handles.hpp"
 #include "stylet/io/model_file.hpp"
 
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -21,9 +20,6 @@ extern "C" stylet_rt_status stylet_rt_model_load(const char* path, const char* c
       if (settings[k] == nullptr) return text.bad_argument("stylet_rt_model_load: one of the settings is null");
       all.emplace_back(settings[k]);
     }
-    // Debian's serial HDF5 is for one thread at a time.
-    static std::mutex one_at_a_time;
-    const std::scoped_lock lock(one_at_a_time);
     const auto loaded = stylet::load_model(path, {}, all);
     if (!loaded) return text.of(loaded.error());
     *model = stylet::rt::make_handle(*loaded);

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet prepare: a saved model runs like its scenario, is described, and is refused when it is not whole."""
 import csv
+import subprocess
+import time
 import unittest
 
 from insert_case import FAST, PHANTOM, SMALL
-from program import InFolder
+from program import STYLET, InFolder
 
 
 class Prepare(InFolder):
@@ -36,6 +38,25 @@ class Prepare(InFolder):
         self.assertEqual(self.forces("fresh"), self.forces("saved"))
         for key in ("mesh", "events", "peak_force_N", "target_shift_mm", "warnings"):
             self.assertEqual(fresh.get(key), saved.get(key), key)
+
+    def test_the_same_case_gives_the_same_bytes(self):
+        self.prepare()
+        time.sleep(1.1)  # no times are in the file, not even in seconds
+        self.succeed("prepare", "case.toml", "-o", "again.stylet", *SMALL)
+        self.assertEqual((self.folder / "case.stylet").read_bytes(), (self.folder / "again.stylet").read_bytes())
+
+    def test_a_stripped_program_finds_what_the_whole_one_has_kept(self):
+        stripped = self.folder / "stylet"
+        subprocess.run(["strip", "-o", stripped, STYLET], check=True)
+        names = []
+        for number, program in enumerate((STYLET, stripped)):
+            models = self.folder / f"models{number}"
+            models.mkdir()
+            subprocess.run([program, "prepare", "case.toml", "-o", f"{models}/", "--quiet", *SMALL], cwd=self.folder,
+                           check=True)
+            names.append([file.name for file in models.iterdir()])
+        self.assertEqual(len(names[0]), 1)
+        self.assertEqual(names[0], names[1])
 
     def test_settings(self):
         self.prepare()

@@ -210,8 +210,38 @@ static void check_refused(const char* name, const char* word) {
 
 static int files_that_are_no_model_are_refused_with_place_and_cure(void) {
   check_refused("none.stylet", "no such file");
-  check_refused("cut.stylet", "damaged");
+  check_refused("cut.stylet", "cut short or damaged");
   check_refused("text.stylet", "not a saved model");
+  return 0;
+}
+
+/* How often: STYLET_FLIPS in the environment, else a sample. */
+static int a_file_with_any_bit_changed_is_refused(void) {
+  const char* wanted = getenv("STYLET_FLIPS");
+  const int flips = wanted == NULL ? 100 : atoi(wanted);
+  FILE* file = fopen(in_folder("box.stylet"), "rb");
+  unsigned char* bytes;
+  long size;
+  int k;
+  if (file == NULL) exit(1);
+  fseek(file, 0, SEEK_END);
+  size = ftell(file);
+  rewind(file);
+  bytes = malloc((size_t)size);
+  CHECK(fread(bytes, 1, (size_t)size, file) == (size_t)size);
+  fclose(file);
+  srand(20051026);
+  for (k = 0; k < flips; ++k) {
+    const long at = (long)(((double)rand() / RAND_MAX) * (double)(size - 1));
+    const unsigned char bit = (unsigned char)(1 << (rand() % 8));
+    bytes[at] ^= bit;
+    file = fopen(in_folder("flipped.stylet"), "wb");
+    CHECK(file != NULL && fwrite(bytes, 1, (size_t)size, file) == (size_t)size);
+    fclose(file);
+    check_refused("flipped.stylet", at < 8 ? "not a saved model" : "stylet prepare");
+    bytes[at] ^= bit;
+  }
+  free(bytes);
   return 0;
 }
 
@@ -596,6 +626,7 @@ static const struct {
 } claims[] = {CLAIM(its_numbers_are_those_of_the_interface_in_cpp_to_the_last_bit),
               CLAIM(two_simulations_share_a_model),
               CLAIM(files_that_are_no_model_are_refused_with_place_and_cure),
+              CLAIM(a_file_with_any_bit_changed_is_refused),
               CLAIM(settings_change_what_they_name),
               CLAIM(arguments_that_make_no_sense_are_statuses),
               CLAIM(a_pose_that_is_none_leaves_everything_as_it_was),

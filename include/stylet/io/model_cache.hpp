@@ -13,12 +13,13 @@
 
 namespace stylet {
 
-/// What names the compiled model of a scenario: SHA-256, in hexadecimal, of this program's own file, the scenario with
-/// all its settings, and the content of every file that it names. Another program, another value or another patient is
-/// another key.
+/// What names the compiled model of a scenario: SHA-256, in hexadecimal, of the build id of the program or shared
+/// library that holds this code, the scenario with all its settings, and the content of every file that it names.
+/// Another version, another value or another patient is another key; a stripped copy of the program is the same
+/// program.
 /// @param scenario as of read_scenario(), with absolute paths
 /// Errors: a file that cannot be read; one whose data are in other files that it names (.mhd, .nhdr, .node and .ele),
-/// which the key would not see.
+/// which the key would not see; a program that was linked without a build id.
 Result<std::string> model_key(const Scenario& scenario);
 
 /// Compiled models kept from one start of the program to the next: files as `stylet prepare` writes them, named by

@@ -13,9 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* const damaged_cure =
-    "The file is damaged or not what its format promises; export it again or in another format.";
-
 /// The last line a library printed, as a clause; empty when it kept silent.
 std::string last_words(const std::string& noise) {
   std::string last;
@@ -41,7 +38,7 @@ ChildLimits limits_for(const fs::path& path) {
   return limits;
 }
 
-Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits& limits) {
+Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits& limits, const char* cure) {
   const std::string words = last_words(outcome.noise);
   switch (outcome.end) {
     case ChildEnd::not_started:
@@ -50,22 +47,20 @@ Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits&
                      "Close other programs and try again.");
     case ChildEnd::timed_out:
       return input_error(path.string(), fmt::format("the parser did not finish within {:.0f} s{}", limits.cpu_s, words),
-                         damaged_cure);
+                         cure);
     case ChildEnd::signalled:
       return input_error(
           path.string(),
-          fmt::format("the parser stopped (signal {}, {}){}", outcome.code, strsignal(outcome.code), words),
-          damaged_cure);
+          fmt::format("the parser stopped (signal {}, {}){}", outcome.code, strsignal(outcome.code), words), cure);
     case ChildEnd::exited:
     case ChildEnd::finished:
       break;
   }
-  return input_error(path.string(), fmt::format("the parser gave up (exit status {}){}", outcome.code, words),
-                     damaged_cure);
+  return input_error(path.string(), fmt::format("the parser gave up (exit status {}){}", outcome.code, words), cure);
 }
 
-Error threw(const fs::path& path, const char* what) {
-  return input_error(path.string(), fmt::format("the parser gave up: {}", what), damaged_cure);
+Error threw(const fs::path& path, const char* what, const char* cure) {
+  return input_error(path.string(), fmt::format("the parser gave up: {}", what), cure);
 }
 
 Error out_of_memory(const fs::path& path) {

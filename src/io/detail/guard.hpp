@@ -14,17 +14,23 @@ namespace stylet::detail {
 /// hang.
 ChildLimits limits_for(const std::filesystem::path& path);
 
+/// What to do about a file that its parser does not survive, unless the caller knows better.
+inline constexpr const char* kExportAgain =
+    "The file is damaged or not what its format promises; export it again or in another format.";
+
 /// The error a parser's end without a result becomes.
-Error died(const std::filesystem::path& path, const ChildOutcome& outcome, const ChildLimits& limits);
+Error died(const std::filesystem::path& path, const ChildOutcome& outcome, const ChildLimits& limits, const char* cure);
 
 /// The error an exception becomes.
-Error threw(const std::filesystem::path& path, const char* what);
+Error threw(const std::filesystem::path& path, const char* what, const char* cure);
 Error out_of_memory(const std::filesystem::path& path);
 
 /// Runs a parser on an untrusted file in a child process (child.hpp); its crash, hang or exception becomes an input
 /// error.
+/// @param cure part of that error
 template <class T>
-Result<T> guarded(const std::filesystem::path& path, const std::function<Result<T>()>& parse) {
+Result<T> guarded(const std::filesystem::path& path, const std::function<Result<T>()>& parse,
+                  const char* cure = kExportAgain) {
   const auto work = [&]() -> std::string {
     Result<T> result = [&]() -> Result<T> {
       try {
@@ -32,20 +38,20 @@ Result<T> guarded(const std::filesystem::path& path, const std::function<Result<
       } catch (const std::bad_alloc&) {
         return out_of_memory(path);
       } catch (const std::exception& error) {
-        return threw(path, error.what());
+        return threw(path, error.what(), cure);
       } catch (...) {
-        return threw(path, "unknown exception");
+        return threw(path, "unknown exception", cure);
       }
     }();
     return to_bytes(result);
   };
   const ChildLimits limits = limits_for(path);
   const ChildOutcome outcome = run_in_child(work, limits);
-  if (outcome.end != ChildEnd::finished) return died(path, outcome, limits);
+  if (outcome.end != ChildEnd::finished) return died(path, outcome, limits, cure);
   try {
     return from_bytes<T>(outcome.result);
   } catch (const std::exception& error) {
-    return threw(path, error.what());
+    return threw(path, error.what(), cure);
   }
 }
 

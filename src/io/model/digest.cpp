@@ -28,9 +28,11 @@ Digest::~Digest() = default;
 
 void Digest::add_bytes(const void* data, std::size_t bytes) {
   const std::uint64_t length = bytes;
-  check(EVP_DigestUpdate(context_.get(), &length, sizeof length));
-  check(EVP_DigestUpdate(context_.get(), data, bytes));
+  add_plain(&length, sizeof length);
+  add_plain(data, bytes);
 }
+
+void Digest::add_plain(const void* data, std::size_t bytes) { check(EVP_DigestUpdate(context_.get(), data, bytes)); }
 
 std::string Digest::finish() {
   std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};

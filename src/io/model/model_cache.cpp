@@ -2,6 +2,7 @@
 #include "stylet/io/model_cache.hpp"
 
 #include "detail/input_file.hpp"
+#include "model/build_id.hpp"
 #include "model/digest.hpp"
 #include "model/model_format.hpp"
 #include "stylet/io/model_file.hpp"
@@ -75,9 +76,15 @@ Result<> add_input(Digest& digest, const fs::path& path) {
 }  // namespace
 
 Result<std::string> model_key(const Scenario& scenario) {
+  const std::string build = detail::build_id();
+  if (build.empty()) {
+    return failure("models that are kept", "this program has no build id to name them by",
+                   "Link it with -Wl,--build-id=sha1");
+  }
   Digest digest;
+  digest.add(build);
   digest.add(to_toml(scenario));
-  std::vector<fs::path> inputs{"/proc/self/exe"};
+  std::vector<fs::path> inputs;
   if (scenario.patient.source != "phantom") inputs.emplace_back(scenario.patient.source);
   for (const InsertionPlan& plan : scenario.insertions) {
     if (!plan.motion.empty()) inputs.emplace_back(plan.motion);

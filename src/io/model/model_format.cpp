@@ -17,24 +17,6 @@ void add(Digest& digest, const TetMesh& mesh) {
 
 }  // namespace
 
-std::string content_digest(const ModelFile& file) {
-  Digest digest;
-  digest.add(file.version);
-  digest.add(file.scenario_text);
-  for (const std::string& note : file.notes) digest.add(note);
-  add(digest, file.mesh);
-  for (const auto& motion : file.motions) digest.add(std::span<const double>(motion_rows(motion)));
-  digest.add(file.element);
-  digest.add(std::span<const Index>(file.corridor));
-  const MatX& store = file.compliance.store;
-  for (Eigen::Index column = 0; column < store.cols(); ++column)  // the lower triangle is all there is
-    digest.add(
-        std::span(store.data() + column * store.rows() + column, static_cast<std::size_t>(store.rows() - column)));
-  digest.add(std::span<const double>(file.compliance.kernel));
-  digest.add(file.belongs_to);
-  return digest.finish();
-}
-
 std::string compliance_origin(const Tissue& tissue) {
   Digest digest;
   add(digest, tissue.mesh());

@@ -6,16 +6,13 @@
 /// What a model file looks like inside (docs/models.md): shared by its writer and its reader.
 namespace stylet::detail {
 
-inline constexpr int kModelFileVersion = 1;
+inline constexpr int kModelFileVersion = 2;
 inline constexpr const char* kModelFileFormat = "stylet-model";
 inline constexpr const char* kModelExtension = ".stylet";
 /// Columns of the compliance that are written and read together.
 inline constexpr Eigen::Index kPanel = 64;
 /// Numbers of a row of /motions/N: time, place, quaternion x y z w.
 inline constexpr std::size_t kMotionNumbers = 8;
-
-/// Digest of all that is in the file.
-std::string content_digest(const ModelFile& file);
 
 /// Digest of what the compliance of a corridor depends on: mesh, materials, supports, element, corridor.
 std::string compliance_origin(const Tissue& tissue);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/input_file.hpp"
-#include "h5.hpp"
 #include "model/model_format.hpp"
+#include "model/sealed_file.hpp"
 #include "stylet/core/mirror.hpp"
 #include "stylet/io/scenario_io.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
-#include <optional>
 
 namespace stylet {
 namespace fs = std::filesystem;
@@ -17,115 +18,125 @@ using namespace detail;
 
 namespace {
 
+using Json = nlohmann::json;
+
 constexpr const char* kPrepareAgain = "Prepare the model again: stylet prepare SCENARIO.toml -o MODEL.stylet";
 
 struct NotAModel : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-void demand(bool condition, const char* what) {
+void demand(bool condition, const std::string& what) {
   if (!condition) throw NotAModel(what);
 }
 
-/// Reads datasets, none larger than the file.
+/// Reads arrays by their places, none larger than the file. What is wrong is thrown: NotAModel, NotSealed, or what the
+/// JSON library throws.
 class Reader {
  public:
-  Reader(hid_t file, std::uintmax_t bytes) : file_(file), bytes_(bytes) {}
+  Reader(const SealedFile& file, const Json& index) : file_(file), arrays_(index.at("arrays")) {}
 
-  ModelFile all(const Progress& progress) const {
-    ModelFile file;
-    file.version = h5::read_text_attribute(file_, "version");
-    file.scenario_text = h5::read_text(file_, "scenario");
-    file.notes = h5::read_texts(file_, "notes");
-    file.mesh = mesh();
-    const h5::Handle motions = h5::open_group(file_, "motions");
-    for (int i = 0; h5::has_link(motions, fmt::format("{}", i).c_str()); ++i) {
-      const auto rows = array<double>(motions, fmt::format("{}", i).c_str(), {0, kMotionNumbers}, H5T_NATIVE_DOUBLE);
-      file.motions.push_back(motion_of(rows));
+  [[nodiscard]] std::vector<std::string> texts(const std::string& name) const {
+    const Place place = of(name);
+    demand(place.item_bytes > 0, name);
+    std::string all(place.items * place.item_bytes, '\0');
+    file_.read(place.at, all.size(), all.data());
+    std::vector<std::string> texts;
+    for (std::uint64_t k = 0; k < place.items; ++k) {
+      const std::string padded = all.substr(k * place.item_bytes, place.item_bytes);
+      texts.push_back(padded.substr(0, padded.find_last_not_of('\0') + 1));
     }
-    const h5::Handle group = h5::open_group(file_, "compliance");
-    file.element = h5::read_text_attribute(group, "element");
-    file.belongs_to = h5::read_text_attribute(group, "belongs_to");
-    file.corridor = array<Index>(group, "corridor", {0}, H5T_NATIVE_INT);
-    file.compliance.kernel = array<double>(group, "near_field_mm_per_N", {0}, H5T_NATIVE_DOUBLE);
-    file.compliance.store = store(group, static_cast<Eigen::Index>(3 * file.corridor.size()), progress);
-    return file;
+    return texts;
   }
 
- private:
+  [[nodiscard]] std::string text(const std::string& name) const {
+    const auto all = texts(name);
+    demand(all.size() == 1, name);
+    return all.front();
+  }
+
+  [[nodiscard]] bool has(const std::string& name) const { return arrays_.contains(name); }
+
   /// @param shape 0 where any extent will do
   template <class Number>
-  std::vector<Number> array(hid_t parent, const char* name, std::vector<hsize_t> shape, hid_t type) const {
-    const h5::Handle set = h5::dataset(parent, name);
-    const std::vector<hsize_t> found = h5::extents(set);
-    demand(found.size() == shape.size(), name);
-    hsize_t count = 1;
-    for (std::size_t k = 0; k < shape.size(); ++k) {
-      demand(shape[k] == 0 || found[k] == shape[k], name);
-      demand(found[k] <= bytes_, name);
-      count *= found[k];
-    }
-    demand(count <= bytes_ / sizeof(Number), name);
-    std::vector<Number> values(count);
-    h5::read_rows(set, type, 0, found[0], values.data());
+  [[nodiscard]] std::vector<Number> numbers(const std::string& name, const std::vector<std::uint64_t>& shape) const {
+    const Place place = of(name);
+    demand(place.item_bytes == sizeof(Number) && place.shape.size() == shape.size(), name);
+    for (std::size_t k = 0; k < shape.size(); ++k) demand(shape[k] == 0 || place.shape[k] == shape[k], name);
+    std::vector<Number> values(place.items);
+    file_.read(place.at, place.items * sizeof(Number), values.data());
     return values;
   }
 
   [[nodiscard]] TetMesh mesh() const {
-    const h5::Handle group = h5::open_group(file_, "mesh");
-    const auto nodes = array<double>(group, "nodes_mm", {0, 3}, H5T_NATIVE_DOUBLE);
-    const auto tets = array<std::int32_t>(group, "tets", {0, 4}, H5T_NATIVE_INT32);
+    const auto nodes = numbers<double>("/mesh/nodes_mm", {0, 3});
+    const auto tets = numbers<std::int32_t>("/mesh/tets", {0, 4});
     TetMesh mesh;
-    mesh.tet_region = array<int>(group, "tet_region", {tets.size() / 4}, H5T_NATIVE_INT);
+    mesh.tet_region = numbers<std::int32_t>("/mesh/tet_region", {tets.size() / 4});
     for (std::size_t k = 0; k < nodes.size(); k += 3) mesh.nodes.emplace_back(nodes[k], nodes[k + 1], nodes[k + 2]);
     for (std::size_t k = 0; k < tets.size(); k += 4)
       mesh.tets.push_back({tets[k], tets[k + 1], tets[k + 2], tets[k + 3]});
-    mesh.regions = h5::read_texts(group, "regions");
+    mesh.regions = texts("/mesh/regions");
     return mesh;
   }
 
-  [[nodiscard]] MatX store(hid_t group, Eigen::Index size, const Progress& progress) const {
-    const h5::Handle set = h5::dataset(group, "blocks_mm_per_N");
-    const auto numbers = static_cast<hsize_t>(size) * static_cast<hsize_t>(size + 1) / 2;
-    demand(numbers <= bytes_ / sizeof(double), "blocks_mm_per_N");
-    demand(h5::extents(set) == std::vector<hsize_t>{numbers}, "blocks_mm_per_N");
-    MatX store(size, size);
-    std::vector<double> panel;
-    hsize_t at = 0;
-    for (Eigen::Index first = 0; first < size; first += kPanel) {
-      report(progress, "loading", static_cast<double>(first) / static_cast<double>(size));
-      const Eigen::Index last = std::min(first + kPanel, size);
-      const auto count = static_cast<hsize_t>((last - first) * size - (last * (last - 1) - first * (first - 1)) / 2);
-      panel.resize(count);
-      h5::read_rows(set, H5T_NATIVE_DOUBLE, at, count, panel.data());
-      at += count;
-      const double* column_begin = panel.data();
-      for (Eigen::Index column = first; column < last; ++column) {
-        std::copy_n(column_begin, size - column, store.data() + column * size + column);
-        column_begin += size - column;
-      }
+  /// A symmetric matrix of which the lower triangle is in the file, column by column.
+  [[nodiscard]] MatX symmetric(const std::string& name, Eigen::Index size, const Progress& progress) const {
+    const Place place = of(name);
+    const auto count = static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size + 1) / 2;
+    demand(place.item_bytes == sizeof(double) && place.shape == std::vector<std::uint64_t>{count}, name);
+    MatX matrix(size, size);
+    std::uint64_t at = place.at;
+    for (Eigen::Index column = 0; column < size; ++column) {
+      if (column % kPanel == 0) report(progress, "loading", static_cast<double>(column) / static_cast<double>(size));
+      const std::uint64_t bytes = static_cast<std::uint64_t>(size - column) * sizeof(double);
+      file_.read(at, bytes, matrix.data() + column * size + column);
+      at += bytes;
     }
-    mirror_lower(store);
-    return store;
+    mirror_lower(matrix);
+    return matrix;
   }
 
-  hid_t file_;
-  std::uintmax_t bytes_;
+ private:
+  struct Place {
+    std::uint64_t at = 0;
+    std::uint64_t item_bytes = 0;
+    std::vector<std::uint64_t> shape;
+    std::uint64_t items = 1;
+  };
+
+  [[nodiscard]] Place of(const std::string& name) const {
+    const Json& entry = arrays_.at(name);
+    Place place{entry.at("at").get<std::uint64_t>(), entry.at("item_bytes").get<std::uint64_t>(),
+                entry.at("shape").get<std::vector<std::uint64_t>>()};
+    demand(place.item_bytes <= file_.size(), name);
+    for (const std::uint64_t extent : place.shape) {
+      demand(extent == 0 || place.items <= file_.size() / extent, name);
+      place.items *= extent;
+    }
+    demand(place.items == 0 || place.item_bytes <= file_.size() / place.items, name);
+    return place;
+  }
+
+  const SealedFile& file_;
+  const Json& arrays_;
 };
 
-bool says_model(hid_t file) {
-  return h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kModelFileFormat;
-}
-
-/// Whether an HDF5 file says that it holds a model; nothing where it cannot be asked.
-std::optional<bool> model_in(const fs::path& path) {
-  if (!is_hdf5_file(path)) return std::nullopt;
-  const h5::LibraryTurn turn;
-  try {
-    return says_model(h5::open_file(path.c_str()));
-  } catch (const h5::Failure&) {
-    return std::nullopt;
-  }
+ModelFile content_of(const Json& index, const Reader& reader, const Progress& progress) {
+  ModelFile file;
+  file.version = index.at("version").get<std::string>();
+  file.element = index.at("element").get<std::string>();
+  file.belongs_to = index.at("belongs_to").get<std::string>();
+  file.scenario_text = reader.text("/scenario");
+  file.notes = reader.texts("/notes");
+  file.mesh = reader.mesh();
+  for (int i = 0; reader.has(fmt::format("/motions/{}", i)); ++i)
+    file.motions.push_back(motion_of(reader.numbers<double>(fmt::format("/motions/{}", i), {0, kMotionNumbers})));
+  file.corridor = reader.numbers<Index>("/compliance/corridor", {0});
+  file.compliance.kernel = reader.numbers<double>("/compliance/near_field_mm_per_N", {0});
+  file.compliance.store =
+      reader.symmetric("/compliance/blocks_mm_per_N", static_cast<Eigen::Index>(3 * file.corridor.size()), progress);
+  return file;
 }
 
 /// Tables whose outcome is in the file: settings there would do nothing.
@@ -152,37 +163,33 @@ bool is_hdf5_file(const fs::path& path) {
   return std::string_view(begin.data(), begin.size()) == signature;
 }
 
-bool is_model_file(const fs::path& path) { return model_in(path).value_or(false); }
+bool is_model_file(const fs::path& path) { return is_hdf5_file(path) && SealedFile::is_marked(path); }
 
 bool is_meant_as_model(const fs::path& path) {
   std::error_code code;
-  return fs::is_regular_file(path, code) && model_in(path).value_or(path.extension() == kModelExtension);
+  return fs::is_regular_file(path, code) && (path.extension() == kModelExtension || is_model_file(path));
 }
 
 Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress) {
   const auto refuse = [&](const std::string& what) { return input_error(path.string(), what, kPrepareAgain); };
-  std::error_code code;
   if (Result<> readable = detail::check_input_file(path); !readable) return refuse(readable.error().what);
   if (!is_hdf5_file(path)) return refuse("this is not a saved model");
-  const h5::LibraryTurn turn;
+  if (!SealedFile::is_marked(path)) {
+    return refuse(
+        "it does not end as a saved model does: it was cut short or damaged, an earlier version of stylet saved it, or "
+        "it is something else");
+  }
   try {
-    const h5::Handle file = h5::open_file(path.c_str());
-    if (!says_model(file)) return refuse("this is an HDF5 file, but not a saved model");
-    const auto format = h5::read_int_attribute(file, "format_version");
-    demand(format.size() == 1, "format_version");
-    if (format[0] != kModelFileVersion) {
-      return refuse(fmt::format("the file has version {} of the format, this program reads version {}", format[0],
+    const SealedFile file(path, [&](double share) { report(progress, "checking the saved model", share); });
+    const Json index = Json::parse(file.index());
+    if (const int version = index.at("format_version").get<int>(); version != kModelFileVersion) {
+      return refuse(fmt::format("the file has version {} of the format, this program reads version {}", version,
                                 kModelFileVersion));
     }
-    const std::string digest = h5::read_text_attribute(file, "sha256");
-    ModelFile content = Reader(file, fs::file_size(path, code)).all(progress);
-    if (content_digest(content) != digest) return refuse("damaged: its content is not what was written");
-    return content;
-  } catch (const h5::Failure& e) {
-    return refuse(std::string("damaged: ") + e.what());
-  } catch (const NotAModel& e) {
-    return refuse(std::string("damaged: ") + e.what());
-  } catch (const std::length_error& e) {
+    return content_of(index, Reader(file, index), progress);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
     return refuse(std::string("damaged: ") + e.what());
   }
 }

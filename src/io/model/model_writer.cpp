@@ -3,10 +3,12 @@
 #include "h5.hpp"
 #include "h5_mesh.hpp"
 #include "model/model_format.hpp"
+#include "model/sealed_file.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/scenario_io.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <array>
 
@@ -16,32 +18,55 @@ using namespace detail;
 
 namespace {
 
-constexpr hsize_t kChunk = 1 << 16;  // numbers
-
 /// The lower triangle, column by column.
 void write_store(hid_t group, const MatX& store, const Progress& progress) {
-  const h5::Handle set = h5::growing_dataset(group, "blocks_mm_per_N", H5T_NATIVE_DOUBLE, {}, kChunk, nullptr);
+  const auto size = static_cast<hsize_t>(store.cols());
+  const hsize_t numbers = size * (size + 1) / 2;
+  h5::write_array(group, "blocks_mm_per_N", H5T_NATIVE_DOUBLE, {&numbers, 1}, nullptr);
+  const h5::Handle set = h5::dataset(group, "blocks_mm_per_N");
   std::vector<double> panel;
+  hsize_t at = 0;
   for (Eigen::Index first = 0; first < store.cols(); first += kPanel) {
     report(progress, "saving", static_cast<double>(first) / static_cast<double>(store.cols()));
     panel.clear();
     for (Eigen::Index column = first; column < std::min(first + kPanel, store.cols()); ++column)
       panel.insert(panel.end(), store.data() + column * store.rows() + column,
                    store.data() + (column + 1) * store.rows());
-    h5::append_rows(set, H5T_NATIVE_DOUBLE, panel.size(), panel.data());
+    h5::write_rows(set, H5T_NATIVE_DOUBLE, at, panel.size(), panel.data());
+    at += panel.size();
   }
 }
 
+/// Where everything lies, for readers without HDF5.
+std::string index_of(hid_t file, const ModelFile& content) {
+  std::vector<std::string> names{"/scenario",
+                                 "/notes",
+                                 "/mesh/nodes_mm",
+                                 "/mesh/tets",
+                                 "/mesh/tet_region",
+                                 "/mesh/regions",
+                                 "/compliance/corridor",
+                                 "/compliance/blocks_mm_per_N",
+                                 "/compliance/near_field_mm_per_N"};
+  for (std::size_t i = 0; i < content.motions.size(); ++i) names.push_back(fmt::format("/motions/{}", i));
+  nlohmann::ordered_json arrays;
+  for (const std::string& name : names) {
+    const h5::Handle set = h5::dataset(file, name.c_str());
+    arrays[name] = {{"at", h5::place(set)}, {"item_bytes", h5::item_bytes(set)}, {"shape", h5::extents(set)}};
+  }
+  return nlohmann::ordered_json{{"format", kModelFileFormat},       {"format_version", kModelFileVersion},
+                                {"version", content.version},       {"element", content.element},
+                                {"belongs_to", content.belongs_to}, {"arrays", arrays}}
+      .dump(1);
+}
+
 void write(const fs::path& path, const ModelFile& content, const Progress& progress) {
-  const h5::Handle access(h5::check(H5Pcreate(H5P_FILE_ACCESS), "create file"), H5Pclose);
-  h5::check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "create file");
-  h5::Handle file(h5::check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "create file"), H5Fclose);
+  h5::Handle file = h5::create_file(path.c_str());
   h5::write_attribute(file, "format", std::string(kModelFileFormat));
   h5::write_attribute(file, "format_version", std::array{kModelFileVersion});
   h5::write_attribute(file, "version", content.version);
   h5::write_attribute(file, "units", std::string("mm, N, s"));
   h5::write_attribute(file, "frame", std::string("LPS"));
-  h5::write_attribute(file, "sha256", content_digest(content));
   h5::write_text(file, "scenario", content.scenario_text);
   h5::write_texts(file, "notes", content.notes);
   h5::write_mesh(file, content.mesh);
@@ -61,7 +86,9 @@ void write(const fs::path& path, const ModelFile& content, const Progress& progr
     h5::write_array(group, "near_field_mm_per_N", H5T_NATIVE_DOUBLE, {&kernel, 1}, content.compliance.kernel.data());
     write_store(group, content.compliance.store, progress);
   }
+  const std::string index = index_of(file, content);
   if (!file.reset()) h5::fail("close");
+  SealedFile::seal(path, index);
 }
 
 }  // namespace
@@ -93,7 +120,7 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
     try {
       write(temporary, file, progress);
       return Ok{};
-    } catch (const h5::Failure& e) {
+    } catch (const std::runtime_error& e) {  // of HDF5, or of the disk
       return failure(where, std::string("cannot be written: ") + e.what(), "Check the free space and the permissions");
     }
   });

@@ -42,6 +42,69 @@ std::string take(char* text) {
   return copy;
 }
 
+/// Texts of fixed length side by side, each filled up with zeros.
+std::string side_by_side(std::span<const std::string> texts, std::size_t width) {
+  std::string all(texts.size() * width, '\0');
+  for (std::size_t k = 0; k < texts.size(); ++k) texts[k].copy(all.data() + k * width, width);
+  return all;
+}
+
+std::vector<std::string> taken_apart(const std::string& all, std::size_t width) {
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < all.size(); at += width) {
+    const std::string padded = all.substr(at, width);
+    texts.push_back(padded.substr(0, padded.find_last_not_of('\0') + 1));
+  }
+  return texts;
+}
+
+/// What all of them fit into; HDF5 knows no text of length zero.
+std::size_t width_of(std::span<const std::string> texts) {
+  std::size_t width = 1;
+  for (const std::string& text : texts) width = std::max(width, text.size());
+  return width;
+}
+
+/// Reads texts of either kind.
+/// @param type of one text in the file
+/// @param read fills memory: given the type in memory and where
+template <class Read>
+std::vector<std::string> texts_of(hid_t type, std::size_t count, const Read& read) {
+  std::vector<std::string> texts;
+  if (count == 0) return texts;
+  if (check(H5Tis_variable_str(type), "read text") > 0) {
+    std::vector<char*> pointers(count, nullptr);
+    read(type, pointers.data());
+    for (char* pointer : pointers) texts.push_back(take(pointer));
+    return texts;
+  }
+  if (H5Tget_class(type) != H5T_STRING) throw Failure("read text: it is no text");
+  const std::size_t width = H5Tget_size(type);
+  std::string all(count * width, '\0');
+  read(type, all.data());
+  return taken_apart(all, width);
+}
+
+/// Refuses a space with more or fewer elements than there is room for; closes it.
+void expect_elements(Handle space, std::size_t count, const char* name) {
+  if (static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space), name)) != count)
+    throw Failure(std::string(name) + ": has the wrong shape");
+}
+
+/// A type of rows with one of the columns only.
+Handle column_type(const char* column, hid_t type) {
+  Handle rows(check(H5Tcreate(H5T_COMPOUND, H5Tget_size(type)), "create type"), H5Tclose);
+  check(H5Tinsert(rows, column, 0, type), column);
+  return rows;
+}
+
+/// Properties of something new that does not remember when it was made.
+Handle timeless(hid_t kind) {
+  Handle properties(check(H5Pcreate(kind), "create"), H5Pclose);
+  check(H5Pset_obj_track_times(properties, false), "create");
+  return properties;
+}
+
 }  // namespace
 
 namespace {
@@ -75,7 +138,11 @@ void fail(const char* action) {
   throw Failure(std::string(action) + ": " + (reason.empty() ? "HDF5 gave no reason" : reason));
 }
 
-Handle open_file(const char* path) { return {check(H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), "open"), H5Fclose}; }
+Handle create_file(const char* path) {
+  const Handle access(check(H5Pcreate(H5P_FILE_ACCESS), "create file"), H5Pclose);
+  check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "create file");
+  return {check(H5Fcreate(path, H5F_ACC_TRUNC, timeless(H5P_FILE_CREATE), access), "create file"), H5Fclose};
+}
 
 Handle open_growing_file(const char* path) {
   // The first wait is a nanosecond and each twice the one before: these are 0.13 s, HDF5's own 100 never end.
@@ -86,10 +153,8 @@ Handle open_growing_file(const char* path) {
 }
 
 bool has_attribute(hid_t object, const char* name) { return check(H5Aexists(object, name), name) > 0; }
-bool has_link(hid_t parent, const char* name) { return check(H5Lexists(parent, name, H5P_DEFAULT), name) > 0; }
-
 Handle group(hid_t parent, const char* name) {
-  return {check(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), name), H5Gclose};
+  return {check(H5Gcreate2(parent, name, H5P_DEFAULT, timeless(H5P_GROUP_CREATE), H5P_DEFAULT), name), H5Gclose};
 }
 Handle open_group(hid_t parent, const char* name) {
   return {check(H5Gopen2(parent, name, H5P_DEFAULT), name), H5Gclose};
@@ -108,19 +173,12 @@ Handle string_type(std::size_t bytes) {
   return type;
 }
 
-Handle text_type() {
-  Handle type(check(H5Tcopy(H5T_C_S1), "create type"), H5Tclose);
-  check(H5Tset_size(type, H5T_VARIABLE), "create type");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), "create type");
-  return type;
-}
-
 void write_attribute(hid_t object, const char* name, const std::string& text) {
-  const Handle type = text_type();
+  const std::size_t width = width_of({&text, 1});
+  const Handle type = string_type(width);
   const Handle attribute(check(H5Acreate2(object, name, type, scalar_space(), H5P_DEFAULT, H5P_DEFAULT), name),
                          H5Aclose);
-  const char* value = text.c_str();
-  check(H5Awrite(attribute, type, &value), name);
+  check(H5Awrite(attribute, type, side_by_side({&text, 1}, width).data()), name);
 }
 void write_attribute(hid_t object, const char* name, std::span<const double> values) {
   write_numbers(object, name, H5T_NATIVE_DOUBLE, values.size(), values.data());
@@ -131,9 +189,9 @@ void write_attribute(hid_t object, const char* name, std::span<const int> values
 
 std::string read_text_attribute(hid_t object, const char* name) {
   const Handle attribute(check(H5Aopen(object, name, H5P_DEFAULT), name), H5Aclose);
-  char* text = nullptr;
-  check(H5Aread(attribute, text_type(), &text), name);
-  return take(text);
+  const Handle type(check(H5Aget_type(attribute), name), H5Tclose);
+  expect_elements({check(H5Aget_space(attribute), name), H5Sclose}, 1, name);
+  return texts_of(type, 1, [&](hid_t memory, void* to) { check(H5Aread(attribute, memory, to), name); }).front();
 }
 std::vector<double> read_double_attribute(hid_t object, const char* name) {
   return read_numbers<double>(object, name, H5T_NATIVE_DOUBLE);
@@ -144,40 +202,79 @@ std::vector<int> read_int_attribute(hid_t object, const char* name) {
 
 void write_array(hid_t parent, const char* name, hid_t type, std::span<const hsize_t> shape, const void* data) {
   const Handle space = simple_space(shape);
-  const Handle set(check(H5Dcreate2(parent, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), name), H5Dclose);
+  const Handle set(
+      check(H5Dcreate2(parent, name, type, space, H5P_DEFAULT, timeless(H5P_DATASET_CREATE), H5P_DEFAULT), name),
+      H5Dclose);
   const bool empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
-  if (!empty) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
+  if (!empty && data != nullptr) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
 }
 
 void write_texts(hid_t parent, const char* name, std::span<const std::string> texts) {
-  std::vector<const char*> pointers;
-  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const std::size_t width = width_of(texts);
   const hsize_t count = texts.size();
-  write_array(parent, name, text_type(), {&count, 1}, pointers.data());
+  write_array(parent, name, string_type(width), {&count, 1}, side_by_side(texts, width).data());
 }
 
 void write_text(hid_t parent, const char* name, const std::string& text) {
-  const Handle type = text_type();
-  const Handle set(check(H5Dcreate2(parent, name, type, scalar_space(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), name),
-                   H5Dclose);
-  const char* value = text.c_str();
-  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value), name);
+  const std::size_t width = width_of({&text, 1});
+  const Handle type = string_type(width);
+  const Handle set(
+      check(H5Dcreate2(parent, name, type, scalar_space(), H5P_DEFAULT, timeless(H5P_DATASET_CREATE), H5P_DEFAULT),
+            name),
+      H5Dclose);
+  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, side_by_side({&text, 1}, width).data()), name);
+}
+
+void write_text_table(hid_t parent, const char* name, std::span<const char* const> columns,
+                      std::span<const std::vector<std::string>> rows) {
+  std::vector<std::string> column(rows.size());
+  std::vector<std::size_t> widths;
+  std::size_t row_bytes = 0;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    std::transform(rows.begin(), rows.end(), column.begin(), [&](const auto& row) { return row.at(c); });
+    widths.push_back(width_of(column));
+    row_bytes += widths.back();
+  }
+  const Handle type(check(H5Tcreate(H5T_COMPOUND, row_bytes), name), H5Tclose);
+  std::string all;
+  for (std::size_t c = 0, at = 0; c < columns.size(); at += widths[c++])
+    check(H5Tinsert(type, columns[c], at, string_type(widths[c])), name);
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < columns.size(); ++c) all += side_by_side({&row[c], 1}, widths[c]);
+  }
+  const hsize_t count = rows.size();
+  write_array(parent, name, type, {&count, 1}, all.data());
 }
 
 std::vector<std::string> read_texts(hid_t parent, const char* name) {
   const Handle set = dataset(parent, name);
-  std::vector<char*> pointers(extents(set).at(0), nullptr);
-  if (!pointers.empty()) check(H5Dread(set, text_type(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()), name);
-  std::vector<std::string> texts;
-  for (char* pointer : pointers) texts.push_back(take(pointer));
-  return texts;
+  const Handle type(check(H5Dget_type(set), name), H5Tclose);
+  const std::size_t count = extents(set).at(0);
+  expect_elements({check(H5Dget_space(set), name), H5Sclose}, count, name);
+  return texts_of(type, count, [&](hid_t memory, void* to) {
+    check(H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), name);
+  });
+}
+
+std::vector<std::string> read_text_column(hid_t parent, const char* name, const char* column) {
+  const Handle set = dataset(parent, name);
+  const Handle rows(check(H5Dget_type(set), name), H5Tclose);
+  const auto member = static_cast<unsigned>(check(H5Tget_member_index(rows, column), column));
+  const Handle type(check(H5Tget_member_type(rows, member), column), H5Tclose);
+  const std::size_t count = extents(set).at(0);
+  expect_elements({check(H5Dget_space(set), name), H5Sclose}, count, name);
+  return texts_of(type, count, [&](hid_t memory, void* to) {
+    check(H5Dread(set, column_type(column, memory), H5S_ALL, H5S_ALL, H5P_DEFAULT, to), name);
+  });
 }
 
 std::string read_text(hid_t parent, const char* name) {
   const Handle set = dataset(parent, name);
-  char* text = nullptr;
-  check(H5Dread(set, text_type(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text), name);
-  return take(text);
+  const Handle type(check(H5Dget_type(set), name), H5Tclose);
+  expect_elements({check(H5Dget_space(set), name), H5Sclose}, 1, name);
+  return texts_of(type, 1,
+                  [&](hid_t memory, void* to) { check(H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), name); })
+      .front();
 }
 
 Handle growing_dataset(hid_t parent, const char* name, hid_t type, std::span<const hsize_t> rest, hsize_t chunk_rows,
@@ -189,7 +286,7 @@ Handle growing_dataset(hid_t parent, const char* name, hid_t type, std::span<con
     chunk.push_back(extent);
   }
   const Handle space(check(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), name), H5Sclose);
-  const Handle properties(check(H5Pcreate(H5P_DATASET_CREATE), name), H5Pclose);
+  const Handle properties = timeless(H5P_DATASET_CREATE);
   check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), name);
   if (fill != nullptr) check(H5Pset_fill_value(properties, type, fill), name);
   return {check(H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), name), H5Dclose};
@@ -201,6 +298,13 @@ std::vector<hsize_t> extents(hid_t data) {
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read extents");
   return shape;
 }
+
+std::uint64_t place(hid_t data) {
+  const haddr_t at = H5Dget_offset(data);
+  return at == HADDR_UNDEF ? 0 : at;
+}
+
+std::size_t item_bytes(hid_t data) { return H5Tget_size(Handle(check(H5Dget_type(data), "read type"), H5Tclose)); }
 
 namespace {
 
@@ -222,7 +326,12 @@ void append_rows(hid_t data, hid_t memory_type, hsize_t rows, const void* values
   const hsize_t first = shape[0];
   shape[0] += rows;
   check(H5Dset_extent(data, shape.data()), "extend dataset");
-  const auto [file, memory] = select_rows(data, shape, first, rows);
+  write_rows(data, memory_type, first, rows, values);
+}
+
+void write_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, const void* values) {
+  if (rows == 0) return;
+  const auto [file, memory] = select_rows(data, extents(data), first, rows);
   check(H5Dwrite(data, memory_type, memory, file, H5P_DEFAULT, values), "write dataset");
 }
 

@@ -68,22 +68,22 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// Opens a file to read it. A checksum that is wrong is damage.
-Handle open_file(const char* path);
-/// The same of a file that another process may be writing (SWMR), or was when it was killed. A wrong checksum may be of
-/// a block that is half written, so HDF5 reads it again, for a seventh of a second at most.
+/// Creates a file in the latest format, in which everything but raw data has a checksum. An existing one is replaced.
+/// Neither it nor what is made in it says when that was: the same content gives the same bytes.
+Handle create_file(const char* path);
+/// Opens a file to read it that another process may be writing (SWMR), or was when it was killed. A wrong checksum may
+/// be of a block that is half written, so HDF5 reads it again, for a seventh of a second at most.
 Handle open_growing_file(const char* path);
 bool has_attribute(hid_t object, const char* name);
-bool has_link(hid_t parent, const char* name);
 
 Handle group(hid_t parent, const char* name);  ///< created
 Handle open_group(hid_t parent, const char* name);
 Handle dataset(hid_t parent, const char* name);  ///< opened
 Handle array_type(hid_t element, hsize_t count);
 Handle string_type(std::size_t bytes);  ///< fixed length, UTF-8, null-padded
-Handle text_type();                     ///< variable length, UTF-8
 
-/// Attributes. Text is a scalar of variable length; numbers are 1-D arrays.
+/// Attributes. Text is a scalar; numbers are 1-D arrays. All text is written with a fixed length: HDF5 keeps text of
+/// variable length where no checksum sees it change, and crashes when it has. Read is either.
 void write_attribute(hid_t object, const char* name, const std::string& text);
 void write_attribute(hid_t object, const char* name, std::span<const double> values);
 void write_attribute(hid_t object, const char* name, std::span<const int> values);
@@ -93,9 +93,15 @@ std::vector<int> read_int_attribute(hid_t object, const char* name);
 
 /// Datasets of fixed size, written once.
 void write_texts(hid_t parent, const char* name, std::span<const std::string> texts);
+/// A table of texts: rows of named columns.
+/// @param rows each with as many texts as there are columns
+void write_text_table(hid_t parent, const char* name, std::span<const char* const> columns,
+                      std::span<const std::vector<std::string>> rows);
 void write_text(hid_t parent, const char* name, const std::string& text);
+/// @param data null where its values will be written later (write_rows())
 void write_array(hid_t parent, const char* name, hid_t type, std::span<const hsize_t> shape, const void* data);
 std::vector<std::string> read_texts(hid_t parent, const char* name);
+std::vector<std::string> read_text_column(hid_t parent, const char* name, const char* column);
 std::string read_text(hid_t parent, const char* name);
 
 /// Creates an empty dataset that grows along its first axis.
@@ -108,8 +114,16 @@ Handle growing_dataset(hid_t parent, const char* name, hid_t type, std::span<con
 /// Extents of an open dataset.
 std::vector<hsize_t> extents(hid_t data);
 
+/// Where in its file the values of a dataset begin that was written whole; 0 where it has none.
+std::uint64_t place(hid_t data);
+/// [bytes] of one of its values in the file.
+std::size_t item_bytes(hid_t data);
+
 /// Writes `rows` rows behind the last of a growing dataset.
 void append_rows(hid_t data, hid_t memory_type, hsize_t rows, const void* values);
+
+/// Writes rows first … first + rows - 1, which are there.
+void write_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, const void* values);
 
 /// Reads rows first … first + rows - 1.
 void read_rows(hid_t data, hid_t memory_type, hsize_t first, hsize_t rows, void* values);

@@ -103,7 +103,17 @@ std::string series_name(std::string_view stem, std::size_t number, std::string_v
   return fmt::format("{}_{:04}{}", stem, number, extension);
 }
 
-void remove_series_from(const fs::path& folder, std::string_view stem, std::string_view extension, std::size_t first) {
+Result<> remove_earlier(const fs::path& path) {
+  std::error_code code;
+  fs::remove(path, code);
+  if (!code) return Ok{};
+  return input_error(path.string(), "this file of an earlier run cannot be removed: " + code.message(),
+                     "Choose another folder with -o, or remove it.");
+}
+
+Result<> remove_series_from(const fs::path& folder, std::string_view stem, std::string_view extension,
+                            std::size_t first) {
+  std::vector<fs::path> found;
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
     const std::string name = entry->path().filename().string();
@@ -117,10 +127,13 @@ void remove_series_from(const fs::path& folder, std::string_view stem, std::stri
     const auto parsed = std::from_chars(digits, behind, number);
     if (parsed.ec == std::errc{} && parsed.ptr == behind && number >= first &&
         name == series_name(stem, number, extension)) {
-      std::error_code ignored;
-      fs::remove(entry->path(), ignored);
+      found.push_back(entry->path());
     }
   }
+  for (const fs::path& path : found) {
+    if (auto removed = remove_earlier(path); !removed) return removed;
+  }
+  return Ok{};
 }
 
 }  // namespace stylet::results

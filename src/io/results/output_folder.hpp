@@ -32,9 +32,12 @@ std::string csv_text(std::string_view text);
 /// The error every writer of the result folder returns when the disk refuses: names the file and the system's reason.
 Error write_error(const std::filesystem::path& path, const std::string& reason);
 
+/// Removes a file of an earlier run, if it is there.
+Result<> remove_earlier(const std::filesystem::path& path);
+
 /// Removes files called `stem`_0123.`extension` with a number of `first` or more: frames of an earlier, longer run.
-void remove_series_from(const std::filesystem::path& folder, std::string_view stem, std::string_view extension,
-                        std::size_t first);
+Result<> remove_series_from(const std::filesystem::path& folder, std::string_view stem, std::string_view extension,
+                            std::size_t first);
 
 /// "tissue_0012.vtu" for ("tissue", 12, ".vtu").
 std::string series_name(std::string_view stem, std::size_t number, std::string_view extension);

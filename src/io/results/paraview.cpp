@@ -112,7 +112,7 @@ Result<> write_tissue(const RunRecording& run, const std::function<MatX(const Ve
     }
     report(progress, "tissue files", static_cast<double>(f + 1) / static_cast<double>(run.frames.size()));
   }
-  remove_series_from(folder, "tissue", ".vtu", run.frames.size());
+  if (auto removed = remove_series_from(folder, "tissue", ".vtu", run.frames.size()); !removed) return removed;
   return write_file(folder / "tissue.pvd", collection(run.frames, "tissue", ".vtu"));
 }
 
@@ -123,7 +123,7 @@ Result<> write_needle(const RunRecording& run, std::size_t deepest, const fs::pa
     if (f != deepest) continue;
     if (auto done = write_file(folder / "needle.vtp", vtp); !done) return done;
   }
-  remove_series_from(folder, "needle", ".vtp", run.frames.size());
+  if (auto removed = remove_series_from(folder, "needle", ".vtp", run.frames.size()); !removed) return removed;
   return write_file(folder / "needle.pvd", collection(run.frames, "needle", ".vtp"));
 }
 

@@ -35,6 +35,19 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
   return Ok{};
 }
 
+/// Removes everything that an earlier run left but its run.h5. summary.json, which tells a finished run, goes first.
+Result<> remove_earlier_results(const fs::path& folder) {
+  for (const char* name : {"summary.json", "report.html", "forces.csv", "tissue.pvd", "needle.pvd", "needle.vtp"}) {
+    if (auto removed = remove_earlier(folder / name); !removed) return removed;
+  }
+  if (auto removed = remove_series_from(folder, "tissue", ".vtu", 0); !removed) return removed;
+  if (auto removed = remove_series_from(folder, "needle", ".vtp", 0); !removed) return removed;
+  for (const char* name : picture_names()) {
+    if (auto removed = remove_earlier(folder / "pictures" / name); !removed) return removed;
+  }
+  return Ok{};
+}
+
 /// Everything but run.h5, made from it: nothing can be in a picture or a table that is not in the recording.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
@@ -106,10 +119,8 @@ Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folde
                                                            std::function<MatX(const VecX&)> stress_of) {
   return guarded(folder, [&]() -> Result<std::unique_ptr<ResultsWriter>> {
     if (auto ready = prepare_folder(folder); !ready) return ready.error();
-    // summary.json is written last and tells a finished run: an earlier one must not stand beside the new run.h5.
-    std::error_code code;
-    fs::remove(folder / "summary.json", code);
-    auto file = RunFileWriter::create(folder / "run.h5", info, mesh);
+    // Nothing of an earlier run may ever stand beside the recording of this one, whenever this one is killed.
+    auto file = RunFileWriter::create(folder / "run.h5", info, mesh, [&] { return remove_earlier_results(folder); });
     if (!file) return file.error();
     auto parts =
         std::unique_ptr<Parts>(new Parts{folder, mesh.node_count(), std::move(stress_of), Recorder(std::move(*file))});

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_file_format.hpp"
 
+#include "model/digest.hpp"
+
+#include <zlib.h>
+
 #include <cstddef>
 
 namespace stylet::results {
@@ -30,7 +34,53 @@ h5::Handle bool_type() {
   return type;
 }
 
+/// CRC-32 of bytes and numbers, one after the other.
+class Check {
+ public:
+  Check& bytes(const void* data, std::size_t size) {
+    value_ = static_cast<std::uint32_t>(::crc32_z(value_, static_cast<const Bytef*>(data), size));
+    return *this;
+  }
+  template <class... Number>
+  Check& numbers(const Number&... number) {
+    (bytes(&number, sizeof number), ...);
+    return *this;
+  }
+  [[nodiscard]] std::uint32_t value() const { return value_; }
+
+ private:
+  std::uint32_t value_ = 0;
+};
+
 }  // namespace
+
+std::uint32_t check_of(const StepRow& r) {
+  return Check()
+      .numbers(r.time_s, r.dt_s, r.base_x_mm, r.base_y_mm, r.base_z_mm, r.base_qw, r.base_qx, r.base_qy, r.base_qz,
+               r.base_depth_mm, r.force_axial_N, r.force_sagittal_N, r.force_lateral_N)
+      .numbers(r.torque_x_Nmm, r.torque_y_Nmm, r.torque_z_Nmm, r.tip_x_mm, r.tip_y_mm, r.tip_z_mm, r.tip_state,
+               r.contacts, r.sticking, r.iterations, r.step_us, r.rest_steps)
+      .value();
+}
+
+std::uint32_t check_of(const FrameRow& r, std::span<const float> displacement, std::span<const Vec3> needle,
+                       std::span<const ContactRow> contacts) {
+  Check check;
+  check.numbers(r.time_s, r.base_depth_mm, r.label, r.needle_first, r.needle_count, r.contact_first, r.contact_count);
+  check.bytes(displacement.data(), displacement.size_bytes()).bytes(needle.data(), needle.size_bytes());
+  for (const ContactRow& c : contacts) check.numbers(c.position_mm, c.force_N, c.arc_length_mm, c.sticking, c.tip);
+  return check.value();
+}
+
+std::uint32_t check_of(const EventRow& r) {
+  return Check().numbers(r.kind, r.time_s, r.depth_mm, r.force_N, r.region).value();
+}
+
+std::uint32_t check_of(const EndRow& r) {
+  return Check().numbers(r.steps, r.frames, r.events, r.summary_bytes, r.summary_check).value();
+}
+
+std::uint32_t check_of(std::string_view summary) { return Check().bytes(summary.data(), summary.size()).value(); }
 
 StepRow to_row(const StepRecord& s) {
   StepRow row;
@@ -59,6 +109,7 @@ StepRow to_row(const StepRecord& s) {
   row.iterations = s.iterations;
   row.step_us = s.step_us;
   row.rest_steps = s.rest_steps;
+  row.check = check_of(row);
   return row;
 }
 
@@ -110,6 +161,7 @@ h5::Handle step_row_type() {
   insert(type, "iterations", offsetof(StepRow, iterations), H5T_NATIVE_INT32);
   insert(type, "step_us", offsetof(StepRow, step_us), H5T_NATIVE_DOUBLE);
   insert(type, "rest_steps", offsetof(StepRow, rest_steps), H5T_NATIVE_INT64);
+  insert(type, "check", offsetof(StepRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 
@@ -122,6 +174,7 @@ h5::Handle frame_row_type() {
   insert(type, "needle_count", offsetof(FrameRow, needle_count), H5T_NATIVE_INT64);
   insert(type, "contact_first", offsetof(FrameRow, contact_first), H5T_NATIVE_INT64);
   insert(type, "contact_count", offsetof(FrameRow, contact_count), H5T_NATIVE_INT64);
+  insert(type, "check", offsetof(FrameRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 
@@ -165,6 +218,7 @@ EventRow to_row(const Event& event) {
   row.depth_mm = event.depth_mm;
   row.force_N = event.force_N;
   put_text(row.region, event.region);
+  row.check = check_of(row);
   return row;
 }
 
@@ -179,17 +233,38 @@ h5::Handle event_row_type() {
   insert(type, "depth_mm", offsetof(EventRow, depth_mm), H5T_NATIVE_DOUBLE);
   insert(type, "force_N", offsetof(EventRow, force_N), H5T_NATIVE_DOUBLE);
   insert(type, "region", offsetof(EventRow, region), h5::string_type(sizeof(EventRow::region)));
+  insert(type, "check", offsetof(EventRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 
-h5::Handle parameter_row_type() {
-  h5::Handle type = compound(sizeof(ParameterText));
-  const h5::Handle text = h5::text_type();
-  insert(type, "name", offsetof(ParameterText, name), text);
-  insert(type, "value", offsetof(ParameterText, value), text);
-  insert(type, "unit", offsetof(ParameterText, unit), text);
-  insert(type, "source", offsetof(ParameterText, source), text);
+h5::Handle end_row_type() {
+  h5::Handle type = compound(sizeof(EndRow));
+  insert(type, "steps", offsetof(EndRow, steps), H5T_NATIVE_INT64);
+  insert(type, "frames", offsetof(EndRow, frames), H5T_NATIVE_INT64);
+  insert(type, "events", offsetof(EndRow, events), H5T_NATIVE_INT64);
+  insert(type, "summary_bytes", offsetof(EndRow, summary_bytes), H5T_NATIVE_INT64);
+  insert(type, "summary_check", offsetof(EndRow, summary_check), H5T_NATIVE_UINT32);
+  insert(type, "check", offsetof(EndRow, check), H5T_NATIVE_UINT32);
   return type;
+}
+
+std::string start_digest(const RunInfo& info, const TetMesh& mesh) {
+  detail::Digest digest;
+  const auto add = [&](std::span<const std::string> texts) {
+    for (const std::string& text : texts) digest.add(text);
+  };
+  add(std::array{info.version, info.scenario_name, info.scenario_text, info.method});
+  for (const ParameterRow& p : info.parameters) add(std::array{p.name, p.value, p.unit, p.source});
+  add(info.supports);
+  add(info.warnings);
+  digest.add(std::span<const double>(std::array{info.needle_diameter_mm, info.needle_length_mm}));
+  digest.add(std::span<const int>(info.target_regions));
+  for (const Vec3* v : {&info.entry_mm, &info.direction}) digest.add(std::span<const double>(v->data(), 3));
+  digest.add_bytes(mesh.nodes.data(), mesh.nodes.size() * sizeof(Vec3));
+  digest.add_bytes(mesh.tets.data(), mesh.tets.size() * sizeof(mesh.tets[0]));
+  digest.add(std::span<const int>(mesh.tet_region));
+  add(mesh.regions);
+  return digest.finish();
 }
 
 }  // namespace stylet::results

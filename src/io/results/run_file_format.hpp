@@ -2,17 +2,24 @@
 #pragma once
 
 #include "h5.hpp"
+#include "stylet/geom/tet_mesh.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <array>
 #include <limits>
+#include <span>
+#include <string>
 
 /// What run.h5 looks like inside (docs/results.md): row types shared by its writer and its reader.
 namespace stylet::results {
 
-inline constexpr int kRunFileVersion = 3;
+inline constexpr int kRunFileVersion = 4;
+inline constexpr int kFirstWithChecks = 4;  ///< files of earlier versions have no checks
 inline constexpr const char* kRunFileFormat = "stylet-run";
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  ///< fill value of rows not yet on disk
+
+// Every row has a check: CRC-32 of its other columns in their order and, of a frame, of what belongs to it. A row whose
+// check is wrong has not reached the disk whole, or was changed since.
 
 /// A row of /steps: the columns of forces.csv, what the step was given, and the steps at rest before it. Files of
 /// version 1 have no dt_s and no base, those of version 2 no rest_steps.
@@ -27,7 +34,9 @@ struct StepRow {
   std::int32_t contacts = 0, sticking = 0, iterations = 0;
   double step_us = kMissing;
   std::int64_t rest_steps = 0;
+  std::uint32_t check = 0;
 };
+std::uint32_t check_of(const StepRow& row);
 StepRow to_row(const StepRecord& step);
 StepRecord from_row(const StepRow& row);
 h5::Handle step_row_type();
@@ -38,6 +47,7 @@ struct FrameRow {
   std::array<char, 64> label{};
   std::int64_t needle_first = 0, needle_count = 0;
   std::int64_t contact_first = 0, contact_count = 0;
+  std::uint32_t check = 0;
 };
 h5::Handle frame_row_type();
 
@@ -48,6 +58,9 @@ struct ContactRow {
   double arc_length_mm = kMissing;
   std::int8_t sticking = 0, tip = 0;
 };
+/// @param displacement (3n) @param needle, contacts those of this frame
+std::uint32_t check_of(const FrameRow& row, std::span<const float> displacement, std::span<const Vec3> needle,
+                       std::span<const ContactRow> contacts);
 ContactRow to_row(const ContactView& contact);
 ContactView from_row(const ContactRow& row);
 h5::Handle contact_row_type();
@@ -57,19 +70,29 @@ struct EventRow {
   std::int8_t kind = 0;
   double time_s = kMissing, depth_mm = kMissing, force_N = kMissing;
   std::array<char, 128> region{};
+  std::uint32_t check = 0;
 };
+std::uint32_t check_of(const EventRow& row);
 EventRow to_row(const Event& event);
 Event from_row(const EventRow& row);
 h5::Handle event_row_type();
 
-/// A row of /parameters.
-struct ParameterText {
-  const char* name = nullptr;
-  const char* value = nullptr;
-  const char* unit = nullptr;
-  const char* source = nullptr;
+/// The row of /end, which a writer adds as it closes the file: how much there is.
+struct EndRow {
+  std::int64_t steps = 0, frames = 0, events = 0;
+  std::int64_t summary_bytes = 0;
+  std::uint32_t summary_check = 0;  ///< CRC-32 of /summary_json
+  std::uint32_t check = 0;
 };
-h5::Handle parameter_row_type();
+std::uint32_t check_of(const EndRow& row);
+std::uint32_t check_of(std::string_view summary);
+h5::Handle end_row_type();
+
+/// Columns of /parameters.
+inline constexpr std::array kParameterColumns{"name", "value", "unit", "source"};
+
+/// SHA-256 of all that is known before the first step, but for what the file says about its format.
+std::string start_digest(const RunInfo& info, const TetMesh& mesh);
 
 /// Copies text into a fixed field; text that is too long is cut between two UTF-8 characters.
 template <std::size_t N>

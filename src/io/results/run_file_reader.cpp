@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail/guard.hpp"
 #include "detail/input_file.hpp"
-#include "run_file_format.hpp"
+#include "stored_run.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "summary_json.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <thread>
 
 namespace stylet {
 namespace fs = std::filesystem;
@@ -13,67 +18,81 @@ using namespace results;
 
 namespace {
 
-struct NotARun : std::runtime_error {
+struct Changed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 void demand(bool condition, const char* what) {
-  if (!condition) throw NotARun(what);
+  if (!condition) throw Changed(what);
 }
 
-TetMesh read_mesh(hid_t file) {
-  const h5::Handle group = h5::open_group(file, "mesh");
-  const h5::Handle nodes = h5::dataset(group, "nodes_mm"), tets = h5::dataset(group, "tets"),
-                   region = h5::dataset(group, "tet_region");
-  const auto node_shape = h5::extents(nodes), tet_shape = h5::extents(tets);
-  demand(node_shape.size() == 2 && node_shape[1] == 3, "/mesh/nodes_mm must be (n, 3)");
-  demand(tet_shape.size() == 2 && tet_shape[1] == 4, "/mesh/tets must be (m, 4)");
-  demand(h5::extents(region) == std::vector<hsize_t>{tet_shape[0]}, "/mesh/tet_region must be (m)");
-  TetMesh mesh;
-  mesh.nodes.resize(node_shape[0]);
-  mesh.tets.resize(tet_shape[0]);
-  mesh.tet_region.resize(tet_shape[0]);
-  h5::read_rows(nodes, H5T_NATIVE_DOUBLE, 0, node_shape[0], mesh.nodes.data());
-  h5::read_rows(tets, H5T_NATIVE_INT32, 0, tet_shape[0], mesh.tets.data());
-  h5::read_rows(region, H5T_NATIVE_INT, 0, tet_shape[0], mesh.tet_region.data());
-  mesh.regions = h5::read_texts(group, "regions");
-  return mesh;
+/// How many rows there are: those before the first that has not reached the disk whole. Throws Changed where a whole
+/// one comes after it, or where the writer has said that there are more.
+/// @param whole whether row k is
+std::size_t rows_of(std::size_t count, const std::function<bool(std::size_t)>& whole, std::optional<std::int64_t> said,
+                    const char* what) {
+  std::size_t rows = 0;
+  while (rows < count && whole(rows)) ++rows;
+  for (std::size_t k = rows; k < count; ++k) demand(!whole(k), what);
+  demand(!said || *said == static_cast<std::int64_t>(rows), what);
+  return rows;
 }
 
-std::vector<double> read_numbers(hid_t file, const char* name, std::size_t count) {
-  auto values = h5::read_double_attribute(file, name);
-  if (values.size() != count) throw NotARun(std::string("attribute ") + name + " has the wrong size");
-  return values;
+/// A frame's parts among those of all frames; all empty where the row points outside.
+struct FrameParts {
+  std::span<const float> displacement;
+  std::span<const Vec3> needle;
+  std::span<const ContactRow> contacts;
+  bool inside = false;
+};
+
+FrameParts parts_of(const StoredRun& run, std::size_t frame) {
+  const auto inside = [](std::int64_t first, std::int64_t count, std::size_t size) {
+    return first >= 0 && count >= 0 && static_cast<std::uint64_t>(first) <= size &&
+           static_cast<std::uint64_t>(count) <= size - static_cast<std::uint64_t>(first);
+  };
+  const FrameRow& row = run.frames[frame];
+  const std::size_t numbers = 3 * run.mesh.nodes.size();
+  if (!inside(row.needle_first, row.needle_count, run.needle.size()) ||
+      !inside(row.contact_first, row.contact_count, run.contacts.size()))
+    return {};
+  const auto part = [](const auto& all, std::int64_t first, std::int64_t count) {
+    return std::span(all).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+  };
+  return {std::span(run.displacement).subspan(frame * numbers, numbers),
+          part(run.needle, row.needle_first, row.needle_count),
+          part(run.contacts, row.contact_first, row.contact_count), true};
 }
 
-RunInfo read_info(hid_t file) {
-  RunInfo info;
-  info.version = h5::read_text_attribute(file, "version");
-  info.scenario_name = h5::read_text_attribute(file, "scenario_name");
-  info.method = h5::read_text_attribute(file, "method");
-  info.needle_diameter_mm = read_numbers(file, "needle_diameter_mm", 1)[0];
-  info.needle_length_mm = read_numbers(file, "needle_length_mm", 1)[0];
-  info.entry_mm = Vec3(read_numbers(file, "entry_mm", 3).data());
-  info.direction = Vec3(read_numbers(file, "direction", 3).data());
-  info.target_regions = h5::read_int_attribute(file, "target_regions");
-  info.scenario_text = h5::read_text(file, "scenario");
-  info.supports = h5::read_texts(file, "supports");
-  info.warnings = h5::read_texts(file, "warnings");
+/// Decides which rows are whole: by their checks or, in files of earlier versions, by what was not written being NaN.
+class Wholeness {
+ public:
+  explicit Wholeness(const StoredRun& run) : run_(run), checks_(run.format_version >= kFirstWithChecks) {}
 
-  const h5::Handle set = h5::dataset(file, "parameters");
-  const h5::Handle type = parameter_row_type();
-  std::vector<ParameterText> rows(h5::extents(set).at(0));
-  h5::read_rows(set, type, 0, rows.size(), rows.data());
-  for (const ParameterText& row : rows) {
-    const auto text = [](const char* t) { return std::string(t == nullptr ? "" : t); };
-    info.parameters.push_back({text(row.name), text(row.value), text(row.unit), text(row.source)});
+  [[nodiscard]] bool step(std::size_t k) const {
+    const StepRow& row = run_.steps[k];
+    return checks_ ? row.check == check_of(row) : !std::isnan(row.time_s);
   }
-  if (!rows.empty()) {
-    const h5::Handle space(h5::check(H5Dget_space(set), "parameters"), H5Sclose);
-    H5Dvlen_reclaim(type, space, H5P_DEFAULT, rows.data());
+  [[nodiscard]] bool event(std::size_t k) const {
+    const EventRow& row = run_.events[k];
+    return checks_ ? row.check == check_of(row) : !std::isnan(row.time_s);
   }
-  return info;
-}
+  [[nodiscard]] bool frame(std::size_t k) const {
+    const FrameRow& row = run_.frames[k];
+    const FrameParts parts = parts_of(run_, k);
+    if (!parts.inside) return false;
+    if (checks_) return row.check == check_of(row, parts.displacement, parts.needle, parts.contacts);
+    return !std::isnan(row.time_s) &&
+           std::none_of(parts.displacement.begin(), parts.displacement.end(), [](float u) { return std::isnan(u); }) &&
+           std::none_of(parts.needle.begin(), parts.needle.end(), [](const Vec3& p) { return p.hasNaN(); }) &&
+           std::none_of(parts.contacts.begin(), parts.contacts.end(),
+                        [](const ContactRow& c) { return std::isnan(c.arc_length_mm); });
+  }
+
+ private:
+  const StoredRun& run_;
+  bool checks_;
+};
 
 /// Whether the steps at rest between two records take as long as there is between them.
 bool rest_fits(const StepRow& before, const StepRow& row) {
@@ -83,124 +102,105 @@ bool rest_fits(const StepRow& before, const StepRow& row) {
   return row.rest_steps > 0 && std::abs(static_cast<double>(row.rest_steps) * before.dt_s - rest_s) <= tolerance_s;
 }
 
-/// Steps up to the first that had not reached the disk.
-std::vector<StepRecord> read_steps(hid_t file) {
-  const h5::Handle set = h5::dataset(file, "steps");
-  std::vector<StepRow> rows(h5::extents(set).at(0));
-  h5::read_rows(set, step_row_type(), 0, rows.size(), rows.data());
-  std::vector<StepRecord> steps;
-  steps.reserve(rows.size());
-  for (const StepRow& row : rows) {
-    if (std::isnan(row.time_s)) break;
-    demand(row.tip_state >= 0 && row.tip_state <= static_cast<std::int8_t>(TipState::exited), "/steps: tip_state");
-    demand(rest_fits(steps.empty() ? StepRow() : rows[steps.size() - 1], row), "/steps: rest_steps");
-    steps.push_back(from_row(row));
-  }
-  return steps;
+Frame frame_of(const StoredRun& run, std::size_t k) {
+  const FrameRow& row = run.frames[k];
+  const FrameParts parts = parts_of(run, k);
+  Frame frame;
+  frame.time_s = row.time_s;
+  frame.base_depth_mm = row.base_depth_mm;
+  frame.label = get_text(row.label);
+  frame.displacement =
+      Eigen::Map<const Eigen::VectorXf>(parts.displacement.data(), static_cast<Eigen::Index>(parts.displacement.size()))
+          .cast<double>();
+  frame.needle.assign(parts.needle.begin(), parts.needle.end());
+  for (const ContactRow& contact : parts.contacts) frame.contacts.push_back(from_row(contact));
+  return frame;
 }
 
-/// Frames up to the first that had not reached the disk whole.
-std::vector<Frame> read_frames(hid_t file, hsize_t node_count) {
-  const h5::Handle group = h5::open_group(file, "frames");
-  const h5::Handle table = h5::dataset(group, "table"), displacement = h5::dataset(group, "displacement_mm"),
-                   needle = h5::dataset(group, "needle_mm"), contacts = h5::dataset(group, "contacts");
-  const auto shape = h5::extents(displacement);
-  demand(shape.size() == 3 && shape[1] == node_count && shape[2] == 3, "/frames/displacement_mm must be (f, n, 3)");
-  std::vector<FrameRow> rows(std::min(h5::extents(table).at(0), shape[0]));
-  h5::read_rows(table, frame_row_type(), 0, rows.size(), rows.data());
-  std::vector<Vec3> points(h5::extents(needle).at(0));
-  h5::read_rows(needle, H5T_NATIVE_DOUBLE, 0, points.size(), points.data());
-  std::vector<ContactRow> contact_rows(h5::extents(contacts).at(0));
-  h5::read_rows(contacts, contact_row_type(), 0, contact_rows.size(), contact_rows.data());
+/// What the writer said at the end, if it came to that.
+std::optional<EndRow> end_of(const StoredRun& run) {
+  if (run.end.empty()) return std::nullopt;
+  demand(run.end.size() == 1 && run.end[0].check == check_of(run.end[0]), "/end");
+  return run.end[0];
+}
 
-  const auto inside = [](std::int64_t first, std::int64_t count, std::size_t size) {
-    return first >= 0 && count >= 0 && static_cast<std::uint64_t>(first) <= size &&
-           static_cast<std::uint64_t>(count) <= size - static_cast<std::uint64_t>(first);
+/// The summary's text; empty where there is none, or where its writer was killed before it was whole.
+std::string summary_of(const StoredRun& run, const std::optional<EndRow>& end) {
+  if (run.format_version < kFirstWithChecks) return run.summary;
+  if (!end) return {};
+  demand(end->summary_bytes == static_cast<std::int64_t>(run.summary.size()) &&
+             (run.summary.empty() || end->summary_check == check_of(run.summary)),
+         "/summary_json");
+  return run.summary;
+}
+
+/// Throws Changed where something is not what was written.
+RunRecording checked(StoredRun run, const fs::path& path) {
+  if (run.format_version >= kFirstWithChecks)
+    demand(run.start_digest == start_digest(run.info, run.mesh), "what it says of scenario and mesh");
+  for (const int region : run.info.target_regions)
+    demand(region >= 0 && static_cast<std::size_t>(region) < run.mesh.regions.size(), "target_regions");
+  const std::optional<EndRow> end = end_of(run);
+  const auto said = [&](std::int64_t EndRow::*count) {
+    return end ? std::optional((*end).*count) : std::optional<std::int64_t>();
   };
-  std::vector<Frame> frames;
-  Eigen::VectorXf values(static_cast<Eigen::Index>(3 * node_count));
-  for (std::size_t f = 0; f < rows.size(); ++f) {
-    const FrameRow& row = rows[f];
-    if (std::isnan(row.time_s) || !inside(row.needle_first, row.needle_count, points.size()) ||
-        !inside(row.contact_first, row.contact_count, contact_rows.size())) {
-      break;
-    }
-    h5::read_rows(displacement, H5T_NATIVE_FLOAT, f, 1, values.data());
-    Frame frame;
-    frame.time_s = row.time_s;
-    frame.base_depth_mm = row.base_depth_mm;
-    frame.label = get_text(row.label);
-    frame.displacement = values.cast<double>();
-    frame.needle.assign(points.begin() + row.needle_first, points.begin() + row.needle_first + row.needle_count);
-    bool whole = !values.hasNaN();
-    for (const Vec3& p : frame.needle) whole = whole && !p.hasNaN();
-    for (std::int64_t c = row.contact_first; c < row.contact_first + row.contact_count; ++c) {
-      frame.contacts.push_back(from_row(contact_rows[static_cast<std::size_t>(c)]));
-      whole = whole && !std::isnan(frame.contacts.back().s);
-    }
-    if (!whole) break;
-    frames.push_back(std::move(frame));
+  const Wholeness whole(run);
+  RunRecording out;
+  const std::size_t steps = rows_of(
+      run.steps.size(), [&](std::size_t k) { return whole.step(k); }, said(&EndRow::steps), "/steps");
+  for (std::size_t k = 0; k < steps; ++k) {
+    const std::int8_t state = run.steps[k].tip_state;
+    demand(state >= 0 && state <= static_cast<std::int8_t>(TipState::exited), "/steps: tip_state");
+    demand(rest_fits(k == 0 ? StepRow() : run.steps[k - 1], run.steps[k]), "/steps: rest_steps");
+    out.steps.push_back(from_row(run.steps[k]));
   }
-  return frames;
+  const std::size_t frames = rows_of(
+      run.frames.size(), [&](std::size_t k) { return whole.frame(k); }, said(&EndRow::frames), "/frames");
+  for (std::size_t k = 0; k < frames; ++k) out.frames.push_back(frame_of(run, k));
+  const std::size_t events = rows_of(
+      run.events.size(), [&](std::size_t k) { return whole.event(k); }, said(&EndRow::events), "/events");
+  for (std::size_t k = 0; k < events; ++k) {
+    const std::int8_t kind = run.events[k].kind;
+    demand(kind >= 0 && kind <= static_cast<std::int8_t>(EventKind::grazed), "/events: kind");
+    out.events.push_back(from_row(run.events[k]));
+  }
+  if (const std::string summary = summary_of(run, end); !summary.empty()) {
+    if (auto parsed = parse_summary_json(summary, path.string()); parsed.ok()) out.summary = std::move(*parsed);
+  }
+  out.info = std::move(run.info);
+  out.mesh = std::move(run.mesh);
+  return out;
 }
 
-std::vector<Event> read_events(hid_t file) {
-  const h5::Handle set = h5::dataset(file, "events");
-  std::vector<EventRow> rows(h5::extents(set).at(0));
-  h5::read_rows(set, event_row_type(), 0, rows.size(), rows.data());
-  std::vector<Event> events;
-  for (const EventRow& row : rows) {
-    if (std::isnan(row.time_s)) break;  // had not reached the disk
-    demand(row.kind >= 0 && row.kind <= static_cast<std::int8_t>(EventKind::grazed), "/events: kind");
-    events.push_back(from_row(row));
-  }
-  return events;
-}
-
-std::string read_summary_text(hid_t file) {
-  const h5::Handle set = h5::dataset(file, "summary_json");
-  std::string text(h5::extents(set).at(0), '\0');
-  h5::read_rows(set, H5T_NATIVE_UINT8, 0, text.size(), text.data());
-  return text;
+/// Throws Changed as checked() does.
+Result<RunRecording> read_once(const fs::path& path) {
+  Result<StoredRun> stored = [&] {
+    const h5::LibraryTurn turn;  // no thread is in HDF5 when the child comes to be
+    return detail::guarded<StoredRun>(
+        path, [&] { return parse_run_file(path); }, kGiveARecording);
+  }();
+  if (!stored) return stored.error();
+  if (auto sound = check_mesh(stored->mesh, path.string() + ", /mesh"); !sound) return sound.error();
+  return checked(std::move(*stored), path);
 }
 
 }  // namespace
 
 Result<RunRecording> read_recording(const fs::path& path) {
-  const auto refuse = [&](const std::string& what) {
-    return input_error(path.string(), what, "Give a run.h5 that `stylet insert` wrote.");
-  };
-  if (Result<> readable = detail::check_input_file(path); !readable) return refuse(readable.error().what);
-  const h5::LibraryTurn turn;
-  try {
-    const h5::Handle file = h5::open_growing_file(path.c_str());
-    demand(h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kRunFileFormat,
-           "an HDF5 file, but not a recorded run");
-    const auto version = h5::read_int_attribute(file, "format_version");
-    demand(version.size() == 1 && version[0] <= kRunFileVersion, "written by a newer version of stylet");
-    RunRecording run;
-    run.mesh = read_mesh(file);
-    if (auto checked = check_mesh(run.mesh, path.string() + ", /mesh"); !checked) return checked.error();
-    run.info = read_info(file);
-    for (const int region : run.info.target_regions) {
-      demand(region >= 0 && static_cast<std::size_t>(region) < run.mesh.regions.size(), "target_regions out of range");
+  if (Result<> readable = detail::check_input_file(path); !readable)
+    return input_error(path.string(), readable.error().what, kGiveARecording);
+  // A file that is being written may be caught between two of its pages.
+  constexpr int kAttempts = 3;
+  std::string changed;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    try {
+      return read_once(path);
+    } catch (const Changed& e) {
+      changed = e.what();
     }
-    run.steps = read_steps(file);
-    run.frames = read_frames(file, run.mesh.nodes.size());
-    run.events = read_events(file);
-    const std::string summary = read_summary_text(file);
-    if (!summary.empty()) {
-      // A writer killed between two flushes of its last words leaves a summary that is not whole: no summary.
-      if (auto parsed = parse_summary_json(summary, path.string()); parsed.ok()) run.summary = std::move(*parsed);
-    }
-    return run;
-  } catch (const h5::Failure& e) {
-    return refuse(e.what());
-  } catch (const NotARun& e) {
-    return refuse(e.what());
-  } catch (const std::exception& e) {
-    return refuse(std::string("damaged: ") + e.what());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  return input_error(path.string(), "damaged: this is not what was written: " + changed, kGiveARecording);
 }
 
 }  // namespace stylet

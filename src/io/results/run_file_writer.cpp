@@ -6,6 +6,9 @@
 #include "run_file_format.hpp"
 #include "summary_json.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <system_error>
 
@@ -34,12 +37,9 @@ void write_info(hid_t file, const RunInfo& info) {
   h5::write_text(file, "scenario", info.scenario_text);
   h5::write_texts(file, "supports", info.supports);
   h5::write_texts(file, "warnings", info.warnings);
-  std::vector<ParameterText> rows;
-  for (const ParameterRow& p : info.parameters) {
-    rows.push_back({p.name.c_str(), p.value.c_str(), p.unit.c_str(), p.source.c_str()});
-  }
-  const hsize_t count = rows.size();
-  h5::write_array(file, "parameters", h5::Handle(parameter_row_type()), {&count, 1}, rows.data());
+  std::vector<std::vector<std::string>> rows;
+  for (const ParameterRow& p : info.parameters) rows.push_back({p.name, p.value, p.unit, p.source});
+  h5::write_text_table(file, "parameters", kParameterColumns, rows);
 }
 
 }  // namespace
@@ -55,26 +55,28 @@ Result<> RunFileWriter::guarded(Action action) const {
   }
 }
 
-Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh) {
+Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh,
+                                            const std::function<Result<>()>& make_way) {
   // Whoever still reads an earlier file keeps it; truncating it in place would pull it away under the reader.
-  std::error_code code;
-  fs::remove(path, code);
+  const fs::path hidden =
+      path.parent_path() / fmt::format(".{}.{}.part{}", path.stem().string(), ::getpid(), path.extension().string());
   RunFileWriter w(path);
-  const Result<> done = w.guarded([&] {
-    const h5::Handle access(h5::check(H5Pcreate(H5P_FILE_ACCESS), "create file"), H5Pclose);
-    h5::check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "create file");
-    w.file_ = {h5::check(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access), "create file"), H5Fclose};
+  Result<> done = w.guarded([&] {
+    w.file_ = h5::create_file(hidden.c_str());
     h5::write_mesh(w.file_, mesh);
     write_info(w.file_, info);
+    h5::write_attribute(w.file_, "start_sha256", start_digest(info, mesh));
 
     w.step_type_ = step_row_type();
     w.frame_type_ = frame_row_type();
     w.contact_type_ = contact_row_type();
     w.event_type_ = event_row_type();
+    w.end_type_ = end_row_type();
     const StepRow no_step;
     const FrameRow no_frame;
     const ContactRow no_contact;
     const EventRow no_event;
+    const EndRow no_end;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::array<hsize_t, 2> per_node{mesh.nodes.size(), 3};
     const std::array<hsize_t, 1> point{3};
@@ -86,21 +88,28 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
     w.contacts_ = h5::growing_dataset(frames, "contacts", w.contact_type_, {}, kPointChunk, &no_contact);
     w.events_ = h5::growing_dataset(w.file_, "events", w.event_type_, {}, kTableChunk, &no_event);
     w.summary_ = h5::growing_dataset(w.file_, "summary_json", H5T_NATIVE_UINT8, {}, kTextChunk, nullptr);
+    w.end_ = h5::growing_dataset(w.file_, "end", w.end_type_, {}, 1, &no_end);
     h5::check(H5Fstart_swmr_write(w.file_), "start recording");
   });
-  if (!done) {
-    w.file_.reset();
-    fs::remove(path, code);
-    return done.error();
-  }
-  return w;
+  if (done && make_way) done = make_way();
+  std::error_code code;
+  if (done) fs::rename(hidden, path, code);
+  if (code) done = write_error(path, code.message());
+  if (done) return w;
+  const h5::LibraryTurn turn;
+  w = RunFileWriter(path);
+  fs::remove(hidden, code);
+  return done.error();
 }
 
 Result<> RunFileWriter::append_steps(std::span<const StepRecord> steps) {
   std::vector<StepRow> rows;
   rows.reserve(steps.size());
   std::transform(steps.begin(), steps.end(), std::back_inserter(rows), [](const StepRecord& s) { return to_row(s); });
-  return guarded([&] { h5::append_rows(steps_, step_type_, rows.size(), rows.data()); });
+  return guarded([&] {
+    h5::append_rows(steps_, step_type_, rows.size(), rows.data());
+    written_.steps += static_cast<std::int64_t>(rows.size());
+  });
 }
 
 Result<> RunFileWriter::append_frame(const StoredFrame& stored) {
@@ -115,6 +124,7 @@ Result<> RunFileWriter::append_frame(const StoredFrame& stored) {
   row.needle_count = static_cast<std::int64_t>(frame.needle.size());
   row.contact_first = contact_count_;
   row.contact_count = static_cast<std::int64_t>(contacts.size());
+  row.check = check_of(row, stored.displacement, frame.needle, contacts);
   return guarded([&] {
     h5::append_rows(displacement_, H5T_NATIVE_FLOAT, 1, stored.displacement.data());
     h5::append_rows(needle_, H5T_NATIVE_DOUBLE, frame.needle.size(), frame.needle.data());
@@ -122,6 +132,7 @@ Result<> RunFileWriter::append_frame(const StoredFrame& stored) {
     h5::append_rows(frame_table_, frame_type_, 1, &row);
     needle_points_ += row.needle_count;
     contact_count_ += row.contact_count;
+    ++written_.frames;
   });
 }
 
@@ -130,15 +141,19 @@ Result<> RunFileWriter::append_events(std::span<const Event> events) {
   for (const Event& e : events) rows.push_back(to_row(e));
   return guarded([&] {
     h5::append_rows(events_, event_type_, rows.size(), rows.data());
-    event_count_ += rows.size();
+    written_.events += static_cast<std::int64_t>(rows.size());
   });
 }
 
 Result<> RunFileWriter::append_summary(const Summary& summary) {
-  const std::size_t there = std::min(event_count_, summary.events.size());
+  const std::size_t there = std::min(static_cast<std::size_t>(written_.events), summary.events.size());
   if (auto done = append_events(std::span(summary.events).subspan(there)); !done) return done;
   const std::string text = summary_json(summary);
-  return guarded([&] { h5::append_rows(summary_, H5T_NATIVE_UINT8, text.size(), text.data()); });
+  return guarded([&] {
+    h5::append_rows(summary_, H5T_NATIVE_UINT8, text.size(), text.data());
+    written_.summary_bytes = static_cast<std::int64_t>(text.size());
+    written_.summary_check = check_of(text);
+  });
 }
 
 Result<> RunFileWriter::flush() {
@@ -146,14 +161,21 @@ Result<> RunFileWriter::flush() {
 }
 
 Result<> RunFileWriter::close() {
-  return guarded([&] {
+  Result<> ended = guarded([&] {
+    h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush");  // the end comes after all that it speaks of
+    written_.check = check_of(written_);
+    h5::append_rows(end_, end_type_, 1, &written_);
+  });
+  Result<> closed = guarded([&] {
     bool good = true;
-    for (h5::Handle* data : {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &summary_}) {
+    for (h5::Handle* data :
+         {&steps_, &frame_table_, &displacement_, &needle_, &contacts_, &events_, &summary_, &end_}) {
       good = data->reset() && good;
     }
-    for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_}) type->reset();
+    for (h5::Handle* type : {&step_type_, &frame_type_, &contact_type_, &event_type_, &end_type_}) type->reset();
     if (!file_.reset() || !good) h5::fail("close");
   });
+  return ended ? closed : ended;
 }
 
 }  // namespace stylet::results

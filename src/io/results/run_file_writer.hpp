@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "h5.hpp"
+#include "run_file_format.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <span>
 
 namespace stylet::results {
@@ -22,7 +23,10 @@ struct StoredFrame {
 /// died at any moment. One thread at a time.
 class RunFileWriter {
  public:
-  static Result<RunFileWriter> create(const std::filesystem::path& path, const RunInfo& info, const TetMesh& mesh);
+  /// The file takes its place when all that is known before the run is in it; until then an earlier one stays there.
+  /// @param make_way called right before; where it fails, everything stays as it was
+  static Result<RunFileWriter> create(const std::filesystem::path& path, const RunInfo& info, const TetMesh& mesh,
+                                      const std::function<Result<>()>& make_way = {});
 
   Result<> append_steps(std::span<const StepRecord> steps);
   Result<> append_frame(const StoredFrame& stored);
@@ -30,7 +34,7 @@ class RunFileWriter {
   Result<> append_summary(
       const Summary& summary);  ///< and those of its events that are not there yet; once, at the end
   Result<> flush();             ///< everything appended so far reaches the file
-  Result<> close();
+  Result<> close();             ///< says in the file how much there is
 
  private:
   explicit RunFileWriter(std::filesystem::path path) : path_(std::move(path)) {}
@@ -40,11 +44,11 @@ class RunFileWriter {
 
   std::filesystem::path path_;
   h5::Handle file_;
-  h5::Handle step_type_, frame_type_, contact_type_, event_type_;
-  h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, summary_;
+  h5::Handle step_type_, frame_type_, contact_type_, event_type_, end_type_;
+  h5::Handle steps_, frame_table_, displacement_, needle_, contacts_, events_, summary_, end_;
   std::int64_t needle_points_ = 0;
   std::int64_t contact_count_ = 0;
-  std::size_t event_count_ = 0;
+  EndRow written_;
 };
 
 }  // namespace stylet::results

@@ -3,6 +3,7 @@
 #include "box.hpp"
 #include "io/formats/files.hpp"
 
+#include "model/build_id.hpp"
 #include "stylet/io/model_cache.hpp"
 #include "stylet/io/model_file.hpp"
 
@@ -63,6 +64,18 @@ TEST(ModelCache, AKeyFollowsFromEverythingAModelIsMadeOf) {
   EXPECT_EQ(key(s), first);
   write(motion, "time_s \n");
   EXPECT_NE(key(s), first);
+}
+
+TEST(ModelCache, AKeyFollowsFromTheBuildIdOfTheCodeAndNotFromTheProgramsFile) {
+  const std::string id = detail::build_id();
+  EXPECT_EQ(id.size(), 40u);  // of SHA-1
+  EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
+  // The bytes of the note lie in the program's file: that is where the linker put them.
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  const std::string program{std::istreambuf_iterator<char>(file), {}};
+  std::string bytes;
+  for (std::size_t k = 0; k < id.size(); k += 2) bytes += static_cast<char>(std::stoi(id.substr(k, 2), nullptr, 16));
+  EXPECT_NE(program.find(bytes), std::string::npos);
 }
 
 TEST(ModelCache, AKeyOfAFolderKnowsItsFilesByNameAndContent) {

@@ -23,10 +23,13 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <random>
+#include <thread>
 
 using namespace stylet;
 using namespace stylet::testing;
@@ -227,6 +230,76 @@ TEST(ResultFolder, an_unfinished_run_leaves_only_a_readable_recording) {
   ASSERT_TRUE(back.ok());
   EXPECT_EQ(back->steps.size(), run.steps.size());
   EXPECT_FALSE(back->summary.has_value());
+}
+
+TEST(ResultFolder, a_run_killed_at_any_moment_has_nothing_of_an_earlier_one_beside_its_recording) {
+  take_drivers_away();
+  const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.02, .frames = 4});
+  auto later = run;
+  later.info.scenario_name = later.summary.scenario = "later";
+  for (StepRecord& step : later.steps) step.force_axial_N += 1.0;
+  std::mt19937 random(20051026);
+  std::uniform_real_distribution<double> moment(0.0, 0.25);  // such a run takes a fifth of a second
+  int killed = 0;
+  int begun = 0;
+  for (int k = 0; k < 25; ++k) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_run(folder.path(), run).ok());
+    const std::string forces = file_text(folder.path() / "forces.csv");
+    const pid_t child = fork();
+    if (child == 0) _exit(write_run(folder.path(), later).ok() ? 0 : 1);
+    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    killed += WIFSIGNALED(status) ? 1 : 0;
+    const auto recording = read_recording(folder.path() / "run.h5");
+    ASSERT_TRUE(recording.ok()) << recording.error().message();
+    if (recording->info.scenario_name != "later") {  // killed before the later one took the folder over
+      EXPECT_TRUE(recording->summary.has_value());
+      continue;
+    }
+    ++begun;
+    for (const auto& name : names_in(folder.path())) {
+      if (name.starts_with(".")) continue;
+      const std::string text = file_text(folder.path() / name);
+      if (name == "forces.csv") {
+        EXPECT_EQ(text, results::forces_csv(later.steps));
+      } else if (name == "summary.json" || name == "report.html") {
+        EXPECT_NE(text.find("later"), std::string::npos) << name;
+      }
+    }
+  }
+  EXPECT_GT(killed, 5);
+  EXPECT_GT(begun, 5);
+}
+
+TEST(ResultFolder, what_an_earlier_run_left_goes_before_the_first_step) {
+  take_drivers_away();
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_run(folder.path(), run).ok());
+  fs::create_directories(folder.path() / "pictures");
+  std::ofstream(folder.path() / "pictures" / "view_deepest.png") << "of the earlier run";
+  std::ofstream(folder.path() / "notes.txt") << "the user's own";
+  const auto writer = ResultsWriter::open(folder.path(), run.info, run.mesh);
+  ASSERT_TRUE(writer.ok());
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"notes.txt", "pictures", "run.h5"}));
+  EXPECT_TRUE(names_in(folder.path() / "pictures").empty());
+}
+
+TEST(ResultFolder, an_earlier_file_that_cannot_be_removed_is_named_and_everything_stays) {
+  take_drivers_away();
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "run.h5") << "an earlier run";
+  fs::create_directories(folder.path() / "summary.json" / "in the way");
+  const auto writer = ResultsWriter::open(folder.path(), run.info, run.mesh);
+  ASSERT_FALSE(writer.ok());
+  EXPECT_EQ(writer.error().kind, ErrorKind::input);
+  EXPECT_NE(writer.error().where.find("summary.json"), std::string::npos);
+  EXPECT_EQ(file_text(folder.path() / "run.h5"), "an earlier run");
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"run.h5", "summary.json"}));
 }
 
 TEST(ResultFolder, a_full_disk_fails_the_run_and_leaves_no_half_file) {

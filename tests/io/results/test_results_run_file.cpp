@@ -3,6 +3,7 @@
 #include "results/recorder.hpp"
 #include "results/run_file_format.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "summary_json.hpp"
 #include "synthetic_run.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,9 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <thread>
 
@@ -326,6 +329,115 @@ TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
   const std::string bytes = stylet::testing::file_text(whole);
   std::ofstream(half, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
   ASSERT_FALSE(read_recording(half).ok());
+}
+
+namespace {
+
+/// A finished recording, or one whose writer had not closed it.
+std::string bytes_of(const stylet::testing::SyntheticRun& run, bool finished) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  auto writer = RunFileWriter::create(path, run.info, run.mesh);
+  bool good = writer.ok() && writer->append_steps(run.steps).ok() && writer->append_events(run.summary.events).ok();
+  for (const Frame& frame : run.frames) good = good && writer->append_frame(stored(frame)).ok();
+  good =
+      good && writer->flush().ok() && (!finished || (writer->append_summary(run.summary).ok() && writer->close().ok()));
+  EXPECT_TRUE(good);
+  return stylet::testing::file_text(path);
+}
+
+void expect_same_run(const RunRecording& a, const RunRecording& b) {
+  EXPECT_EQ(start_digest(a.info, a.mesh), start_digest(b.info, b.mesh));
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  for (std::size_t k = 0; k < a.steps.size(); ++k) expect_same_step(a.steps[k], b.steps[k]);
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (std::size_t k = 0; k < a.frames.size(); ++k) expect_same_frame(a.frames[k], b.frames[k]);
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t k = 0; k < a.events.size(); ++k)
+    EXPECT_EQ(check_of(to_row(a.events[k])), check_of(to_row(b.events[k])));
+  ASSERT_EQ(a.summary.has_value(), b.summary.has_value());
+  if (a.summary) {
+    EXPECT_EQ(summary_json(*a.summary), summary_json(*b.summary));
+  }
+}
+
+/// How many flips to try: STYLET_FLIPS, else a sample that takes seconds.
+int flips() {
+  const char* wanted = std::getenv("STYLET_FLIPS");
+  return wanted == nullptr ? 60 : std::atoi(wanted);
+}
+
+}  // namespace
+
+TEST(RunFile, with_any_bit_changed_is_refused_or_reads_as_it_was_written) {
+  const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.05, .frames = 4});
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "flipped.h5";
+  std::mt19937 random(20051026);
+  for (const bool finished : {true, false}) {
+    const std::string whole = bytes_of(run, finished);
+    std::ofstream(path, std::ios::binary) << whole;
+    const auto expected = read_recording(path);
+    ASSERT_TRUE(expected.ok()) << expected.error().message();
+    EXPECT_EQ(expected->steps.size(), run.steps.size());
+    EXPECT_EQ(expected->summary.has_value(), finished);
+    int refused = 0;
+    for (int k = 0; k < flips(); ++k) {
+      const std::size_t at = random() % whole.size();
+      std::string bytes = whole;
+      bytes[at] ^= static_cast<char>(1 << (random() % 8));
+      std::ofstream(path, std::ios::binary) << bytes;
+      const auto back = read_recording(path);
+      SCOPED_TRACE("byte " + std::to_string(at) + (finished ? " of a finished one" : " of an unfinished one"));
+      if (back) {
+        RunRecording same = *expected;
+        if (!finished) {  // it ends where it is whole up to
+          if (back->steps.size() + 1 == same.steps.size()) same.steps.pop_back();
+          if (back->frames.size() + 1 == same.frames.size()) same.frames.pop_back();
+          if (back->events.size() + 1 == same.events.size()) same.events.pop_back();
+        }
+        expect_same_run(same, *back);
+        continue;
+      }
+      ++refused;
+      EXPECT_EQ(back.error().kind, ErrorKind::input);
+      EXPECT_NE(back.error().message().find("flipped.h5"), std::string::npos);
+      EXPECT_FALSE(back.error().cure.empty());
+    }
+    std::cout << (finished ? "finished: " : "unfinished: ") << refused << " of " << flips() << " refused\n";
+    EXPECT_GT(refused, flips() / 10);
+  }
+}
+
+TEST(RunFile, of_earlier_versions_is_read_without_checks) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "run.h5";
+  std::ofstream(path, std::ios::binary) << bytes_of(run, true);
+  {  // its texts had a length of their own each
+    const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
+    h5::check(H5Adelete(file, "format_version"), "delete");
+    h5::write_attribute(file, "format_version", std::array{2});
+    const h5::Handle text(h5::check(H5Tcopy(H5T_C_S1), "type"), H5Tclose);
+    h5::check(H5Tset_size(text, H5T_VARIABLE), "type");
+    const h5::Handle one(h5::check(H5Screate(H5S_SCALAR), "space"), H5Sclose);
+    const char* value = "an earlier name";
+    h5::check(H5Adelete(file, "scenario_name"), "delete");
+    const h5::Handle name(H5Acreate2(file, "scenario_name", text, one, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    h5::check(H5Awrite(name, text, &value), "write");
+    h5::check(H5Ldelete(file, "supports", H5P_DEFAULT), "delete");
+    const std::array<const char*, 2> supports{"held here", "and there"};
+    const hsize_t count = supports.size();
+    h5::write_array(file, "supports", text, {&count, 1}, supports.data());
+    h5::check(H5Ldelete(file, "end", H5P_DEFAULT), "delete");
+  }
+  const auto back = read_recording(path);
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  EXPECT_EQ(back->info.scenario_name, "an earlier name");
+  EXPECT_EQ(back->info.supports, (std::vector<std::string>{"held here", "and there"}));
+  EXPECT_EQ(back->steps.size(), run.steps.size());
+  EXPECT_EQ(back->frames.size(), run.frames.size());
+  EXPECT_TRUE(back->summary.has_value());
 }
 
 TEST(RunFile, a_damaged_head_is_refused_whether_or_not_the_run_has_ended) {

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "detail/wire.hpp"
+#include "run_file_format.hpp"
+#include "stylet/core/result.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace stylet::results {
+
+/// What to do about a file that is no recording, or no longer one.
+inline constexpr const char* kGiveARecording =
+    "Give a run.h5 that `stylet insert` wrote. Of a damaged one take another copy, or run again what it recorded.";
+
+/// What a run.h5 holds, as it lies there and not yet checked.
+struct StoredRun {
+  int format_version = 0;
+  std::string start_digest;  ///< empty in files without checks
+  RunInfo info;
+  TetMesh mesh;
+  std::vector<StepRow> steps;
+  std::vector<FrameRow> frames;
+  std::vector<float> displacement;  ///< [mm] (frames × 3n)
+  std::vector<Vec3> needle;
+  std::vector<ContactRow> contacts;
+  std::vector<EventRow> events;
+  std::string summary;
+  std::vector<EndRow> end;  ///< empty while the run goes on and when it was killed
+};
+
+/// Reads all of a run.h5. To be called in a child process (detail/guard.hpp) while the caller holds an h5::LibraryTurn:
+/// HDF5 1.10 crashes on files that are damaged in the wrong place.
+Result<StoredRun> parse_run_file(const std::filesystem::path& path);
+
+// From the child to its parent.
+void fields(auto& wire, StoredRun& r) {
+  wire(r.format_version, r.start_digest, r.info, r.mesh, r.steps, r.frames, r.displacement, r.needle, r.contacts,
+       r.events, r.summary, r.end);
+}
+
+}  // namespace stylet::results
+
+namespace stylet {
+
+void fields(auto& wire, ParameterRow& p) { wire(p.name, p.value, p.unit, p.source); }
+void fields(auto& wire, RunInfo& i) {
+  wire(i.version, i.scenario_name, i.scenario_text, i.parameters, i.supports, i.warnings, i.method,
+       i.needle_diameter_mm, i.needle_length_mm, i.target_regions, i.entry_mm, i.direction);
+}
+
+}  // namespace stylet
+
+namespace stylet::detail {
+
+template <>
+inline constexpr bool is_plain<results::StepRow> = true;
+template <>
+inline constexpr bool is_plain<results::FrameRow> = true;
+template <>
+inline constexpr bool is_plain<results::ContactRow> = true;
+template <>
+inline constexpr bool is_plain<results::EventRow> = true;
+template <>
+inline constexpr bool is_plain<results::EndRow> = true;
+
+}  // namespace stylet::detail
