@@ -40,6 +40,7 @@ bool Insertion::Parts::lay_mark(double xi, const Vec3& x, const MaterialPoint& a
   }
   track.marks.push_back({xi, x, at, region_of(at.tet), added.point});
   point_at[static_cast<std::size_t>(added.point)] = at;
+  point_along[static_cast<std::size_t>(added.point)] = travel.normalized();
   return true;
 }
 
@@ -153,6 +154,7 @@ void Insertion::Parts::wake_and_drop(StepReport& report) {
       }
       mark.point = added.point;
       point_at[static_cast<std::size_t>(added.point)] = mark.at;
+      point_along[static_cast<std::size_t>(added.point)] = t;
     }
     const double ahead = t.dot(mark.x + tissue_displacement(mark.point) - tip_now);
     if (ahead >= 0.0) break;

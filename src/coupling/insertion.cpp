@@ -80,6 +80,7 @@ Insertion::Parts::Parts(InsertionTissue tissue_, std::unique_ptr<Needle> needle_
   kept.grips.resize(capacity);
   forces = MatX::Zero(3, most_points(settings) + 1);
   point_at.resize(static_cast<std::size_t>(most_points(settings)) + 1);
+  point_along.resize(point_at.size(), Vec3::Zero());
   nodes_at_start = tissue.store->stored_nodes();
   capacities.contacts.room = settings.capacity;
   capacities.spare_nodes.room = settings.spare_nodes;
@@ -456,7 +457,8 @@ std::size_t Insertion::tissue_forces(std::span<TissueForce> out) const {
   for (int point = 0; point < p.compliance.points(); ++point) {
     const Vec3 force = p.forces.col(point);
     if (force.isZero(0.0)) continue;
-    if (count < out.size()) out[count] = {p.point_at[static_cast<std::size_t>(point)], force};
+    const auto at = static_cast<std::size_t>(point);
+    if (count < out.size()) out[count] = {p.point_at[at], force, p.point_along[at]};
     ++count;
   }
   return count;

@@ -169,6 +169,7 @@ struct Insertion::Parts {
   Vec3 hand_start = Vec3::Zero();               ///< [N] of the hand at the start of the sub-step
   MatX forces;                                  ///< (3 × points) on the tissue
   std::vector<MaterialPoint> point_at;          ///< (points) where they are; the tip's is where it was held last
+  std::vector<Vec3> point_along;                ///< (points) direction of their pieces of shaft; zero for the tip
 
   // gathering.cpp: where contacts and forces are, and the equations among them.
   [[nodiscard]] double arc_of(int load) const;

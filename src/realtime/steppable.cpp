@@ -16,7 +16,7 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   const auto count = std::min(out.size(), static_cast<std::size_t>(snapshot.force_count));
   for (std::size_t k = 0; k < count; ++k) {
     const ForceSnapshot& f = snapshot.forces[k];
-    out[k] = {{f.tet, Vec4(f.weights.data())}, vec3(f.force)};
+    out[k] = {{f.tet, Vec4(f.weights.data())}, vec3(f.force), vec3(f.along)};
   }
   return out.first(count);
 }
@@ -73,6 +73,7 @@ Pose SimulationSteppable::base() const noexcept { return simulation_.insertion()
 StepOutcome SimulationSteppable::step(const Pose& base, double dt) noexcept {
   simulation_.step(base, dt);
   const StepReport& report = simulation_.report();
+  regions_.follow(simulation_.insertion(), report);
   return {{report.hand_force, report.hand_torque}, (report.flags & kDistrusted) == 0};
 }
 
@@ -101,10 +102,13 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   const std::size_t kept = std::min(forces, Snapshot::kForces);
   for (std::size_t k = 0; k < kept; ++k) {
     const TissueForce& f = forces_[k];
-    out.forces[k] = {f.at.tet, {f.at.weights[0], f.at.weights[1], f.at.weights[2], f.at.weights[3]}, plain(f.force)};
+    out.forces[k] = {
+        f.at.tet, {f.at.weights[0], f.at.weights[1], f.at.weights[2], f.at.weights[3]}, plain(f.force), plain(f.along)};
   }
   out.force_count = static_cast<int>(kept);
   out.forces_left_out = static_cast<int>(forces - kept);
+  out.region_count = static_cast<int>(
+      regions_.now(simulation_.insertion(), report.tip, std::span(contacts_).first(found), out.regions));
   out.sticking = record.sticking;
   out.iterations = record.iterations;
   out.flags = report.flags;

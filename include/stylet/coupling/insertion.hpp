@@ -91,6 +91,7 @@ struct ContactState {
 struct TissueForce {
   MaterialPoint at;
   Vec3 force = Vec3::Zero();  ///< [N] LPS
+  Vec3 along = Vec3::Zero();  ///< unit vector LPS, of the piece of shaft it is spread over; zero: the tip's, at a point
 };
 
 /// What the tissue contributes; everything outlives the Insertion.

@@ -36,6 +36,7 @@ struct ForceSnapshot {
   std::int32_t tet = -1;            ///< element of the mesh
   std::array<double, 4> weights{};  ///< barycentric, of the element's corners
   Triple force{};                   ///< [N] LPS
+  Triple along{};                   ///< TissueForce::along
 };
 
 /// Everything a display needs of one step, of fixed size: plain data.
@@ -43,6 +44,7 @@ struct Snapshot {
   static constexpr std::size_t kCentreline = 65;
   static constexpr std::size_t kContacts = 128;
   static constexpr std::size_t kForces = 256;  ///< viscous tissue remembers points left behind
+  static constexpr std::size_t kRegions = 16;
 
   double time_s = 0.0;         ///< simulated, since the runner was made
   double clock_s = 0.0;        ///< on the runner's clock, which starts when it is made: when the step was over
@@ -58,7 +60,9 @@ struct Snapshot {
   std::array<ContactSnapshot, kContacts> contacts{};  ///< tip first when it touches
   int force_count = 0;                                ///< used entries of `forces`
   int forces_left_out = 0;                            ///< there was no room for
-  std::array<ForceSnapshot, kForces> forces{};  ///< all that displaces the tissue: with them a DisplayField has it
+  std::array<ForceSnapshot, kForces> forces{};   ///< all that displaces the tissue: with them a DisplayField has it
+  int region_count = 0;                          ///< used entries of `regions`
+  std::array<std::int16_t, kRegions> regions{};  ///< of the mesh, that the needle is in; the tip's first
   int sticking = 0;
   int iterations = 0;
   unsigned flags = 0;    ///< StepReport::Flag

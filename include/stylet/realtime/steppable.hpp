@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/realtime/compliance_worker.hpp"
+#include "stylet/realtime/needle_regions.hpp"
 #include "stylet/realtime/snapshot.hpp"
 #include "stylet/sim/simulation.hpp"
 
@@ -59,6 +60,7 @@ class SimulationSteppable final : public Steppable {
   std::unique_ptr<ComplianceWorker> worker_;
   std::vector<ContactState> contacts_;  ///< room
   std::vector<TissueForce> forces_;     ///< room
+  NeedleRegions regions_;
 };
 
 }  // namespace stylet

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "stylet/coupling/contact_compliance.hpp"
-#include "stylet/coupling/near_field/mesh_kernel.hpp"
-#include "stylet/coupling/near_field/needle_kernel.hpp"
+#include "stylet/coupling/near_field/near_place.hpp"
 #include "stylet/coupling/tip_element.hpp"
 #include "stylet/fem/tissue.hpp"
 
@@ -47,25 +46,8 @@ class NearFieldCompliance final : public ContactCompliance {
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
 
  private:
-  /// What the kernels need to know of a point.
-  struct Place {
-    Shape shape;
-    Segment piece;
-    double epsilon = 0.0;  ///< [mm] of the needle there
-    int medium = 0;
-    double young_MPa = 0.0;
-    NearSurface skin;
-    double edge = 0.0;   ///< [mm] size of the elements there
-    double moves = 1.0;  ///< 0…1: weight of the element's nodes that are not held
-  };
-  [[nodiscard]] Place place_at(const MaterialPoint& at, const Vec3& x) const;
-  [[nodiscard]] bool neighbours(const Shape& at, const Shape& on) const;
-  /// g(at, on) for E = 1 MPa in a medium.
-  [[nodiscard]] Mat3 of_mesh(const Shape& at, const Shape& on, int medium) const;
   [[nodiscard]] Mat3 of_mesh_at_tip(int point, int medium);
-  template <class OfMesh>
-  [[nodiscard]] Mat3 correction(const Place& at, const Place& on, const OfMesh& g) const;
-  [[nodiscard]] Vec3 near_field(Place here, const Eigen::Ref<const MatX>& forces) const;
+  [[nodiscard]] Vec3 near_field(const NearPlace& here, const Eigen::Ref<const MatX>& forces) const;
   template <class OfMesh>
   void write_block(int point, int other, const OfMesh& g);
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
@@ -77,10 +59,10 @@ class NearFieldCompliance final : public ContactCompliance {
   std::shared_ptr<const Tissue> tissue_;
   std::shared_ptr<const MeshKernel> kernel_;
   NeedleKernel needle_;
-  double press_N_ = 0.0;       ///< what the surface the needle went in by took before it broke …
-  Vec3 entry_ = Vec3::Zero();  ///< … and which way it went
-  std::vector<Place> places_;  ///< (points)
-  int capacity_;               ///< of points, tip included
+  double press_N_ = 0.0;           ///< what the surface the needle went in by took before it broke …
+  Vec3 entry_ = Vec3::Zero();      ///< … and which way it went
+  std::vector<NearPlace> places_;  ///< (points)
+  int capacity_;                   ///< of points, tip included
   int tip_tet_ = -1;
   TipElement tip_element_;
   // g between the nodes of the tip's element and the points, for E = 1 MPa, as it is asked for.

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/realtime/needle_regions.hpp"
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+
+/// How far along its track the tip is [mm]. Contacts on the shaft sit on the first marks.
+double tip_xi(const Insertion& insertion, TipPhase tip, std::span<const ContactState> contacts) {
+  const Track& track = insertion.track();
+  if (tip != TipPhase::in_track) return track.end_xi;
+  const auto grips = static_cast<std::size_t>(
+      std::count_if(contacts.begin(), contacts.end(), [](const ContactState& c) { return !c.tip; }));
+  if (grips == 0 || grips > track.marks.size()) return 0.0;
+  return track.marks[grips - 1].xi + insertion.needle().length() - contacts.back().s;
+}
+
+}  // namespace
+
+void NeedleRegions::follow(const Insertion& insertion, const StepReport& report) {
+  for (int e = 0; e < report.events; ++e) {
+    const InsertionEvent& event = report.event[static_cast<std::size_t>(e)];
+    if (event.kind == InsertionEventKind::withdrawn) count_ = 0;
+    if (event.kind == InsertionEventKind::region_entered && count_ < entered_.size())
+      entered_[count_++] = {insertion.track().end_xi, event.region};
+  }
+}
+
+std::size_t NeedleRegions::now(const Insertion& insertion, TipPhase tip, std::span<const ContactState> contacts,
+                               std::span<std::int16_t> out) const {
+  if (tip == TipPhase::air) return 0;
+  const double here = tip_xi(insertion, tip, contacts);
+  std::array<double, 64> deepest{};  // of each that is written
+  std::size_t count = 0;
+  const auto consider = [&](double xi, int region) {
+    if (xi > here) return;
+    const auto end = out.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto found = std::find(out.begin(), end, static_cast<std::int16_t>(region));
+    const auto at = static_cast<std::size_t>(found - out.begin());
+    if (found == end && (count == out.size() || count == deepest.size())) return;
+    if (found == end) out[count++] = static_cast<std::int16_t>(region);
+    deepest[at] = found == end ? xi : std::max(deepest[at], xi);
+  };
+  for (std::size_t k = 0; k < count_; ++k) consider(entered_[k].xi, entered_[k].region);
+  for (const Track::Mark& mark : insertion.track().marks) consider(mark.xi, mark.region);  // all that an old track has
+  if (count > 0) {
+    const auto first = std::max_element(deepest.begin(), deepest.begin() + static_cast<std::ptrdiff_t>(count));
+    std::swap(out[0], out[static_cast<std::size_t>(first - deepest.begin())]);
+  }
+  return count;
+}
+
+}  // namespace stylet
