@@ -3,6 +3,7 @@
 
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
+#include "stylet/sim/harms.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 #include "stylet/sim/target_motion.hpp"
 
@@ -104,6 +105,7 @@ class Runner {
       const MeshKernel::Blur blur = model_->kernel()->blur();
       summary_.mesh_blur = {blur.smallest_mm, blur.median_mm, blur.largest_mm, blur.nodes};
     }
+    note_harms();
     note_condition();
     note_flags();
     return summary_;
@@ -218,6 +220,10 @@ class Runner {
       target_motion_ = std::move(*motion);
     }
     return target_motion_->shift(simulation_.insertion());
+  }
+
+  void note_harms() {
+    for (std::string& harm : harms(summary_.events)) summary_.warnings.push_back(std::move(harm));
   }
 
   /// Woodbury's small matrix takes as many digits from K⁻¹ as its condition number has.

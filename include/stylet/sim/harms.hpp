@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/recording.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stylet {
+
+/// Whether a needle in a region of this name harms the patient: rectum, bladder and urethra are to be spared.
+/// @param region canonical name
+bool harmed_by_needle(std::string_view region);
+
+/// What the needle harmed, one sentence for each time it entered such an organ, in their order: "The needle entered the
+/// rectum, at a depth of 63.1 mm."
+std::vector<std::string> harms(std::span<const Event> events);
+
+}  // namespace stylet
