@@ -23,6 +23,12 @@ constexpr double kShareOfTime = 0.3;      ///< of this thread's time goes into d
 constexpr double kStill_N = 1e-4;         ///< a force that changes less has not changed
 constexpr double kShareForFrames = 0.05;  ///< … and for the recording
 
+std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh) {
+  std::vector<SurfacePoint> points;
+  for (Index node = 0; node < mesh.node_count(); ++node) points.push_back({{node, -1, -1}, {1.0, 0.0, 0.0}});
+  return points;
+}
+
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
@@ -30,7 +36,9 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s)
     : open_(open),
       plan_(open.model->insertions()[insertion]),
-      shown_(Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(open.scene_nodes.size()))),
+      near_(open.model, open.points.on_mesh()),
+      near_nodes_(open.model, nodes_as_points(open.model->mesh())),
+      shown_(Eigen::Matrix3Xf::Zero(3, open.points.count())),
       all_nodes_(static_cast<std::size_t>(open.model->mesh().node_count())),
       room_(Snapshot::kForces),
       step_room_(1024),
@@ -132,7 +140,11 @@ bool LiveRun::displacement_is_due() const { return load_ && owed_ && now_s() >= 
 
 void LiveRun::compute_displacement() {
   const double before = now_s();
-  open_.field->displacement(open_.scene_nodes, *load_, shown_);
+  const ScenePoints& points = open_.points;
+  open_.field->displacement(points.nodes, *load_, shown_.leftCols(static_cast<Eigen::Index>(points.nodes.size())));
+  points.carry_along(shown_);
+  near_.set(tissue_forces(runner_->snapshot(), room_));
+  near_.add(shown_);
   owed_ = false;
   shown_anew_ = true;
   const double after = now_s();
@@ -157,6 +169,8 @@ void LiveRun::record_frame(const Snapshot& snapshot) {
   frame.base_depth_mm = snapshot.base_depth_mm;
   Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(all_nodes_.size()));
   open_.field->displacement(all_nodes_, *load_, u);
+  near_nodes_.set(tissue_forces(snapshot, room_));
+  near_nodes_.add(u);
   frame.displacement = u.reshaped().cast<double>();
   for (const Triple& point : snapshot.centreline) frame.needle.push_back(vec3(point));
   for (const ContactSnapshot& c : std::span(snapshot.contacts).first(static_cast<std::size_t>(snapshot.contact_count)))
@@ -233,6 +247,14 @@ std::string LiveRun::device_problem(const Companion& companion) const {
   const auto away = other_->away();
   if (!away) return companion.why_no_pose();
   return fmt::format("the handle is {:.0f} mm and {:.0f} degrees from the needle: bring it there", away->mm, away->deg);
+}
+
+std::vector<std::string> LiveRun::inside() const {
+  const Snapshot& s = runner_->snapshot();
+  std::vector<std::string> names;
+  for (const std::int16_t region : std::span(s.regions).first(static_cast<std::size_t>(s.region_count)))
+    names.push_back(open_.model->mesh().regions[static_cast<std::size_t>(region)]);
+  return names;
 }
 
 SessionStatus::Loop LiveRun::loop() const {

@@ -5,11 +5,13 @@
 #include "hand.hpp"
 #include "pick_up.hpp"
 #include "rests.hpp"
+#include "scene_points.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
 #include "stylet/serve/picture.hpp"
 #include "stylet/sim/display_field.hpp"
+#include "stylet/sim/display_near_field.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -24,7 +26,8 @@ namespace stylet::serve {
 struct OpenModel {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const DisplayField> field;  ///< empty until it is prepared
-  std::vector<Index> scene_nodes;             ///< of the mesh
+  ScenePoints points;                         ///< of the scene
+  std::size_t way = 0;                        ///< insertion along whose way the scene is drawn finer
 };
 
 /// One insertion at a page: the real-time loop from a needle before the skin until the next one starts, and its
@@ -63,6 +66,8 @@ class LiveRun {
   void stop_recording(const std::string& why);
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
+  /// Regions that the needle is in as of the last picture, that of the tip first.
+  [[nodiscard]] std::vector<std::string> inside() const;
 
  private:
   LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
@@ -82,7 +87,9 @@ class LiveRun {
   Rests rests_;
   std::string problem_;                     ///< of the recording
   std::optional<DisplayField::Load> load_;  ///< with a field
-  Eigen::Matrix3Xf shown_;                  ///< (3 × scene nodes)
+  DisplayNearField near_;                   ///< of the scene's points
+  DisplayNearField near_nodes_;             ///< of the mesh's nodes, for the recording
+  Eigen::Matrix3Xf shown_;                  ///< (3 × points of the scene)
   bool seen_ = false;                       ///< there has been a snapshot
   bool owed_ = false;                       ///< the newest snapshot's displacement
   bool shown_anew_ = false;                 ///< since show_to()

@@ -14,8 +14,8 @@ ContactSnapshot plain_contact(const ContactView& c) {
 
 }  // namespace
 
-Replay::Replay(RunRecording recording, std::vector<Index> scene_nodes)
-    : recording_(std::move(recording)), steps_(recording_.steps), scene_nodes_(std::move(scene_nodes)) {}
+Replay::Replay(RunRecording recording, ScenePoints points)
+    : recording_(std::move(recording)), steps_(recording_.steps), points_(std::move(points)) {}
 
 double Replay::duration_s() const {
   const double steps = recording_.steps.empty() ? 0.0 : recording_.steps.back().time_s;
@@ -49,7 +49,7 @@ const StepRecord* Replay::step() const {
 
 /// Before the first frame: a straight needle, and tissue that was not recorded.
 void Replay::put_needle(LiveFrame& out) const {
-  set_displacement(out, Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(scene_nodes_.size())));
+  set_displacement(out, Eigen::Matrix3Xf::Zero(3, points_.count()));
   if (recording_.steps.empty()) return;
   const StepRecord& s = step() != nullptr ? *step() : recording_.steps.front();
   if (!s.base.origin.allFinite()) return;
@@ -76,13 +76,28 @@ void Replay::put_frame(LiveFrame& out) const {
   }
   if (!a.needle.empty()) out.tip_mm = a.needle.back();  // until the first step says it exactly
   for (const ContactView& c : (share < 0.5 ? a : b).contacts) out.contacts.push_back(plain_contact(c));
-  Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(scene_nodes_.size()));
-  for (std::size_t k = 0; k < scene_nodes_.size(); ++k) {
-    const Eigen::Index at = 3 * Eigen::Index{scene_nodes_[k]};
+  Eigen::Matrix3Xf u(3, points_.count());
+  for (std::size_t k = 0; k < points_.nodes.size(); ++k) {
+    const Eigen::Index at = 3 * Eigen::Index{points_.nodes[k]};
     u.col(static_cast<Eigen::Index>(k)) =
         ((1.0 - share) * a.displacement.segment<3>(at) + share * b.displacement.segment<3>(at)).cast<float>();
   }
+  points_.carry_along(u);
   set_displacement(out, u);
+}
+
+std::vector<std::string> Replay::inside() const {
+  std::vector<std::string> names;
+  const StepRecord* now = step();
+  if (now == nullptr || now->tip_state == TipState::air) return names;
+  for (const Event& e : recording_.events) {
+    if (e.time_s > time_s_) break;
+    if (e.kind == EventKind::withdrawn) names.clear();
+    if (e.kind != EventKind::region_entered || e.depth_mm > now->base_depth_mm) continue;
+    std::erase(names, e.region);
+    names.insert(names.begin(), e.region);
+  }
+  return names;
 }
 
 std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "scene_points.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "stylet/serve/picture.hpp"
 #include "stylet/sim/recorded_steps.hpp"
@@ -14,8 +15,8 @@ namespace stylet::serve {
 /// and positions of the base and the tip are those of the step nearest before.
 class Replay {
  public:
-  /// @param scene_nodes of the mesh, those of the scene
-  Replay(RunRecording recording, std::vector<Index> scene_nodes);
+  /// @param points those of the scene
+  Replay(RunRecording recording, ScenePoints points);
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 
@@ -29,6 +30,10 @@ class Replay {
   /// Goes on with playing. @param dt_s [s] on the wall
   void advance(double dt_s);
 
+  /// Regions that the needle is in, that of the tip first: as its events tell, those that it entered and has not been
+  /// drawn back out of, by the depth of the base.
+  [[nodiscard]] std::vector<std::string> inside() const;
+
   /// The picture of now, if it has changed since the last one.
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
 
@@ -39,7 +44,7 @@ class Replay {
 
   RunRecording recording_;
   RecordedSteps steps_;  ///< of it
-  std::vector<Index> scene_nodes_;
+  ScenePoints points_;
   double time_s_ = 0.0;
   double rate_ = 0.0;
   bool changed_ = true;

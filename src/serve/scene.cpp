@@ -6,6 +6,7 @@
 #include "stylet/geom/centroid.hpp"
 #include "stylet/geom/topology.hpp"
 #include "stylet/io/region_views.hpp"
+#include "stylet/sim/harms.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -32,30 +34,54 @@ std::string hex(const results::Colour& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
 }
 
-/// Surface triangles by the two regions they part, in the numbers of the scene's nodes.
-struct Surfaces {
-  std::map<std::pair<int, int>, std::vector<std::array<std::uint32_t, 3>>> patches;  ///< (inside, outside)
-  std::vector<Index> nodes;
+constexpr double kBefore_mm = 5.0;   ///< the skin, as far as a needle's way is drawn finer
+constexpr double kBeyond_mm = 10.0;  ///< the planned depth
 
-  explicit Surfaces(const TetMesh& mesh) : slot_(mesh.nodes.size(), -1) {
+/// Surface triangles by the two regions they part, in the numbers of the scene's points.
+struct Surfaces {
+  std::map<std::pair<int, int>, std::vector<std::array<Index, 3>>> patches;  ///< (inside, outside)
+  std::vector<Index> nodes;
+  std::vector<SurfacePoint> fines;  ///< further points, between numbers in `nodes`
+  std::vector<Vec3> positions;      ///< of both
+
+  Surfaces(const TetMesh& mesh, const PlannedInsertion* way) : slot_(mesh.nodes.size(), -1) {
     const Topology topology(mesh);
     const auto region = [&](Index tet) { return tet < 0 ? -1 : mesh.tet_region[static_cast<std::size_t>(tet)]; };
     for (const Face& face : topology.boundary) add(region(face.tet), -1, face);
     for (const Face& face : topology.interfaces) add(region(face.tet), region(face.neighbour), face);
+    for (const Index node : nodes) positions.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
+    if (way != nullptr) refine(*way);
   }
 
  private:
   void add(int inside, int outside, const Face& face) {
-    std::array<std::uint32_t, 3> triangle{};
+    std::array<Index, 3> triangle{};
     for (std::size_t k = 0; k < 3; ++k) {
       Index& slot = slot_[static_cast<std::size_t>(face.nodes[k])];
       if (slot < 0) {
         slot = static_cast<Index>(nodes.size());
         nodes.push_back(face.nodes[k]);
       }
-      triangle[k] = static_cast<std::uint32_t>(slot);
+      triangle[k] = slot;
     }
     patches[{inside, outside}].push_back(triangle);
+  }
+
+  void refine(const PlannedInsertion& way) {
+    std::vector<std::array<Index, 3>> triangles;
+    std::vector<int> patch;
+    int number = 0;
+    for (auto& [sides, own] : patches) {
+      triangles.insert(triangles.end(), own.begin(), own.end());
+      patch.insert(patch.end(), own.size(), number++);
+      own.clear();
+    }
+    const Line line{way.entry - kBefore_mm * way.direction, way.entry + (way.depth_mm + kBeyond_mm) * way.direction};
+    FineSurface fine = refine_surface(positions, std::move(triangles), std::move(patch), std::span(&line, 1));
+    for (std::size_t t = 0; t < fine.triangles.size(); ++t)
+      std::next(patches.begin(), fine.patch[t])->second.push_back(fine.triangles[t]);
+    fines.assign(fine.points.begin() + static_cast<std::ptrdiff_t>(nodes.size()), fine.points.end());
+    positions = std::move(fine.positions);
   }
   std::vector<Index> slot_;
 };
@@ -72,6 +98,7 @@ Json regions_json(const TetMesh& mesh, const std::vector<int>& targets) {
                        {"opacity", 0.5},
                        {"target", false},
                        {"background", false},
+                       {"spared", harmed_by_needle(mesh.regions[r])},
                        {"volume_cc", volume[r] / kMm3PerCc}});
   for (const results::RegionView& view : results::region_views(mesh, targets)) {
     Json& region = regions[static_cast<std::size_t>(view.region)];
@@ -94,13 +121,12 @@ std::array<double, 2> template_centre(const TetMesh& mesh, const std::vector<int
 
 MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const Scenario& scenario,
                      const std::vector<PlannedInsertion>& insertions, const std::vector<std::string>& warnings,
-                     const CaseList& cases) {
-  Surfaces surfaces(mesh);
+                     const CaseList& cases, const PlannedInsertion* way) {
+  Surfaces surfaces(mesh, way);
   auto scene = std::make_shared<Scene>();
-  scene->positions.reserve(3 * surfaces.nodes.size());
+  scene->positions.reserve(3 * surfaces.positions.size());
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Index node : surfaces.nodes) {
-    const Vec3& x = mesh.nodes[static_cast<std::size_t>(node)];
+  for (const Vec3& x : surfaces.positions) {
     for (const double value : x) scene->positions.push_back(static_cast<float>(value));
     lowest = std::min(lowest, x.z());
   }
@@ -110,7 +136,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
     patches.push_back(
         {{"inside", sides.first}, {"outside", sides.second}, {"first", first}, {"count", triangles.size()}});
     for (const auto& triangle : triangles)
-      scene->triangles.insert(scene->triangles.end(), triangle.begin(), triangle.end());
+      for (const Index corner : triangle) scene->triangles.push_back(static_cast<std::uint32_t>(corner));
     first += triangles.size();
   }
 
@@ -159,7 +185,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
       {"notice", "Not a medical device. For research and training; not for planning or treating patients."}};
   // Names come from files of all sorts: what is not UTF-8 is replaced, not refused.
   scene->text = text.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return {scene, std::move(surfaces.nodes)};
+  return {scene, {std::move(surfaces.nodes), std::move(surfaces.fines)}};
 }
 
 }  // namespace stylet::serve

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "scene_points.hpp"
 #include "stylet/serve/picture.hpp"
 #include "stylet/sim/model.hpp"
 
@@ -10,10 +11,10 @@
 
 namespace stylet::serve {
 
-/// A scene and where its nodes are in the mesh.
+/// A scene and where its points are in the mesh.
 struct MadeScene {
   std::shared_ptr<const Scene> scene;
-  std::vector<Index> nodes;  ///< (n) of the mesh
+  ScenePoints points;  ///< (n)
 };
 
 /// Which cases can be opened.
@@ -25,8 +26,9 @@ struct CaseList {
 
 /// All surfaces between regions and around the patient, each once, and what a page has to know about the case.
 /// @param targets indices of the target regions
+/// @param way of the needle, along which surfaces are drawn finer than the mesh has them; null: nowhere
 MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const Scenario& scenario,
                      const std::vector<PlannedInsertion>& insertions, const std::vector<std::string>& warnings,
-                     const CaseList& cases);
+                     const CaseList& cases, const PlannedInsertion* way);
 
 }  // namespace stylet::serve

@@ -206,6 +206,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
               {"paused", s.paused},
               {"insertion", s.insertion},
               {"hole", s.hole},
+              {"inside", s.inside},
               {"held", holding.holder() != 0},
               {"asking", holding.asking()},
               {"viewers", viewers.size()},

@@ -22,6 +22,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace stylet::serve {
 
@@ -30,11 +31,18 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kRequests = 256;
+constexpr std::size_t kMostEvents = 1000;
 constexpr auto kStatusEvery = std::chrono::milliseconds(500);
 constexpr auto kProgressEvery = std::chrono::milliseconds(50);
 // What is missing while it is ready.
 constexpr const char* kFieldStage = "the picture of the tissue's motion";
 constexpr const char* kNoField = "there is too little memory to show how the tissue moves";
+
+HandTarget resting() {
+  HandTarget rest;
+  rest.rest = true;
+  return rest;
+}
 
 }  // namespace
 
@@ -69,6 +77,13 @@ struct Session::Parts {
   std::size_t insertion = 0;
   bool page_has_drawn = false;  ///< any, ever: then no field waits
   std::unique_ptr<LiveRun> live;
+  /// The live run while a recording is replayed in its place: it stands, and goes on from there.
+  struct SetAside {
+    std::unique_ptr<LiveRun> run;
+    SessionStatus status;
+  };
+  std::optional<SetAside> aside;
+  std::vector<LiveEvent> happened;  ///< in the live run
   std::unique_ptr<Replay> replay;
   FolderLock replayed;  ///< the recording that is replayed is not removed
   SessionStatus status;
@@ -85,6 +100,7 @@ struct Session::Parts {
   void show_companion();
   void heed_room();
   [[nodiscard]] RoomReport look_after_room() const;
+  void show_inside();
   void say_status();
   Progress progress();
   void fail(const Error& error) {
@@ -97,14 +113,17 @@ struct Session::Parts {
 
   void open_model(const Request& request, std::size_t case_number,
                   const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load);
-  void show_model();
+  void show_model(std::size_t which);
   void take_field();
   void abandon_field();
   void choose_hole(const Request& request);
   void choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
   void place(const Request& request, std::size_t which);
   Result<> start_replay(const std::string& name);
+  void pump();
   void end_live();
+  void set_live_aside();
+  void back_to_live();
   void set_hand(std::shared_ptr<PageDevice> device);
   [[nodiscard]] CaseList cases() const;
 };
@@ -139,11 +158,7 @@ void Session::aim(const HandTarget& target) {
   if (parts_->hand) parts_->hand->aim(target);
 }
 
-void Session::let_go() {
-  HandTarget rest;
-  rest.rest = true;
-  aim(rest);
-}
+void Session::let_go() { aim(resting()); }
 
 CaseList Session::Parts::cases() const {
   CaseList list;
@@ -158,14 +173,53 @@ void Session::Parts::set_hand(std::shared_ptr<PageDevice> device) {
   hand = std::move(device);
 }
 
+void Session::Parts::pump() {
+  live->pump([this](const LiveEvent& event) {
+    happened.push_back(event);
+    if (happened.size() > kMostEvents) happened.erase(happened.begin() + 1);  // not the start
+    audience.tell(event);
+  });
+}
+
 /// The loop ends, its recording is whole.
 void Session::Parts::end_live() {
   set_hand(nullptr);
-  if (live) live->pump([this](const LiveEvent& event) { audience.tell(event); });
+  if (live) pump();
+  if (aside) aside->run->pump([](const LiveEvent&) {});
+  aside.reset();
   live.reset();
   room.set_recording(false);
   status.recording = {};
+  status.inside.clear();
   status.device_problem.clear();
+}
+
+/// The live run stands where it is, with nobody's hand on it, until back_to_live().
+void Session::Parts::set_live_aside() {
+  if (!live) return;
+  set_hand(nullptr);
+  if (live->hand()) live->hand()->aim(resting());
+  live->runner().pause();
+  pump();
+  aside = SetAside{std::move(live), status};
+  status.recording = {};
+  status.device_problem.clear();
+}
+
+void Session::Parts::back_to_live() {
+  replay.reset();
+  replayed = {};
+  show_model(insertion);
+  SetAside was = std::move(*aside);
+  aside.reset();
+  for (const LiveEvent& event : happened) audience.tell(event);
+  live = std::move(was.run);
+  const SessionStatus now = std::exchange(status, std::move(was.status));
+  status.stage = field_maker ? kFieldStage : open.field ? "" : kNoField;
+  status.fraction = now.fraction;
+  set_hand(live->hand());
+  if (!status.paused) live->runner().resume();
+  whole_curve = true;
 }
 
 Progress Session::Parts::progress() {
@@ -199,6 +253,7 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   replayed = {};
   status.replay = {};
   insertion = which;
+  if (open.way != which) show_model(which);
   const PlannedInsertion& plan = open.model->insertions()[which];
   const std::string name = shelf.new_name(plan.name);
   std::unique_ptr<Device> other = settings.companion ? settings.companion->device() : nullptr;
@@ -220,15 +275,17 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   status.hole = open.model->scenario().insertions[which].hole.value_or("");
   status.recording.name = name;
   whole_curve = true;
-  audience.tell(LiveEvent{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan.name});
+  happened = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan.name}};
+  audience.tell(happened.front());
 }
 
-/// Scene of the model that is open.
-void Session::Parts::show_model() {
+/// Scene of the model that is open, finer along the way of one of its insertions.
+void Session::Parts::show_model(std::size_t which) {
   const Model& model = *open.model;
-  MadeScene made =
-      make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions, model.warnings(), cases());
-  open.scene_nodes = std::move(made.nodes);
+  MadeScene made = make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions,
+                              model.warnings(), cases(), &model.insertions()[which]);
+  open.points = std::move(made.points);
+  open.way = which;
   audience.show(made.scene);
   if (settings.companion) settings.companion->show(*made.scene);
 }
@@ -244,7 +301,9 @@ void Session::Parts::take_field() {
   status.stage = open.field ? "" : kNoField;
   status.fraction = -1.0;
   next_status = {};
-  if (live && open.field) live->set_field(open.field);
+  if (!open.field) return;
+  if (live) live->set_field(open.field);
+  if (aside) aside->run->set_field(open.field);
 }
 
 /// Nobody waits for a field any more: what is being made of it may be a whole factor, which takes long.
@@ -266,17 +325,17 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
   const Result<> usable = model ? DisplayField::check(**model) : Result<>(model.error());
   if (usable.ok()) {
     abandon_field();
-    open = {.model = *model, .field = nullptr, .scene_nodes = {}};
+    open = {.model = *model, .field = nullptr, .points = {}, .way = 0};
     if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
       planned = {(*model)->scenario(), (*model)->insertions()};
     open_case = case_number;
-    show_model();
+    show_model(0);
     field_maker = std::make_unique<FieldMaker>(
         open.model, std::chrono::duration<double>(page_has_drawn ? 0.0 : settings.field_waits_s));
     return place(request, 0);
   }
   if (open.model) {
-    if (replay) show_model();  // instead of what was replayed
+    if (replay) show_model(insertion);  // instead of what was replayed
     refuse(request, usable.error());
     return place(request, insertion);
   }
@@ -323,19 +382,19 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   if (!scenario) return scenario.error();
   if (recording->frames.empty() && recording->steps.empty())
     return failure(name, "the recording ends before its first step", "Choose another one");
-  end_live();
+  set_live_aside();
   PlannedInsertion plan;
   plan.entry = recording->info.entry_mm;
   plan.direction = recording->info.direction;
   plan.name = name;
   for (const StepRecord& step : recording->steps) plan.depth_mm = std::max(plan.depth_mm, step.base_depth_mm);
-  MadeScene made =
-      make_scene(recording->mesh, recording->info.target_regions, *scenario, {plan}, recording->info.warnings, cases());
+  MadeScene made = make_scene(recording->mesh, recording->info.target_regions, *scenario, {plan},
+                              recording->info.warnings, cases(), nullptr);
   audience.show(made.scene);
   for (const Event& e : recording->events)
     audience.tell(LiveEvent{to_string(e.kind), e.time_s, e.depth_mm, e.force_N, e.region});
   replayed = std::move(in_use);
-  replay = std::make_unique<Replay>(std::move(*recording), std::move(made.nodes));
+  replay = std::make_unique<Replay>(std::move(*recording), std::move(made.points));
   status.state = SessionStatus::State::ready;
   status.replay = {.name = name, .time_s = 0.0, .duration_s = replay->duration_s(), .rate = 0.0};
   status.insertion = name;
@@ -368,10 +427,14 @@ void Session::Parts::carry_out(const Request& request) {
       break;
     case Kind::live:
       if (!replay) break;
+      if (aside) {
+        back_to_live();
+        break;
+      }
       if (settings.cases.empty()) return missing("case", 0);
       if (!open.model) return open_model(request, open_case, settings.cases[open_case].load);
       replay.reset();
-      show_model();
+      show_model(insertion);
       place(request, insertion);
       break;
     case Kind::seek:
@@ -429,11 +492,19 @@ void Session::Parts::heed_room() {
   next_status = {};
 }
 
+/// Where the needle is comes with the status: it changes seldom, and has to be said at once.
+void Session::Parts::show_inside() {
+  std::vector<std::string> inside = live ? live->inside() : replay->inside();
+  if (inside == status.inside) return;
+  status.inside = std::move(inside);
+  next_status = {};
+}
+
 void Session::Parts::tick(double dt_s) {
   take_field();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {
-    live->pump([this](const LiveEvent& event) { audience.tell(event); });
+    pump();
     frame = live->picture(whole_curve);
     if (settings.companion) show_companion();
     heed_room();
@@ -446,6 +517,7 @@ void Session::Parts::tick(double dt_s) {
   if (frame) {
     whole_curve = false;
     audience.show(std::move(frame));
+    show_inside();
   }
   if (Clock::now() >= next_status) say_status();
 }

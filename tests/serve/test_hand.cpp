@@ -141,6 +141,21 @@ TEST(PageDevice, rests_where_it_is_when_it_is_let_go) {
   EXPECT_EQ(device.place().depth_mm, there);
 }
 
+TEST(PageDevice, at_no_speed_stays_as_deep_as_it_is_wherever_it_was_sent_and_still_turns) {
+  const Scenario scenario = test::box_scenario();
+  PageDevice device(plan_along({0, 0, 1}), scenario);
+  double now = 0.0;
+  device.aim({.depth_mm = 20.0, .speed_mm_per_s = 10.0});
+  after(device, now, 0.5);
+  const double there = device.place().depth_mm;
+  for (const double seen_before : {there - 2.0, there, there + 5.0}) {
+    device.aim({.depth_mm = seen_before, .speed_mm_per_s = 0.0, .roll_deg = 30.0});
+    after(device, now, 0.5);
+    EXPECT_EQ(device.place().depth_mm, there);
+  }
+  EXPECT_EQ(device.place().roll_deg, 30.0);
+}
+
 TEST(PageDevice, stands_while_simulated_time_stands) {
   const Scenario scenario = test::box_scenario();
   PageDevice device(plan_along({0, 0, 1}), scenario);

@@ -26,8 +26,8 @@ struct Paused {
 
   explicit Paused(bool with_field) {
     open.model = compiled(hole_scenario());
-    open.scene_nodes.resize(static_cast<std::size_t>(open.model->mesh().node_count()));
-    std::iota(open.scene_nodes.begin(), open.scene_nodes.end(), Index{0});
+    open.points.nodes.resize(static_cast<std::size_t>(open.model->mesh().node_count()));
+    std::iota(open.points.nodes.begin(), open.points.nodes.end(), Index{0});
     auto made = DisplayField::prepare(open.model);
     if (!made) throw std::runtime_error(made.error().message());
     field = *made;

@@ -34,7 +34,7 @@ double moved(const LiveFrame& frame, std::size_t k) { return frame.displacement[
 }  // namespace
 
 TEST(Replay, shows_any_moment_between_its_frames) {
-  Replay replay(recording(), {3, 1});
+  Replay replay(recording(), {{3, 1}, {}});
   replay.seek(0.45);
   const auto frame = replay.picture(false);
   ASSERT_TRUE(frame);
@@ -50,7 +50,7 @@ TEST(Replay, shows_any_moment_between_its_frames) {
 }
 
 TEST(Replay, plays_to_its_end_and_stands_there) {
-  Replay replay(recording(), {0});
+  Replay replay(recording(), {{0}, {}});
   replay.play(2.0);
   replay.advance(0.2);
   EXPECT_NEAR(replay.time_s(), 0.4, 1e-12);
@@ -62,7 +62,7 @@ TEST(Replay, plays_to_its_end_and_stands_there) {
 }
 
 TEST(Replay, stays_within_the_recording) {
-  Replay replay(recording(), {0});
+  Replay replay(recording(), {{0}, {}});
   replay.seek(-3.0);
   EXPECT_EQ(replay.time_s(), 0.0);
   const auto before = replay.picture(false);
@@ -74,7 +74,7 @@ TEST(Replay, stays_within_the_recording) {
 }
 
 TEST(Replay, gives_the_whole_curve_when_asked) {
-  Replay replay(recording(), {0});
+  Replay replay(recording(), {{0}, {}});
   const auto frame = replay.picture(true);
   ASSERT_EQ(frame->samples.size(), 10u);
   EXPECT_TRUE(frame->bits & LiveFrame::whole_curve);
@@ -90,7 +90,7 @@ TEST(Replay, shows_a_straight_needle_where_no_frame_was_recorded_yet) {
   }
   for (const bool no_frames : {false, true}) {
     if (no_frames) late.frames.clear();
-    Replay replay(late, {3, 1});
+    Replay replay(late, {{3, 1}, {}});
     replay.seek(0.45);
     const auto frame = replay.picture(false);
     EXPECT_EQ(frame->centreline, (std::vector<float>{1, 2, -96, 1, 2, 4}));

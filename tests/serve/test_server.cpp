@@ -81,6 +81,92 @@ TEST(Server, the_needle_rests_when_its_holder_goes) {
   EXPECT_EQ(watcher->depth_mm, there);
 }
 
+TEST(Server, let_go_of_a_push_the_base_stands_and_has_not_turned_back) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  client->hand(25.0F, 40.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 12.0F; }));
+  client->hand(client->depth_mm - 1.0F, 0.0F);  // as deep as a page has seen it, which is a while ago
+  float deepest = client->depth_mm;
+  const double then = client->time_s;
+  ASSERT_TRUE(client->until([&] {
+    EXPECT_GE(client->depth_mm, deepest) << "it turned back";
+    deepest = std::max(deepest, client->depth_mm);
+    return client->time_s > then + 0.5;
+  }));
+  EXPECT_LT(deepest, 25.0F);
+  EXPECT_FALSE(client->has_event("retraction_start"));
+  client->hand(5.0F, 40.0F);  // a pull is one
+  EXPECT_TRUE(client->until([&] { return client->has_event("retraction_start"); }));
+}
+
+TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  client->hand(15.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 14.9F; }));
+  const std::string first = client->status["recording"]["name"];
+  client->command(R"({"do":"reset"})");
+  ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != first; }));
+  client->events.clear();
+  client->hand(22.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 21.9F && client->has_event("skin_contact"); }));
+  const double then = client->time_s;
+  ASSERT_TRUE(client->until([&] { return client->time_s > then + 0.2; }));
+  const std::string name = client->status["recording"]["name"];
+  const double stood_at = client->time_s;
+  const float force = client->force_N;
+  std::size_t before = client->events.size();
+
+  client->command(R"({"do":"replay","name":")" + first + "\"}");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
+  client->hand(0.0F, 80.0F);  // nobody's business now
+  client->events.clear();
+  client->command(R"({"do":"live"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
+  EXPECT_NEAR(client->depth_mm, 22.0F, 1e-3F);
+  EXPECT_NEAR(client->force_N, force, 0.05F);
+  EXPECT_GE(client->time_s, stood_at) << "its time goes on";
+  EXPECT_LT(client->time_s, stood_at + 5.0) << "and did not while it was away";
+  EXPECT_EQ(client->status["recording"]["name"], name) << "the same recording";
+  EXPECT_GT(client->samples, 50u) << "the whole curve";
+  EXPECT_EQ(client->events.front()["kind"], "started");
+  EXPECT_TRUE(client->has_event("skin_contact"));
+  EXPECT_GE(client->events.size(), std::min<std::size_t>(before, 2));
+  const double back_at = client->time_s;
+  ASSERT_TRUE(client->until([&] { return client->time_s > back_at + 0.3; })) << "it runs";
+  EXPECT_NEAR(client->depth_mm, 22.0F, 1e-3F) << "without a hand it stays";
+  client->hand(26.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 25.9F; }));
+  serving.server->stop();
+
+  const auto run = read_recording(serving.folder.path / name / "run.h5");
+  ASSERT_TRUE(run.ok()) << run.error().message();
+  double time = 0.0;
+  const RecordedSteps steps(run->steps);
+  for (std::int64_t k = 0; k < steps.count(); ++k) {
+    const StepRecord step = steps.at(k);
+    ASSERT_NEAR(step.time_s, time + step.dt_s, 1e-9) << "a gap in the recording";
+    time = step.time_s;
+  }
+  EXPECT_NEAR(run->steps.back().base_depth_mm, 26.0, 0.2);
+  EXPECT_GT(time, back_at);
+}
+
+TEST(Server, says_in_which_regions_the_needle_is) {
+  const Serving serving;
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  EXPECT_EQ(client->status["inside"], nlohmann::json::array());
+  client->hand(28.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->status["inside"] == nlohmann::json({"prostate", "body"}); }));
+  client->hand(-5.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->status["inside"].empty(); }));
+  for (const auto& region : client->scene["regions"]) EXPECT_EQ(region["spared"], false) << region;
+}
+
 TEST(Server, pauses_steps_and_goes_on) {
   const Serving serving;
   const auto client = ready_client(serving);

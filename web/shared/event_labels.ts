@@ -4,7 +4,7 @@ import type uPlot from 'uplot';
 import { font, fontSize, INK, lineScale, PALE } from './plot_style';
 
 export interface PlacedEvent {
-  event: { label: string };
+  event: { label: string; color?: string };
   x: number;  // value on the x scale
   y: number;  // value on the y scale: where the dot goes
 }
@@ -82,7 +82,7 @@ export function drawEvents(plot: uPlot, events: PlacedEvent[]): void {
     const y = plot.valToPos(label.placed.y, 'y', true);
     const middle = top - 4 * ratio - (label.lane + 0.5) * lane;
     const dotInside = y >= top && y <= top + height;
-    ctx.strokeStyle = PALE;
+    ctx.strokeStyle = label.placed.event.color ?? PALE;
     ctx.lineWidth = unit;
     ctx.setLineDash([3 * unit, 3 * unit]);
     ctx.beginPath();
@@ -95,7 +95,7 @@ export function drawEvents(plot: uPlot, events: PlacedEvent[]): void {
       ctx.arc(x, y, 3.5 * unit, 0, 2 * Math.PI);
       ctx.fillStyle = '#fff';
       ctx.fill();
-      ctx.strokeStyle = INK;
+      ctx.strokeStyle = label.placed.event.color ?? INK;
       ctx.lineWidth = 1.5 * unit;
       ctx.stroke();
     }
@@ -105,7 +105,7 @@ export function drawEvents(plot: uPlot, events: PlacedEvent[]): void {
     const middle = top - 4 * ratio - (label.lane + 0.5) * lane;
     ctx.fillStyle = '#fff';
     ctx.fillRect(left + label.left * ratio, middle - lane / 2 + ratio, label.width * ratio, lane - 2 * ratio);
-    ctx.fillStyle = INK;
+    ctx.fillStyle = label.placed.event.color ?? INK;
     ctx.fillText(label.placed.event.label, left + (label.left + PADDING) * ratio, middle);
   }
   ctx.restore();

@@ -80,10 +80,11 @@ struct SessionStatus {
   double fraction = -1.0;  ///< of it, −1 where it is not known
   Notice failure;
   bool paused = false;
-  std::string insertion;       ///< its name
-  std::string hole;            ///< empty where it is none
-  std::string device;          ///< that has the needle: "page", or a companion's name
-  std::string device_problem;  ///< why it does not move the needle now; empty: it does
+  std::string insertion;            ///< its name
+  std::string hole;                 ///< empty where it is none
+  std::vector<std::string> inside;  ///< regions that the needle is in with its tip (the first) or its shaft
+  std::string device;               ///< that has the needle: "page", or a companion's name
+  std::string device_problem;       ///< why it does not move the needle now; empty: it does
   struct Recording {
     std::string name;
     double seconds = 0.0;

@@ -4,9 +4,8 @@ import type { Patch, Region, SceneText } from '../src/scene';
 
 interface Ellipsoid { name: string; label: string; color: string; opacity: number; centre: [number, number, number]; half: [number, number, number] }
 
-export const PROSTATE = { centre: [0, 0, 0], half: [23, 16, 20] } as const;
 export const SKIN_Z = -48;
-const BODIES: Ellipsoid[] = [
+export const BODIES: Ellipsoid[] = [
   { name: 'prostate', label: 'Prostate', color: '#0072b2', opacity: 0.5, centre: [0, 0, 0], half: [23, 16, 20] },
   { name: 'bladder', label: 'Bladder', color: '#56b4e9', opacity: 0.4, centre: [0, -8, 42], half: [28, 22, 18] },
   { name: 'rectum', label: 'Rectum', color: '#cc79a7', opacity: 0.45, centre: [0, 29, 4], half: [12, 9, 38] },
@@ -28,7 +27,7 @@ export function makePatient(): FakePatient {
     addEllipsoid(points, corners, body);
     patches.push({ inside: regions.length, outside: 0, first, count: corners.length / 3 - first });
     const volume = (4 / 3) * Math.PI * body.half[0] * body.half[1] * body.half[2] / 1000;
-    regions.push({ name: body.name, label: body.label, color: body.color, opacity: body.opacity, target: body.name === 'prostate', background: false, volume_cc: volume });
+    regions.push({ name: body.name, label: body.label, color: body.color, opacity: body.opacity, target: body.name === 'prostate', background: false, spared: body.name === 'bladder' || body.name === 'rectum', volume_cc: volume });
   }
   const columns = [...'AaBbCcDdEeFfG'];
   const rows = Array.from({ length: 13 }, (_, j) => String(1 + j / 2));

@@ -5,7 +5,7 @@ import type { Transport, TransportListener } from '../src/connection';
 import { holes } from '../src/scene';
 import { Kind, type Command, type Frame, type Hand } from '../src/wire';
 import { encodeFrame, encodeScene, encodeText } from './encode';
-import { makePatient, PROSTATE, SKIN_Z } from './fake_patient';
+import { BODIES, makePatient, SKIN_Z } from './fake_patient';
 
 const POINTS = 40;
 const UNIT = 1e-3;
@@ -23,7 +23,7 @@ export class FakeServer implements Transport {
   private time = 0;
   private steps = 0;
   private paused = false;
-  private inside = false;
+  private inside: string[] = [];
   private touched = false;
   private whole = true;
   private replay: { time: number; rate: number } | null = null;
@@ -87,7 +87,8 @@ export class FakeServer implements Transport {
     this.depth = this.hand.depth = -5;
     this.hand.roll = this.hand.tiltLeft = this.hand.tiltAnterior = 0;
     this.time = this.steps = this.force = 0;
-    this.inside = this.touched = false;
+    this.inside = [];
+    this.touched = false;
     this.whole = true;
     this.say(Kind.event, { kind: 'started', time_s: 0, depth_mm: -5, force_N: 0, region: `hole ${this.hole}` });
     this.tellStatus();
@@ -95,7 +96,7 @@ export class FakeServer implements Transport {
 
   private tellStatus(): void {
     this.say(Kind.status, {
-      state: 'ready', mode: this.replay ? 'replay' : 'live', paused: this.paused, insertion: `hole ${this.hole}`, hole: this.hole, you_hold: this.holds, held: true,
+      state: 'ready', mode: this.replay ? 'replay' : 'live', paused: this.paused, insertion: `hole ${this.hole}`, hole: this.hole, inside: this.inside, you_hold: this.holds, held: true,
       asking: this.options.has('asked') ? 1 : 0, you_ask: false, viewers: this.options.has('watch') || this.options.has('asked') ? 2 : 1,
       device: this.options.has('guest') ? 'OpenIGTLink' : 'page', device_problem: this.options.has('guest') ? 'nobody is connected to port 18944' : '',
       recording: { name: '2026-11-20-101500', seconds: this.time, problem: '' },
@@ -148,9 +149,12 @@ export class FakeServer implements Transport {
       this.touched = true;
       this.event('skin_contact', 'body');
     }
-    const inside = ((this.entry[0] - PROSTATE.centre[0]) / PROSTATE.half[0]) ** 2 + (this.entry[1] / PROSTATE.half[1]) ** 2 + (tip / PROSTATE.half[2]) ** 2 < 1;
-    if (inside && !this.inside) {
-      this.event('puncture', 'prostate');
+    const at = [this.entry[0], this.entry[1], tip];
+    const inside = BODIES.filter((b) => b.centre.reduce((sum, c, k) => sum + ((at[k] - c) / b.half[k]) ** 2, 0) < 1).map((b) => b.name);
+    for (const name of inside) {
+      if (this.inside.includes(name)) continue;
+      this.event('puncture', name);
+      this.event('region_entered', name);
       this.force -= 0.6;
     }
     this.inside = inside;

@@ -5,11 +5,14 @@ const NAMES: Record<string, string> = {
   skin_contact: 'Skin touched', puncture: 'Punctured', region_entered: 'Into', retraction_start: 'Retraction', slip_start: 'Slips',
   withdrawn: 'Out', bone_contact: 'Bone', exited: 'Through', re_entered: 'Back in its track', started: 'Start',
 };
+const BONE_OR_OUT = new Set(['bone_contact', 'exited']);
+let spared = new Set<string>();
 const WITH_REGION = new Set(['puncture', 'region_entered']);
 let labels = new Map<string, string>();
 
 /** What regions are called in the case that is shown. */
-export function nameRegions(regions: { name: string; label: string }[]): void {
+export function nameRegions(regions: { name: string; label: string; spared?: boolean }[]): void {
+  spared = new Set(regions.filter((r) => r.spared).map((r) => r.name));
   labels = new Map(regions.map((r) => [r.name, r.label.toLowerCase()]));
 }
 
@@ -20,4 +23,16 @@ export function regionLabel(name: string): string {
 export function eventLabel(event: Event): string {
   const name = NAMES[event.kind] ?? event.kind.replaceAll('_', ' ');
   return WITH_REGION.has(event.kind) && event.region ? `${name} ${regionLabel(event.region)}` : name;
+}
+
+/** Whether something has happened that harms the patient: an organ that is to be spared, bone, the far side. */
+export function isHarm(event: Event): boolean {
+  return BONE_OR_OUT.has(event.kind) || (event.kind === 'region_entered' && spared.has(event.region));
+}
+
+export function harmSentence(event: Event): string {
+  const at = `at ${event.depth_mm.toFixed(0)} mm`;
+  if (event.kind === 'exited') return `Needle came out of the body ${at}`;
+  const region = event.region ? regionLabel(event.region) : 'tissue';
+  return event.kind === 'bone_contact' ? `Needle met bone (${region}) ${at}` : `Needle entered the ${region} ${at}`;
 }

@@ -2,16 +2,30 @@
 // Where the hand wants the needle. Follows the simulation until somebody pushes, and after a jump (reset, another hole) again.
 import { samePatient, type Scene } from './scene';
 import type { Session } from './session';
-import type { Hand } from './wire';
+import type { Frame, Hand } from './wire';
 
 export const SPEEDS = [5, 20, 50];         // [mm/s]
-const MOST_LEAD_S = 0.25;                  // a key that is held runs ahead of the needle by no more than this
-const STOP_WITHIN_S = 0.08;                // a frame's age and the way there
+const MOST_LEAD_S = 0.25;                  // as long as a key is held the needle is sent ahead by no more than this
+const TAP_MS = 1000 / 60;                  // a key that is only tapped moves it so long
 const SEND_EVERY_MS = 1000 / 60;
+
+/**
+ * Who says how deep the needle is: the simulation while nobody pushes; this page while somebody does; and after it was let
+ * go, the simulation again, once it has been seen to stand. Where it comes to rest only the server knows: what this page has
+ * seen last is some hundredths of a second old.
+ */
+type Depth = 'followed' | 'driven' | 'stopping';
 
 export class HandControl {
   readonly target: Hand = { depth: 0, speed: 20, roll: 0, tiltLeft: 0, tiltAnterior: 0 };
-  private active = false;
+  private depth: Depth = 'followed';
+  private turned = false;        // roll and tilt are this page's
+  private pace = 1;              // share of the speed that a half pressed trigger asks for
+  private aimed = 0;             // [mm] depth that was sent last: the needle is not beyond it
+  private pending = 0;           // [mm] to be pushed once it stands
+  private stoodAt = NaN;         // [mm] in the last frame since it was let go
+  private heldAt = 0;
+  private stopTimer = 0;
   private changed = false;
   private sentAt = 0;
   private timer = 0;
@@ -19,7 +33,7 @@ export class HandControl {
   private readonly listeners: (() => void)[] = [];
 
   constructor(private readonly session: Session) {
-    session.on('frame', () => this.active || this.follow());
+    session.on('frame', (frame) => this.follow(frame));
     session.on('restart', () => this.rest());
     session.on('event', (e) => e.kind === 'started' && this.rest());
     session.on('status', () => session.steering || this.rest());
@@ -37,8 +51,11 @@ export class HandControl {
 
   /** The needle jumps: what the hand wanted before counts no longer. */
   rest(): void {
-    this.active = false;
+    this.depth = 'followed';
+    this.turned = false;
     this.changed = false;
+    this.pending = 0;
+    clearTimeout(this.stopTimer);
   }
 
   setSpeed(speed: number): void {
@@ -47,43 +64,55 @@ export class HandControl {
   }
 
   setDepth(depth: number): void {
-    if (!this.begin()) return;
-    const limits = this.session.scene?.limits;
-    this.target.depth = limits ? clamp(depth, -limits.behind_mm, limits.depth_mm) : depth;
-    this.send();
+    if (this.begin()) this.drive(depth, 1);
   }
 
   /** Pushes [mm], pulls when negative. */
   push(mm: number): void {
-    if (this.begin()) this.setDepth(this.target.depth + mm);
+    if (!this.begin()) return;
+    if (this.depth === 'stopping') this.pending += mm;
+    else this.drive(this.target.depth + mm, 1);
   }
 
-  /** Pushes as long as a key is held. @param direction −1 … 1 @param seconds since the last call */
-  hold(direction: number, seconds: number): void {
-    const frame = this.session.frame;
+  /** Pushes as long as it is called, at every repaint, until stop(). @param direction −1 … 1, how fast */
+  hold(direction: number): void {
+    const { frame } = this.session;
     if (!this.begin() || !frame) return;
-    const lead = this.target.speed * MOST_LEAD_S;
-    const wanted = this.target.depth + direction * this.target.speed * seconds;
-    this.setDepth(direction > 0 ? Math.max(this.target.depth, Math.min(wanted, frame.depth + lead))
-                                : Math.min(this.target.depth, Math.max(wanted, frame.depth - lead)));
+    clearTimeout(this.stopTimer);
+    if (this.heldAt === 0) this.heldAt = performance.now();
+    const ahead = frame.depth + direction * this.target.speed * MOST_LEAD_S;
+    const before = this.depth === 'followed' ? frame.depth : this.aimed;
+    this.drive(direction > 0 ? Math.max(before, ahead) : Math.min(before, ahead), Math.abs(direction));
   }
 
-  /** A key that was held is let go: the needle stops at once, but does not turn back to where the last frame saw it. */
+  /** Let go, the needle stops where it is: it is told to stay, not to go where this page has seen it. */
   stop(): void {
-    const frame = this.session.frame;
-    if (!this.active || !frame || frame.paused) return;
-    const room = this.target.speed * STOP_WITHIN_S;
-    this.setDepth(clamp(this.target.depth, frame.depth - room, frame.depth + room));
+    clearTimeout(this.stopTimer);
+    const tapped = this.heldAt + TAP_MS - performance.now();
+    if (this.heldAt > 0 && tapped > 0) {
+      this.stopTimer = window.setTimeout(() => this.stop(), tapped);
+      return;
+    }
+    this.heldAt = 0;
+    if (this.depth !== 'driven') return;
+    this.depth = 'stopping';
+    this.stoodAt = NaN;
+    this.target.depth = this.session.frame?.depth ?? this.target.depth;
+    this.changed = true;
+    this.flush();
+    this.tell();
   }
 
   roll(degrees: number): void {
     if (!this.begin()) return;
+    this.turned = true;
     this.target.roll += degrees;
     this.send();
   }
 
   tilt(left: number, anterior: number): void {
     if (!this.begin()) return;
+    this.turned = true;
     const most = this.session.scene?.limits.tilt_deg ?? 10;
     this.target.tiltLeft = clamp(this.target.tiltLeft + left, -most, most);
     this.target.tiltAnterior = clamp(this.target.tiltAnterior + anterior, -most, most);
@@ -92,6 +121,7 @@ export class HandControl {
 
   straighten(): void {
     if (!this.begin()) return;
+    this.turned = true;
     this.target.tiltLeft = this.target.tiltAnterior = 0;
     this.send();
   }
@@ -107,15 +137,29 @@ export class HandControl {
       this.toldAt = Date.now();
       return false;
     }
-    this.active = true;
     return true;
   }
 
-  private follow(): void {
-    const { frame } = this.session;
-    if (!frame) return;
+  private drive(depth: number, pace: number): void {
+    const limits = this.session.scene?.limits;
+    this.depth = 'driven';
+    this.pace = pace;
+    this.target.depth = this.aimed = limits ? clamp(depth, -limits.behind_mm, limits.depth_mm) : depth;
+    this.send();
+  }
+
+  private follow(frame: Frame): void {
+    if (!this.turned) [this.target.roll, this.target.tiltLeft, this.target.tiltAnterior] = [frame.hand[0], frame.hand[1], frame.hand[2]];
+    if (this.depth === 'driven') return;
     this.target.depth = frame.depth;
-    [this.target.roll, this.target.tiltLeft, this.target.tiltAnterior] = [frame.hand[0], frame.hand[1], frame.hand[2]];
+    if (this.depth === 'followed') return;
+    const stands = frame.paused || frame.depth === this.stoodAt;
+    this.stoodAt = frame.depth;
+    if (!stands) return;
+    this.depth = 'followed';
+    const pushed = this.pending;
+    this.pending = 0;
+    if (pushed !== 0) this.push(pushed);
   }
 
   private tell(): void {
@@ -127,13 +171,17 @@ export class HandControl {
     this.tell();
     if (this.timer) return;
     const wait = Math.max(0, this.sentAt + SEND_EVERY_MS - performance.now());
-    this.timer = window.setTimeout(() => {
-      this.timer = 0;
-      if (!this.changed) return;
-      this.changed = false;
-      this.sentAt = performance.now();
-      this.session.sendHand(this.target);
-    }, wait);
+    this.timer = window.setTimeout(() => this.flush(), wait);
+  }
+
+  /** A speed of 0 says: stay as deep as you are. */
+  private flush(): void {
+    clearTimeout(this.timer);
+    this.timer = 0;
+    if (!this.changed) return;
+    this.changed = false;
+    this.sentAt = performance.now();
+    this.session.sendHand({ ...this.target, speed: this.depth === 'driven' ? this.pace * this.target.speed : 0 });
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 export { INK, PALE, SOFT } from '../../shared/plot_style';
 export const ACCENT = '#0072b2';
+export const HARM = '#b3261e';
 export const WARN = '#b34700';

@@ -2,7 +2,7 @@
 // The case as the server describes it. Lengths in mm, LPS.
 
 export interface Region {
-  name: string; label: string; color: string; opacity: number; target: boolean; background: boolean; volume_cc: number;
+  name: string; label: string; color: string; opacity: number; target: boolean; background: boolean; spared?: boolean; volume_cc: number;
 }
 export interface Patch { inside: number; outside: number; first: number; count: number }  // outside −1: no tissue
 export interface Template { pitch_mm: number; columns: string[]; rows: string[]; centre_mm: [number, number]; z_mm: number }
@@ -89,7 +89,7 @@ export function focusBounds(scene: Scene, list: Hole[]): Bounds {
   return bounds;
 }
 
-/** [low, high] of x, y, z over the corners of regions that are not background, and the places where needles enter. */
+/** [low, high] of x, y, z over the corners of regions that are not background, and of tips as far back as they can be drawn. */
 export function organBounds(scene: Scene): Bounds {
   const bounds = nothing();
   const all = scene.regions.every((r) => r.background);
@@ -97,12 +97,15 @@ export function organBounds(scene: Scene): Bounds {
     if (region.background && !all) return;
     for (const node of regionTriangles(scene, i)) include(bounds, scene.points, 3 * node, 0);
   });
-  for (const insertion of scene.insertions) include(bounds, insertion.entry_mm, 0, 0);
+  for (const insertion of scene.insertions) {
+    include(bounds, insertion.entry_mm, 0, 0);
+    include(bounds, insertion.entry_mm.map((x, k) => x - scene.limits.behind_mm * insertion.direction[k]), 0, 2);
+  }
   return bounds;
 }
 
-/** Whether two scenes show the same patient: a hole that was not planned brings the scene again. */
+/** Whether two scenes show the same patient: another hole brings the scene again, drawn finer along its way. */
 export function samePatient(a: Scene, b: Scene): boolean {
-  return a.case === b.case && a.name === b.name && a.points.length === b.points.length
+  return a.case === b.case && a.name === b.name && a.mesh.nodes === b.mesh.nodes && a.mesh.tets === b.mesh.tets
     && a.regions.length === b.regions.length && a.regions.every((r, i) => r.name === b.regions[i].name);
 }

@@ -44,7 +44,7 @@ export interface Frame {
 export interface Status {
   state: 'loading' | 'ready' | 'failed';
   stage?: string; fraction?: number | null; message?: string; cure?: string;
-  mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string;
+  mode?: 'live' | 'replay'; paused?: boolean; insertion?: string; hole?: string; inside?: string[];
   you_hold?: boolean; held?: boolean; asking?: number; you_ask?: boolean; viewers?: number; device?: string; device_problem?: string;
   recording?: { name: string; seconds: number; problem?: string; warning?: string } | null;
   replay?: { name: string; time_s: number; duration_s: number; playing: boolean; rate: number } | null;

@@ -4,7 +4,8 @@
 import uPlot from 'uplot';
 import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import { axis, CURVES, fontSize, INK, lineScale } from '../../../shared/plot_style';
-import { eventLabel } from '../event_names';
+import { eventLabel, isHarm } from '../event_names';
+import { HARM } from '../palette';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
 import { extremes, ForceRing, type ForceName } from './force_ring';
@@ -70,7 +71,7 @@ export class ForceChart {
 
   private placeEvents(): void {
     this.events = this.session.events.map((event) => ({
-      event: { label: eventLabel(event) },
+      event: { label: eventLabel(event), color: isHarm(event) ? HARM : undefined },
       x: this.byDepth ? event.depth_mm : event.time_s,
       y: event.force_N,
     }));
@@ -127,7 +128,7 @@ export class ForceChart {
       legend: { show: false },
       cursor: { show: false },
       scales: { x: { time: false, range: () => this.range.x }, y: { range: () => this.range.y } },
-      axes: [axis(this.byDepth ? 'Depth of the base [mm]' : 'Simulated time [s]', size * 1.9), { ...axis('Force [N]', size * 3), space: 1.3 * size }],
+      axes: [axis(this.byDepth ? 'Depth of the base [mm]' : 'Simulated time [s]', size * 1.9), { ...axis('Force [N]', size * 3.6), space: 1.3 * size }],
       series: [{}, { facets: [{ scale: 'x', auto: false }, { scale: 'y', auto: false }], paths: () => null }],
       hooks: { draw: [(u: uPlot) => this.drawCurves(u), (u: uPlot) => drawEvents(u, this.inRange())] },
     } as unknown as uPlot.Options, [null, [[0, 1], [0, 1]]] as unknown as uPlot.AlignedData, this.box);

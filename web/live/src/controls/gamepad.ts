@@ -26,7 +26,7 @@ export function bindGamepad(hand: HandControl): void {
     const pressed = (i: number) => pad.buttons[i]?.value ?? 0;
     const push = -axis(pad, 1) + pressed(7) - pressed(6);
     if (Math.abs(push) > REST) {
-      hand.hold(Math.max(-1, Math.min(1, push)), seconds);
+      hand.hold(Math.max(-1, Math.min(1, push)));
       pushing = true;
     } else if (pushing) {
       hand.stop();

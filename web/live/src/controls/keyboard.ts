@@ -24,8 +24,8 @@ const LONGEST_TURN_S = 0.25;  // where pictures are slow
 
 type Held = (hand: HandControl, seconds: number) => void;
 const HELD: Record<string, Held> = {
-  KeyW: (hand, s) => hand.hold(1, s), ArrowUp: (hand, s) => hand.hold(1, s),
-  KeyS: (hand, s) => hand.hold(-1, s), ArrowDown: (hand, s) => hand.hold(-1, s),
+  KeyW: (hand) => hand.hold(1), ArrowUp: (hand) => hand.hold(1),
+  KeyS: (hand) => hand.hold(-1), ArrowDown: (hand) => hand.hold(-1),
   KeyQ: (hand, s) => hand.roll(-ROLL_DEG_PER_S * s), KeyE: (hand, s) => hand.roll(ROLL_DEG_PER_S * s),
   KeyA: (hand, s) => hand.tilt(-TILT_DEG_PER_S * s, 0), KeyD: (hand, s) => hand.tilt(TILT_DEG_PER_S * s, 0),
   'Shift+ArrowLeft': (hand, s) => hand.tilt(-TILT_DEG_PER_S * s, 0), 'Shift+ArrowRight': (hand, s) => hand.tilt(TILT_DEG_PER_S * s, 0),

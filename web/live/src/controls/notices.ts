@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Why something was not done, and what to do instead; gone after a while.
 import { button, element } from '../../../shared/dom';
-import { eventLabel } from '../event_names';
+import { eventLabel, harmSentence, isHarm } from '../event_names';
 import type { Session } from '../session';
 
 const SHOWN_MS = 9000;
@@ -13,7 +13,8 @@ export function speakEvents(root: HTMLElement, session: Session): void {
   spoken.setAttribute('aria-live', 'polite');
   root.append(spoken);
   session.on('event', (event) => {
-    spoken.textContent = `${eventLabel(event)}, ${event.depth_mm.toFixed(0)} mm, ${event.force_N.toFixed(1)} N`;
+    if (isHarm(event)) spoken.textContent = harmSentence(event);
+    else spoken.textContent = `${eventLabel(event)}, ${event.depth_mm.toFixed(0)} mm, ${event.force_N.toFixed(1)} N`;
   });
 }
 

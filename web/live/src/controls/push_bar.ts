@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The needle's depth as a long track with a handle to drag, marks of what happened and what is planned, and two buttons
 // that push and pull as long as they are held.
-import { ACCENT, INK, SOFT } from '../palette';
+import { ACCENT, HARM, INK, SOFT } from '../palette';
 import { element } from '../../../shared/dom';
 import { CanvasBox } from '../canvas_box';
-import { eventLabel } from '../event_names';
+import { eventLabel, isHarm } from '../event_names';
 import { clamp, type HandControl } from '../hand';
 import type { Session } from '../session';
 import { wheelNotches } from '../wheel';
 
-const MARKED = new Set(['skin_contact', 'puncture', 'bone_contact']);
+const MARKED = new Set(['skin_contact', 'puncture']);
 
 export class PushBar {
   private readonly track = element('div', 'track');
@@ -55,19 +55,16 @@ export class PushBar {
     b.type = 'button';
     b.disabled = true;
     this.buttons.push(b);
-    let last = 0;
     let held = false;
-    const turn = (now: number) => {
+    const turn = () => {
       if (!held) return;
-      this.hand.hold(direction, Math.min(0.25, (now - last) / 1000));
-      last = now;
+      this.hand.hold(direction);
       requestAnimationFrame(turn);
     };
     const begin = () => {
       if (held) return;
       held = true;
-      last = performance.now();
-      requestAnimationFrame(turn);
+      turn();
     };
     const end = () => {
       if (!held) return;
@@ -93,7 +90,7 @@ export class PushBar {
     if (!scene) return [-10, 100];
     const planned = Math.max(60, ...scene.insertions.map((i) => i.depth_mm));
     const depth = this.session.frame?.depth ?? 0;
-    return [-Math.min(10, scene.limits.behind_mm), Math.min(scene.limits.depth_mm, Math.max(1.25 * planned, depth + 10))];
+    return [Math.max(-scene.limits.behind_mm, Math.min(-10, depth - 5)), Math.min(scene.limits.depth_mm, Math.max(1.25 * planned, depth + 10))];
   }
 
   private toPixels(depth: number): number {
@@ -164,7 +161,9 @@ export class PushBar {
     this.labelled.length = 0;
     if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
     for (const event of this.session.events) {
-      if (MARKED.has(event.kind) && event.depth_mm <= high) this.flag(event.depth_mm, middle, eventLabel(event), INK, text);
+      if (event.depth_mm > high) continue;
+      if (isHarm(event)) this.flag(event.depth_mm, middle, eventLabel(event), HARM, text);
+      else if (MARKED.has(event.kind)) this.flag(event.depth_mm, middle, eventLabel(event), INK, text);
     }
     bar(low, frame.depth, steering ? ACCENT : SOFT, 0.34 * text);
     const target = this.hand.target.depth;

@@ -18,6 +18,7 @@ interface Section {
   before: ContourCutter;  // undeformed
 }
 
+const TIP_ROOM_MM = 3;
 const HIT = new Float32Array(3);
 const TIP = new Float32Array(3);
 
@@ -27,7 +28,8 @@ export class SectionView {
   private sections: Section[] = [];
   private holes: Hole[] = [];
   private cutBefore = NaN;  // place of the plane at which `before` was cut
-  private window = { u: 0, v: 0, width: 100, height: 100 };  // [mm] middle and size of what must be seen
+  private window = { u: 0, v: 0, width: 100, height: 100 };  // [mm] middle and size of what must be seen now
+  private focus = this.window;  // … wherever the needle is
   private pixels = 1;       // CSS px per mm
   readonly hidden = new Set<number>();
 
@@ -87,13 +89,26 @@ export class SectionView {
   private setWindow(scene: Scene): void {
     const [x, y, z] = focusBounds(scene, this.holes);
     const across: [number, number] = this.plane.axis === 2 ? x : [-z[1], -z[0]];
-    this.window = { u: (across[0] + across[1]) / 2, v: (y[0] + y[1]) / 2, width: across[1] - across[0], height: y[1] - y[0] };
+    this.focus = { u: (across[0] + across[1]) / 2, v: (y[0] + y[1]) / 2, width: across[1] - across[0], height: y[1] - y[0] };
+  }
+
+  /** A needle that is far out, or deep in: the picture takes in as much more as its tip needs. */
+  private showTip(): void {
+    this.window = this.focus;
+    const { frame } = this.session;
+    if (!frame || this.plane.axis === 2) return;
+    const [, y, z] = tipOf(frame, TIP);
+    const { u, v, width, height } = this.focus;
+    const [left, right] = [Math.min(u - width / 2, -z - TIP_ROOM_MM), Math.max(u + width / 2, -z + TIP_ROOM_MM)];
+    const [top, bottom] = [Math.min(v - height / 2, y - TIP_ROOM_MM), Math.max(v + height / 2, y + TIP_ROOM_MM)];
+    this.window = { u: (left + right) / 2, v: (top + bottom) / 2, width: right - left, height: bottom - top };
   }
 
   private draw(): void {
     const { anatomy, box, plane } = this;
     if (!anatomy) return;
     const edge = 2.4 * box.text;
+    this.showTip();
     this.pixels = Math.max(0.1, Math.min((box.width - 2 * edge) / this.window.width, (box.height - 2 * edge) / this.window.height));
     const { scene } = anatomy;
     if (this.cutBefore !== plane.value) {

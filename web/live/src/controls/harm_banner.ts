@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A needle where it harms: large and in red while it is there, and a line that stays for each time it came there.
+import { element } from '../../../shared/dom';
+import { harmSentence, isHarm, regionLabel } from '../event_names';
+import type { Session } from '../session';
+import { TIP_STATES } from '../wire';
+
+const MOST = 6;  // lines; the oldest go first
+
+export class HarmBanner {
+  private readonly now = element('p', 'harm-now');
+  private readonly list = element('ul', 'harm-list');
+
+  constructor(root: HTMLElement, private readonly session: Session) {
+    this.now.setAttribute('role', 'alert');
+    this.list.setAttribute('aria-label', 'What the needle harmed');
+    root.append(this.now, this.list);
+    for (const topic of ['status', 'frame', 'scene', 'restart'] as const) session.on(topic, () => this.write());
+    for (const topic of ['event', 'restart', 'scene'] as const) session.on(topic, () => this.writeList());
+    this.write();
+    this.writeList();
+  }
+
+  private write(): void {
+    const words = harmNow(this.session);
+    if (this.now.textContent !== words) this.now.textContent = words;
+    this.now.hidden = words === '';
+  }
+
+  private writeList(): void {
+    const harms = this.session.events.filter(isHarm).slice(-MOST);
+    this.list.replaceChildren(...harms.map((event) => element('li', '', harmSentence(event))));
+    this.list.hidden = harms.length === 0;
+  }
+}
+
+/** What is harmed at this moment, in words; empty: nothing. */
+export function harmNow({ status, scene, frame }: Pick<Session, 'status' | 'scene' | 'frame'>): string {
+  const spared = new Set(scene?.regions.filter((r) => r.spared).map((r) => r.name));
+  const inside = status?.inside ?? [];
+  const harmed = inside.filter((name) => spared.has(name));
+  if (harmed.length > 0) {
+    const who = !harmed.includes(inside[0]) ? 'The needle’s shaft' : harmed.length === 1 ? 'The needle’s tip' : 'The needle';
+    return `${who} is in the ${harmed.map(regionLabel).join(' and the ')}`;
+  }
+  const tip = frame ? TIP_STATES[frame.tipState] : '';
+  return tip === 'on bone' ? 'The needle’s tip is on bone' : tip === 'through' ? 'The needle has come out of the body' : '';
+}
