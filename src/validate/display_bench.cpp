@@ -5,6 +5,7 @@
 #include "stylet/geom/slice.hpp"
 #include "stylet/reproduce/measure.hpp"
 #include "stylet/sim/display_field.hpp"
+#include "stylet/sim/display_near_field.hpp"
 #include "stylet/sim/simulation.hpp"
 #include "stylet/validate/context.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr int kContacts = 40;
 constexpr double kFrames = 60;
 constexpr double kWay_mm = 90.0;
+constexpr double kBeside_mm = 10.0;  ///< the planned way, as far as surfaces are drawn finer
 constexpr double kDisplayedSpeed_mm_per_s = 20.0;
 constexpr double kDt_s = 1e-3;
 constexpr Index kNodalPressureFits = 50000;  ///< nodes; above, its factor is too large for most machines
@@ -70,14 +72,32 @@ class CoarseMesh {
   std::vector<MaterialPoint> at_;  ///< (fine nodes)
 };
 
+/// Points of all surfaces, finer along the needle's way.
+std::vector<SurfacePoint> fine_surface(const Model& model, std::span<const Index> nodes) {
+  std::vector<std::array<Index, 3>> triangles;
+  for (const auto* faces : {&model.topology().boundary, &model.topology().interfaces}) {
+    for (const Face& face : *faces) triangles.push_back(face.nodes);
+  }
+  const PlannedInsertion& plan = model.insertions().front();
+  const Line way{plan.entry - kBeside_mm * plan.direction, plan.entry + (plan.depth_mm + kBeside_mm) * plan.direction};
+  std::vector<int> patch(triangles.size(), 0);
+  FineSurface fine = refine_surface(model.mesh().nodes, std::move(triangles), std::move(patch), std::span(&way, 1));
+  std::vector<SurfacePoint> points;
+  for (const Index node : nodes) points.push_back(fine.points[static_cast<std::size_t>(node)]);
+  points.insert(points.end(), fine.points.begin() + model.mesh().node_count(), fine.points.end());
+  return points;
+}
+
 /// All that one display needs, and what its frames cost.
 class Display {
  public:
-  explicit Display(const DisplayField& field)
+  Display(const std::shared_ptr<const Model>& model, const DisplayField& field)
       : field_(field),
         mesh_(field.model().mesh()),
         slicer_(mesh_),
         load_(field.make_load()),
+        fine_(fine_surface(*model, field.surface())),
+        near_(model, fine_),
         u_(3, mesh_.node_count()),
         x_(3, 2 * mesh_.tet_count()) {}
 
@@ -91,6 +111,7 @@ class Display {
     };
     timed(surface_us_, [&] { show_surface(); });
     timed(slice_us_, [&] { show_slice(origin, normal); });
+    near_us_.push_back(time_near_field(forces));
     timed(both_us_, [&] {
       show_surface();
       show_slice(origin, normal);
@@ -113,10 +134,19 @@ class Display {
     row.slice_triangles = triangles_;
     row.surface_us = quantiles(std::move(surface_us_));
     row.slice_us = quantiles(std::move(slice_us_));
+    row.fine_points = static_cast<int>(fine_.size());
+    row.near_us = quantiles(std::move(near_us_));
     row.both_us = quantiles(std::move(both_us_));
   }
 
  private:
+  double time_near_field(std::span<const TissueForce> forces) {
+    const double started = reproduce::thread_cpu_s();
+    near_.set(forces);
+    near_.add(u_fine_);
+    return 1e6 * (reproduce::thread_cpu_s() - started);
+  }
+
   void show_surface() {
     const auto count = static_cast<Eigen::Index>(field_.surface().size());
     auto u = u_.leftCols(count);
@@ -137,11 +167,15 @@ class Display {
   const TetMesh& mesh_;
   Slicer slicer_;
   DisplayField::Load load_;
+  std::vector<SurfacePoint> fine_;
+  DisplayNearField near_;
+  Eigen::Matrix3Xf u_fine_ = Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(fine_.size()));
   Eigen::Matrix3Xf u_;
   Eigen::Matrix3Xf x_;
   std::vector<double> surface_us_;
   std::vector<double> slice_us_;
   std::vector<double> both_us_;
+  std::vector<double> near_us_;
   int triangles_ = 0;
 };
 
@@ -157,7 +191,7 @@ DisplayRow measure(const std::shared_ptr<const Model>& model, const DisplayField
   row.prepare_s = statistics.seconds;
   row.megabytes = statistics.megabytes;
 
-  Display display(field);
+  Display display(model, field);
   Simulation simulation(model);
   const PlannedInsertion& plan = model->insertions().front();
   Pose base = plan.motion.at(0.0);

@@ -82,6 +82,8 @@ class DisplayBench(InFolder):
             self.assertGreater(row["surface_us"]["p50"], 0)
             self.assertGreater(row["slice_us"]["p50"], 0)
             self.assertGreater(row["both_us"]["p50"], 0)
+            self.assertGreater(row["near_us"]["p50"], 0)
+            self.assertGreater(row["fine_points"], row["surface_nodes"])
             self.assertGreater(row["largest_mm"], 0.1)
             self.assertLess(row["error_mm"], row["stated_error_mm"] + 1e-4 * row["largest_mm"])
             self.assertLessEqual(row["columns"], row["zone_dofs"])

@@ -22,6 +22,8 @@ struct DisplayRow {
   StepTimes surface_us;     ///< thread CPU time: forces put together, displacement and position of every surface node
   StepTimes slice_us;       ///< forces put together, cut, displacement, positions
   StepTimes both_us;        ///< surfaces and slice of the same forces
+  int fine_points = 0;      ///< of the surfaces that are drawn finer along the needle's way, those of the mesh included
+  StepTimes near_us;        ///< the needle's near field at these, of a display that follows the needle
   double largest_mm = 0.0;  ///< displacement of a node in any frame
   double error_mm = 0.0;    ///< largest difference of a node from K⁻¹ f by the factor
   double stated_error_mm = 0.0;  ///< largest of what was stated for the forces of a frame

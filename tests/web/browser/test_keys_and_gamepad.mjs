@@ -2,7 +2,7 @@
 // The needle moved without a mouse: by keys, and by a gamepad.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
-import { inOrder, keepPicture, openBrowser, openVisitor, readout, skipWithoutChromium, until, untilReadout, waitUntilReady } from './browser.mjs';
+import { inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, until, untilReadout, waitUntilReady } from './browser.mjs';
 import { makeFolder, SMALL, startServer } from './server.mjs';
 
 skipWithoutChromium();
@@ -35,25 +35,32 @@ after(async () => {
 });
 
 const pose = () => page.locator('.pose').textContent();
-/** Number of steps taken, and whether paused, as the newest frame has it. */
+/** Number of steps taken, and whether paused, as the newest frame has it; and all depths. */
 const newest = { steps: 0, paused: false };
+const depths = [];
 function watchFrames(p) {
   p.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => {
     if (payload.readUInt32LE(0) !== FRAME) return;
     newest.paused = (payload.readUInt32LE(16) & 1) !== 0;
     newest.steps = payload.readUInt32LE(36);
+    depths.push(payload.readFloatLE(44));
   }));
 }
 
 test('arrow keys push and pull as long as they are held', async () => {
+  const heard = await listenToEvents(page);
   const start = await readout(page, 'Depth');
   await page.keyboard.down('ArrowUp');
   const deep = await untilReadout(page, 'Depth', (depth) => depth > 6);
   await page.keyboard.up('ArrowUp');
   assert.ok(deep > start);
-  // Let go, it stops: the same depth twice.
+  // Let go, it stops: the same depth twice, and the base has not been drawn back.
   let last = NaN;
   await until('rest', () => readout(page, 'Depth'), (depth) => depth === last || ((last = depth), false));
+  await page.waitForTimeout(500);
+  const back = depths.reduce((most, depth, i) => Math.max(most, i > 0 ? depths[i - 1] - depth : 0), 0);
+  assert.equal(back, 0, `the base was drawn back by ${back} mm`);
+  assert.deepEqual((await heard()).filter((text) => text.startsWith('Retraction')), []);
   await page.keyboard.down('s');
   await untilReadout(page, 'Depth', (depth) => depth < last - 3);
   await page.keyboard.up('s');
