@@ -15,14 +15,14 @@ namespace {
 constexpr double kSmallestShare = 0.005;  ///< a line's point nearer to an edge than this share of the triangle is on it
 constexpr double kOn = 1e-9;              ///< … and so near outside is still inside
 
-double distance_to(const Line& line, const Vec3& x) {
+double distance_to(const LineSegment& line, const Vec3& x) {
   const Vec3 way = line[1] - line[0];
   const double share = std::clamp((x - line[0]).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
   return (x - line[0] - share * way).norm();
 }
 
 /// Barycentric weights of where a line goes through a triangle.
-std::optional<Vec3> crossing(const Line& line, const Vec3& a, const Vec3& b, const Vec3& c) {
+std::optional<Vec3> crossing(const LineSegment& line, const Vec3& a, const Vec3& b, const Vec3& c) {
   Mat3 system;
   system << b - a, c - a, line[0] - line[1];
   const double volume = system.determinant();
@@ -36,14 +36,14 @@ std::optional<Vec3> crossing(const Line& line, const Vec3& a, const Vec3& b, con
 /// Splits edges of triangles, all triangles at an edge at once, so that no gap opens.
 class Refiner {
  public:
-  Refiner(FineSurface& surface, std::span<const Line> lines, const Fineness& fineness)
+  Refiner(FineSurface& surface, std::span<const LineSegment> lines, const Fineness& fineness)
       : s_(surface), lines_(lines), fineness_(fineness) {
     for (std::size_t t = 0; t < s_.triangles.size(); ++t) add_edges(t);
   }
 
   /// A point wherever a line goes through.
   void pierce() {
-    for (const Line& line : lines_) {
+    for (const LineSegment& line : lines_) {
       for (std::size_t t = 0; t < s_.triangles.size(); ++t) {
         const auto [a, b, c] = s_.triangles[t];
         if (const auto weights = crossing(line, at(a), at(b), at(c))) pierce(t, *weights);
@@ -83,7 +83,7 @@ class Refiner {
   [[nodiscard]] double wanted(std::uint64_t edge) const {
     const auto [a, b] = ends(edge);
     double distance = std::numeric_limits<double>::infinity();
-    for (const Line& line : lines_) {
+    for (const LineSegment& line : lines_) {
       for (const Vec3& x : {at(a), at(b), Vec3(0.5 * (at(a) + at(b)))})
         distance = std::min(distance, distance_to(line, x));
     }
@@ -187,7 +187,7 @@ class Refiner {
   }
 
   FineSurface& s_;
-  std::span<const Line> lines_;
+  std::span<const LineSegment> lines_;
   Fineness fineness_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> edges_;  ///< triangles at each
 };
@@ -195,7 +195,7 @@ class Refiner {
 }  // namespace
 
 FineSurface refine_surface(std::span<const Vec3> points, std::vector<std::array<Index, 3>> triangles,
-                           std::vector<int> patch, std::span<const Line> lines, const Fineness& fineness) {
+                           std::vector<int> patch, std::span<const LineSegment> lines, const Fineness& fineness) {
   FineSurface surface;
   surface.positions.assign(points.begin(), points.end());
   for (Index k = 0; k < static_cast<Index>(points.size()); ++k)

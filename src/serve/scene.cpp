@@ -76,7 +76,8 @@ struct Surfaces {
       patch.insert(patch.end(), own.size(), number++);
       own.clear();
     }
-    const Line line{way.entry - kBefore_mm * way.direction, way.entry + (way.depth_mm + kBeyond_mm) * way.direction};
+    const LineSegment line{way.entry - kBefore_mm * way.direction,
+                           way.entry + (way.depth_mm + kBeyond_mm) * way.direction};
     FineSurface fine = refine_surface(positions, std::move(triangles), std::move(patch), std::span(&line, 1));
     for (std::size_t t = 0; t < fine.triangles.size(); ++t)
       std::next(patches.begin(), fine.patch[t])->second.push_back(fine.triangles[t]);

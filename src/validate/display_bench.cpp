@@ -79,7 +79,8 @@ std::vector<SurfacePoint> fine_surface(const Model& model, std::span<const Index
     for (const Face& face : *faces) triangles.push_back(face.nodes);
   }
   const PlannedInsertion& plan = model.insertions().front();
-  const Line way{plan.entry - kBeside_mm * plan.direction, plan.entry + (plan.depth_mm + kBeside_mm) * plan.direction};
+  const LineSegment way{plan.entry - kBeside_mm * plan.direction,
+                        plan.entry + (plan.depth_mm + kBeside_mm) * plan.direction};
   std::vector<int> patch(triangles.size(), 0);
   FineSurface fine = refine_surface(model.mesh().nodes, std::move(triangles), std::move(patch), std::span(&way, 1));
   std::vector<SurfacePoint> points;

@@ -16,7 +16,7 @@ struct Surfaces {
   TetMesh mesh = box_mesh({0, 0, 0}, {30, 30, 30}, {4, 4, 4}, 0.15);
   std::vector<std::array<Index, 3>> triangles;
   std::vector<int> patch;
-  Line way{Vec3(13.1, 16.3, -5.0), Vec3(14.0, 15.0, 35.0)};
+  LineSegment way{Vec3(13.1, 16.3, -5.0), Vec3(14.0, 15.0, 35.0)};
 
   Surfaces() {
     assign_regions(mesh, {"body", "prostate"}, [](const Vec3& x) { return x.z() < 15.0 ? 0 : 1; });

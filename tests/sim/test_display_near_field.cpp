@@ -63,7 +63,7 @@ struct DrawnSkin {
     std::vector<std::array<Index, 3>> triangles;
     for (const Face& face : model.topology().boundary) triangles.push_back(face.nodes);
     const PlannedInsertion& plan = model.insertions()[0];
-    const Line way{plan.entry - 5.0 * plan.direction, plan.entry + 30.0 * plan.direction};
+    const LineSegment way{plan.entry - 5.0 * plan.direction, plan.entry + 30.0 * plan.direction};
     std::vector<int> patch(triangles.size(), 0);
     return refine_surface(model.mesh().nodes, std::move(triangles), std::move(patch), std::span(&way, 1));
   }

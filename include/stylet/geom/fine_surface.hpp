@@ -31,12 +31,12 @@ struct FineSurface {
   std::vector<int> patch;                       ///< (triangles) that of the triangle each is a piece of
 };
 
-using Line = std::array<Vec3, 2>;  ///< both ends [mm]
+using LineSegment = std::array<Vec3, 2>;  ///< both ends [mm]
 
 /// @param points [mm] corners of the triangles
 /// @param patch one number a triangle, any; a triangle's pieces have it as well
 /// @param lines where to refine; each gets a point wherever it goes through a triangle
 FineSurface refine_surface(std::span<const Vec3> points, std::vector<std::array<Index, 3>> triangles,
-                           std::vector<int> patch, std::span<const Line> lines, const Fineness& fineness = {});
+                           std::vector<int> patch, std::span<const LineSegment> lines, const Fineness& fineness = {});
 
 }  // namespace stylet
