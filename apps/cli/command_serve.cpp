@@ -45,7 +45,7 @@ fs::path models_beside_program() {
 /// before anything is opened.
 Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments, Console& console) {
   std::string title = file.stem().string();
-  if (!is_hdf5_file(file)) {
+  if (!is_hdf5_file(file) && !is_meant_as_model(file)) {
     const Result<Scenario> scenario = read_scenario(file, arguments.settings);
     if (!scenario) return scenario.error();
     title = scenario->name;
@@ -53,12 +53,13 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
   return serve::CaseSource{
       title,
       [file, &console, settings = arguments.settings, cache = ModelCache(arguments.models, {models_beside_program()})](
-          const Progress& progress) -> Result<std::shared_ptr<const Model>> {
+          const Progress& progress) -> Result<serve::LoadedCase> {
         auto prepared = prepared_model(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
         if (!prepared->not_kept.empty())
           console.warn("The model was not kept for the next time: " + prepared->not_kept);
-        return prepared->model;
+        for (const std::string& warning : prepared->warnings()) console.warn(warning);
+        return serve::LoadedCase{prepared->model, prepared->notes};
       }};
 }
 
@@ -95,7 +96,7 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
       const fs::path file = fs::absolute(input);
       if (file.filename() != "run.h5")
         return input_error(input, "a recording is a folder with a run.h5", "Name the run.h5 in its folder");
-      session.recordings = file.parent_path().parent_path();
+      session.archive = file.parent_path().parent_path();
       session.replay = file.parent_path().filename().string();
     } else {
       auto source = case_of(input, arguments, console);

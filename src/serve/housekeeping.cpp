@@ -23,8 +23,8 @@ struct Recording {
 
 bool holds_only_its_recording(const fs::path& folder) {
   std::error_code code;
-  for (const auto& entry : fs::directory_iterator(folder, code)) {
-    if (entry.path().filename() != "run.h5") return false;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    if (entry->path().filename() != "run.h5") return false;
   }
   return !code;
 }
@@ -33,12 +33,12 @@ bool holds_only_its_recording(const fs::path& folder) {
 std::vector<Recording> recordings_in(const fs::path& folder) {
   std::vector<Recording> found;
   std::error_code code;
-  for (const auto& entry : fs::directory_iterator(folder, code)) {
-    const fs::path file = entry.path() / "run.h5";
-    if (!entry.is_directory(code) || entry.is_symlink(code) || !Shelf::is_own_name(entry.path().filename().string()))
-      continue;
-    Recording recording{entry.path(), fs::last_write_time(file, code), fs::file_size(file, code)};
-    if (!code && holds_only_its_recording(entry.path())) found.push_back(std::move(recording));
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    const fs::path& of = entry->path();
+    std::error_code none;
+    if (!entry->is_directory(none) || entry->is_symlink(none) || !Shelf::is_own_name(of.filename().string())) continue;
+    Recording recording{of, fs::last_write_time(of / "run.h5", none), fs::file_size(of / "run.h5", none)};
+    if (!none && holds_only_its_recording(of)) found.push_back(std::move(recording));
   }
   std::sort(found.begin(), found.end(), [](const Recording& a, const Recording& b) {
     return std::pair(a.last_written, a.folder) < std::pair(b.last_written, b.folder);

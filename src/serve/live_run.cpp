@@ -77,12 +77,13 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   Scenario scenario = open.model->scenario();
   scenario.insertions = {scenario.insertions[insertion]};  // the one that this recording is of
   info.scenario_text = to_toml(scenario);
+  info.warnings = open.warnings();
   make_private_folder(folder.parent_path());
   make_private_folder(folder);
+  run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);  // before there is a recording to be removed
   auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh());
   if (recorder) {
     make_private(folder / "run.h5");
-    run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);
     run->recorder_ = std::move(*recorder);
   } else {
     run->problem_ = recorder.error().message();
@@ -111,7 +112,12 @@ void LiveRun::record_step(const std::optional<StepRecord>& step) {
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
     for (const StepSnapshot& step : std::span(step_room_).first(count)) {
-      record_step(rests_.add(step_record(step)));
+      const StepRecord taken = step_record(step);
+      if (!rests_.follows(taken)) {  // steps are missing in between: the rest before them ends there
+        record_step(rests_.end());
+        rests_ = {};
+      }
+      record_step(rests_.add(taken));
       const Sample sample{step.time_s,          step.base_depth_mm, step.force_axial_N, step.force_sagittal_N,
                           step.force_lateral_N, step.step_us,       step.tip_state,     step.flags};
       unsent_.push_back(sample);

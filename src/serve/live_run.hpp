@@ -25,9 +25,17 @@ namespace stylet::serve {
 /// A model that can be shown.
 struct OpenModel {
   std::shared_ptr<const Model> model;
+  std::vector<std::string> notes;             ///< LoadedCase::notes
   std::shared_ptr<const DisplayField> field;  ///< empty until it is prepared
   ScenePoints points;                         ///< of the scene
   std::size_t way = 0;                        ///< insertion along whose way the scene is drawn finer
+
+  /// All that a user should know: the notes, then the model's warnings.
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    std::vector<std::string> all = notes;
+    all.insert(all.end(), model->warnings().begin(), model->warnings().end());
+    return all;
+  }
 };
 
 /// One insertion at a page: the real-time loop from a needle before the skin until the next one starts, and its

@@ -13,7 +13,7 @@ std::string_view target(const HttpRequest& request);
 /// What the server has beside the live connection: the page, and the recordings.
 class Pages {
  public:
-  Pages(const Access& access, std::filesystem::path recordings) : access_(access), shelf_(std::move(recordings)) {}
+  Pages(const Access& access, Shelf shelf) : access_(access), shelf_(std::move(shelf)) {}
 
   [[nodiscard]] HttpResponse answer(const HttpRequest& request) const;
   [[nodiscard]] Access::Verdict verdict(const HttpRequest& request) const;

@@ -3,9 +3,14 @@
 
 #include "stylet/sim/recorded_steps.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace stylet::serve {
+
+bool Rests::follows(const StepRecord& step) const {
+  return !record_ || std::abs(step.time_s - last_.time_s - step.dt_s) < 0.5 * step.dt_s;
+}
 
 std::optional<StepRecord> Rests::add(const StepRecord& step) {
   last_ = step;

@@ -12,6 +12,8 @@ namespace stylet::serve {
 /// recording still takes every step that there was.
 class Rests {
  public:
+  /// Whether a step is the one after the last that was added, with none missing in between.
+  [[nodiscard]] bool follows(const StepRecord& step) const;
   /// @return the record to write, with the steps at rest before it; nothing: the step is one of those
   std::optional<StepRecord> add(const StepRecord& step);
   /// Nothing comes any more. @return the last step, if it is at rest

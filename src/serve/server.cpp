@@ -99,7 +99,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
         access(std::move(access_)),
         acceptor(io),
         retry(io),
-        pages(access, settings.session.recordings),
+        pages(access, Shelf(settings.session.recordings, settings.session.archive)),
         session(settings.session, *this) {}
 
   ServerSettings settings;

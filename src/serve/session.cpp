@@ -50,7 +50,7 @@ struct Session::Parts {
   Parts(SessionSettings settings_, Audience& audience_)
       : settings(std::move(settings_)),
         audience(audience_),
-        shelf(settings.recordings),
+        shelf(settings.recordings, settings.archive),
         room([this] { return look_after_room(); }, settings.say,
              std::chrono::milliseconds(std::lround(1e3 * settings.room_every_s))) {}
 
@@ -112,7 +112,7 @@ struct Session::Parts {
   }
 
   void open_model(const Request& request, std::size_t case_number,
-                  const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load);
+                  const std::function<Result<LoadedCase>(const Progress&)>& load);
   void show_model(std::size_t which);
   void take_field();
   void abandon_field();
@@ -283,7 +283,7 @@ void Session::Parts::place(const Request& request, std::size_t which) {
 void Session::Parts::show_model(std::size_t which) {
   const Model& model = *open.model;
   MadeScene made = make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions,
-                              model.warnings(), cases(), &model.insertions()[which]);
+                              open.warnings(), cases(), &model.insertions()[which]);
   open.points = std::move(made.points);
   open.way = which;
   audience.show(made.scene);
@@ -315,19 +315,19 @@ void Session::Parts::abandon_field() {
 
 /// Opens a model in the place of the one that is open; that one starts again if it cannot be had.
 void Session::Parts::open_model(const Request& request, std::size_t case_number,
-                                const std::function<Result<std::shared_ptr<const Model>>(const Progress&)>& load) {
+                                const std::function<Result<LoadedCase>(const Progress&)>& load) {
   end_live();
   status.state = SessionStatus::State::loading;
   status.fraction = -1.0;
   status.stage = "reading";
   say_status();
-  auto model = load(progress());
-  const Result<> usable = model ? DisplayField::check(**model) : Result<>(model.error());
+  auto loaded = load(progress());
+  const Result<> usable = loaded ? DisplayField::check(*loaded->model) : Result<>(loaded.error());
   if (usable.ok()) {
     abandon_field();
-    open = {.model = *model, .field = nullptr, .points = {}, .way = 0};
+    open = {.model = loaded->model, .notes = std::move(loaded->notes), .field = nullptr, .points = {}, .way = 0};
     if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
-      planned = {(*model)->scenario(), (*model)->insertions()};
+      planned = {open.model->scenario(), open.model->insertions()};
     open_case = case_number;
     show_model(0);
     field_maker = std::make_unique<FieldMaker>(
@@ -369,19 +369,25 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
   // What cannot be is refused before the needle that is there is taken away.
   if (auto good = check_scenario(scenario, where); !good) return refuse(request, good.error());
   if (auto good = plan_insertion(*open.model, plan, where); !good) return refuse(request, good.error());
-  open_model(request, open_case, [this, &scenario, &where](const Progress& progress) {
-    return Model::compile(scenario, open.model->mesh(), where, {}, progress);
+  open_model(request, open_case, [this, &scenario, &where](const Progress& progress) -> Result<LoadedCase> {
+    auto model = Model::compile(scenario, open.model->mesh(), where, {}, progress);
+    if (!model) return model.error();
+    return LoadedCase{*model, open.notes};
   });
 }
 
 Result<> Session::Parts::start_replay(const std::string& name) {
   FolderLock in_use(shelf.folder(name), FolderLock::Kind::shared);  // before the live run lets go of it
+  if (live) live->runner().pause();  // nobody takes its steps away while a long recording is read
   auto recording = shelf.read(name);
-  if (!recording) return recording.error();
-  auto scenario = parse_scenario(recording->info.scenario_text, name);
-  if (!scenario) return scenario.error();
-  if (recording->frames.empty() && recording->steps.empty())
-    return failure(name, "the recording ends before its first step", "Choose another one");
+  auto scenario = recording ? parse_scenario(recording->info.scenario_text, name) : Result<Scenario>(recording.error());
+  Result<> shown = scenario ? Result<>(Ok{}) : Result<>(scenario.error());
+  if (shown && recording->frames.empty() && recording->steps.empty())
+    shown = failure(name, "the recording ends before its first step", "Choose another one");
+  if (!shown) {
+    if (live && !status.paused) live->runner().resume();
+    return shown;
+  }
   set_live_aside();
   PlannedInsertion plan;
   plan.entry = recording->info.entry_mm;

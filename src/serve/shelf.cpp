@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <ctime>
+#include <functional>
+#include <set>
 #include <string_view>
 
 namespace stylet::serve {
@@ -29,7 +31,7 @@ std::string tame(const std::string& name) {
 std::string Shelf::new_name(const std::string& of) const {
   const std::string base = fmt::format("{:%Y-%m-%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), tame(of));
   std::string name = base;
-  for (int k = 2; fs::exists(folder_ / name); ++k) name = fmt::format("{}-{}", base, k);
+  for (int k = 2; fs::exists(folder(name)); ++k) name = fmt::format("{}-{}", base, k);
   return name;
 }
 
@@ -40,14 +42,22 @@ bool Shelf::is_own_name(const std::string& name) {
                     [](char p, char c) { return p == '0' ? c >= '0' && c <= '9' : c == p; });
 }
 
-std::vector<std::string> Shelf::names() const {
-  std::vector<std::string> names;
+fs::path Shelf::folder(const std::string& name) const {
   std::error_code code;
-  for (const auto& entry : fs::directory_iterator(folder_, code)) {
-    if (fs::is_regular_file(entry.path() / "run.h5", code)) names.push_back(entry.path().filename().string());
+  const bool archived = !archive_.empty() && !fs::exists(folder_ / name, code) && fs::exists(archive_ / name, code);
+  return (archived ? archive_ : folder_) / name;
+}
+
+std::vector<std::string> Shelf::names() const {
+  std::set<std::string, std::greater<>> names;
+  for (const fs::path& folder : {folder_, archive_}) {
+    std::error_code code;
+    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+      std::error_code none;
+      if (fs::is_regular_file(entry->path() / "run.h5", none)) names.insert(entry->path().filename().string());
+    }
   }
-  std::sort(names.rbegin(), names.rend());
-  return names;
+  return {names.begin(), names.end()};
 }
 
 Result<RunRecording> Shelf::read(const std::string& name) const {
@@ -55,7 +65,7 @@ Result<RunRecording> Shelf::read(const std::string& name) const {
   if (std::find(all.begin(), all.end(), name) == all.end())
     return input_error(fmt::format("recording '{}'", name), fmt::format("not among those in {}", folder_.string()),
                        "Choose one of the list");
-  return read_recording(folder_ / name / "run.h5");
+  return read_recording(folder(name) / "run.h5");
 }
 
 }  // namespace stylet::serve

@@ -31,8 +31,10 @@ inline Scenario hole_scenario() {
 }
 
 inline serve::CaseSource box_case(const std::string& title) {
-  return {title, [](const Progress& progress) {
-            return Model::compile(hole_scenario(), box_patient(), "case.toml", {}, progress);
+  return {title, [](const Progress& progress) -> Result<serve::LoadedCase> {
+            auto model = Model::compile(hole_scenario(), box_patient(), "case.toml", {}, progress);
+            if (!model) return model.error();
+            return serve::LoadedCase{*model, {"the box has a note"}};
           }};
 }
 

@@ -26,7 +26,7 @@ class ServingProcess {
     pid_ = fork();
     if (pid_ == 0) {
       const Serving serving([&](serve::ServerSettings& s) {
-        s.session.cases = {{"box", [&](const Progress&) -> Result<std::shared_ptr<const Model>> { return model; }}};
+        s.session.cases = {{"box", [&](const Progress&) { return Result(serve::LoadedCase{model, {}}); }}};
       });
       const std::uint16_t port = serving.port();
       if (write(ends[1], &port, sizeof port) != sizeof port) _exit(1);

@@ -75,3 +75,19 @@ TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
   step.sticking = 1;
   EXPECT_TRUE(rests.add(step));
 }
+
+TEST(Rests, a_step_that_is_missing_ends_a_rest) {
+  Rests rests;
+  StepRecord step;
+  step.dt_s = 1e-3;
+  const auto at = [&](double time_s) {
+    step.time_s = time_s;
+    return step;
+  };
+  EXPECT_TRUE(rests.follows(at(0.5)));  // nothing came before it
+  EXPECT_TRUE(rests.add(at(0.001)));
+  EXPECT_TRUE(rests.follows(at(0.002)));
+  EXPECT_FALSE(rests.add(at(0.002)));
+  EXPECT_TRUE(rests.follows(at(0.003)));
+  EXPECT_FALSE(rests.follows(at(0.004)));
+}

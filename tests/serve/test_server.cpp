@@ -494,7 +494,7 @@ TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
 
   const Serving broken([](serve::ServerSettings& settings) {
     settings.session.cases[0].load = [](const Progress&) {
-      return Result<std::shared_ptr<const Model>>(input_error("case.toml", "it is broken", "Mend it"));
+      return Result<serve::LoadedCase>(input_error("case.toml", "it is broken", "Mend it"));
     };
   });
   LiveClient client(broken.port());

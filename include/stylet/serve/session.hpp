@@ -17,15 +17,22 @@ namespace stylet::serve {
 
 struct HandTarget;
 
+/// A case that has been opened.
+struct LoadedCase {
+  std::shared_ptr<const Model> model;
+  std::vector<std::string> notes;  ///< what was left out, added or put right on the way to the model
+};
+
 /// A case that can be opened: a scenario file, a saved model.
 struct CaseSource {
   std::string title;
-  std::function<Result<std::shared_ptr<const Model>>(const Progress&)> load;
+  std::function<Result<LoadedCase>(const Progress&)> load;
 };
 
 struct SessionSettings {
   std::vector<CaseSource> cases;              ///< the first is opened; there must be one unless something is replayed
   std::filesystem::path recordings;           ///< folder; every insertion makes a folder in it, with its run.h5
+  std::filesystem::path archive;              ///< another folder with recordings, which is only read; may be empty
   std::string replay;                         ///< name of a recording to start with; empty: live
   RunnerSettings runner;                      ///< keep_steps is set
   double pictures_per_s = 60.0;               ///< at most
