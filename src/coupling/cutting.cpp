@@ -81,12 +81,14 @@ double Insertion::Parts::force_at_break() const {
   return (hand_start + part * (hand_force() - hand_start)).dot(base.rotation * Vec3::UnitZ());
 }
 
-/// Whether a membrane bears more than it can, from a tip that points through it. To be asked of a balance only: what
-/// breaks does not heal, and the forces of an iterate on the way to a balance are no one's.
+/// Whether a membrane bears more than it can. To be asked of a balance only: what breaks does not heal, and the forces
+/// of an iterate on the way to a balance are no one's. A tip that has come to lie flat to the skin does not enter, as
+/// one that meets it flat does not.
 bool Insertion::Parts::membrane_gives() const {
   if (!tip_holds() || !tip.at_membrane) return false;
   const Vec3 t = needle->tangent(length());
-  return tip.force.dot(t) > tip.limit && tip.through.dot(t) >= settings.grazing_cos;
+  const bool flat = !tip.into_body.isZero() && tip.into_body.dot(t) < settings.grazing_cos;
+  return tip.force.dot(t) > tip.limit && !flat;
 }
 
 /// The membrane breaks and the cut goes on behind it.
@@ -101,7 +103,7 @@ void Insertion::Parts::break_membrane(StepReport& report) {
 /// The tip back to where the sub-step, or the cut behind a membrane, began.
 void Insertion::Parts::take_back_cut() {
   if (!tip.touching) return;
-  if (tip.blocked) tip.state = Tip::State::cut;
+  if (tip.blocked && tip.state == Tip::State::stick) tip.state = Tip::State::cut;
   if (tip.state == Tip::State::cut) march(0.0);
 }
 
@@ -162,7 +164,7 @@ void Insertion::Parts::commit_tip(StepReport& report) {
       } else {
         tip.at_membrane = true;
         tip.limit = membrane;
-        tip.through = tissue.locator->face_normal(tip.at.tet, tip.crossing.local);
+        tip.into_body.setZero();
         if (std::isinf(membrane)) add_event(report, InsertionEventKind::bone_contact, to);
       }
     }
@@ -295,7 +297,7 @@ void Insertion::Parts::touch_surface(const Crossing& crossing, const Vec3& x, St
     const double membrane = membrane_force(tissue.laws, -1, region);
     tip.next_tet = crossing.tet;
     tip.at_membrane = true;
-    tip.through = -tissue.locator->face_normal(crossing.tet, crossing.local);
+    tip.into_body = -tissue.locator->face_normal(crossing.tet, crossing.local);
     tip.cutting = tissue.laws[static_cast<std::size_t>(region)].cutting_N;
     tip.limit = std::max(membrane, tip.cutting);
     tip.state = Tip::State::stick;

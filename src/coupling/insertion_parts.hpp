@@ -59,8 +59,8 @@ struct Tip {
   bool blocked = false;            ///< the cut met a surface in this sub-step
   Crossing crossing;               ///< that surface
   bool stale = false;              ///< its compliance is that of an earlier place, none is there where it is
-  bool at_membrane = false;        ///< x lies on a surface that has not been broken, …
-  Vec3 through = Vec3::Zero();     ///< … whose normal, towards what is behind it, this is
+  bool at_membrane = false;        ///< x lies on a surface that has not been broken
+  Vec3 into_body = Vec3::Zero();   ///< inward normal of that surface if it is the patient's, zero within the patient
   Index next_tet = -1;             ///< element behind that surface, -1 = outside the patient
   double limit = 0.0;              ///< [N] force that starts the cut
   double cutting = 0.0;            ///< [N] force that keeps it going

@@ -68,6 +68,7 @@ class Entry {
   }
 
   [[nodiscard]] const std::string& wrong() const { return wrong_; }
+  [[nodiscard]] bool joined() const { return joined_; }
 
  private:
   void step() {
@@ -78,8 +79,10 @@ class Entry {
     for (int e = 0; e < report.events; ++e) {
       const Kind kind = report.event[static_cast<std::size_t>(e)].kind;
       grazed_ = grazed_ || kind == Kind::grazed;
+      punctured_ = punctured_ || kind == Kind::puncture;
       if (kind == Kind::withdrawn && inside()) note("the insertion ends with the tip in the tissue");
     }
+    joined_ = joined_ || (report.tip == TipPhase::in_track && !punctured_);
     // Before the first contact of a joined track there may be some millimetres without a force.
     const double deep = block_.axis.dot(report.tip_position - surface_);
     const bool unheld = report.hand_force.norm() < 1e-6 && (report.tip == TipPhase::air || deep > 7.0);
@@ -102,12 +105,15 @@ class Entry {
   Tremor tremor_;
   Vec3 surface_;
   double time_s_ = 0.0;
-  bool grazed_ = false;  ///< went in flat to the skin
+  bool grazed_ = false;     ///< went in flat to the skin
+  bool punctured_ = false;  ///< broke skin
+  bool joined_ = false;     ///< went into a hole that was there
   std::string wrong_;
 };
 
-/// What was wrong with the second of two needles, or the first; nothing where all is well.
-std::string second_needle_beside_a_first(NeedleInBlock& block, Draw& draw) {
+/// @param joined counts second needles that went into the hole of the first
+/// @return what was wrong with the second of two needles, or the first; nothing where all is well
+std::string second_needle_beside_a_first(NeedleInBlock& block, Draw& draw, int& joined) {
   const Vec3 place{draw.between(-22.0, 22.0), draw.between(-22.0, 22.0), 0.0};
   const Vec3 axis = draw.near(Vec3::UnitZ(), 45.0);
   Entry first(block, place, axis, Tremor(draw));
@@ -121,6 +127,7 @@ std::string second_needle_beside_a_first(NeedleInBlock& block, Draw& draw) {
   Entry second(block, through, along, Tremor(draw));
   second.go(draw.between(8.0, 16.0));
   second.go(-3.0);
+  joined += second.joined() ? 1 : 0;
   return second.wrong();
 }
 
@@ -130,15 +137,17 @@ TEST(RandomEntries, a_needle_in_tissue_is_never_without_force_whatever_lies_besi
   skins.push_back(skin([](double x, double y) { return (x * x + y * y) / 100.0; }, 10));          // a ball's
   skins.push_back(skin([](double x, double) { return 6.0 * std::sin(x / 6.0) - x / 3.0; }, 12));  // folds
   const int cases = random_cases(36);
-  int wrong = 0;
+  int wrong = 0, joined = 0;
   for (int k = 0; k < cases; ++k) {
     Draw draw(k);
-    const std::string what = second_needle_beside_a_first(skins[static_cast<std::size_t>(k) % skins.size()], draw);
+    const std::string what =
+        second_needle_beside_a_first(skins[static_cast<std::size_t>(k) % skins.size()], draw, joined);
     if (what.empty()) continue;
     if (++wrong <= 10) std::cout << "case " << k << ": " << what << "\n";
   }
   std::cout << wrong << " of " << cases << " needles went wrong\n";
   EXPECT_EQ(wrong, 0);
+  EXPECT_GT(joined, cases / 5);  // of the half that was drawn so near
 }
 
 }  // namespace

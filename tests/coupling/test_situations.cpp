@@ -175,6 +175,19 @@ TEST(Situation, a_concave_organ_is_left_and_entered_again) {
   EXPECT_EQ(run.flags, 0u);
 }
 
+TEST(Situation, a_wall_within_the_patient_is_broken_by_a_needle_nearly_along_it) {
+  BlockOptions options;
+  options.cells = {10, 10, 10};
+  options.jitter = 0.0;
+  options.region_at = [](const Vec3& x) { return x.x() > 0 ? 1 : 0; };
+  NeedleInBlock run(options);
+  run.aim({-1.5, 2, 0}, Vec3(std::sin(0.07), 0, std::cos(0.07)));  // 4° to the wall: flatter than skin lets a needle in
+  run.go(60);
+  EXPECT_EQ(run.count(Kind::puncture, 1), 1);
+  EXPECT_EQ(run.count(Kind::region_entered, 1), 1);
+  EXPECT_EQ(run.flags, 0u);
+}
+
 TEST(Situation, a_fold_of_skin_is_left_through_the_air_and_the_body_entered_again) {
   BlockOptions options;
   options.cells = {10, 10, 10};
