@@ -17,6 +17,7 @@ struct InfoArguments {
   std::string file;
   double scale = 0;
   int volume = 0;
+  std::vector<std::string> skip;
   bool scenario = false;
   std::string output;
 };
@@ -33,7 +34,7 @@ Result<Description> description_of(const InfoArguments& arguments) {
     return describe(*run);
   }
   const Result<PatientInput> input =
-      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume});
+      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume}, arguments.skip);
   if (!input) return input.error();
   return std::visit([](const auto& content) { return describe(content); }, *input);
 }
@@ -51,10 +52,11 @@ Result<> run_draft(const InfoArguments& arguments, Console& console) {
     if (Result<> writable = check_output_file(arguments.output); !writable) return writable;
   }
   const Result<PatientInput> input =
-      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume});
+      read_input(arguments.file, {.scale = arguments.scale}, {.volume = arguments.volume}, arguments.skip);
   if (!input) return input.error();
-  const Result<ScenarioDraft> draft = draft_scenario(
-      *input, {arguments.file, source_for(arguments.file, arguments.output), arguments.scale, arguments.volume});
+  const Result<ScenarioDraft> draft =
+      draft_scenario(*input, {arguments.file, source_for(arguments.file, arguments.output), arguments.scale,
+                              arguments.volume, arguments.skip});
   if (!draft) return draft.error();
   for (const std::string& warning : draft->warnings) console.warn(warning);
   if (arguments.output.empty()) {
@@ -93,6 +95,12 @@ Command add_info_command(CLI::App& program) {
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
+  app->add_option("--skip", arguments->skip,
+                  "Pass over the structure NAME where it is damaged; with --scenario leave it out in any case; may be "
+                  "repeated")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   CLI::Option* scenario = app->add_flag("--scenario", arguments->scenario,
                                         "Write a commented scenario with this patient instead: what is taken as what, "
                                         "what is left out and why, and one needle");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorded_run.hpp"
 
+#include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 
@@ -33,6 +34,7 @@ bool same_bits(const Forces& a, const Forces& b) {
 
 Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std::string>& settings,
                                  const Progress& progress) {
+  if (auto checked = check_settings(settings, file); !checked) return checked.error();
   auto recording = read_recording(file);
   if (!recording) return recording.error();
   if (recording->steps.empty())

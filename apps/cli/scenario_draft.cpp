@@ -121,9 +121,18 @@ Result<StructureChoice> choose_sound(const ContourSet& contours, MeshOptions& op
   }
 }
 
-Result<Contents> contents_of(const ContourSet& contours) {
-  Contents out;
+/// What the user leaves out, as the draft is to say it.
+MeshOptions leave_out(const std::vector<std::string>& skip, Contents& out) {
+  out.skip = skip;
+  out.why_skip.assign(skip.size(), "named with --skip");
   MeshOptions options;
+  options.skip = skip;
+  return options;
+}
+
+Result<Contents> contents_of(const ContourSet& contours, const std::vector<std::string>& skip) {
+  Contents out;
+  MeshOptions options = leave_out(skip, out);
   const auto choice = choose_sound(contours, options, out);
   if (!choice) return choice.error();
   out.kind = fmt::format("contours of {} structure{}", contours.rois.size(), contours.rois.size() == 1 ? "" : "s");
@@ -174,10 +183,10 @@ std::map<int, LabelSize> sizes_of(const LabelImage& image) {
   return sizes;
 }
 
-Result<Contents> contents_of(const LabelImage& image) {
-  const auto choice = choose_structures(image, {});
-  if (!choice) return choice.error();
+Result<Contents> contents_of(const LabelImage& image, const std::vector<std::string>& skip) {
   Contents out;
+  const auto choice = choose_structures(image, leave_out(skip, out));
+  if (!choice) return choice.error();
   auto sizes = sizes_of(image);
   out.kind = fmt::format("label mask with {} label{}", sizes.size(), sizes.size() == 1 ? "" : "s");
   out.about_regions =
@@ -200,7 +209,7 @@ Result<Contents> contents_of(const LabelImage& image) {
   return out;
 }
 
-Result<Contents> contents_of(const TetMesh& mesh) {
+Result<Contents> contents_of(const TetMesh& mesh, const std::vector<std::string>& /*skip*/) {
   Contents out;
   out.kind = fmt::format("tetrahedral mesh of {} nodes, used as it is", mesh.node_count());
   out.about_regions =
@@ -231,7 +240,7 @@ Result<Contents> contents_of(const TetMesh& mesh) {
   return out;
 }
 
-Result<Contents> contents_of(const std::vector<Surface>& surfaces) {
+Result<Contents> contents_of(const std::vector<Surface>& surfaces, const std::vector<std::string>& /*skip*/) {
   Contents out;
   out.kind = fmt::format("{} triangulated surface{}", surfaces.size(), surfaces.size() == 1 ? "" : "s");
   out.warnings.emplace_back(
@@ -288,7 +297,7 @@ std::string patient_text(const Contents& contents, const DraftSource& source) {
   if (source.volume > 0) out += fmt::format("volume = {}  # of the volumes in the file\n", source.volume);
   for (const std::string& remark : contents.remarks) out += comment(remark);
   if (!contents.skip.empty()) {
-    out += comment("Left out, since they cannot be used as they are:");
+    out += comment("Left out:");
     for (std::size_t i = 0; i < contents.skip.size(); ++i)
       out += comment(fmt::format("  {}: {}", contents.skip[i], contents.why_skip[i]));
     std::vector<std::string> names;
@@ -323,7 +332,8 @@ std::string source_for(const fs::path& file, const fs::path& output) {
 }
 
 Result<ScenarioDraft> draft_scenario(const PatientInput& patient, const DraftSource& source) {
-  const Result<Contents> contents = std::visit([](const auto& content) { return contents_of(content); }, patient);
+  const Result<Contents> contents =
+      std::visit([&](const auto& content) { return contents_of(content, source.skip); }, patient);
   if (!contents) return contents.error();
   ScenarioDraft draft;
   draft.warnings = contents->warnings;

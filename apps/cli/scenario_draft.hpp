@@ -11,10 +11,11 @@ namespace stylet::cli {
 
 /// Where a drafted scenario finds its patient.
 struct DraftSource {
-  std::string file;    ///< as the user named it
-  std::string source;  ///< patient.source, as it is to stand in the scenario
-  double scale = 0.0;  ///< unit of a mesh file [mm]; 0 = as the file says
-  int volume = 0;      ///< of a mask file that holds several, counted from 1; 0 = the only one
+  std::string file;               ///< as the user named it
+  std::string source;             ///< patient.source, as it is to stand in the scenario
+  double scale = 0.0;             ///< unit of a mesh file [mm]; 0 = as the file says
+  int volume = 0;                 ///< of a mask file that holds several, counted from 1; 0 = the only one
+  std::vector<std::string> skip;  ///< structures or labels that the user leaves out
 };
 
 /// patient.source for a scenario that is written to `output`: relative to its folder, so that the two can be moved

@@ -32,13 +32,20 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
   }
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
+  bool is_mask = *kind == FileKind::nifti || *kind == FileKind::nrrd || *kind == FileKind::metaimage;
+  if (*kind == FileKind::dicom) {
+    const Result<bool> segmentation = guarded<bool>(path, [&]() -> Result<bool> { return detail::is_dicom_seg(path); });
+    if (!segmentation) return segmentation.error();
+    is_mask = *segmentation;
+  }
+  if (mask_options.volume > 0 && !is_mask) {
+    return input_error(path.string(),
+                       fmt::format("this is {}; only a mask has volumes to choose from", detail::name_of(*kind)),
+                       "Leave the volume out (patient.volume, --volume).");
+  }
   switch (*kind) {
-    case FileKind::dicom: {
-      const Result<bool> segmentation =
-          guarded<bool>(path, [&]() -> Result<bool> { return detail::is_dicom_seg(path); });
-      if (!segmentation) return segmentation.error();
-      return *segmentation ? as_input(read_label_image(path, mask_options)) : as_input(read_rtstruct(path, skip));
-    }
+    case FileKind::dicom:
+      return is_mask ? as_input(read_label_image(path, mask_options)) : as_input(read_rtstruct(path, skip));
     case FileKind::contour_json:
       return as_input(read_contour_json(path, skip));
     case FileKind::nifti:

@@ -151,6 +151,9 @@ class Insert(InFolder):
         self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST)
         info = self.json_of("info", "out/run.h5")
         self.assertEqual(info["kind"], "recording")
+        # Its mesh is made: what would make another one is not taken as if it did.
+        self.refuse("insert", "out/run.h5", "-o", "again", "--set", 'patient.skip=["lump"]',
+                    says=["patient.skip", "the mesh is in out/run.h5 already"])
 
     def test_a_parameter_beyond_what_is_plausible_is_warned_of(self):
         done = self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST, "--set", "tissue.lump.puncture_N=9")

@@ -52,6 +52,11 @@ Result<std::shared_ptr<const Model>> compile_model(ModelFile file, const std::fi
                                                    const Progress& progress = {},
                                                    std::span<const std::string> settings = {});
 
+/// Refuses settings of [patient] and [mesh] where the mesh is there already: they would do nothing.
+/// @param settings as of read_scenario()
+/// @param where the file with the mesh, for messages
+Result<> check_settings(std::span<const std::string> settings, const std::string& where);
+
 /// True for an HDF5 file that says it holds a model; what is in it may still be damaged.
 bool is_model_file(const std::filesystem::path& path);
 

@@ -139,20 +139,19 @@ ModelFile content_of(const Json& index, const Reader& reader, const Progress& pr
   return file;
 }
 
-/// Tables whose outcome is in the file: settings there would do nothing.
+}  // namespace
+
 Result<> check_settings(std::span<const std::string> settings, const std::string& where) {
   for (const std::string& setting : settings) {
     for (const char* table : {"patient.", "mesh."}) {
       if (setting.rfind(table, 0) == 0) {
         return input_error(fmt::format("--set {}", setting), fmt::format("the mesh is in {} already", where),
-                           "Prepare a model with this setting: stylet prepare SCENARIO.toml --set …");
+                           "Start from the scenario with this setting: stylet prepare SCENARIO.toml --set …");
       }
     }
   }
   return Ok{};
 }
-
-}  // namespace
 
 bool is_hdf5_file(const fs::path& path) {
   std::error_code code;

@@ -10,6 +10,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <system_error>
 
 namespace stylet::results {
@@ -42,6 +45,27 @@ void write_info(hid_t file, const RunInfo& info) {
   h5::write_text_table(file, "parameters", kParameterColumns, rows);
 }
 
+fs::path hidden_name(const fs::path& path, const std::string& process) {
+  return path.parent_path() / fmt::format(".{}.{}.part{}", path.stem().string(), process, path.extension().string());
+}
+
+/// Removes files that processes which have ended since did not come to put in place.
+void remove_abandoned(const fs::path& path) {
+  const std::string before = fmt::format(".{}.", path.stem().string());
+  std::vector<fs::path> abandoned;
+  std::error_code code;
+  for (fs::directory_iterator entry(path.parent_path(), code), end; !code && entry != end; entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(before)) continue;
+    const std::string process = name.substr(before.size(), name.find('.', before.size()) - before.size());
+    int number = 0;
+    const auto parsed = std::from_chars(process.data(), process.data() + process.size(), number);
+    if (parsed.ec != std::errc{} || number <= 0 || entry->path() != hidden_name(path, process)) continue;
+    if (::kill(number, 0) != 0 && errno == ESRCH) abandoned.push_back(entry->path());
+  }
+  for (const fs::path& file : abandoned) fs::remove(file, code);
+}
+
 }  // namespace
 
 template <class Action>
@@ -58,8 +82,8 @@ Result<> RunFileWriter::guarded(Action action) const {
 Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh,
                                             const std::function<Result<>()>& make_way) {
   // Whoever still reads an earlier file keeps it; truncating it in place would pull it away under the reader.
-  const fs::path hidden =
-      path.parent_path() / fmt::format(".{}.{}.part{}", path.stem().string(), ::getpid(), path.extension().string());
+  remove_abandoned(path);
+  const fs::path hidden = hidden_name(path, std::to_string(::getpid()));
   RunFileWriter w(path);
   Result<> done = w.guarded([&] {
     w.file_ = h5::create_file(hidden.c_str());

@@ -310,6 +310,24 @@ TEST(RunFile, replaces_an_earlier_file_without_pulling_it_away_from_a_reader) {
   EXPECT_TRUE(read_recording(path).ok());
 }
 
+TEST(RunFile, takes_away_what_processes_that_were_killed_had_not_put_in_place) {
+  const auto run = synthetic_run();
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  const fs::path left = folder.path() / (".run." + std::to_string(child) + ".part.h5");
+  const fs::path others = folder.path() / (".run." + std::to_string(getppid()) + ".part.h5");  // it lives
+  const fs::path foreign = folder.path() / ".run.notes.part.h5";
+  for (const fs::path& path : {left, others, foreign}) std::ofstream(path) << "half a run";
+  auto writer = RunFileWriter::create(folder.path() / "run.h5", run.info, run.mesh);
+  ASSERT_TRUE(writer.ok()) << writer.error().message();
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(others));
+  EXPECT_TRUE(fs::exists(foreign));
+}
+
 TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
   const auto run = synthetic_run();
   const TemporaryFolder folder;
