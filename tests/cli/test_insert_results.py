@@ -8,6 +8,9 @@ from insert_case import (BLOCK, FAST, FORCES_HEADER, FULL_INSERTION, PHANTOM, SM
                          kinds, without_step_times)
 from program import InFolder
 
+# The block's lump as the gland; without it there is no target.
+GLAND = ("--set", 'patient.regions.lump="prostate"')
+
 
 class Insert(InFolder):
     def setUp(self):
@@ -61,8 +64,8 @@ class Insert(InFolder):
         self.assertIn("far half, seen along the needle", (self.folder / "out/report.html").read_text(encoding="utf-8"))
 
     def test_what_is_printed_names_events_peaks_and_steps(self):
-        table = self.succeed("insert", "block.toml", "-o", "out", *FAST).stdout
-        for text in ("skin contact (tissue)", "puncture (tissue)", "region entered (lump)", "retraction start",
+        table = self.succeed("insert", "block.toml", "-o", "out", *FAST, *GLAND).stdout
+        for text in ("skin contact (tissue)", "puncture (tissue)", "region entered (prostate)", "retraction start",
                      "slip start", "withdrawn", "peak force", "target moved", "balance", "step"):
             self.assertIn(text, table)
 
@@ -98,7 +101,7 @@ class Insert(InFolder):
                          json.loads((self.folder / "out/summary.json").read_text()))
 
     def test_quiet_says_nothing(self):
-        done = self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST)
+        done = self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST, *GLAND)
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
     def test_results_go_to_a_folder_named_after_the_scenario(self):
