@@ -21,14 +21,17 @@ PatchStiffness patch_stiffness(const Tissue& tissue, std::span<const Index> tets
 
   const auto size = 3 * static_cast<Eigen::Index>(patch.nodes.size());
   patch.K = MatX::Zero(size, size);
+  std::vector<Eigen::Index> rows;
   tissue.discretisation().stiffness(
       tets, [&](Index /*tet*/) { return material; },
       [&](std::span<const Index> nodes, const MatX& part) {
+        rows.resize(nodes.size());
+        std::transform(nodes.begin(), nodes.end(), rows.begin(), row_of);
         for (std::size_t a = 0; a < nodes.size(); ++a) {
           for (std::size_t b = 0; b <= a; ++b) {
             const Mat3 block = part.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-            patch.K.block<3, 3>(row_of(nodes[a]), row_of(nodes[b])) += block;
-            if (b < a) patch.K.block<3, 3>(row_of(nodes[b]), row_of(nodes[a])) += block.transpose();
+            patch.K.block<3, 3>(rows[a], rows[b]) += block;
+            if (b < a) patch.K.block<3, 3>(rows[b], rows[a]) += block.transpose();
           }
         }
       });
