@@ -40,7 +40,7 @@ void keep_the_others(std::vector<StructureUse>& uses, const std::vector<Candidat
 }
 
 /// All of the gland as one region; of a mask without a target everything is the gland.
-void keep_the_gland(std::vector<StructureUse>& uses) {
+void keep_gland_labels(std::vector<StructureUse>& uses) {
   const bool has_target =
       std::any_of(uses.begin(), uses.end(), [](const auto& u) { return is_target_region(u.region); });
   for (StructureUse& use : uses) {
@@ -64,7 +64,7 @@ Result<StructureChoice> choose_structures(const LabelImage& image, const MeshOpt
   if (options.regions.empty()) meshing::keep_the_others(*uses, candidates);
   const bool has_target =
       std::any_of(uses->begin(), uses->end(), [](const StructureUse& u) { return is_target_region(u.region); });
-  if (options.preset == MeshPreset::paper) meshing::keep_the_gland(*uses);
+  if (options.preset == MeshPreset::paper) meshing::keep_gland_labels(*uses);
   StructureChoice choice = meshing::told(*std::move(uses), candidates, "label");
   choice.has_target = has_target;
   return choice;

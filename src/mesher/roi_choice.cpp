@@ -29,7 +29,7 @@ std::vector<Candidate> candidates_of(const ContourSet& set) {
 }
 
 /// The gland in one piece, and what holds it.
-void keep_the_gland(std::vector<StructureUse>& uses) {
+void keep_gland_contours(std::vector<StructureUse>& uses) {
   const bool whole = std::any_of(uses.begin(), uses.end(), [](const auto& u) { return u.region == "prostate"; });
   for (StructureUse& use : uses) {
     if (use.region.empty() || use.region == "band") continue;
@@ -75,7 +75,7 @@ Result<StructureChoice> choose_structures(const ContourSet& contours, const Mesh
   const std::string source = contours.source.empty() ? "contours" : contours.source;
   auto uses = meshing::decide(candidates, options, source, "structure");
   if (!uses) return uses.error();
-  if (options.preset == MeshPreset::paper) meshing::keep_the_gland(*uses);
+  if (options.preset == MeshPreset::paper) meshing::keep_gland_contours(*uses);
   return meshing::told(*std::move(uses), candidates, "structure");
 }
 
