@@ -27,6 +27,7 @@ bool same(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::vector<std::size_t> find_named(std::span<const std::string> names, std::string_view word) {
+  if (trimmed(word).empty()) return {};
   std::vector<std::size_t> equal;
   std::vector<std::size_t> alike;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -37,6 +38,7 @@ std::vector<std::size_t> find_named(std::span<const std::string> names, std::str
 }
 
 bool is_listed(std::string_view name, std::span<const std::string> words) {
+  if (trimmed(name).empty()) return false;
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return same(name, word); });
 }
 

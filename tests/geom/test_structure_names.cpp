@@ -17,6 +17,14 @@ TEST(StructureNames, AnEqualNameGoesBeforeOneThatDiffersInCase) {
   EXPECT_TRUE(find_named(names, "PTV 1").empty());
 }
 
+TEST(StructureNames, AnEmptyWordMeansNoStructure) {
+  const std::vector<std::string> names{"PTV", "", " "};
+  for (const char* word : {"", " ", "\t"}) {
+    EXPECT_TRUE(find_named(names, word).empty());
+    EXPECT_FALSE(is_listed("", std::vector<std::string>{word}));
+  }
+}
+
 TEST(StructureNames, ListedNamesDifferInNothingButCase) {
   const std::vector<std::string> words{"rectum", "X1"};
   EXPECT_TRUE(is_listed("Rectum", words));

@@ -134,6 +134,14 @@ TEST(Structures, ANameToSkipThatIsNotThereIsRefusedWithTheNearest) {
             std::string::npos);
 }
 
+TEST(Structures, AnEmptyNameToSkipIsRefused) {
+  MeshOptions options;
+  options.skip = {""};
+  EXPECT_NE(refusal({roi("Prostate"), roi("Rectum")}, options).find("patient.skip: there is no structure ''"),
+            std::string::npos)
+      << "it must not mean all of them";
+}
+
 TEST(Structures, WhatThePaperPresetLeavesOutIsSaid) {
   MeshOptions options;
   options.preset = MeshPreset::paper;
