@@ -59,7 +59,7 @@ void keep_gland_labels(std::vector<StructureUse>& uses) {
 Result<StructureChoice> choose_structures(const LabelImage& image, const MeshOptions& options) {
   const auto candidates = meshing::candidates_of(image);
   const std::string source = image.source.empty() ? "label mask" : image.source;
-  auto uses = meshing::decide(candidates, options, source, "label");
+  auto uses = meshing::decide(candidates, options, source, "label", true);
   if (!uses) return uses.error();
   if (options.regions.empty()) meshing::keep_the_others(*uses, candidates);
   const bool has_target =

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/mesher/mesher.hpp"
 
+#include "words.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -9,6 +11,28 @@
 #include <vector>
 
 namespace stylet {
+
+namespace meshing {
+
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words;
+  bool apart = true;
+  for (std::size_t n = 0; n < name.size(); ++n) {
+    const auto c = static_cast<unsigned char>(name[n]);
+    if (std::isalnum(c) == 0 && c < 0x80) {
+      apart = true;
+      continue;
+    }
+    const bool hump = n > 0 && std::isupper(c) != 0 && std::islower(static_cast<unsigned char>(name[n - 1])) != 0;
+    if (apart || hump) words.emplace_back();
+    words.back() += static_cast<char>(std::tolower(c));
+    apart = false;
+  }
+  return words;
+}
+
+}  // namespace meshing
+
 namespace {
 
 /// Letters and digits only, lower case: "Femoral Head_Lt" → "femoralheadlt". Umlauts and the like are kept as they are.
@@ -156,24 +180,6 @@ std::string femur(const std::string& p) {
   return {};
 }
 
-/// The words of a name in lower case: "Transition_Zone", "transition zone" and "TransitionZone" have the same two.
-std::vector<std::string> words_of(std::string_view name) {
-  std::vector<std::string> words;
-  bool apart = true;
-  for (std::size_t n = 0; n < name.size(); ++n) {
-    const auto c = static_cast<unsigned char>(name[n]);
-    if (std::isalnum(c) == 0 && c < 0x80) {
-      apart = true;
-      continue;
-    }
-    const bool hump = n > 0 && std::isupper(c) != 0 && std::islower(static_cast<unsigned char>(name[n - 1])) != 0;
-    if (apart || hump) words.emplace_back();
-    words.back() += static_cast<char>(std::tolower(c));
-    apart = false;
-  }
-  return words;
-}
-
 /// A zone of the gland, also one half of it, as 3D Slicer's users and the coded terms of DICOM write it: "peripheral",
 /// "PZ_left", "Transition Zone", "Structure of peripheral zone of prostate", "AFS".
 std::string zone(std::string_view name) {
@@ -200,7 +206,7 @@ std::string zone(std::string_view name) {
                                            {"anteriorfibromuscularzone", "anterior_stroma"},
                                            {"periperalzone", "peripheral_zone"}}};
   std::string rest, before;
-  for (const std::string& word : words_of(name)) {
+  for (const std::string& word : meshing::words_of(name)) {
     // "gland" alone is no filler: the central gland is the transition zone.
     const bool filler =
         std::find(beside.begin(), beside.end(), word) != beside.end() || (word == "gland" && before == "prostate");

@@ -73,7 +73,7 @@ Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOpti
 Result<StructureChoice> choose_structures(const ContourSet& contours, const MeshOptions& options) {
   const auto candidates = meshing::candidates_of(contours);
   const std::string source = contours.source.empty() ? "contours" : contours.source;
-  auto uses = meshing::decide(candidates, options, source, "structure");
+  auto uses = meshing::decide(candidates, options, source, "structure", false);
   if (!uses) return uses.error();
   if (options.preset == MeshPreset::paper) meshing::keep_gland_contours(*uses);
   return meshing::told(*std::move(uses), candidates, "structure");

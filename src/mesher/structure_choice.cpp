@@ -3,6 +3,7 @@
 
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/structure_names.hpp"
+#include "words.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,6 +35,28 @@ std::size_t planning_rank(std::string_view kind) {
   return static_cast<std::size_t>(found - kPlanning.begin());
 }
 
+/// Whether one of the words of a name, whatever number stands behind it, is one of these.
+bool has_word(std::string_view name, std::initializer_list<std::string_view> wanted) {
+  for (std::string word : words_of(name)) {
+    while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back())) != 0) word.pop_back();
+    if (std::find(wanted.begin(), wanted.end(), word) != wanted.end()) return true;
+  }
+  return false;
+}
+
+/// How well the name of a planning volume fits the gland, whatever its kind: 0 = it names the gland, 1 = it says nothing
+/// of the place; 2 and 3 = the same of one that names lymph nodes or a boost, which are beside the gland or a part of it.
+std::size_t naming_rank(std::string_view name) {
+  const std::size_t other = has_word(name, {"ln", "lns", "node", "nodes", "nodal", "boost"}) ? 2 : 0;
+  return other + (lower(std::string(name)).find("prost") == std::string::npos ? 1 : 0);
+}
+
+/// "left", "right" or nothing, by the words of a name.
+std::string_view side_of(std::string_view name) {
+  if (has_word(name, {"left", "l", "lt"})) return "left";
+  return has_word(name, {"right", "r", "rt"}) ? "right" : "";
+}
+
 bool is_planning(std::string_view kind) { return planning_rank(kind) < kPlanning.size(); }
 
 /// The region that the name, else the coded term beside it, stands for; empty when neither is known.
@@ -45,8 +68,13 @@ std::string region_named(const Candidate& candidate) {
 /// Candidates, and what has been decided of them.
 class Decision {
  public:
-  Decision(const std::vector<Candidate>& candidates, const MeshOptions& options, std::string source, std::string kind)
-      : candidates_(candidates), options_(options), source_(std::move(source)), kind_(std::move(kind)) {
+  Decision(const std::vector<Candidate>& candidates, const MeshOptions& options, std::string source, std::string kind,
+           bool apart)
+      : candidates_(candidates),
+        options_(options),
+        source_(std::move(source)),
+        kind_(std::move(kind)),
+        apart_(apart) {
     for (const Candidate& c : candidates_) {
       names_.push_back(c.name);
       words_.push_back(c.word);
@@ -117,6 +145,7 @@ class Decision {
         }
         take(i, region_meant(region), "named in [patient.regions]");
         asked_.insert(uses_[i].region);
+        named_.insert(i);
         taken = true;
       }
       if (!taken) {
@@ -136,10 +165,23 @@ class Decision {
       if (region.empty() || is_planning(region)) continue;
       if (!asked_.contains(region)) {
         take(i, region);
+      } else if (belongs_beside_named(i, region)) {
+        take(i, region, fmt::format("taken as {} together with {}", region, names_taken_as(region)));
       } else {
         leave(i, fmt::format("{} is taken as {}", names_taken_as(region), region));
       }
     }
+  }
+
+  /// Whether a structure is the same region as those that the user named so. A label of a mask is: its voxels are nobody
+  /// else's. Contours may be another drawing of the same; those of one half, of which no other is named, are not.
+  [[nodiscard]] bool belongs_beside_named(std::size_t i, const std::string& region) const {
+    if (apart_) return true;
+    const std::string_view side = side_of(candidates_[i].name);
+    if (side.empty() || region.ends_with("_left") || region.ends_with("_right")) return false;
+    return std::none_of(named_.begin(), named_.end(), [&](std::size_t n) {
+      return uses_[n].region == region && side_of(candidates_[n].name) == side;
+    });
   }
 
   [[nodiscard]] std::string names_taken_as(const std::string& region) const {
@@ -162,20 +204,21 @@ class Decision {
     return std::any_of(uses_.begin(), uses_.end(), [&](const StructureUse& u) { return wanted(u.region); });
   }
 
-  /// Planning volumes are no anatomy; one stands in where the gland itself is not drawn. Of several of a kind the one
-  /// of that very name is preferred, then one with a longer name, then one by its type, then the first.
+  /// Planning volumes are no anatomy; one stands in where the gland itself is not drawn: first by naming_rank(), then by
+  /// its kind. Of several of a kind the one of that very name is preferred, then one with a longer name, then one by its
+  /// type, then the first.
   void find_gland() {
     const bool drawn =
         has([](const std::string& r) { return r == "prostate" || r == "peripheral_zone" || r == "transition_zone"; });
     const bool asked =
         std::any_of(asked_.begin(), asked_.end(), [](const std::string& r) { return is_target_region(r); });
-    std::vector<std::pair<std::array<std::size_t, 3>, std::size_t>> volumes;  // rank, candidate
+    std::vector<std::pair<std::array<std::size_t, 4>, std::size_t>> volumes;  // rank, candidate
     for (std::size_t i = 0; i < uses_.size(); ++i) {
       if (!open_[i]) continue;
       const std::string kind = planning_kind(candidates_[i]);
       if (kind.empty()) continue;
       const std::size_t naming = lower(candidates_[i].name) == kind ? 0 : region_named(candidates_[i]) == kind ? 1 : 2;
-      volumes.push_back({{planning_rank(kind), naming, i}, i});
+      volumes.push_back({{naming_rank(candidates_[i].name), planning_rank(kind), naming, i}, i});
     }
     if (volumes.empty()) return;
     std::string why = "planning volume, and the gland is drawn";
@@ -183,7 +226,7 @@ class Decision {
     if (!drawn && !asked) {
       const auto& [rank, best] = *std::min_element(volumes.begin(), volumes.end());
       take(best, "prostate",
-           fmt::format("taken as the gland, since no {} is named prostate{}", kind_, kPlanning[rank[0]].caution));
+           fmt::format("taken as the gland, since no {} is named prostate{}", kind_, kPlanning[rank[1]].caution));
       why = fmt::format("planning volume, and '{}' is taken as the gland", candidates_[best].name);
     }
     for (const auto& [rank, i] : volumes) {
@@ -203,10 +246,12 @@ class Decision {
   const std::vector<Candidate>& candidates_;
   const MeshOptions& options_;
   std::string source_, kind_;
+  bool apart_ = false;  ///< no two candidates overlap
   std::vector<std::string> names_, words_;
   std::vector<StructureUse> uses_;
   std::vector<bool> open_;       ///< not decided yet
   std::set<std::string> asked_;  ///< regions that MeshOptions::regions gives
+  std::set<std::size_t> named_;  ///< candidates that it gives them to
 };
 
 /// "structures left out (empty): 'CTV', 'PROS'", one for each reason.
@@ -234,8 +279,8 @@ void leave_out(StructureUse& use, std::string why) {
 }
 
 Result<std::vector<StructureUse>> decide(const std::vector<Candidate>& candidates, const MeshOptions& options,
-                                         const std::string& source, const std::string& kind) {
-  return Decision(candidates, options, source, kind).made();
+                                         const std::string& source, const std::string& kind, bool apart) {
+  return Decision(candidates, options, source, kind, apart).made();
 }
 
 StructureChoice told(std::vector<StructureUse> uses, const std::vector<Candidate>& candidates,

@@ -18,8 +18,9 @@ struct Candidate {
 /// What becomes of the candidates, but for MeshOptions::preset and the notes.
 /// @param source what to call the input in messages
 /// @param kind what to call a candidate in messages: "structure", "label"
+/// @param apart no two candidates overlap, as the labels of a mask
 Result<std::vector<StructureUse>> decide(const std::vector<Candidate>& candidates, const MeshOptions& options,
-                                         const std::string& source, const std::string& kind);
+                                         const std::string& source, const std::string& kind, bool apart);
 
 /// The finished choice: candidates without anything to be meshed set apart, and all that is left out said.
 /// @param uses one for each candidate

@@ -71,6 +71,19 @@ TEST(Structures, TheLikeliestGlandIsPreferredAndTheOthersAreLeftOut) {
   EXPECT_TRUE(says(chosen({roi("GTV")}), "only a lesion"));
 }
 
+TEST(Structures, AVolumeNamedAfterTheGlandGoesBeforeOthersOfAnyKind) {
+  EXPECT_EQ(regions(chosen({roi("CTV_LN", "CTV"), roi("PTV1_prostate", "PTV")})), (Regions{"", "prostate"}));
+  EXPECT_EQ(regions(chosen({roi("CTV"), roi("CTVprostate")})), (Regions{"", "prostate"}));
+}
+
+TEST(Structures, VolumesOfNodesAndBoostsStandInOnlyWhereThereIsNoOther) {
+  for (const char* name : {"CTV_LN", "LN1", "CTV nodal", "PelvicNodes", "CTV-Boost", "CTV_prost_boost"})
+    EXPECT_EQ(regions(chosen({roi(name, "CTV"), roi("GTV")})), (Regions{"", "prostate"})) << name;
+  EXPECT_EQ(regions(chosen({roi("CTV_LN", "CTV"), roi("Prost boost", "CTV")})), (Regions{"", "prostate"}));
+  EXPECT_EQ(regions(chosen({roi("CTV_LN", "CTV")})), Regions{"prostate"});
+  EXPECT_EQ(regions(chosen({roi("PlanVol", "CTV"), roi("GTV")})), (Regions{"prostate", ""})) << "ln as a word only";
+}
+
 TEST(Structures, AnEmptyPlanningVolumeIsNoGland) {
   Roi empty;
   empty.name = "CTV";
@@ -105,6 +118,19 @@ TEST(Structures, NamingOneLeavesTheOthersRecognised) {
   EXPECT_TRUE(says(choice, "structure left out (name not recognised): 'X1'"));
   EXPECT_TRUE(says(choice, "structure left out ('my volume' is taken as prostate): 'Prostate'"));
   EXPECT_TRUE(says(choice, "'PTV'"));
+}
+
+TEST(Structures, NamingOneHalfKeepsTheOther) {
+  MeshOptions options;
+  options.regions = {{"PZ_left", "peripheral_zone"}};
+  const StructureChoice choice = chosen({roi("PZ_left"), roi("PZ_right"), roi("PZ"), roi("L PZ")}, options);
+  EXPECT_EQ(regions(choice), (Regions{"peripheral_zone", "peripheral_zone", "", ""}));
+  EXPECT_TRUE(says(choice, "structure 'PZ_right' is taken as peripheral_zone together with 'PZ_left'"));
+  EXPECT_TRUE(says(choice, "left out ('PZ_left', 'PZ_right' is taken as peripheral_zone): 'PZ', 'L PZ'"));
+  options.regions = {{"hip", "femur_left"}};
+  EXPECT_EQ(regions(chosen({roi("Prostate"), roi("hip"), roi("Femur_L")}, options)),
+            (Regions{"prostate", "femur_left", ""}))
+      << "another drawing of the same side";
 }
 
 TEST(Structures, NamesAreFoundWhateverTheirCase) {
@@ -179,6 +205,16 @@ TEST(Structures, NamingOneLabelLeavesTheOthersRecognised) {
   ASSERT_TRUE(choice.ok()) << choice.error().message();
   EXPECT_EQ(regions(*choice), (Regions{"prostate", "bladder", "", ""}));
   EXPECT_TRUE(says(*choice, "left out (name not recognised): '3', '4'"));
+}
+
+TEST(Structures, LabelsOfOneRegionAreUnitedWhereOneOfThemIsNamed) {
+  MeshOptions options;
+  options.regions = {{"1", "peripheral_zone"}};
+  const auto choice =
+      choose_structures(named_mask({{1, "PZ_left"}, {2, "PZ_right"}, {3, "PZ"}, {4, "Bladder"}}), options);
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice), (Regions{"peripheral_zone", "peripheral_zone", "peripheral_zone", "bladder"}));
+  EXPECT_TRUE(says(*choice, "label 'PZ_right' is taken as peripheral_zone together with 'PZ_left'"));
 }
 
 TEST(Structures, ALabelCalledTargetIsTheGland) {
