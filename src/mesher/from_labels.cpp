@@ -167,20 +167,18 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   anatomy.notes.insert(anatomy.notes.end(), choice->notes.begin(), choice->notes.end());
 
   std::map<std::string, std::set<int>> labels;  // region → labels
-  std::set<int> used;
   for (const StructureUse& use : choice->uses) {
     if (use.region.empty()) continue;
     labels[use.region].insert(use.number);
-    used.insert(use.number);
   }
-  if (used.empty())
+  if (labels.empty())
     return input_error(anatomy.source, "every label is left out", "take one of them out of [patient] skip");
   const double step = std::max(0.8 * std::min(s.spacing[0], s.spacing[1]), std::min(s.spacing[2], 1.0));
   const double sigma = 0.9 * std::max(s.spacing[0], s.spacing[1]);
   const auto volume_of = [&](const std::set<int>& set) {
-    double volume = 0;
-    for (const int l : set) volume += static_cast<double>(voxels[l]) * image.spacing.prod();
-    return volume;
+    std::size_t count = 0;
+    for (const int l : set) count += voxels[l];
+    return static_cast<double>(count) * image.spacing.prod();
   };
   // All structures together are one solid without gaps, divided among them; the body of the input, if any, is a solid
   // of its own that holds the others.
@@ -213,12 +211,15 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   drop_unclaimed_islands(*solid, members);
   anatomy.add(solid, std::move(members));
   if (labels.contains("body")) {
-    const SliceFields whole = fields_of(image, s, [&](int l) { return used.contains(l); });
+    // Labels that are left out are tissue of the body: no part of a patient is empty.
+    const SliceFields whole = fields_of(image, s, [](int l) { return l != 0; });
     auto shape = interpolate_fields(whole, std::max(step, 2.0), sigma);
     Structure body;
     body.name = "body";
     body.boundary = boundary_points(*shape, 0, whole);
-    body.input_volume = volume_of(used) * trim_body(*shape, anatomy);
+    std::set<int> all;
+    for (const auto& [label, count] : voxels) all.insert(label);
+    body.input_volume = volume_of(all) * trim_body(*shape, anatomy);
     body.shape = std::move(shape);
     anatomy.add(std::move(body));
   }

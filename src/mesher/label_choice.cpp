@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
+#include <map>
+#include <set>
 
 namespace stylet {
 namespace meshing {
@@ -39,6 +42,78 @@ void keep_the_others(std::vector<StructureUse>& uses, const std::vector<Candidat
   }
 }
 
+/// Areas [mm²] over which labels that matter touch: (label, neighbour's label) → area. The neighbour of the image's
+/// edge is background.
+std::map<std::pair<int, int>, double> contact_areas(const LabelImage& image, const std::set<int>& labels) {
+  std::map<std::pair<int, int>, double> areas;
+  std::vector<bool> matters(std::size_t{1} << 16);
+  for (const int label : labels) matters[static_cast<std::size_t>(label)] = true;
+  const auto touch = [&](int a, int b, double area) {
+    if (a == b) return;
+    if (matters[a]) areas[{a, b}] += area;
+    if (matters[b]) areas[{b, a}] += area;
+  };
+  const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(image.size[0]),
+                                        static_cast<std::size_t>(image.size[0]) * image.size[1]};
+  const Vec3 face = image.spacing.prod() * image.spacing.cwiseInverse();
+  std::size_t n = 0;
+  for (Index k = 0; k < image.size[2]; ++k) {
+    for (Index j = 0; j < image.size[1]; ++j) {
+      for (Index i = 0; i < image.size[0]; ++i, ++n) {
+        const std::array<Index, 3> voxel{i, j, k};
+        for (int a = 0; a < 3; ++a) {
+          if (voxel[a] == 0) touch(image.labels[n], 0, face[a]);
+          const bool last = voxel[a] + 1 == image.size[a];
+          touch(image.labels[n], last ? 0 : image.labels[n + step[a]], face[a]);
+        }
+      }
+    }
+  }
+  return areas;
+}
+
+/// The region of the target in which a label lies: of all that it touches, more is target than anything else, by area,
+/// and most of that is this region. Empty where it does not.
+std::string region_around(int label, const std::map<std::pair<int, int>, double>& areas,
+                          const std::map<int, std::string>& target) {
+  std::map<std::string, double> within;
+  double inside = 0, outside = 0;
+  for (const auto& [pair, area] : areas) {
+    if (pair.first != label) continue;
+    const auto region = target.find(pair.second);
+    if (region != target.end()) within[region->second] += area;
+    (region != target.end() ? inside : outside) += area;
+  }
+  if (!(inside > outside)) return {};
+  const auto less = [](const auto& a, const auto& b) { return a.second < b.second; };
+  return std::max_element(within.begin(), within.end(), less)->first;
+}
+
+/// A voxel has one label only: where a planning volume is drawn within the gland, its voxels are the gland's, and left
+/// out they would be a hole in it. So it becomes the region of the target in which it lies; then what lies in it does.
+void fill_the_gland(std::vector<StructureUse>& uses, const LabelImage& image) {
+  std::set<int> undecided;
+  std::map<int, std::string> target;  // label → region
+  for (const StructureUse& use : uses) {
+    if (is_target_region(use.region)) target[use.number] = use.region;
+    if (use.region.empty() && use.why.starts_with(kPlanningVolume)) undecided.insert(use.number);
+  }
+  if (undecided.empty() || target.empty()) return;
+  const auto areas = contact_areas(image, undecided);
+  for (std::size_t before = 0; before != undecided.size();) {
+    before = undecided.size();
+    for (StructureUse& use : uses) {
+      if (!undecided.contains(use.number)) continue;
+      const std::string region = region_around(use.number, areas, target);
+      if (region.empty()) continue;
+      use.region = target[use.number] = region;
+      use.why = fmt::format("taken as part of {}, in which it lies: left out as a planning volume it would be a hole",
+                            region);
+      undecided.erase(use.number);
+    }
+  }
+}
+
 /// All of the gland as one region; of a mask without a target everything is the gland.
 void keep_gland_labels(std::vector<StructureUse>& uses) {
   const bool has_target =
@@ -62,6 +137,8 @@ Result<StructureChoice> choose_structures(const LabelImage& image, const MeshOpt
   auto uses = meshing::decide(candidates, options, source, "label", true);
   if (!uses) return uses.error();
   if (options.regions.empty()) meshing::keep_the_others(*uses, candidates);
+  if (image.labels.size() == static_cast<std::size_t>(image.size[0]) * image.size[1] * image.size[2])
+    meshing::fill_the_gland(*uses, image);
   const bool has_target =
       std::any_of(uses->begin(), uses->end(), [](const StructureUse& u) { return is_target_region(u.region); });
   if (options.preset == MeshPreset::paper) meshing::keep_gland_labels(*uses);

@@ -44,8 +44,9 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wan
   return false;
 }
 
-/// How well the name of a planning volume fits the gland, whatever its kind: 0 = it names the gland, 1 = it says nothing
-/// of the place; 2 and 3 = the same of one that names lymph nodes or a boost, which are beside the gland or a part of it.
+/// How well the name of a planning volume fits the gland, whatever its kind: 0 = it names the gland, 1 = it says
+/// nothing of the place; 2 and 3 = the same of one that names lymph nodes or a boost, which are beside the gland or a
+/// part of it.
 std::size_t naming_rank(std::string_view name) {
   const std::size_t other = has_word(name, {"ln", "lns", "node", "nodes", "nodal", "boost"}) ? 2 : 0;
   return other + (lower(std::string(name)).find("prost") == std::string::npos ? 1 : 0);
@@ -70,11 +71,7 @@ class Decision {
  public:
   Decision(const std::vector<Candidate>& candidates, const MeshOptions& options, std::string source, std::string kind,
            bool apart)
-      : candidates_(candidates),
-        options_(options),
-        source_(std::move(source)),
-        kind_(std::move(kind)),
-        apart_(apart) {
+      : candidates_(candidates), options_(options), source_(std::move(source)), kind_(std::move(kind)), apart_(apart) {
     for (const Candidate& c : candidates_) {
       names_.push_back(c.name);
       words_.push_back(c.word);
@@ -173,8 +170,9 @@ class Decision {
     }
   }
 
-  /// Whether a structure is the same region as those that the user named so. A label of a mask is: its voxels are nobody
-  /// else's. Contours may be another drawing of the same; those of one half, of which no other is named, are not.
+  /// Whether a structure is the same region as those that the user named so. A label of a mask is: its voxels are
+  /// nobody else's. Contours may be another drawing of the same; those of one half, of which no other is named, are
+  /// not.
   [[nodiscard]] bool belongs_beside_named(std::size_t i, const std::string& region) const {
     if (apart_) return true;
     const std::string_view side = side_of(candidates_[i].name);
@@ -204,9 +202,9 @@ class Decision {
     return std::any_of(uses_.begin(), uses_.end(), [&](const StructureUse& u) { return wanted(u.region); });
   }
 
-  /// Planning volumes are no anatomy; one stands in where the gland itself is not drawn: first by naming_rank(), then by
-  /// its kind. Of several of a kind the one of that very name is preferred, then one with a longer name, then one by its
-  /// type, then the first.
+  /// Planning volumes are no anatomy; one stands in where the gland itself is not drawn: first by naming_rank(), then
+  /// by its kind. Of several of a kind the one of that very name is preferred, then one with a longer name, then one by
+  /// its type, then the first.
   void find_gland() {
     const bool drawn =
         has([](const std::string& r) { return r == "prostate" || r == "peripheral_zone" || r == "transition_zone"; });
@@ -221,13 +219,13 @@ class Decision {
       volumes.push_back({{naming_rank(candidates_[i].name), planning_rank(kind), naming, i}, i});
     }
     if (volumes.empty()) return;
-    std::string why = "planning volume, and the gland is drawn";
-    if (asked) why = "planning volume, and another structure is named as the target";
+    std::string why = fmt::format("{}, and the gland is drawn", kPlanningVolume);
+    if (asked) why = fmt::format("{}, and another structure is named as the target", kPlanningVolume);
     if (!drawn && !asked) {
       const auto& [rank, best] = *std::min_element(volumes.begin(), volumes.end());
       take(best, "prostate",
            fmt::format("taken as the gland, since no {} is named prostate{}", kind_, kPlanning[rank[1]].caution));
-      why = fmt::format("planning volume, and '{}' is taken as the gland", candidates_[best].name);
+      why = fmt::format("{}, and '{}' is taken as the gland", kPlanningVolume, candidates_[best].name);
     }
     for (const auto& [rank, i] : volumes) {
       if (open_[i]) leave(i, why);

@@ -29,6 +29,8 @@ StructureChoice told(std::vector<StructureUse> uses, const std::vector<Candidate
 /// Leaves a structure out.
 void leave_out(StructureUse& use, std::string why);
 
+/// Begins the reason why a planning volume is left out.
+inline constexpr const char* kPlanningVolume = "planning volume";
 inline constexpr const char* kNotRecognised = "name not recognised";
 inline constexpr const char* kPaperTakesTheGland = "mesh.preset = \"paper\" takes the gland only";
 

@@ -117,6 +117,53 @@ TEST(MeshLabels, ALabelledBodyIsTheOuterBoundary) {
   testing::expect_kept(*m, 1200);
 }
 
+TEST(MeshLabels, ALesionLabelledInTheGlandLeavesNoHoleInIt) {
+  LabelImage image = testing::two_zones();
+  const LabelImage without = image;
+  for (int k = 6; k < 9; ++k) {
+    for (int j = 12; j < 22; ++j) {
+      for (int i = 26; i < 36; ++i) image.labels[static_cast<std::size_t>((k * 56 + j) * 64 + i)] = 3;
+    }
+  }
+  image.names = {{1, "PZ"}, {2, "TZ"}, {3, "GTV"}};
+  MeshOptions o;
+  o.nodes = 900;
+  const auto m = mesh_labels(image, o), same = mesh_labels(without, zones(900));
+  ASSERT_TRUE(m.ok()) << m.error().message();
+  ASSERT_TRUE(same.ok()) << same.error().message();
+  EXPECT_EQ(m->mesh.nodes, same->mesh.nodes);
+  EXPECT_TRUE(testing::has_note(*m, "'GTV' is taken as part of transition_zone"));
+}
+
+TEST(MeshLabels, ALabelLeftOutOfABodyIsTissueOfTheBody) {
+  LabelImage image = testing::two_zones();
+  std::size_t n = 0;
+  for (int k = 0; k < 14; ++k) {
+    for (int j = 0; j < 56; ++j) {
+      for (int i = 0; i < 64; ++i, ++n) {
+        if (image.labels[n] == 0 && i > 1 && i < 62 && j > 1 && j < 54) image.labels[n] = 3;
+      }
+    }
+  }
+  image.names = {{1, "PZ"}, {2, "TZ"}, {3, "Body"}, {4, "Rectum"}};
+  LabelImage with_rectum = image;
+  for (int k = 3; k < 11; ++k) {
+    for (int j = 46; j < 53; ++j) {
+      for (int i = 4; i < 14; ++i) with_rectum.labels[static_cast<std::size_t>((k * 56 + j) * 64 + i)] = 4;
+    }
+  }
+  MeshOptions o;
+  o.nodes = 1200;
+  const auto body = mesh_labels(image, o);
+  o.skip = {"Rectum"};
+  const auto skipped = mesh_labels(with_rectum, o);
+  ASSERT_TRUE(body.ok()) << body.error().message();
+  ASSERT_TRUE(skipped.ok()) << skipped.error().message();
+  const auto &a = testing::region(*body, "body"), &b = testing::region(*skipped, "body");
+  EXPECT_NEAR(b.input_volume_cc, a.input_volume_cc, 1e-6 * a.input_volume_cc);
+  EXPECT_NEAR(b.volume_cc, a.volume_cc, 0.01 * a.volume_cc);
+}
+
 TEST(MeshLabels, StrayVoxelsAndLabelsThinnerThanAVoxelAreLeftOutWithANote) {
   LabelImage image = testing::two_zones();
   image.labels[(2 * 56 + 3) * 64 + 4] = 2;    // far from the gland

@@ -224,5 +224,53 @@ TEST(Structures, ALabelCalledTargetIsTheGland) {
   EXPECT_TRUE(says(*choice, "label 'Target' is taken as the gland"));
 }
 
+/// A box of label `label` in an image; to[a] is the first voxel beyond it.
+void fill(LabelImage& image, int label, const std::array<int, 3>& from, const std::array<int, 3>& to) {
+  for (int k = from[2]; k < to[2]; ++k) {
+    for (int j = from[1]; j < to[1]; ++j) {
+      for (int i = from[0]; i < to[0]; ++i) {
+        image.labels[(static_cast<std::size_t>(k) * image.size[1] + j) * image.size[0] + i] =
+            static_cast<std::uint16_t>(label);
+      }
+    }
+  }
+}
+
+TEST(Structures, APlanningLabelWithinTheGlandIsPartOfIt) {
+  LabelImage image = testing::two_zones();
+  fill(image, 3, {28, 32, 6}, {36, 46, 9});  // most of it in the posterior zone
+  fill(image, 5, {30, 36, 7}, {32, 40, 8});  // within the other planning volume
+  fill(image, 4, {54, 20, 5}, {64, 40, 9});  // beside the gland
+  image.names = {{1, "PZ"}, {2, "TZ"}, {3, "GTV"}, {4, "PTV"}, {5, "Target"}};
+  const auto choice = choose_structures(image, {});
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice),
+            (Regions{"peripheral_zone", "transition_zone", "peripheral_zone", "", "peripheral_zone"}));
+  EXPECT_TRUE(says(*choice, "label 'GTV' is taken as part of peripheral_zone, in which it lies"));
+  EXPECT_TRUE(says(*choice, "left out (planning volume, and the gland is drawn): 'PTV'"));
+}
+
+TEST(Structures, PlanningLabelsAroundTheGlandStayLeftOut) {
+  LabelImage image = testing::two_zones();
+  fill(image, 0, {0, 0, 0}, {64, 56, 14});
+  fill(image, 3, {10, 10, 2}, {50, 46, 12});
+  fill(image, 2, {14, 14, 3}, {46, 42, 11});
+  fill(image, 1, {18, 18, 4}, {42, 38, 10});
+  image.names = {{1, "Prostate"}, {2, "CTV"}, {3, "PTV"}};
+  const auto choice = choose_structures(image, {});
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice), (Regions{"prostate", "", ""})) << "a margin is no part of the gland";
+}
+
+TEST(Structures, APlanningLabelWithinTheOneTakenAsTheGlandIsPartOfIt) {
+  LabelImage image = testing::two_zones();
+  for (std::uint16_t& label : image.labels) label = label == 0 ? 0 : 1;
+  fill(image, 2, {28, 24, 6}, {36, 32, 9});
+  image.names = {{1, "CTV"}, {2, "GTV"}};
+  const auto choice = choose_structures(image, {});
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_EQ(regions(*choice), (Regions{"prostate", "prostate"}));
+}
+
 }  // namespace
 }  // namespace stylet

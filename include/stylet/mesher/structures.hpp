@@ -28,7 +28,8 @@ struct StructureChoice {
 Result<StructureChoice> choose_structures(const ContourSet& contours, const MeshOptions& options);
 
 /// The same for a mask. Without MeshOptions::regions, labels that have no name or one that is not recognised are
-/// regions of their own ("label_2").
+/// regions of their own ("label_2"). A planning volume that would be left out, and that touches more of the target than
+/// of anything else, is a part of the target: left out it would be a hole in it.
 Result<StructureChoice> choose_structures(const LabelImage& image, const MeshOptions& options);
 
 }  // namespace stylet
