@@ -256,6 +256,10 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   nrrdIoStateSet(header_only.get(), nrrdIoStateSkipData, AIR_TRUE);
   NrrdPointer nrrd(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), header_only.get()) != 0) return damaged();
+  if (nrrd->dim > 4) {
+    return input_error(source + ", dimension", fmt::format("the value is {}, 3 or 4 is expected", nrrd->dim),
+                       "Export one 3D label mask, or volumes along a fourth axis only.");
+  }
   const int axis = list_axis(*nrrd);
   std::vector<std::size_t> sizes;
   for (unsigned d = 0; d < nrrd->dim; ++d) {

@@ -174,6 +174,20 @@ TEST(LabelImageErrors, one_volume_of_several_can_be_chosen) {
   expect_refused(read_label_image(write_file(folder / "one.nii", nifti(mask)), {.volume = 2}), {"volume 2", "holds 1"});
 }
 
+TEST(LabelImageErrors, an_nrrd_of_five_dimensions_is_refused_whatever_volume_is_chosen) {
+  const Folder folder;
+  const Mask mask;
+  std::string text =
+      replaced(replaced(nrrd(mask), "dimension: 3", "dimension: 5"), "sizes: 12 10 8", "sizes: 12 10 8 1 2");
+  text = replaced(replaced(text, "(0,0,4)", "(0,0,4) none none"), "domain domain domain",
+                  "domain domain domain list list");
+  const fs::path path = write_file(folder / "m.nrrd", two_volumes(mask, text));
+  for (const int volume : {0, 1, 2}) {
+    expect_refused(read_label_image(path, {.volume = volume}),
+                   {"m.nrrd, dimension", "the value is 5", "3 or 4 is expected"});
+  }
+}
+
 TEST(LabelImageErrors, an_image_that_does_not_say_where_it_lies_is_refused) {
   const Mask mask;
   expect_refused(read_mask("mask.nii", nifti(mask, NiftiForm::none)), {"neither sform nor qform", "left and right"});
