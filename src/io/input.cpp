@@ -30,6 +30,8 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
     const Result<std::string> found = guarded<std::string>(path, [&] { return detail::only_patient_in(path); });
     return found ? read_input(*found, mesh_options, mask_options, skip) : Result<PatientInput>(found.error());
   }
+  MaskReadOptions of_mask = mask_options;
+  of_mask.skip.insert(of_mask.skip.end(), skip.begin(), skip.end());
   Result<FileKind> kind = detail::identify(path);
   if (!kind) return kind.error();
   bool is_mask = *kind == FileKind::nifti || *kind == FileKind::nrrd || *kind == FileKind::metaimage;
@@ -45,13 +47,13 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
   }
   switch (*kind) {
     case FileKind::dicom:
-      return is_mask ? as_input(read_label_image(path, mask_options)) : as_input(read_rtstruct(path, skip));
+      return is_mask ? as_input(read_label_image(path, of_mask)) : as_input(read_rtstruct(path, skip));
     case FileKind::contour_json:
       return as_input(read_contour_json(path, skip));
     case FileKind::nifti:
     case FileKind::nrrd:
     case FileKind::metaimage:
-      return as_input(read_label_image(path, mask_options));
+      return as_input(read_label_image(path, of_mask));
     case FileKind::vtu:
     case FileKind::vtk_legacy:
     case FileKind::gmsh:

@@ -27,7 +27,7 @@ std::vector<Candidate> candidates_of(const LabelImage& image) {
                    .number = label,
                    .type = "",
                    .word = number,
-                   .nothing = has_voxels ? "" : "empty"});
+                   .nothing = has_voxels ? "" : kEmpty});
   }
   return all;
 }

@@ -20,7 +20,7 @@ std::vector<Candidate> candidates_of(const ContourSet& set) {
                    .number = roi.number,
                    .type = roi.type,
                    .word = "",
-                   .nothing = roi.contours.empty() ? "empty" : ""});
+                   .nothing = roi.contours.empty() ? kEmpty : ""});
   }
   for (const PassedOver& passed : set.passed_over) {
     all.push_back({.name = passed.name, .meaning = "", .number = 0, .type = "", .word = "", .nothing = passed.why});

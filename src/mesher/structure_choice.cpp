@@ -122,7 +122,8 @@ class Decision {
       const auto found = meant(word, "patient.skip");
       if (!found) return found.error();
       for (const std::size_t i : *found) {
-        if (candidates_[i].nothing.empty()) leave(i, "named in [patient] skip");
+        // A reader that was told so has emptied it already.
+        if (candidates_[i].nothing.empty() || candidates_[i].nothing == kEmpty) leave(i, kSkipped);
       }
     }
     return Ok{};
@@ -134,12 +135,12 @@ class Decision {
       if (!found) return found.error();
       bool taken = false;
       for (const std::size_t i : *found) {
-        if (!candidates_[i].nothing.empty()) continue;
-        if (!open_[i] && uses_[i].region.empty()) {
+        if (uses_[i].why == kSkipped) {
           return input_error(source_,
                              fmt::format("{} '{}' is named in patient.skip and in patient.regions", kind_, word),
                              "Remove it from one of the two.");
         }
+        if (!candidates_[i].nothing.empty()) continue;
         take(i, region_meant(region), "named in [patient.regions]");
         asked_.insert(uses_[i].region);
         named_.insert(i);

@@ -31,6 +31,8 @@ void leave_out(StructureUse& use, std::string why);
 
 /// Begins the reason why a planning volume is left out.
 inline constexpr const char* kPlanningVolume = "planning volume";
+inline constexpr const char* kEmpty = "empty";
+inline constexpr const char* kSkipped = "named in [patient] skip";
 inline constexpr const char* kNotRecognised = "name not recognised";
 inline constexpr const char* kPaperTakesTheGland = "mesh.preset = \"paper\" takes the gland only";
 

@@ -52,6 +52,16 @@ class LayeredSegmentation(InFolder):
         self.assertTrue(any("the smaller segment" in note for note in report["notes"]), report["notes"])
 
 
+    def test_a_segment_that_is_skipped_leaves_its_voxels_to_what_lies_below(self):
+        report = self.json_of("mesh", "case.seg.nrrd", "-o", "m.vtu", "--nodes", "1500", "--skip", "transition",
+                              "--skip", "urethra")
+        self.assertNotIn("transition_zone", report["regions"])
+        whole = 4 / 3 * 3.1416 * 2.0 ** 3
+        self.assertAlmostEqual(report["regions"]["peripheral_zone"]["input_volume_cc"], whole, delta=0.05 * whole)
+        self.assertTrue(any("named in [patient] skip): 'transition', 'Urethra'" in note for note in report["notes"]),
+                        report["notes"])
+
+
 class SeveralVolumes(InFolder):
     def setUp(self):
         super().setUp()

@@ -198,6 +198,20 @@ TEST(Structures, LabelsAreSkippedByNameOrNumber) {
   EXPECT_NE(wrong.error().message().find("Did you mean 'Bladder'?"), std::string::npos);
 }
 
+TEST(Structures, ALabelThatTheReaderHasSkippedIsSaidToBe) {
+  LabelImage image = testing::two_zones();
+  image.names = {{1, "PZ"}, {2, "TZ"}, {3, "Urethra"}};
+  MeshOptions options;
+  options.skip = {"Urethra"};
+  const auto choice = choose_structures(image, options);
+  ASSERT_TRUE(choice.ok()) << choice.error().message();
+  EXPECT_TRUE(says(*choice, "label left out (named in [patient] skip): 'Urethra'"));
+  options.regions = {{"urethra", "urethra"}};
+  const auto both = choose_structures(image, options);
+  ASSERT_FALSE(both.ok());
+  EXPECT_NE(both.error().message().find("patient.skip and in patient.regions"), std::string::npos);
+}
+
 TEST(Structures, NamingOneLabelLeavesTheOthersRecognised) {
   MeshOptions options;
   options.regions = {{"1", "prostate"}};

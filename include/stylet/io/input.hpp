@@ -15,7 +15,8 @@ using PatientInput = std::variant<ContourSet, LabelImage, TetMesh, std::vector<S
 /// Finds out what a file (or a directory with one RTSTRUCT or DICOM SEG in it) is, by content before extension, and
 /// reads it. Untrusted files go through a child process with limits on time and memory, so a parser's crash becomes an
 /// error.
-/// @param skip names of structures of a contour set that nobody will miss, even where they are damaged
+/// @param skip names of structures of a contour set that nobody will miss, even where they are damaged, and of segments
+/// (MaskReadOptions::skip)
 Result<PatientInput> read_input(const std::filesystem::path& path, const MeshReadOptions& mesh_options = {},
                                 const MaskReadOptions& mask_options = {}, std::span<const std::string> skip = {});
 

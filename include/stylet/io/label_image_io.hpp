@@ -5,11 +5,14 @@
 #include "stylet/geom/label_image.hpp"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace stylet {
 
 struct MaskReadOptions {
-  int volume = 0;  ///< which volume of a file that holds several, counted from 1; 0 = the only one
+  int volume = 0;                      ///< which volume of a file that holds several, counted from 1; 0 = the only one
+  std::vector<std::string> skip = {};  ///< names or numbers of segments that take no voxel from what lies below them
 };
 
 /// Reads a label mask: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM SEG. The

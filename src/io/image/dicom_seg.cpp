@@ -192,20 +192,23 @@ std::string meaning_of_segment(DcmItem& item) {
   return place.empty() ? type : place;
 }
 
-Result<std::map<int, Segment>> read_segments(DcmDataset& data, std::size_t voxels, const std::string& source) {
+/// In the order of their numbers.
+Result<std::vector<Segment>> read_segments(DcmDataset& data, const std::string& source) {
   std::map<int, Segment> segments;
   for (DcmItem* item : items_of(data, DCM_SegmentSequence)) {
     const auto number = integer_of(*item, DCM_SegmentNumber);
     if (!number || *number < 0 || *number > 65535) return damaged(source, "a segment has no number from 1 to 65535");
     if (*number == 0) continue;  // the background of a label map
-    Segment segment{*number, text_of(*item, DCM_SegmentLabel), meaning_of_segment(*item), std::vector<bool>(voxels)};
+    Segment segment{*number, text_of(*item, DCM_SegmentLabel), meaning_of_segment(*item)};
     if (segment.name.empty()) segment.name = segment.meaning;
     if (!segments.emplace(*number, std::move(segment)).second) {
       return damaged(source, fmt::format("two segments have the number {}", *number));
     }
   }
   if (segments.empty()) return damaged(source, "the file has no segments (SegmentSequence)");
-  return segments;
+  std::vector<Segment> list;
+  for (auto& [number, segment] : segments) list.push_back(std::move(segment));
+  return list;
 }
 
 /// The pixels of all frames: one bit, or one or two bytes each.
@@ -273,23 +276,26 @@ Result<Rule> rule_of(DcmDataset& data, const std::string& source) {
   return Rule{.least = (most + 1) / 2};
 }
 
-Result<> mark(const std::vector<Frame>& frames, const Pixels& pixels, const Rule& rule, const Voxels& stack,
-              std::map<int, Segment>& segments) {
+/// The voxels of all segments.
+Result<std::vector<Run>> runs_of(const std::vector<Frame>& frames, const Pixels& pixels, const Rule& rule,
+                                 const Voxels& stack, const std::vector<Segment>& segments) {
+  std::vector<int> place(std::size_t{1} << 16, -1);  // of a segment's number in the list
+  for (std::size_t s = 0; s < segments.size(); ++s) place[segments[s].label] = static_cast<int>(s);
+  std::vector<Run> runs;
   const std::size_t area = stack.size[0] * stack.size[1];
   for (std::size_t f = 0; f < frames.size(); ++f) {
     for (std::size_t p = 0; p < area; ++p) {
       const int value = pixels(f * area + p);
       const int segment = rule.label_map ? value : value >= rule.least ? frames[f].segment : 0;
       if (segment == 0) continue;
-      const auto found = segments.find(segment);
-      if (found == segments.end()) {
+      if (segment < 0 || segment > 65535 || place[segment] < 0) {
         return damaged(fmt::format("{}, frame {}", stack.source, f + 1),
                        fmt::format("it shows segment {}, which the file does not describe", segment));
       }
-      found->second.inside[static_cast<std::size_t>(frames[f].slice) * area + p] = true;
+      add_voxel(runs, static_cast<std::size_t>(frames[f].slice) * area + p, place[segment]);
     }
   }
-  return Ok{};
+  return runs;
 }
 
 Result<> check_is_segmentation(DcmDataset& data, const std::string& source) {
@@ -343,16 +349,15 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   LabelImage image;
   if (Result<> frame = set_frame(*stack, image); !frame) return frame.error();
   image.labels.resize(stack->size[0] * stack->size[1] * stack->size[2]);
-  Result<std::map<int, Segment>> segments = read_segments(data, image.labels.size(), source);
+  const Result<std::vector<Segment>> segments = read_segments(data, source);
   if (!segments) return segments.error();
-  if (Result<> marked = mark(*frames, *pixels, *rule, *stack, *segments); !marked) return marked.error();
+  const Result<std::vector<Run>> runs = runs_of(*frames, *pixels, *rule, *stack, *segments);
+  if (!runs) return runs.error();
   if (rule->least > 1) {
     image.notes.push_back(fmt::format("fractional segments: a voxel is inside from {} of {} on, one half", rule->least,
                                       integer_of(data, DCM_MaximumFractionalValue).value_or(255)));
   }
-  std::vector<Segment> list;
-  for (auto& [number, segment] : *segments) list.push_back(std::move(segment));
-  paint(std::move(list), image);
+  if (Result<> painted = paint(*segments, *runs, options.skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();
   return image;
 }

@@ -172,12 +172,9 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
 /// The segments of all layers in one image. Each layer counts its labels from 1: where two have the same, the segments
 /// get their number in the file instead.
 Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, const std::vector<SegmentKeys>& keys, const Vec3& lps,
-                                const std::string& source) {
-  std::set<int> values;
-  for (const SegmentKeys& key : keys) values.insert(key.value);
-  const bool unique = values.size() == keys.size();
+                                std::span<const std::string> skip, const std::string& source) {
   LabelImage image;
-  std::vector<Segment> segments;
+  std::vector<Run> runs;
   for (std::size_t layer = 0; layer < nrrd.axis[axis].size; ++layer) {
     Result<NrrdPointer> slice = slice_of(nrrd, axis, layer, source);
     if (!slice) return slice.error();
@@ -189,20 +186,26 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, const std::vector<Se
     }
     Result<std::vector<std::uint16_t>> labels = labels_of(*voxels);
     if (!labels) return labels.error();
+    std::vector<int> place(std::size_t{1} << 16, -1);  // of a value's segment in the list
     for (std::size_t k = 0; k < keys.size(); ++k) {
-      if (keys[k].layer != layer) continue;
-      Segment segment{unique ? keys[k].value : static_cast<int>(k) + 1, keys[k].name, "", {}};
-      segment.inside.reserve(labels->size());
-      for (const std::uint16_t label : *labels) segment.inside.push_back(label == keys[k].value);
-      segments.push_back(std::move(segment));
+      if (keys[k].layer == layer) place[keys[k].value] = static_cast<int>(k);
+    }
+    for (std::size_t n = 0; n < labels->size(); ++n) {
+      if (const int segment = place[(*labels)[n]]; segment >= 0) add_voxel(runs, n, segment);
     }
   }
+  std::set<int> values;
+  for (const SegmentKeys& key : keys) values.insert(key.value);
+  const bool unique = values.size() == keys.size();
+  std::vector<Segment> segments;
+  for (const SegmentKeys& key : keys)
+    segments.push_back({unique ? key.value : static_cast<int>(segments.size()) + 1, key.name, ""});
   image.notes.push_back(fmt::format("{} segments in {} layers were put into one mask{}", segments.size(),
                                     nrrd.axis[axis].size,
                                     unique ? ""
                                            : "; layers use the same labels, so that segments are numbered 1, 2, … "
                                              "in the order of the file"));
-  paint(std::move(segments), image);
+  if (Result<> painted = paint(segments, runs, skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();
   return image;
 }
@@ -276,7 +279,7 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
 
   nrrd.reset(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), nullptr) != 0) return damaged();
-  if (layered) return merge_layers(*nrrd, axis, keys, *lps, source);
+  if (layered) return merge_layers(*nrrd, axis, keys, *lps, options.skip, source);
   Result<NrrdPointer> slice = slice_of(*nrrd, axis, *volume, source);
   if (!slice) return slice.error();
   Result<Voxels> voxels = voxels_of(**slice, *lps, source);

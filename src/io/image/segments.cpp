@@ -1,50 +1,85 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/segments.hpp"
 
+#include "stylet/geom/structure_names.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace stylet::detail {
 
 namespace {
 
-struct Sized {
-  const Segment* segment = nullptr;
-  std::ptrdiff_t voxels = 0;
-};
+/// Which segments a user's words mean, each by its name, else by its label.
+std::vector<bool> listed(const std::vector<Segment>& segments, std::span<const std::string> words) {
+  std::vector<std::string> names, numbers;
+  for (const Segment& s : segments) {
+    names.push_back(s.name);
+    numbers.push_back(std::to_string(s.label));
+  }
+  std::vector<bool> in(segments.size(), false);
+  for (const std::string& word : words) {
+    std::vector<std::size_t> found = find_named(names, word);
+    if (found.empty()) found = find_named(numbers, word);
+    for (const std::size_t s : found) in[s] = true;
+  }
+  return in;
+}
 
-std::vector<Sized> largest_first(const std::vector<Segment>& segments) {
-  std::vector<Sized> sized;
-  for (const Segment& s : segments) sized.push_back({&s, std::count(s.inside.begin(), s.inside.end(), true)});
-  std::stable_sort(sized.begin(), sized.end(), [](const Sized& a, const Sized& b) { return a.voxels > b.voxels; });
-  return sized;
+/// The runs in the order of their segments' sizes, the largest first.
+std::vector<Run> largest_first(const std::vector<Run>& runs, const std::vector<std::size_t>& voxels) {
+  std::vector<std::size_t> order(voxels.size()), start(voxels.size(), 0), count(voxels.size(), 0);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return voxels[a] > voxels[b]; });
+  for (const Run& run : runs) ++count[run.segment];
+  std::size_t next = 0;
+  for (const std::size_t s : order) {
+    start[s] = next;
+    next += count[s];
+  }
+  std::vector<Run> sorted(runs.size());
+  for (const Run& run : runs) sorted[start[run.segment]++] = run;
+  return sorted;
 }
 
 }  // namespace
 
-void paint(std::vector<Segment> segments, LabelImage& image) {
+Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& runs, std::span<const std::string> skip,
+               LabelImage& image) {
+  const std::vector<bool> skipped = listed(segments, skip);
+  if (!segments.empty() && std::find(skipped.begin(), skipped.end(), false) == skipped.end()) {
+    return input_error(image.source, "every segment is left out", "Take one of them out of [patient] skip.");
+  }
+  std::vector<std::size_t> voxels(segments.size(), 0);
+  for (const Run& run : runs) voxels[run.segment] += run.count;
   std::map<int, std::string> called;
-  for (const Segment& s : segments) {
-    called[s.label] = s.name.empty() ? fmt::format("segment {}", s.label) : s.name;
-    if (!s.name.empty()) image.names[s.label] = s.name;
-    if (!s.meaning.empty()) image.meanings[s.label] = s.meaning;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const auto& [label, name, meaning] = segments[s];
+    called[label] = name.empty() ? fmt::format("segment {}", label) : name;
+    if (!name.empty()) image.names[label] = name;
+    if (!meaning.empty()) image.meanings[label] = meaning;
+    if (skipped[s]) image.names.try_emplace(label, std::to_string(label));  // so that it is known to have been there
+    if (voxels[s] == 0 && !skipped[s]) image.notes.push_back(fmt::format("segment '{}' is empty", called[label]));
   }
   std::map<std::pair<int, int>, std::size_t> overlaps;  // (smaller, larger) → voxels
-  for (const auto& [segment, voxels] : largest_first(segments)) {
-    if (voxels == 0) image.notes.push_back(fmt::format("segment '{}' is empty", called[segment->label]));
-    for (std::size_t n = 0; n < image.labels.size(); ++n) {
-      if (!segment->inside[n]) continue;
-      if (image.labels[n] != 0) ++overlaps[{segment->label, image.labels[n]}];
-      image.labels[n] = static_cast<std::uint16_t>(segment->label);
+  for (const Run& run : largest_first(runs, voxels)) {
+    if (skipped[run.segment]) continue;
+    const int label = segments[run.segment].label;
+    for (std::size_t n = run.first; n < run.first + std::size_t{run.count}; ++n) {
+      const int below = image.labels[n];
+      if (below != 0 && below != label) ++overlaps[{label, below}];
+      image.labels[n] = static_cast<std::uint16_t>(label);
     }
   }
-  for (const auto& [pair, voxels] : overlaps) {
+  for (const auto& [pair, shared] : overlaps) {
     image.notes.push_back(fmt::format("'{0}' and '{1}' share {2} voxel{3}: the smaller segment, '{0}', has {4}",
-                                      called[pair.first], called[pair.second], voxels, voxels == 1 ? "" : "s",
-                                      voxels == 1 ? "it" : "them"));
+                                      called[pair.first], called[pair.second], shared, shared == 1 ? "" : "s",
+                                      shared == 1 ? "it" : "them"));
   }
+  return Ok{};
 }
 
 }  // namespace stylet::detail

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/core/result.hpp"
 #include "stylet/geom/label_image.hpp"
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,14 +15,31 @@ namespace stylet::detail {
 struct Segment {
   int label = 0;  ///< 1…65535, unique
   std::string name;
-  std::string meaning;       ///< of its code, empty where there is none
-  std::vector<bool> inside;  ///< one per voxel of the image
+  std::string meaning;  ///< of its code, empty where there is none
 };
+
+/// Voxels of one segment that follow one another in the image.
+struct Run {
+  std::uint32_t first = 0, count = 0;
+  std::uint32_t segment = 0;  ///< position in the list of segments
+};
+
+/// Puts a voxel of a segment to the runs.
+inline void add_voxel(std::vector<Run>& runs, std::size_t voxel, std::size_t segment) {
+  if (!runs.empty() && runs.back().segment == segment && runs.back().first + std::size_t{runs.back().count} == voxel) {
+    ++runs.back().count;
+  } else {
+    runs.push_back({static_cast<std::uint32_t>(voxel), 1, static_cast<std::uint32_t>(segment)});
+  }
+}
 
 /// Paints the segments into image.labels (of the image's size, all 0). Where segments overlap, the smaller one, by its
 /// voxels, has the voxel: what is inside something else is the more specific of both (the urethra or a zone inside the
 /// gland). Of two equally large ones the later has it. Names and notes on overlaps and on empty segments go into the
 /// image.
-void paint(std::vector<Segment> segments, LabelImage& image);
+/// @param skip names or labels of segments that are left out: what lies below them keeps its voxels
+/// Errors: every segment is left out.
+Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& runs, std::span<const std::string> skip,
+               LabelImage& image);
 
 }  // namespace stylet::detail

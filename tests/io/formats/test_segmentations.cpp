@@ -90,6 +90,23 @@ TEST(DicomSeg, segments_carry_their_label_and_the_meaning_of_their_code) {
   EXPECT_TRUE(notes_say(image, "'duct' and 'Prostate' share 24 voxels"));
 }
 
+TEST(DicomSeg, a_skipped_segment_takes_no_voxel_from_what_lies_below) {
+  const Folder folder;
+  const fs::path path = write_seg(folder / "seg.dcm", Mask(), gland_and_urethra());
+  for (const char* word : {"duct", "DUCT", "2"}) {
+    const std::vector<std::string> skip{word};
+    const auto input = read_input(path, {}, {}, skip);
+    ASSERT_TRUE(input.ok()) << why(input);
+    const auto& image = std::get<LabelImage>(*input);
+    EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 1), 7 * 6 * 6) << word;
+    EXPECT_EQ(std::count(image.labels.begin(), image.labels.end(), 2), 0) << word;
+    EXPECT_EQ(image.names.at(2), "duct") << "what was skipped is known";
+    EXPECT_FALSE(notes_say(image, "share"));
+    EXPECT_FALSE(notes_say(image, "is empty"));
+  }
+  expect_refused(read_label_image(path, {.skip = {"Prostate", "duct"}}), {"seg.dcm", "every segment is left out"});
+}
+
 TEST(DicomSeg, slices_without_a_frame_are_empty) {
   const Folder folder;
   const Mask frame;
@@ -207,6 +224,20 @@ TEST(LayeredNrrd, the_smaller_of_two_overlapping_segments_has_the_voxel) {
     EXPECT_TRUE(notes_say(*image, "3 segments in 2 layers"));
     EXPECT_TRUE(notes_say(*image, "'nothing' is empty"));
   }
+}
+
+TEST(LayeredNrrd, a_skipped_segment_takes_no_voxel_from_what_lies_below) {
+  const Mask frame;
+  const std::string text = layered_nrrd(frame, {voxels(frame, in_urethra), voxels(frame, in_gland)},
+                                        "Segment0_Name:=urethra\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+                                        "Segment1_Name:=Prostate\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n");
+  const Folder folder;
+  const fs::path path = write_file(folder / "case.seg.nrrd", text);
+  const auto image = read_label_image(path, {.skip = {"Urethra"}});
+  ASSERT_TRUE(image.ok()) << why(image);
+  EXPECT_EQ(std::count(image->labels.begin(), image->labels.end(), 2), 7 * 6 * 6);
+  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(4, 4, 3)), 2);
+  EXPECT_EQ(image->names.at(1), "urethra");
 }
 
 TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {
