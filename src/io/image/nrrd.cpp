@@ -95,14 +95,6 @@ double unit_mm(const char* unit) {
   return 0.0;
 }
 
-std::optional<std::string> key_value(const Nrrd& nrrd, const std::string& key) {
-  char* text = nrrdKeyValueGet(&nrrd, key.c_str());
-  if (text == nullptr) return std::nullopt;
-  std::string value = trimmed(text);
-  std::free(text);
-  return value;
-}
-
 /// What 3D Slicer writes of one segment: keys SegmentN_Name, SegmentN_LabelValue and SegmentN_Layer.
 struct SegmentKeys {
   std::string name;
@@ -110,16 +102,67 @@ struct SegmentKeys {
   std::size_t layer = 0;
 };
 
-std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd) {
+struct SegmentTexts {
+  std::optional<std::string> name, value, layer;
+};
+
+/// The keys of each segment, as text, by its N.
+std::map<int, SegmentTexts> segment_texts(const Nrrd& nrrd) {
+  constexpr std::string_view start = "Segment";
+  std::map<int, SegmentTexts> segments;
+  for (unsigned n = 0; n < nrrdKeyValueSize(&nrrd); ++n) {
+    char* key_text = nullptr;
+    char* value_text = nullptr;
+    nrrdKeyValueIndex(&nrrd, &key_text, &value_text, n);
+    const std::string key = key_text == nullptr ? "" : key_text,
+                      value = trimmed(value_text == nullptr ? "" : value_text);
+    std::free(key_text);
+    std::free(value_text);
+    const auto end = key.find('_');
+    if (!key.starts_with(start) || end == std::string::npos) continue;
+    const std::string_view digits = std::string_view(key).substr(start.size(), end - start.size());
+    const bool number =
+        !digits.empty() && digits.size() < 9 && digits.find_first_not_of("0123456789") == std::string::npos;
+    if (!number) continue;
+    const std::string what = key.substr(end + 1);
+    const int segment = std::stoi(std::string(digits));
+    if (what == "Name") segments[segment].name = value;
+    if (what == "LabelValue") segments[segment].value = value;
+    if (what == "Layer") segments[segment].layer = value;
+  }
+  std::erase_if(segments, [](const auto& s) { return !s.second.name && !s.second.value; });
+  return segments;
+}
+
+/// A whole number within bounds, or nothing.
+std::optional<int> whole_number(const std::string& text, int least, int most) {
+  const double value = to_number(text).value_or(-1.0);
+  if (!(value >= least && value <= most) || value != std::floor(value)) return std::nullopt;
+  return static_cast<int>(value);
+}
+
+/// The segments that the header describes; what is wrong with the others goes into the notes.
+/// @param layers of the file
+std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd, std::size_t layers, std::vector<std::string>& notes) {
   std::vector<SegmentKeys> segments;
-  for (int n = 0; n < 65536; ++n) {
-    const auto key = [&](const char* what) { return key_value(nrrd, fmt::format("Segment{}_{}", n, what)); };
-    const auto name = key("Name"), value = key("LabelValue"), layer = key("Layer");
-    if (!name && !value) break;
-    const double number = value ? to_number(*value).value_or(0.0) : n + 1;
-    const double at = layer ? to_number(*layer).value_or(0.0) : 0.0;
-    if (number < 1 || number > 65535 || at < 0 || at > 65535) continue;
-    segments.push_back({name.value_or(""), static_cast<int>(number), static_cast<std::size_t>(at)});
+  for (const auto& [n, texts] : segment_texts(nrrd)) {
+    const std::string called = texts.name && !texts.name->empty()
+                                   ? fmt::format("segment '{}'", *texts.name)
+                                   : fmt::format("the segment of the header's Segment{}", n);
+    const std::string value = texts.value.value_or(std::to_string(n + 1)), layer = texts.layer.value_or("0");
+    const auto number = whole_number(value, 1, 65535), at = whole_number(layer, 0, 65535);
+    if (!number) {
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_LabelValue is '{}', 1 to 65535 is expected", called,
+                                  n, value.substr(0, 40)));
+    } else if (!at) {
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is '{}', a number from 0 on is expected",
+                                  called, n, layer.substr(0, 40)));
+    } else if (static_cast<std::size_t>(*at) >= layers) {
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is {}, and the file's last layer is {}",
+                                  called, n, *at, layers - 1));
+    } else {
+      segments.push_back({texts.name.value_or(""), *number, static_cast<std::size_t>(*at)});
+    }
   }
   return segments;
 }
@@ -169,9 +212,9 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
   return voxels;
 }
 
-/// The segments of all layers in one image. Each layer counts its labels from 1: where two have the same, the segments
-/// get their number in the file instead.
-Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, const std::vector<SegmentKeys>& keys, const Vec3& lps,
+/// The segments of all layers in one image; labels that the header does not describe are segments without a name. Each
+/// layer counts its labels from 1: where two have the same, the segments get their number in the file instead.
+Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentKeys> keys, const Vec3& lps,
                                 std::span<const std::string> skip, const std::string& source) {
   LabelImage image;
   std::vector<Run> runs;
@@ -191,7 +234,15 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, const std::vector<Se
       if (keys[k].layer == layer) place[keys[k].value] = static_cast<int>(k);
     }
     for (std::size_t n = 0; n < labels->size(); ++n) {
-      if (const int segment = place[(*labels)[n]]; segment >= 0) add_voxel(runs, n, segment);
+      const std::uint16_t label = (*labels)[n];
+      if (label == 0) continue;
+      if (place[label] < 0) {
+        place[label] = static_cast<int>(keys.size());
+        keys.push_back({"", label, layer});
+        image.notes.push_back(fmt::format(
+            "label {} of layer {} is none of the header's segments: it is taken as one without a name", label, layer));
+      }
+      add_voxel(runs, n, place[label]);
     }
   }
   std::set<int> values;
@@ -269,8 +320,10 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
     if (static_cast<int>(d) != axis) sizes.push_back(nrrd->axis[d].size);
   }
   if (axis >= 0) sizes.push_back(nrrd->axis[axis].size);
-  const std::vector<SegmentKeys> keys = segment_keys(*nrrd);
-  const bool layered = axis >= 0 && nrrd->axis[axis].size > 1 && !keys.empty() && options.volume == 0;
+  std::vector<std::string> notes;
+  const std::vector<SegmentKeys> keys = segment_keys(*nrrd, axis < 0 ? 1 : nrrd->axis[axis].size, notes);
+  const bool described = !keys.empty() || !notes.empty();
+  const bool layered = axis >= 0 && nrrd->axis[axis].size > 1 && described && options.volume == 0;
   Result<std::size_t> volume =
       choose_volume(layered ? std::span(sizes).first(3) : std::span(sizes), options.volume, source);
   if (!volume) return volume.error();
@@ -279,7 +332,14 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
 
   nrrd.reset(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), nullptr) != 0) return damaged();
-  if (layered) return merge_layers(*nrrd, axis, keys, *lps, options.skip, source);
+  const auto with_notes = [&](LabelImage image) {
+    image.notes.insert(image.notes.begin(), notes.begin(), notes.end());
+    return image;
+  };
+  if (layered) {
+    Result<LabelImage> merged = merge_layers(*nrrd, axis, keys, *lps, options.skip, source);
+    return merged ? with_notes(std::move(*merged)) : std::move(merged);
+  }
   Result<NrrdPointer> slice = slice_of(*nrrd, axis, *volume, source);
   if (!slice) return slice.error();
   Result<Voxels> voxels = voxels_of(**slice, *lps, source);
@@ -287,9 +347,9 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   Result<LabelImage> image = to_label_image(*voxels);
   if (!image) return image;
   for (const SegmentKeys& key : keys) {
-    if (axis < 0 || key.layer == *volume) image->names[key.value] = key.name;
+    if (!key.name.empty() && (axis < 0 || key.layer == *volume)) image->names[key.value] = key.name;
   }
-  return image;
+  return with_notes(std::move(*image));
 }
 
 }  // namespace stylet::detail

@@ -240,6 +240,30 @@ TEST(LayeredNrrd, a_skipped_segment_takes_no_voxel_from_what_lies_below) {
   EXPECT_EQ(image->names.at(1), "urethra");
 }
 
+TEST(LayeredNrrd, no_segment_is_lost_without_a_word) {
+  const Mask frame;
+  auto gland = voxels(frame, in_gland);
+  gland[0] = 5;  // none of the segments below
+  const auto image =
+      read_mask("case.seg.nrrd", layered_nrrd(frame, {voxels(frame, in_urethra), gland},
+                                              "Segment0_Name:=urethra\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+                                              "Segment2_Name:=\nSegment2_LabelValue:=1\nSegment2_Layer:=1\n"
+                                              "Segment3_Name:=lost\nSegment3_LabelValue:=1\nSegment3_Layer:=2\n"
+                                              "Segment4_Name:=odd\nSegment4_LabelValue:=one\nSegment4_Layer:=1\n"
+                                              "Segment5_Name:=half\nSegment5_LabelValue:=1.5\nSegment5_Layer:=1\n"
+                                              "Segment6_Name:=where\nSegment6_LabelValue:=1\nSegment6_Layer:=x\n"));
+  ASSERT_TRUE(image.ok()) << why(image);
+  EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "urethra"}})) << "no empty names";
+  EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(2, 2, 3)), 2);
+  EXPECT_EQ(label_at(*image, frame.origin), 3);
+  EXPECT_TRUE(notes_say(*image, "label 5 of layer 1 is none of the header's segments"));
+  EXPECT_TRUE(
+      notes_say(*image, "segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
+  EXPECT_TRUE(notes_say(*image, "segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
+  EXPECT_TRUE(notes_say(*image, "segment 'half' has no voxels"));
+  EXPECT_TRUE(notes_say(*image, "segment 'where' has no voxels: its Segment6_Layer is 'x'"));
+}
+
 TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {
   const Mask frame;
   auto urethra = voxels(frame, in_urethra);
