@@ -33,6 +33,30 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
+std::optional<HeaderLine> next_header_line(std::istream& stream) {
+  using Traits = std::istream::traits_type;
+  std::streambuf& bytes = *stream.rdbuf();
+  if (Traits::eq_int_type(bytes.sgetc(), Traits::eof())) return std::nullopt;
+  HeaderLine line;
+  for (;;) {
+    const auto next = bytes.sgetc();
+    if (Traits::eq_int_type(next, Traits::eof())) return line;
+    const char c = Traits::to_char_type(next);
+    if (c != '\n' && c != '\r' && line.text.size() == kLongestHeaderLine) {
+      line.whole = false;
+      return line;
+    }
+    bytes.sbumpc();
+    if (c == '\n') return line;
+    if (c == '\r') {
+      line.lone_return = !Traits::eq_int_type(bytes.sgetc(), Traits::to_int_type('\n'));
+      if (!line.lone_return) bytes.sbumpc();
+      return line;
+    }
+    line.text += c;
+  }
+}
+
 std::optional<double> to_number(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r' || text.back() == '\0')) {

@@ -65,13 +65,6 @@ double unit_mm(MET_DistanceUnitsEnumType unit) {
   }
 }
 
-/// Where the voxels of a file with header and data in one begin: after the line "ElementDataFile = LOCAL".
-std::size_t end_of_header(const std::string& text) {
-  const auto key = text.find("ElementDataFile");
-  const auto line_end = key == std::string::npos ? key : text.find('\n', key);
-  return line_end == std::string::npos ? text.size() : line_end + 1;
-}
-
 /// zlib or gzip to exactly `size` bytes; shorter when the data end too early.
 std::string inflated(std::string_view packed, std::size_t size) {
   std::string out(size, '\0');
@@ -99,25 +92,42 @@ std::string inflated(std::string_view packed, std::size_t size) {
 struct Announced {
   double dimensions = 0;
   std::string data_file;
+  std::size_t header_bytes = 0;  ///< the voxels of a file with header and data in one begin there
 };
 
+/// MetaIO separates at '=' or ':', whichever comes first, and knows its keys in one spelling only. Where it and this
+/// function might see different lines the header is refused.
 Result<Announced> announced_in(const fs::path& path) {
   const std::string source = path.string();
+  constexpr std::size_t kLongest = 4095;
   std::ifstream file(path, std::ios::binary);
   Announced found;
-  for (std::string line; std::getline(file, line) && line.size() < 4096;) {
-    const auto equals = line.find('=');
-    if (equals == std::string::npos) continue;
-    const std::string key = lower(trimmed(line.substr(0, equals))), value = trimmed(line.substr(equals + 1));
-    if (key == "ndims") {
+  for (int number = 1;; ++number) {
+    const std::optional<HeaderLine> line = next_header_line(file);
+    if (!line) break;
+    const auto separator = line->text.find_first_of("=:");
+    const std::string key = trimmed(line->text.substr(0, separator));
+    if (separator == std::string::npos && key.empty() && !line->lone_return) continue;
+    const char* wrong = nullptr;
+    if (line->text.size() > kLongest) wrong = "it is longer than 4095 characters";
+    if (line->lone_return) wrong = "it ends in a carriage return alone";
+    if (separator == std::string::npos || key.empty()) wrong = "it does not say KEY = VALUE";
+    if (wrong != nullptr) {
+      return input_error(fmt::format("{}, line {}", source, number),
+                         fmt::format("the header of the MetaImage file is damaged: {}", wrong),
+                         "Copy or export it again.");
+    }
+    const std::string value = trimmed(line->text.substr(separator + 1));
+    if (key == "NDims") {
       found.dimensions = to_number(value).value_or(0);
       if (!(found.dimensions >= 2 && found.dimensions <= 5)) {
         return input_error(source + ", NDims", fmt::format("the value is '{}', 3 is expected", value.substr(0, 40)),
                            "Export one 3D label mask; the header is damaged.");
       }
     }
-    if (key == "elementdatafile") {  // the last line of a header
+    if (key == "ElementDataFile") {  // the last line of a header
       found.data_file = value;
+      found.header_bytes = static_cast<std::size_t>(file.tellg());
       break;
     }
   }
@@ -142,7 +152,8 @@ Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
 }
 
 /// The voxels' bytes as the file orders them. MetaIO itself leaves voxels uninitialised where a file ends too early.
-Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path, MetaImage& image, std::size_t size) {
+Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path, std::size_t header_bytes,
+                                MetaImage& image, std::size_t size) {
   const std::string source = path.string();
   if (!image.BinaryData()) {
     return input_error(source, "voxels as text are not supported", "Export one binary .mha file.");
@@ -150,7 +161,7 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
   const bool local = data_path == path;
   std::ifstream file(data_path, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(file), {});
-  std::size_t start = local ? end_of_header(bytes) : static_cast<std::size_t>(std::max(image.HeaderSize(), 0));
+  std::size_t start = local ? header_bytes : static_cast<std::size_t>(std::max(image.HeaderSize(), 0));
   if (image.HeaderSize() < 0 && !image.CompressedData() && bytes.size() >= size)
     start = bytes.size() - size;  // "-1": at the end
   bytes.erase(0, std::min(start, bytes.size()));
@@ -194,7 +205,8 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
   double count = 1;
   for (const std::size_t n : sizes) count *= static_cast<double>(n);
   if (count * voxel_bytes > 1e12) return damaged("size");
-  Result<std::string> data = read_voxels(path, *data_path, image, static_cast<std::size_t>(count) * voxel_bytes);
+  Result<std::string> data =
+      read_voxels(path, *data_path, announced->header_bytes, image, static_cast<std::size_t>(count) * voxel_bytes);
   if (!data) return data.error();
   image.ElementData(data->data(), false);
   image.ElementByteOrderFix(static_cast<std::streamoff>(count));

@@ -261,38 +261,41 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
   return image;
 }
 
-/// A line of the header that names the data's file or files; nothing when they follow the header. Teem would open
-/// whatever it names.
-Result<> check_data_files(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line) && line.size() < 65536 && !trimmed(line).empty();) {
-    const auto colon = line.find(':');
-    if (colon == std::string::npos || line.front() == '#') continue;
-    const std::string key = lower(trimmed(line.substr(0, colon))), name = trimmed(line.substr(colon + 1));
-    if (key != "data file" && key != "datafile") continue;
-    if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
-      return input_error(path.string() + ", data file",
-                         fmt::format("'{}': data spread over many files are not supported", name.substr(0, 80)),
-                         "Export one .nrrd file.");
-    }
-    if (Result<std::filesystem::path> data = data_file_of(path, name); !data) return data.error();
+/// A field that names the data's file or files, which Teem would open whatever it names.
+Result<> check_data_file(const std::filesystem::path& path, const std::string& name) {
+  if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
+    return input_error(path.string() + ", data file",
+                       fmt::format("'{}': data spread over many files are not supported", name.substr(0, 80)),
+                       "Export one .nrrd file.");
   }
+  if (Result<std::filesystem::path> data = data_file_of(path, name); !data) return data.error();
   return Ok{};
 }
 
-/// Teem writes beyond the end of its own messages when a field holds a very long word.
-Result<> check_field_lengths(const std::filesystem::path& path) {
-  constexpr std::size_t kLongest = 512;
+/// Looks at the header before Teem does: it opens whatever file a field names, and writes beyond the end of its own
+/// messages when a field holds a very long word. A line is a field where its first ": " comes before its first ":=",
+/// else a key and its value.
+Result<> check_header(const std::filesystem::path& path) {
+  constexpr std::size_t kLongestField = 512;
   std::ifstream file(path, std::ios::binary);
-  std::string line;
-  for (int number = 1; std::getline(file, line) && !trimmed(line).empty(); ++number) {
-    if (line.front() == '#' || line.find(":=") != std::string::npos || line.size() <= kLongest) continue;
-    return input_error(
-        fmt::format("{}, line {}", path.string(), number),
-        fmt::format("the header has a line of {} characters, at most {} are expected", line.size(), kLongest),
-        "Copy or export it again; it is damaged.");
+  for (int number = 1;; ++number) {
+    const std::optional<HeaderLine> line = next_header_line(file);
+    if (!line || line->text.empty()) return Ok{};  // an empty line ends the header
+    const std::string& text = line->text;
+    const bool field = text.front() != '#' && text.find(": ") <= text.find(":=");
+    const std::size_t most = field ? kLongestField : kLongestHeaderLine;
+    if (!line->whole || text.size() > most) {
+      return input_error(fmt::format("{}, line {}", path.string(), number),
+                         fmt::format("the header has a line of {}{} characters, at most {} are expected",
+                                     line->whole ? "" : "more than ", text.size(), most),
+                         "Copy or export it again; it is damaged.");
+    }
+    const auto colon = text.find(':');
+    if (colon == std::string::npos || text.front() == '#') continue;
+    const std::string key = lower(trimmed(text.substr(0, colon)));
+    if (key != "data file" && key != "datafile") continue;
+    if (Result<> sound = check_data_file(path, trimmed(text.substr(colon + 1))); !sound) return sound;
   }
-  return Ok{};
 }
 
 }  // namespace
@@ -303,8 +306,7 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
     return input_error(source, fmt::format("the NRRD file cannot be read ({})", last_error()),
                        "Copy or export it again; it is truncated or damaged.");
   };
-  if (Result<> lengths = check_field_lengths(path); !lengths) return lengths.error();
-  if (Result<> data = check_data_files(path); !data) return data.error();
+  if (Result<> header = check_header(path); !header) return header.error();
   // The header first: a refusal must not wait for gigabytes, and says more than a failure in the data.
   const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> header_only(nrrdIoStateNew(), nrrdIoStateNix);
   nrrdIoStateSet(header_only.get(), nrrdIoStateSkipData, AIR_TRUE);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/io/model_cache.hpp"
 
+#include "detail/file_kind.hpp"
 #include "detail/input_file.hpp"
+#include "detail/text.hpp"
 #include "model/build_id.hpp"
 #include "model/digest.hpp"
 #include "model/model_format.hpp"
@@ -9,10 +11,8 @@
 #include "stylet/io/scenario_io.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 
 namespace stylet {
 namespace fs = std::filesystem;
@@ -21,7 +21,6 @@ using detail::Digest;
 namespace {
 
 constexpr std::size_t kPiece = 1 << 20;
-constexpr std::size_t kHeader = 1 << 16;  ///< of an image, at most
 
 Result<> add_file(Digest& digest, const fs::path& path) {
   if (Result<> readable = detail::check_input_file(path); !readable) return readable;
@@ -35,23 +34,27 @@ Result<> add_file(Digest& digest, const fs::path& path) {
   return failure(path.string(), "cannot be read", "Check the file and its permissions");
 }
 
-/// Whether a file says that part of it is in another one, or is one of several that belong together.
+/// Whether a file says that part of it is in another one, or is one of several that belong together: what it is is
+/// decided as the readers do, by its content before its name.
 bool has_other_parts(const fs::path& path) {
-  const auto lower = [](std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  };
-  const std::string kind = lower(path.extension().string());
-  if (kind == ".mhd" || kind == ".nhdr" || kind == ".node" || kind == ".ele") return true;
-  if ((kind != ".mha" && kind != ".nrrd") || !detail::check_input_file(path)) return false;
+  using detail::FileKind;
+  const std::string ending = detail::lower(path.extension().string());
+  if (ending == ".mhd" || ending == ".nhdr" || ending == ".node" || ending == ".ele") return true;
+  const Result<FileKind> kind = detail::identify(path);
+  if (!kind || (*kind != FileKind::nrrd && *kind != FileKind::metaimage)) return kind && *kind == FileKind::tetgen;
   std::ifstream file(path, std::ios::binary);
-  std::string head(kHeader, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  std::istringstream lines(lower(std::move(head)));
-  for (std::string line; std::getline(lines, line) && !line.empty() && line != "\r";) {  // an empty one ends a header
-    if (line.starts_with("data file:") || line.starts_with("datafile:")) return true;
-    if (line.starts_with("elementdatafile")) return line.find("local") == std::string::npos;
+  while (const std::optional<detail::HeaderLine> line = detail::next_header_line(file)) {
+    if (!line->whole) return true;  // whatever it says: no reader takes it
+    const auto separator = line->text.find_first_of(*kind == FileKind::nrrd ? ":" : "=:");
+    const std::string key = detail::trimmed(line->text.substr(0, separator));
+    const std::string value =
+        separator == std::string::npos ? "" : detail::lower(detail::trimmed(line->text.substr(separator + 1)));
+    if (*kind == FileKind::metaimage) {
+      if (key == "ElementDataFile") return value != "local";
+    } else {
+      if (line->text.empty()) return false;  // the data follow
+      if (detail::lower(key) == "data file" || detail::lower(key) == "datafile") return true;
+    }
   }
   return false;
 }

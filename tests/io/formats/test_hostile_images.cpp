@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that would make a program read elsewhere, wait for ever or compute with absurd numbers.
+#include "detail/text.hpp"
 #include "files.hpp"
 #include "mask_files.hpp"
 #include "mesh_files.hpp"
@@ -7,6 +8,8 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+
+#include <sstream>
 
 using namespace stylet;
 using namespace stylet::test;
@@ -117,6 +120,58 @@ TEST(HostileImages, a_header_names_data_beside_itself_only) {
     const auto image = read_input(write_file(folder / "case/m.mhd", metaimage(mask, false, name)));
     EXPECT_TRUE(image.ok()) << why(image);
   }
+}
+
+TEST(HostileImages, a_line_of_a_header_ends_however_a_library_may_think_it_does) {
+  std::istringstream stream("a\nb\rc\r\n\r\rd" + std::string(70000, 'e'));
+  std::vector<std::string> lines;
+  std::vector<bool> lone, whole;
+  while (const auto line = detail::next_header_line(stream)) {
+    lines.push_back(line->text.substr(0, 3));
+    lone.push_back(line->lone_return);
+    whole.push_back(line->whole);
+  }
+  EXPECT_EQ(lines, (std::vector<std::string>{"a", "b", "c", "", "", "dee", "eee"}));
+  EXPECT_EQ(lone, (std::vector<bool>{false, true, false, true, true, false, false}));
+  EXPECT_EQ(whole, (std::vector<bool>{true, true, true, true, true, false, true}));
+}
+
+TEST(HostileImages, no_line_of_an_nrrd_header_hides_from_the_checks) {
+  const Mask mask;
+  for (const char* hidden : {"# a comment\rdata file: /etc/passwd\n", "key:=value\rDataFile: /etc/passwd\n",
+                             "data file: /etc/passwd :=\n", "   \ndata file: /etc/passwd\n"}) {
+    expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", hidden)), {"m.nrrd", "an absolute path is not followed"});
+  }
+  const std::string longest(70000, 'x'), word(600, 'x');
+  expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "key:=" + longest + "\ndata file: /etc/passwd\n")),
+                 {"m.nrrd, line 10", "more than 65535 characters"});
+  expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "# " + longest + "\n")), {"m.nrrd, line 10"});
+  expect_refused(read_mask("m.nrrd", nrrd(mask, "raw", "content: " + word + ":=\n")),
+                 {"m.nrrd, line 10", "at most 512 are expected"});
+  EXPECT_TRUE(read_mask("m.nrrd", nrrd(mask, "raw", "key:=" + word + "\n")).ok());
+}
+
+TEST(HostileImages, no_line_of_a_metaimage_header_hides_from_the_checks) {
+  const std::string good = metaimage(Mask());
+  const auto expect = [&](const char* line, const std::string& instead, std::vector<const char*> says) {
+    const auto image = read_mask("m.mha", replaced(good, line, instead));
+    ASSERT_FALSE(image.ok()) << instead;
+    for (const char* words : says) EXPECT_NE(why(image).find(words), std::string::npos) << why(image);
+  };
+  expect("NDims = 3", "NDims : 11", {"m.mha, NDims", "'11'"});
+  expect("NDims = 3", "NDims:11", {"m.mha, NDims", "'11'"});
+  expect("NDims = 3", "ndims = 3\nNDims = 11", {"m.mha, NDims", "'11'"});
+  expect("NDims = 3", "NDims : 11 = 3", {"m.mha, NDims"});
+  expect("NDims = 3", "Comment = x\rNDims = 11", {"m.mha, line 2", "a carriage return alone"});
+  expect("NDims = 3", "NDims\n= 11", {"m.mha, line 2", "KEY = VALUE"});
+  expect("NDims = 3", "Comment = " + std::string(5000, 'x') + "\nNDims = 3", {"m.mha, line 2", "4095"});
+  expect("ElementDataFile = LOCAL", "ElementDataFile : /etc/passwd", {"an absolute path is not followed"});
+  expect("ElementDataFile = LOCAL", "elementdatafile = LOCAL\nElementDataFile = /etc/passwd",
+         {"an absolute path is not followed"});
+  const auto plain = read_mask("m.mha", good),
+             named = read_mask("m.mha", replaced(good, "NDims = 3", "Comment = ElementDataFile\nNDims = 3"));
+  ASSERT_TRUE(plain.ok() && named.ok()) << why(plain) << why(named);
+  EXPECT_EQ(named->labels, plain->labels) << "the voxels begin after the line itself, not after its name";
 }
 
 TEST(HostileImages, what_is_no_regular_file_is_refused_at_once) {

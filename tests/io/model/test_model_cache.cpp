@@ -118,6 +118,13 @@ TEST(ModelCache, APatientInSeveralFilesHasNoKey) {
   EXPECT_TRUE(says_so("e.nrrd", "NRRD0004\ntype: short\ndata file: e.raw\n"));
   EXPECT_FALSE(says_so("f.seg.nrrd", "NRRD0004\ntype: short\n\ndata file: of the voxels\n"));
   EXPECT_TRUE(says_so("g.node", "1 3 0 0\n"));
+  // Content counts before the name, and a line ends wherever a reader may see its end.
+  EXPECT_TRUE(says_so("h.img", "NRRD0004\ntype: short\ndata file: e.raw\n"));
+  EXPECT_TRUE(says_so("i", "ObjectType = Image\nElementDataFile = a.raw\n"));
+  EXPECT_TRUE(says_so("j.nrrd", "NRRD0004\n# a comment\rdatafile: e.raw\n"));
+  EXPECT_TRUE(says_so("k.mha", "ObjectType = Image\nElementDataFile : local.raw\n"));
+  EXPECT_TRUE(says_so("l.mha", "ObjectType = Image\nelementdatafile = LOCAL\nElementDataFile = a.raw\n"));
+  EXPECT_FALSE(says_so("m.img", "ObjectType = Image\nElementDataFile = LOCAL\nvoxels"));
 }
 
 TEST(ModelCache, FindsWhatWasKept) {
