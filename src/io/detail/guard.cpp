@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/guard.hpp"
 
+#include "detail/file_kind.hpp"
+#include "detail/input_file.hpp"
 #include "detail/text.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <fstream>
 
 namespace stylet::detail {
 
@@ -25,16 +30,119 @@ std::string last_words(const std::string& noise) {
   return last.empty() ? "" : fmt::format("; its last words: {}", last.substr(0, 200));
 }
 
+constexpr double kBase_s = 5.0;
+constexpr double kPacked_s = 2.0;     // per megabyte of the file
+constexpr double kUnpacked_s = 0.03;  // per megabyte that it unpacks to
+constexpr double kMostUnpacked_s = 100.0;
+constexpr double kDeflate = 1000.0;  // a byte of deflate unpacks to no more bytes, whatever a forged file claims
+constexpr double kEntry_s = 0.002;   // per entry of a folder
+constexpr int kMostEntries = 50000;
+
+/// Megabytes of a file with what it names as its data, as they are and unpacked.
+struct Megabytes {
+  double packed = 0, unpacked = 0;
+};
+
+double size_of(const fs::path& path) {
+  std::error_code code;
+  const std::uintmax_t size = fs::is_regular_file(path, code) ? fs::file_size(path, code) : 0;
+  return code ? 0.0 : static_cast<double>(size) / 1e6;
+}
+
+/// Megabytes that a file which ends in a gzip stream says it unpacks to: the stream's last four bytes, little endian.
+/// They lie only where someone has forged them, or beyond 4 GB.
+double gzip_size_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 4> end{};
+  if (!file.seekg(-4, std::ios::end) || !file.read(reinterpret_cast<char*>(end.data()), 4)) return 0;
+  double size = 0;
+  for (int n = 3; n >= 0; --n) size = 256 * size + end[n];
+  return size / 1e6;
+}
+
+bool is_gzip(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 2> head{};
+  return file.read(head.data(), 2) && head[0] == '\x1f' && head[1] == '\x8b';
+}
+
+/// What the header of an image says of its data.
+struct ImageData {
+  fs::path file;         ///< in which the data are
+  bool gzip = false;     ///< NRRD
+  double megabytes = 0;  ///< of compressed MetaImage, by its sizes
+};
+
+/// For NRRD and MetaImage. Only files that their readers would open count.
+ImageData data_of_image(const fs::path& path, FileKind kind) {
+  constexpr std::size_t kMostHeader = 1 << 20;  // [bytes] looked at: what counts comes first
+  ImageData data{.file = path};
+  std::string name;
+  bool compressed = false;
+  double voxels = 1, voxel_bytes = 8;
+  std::ifstream file(path, std::ios::binary);
+  for (std::size_t seen = 0; seen < kMostHeader;) {
+    const auto line = next_header_line(file);
+    if (!line || !line->whole || (kind == FileKind::nrrd && line->text.empty())) break;
+    seen += line->text.size() + 1;
+    const auto separator = line->text.find_first_of(kind == FileKind::nrrd ? ":" : "=:");
+    if (separator == std::string::npos) continue;
+    const std::string key = lower(trimmed(line->text.substr(0, separator)));
+    const std::string value = trimmed(line->text.substr(separator + 1));
+    if (key == "data file" || key == "datafile" || key == "elementdatafile") name = value;
+    if (key == "elementdatafile") break;
+    if (key == "encoding") data.gzip = lower(value) == "gzip" || lower(value) == "gz";
+    if (key == "compresseddata") compressed = lower(value) == "true";
+    if (key == "elementtype") {
+      const bool one = value.ends_with("CHAR"), two = value.ends_with("SHORT");
+      voxel_bytes = one ? 1 : two ? 2 : value == "MET_INT" || value == "MET_UINT" || value == "MET_FLOAT" ? 4 : 8;
+    }
+    if (key == "dimsize") {
+      for (const auto part : split(value, ' ')) voxels *= std::max(to_number(part).value_or(1.0), 1.0);
+    }
+  }
+  if (compressed) data.megabytes = voxels * voxel_bytes / 1e6;
+  if (!name.empty() && lower(name) != "local") {
+    if (const Result<fs::path> beside = data_file_of(path, name)) data.file = *beside;
+  }
+  return data;
+}
+
+Megabytes megabytes_of(const fs::path& path) {
+  Megabytes size;
+  size.packed = size.unpacked = size_of(path);
+  if (is_gzip(path)) {
+    size.unpacked = gzip_size_of(path);
+  } else if (const Result<FileKind> kind = identify(path);
+             kind && (*kind == FileKind::nrrd || *kind == FileKind::metaimage)) {
+    const ImageData data = data_of_image(path, *kind);
+    if (data.file != path) size.packed += size_of(data.file);
+    size.unpacked = std::max(size.packed, data.gzip ? gzip_size_of(data.file) : data.megabytes);
+  }
+  size.unpacked = std::clamp(size.unpacked, size.packed, kDeflate * size.packed);
+  return size;
+}
+
+int entries_of(const fs::path& folder) {
+  std::error_code code;
+  int entries = 0;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    if (++entries == kMostEntries) break;
+  }
+  return entries;
+}
+
 }  // namespace
 
 ChildLimits limits_for(const fs::path& path) {
   std::error_code code;
-  const std::uintmax_t size = fs::is_regular_file(path, code) ? fs::file_size(path, code) : 0;
-  const double megabytes = code ? 0.0 : static_cast<double>(size) / 1e6;
+  const bool regular = fs::is_regular_file(path, code);
+  const Megabytes size = regular ? megabytes_of(path) : Megabytes{};
   ChildLimits limits;
-  limits.cpu_s = 5.0 + 2.0 * megabytes;
+  limits.cpu_s = kBase_s + kPacked_s * size.packed + std::min(kUnpacked_s * size.unpacked, kMostUnpacked_s);
+  if (fs::is_directory(path, code)) limits.cpu_s += kEntry_s * entries_of(path);
   limits.wall_s = 30.0 + 3.0 * limits.cpu_s;  // the machine may be busy
-  limits.memory_bytes += static_cast<std::size_t>(40e6 * megabytes);
+  limits.memory_bytes += static_cast<std::size_t>(40e6 * size.packed);
   return limits;
 }
 

@@ -10,8 +10,9 @@
 
 namespace stylet::detail {
 
-/// Limits for reading one file: generous for honest files of its size, short enough that a trap does not look like a
-/// hang.
+/// Limits for reading one file, or looking through one folder: generous for honest files of its size, packed and
+/// unpacked, short enough that a trap does not look like a hang. What a file says of its unpacked size counts up to
+/// what deflate could make of its bytes.
 ChildLimits limits_for(const std::filesystem::path& path);
 
 /// What to do about a file that its parser does not survive, unless the caller knows better.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/guard.hpp"
 #include "files.hpp"
+#include "mask_files.hpp"
 
 #include <sys/resource.h>
 
@@ -80,6 +81,40 @@ TEST(Child, memory_without_end_becomes_an_input_error) {
                    return m;
                  }),
                  {"needs more memory"});
+}
+
+TEST(Child, the_limit_grows_with_what_a_file_unpacks_to) {
+  const Folder folder;
+  Mask mask;
+  mask.size = {200, 200, 500};
+  mask.labels.assign(20000000, 1);  // packs to some 20 kB
+  const double plain_s = 5.0 + 2.03 * 20.0;
+  EXPECT_NEAR(limits_for(write_file(folder / "m.nii", nifti(mask))).cpu_s, plain_s, 0.1);
+  for (const auto& [name, bytes] : {std::pair<const char*, std::string>{"m.nii.gz", gzipped(nifti(mask))},
+                                    {"m.nrrd", nrrd(mask, "gzip")},
+                                    {"m.mha", metaimage(mask, true)}}) {
+    EXPECT_NEAR(limits_for(write_file(folder / name, bytes)).cpu_s, 5.0 + 0.03 * 20.0, 0.1) << name;
+  }
+  write_file(folder / "m.raw", std::string(mask.labels.begin(), mask.labels.end()));
+  EXPECT_NEAR(limits_for(write_file(folder / "m.mhd", metaimage(mask, false, "m.raw"))).cpu_s, plain_s, 0.1);
+}
+
+TEST(Child, a_forged_size_does_not_buy_minutes) {
+  const Folder folder;
+  std::string bytes = gzipped(nifti(Mask()));
+  bytes.replace(bytes.size() - 4, 4, "\xff\xff\xff\xff");
+  EXPECT_LT(limits_for(write_file(folder / "m.nii.gz", bytes)).cpu_s, 5.1);
+  bytes.insert(bytes.size() - 4, std::string(100000, 'x'));
+  EXPECT_LT(limits_for(write_file(folder / "m.nii.gz", bytes)).cpu_s, 10.0);
+  bytes.insert(bytes.size() - 4, std::string(9900000, 'x'));
+  EXPECT_NEAR(limits_for(write_file(folder / "m.nii.gz", bytes)).cpu_s, 5.0 + 20.0 + 100.0, 0.1);
+}
+
+TEST(Child, the_limit_of_a_folder_grows_with_its_entries) {
+  const Folder folder;
+  const double empty_s = limits_for(folder.path()).cpu_s;
+  for (int n = 0; n < 50; ++n) write_file(folder / std::to_string(n), "x");
+  EXPECT_NEAR(limits_for(folder.path()).cpu_s - empty_s, 0.1, 1e-9);
 }
 
 TEST(Child, an_endless_loop_ends_at_the_limit) {
