@@ -186,7 +186,7 @@ export class FakeServer implements Transport {
       displacement.set([0.15 * near, 0.1 * near, near].map((u) => u / UNIT), i);
     }
     return {
-      time: this.time, paused: this.paused, replayed: this.replay !== null, trusted: !this.options.has('late'), shown: true, whole: this.whole, approximate: false, flags: 0,
+      time: this.time, paused: this.paused, replayed: this.replay !== null, trusted: !this.options.has('late'), shown: true, whole: this.whole, approximate: false, unfelt: false, flags: 0,
       tipState: this.depth > 0 ? 2 : 0, sticking: contacts.length / 4, iterations: 1, steps: this.steps, missed: this.options.has('late') ? 3 : 0,
       depth: this.depth, force: Float32Array.of(this.force, 0.15 * this.force, -0.08 * this.force), torque: new Float32Array(3),
       tip: Float32Array.from(tip), base: Float32Array.of(this.entry[0], this.entry[1], tip[2] - 200), orientation: Float32Array.of(1, 0, 0, 0),
