@@ -126,3 +126,15 @@ test('a tap moves it a little, half a trigger half as fast', () => {
   needle.pass(300);
   assert.ok(Math.abs(needle.depth - there - 5) < 0.7, `${needle.depth - there} mm in half a second at 10 mm/s`);
 });
+
+test('a key that was down when the needle jumped does not make the next tap shorter', () => {
+  needle.pass(400, () => hand.hold(1));
+  hand.rest();
+  needle.target = { depth: needle.depth, speed: 0 };
+  needle.pass(300);
+  const there = needle.depth;
+  hand.hold(1);
+  hand.stop();
+  needle.pass(300);
+  assert.ok(needle.depth > there + 0.1, `${needle.depth - there} mm`);
+});

@@ -55,6 +55,7 @@ export class HandControl {
     this.turned = false;
     this.changed = false;
     this.pending = 0;
+    this.heldAt = 0;
     clearTimeout(this.stopTimer);
   }
 
