@@ -225,8 +225,8 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
-  if (load_) frame->left_out_N = load_->left_out_N();
   if (due) compute_displacement();
+  if (load_) frame->left_out_N = std::max(load_->left_out_N(), near_.left_out_N());  // of the same forces
   if (due || (load_ && whole_curve)) set_displacement(*frame, shown_);
   if (whole_curve) {
     frame->samples = curve_;

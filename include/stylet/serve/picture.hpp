@@ -45,7 +45,7 @@ struct LiveFrame {
   Vec3 tip_mm = Vec3::Zero();
   Pose base;
   double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< of the hand
-  double left_out_N = 0.0;                                              ///< DisplayField::Load::left_out_N()
+  double left_out_N = 0.0;                                              ///< far or near field is not shown, the larger
   std::vector<float> centreline;                                        ///< (3 p) [mm] LPS, base to tip
   std::vector<ContactSnapshot> contacts;
   std::vector<Sample> samples;             ///< steps since the last frame; with whole_curve all
