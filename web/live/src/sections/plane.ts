@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The two planes of the sections: where they are, and whether they follow the needle.
 import { clamp } from '../hand';
-import { holes, organBounds, regionTriangles, type Scene } from '../scene';
+import { holes, organBounds, regionTriangles, samePatient, type Scene } from '../scene';
 import type { Session } from '../session';
 import { tipOf } from './needle_crossing';
 
@@ -19,7 +19,11 @@ export class Plane {
   private readonly listeners: (() => void)[] = [];
 
   constructor(readonly name: PlaneName, private readonly session: Session) {
-    session.on('scene', (scene) => this.setRange(scene));
+    let known: Scene | null = null;
+    session.on('scene', (scene) => {
+      this.setRange(scene, known !== null && samePatient(known, scene));
+      known = scene;
+    });
     session.on('frame', () => this.update());
     session.on('status', () => this.update());
   }
@@ -75,8 +79,11 @@ export class Plane {
     for (const listener of this.listeners) listener();
   }
 
-  /** From the target's near end on: before the needle comes there, its apex is the picture worth having. */
-  private setRange(scene: Scene): void {
+  /**
+   * From the target's near end on: before the needle comes there, its apex is the picture worth having.
+   * @param again the patient is the one that was shown: a plane that was put somewhere stays
+   */
+  private setRange(scene: Scene, again: boolean): void {
     const [low, high] = organBounds(scene)[this.axis];
     this.low = low;
     this.high = high;
@@ -86,8 +93,8 @@ export class Plane {
       for (const node of regionTriangles(scene, target)) first = Math.min(first, scene.points[3 * node + 2]);
       this.near = first + 2;
     } else this.near = -Infinity;
-    this.follows = true;
-    this.value = (low + high) / 2;
+    this.follows ||= !again;
+    this.value = this.follows ? (low + high) / 2 : clamp(this.value, low, high);
     this.update();
     this.tell();
   }

@@ -70,7 +70,9 @@ export class Stage {
     this.scene.remove(this.needle.object, this.contacts.object);
     const { scene } = anatomy;
     this.needle = new NeedleMesh(scene.needle.diameter_mm);
+    const contactsShown = this.contacts.object.visible;  // whatever the patient: the box says so
     this.contacts = new ContactMarks(scene.needle.diameter_mm);
+    this.contacts.object.visible = contactsShown;
     this.surfaces = scene.regions.map((_, i) => new RegionSurface(anatomy, i, this.cut.clipping));
     if (again) this.surfaces.forEach((surface, i) => surface.copyLook(before[i]));
     this.sorted = this.surfaces.map((surface) => ({ surface, distance: 0 }));

@@ -7,7 +7,7 @@ export class TemplatePlate {
   readonly object = new THREE.Group();
   private list: Hole[] = [];
   private rings: THREE.InstancedMesh | null = null;
-  private current = '';
+  private current = '';  // name of the hole that is marked
 
   setTemplate(template: Template | null): void {
     for (const child of this.object.children as THREE.Mesh[]) {
@@ -30,8 +30,9 @@ export class TemplatePlate {
     const matrix = new THREE.Matrix4();
     this.list.forEach((hole, i) => this.rings?.setMatrixAt(i, matrix.makeTranslation(hole.x, hole.y, z)));
     this.object.add(plate, this.rings);
+    const marked = this.current;
     this.current = ' ';
-    this.mark('');
+    this.mark(marked);
   }
 
   mark(hole: string): void {
