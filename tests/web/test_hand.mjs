@@ -50,6 +50,7 @@ class Needle {
   }
 }
 
+const { tick } = mock.timers;
 let needle, hand, now;
 beforeEach(() => {
   mock.timers.reset();
@@ -57,7 +58,6 @@ beforeEach(() => {
   now = 0;
   needle = new Needle(10);
   hand = new HandControl(needle);
-  const { tick } = mock.timers;
   performance.now = () => now;
   mock.timers.tick = (ms) => {
     now += ms;
