@@ -5,7 +5,8 @@ import { decode, SUBPROTOCOL, WireError, type Message } from './wire';
 /** What a page talks through: the server, or a made-up one. */
 export interface Transport {
   open(listener: TransportListener): void;
-  send(data: ArrayBuffer): void;
+  /** @param perishable worth nothing later: left out where the connection cannot take it now */
+  send(data: ArrayBuffer, perishable?: boolean): void;
 }
 
 export interface TransportListener {
@@ -43,8 +44,10 @@ export class WebSocketTransport implements Transport {
     this.socket = socket;
   }
 
-  send(data: ArrayBuffer): void {
-    if (this.socket?.readyState === WebSocket.OPEN && this.socket.bufferedAmount < MOST_UNSENT_BYTES) this.socket.send(data);
+  send(data: ArrayBuffer, perishable = false): void {
+    const { socket } = this;
+    if (socket?.readyState !== WebSocket.OPEN || (perishable && socket.bufferedAmount >= MOST_UNSENT_BYTES)) return;
+    socket.send(data);
   }
 }
 

@@ -57,7 +57,8 @@ export class Session implements TransportListener {
   }
 
   sendHand(hand: Hand): void {
-    if (this.steering) this.transport.send(encodeHand(hand));
+    // Where a hand is going is soon out of date; that it has let go is not.
+    if (this.steering) this.transport.send(encodeHand(hand), hand.speed > 0);
   }
 
   /** Shows a message of this page's own. */
