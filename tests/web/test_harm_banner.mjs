@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { harmNow } from 'live/src/controls/harm_banner.ts';
+import { harmNow, harmsSoFar } from 'live/src/controls/harm_banner.ts';
+import { speakEvents } from 'live/src/controls/notices.ts';
 import { harmSentence, isHarm, nameRegions } from 'live/src/event_names.ts';
 import { TIP_STATES } from 'live/src/wire.ts';
 
@@ -32,4 +33,31 @@ test('what stays is a sentence with the depth', () => {
   assert.equal(harmSentence(event('bone_contact', 'pubic_arch')), 'Needle met bone (pubic arch) at 63 mm');
   assert.ok(isHarm(event('exited', 'body')));
   assert.ok(!isHarm(event('region_entered', 'prostate')) && !isHarm(event('puncture', 'rectum')));
+});
+
+test('the list of a replay ends at the moment that is shown', () => {
+  const at = (time_s) => ({ kind: 'bone_contact', region: 'pubic_arch', depth_mm: 60, time_s, force_N: 1 });
+  const events = [at(1), at(2), { ...at(2), kind: 'puncture' }, at(3)];
+  const times = (frame) => harmsSoFar({ events, frame }).map((event) => event.time_s);
+  assert.deepEqual(times({ replayed: true, time: 0 }), []);
+  assert.deepEqual(times({ replayed: true, time: 2 }), [1, 2]);
+  assert.deepEqual(times({ replayed: false, time: 0.5 }), [1, 2, 3]);
+  assert.deepEqual(times(null), [], 'before the first picture nobody knows');
+});
+
+test('events are spoken as they happen, not those of a recording nor those that come with a scene', () => {
+  globalThis.document = { createElement: () => ({ setAttribute() {} }) };
+  const listeners = [];
+  const session = { frame: null, on: (_, listener) => listeners.push(listener) };
+  let spoken;
+  speakEvents({ append: (element) => (spoken = element) }, session);
+  const say = (frame) => {
+    session.frame = frame;
+    spoken.textContent = '';
+    for (const listener of listeners) listener({ kind: 'skin_contact', region: 'body', depth_mm: 0, time_s: 1, force_N: 0 });
+    return spoken.textContent;
+  };
+  assert.equal(say(null), '');
+  assert.equal(say({ replayed: true }), '');
+  assert.match(say({ replayed: false }), /^Skin touched/);
 });

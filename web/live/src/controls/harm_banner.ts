@@ -3,20 +3,21 @@
 import { element } from '../../../shared/dom';
 import { harmSentence, isHarm, regionLabel } from '../event_names';
 import type { Session } from '../session';
-import { TIP_STATES } from '../wire';
+import { TIP_STATES, type Event } from '../wire';
 
 const MOST = 6;  // lines; the oldest go first
 
 export class HarmBanner {
   private readonly now = element('p', 'harm-now');
   private readonly list = element('ul', 'harm-list');
+  private written: string | null = null;  // in the list
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.now.setAttribute('role', 'alert');
     this.list.setAttribute('aria-label', 'What the needle harmed');
     root.append(this.now, this.list);
     for (const topic of ['status', 'frame', 'scene', 'restart'] as const) session.on(topic, () => this.write());
-    for (const topic of ['event', 'restart', 'scene'] as const) session.on(topic, () => this.writeList());
+    for (const topic of ['event', 'frame', 'restart', 'scene'] as const) session.on(topic, () => this.writeList());
     this.write();
     this.writeList();
   }
@@ -28,10 +29,19 @@ export class HarmBanner {
   }
 
   private writeList(): void {
-    const harms = this.session.events.filter(isHarm).slice(-MOST);
-    this.list.replaceChildren(...harms.map((event) => element('li', '', harmSentence(event))));
-    this.list.hidden = harms.length === 0;
+    const sentences = harmsSoFar(this.session).slice(-MOST).map(harmSentence);
+    const key = sentences.join('\n');
+    if (key === this.written) return;
+    this.written = key;
+    this.list.replaceChildren(...sentences.map((sentence) => element('li', '', sentence)));
+    this.list.hidden = sentences.length === 0;
   }
+}
+
+/** What was harmed until the moment that is shown: of a recording all events are known from the start. */
+export function harmsSoFar({ events, frame }: Pick<Session, 'events' | 'frame'>): Event[] {
+  if (!frame) return [];  // nobody knows yet which moment is shown
+  return events.filter((event) => isHarm(event) && (!frame.replayed || event.time_s <= frame.time));
 }
 
 /** What is harmed at this moment, in words; empty: nothing. */

@@ -7,12 +7,13 @@ import type { Session } from '../session';
 const SHOWN_MS = 9000;
 const MOST = 3;
 
-/** Says events to who cannot see the chart. */
+/** Says events to who cannot see the chart, as they happen: those that come with a scene, before its first picture, are old. */
 export function speakEvents(root: HTMLElement, session: Session): void {
   const spoken = element('p', 'spoken');
   spoken.setAttribute('aria-live', 'polite');
   root.append(spoken);
   session.on('event', (event) => {
+    if (!session.frame || session.frame.replayed) return;
     if (isHarm(event)) spoken.textContent = harmSentence(event);
     else spoken.textContent = `${eventLabel(event)}, ${event.depth_mm.toFixed(0)} mm, ${event.force_N.toFixed(1)} N`;
   });
