@@ -39,19 +39,20 @@ void Replay::advance(double dt_s) {
   if (time_s_ >= duration_s()) rate_ = 0.0;
 }
 
-/// The last one at or before now; null before the first.
+/// The last one at or before now, before the first that one: the needle was never anywhere else. Null: there is none.
 const StepRecord* Replay::step() const {
   const auto& steps = recording_.steps;
+  if (steps.empty()) return nullptr;
   const auto after =
       std::upper_bound(steps.begin(), steps.end(), time_s_, [](double t, const StepRecord& s) { return t < s.time_s; });
-  return after == steps.begin() ? nullptr : &*(after - 1);
+  return after == steps.begin() ? &steps.front() : &*(after - 1);
 }
 
 /// Before the first frame: a straight needle, and tissue that was not recorded.
 void Replay::put_needle(LiveFrame& out) const {
   set_displacement(out, Eigen::Matrix3Xf::Zero(3, points_.count()));
   if (recording_.steps.empty()) return;
-  const StepRecord& s = step() != nullptr ? *step() : recording_.steps.front();
+  const StepRecord& s = *step();
   if (!s.base.origin.allFinite()) return;
   for (const Vec3& point : {s.base.origin, s.tip_mm})
     for (const double value : point) out.centreline.push_back(static_cast<float>(value));
@@ -118,7 +119,7 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
     frame->force_sagittal_N = s->force_sagittal_N;
     frame->force_lateral_N = s->force_lateral_N;
     frame->torque_Nmm = s->torque_Nmm;
-    frame->tip_mm = s->tip_mm;
+    if (time_s_ >= s->time_s || frame->centreline.empty()) frame->tip_mm = s->tip_mm;  // else the frame's
     if (s->base.origin.allFinite()) frame->base = s->base;  // not in recordings of the first version
   }
   if (whole_curve) {

@@ -12,7 +12,7 @@
 namespace stylet::serve {
 
 /// A recording that is shown again: pictures of any of its moments, between recorded frames by interpolation. Forces
-/// and positions of the base and the tip are those of the step nearest before.
+/// and positions of the base and the tip are those of the step nearest before, at the start those of the first.
 class Replay {
  public:
   /// @param points those of the scene

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 using namespace stylet;
 using namespace stylet::serve;
 
@@ -71,6 +73,42 @@ TEST(Replay, stays_within_the_recording) {
   replay.seek(99.0);
   EXPECT_EQ(replay.time_s(), 1.0);
   EXPECT_EQ(replay.picture(false)->steps, 10u);
+}
+
+TEST(Replay, has_the_needle_where_the_first_step_had_it_before_that_step) {
+  RunRecording late = recording();
+  for (StepRecord& step : late.steps) step.base_depth_mm -= 30.0;
+  Replay replay(late, {{0}, {}});
+  const auto frame = replay.picture(true);
+  EXPECT_EQ(frame->time_s, 0.0);
+  EXPECT_EQ(frame->depth_mm, -29.0) << "not 0 mm, where it never was";
+  EXPECT_EQ(frame->force_axial_N, 0.5);
+  EXPECT_EQ(frame->steps, 0u);
+}
+
+TEST(Replay, of_a_recording_with_rests_shows_every_moment_of_them) {
+  RunRecording rested = recording();
+  for (StepRecord& step : rested.steps) {
+    step.dt_s = 0.1;
+    if (step.time_s > 0.35) step.time_s += 0.5;
+  }
+  rested.steps[3].rest_steps = 5;  // between 0.3 s and 0.9 s
+  rested.frames.back().time_s = 1.5;
+  Replay replay(rested, {{0}, {}});
+  EXPECT_EQ(replay.duration_s(), 1.5);
+  for (const auto& [time_s, steps, depth_mm] :
+       {std::tuple{0.05, 0U, 1.0}, {0.31, 3U, 3.0}, {0.55, 5U, 3.0}, {0.85, 8U, 3.0}, {0.95, 9U, 4.0}}) {
+    replay.seek(time_s);
+    const auto frame = replay.picture(false);
+    ASSERT_TRUE(frame) << time_s;
+    EXPECT_EQ(frame->time_s, time_s);
+    EXPECT_EQ(frame->steps, steps) << time_s;
+    EXPECT_EQ(frame->depth_mm, depth_mm) << time_s;
+  }
+  const auto whole = replay.picture(true);
+  ASSERT_EQ(whole->samples.size(), 11u) << "the last step of the rest as well";
+  EXPECT_NEAR(whole->samples[3].time_s, 0.8, 1e-12);
+  EXPECT_EQ(whole->samples[3].axial_N, 1.5);
 }
 
 TEST(Replay, gives_the_whole_curve_when_asked) {
