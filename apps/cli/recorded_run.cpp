@@ -69,7 +69,9 @@ std::string compare_forces(std::span<const StepRecord> recorded, std::span<const
     const Forces b = forces(repeated[k]);
     const bool is_counted_only = !all.is_recorded(static_cast<std::int64_t>(k));
     if (is_counted_only) ++at_rest;
-    if (is_counted_only ? is_at_rest(before, repeated[k]) : same_bits(a, b)) continue;
+    StepRecord again = repeated[k];
+    again.flags = before.flags;  // forces are compared; recordings of earlier versions have no flags
+    if (is_counted_only ? is_at_rest(before, again) : same_bits(a, b)) continue;
     if (differ++ == 0) first_s = before.time_s;
     for (std::size_t c = 0; c < 3; ++c) most_N = std::max(most_N, std::abs(a[c] - b[c]));
   }

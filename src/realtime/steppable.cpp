@@ -5,13 +5,6 @@
 
 namespace stylet {
 
-namespace {
-
-/// After these the force of a step is not the model's.
-constexpr unsigned kDistrusted = StepReport::not_converged | StepReport::invalid_input;
-
-}  // namespace
-
 std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<TissueForce> out) {
   const auto count = std::min(out.size(), static_cast<std::size_t>(snapshot.force_count));
   for (std::size_t k = 0; k < count; ++k) {
@@ -21,7 +14,7 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   return out.first(count);
 }
 
-StepSnapshot plain(const StepRecord& r, unsigned flags) {
+StepSnapshot plain(const StepRecord& r) {
   return {.time_s = r.time_s,
           .dt_s = r.dt_s,
           .base = plain(r.base),
@@ -35,7 +28,7 @@ StepSnapshot plain(const StepRecord& r, unsigned flags) {
           .contacts = r.contacts,
           .sticking = r.sticking,
           .iterations = r.iterations,
-          .flags = flags,
+          .flags = r.flags,
           .step_us = r.step_us};
 }
 
@@ -54,6 +47,7 @@ StepRecord step_record(const StepSnapshot& s) {
   r.contacts = s.contacts;
   r.sticking = s.sticking;
   r.iterations = s.iterations;
+  r.flags = s.flags;
   r.step_us = s.step_us;
   return r;
 }
@@ -74,7 +68,7 @@ StepOutcome SimulationSteppable::step(const Pose& base, double dt) noexcept {
   simulation_.step(base, dt);
   const StepReport& report = simulation_.report();
   regions_.follow(simulation_.insertion(), report);
-  return {{report.hand_force, report.hand_torque}, (report.flags & kDistrusted) == 0};
+  return {{report.hand_force, report.hand_torque}, (report.flags & StepReport::kDistrusted) == 0};
 }
 
 void SimulationSteppable::describe(Snapshot& out) noexcept {
@@ -115,9 +109,8 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
 }
 
 bool SimulationSteppable::record(StepSnapshot& out) noexcept {
-  const unsigned flags = simulation_.report().flags;
-  if ((flags & StepReport::invalid_input) != 0) return false;
-  out = plain(simulation_.record(), flags);
+  if ((simulation_.report().flags & StepReport::invalid_input) != 0) return false;
+  out = plain(simulation_.record());
   return true;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "replay.hpp"
 
+#include "stylet/coupling/insertion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -110,6 +112,8 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
                 (whole_curve ? LiveFrame::whole_curve : 0U);
   put_frame(*frame);
   if (const StepRecord* s = step()) {
+    frame->flags = s->flags;
+    if ((s->flags & StepReport::kDistrusted) != 0) frame->bits &= ~static_cast<std::uint32_t>(LiveFrame::trusted);
     frame->tip_state = s->tip_state;
     frame->sticking = static_cast<std::uint32_t>(s->sticking);
     frame->iterations = static_cast<std::uint32_t>(s->iterations);
@@ -125,7 +129,7 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
   if (whole_curve) {
     for (const StepRecord& s : with_ends_of_rests(recording_.steps))
       frame->samples.push_back({s.time_s, s.base_depth_mm, s.force_axial_N, s.force_sagittal_N, s.force_lateral_N,
-                                s.step_us, s.tip_state, 0});
+                                s.step_us, s.tip_state, s.flags});
   }
   return frame;
 }

@@ -36,7 +36,8 @@ StepRecord at_rest(const StepRecord& record, std::int64_t number) {
 bool is_at_rest(const StepRecord& earlier, const StepRecord& step) {
   return same_bits(earlier.dt_s, step.dt_s) && same_bits(earlier.base, step.base) &&
          earlier.tip_state == step.tip_state && earlier.contacts == step.contacts &&
-         earlier.sticking == step.sticking && (force(earlier) - force(step)).norm() <= kRestForce_N &&
+         earlier.sticking == step.sticking && earlier.flags == step.flags &&
+         (force(earlier) - force(step)).norm() <= kRestForce_N &&
          (earlier.torque_Nmm - step.torque_Nmm).norm() <= kRestTorque_Nmm &&
          (earlier.tip_mm - step.tip_mm).norm() <= kRestPlace_mm;
 }

@@ -165,6 +165,7 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   record_.contacts = report_.contacts;
   record_.sticking = report_.sticking;
   record_.iterations = report_.iterations;
+  record_.flags = report_.flags;
   record_.step_us = 0.0;
 
   follow_direction(advance, report_.contacts > 0 || report_.tip == TipPhase::in_track);

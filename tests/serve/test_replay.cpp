@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "replay.hpp"
 
+#include "stylet/coupling/insertion.hpp"
+
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -109,6 +111,25 @@ TEST(Replay, of_a_recording_with_rests_shows_every_moment_of_them) {
   ASSERT_EQ(whole->samples.size(), 11u) << "the last step of the rest as well";
   EXPECT_NEAR(whole->samples[3].time_s, 0.8, 1e-12);
   EXPECT_EQ(whole->samples[3].axial_N, 1.5);
+}
+
+TEST(Replay, warns_where_the_live_needle_did) {
+  RunRecording flagged = recording();
+  flagged.steps[3].flags = StepReport::no_contact_inside;
+  flagged.steps[4].flags = StepReport::not_converged;
+  Replay replay(flagged, {{0}, {}});
+  for (const auto& [time_s, flags, trusted] : {std::tuple{0.35, 0U, true},
+                                               {0.45, unsigned(StepReport::no_contact_inside), true},
+                                               {0.55, unsigned(StepReport::not_converged), false},
+                                               {0.65, 0U, true}}) {
+    replay.seek(time_s);
+    const auto frame = replay.picture(false);
+    EXPECT_EQ(frame->flags, flags) << time_s;
+    EXPECT_EQ((frame->bits & LiveFrame::trusted) != 0, trusted) << time_s;
+  }
+  const auto whole = replay.picture(true);
+  EXPECT_EQ(whole->samples[3].flags, unsigned(StepReport::no_contact_inside));
+  EXPECT_EQ(whole->samples[5].flags, 0U);
 }
 
 TEST(Replay, gives_the_whole_curve_when_asked) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rests.hpp"
 
+#include "stylet/coupling/insertion.hpp"
+
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -73,6 +75,11 @@ TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
   step.torque_Nmm.x() = 2e-5;
   EXPECT_TRUE(rests.add(step));
   step.sticking = 1;
+  EXPECT_TRUE(rests.add(step));
+  step.flags = StepReport::no_contact_inside;  // a warning begins with a step, and ends with one
+  EXPECT_TRUE(rests.add(step));
+  EXPECT_FALSE(rests.add(step));
+  step.flags = 0;
   EXPECT_TRUE(rests.add(step));
 }
 

@@ -59,6 +59,7 @@ struct StepReport {
                                    ///< went in flat to the surface, or slipped off it; nothing resists it, and it is to
                                    ///< be drawn out. Where compliance_missing says so already it is not said twice
   };
+  static constexpr unsigned kDistrusted = not_converged | invalid_input;  ///< with one of them: not the model's force
   unsigned flags = 0;
   int iterations = 0;  ///< of the solver, summed over sub-steps
   int pivots = 0;      ///< changes of contact state

@@ -85,7 +85,7 @@ struct DeviceSnapshot {
   std::int64_t damped_too_little = 0;  ///< of those, with less than was owed
 };
 
-/// A step that was taken: StepRecord as plain data, and its flags.
+/// A step that was taken: StepRecord as plain data.
 struct StepSnapshot {
   double time_s = 0.0;
   double dt_s = 0.0;
@@ -103,7 +103,7 @@ struct StepSnapshot {
   unsigned flags = 0;    ///< StepReport::Flag
   double step_us = 0.0;  ///< thread CPU time of the step [µs]
 };
-[[nodiscard]] StepSnapshot plain(const StepRecord& record, unsigned flags);
+[[nodiscard]] StepSnapshot plain(const StepRecord& record);
 [[nodiscard]] StepRecord step_record(const StepSnapshot& snapshot);
 
 /// Event of a step, plain data.

@@ -21,8 +21,8 @@ enum class TipState {
 };
 const char* to_string(TipState state);
 
-/// A step: what went in and what came out; but for dt_s and base a line of forces.csv. Force and torque are what the
-/// hand exerts on the needle's base: axial along the base's axis, positive when pushing in; lateral towards the
+/// A step: what went in and what came out; but for dt_s, base and flags a line of forces.csv. Force and torque are what
+/// the hand exerts on the needle's base: axial along the base's axis, positive when pushing in; lateral towards the
 /// patient's left, sagittal = axial × lateral (towards posterior for a needle going superior). Torque about the base
 /// point, in patient axes.
 struct StepRecord {
@@ -39,6 +39,7 @@ struct StepRecord {
   int contacts = 0;
   int sticking = 0;
   int iterations = 0;
+  unsigned flags = 0;  ///< StepReport::Flag; 0 of recordings that do not have them
   double step_us = 0;  ///< thread CPU time of the step [µs]; the only number that differs between two runs
   /// Steps at rest between the record before and this one: with its dt and base, and results as near as is_at_rest().
   std::int64_t rest_steps = 0;

@@ -59,7 +59,7 @@ std::uint32_t check_of(const StepRow& r) {
       .numbers(r.time_s, r.dt_s, r.base_x_mm, r.base_y_mm, r.base_z_mm, r.base_qw, r.base_qx, r.base_qy, r.base_qz,
                r.base_depth_mm, r.force_axial_N, r.force_sagittal_N, r.force_lateral_N)
       .numbers(r.torque_x_Nmm, r.torque_y_Nmm, r.torque_z_Nmm, r.tip_x_mm, r.tip_y_mm, r.tip_z_mm, r.tip_state,
-               r.contacts, r.sticking, r.iterations, r.step_us, r.rest_steps)
+               r.contacts, r.sticking, r.iterations, r.step_us, r.rest_steps, r.flags)
       .value();
 }
 
@@ -109,6 +109,7 @@ StepRow to_row(const StepRecord& s) {
   row.iterations = s.iterations;
   row.step_us = s.step_us;
   row.rest_steps = s.rest_steps;
+  row.flags = s.flags;
   row.check = check_of(row);
   return row;
 }
@@ -131,6 +132,7 @@ StepRecord from_row(const StepRow& row) {
   s.iterations = row.iterations;
   s.step_us = row.step_us;
   s.rest_steps = row.rest_steps;
+  s.flags = row.flags;
   return s;
 }
 
@@ -161,6 +163,7 @@ h5::Handle step_row_type() {
   insert(type, "iterations", offsetof(StepRow, iterations), H5T_NATIVE_INT32);
   insert(type, "step_us", offsetof(StepRow, step_us), H5T_NATIVE_DOUBLE);
   insert(type, "rest_steps", offsetof(StepRow, rest_steps), H5T_NATIVE_INT64);
+  insert(type, "flags", offsetof(StepRow, flags), H5T_NATIVE_UINT32);
   insert(type, "check", offsetof(StepRow, check), H5T_NATIVE_UINT32);
   return type;
 }

@@ -21,8 +21,9 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  //
 // Every row has a check: CRC-32 of its other columns in their order and, of a frame, of what belongs to it. A row whose
 // check is wrong has not reached the disk whole, or was changed since.
 
-/// A row of /steps: the columns of forces.csv, what the step was given, and the steps at rest before it. Files of
-/// version 1 have no dt_s and no base, those of version 2 no rest_steps.
+/// A row of /steps: the columns of forces.csv, what the step was given, the steps at rest before it, and its flags
+/// (StepReport::Flag). Files of version 1 have no dt_s and no base, those before version 3 no rest_steps, those before
+/// version 4 no flags.
 struct StepRow {
   double time_s = kMissing, dt_s = kMissing, base_depth_mm = kMissing;
   double base_x_mm = kMissing, base_y_mm = kMissing, base_z_mm = kMissing;
@@ -34,6 +35,7 @@ struct StepRow {
   std::int32_t contacts = 0, sticking = 0, iterations = 0;
   double step_us = kMissing;
   std::int64_t rest_steps = 0;
+  std::uint32_t flags = 0;
   std::uint32_t check = 0;
 };
 std::uint32_t check_of(const StepRow& row);

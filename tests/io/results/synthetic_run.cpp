@@ -165,6 +165,7 @@ StepRecord step_at(double time, int number) {
   const bool stuck = time >= kInsertion && kDeepest - s.base_depth_mm < kStick;
   s.sticking = stuck ? s.contacts : 0;
   s.iterations = 2 + number % 3;
+  s.flags = number % 97 == 13 ? 1U << (number % 7) : 0U;
   s.step_us = 180 + 2.5 * s.contacts + 12 * std::abs(std::sin(0.7 * number)) + (number % 97 == 13 ? 210 : 0);
   return s;
 }

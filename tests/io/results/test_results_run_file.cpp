@@ -51,6 +51,7 @@ void expect_same_step(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.contacts, b.contacts);
   EXPECT_EQ(a.sticking, b.sticking);
   EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.flags, b.flags);
   EXPECT_EQ(a.step_us, b.step_us);
   EXPECT_EQ(a.rest_steps, b.rest_steps);
 }
@@ -159,7 +160,7 @@ TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
     Recorder recorder(std::move(*writer));
     ASSERT_TRUE(recorder.close(nullptr).ok());
   }
-  {  // its table of steps had no columns dt_s and base_x_mm … base_qz
+  {  // its table of steps had no columns dt_s, base_x_mm … base_qz, and flags
     const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
     const h5::Handle now = step_row_type();
     const h5::Handle then(h5::check(H5Tcreate(H5T_COMPOUND, sizeof(StepRow)), "type"), H5Tclose);
@@ -168,14 +169,14 @@ TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
       char* text = H5Tget_member_name(now, k);
       const std::string name = text;
       H5free_memory(text);
-      if (name == "dt_s" || (name.rfind("base_", 0) == 0 && name != "base_depth_mm")) {
+      if (name == "dt_s" || name == "flags" || (name.rfind("base_", 0) == 0 && name != "base_depth_mm")) {
         ++left_out;
         continue;
       }
       const h5::Handle type(H5Tget_member_type(now, k), H5Tclose);
       h5::check(H5Tinsert(then, name.c_str(), H5Tget_member_offset(now, k), type), "insert");
     }
-    ASSERT_EQ(left_out, 8);
+    ASSERT_EQ(left_out, 9);
     h5::check(H5Ldelete(file, "steps", H5P_DEFAULT), "delete");
     h5::check(H5Adelete(file, "format_version"), "delete");
     h5::write_attribute(file, "format_version", std::array{1});
@@ -189,6 +190,7 @@ TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
   ASSERT_EQ(back->steps.size(), run.steps.size());
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     EXPECT_EQ(back->steps[k].force_axial_N, run.steps[k].force_axial_N);
+    EXPECT_EQ(back->steps[k].flags, 0U);
     EXPECT_TRUE(std::isnan(back->steps[k].dt_s) && std::isnan(back->steps[k].base.origin.x()));
   }
 }
