@@ -122,6 +122,8 @@ struct Session::Parts {
   Result<> start_replay(const std::string& name);
   void pump();
   void end_live();
+  void hold_live();
+  void go_on();
   void set_live_aside();
   void back_to_live();
   void set_hand(std::shared_ptr<PageDevice> device);
@@ -194,13 +196,25 @@ void Session::Parts::end_live() {
   status.device_problem.clear();
 }
 
-/// The live run stands where it is, with nobody's hand on it, until back_to_live().
-void Session::Parts::set_live_aside() {
+/// The live run, if there is one, stands where it is, with nobody's hand on it, until go_on().
+void Session::Parts::hold_live() {
   if (!live) return;
   set_hand(nullptr);
   if (live->hand()) live->hand()->aim(resting());
   live->runner().pause();
   pump();
+}
+
+void Session::Parts::go_on() {
+  if (!live) return;
+  set_hand(live->hand());
+  if (!status.paused) live->runner().resume();
+}
+
+/// The live run stands where it is until back_to_live().
+void Session::Parts::set_live_aside() {
+  if (!live) return;
+  hold_live();
   aside = SetAside{std::move(live), status};
   status.recording = {};
   status.device_problem.clear();
@@ -217,8 +231,7 @@ void Session::Parts::back_to_live() {
   const SessionStatus now = std::exchange(status, std::move(was.status));
   status.stage = field_maker ? kFieldStage : open.field ? "" : kNoField;
   status.fraction = now.fraction;
-  set_hand(live->hand());
-  if (!status.paused) live->runner().resume();
+  go_on();
   whole_curve = true;
 }
 
@@ -313,10 +326,11 @@ void Session::Parts::abandon_field() {
   abandoned.push_back(std::move(field_maker));
 }
 
-/// Opens a model in the place of the one that is open; that one starts again if it cannot be had.
+/// Opens a model in the place of the one that is open. If it cannot be had, what was there goes on as it was.
 void Session::Parts::open_model(const Request& request, std::size_t case_number,
                                 const std::function<Result<LoadedCase>(const Progress&)>& load) {
-  end_live();
+  const SessionStatus before = status;
+  hold_live();
   status.state = SessionStatus::State::loading;
   status.fraction = -1.0;
   status.stage = "reading";
@@ -324,6 +338,7 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
   auto loaded = load(progress());
   const Result<> usable = loaded ? DisplayField::check(*loaded->model) : Result<>(loaded.error());
   if (usable.ok()) {
+    end_live();
     abandon_field();
     open = {.model = loaded->model, .notes = std::move(loaded->notes), .field = nullptr, .points = {}, .way = 0};
     if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
@@ -334,8 +349,12 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
         open.model, std::chrono::duration<double>(page_has_drawn ? 0.0 : settings.field_waits_s));
     return place(request, 0);
   }
+  if (live || replay) {
+    refuse(request, usable.error());
+    status = before;
+    return go_on();
+  }
   if (open.model) {
-    if (replay) show_model(insertion);  // instead of what was replayed
     refuse(request, usable.error());
     return place(request, insertion);
   }
@@ -546,10 +565,12 @@ void Session::Parts::run(const std::stop_token& stop) {
       wake.wait_until(lock, stop, before + period, [&] { return !requests.empty(); });
       waiting.swap(requests);
     }
+    const auto begun = Clock::now();
     for (const Request& request : waiting) {
       if (!stop.stop_requested()) carry_out(request);
     }
     const auto now = Clock::now();
+    before += now - begun;  // a replay stands while a case is read
     if (now < before + period) continue;
     tick(std::chrono::duration<double>(now - before).count());
     before = now;

@@ -161,6 +161,55 @@ TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
   EXPECT_GT(time, back_at);
 }
 
+TEST(Server, a_case_that_cannot_be_loaded_leaves_needle_and_replay_as_they_were) {
+  const Serving serving([](serve::ServerSettings& s) {
+    s.session.cases.push_back({"broken", [](const Progress&) {
+                                 std::this_thread::sleep_for(std::chrono::milliseconds(300));
+                                 return Result<serve::LoadedCase>(input_error("case.toml", "it is broken", "Mend it"));
+                               }});
+  });
+  const auto client = ready_client(serving);
+  client->command(R"({"do":"take"})");
+  const std::string first = client->status["recording"]["name"];
+  client->hand(5.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 4.9F; }));
+  client->command(R"({"do":"reset"})");
+  ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != first; }));
+  client->hand(15.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 14.9995F; }));
+  const std::string name = client->status["recording"]["name"];
+  const std::uint32_t scenes = client->scenes;
+  const auto goes_on = [&] {
+    const double then = client->time_s;
+    ASSERT_TRUE(client->until([&] { return client->ready() && client->time_s > then + 0.2; }));
+    EXPECT_NEAR(client->depth_mm, 15.0F, 1e-3F);
+    EXPECT_EQ(client->status["recording"]["name"], name);
+  };
+
+  client->command(R"({"do":"case","index":2})");
+  ASSERT_TRUE(client->until([&] { return client->notices.size() == 1; }));
+  EXPECT_SAYS(client->notices[0]["text"].get<std::string>(), "it is broken");
+  goes_on();
+  EXPECT_EQ(client->scenes, scenes) << "nothing else was shown";
+
+  client->command(R"({"do":"replay","name":")" + first + "\"}");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
+  client->command(R"({"do":"play","rate":0.1})");
+  ASSERT_TRUE(client->until([&] { return client->time_s > 0.0 && client->status["replay"]["playing"] == true; }));
+  const double shown_s = client->time_s;
+  client->command(R"({"do":"case","index":2})");
+  ASSERT_TRUE(client->until([&] { return client->notices.size() == 2 && client->ready(); }));
+  EXPECT_EQ(client->status["mode"], "replay");
+  EXPECT_EQ(client->status["replay"]["name"], first);
+  EXPECT_EQ(client->status["replay"]["playing"], true);
+  ASSERT_TRUE(client->until([&] { return client->time_s > shown_s; })) << "it goes on";
+  client->command(R"({"do":"live"})");
+  ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
+  goes_on();
+  client->hand(18.0F, 80.0F);
+  ASSERT_TRUE(client->until([&] { return client->depth_mm > 17.9F; }));
+}
+
 TEST(Server, says_in_which_regions_the_needle_is) {
   const Serving serving;
   const auto client = ready_client(serving);
