@@ -250,9 +250,9 @@ class Runner {
         "there was no room for another contact; raise coupling.contacts",
         "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
         "the pose of the base was not finite and the step was not taken",
-        "the tip was inside the tissue and no force acted on it: it started there, went in flat to the skin, or "
-        "slipped "
-        "off it; start the needle outside of the tissue, and enter it less flat to the skin"};
+        "the tip was inside the tissue and no force acted on it: it started there, went in flat to the skin, slipped "
+        "off it, or had gone through the far side; start the needle outside of the tissue, and enter it less flat to "
+        "the skin"};
     for (std::size_t bit = 0; bit < texts.size(); ++bit) {
       if (flag_counts_[bit] > 0)
         summary_.warnings.push_back(

@@ -55,9 +55,10 @@ struct StepReport {
     out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
     too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
     invalid_input = 1u << 5,       ///< a pose that is not finite, or dt ≤ 0: the step was not taken
-    no_contact_inside = 1u << 6    ///< nothing holds the needle, whose tip is inside the tissue: it was placed there,
-                                   ///< went in flat to the surface, or slipped off it; nothing resists it, and it is to
-                                   ///< be drawn out. Where compliance_missing says so already it is not said twice
+    no_contact_inside = 1u << 6    ///< no contact, tip in the air or exited, and yet inside the tissue: it was put
+                                   ///< there, went in flat to the surface, slipped off it, or had gone through; nothing
+                                   ///< resists it, and it is to be drawn out. Where compliance_missing says so already
+                                   ///< it is not said twice
   };
   static constexpr unsigned kDistrusted = not_converged | invalid_input;  ///< with one of them: not the model's force
   unsigned flags = 0;

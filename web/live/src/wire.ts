@@ -18,7 +18,7 @@ export interface Frame {
   shown: boolean;            // displacement follows
   whole: boolean;            // the samples are the whole curve: forget those before
   approximate: boolean;      // compliance is missing: the force is about right
-  unfelt: boolean;           // the tip is inside and nothing holds it: no force acts on it
+  unfelt: boolean;           // the tip is in the tissue, and no force acts on the needle
   flags: number;
   tipState: number;
   sticking: number;

@@ -55,7 +55,7 @@ export class Readouts {
       this.tip.set(TIP_STATES[frame.tipState] ?? `state ${frame.tipState}`);
       this.forces.forEach((value, k) => value.set(signed(frame.force[k])));
       this.warn(!frame.trusted ? 'Do not trust these forces: the step did not converge.'
-                : frame.unfelt ? 'No force: nothing holds the needle here, it did not go in through the skin. Draw it out.'
+                : frame.unfelt ? 'No force: the needle is in the tissue without feeling it. Draw it out.'
                 : frame.approximate && TIP_STATES[frame.tipState] === 'in air' ? 'No force yet: nothing is prepared here. Wait at the skin, or draw the needle out.'
                 : frame.approximate ? 'Forces are approximate here: the needle is ahead of its preparation.' : '', !frame.trusted);
     }
