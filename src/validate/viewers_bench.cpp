@@ -149,7 +149,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   serve::ServerSettings settings;
   settings.port = 0;
   settings.asks_for_token = false;
-  settings.session.cases = {{"the demo", [&](const Progress&) { return Result(serve::LoadedCase{model, {}}); }}};
+  settings.session.cases = {{"the demo", [&](const Progress&) { return Result(serve::LoadedCase{*model, {}}); }}};
   settings.session.recordings = folder.path;
   settings.session.companion = script;
   settings.session.field_waits_s = 0.0;  // made before the first turn begins
