@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <utility>
 
 namespace stylet::detail {
 
@@ -29,20 +29,12 @@ std::vector<bool> listed(const std::vector<Segment>& segments, std::span<const s
   return in;
 }
 
-/// The runs in the order of their segments' sizes, the largest first.
-std::vector<Run> largest_first(const std::vector<Run>& runs, const std::vector<std::size_t>& voxels) {
-  std::vector<std::size_t> order(voxels.size()), start(voxels.size(), 0), count(voxels.size(), 0);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return voxels[a] > voxels[b]; });
-  for (const Run& run : runs) ++count[run.segment];
-  std::size_t next = 0;
-  for (const std::size_t s : order) {
-    start[s] = next;
-    next += count[s];
-  }
-  std::vector<Run> sorted(runs.size());
-  for (const Run& run : runs) sorted[start[run.segment]++] = run;
-  return sorted;
+/// The runs in the order of their segments' sizes, the largest first; of segments of one size the first.
+std::vector<Run> largest_first(std::vector<Run> runs, const std::vector<std::size_t>& voxels) {
+  std::stable_sort(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
+    return std::pair(voxels[b.segment], a.segment) < std::pair(voxels[a.segment], b.segment);
+  });
+  return runs;
 }
 
 }  // namespace
