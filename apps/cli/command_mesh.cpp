@@ -72,7 +72,6 @@ MeshOptions mesher_options(const MeshArguments& arguments, const RegionNames& re
 Result<MeshedAnatomy> model_of(const ContourSet& contours, const MeshArguments& arguments, const MeshOptions& options,
                                Console& console) {
   if (arguments.scale > 0) return pointless(arguments, "--scale", "contours, which are in mm");
-  if (arguments.volume > 0) return pointless(arguments, "--volume", "contours");
   return mesh_contours(contours, options, console.progress());
 }
 
@@ -91,7 +90,6 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (!arguments.preset.empty()) return pointless(arguments, "--preset", kind);
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", kind);
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
-  if (arguments.volume > 0) return pointless(arguments, "--volume", kind);
   if (!arguments.skip.empty()) return pointless(arguments, "--skip", kind);
 
   MeshedAnatomy out{.mesh = mesh, .report = {}};

@@ -91,7 +91,7 @@ class SeveralVolumes(InFolder):
 
     def test_it_has_no_meaning_for_contours(self):
         samples.contour_json(self.folder / "gland.json")
-        self.refuse("mesh", "gland.json", "-o", "m.vtu", "--volume", "1", says=["--volume has no meaning"])
+        self.refuse("mesh", "gland.json", "-o", "m.vtu", "--volume", "1", says=["gland.json", "only a mask has volumes", "--volume"])
 
 
 class NoRegularFile(InFolder):
