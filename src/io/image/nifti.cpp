@@ -102,6 +102,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   };
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());
+  reader->TimeAsVectorOn();  // the volumes of a series become components, of which one is taken
   reader->UpdateInformation();
   if (messages->failed()) return damaged();
   vtkNIFTIImageHeader& header = *reader->GetNIFTIHeader();
@@ -146,7 +147,6 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
                        "Copy or export it again; it is truncated or damaged.");
   }
 
-  reader->TimeAsVectorOn();  // the volumes of a series become components, of which one is taken
   reader->Update();
   vtkImageData& image = *reader->GetOutput();
   if (messages->failed() || reader->GetErrorCode() != 0 || image.GetScalarPointer() == nullptr) return damaged();

@@ -79,6 +79,7 @@ fs::path write_seg(const fs::path& path, const Mask& frame, const std::vector<Dr
       if (!empty) add_slice(*seg, frame, pixels, n, k);
     }
   }
+  seg->getSeries().setSeriesNumber("1");
   seg->getFrameOfReference().setFrameOfReferenceUID("1.2.3.4");
   seg->setCheckFGOnWrite(OFFalse);
   seg->setCheckDimensionsOnWrite(OFFalse);
