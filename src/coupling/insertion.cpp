@@ -127,16 +127,18 @@ std::optional<Vec3> Insertion::Parts::surface_behind(const Vec3& tip_now) const 
   return (tip_now - surface).norm() <= settings.merge_mm ? std::optional(surface) : std::nullopt;
 }
 
-/// Whether the insertion is over: the needle holds no tissue, and its tip has come back out of it, or out of the mouth
-/// of its track sideways. On curved or tilted skin a tip beside its entry may be behind it and yet in the tissue.
-bool Insertion::Parts::has_left() const {
+/// Whether the insertion is over: the needle holds no tissue, and its tip has come back out of it, or was moved out of
+/// the mouth of its track sideways. On curved or tilted skin a tip beside its entry may be behind it and yet in the
+/// tissue, and a needle that is drawn out is in its track until it is out, however far its hand is beside it.
+bool Insertion::Parts::has_left(bool drawn_out) const {
   if (!grips.empty() || tip_holds()) return false;
   const Vec3 t = needle->tangent(length());
   const Vec3 from_entry = needle->point(length()) - track.entry;
   const double deep = t.dot(from_entry);
   const double beside = (from_entry - deep * t).norm();
-  if (deep < settings.spacing_mm && beside > settings.join_mm && phase != TipPhase::exited) return true;
-  return deep < 0.0 && !in_tissue(needle->point(length()));
+  const bool beside_mouth = deep < settings.spacing_mm && beside > settings.join_mm && phase != TipPhase::exited;
+  if (beside_mouth && !drawn_out) return true;
+  return (deep < 0.0 || beside_mouth) && !in_tissue(needle->point(length()));
 }
 
 /// The needle is out: the tissue model is what it was before the first contact, or goes back to it as it relaxes. The
@@ -248,7 +250,8 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) 
     if (phase != TipPhase::exited || enter(air_tip, now, report)) air_tip = now;
   }
   remember();
-  if (has_left()) finish_insertion(report);
+  const bool drawn_out = (pose.origin - before.origin).dot(pose.rotation * Vec3::UnitZ()) < 0.0;
+  if (has_left(drawn_out)) finish_insertion(report);
 }
 
 void Insertion::Parts::note_use() {

@@ -295,7 +295,7 @@ struct Insertion::Parts {
   void wake_and_drop(StepReport& report);
   [[nodiscard]] double passed_by(const Grip& grip) const;
   void share_length();
-  [[nodiscard]] bool has_left() const;
+  [[nodiscard]] bool has_left(bool drawn_out) const;
   void finish_insertion(StepReport& report);
   void settle_in_air(StepReport& report);
 

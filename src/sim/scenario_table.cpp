@@ -37,7 +37,7 @@ void describe_patient(ScenarioEntries& keys) {
   keys.texts("patient.skip", 0,
              "structures, by their names, or labels, by their names or numbers, to leave out, such as one that is "
              "drawn wrongly",
-             [](auto& s, const Slot&) { return &s.patient.skip; }, {.standard = "none", .example = "[\"Rectum\"]"});
+             [](auto& s, const Slot&) { return &s.patient.skip; }, {.standard = "[]", .example = "[\"Rectum\"]"});
   keys.text("patient.regions.<name>", "the region that a structure, by its name, or a label, by its number, stands for",
             [](auto& s, const Slot& slot) { return &region(s, slot); },
             {.standard = "by their names", .example = "\"peripheral_zone\""});
