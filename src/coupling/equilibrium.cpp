@@ -389,14 +389,18 @@ void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& r
   bool new_tangent = false;
   bool quiet = true;      // no state has changed
   Index border_tet = -1;  // where the tip was when it was added to the matrix
-  for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
+  int before_break = 0;   // iterations that went into the balance in which a membrane broke
+  for (int all = 0; all < kMaxNewton; ++all) {
+    int iteration = all - before_break;
     foresees_cut = iteration < kSmoothCut;
     double error = look();
     const bool found = iteration > 0 && !changed && error < 1.0;
     if (found && membrane_gives()) {
       break_membrane(report);
+      before_break = all;
+      iteration = 0;  // another balance is looked for from here
+      foresees_cut = true;
       error = look();
-      before = std::numeric_limits<double>::infinity();  // another balance is looked for from here
     } else if (found) {
       const bool slow = error > (quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
       if (slow && iteration > (quiet ? kManyQuiet : kManyIterations)) tangent_fits = false;
@@ -420,7 +424,7 @@ void Insertion::Parts::solve_equilibrium(double h, Effort& effort, StepReport& r
         error = look();
       }
     }
-    if (iteration > 0 && !effort.allows(effort.iteration() + (exact ? effort.tangent() : 0.0))) break;
+    if (all > 0 && !effort.allows(effort.iteration() + (exact ? effort.tangent() : 0.0))) break;
     effort.spend(effort.iteration());
     before = iteration == 0 ? std::max(error, kNear / settings.tolerance) : error;
     ++report.iterations;

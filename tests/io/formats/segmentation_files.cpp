@@ -80,6 +80,8 @@ fs::path write_seg(const fs::path& path, const Mask& frame, const std::vector<Dr
     }
   }
   seg->getSeries().setSeriesNumber("1");
+  good(seg->getDimensions().addDimensionIndex(DCM_ReferencedSegmentNumber, "1.2.3.5", DCM_SegmentIdentificationSequence,
+                                              "segment"));
   seg->getFrameOfReference().setFrameOfReferenceUID("1.2.3.4");
   seg->setCheckFGOnWrite(OFFalse);
   seg->setCheckDimensionsOnWrite(OFFalse);
