@@ -70,7 +70,8 @@ TEST(DicomSeg, has_its_voxels_where_the_same_mask_in_nrrd_has_them) {
     Mask frame;
     frame.axes = axes;
     frame.labels = voxels(frame, in_gland);
-    for (std::size_t n = 0; n < frame.labels.size(); ++n) frame.labels[n] += voxels(frame, in_urethra)[n] != 0 ? 2 : 0;
+    for (std::size_t n = 0; n < frame.labels.size(); ++n)
+      frame.labels[n] = static_cast<std::uint8_t>(frame.labels[n] + (voxels(frame, in_urethra)[n] != 0 ? 2 : 0));
     for (std::uint8_t& label : frame.labels) label = label >= 2 ? 2 : label;
     const auto seg = read_label_image(write_seg(folder / "seg.dcm", frame, gland_and_urethra()));
     ASSERT_TRUE(seg.ok()) << why(seg);
@@ -185,7 +186,8 @@ TEST(DicomSeg, damage_is_named) {
   const std::string whole = content_of(write_seg(folder / "seg.dcm", Mask(), gland_and_urethra()));
   for (const double share : {0.2, 0.5, 0.95}) {
     expect_refused(
-        read_input(write_file(folder / "cut.dcm", whole.substr(0, static_cast<std::size_t>(share * whole.size())))),
+        read_input(write_file(folder / "cut.dcm",
+                              whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))))),
         {"cut.dcm"});
   }
 }
