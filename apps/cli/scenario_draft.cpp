@@ -83,7 +83,7 @@ struct RegionLine {
   std::string remark;
 };
 
-/// What a kind of input has to say.
+/// The parts of a draft that depend on the kind of file that the patient comes from.
 struct Contents {
   std::string kind;                  ///< "contours of 6 structures"
   std::vector<std::string> remarks;  ///< behind the source
@@ -121,7 +121,8 @@ Result<StructureChoice> choose_sound(const ContourSet& contours, MeshOptions& op
   }
 }
 
-/// What the user leaves out, as the draft is to say it.
+/// Enters the structures that the user leaves out into the draft.
+/// @return mesh options that leave them out
 MeshOptions leave_out(const std::vector<std::string>& skip, Contents& out) {
   out.skip = skip;
   out.why_skip.assign(skip.size(), "named with --skip");

@@ -33,7 +33,7 @@ TEST(StructureNames, ListedNamesDifferInNothingButCase) {
   EXPECT_FALSE(is_listed("", words));
 }
 
-TEST(StructureNames, TheWayToDoWithoutNamesTheStructure) {
+TEST(StructureNames, TheAdviceToLeaveAStructureOutSaysItsName) {
   EXPECT_NE(or_skip("Rectum").find("skip = [\"Rectum\"] below [patient]"), std::string::npos);
 }
 

@@ -20,7 +20,8 @@ struct NearlyFlatTets {
 
 NearlyFlatTets nearly_flat_tets(const TetMesh& mesh);
 
-/// What to tell the user of them: how many, the worst, its angle, where it is, and the cure. Empty: there are none.
+/// A warning about nearly flat tetrahedra: their number, the flattest one with its angle and place, and the cure.
+/// Empty where the mesh has none.
 std::string nearly_flat_warning(const TetMesh& mesh);
 
 }  // namespace stylet

@@ -13,10 +13,10 @@
 
 namespace stylet {
 
-/// What names the compiled model of a scenario: SHA-256, in hexadecimal, of the build id of the program or shared
-/// library that holds this code, the scenario with all its settings, and the content of every file that it names.
-/// Another version, another value or another patient is another key; a stripped copy of the program is the same
-/// program.
+/// The key under which the compiled model of a scenario is kept: SHA-256, in hexadecimal, of the build id of the
+/// program or shared library that holds this code, the scenario with all its settings, and the content of every file
+/// that it names. Another version, another value or another patient is another key; a stripped copy of the program is
+/// the same program.
 /// @param scenario as of read_scenario(), with absolute paths
 /// Errors: a file that cannot be read; one whose data are in other files that it names (.mhd, .nhdr, .node and .ele),
 /// which the key would not see; a program that was linked without a build id.

@@ -21,8 +21,8 @@ struct MeshOptions {
   MeshPreset preset = MeshPreset::standard;
   Index nodes = 0;                 ///< wanted number of nodes, hit within 3 %; 0 = the preset's default (3,000 / 570)
   double cull_tolerance_mm = 0.3;  ///< contour points closer than this to the polygon without them are superfluous
-  /// What input structures stand for: ROI name, or label's name or "number as text" → region name. The others are
-  /// recognised by their names (choose_structures()).
+  /// The region of each structure that the user assigns by hand: ROI name, or label's name or "number as text" → region
+  /// name. All other structures are recognised by their names (choose_structures()).
   std::map<std::string, std::string> regions;
   std::vector<std::string> skip;  ///< names of input structures, or labels' numbers as text, to leave out
   bool stiff_band = true;  ///< without a pubic arch in the input: add the band from the gland's anterior-inferior end

@@ -10,7 +10,7 @@
 
 namespace stylet {
 
-/// What the kernels of needle and mesh need to know of a place in the tissue.
+/// A place in the tissue, with the values that the kernels of needle and mesh take from it.
 struct NearPlace {
   Shape shape;
   Segment piece;
@@ -41,7 +41,7 @@ bool needs_correction(const MeshKernel& kernel, const NearPlace& at, const NearP
 /// g(at, on) of the mesh for E = 1 MPa [mm/N].
 Mat3 mesh_kernel_between(const MeshKernel& kernel, const Shape& at, const Shape& on, int medium);
 
-/// What the needle's kernel and the mesh's differ by: displacement of `at` per force on `on` [mm/N] (docs/theory/
+/// Difference of the needle's kernel from the mesh's: displacement of `at` per force on `on` [mm/N] (docs/theory/
 /// near_field.md, section 1). @param g g(at, on) for E = 1 MPa in a medium
 template <class OfMesh>
 Mat3 near_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, const OfMesh& g) {
