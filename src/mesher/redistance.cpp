@@ -77,6 +77,10 @@ void redistance(GridShape& g) {
   };
   const std::size_t dj = g.size[0];
   const std::size_t dk = dj * g.size[1];
+  // A node is looked at again only where a neighbour's distance has become smaller since: most are final after a sweep
+  // or two. @cite S. Bak, J. McLaughlin, D. Renzi, "Some improvements for the fast sweeping method", SIAM J Sci Comput
+  // 32 (2010) 2853–2874
+  std::vector<char> stale(d.size(), 1);
   for (int sweep = 0; sweep < 8; ++sweep) {  // all eight sweep directions, once: enough for straight characteristics
     const bool ri = (sweep & 1) != 0, rj = (sweep & 2) != 0, rk = (sweep & 4) != 0;
     for (int kk = 0; kk < g.size[2]; ++kk) {
@@ -86,11 +90,21 @@ void redistance(GridShape& g) {
         for (int ii = 0; ii < g.size[0]; ++ii) {
           const int i = ri ? g.size[0] - 1 - ii : ii;
           const std::size_t n = g.at(i, j, k);
-          if (fixed[n] < kFar) continue;
+          if (stale[n] == 0 || fixed[n] < kFar) continue;
+          stale[n] = 0;
           const std::array<double, 3> a{near(n, 1, i, g.size[0] - 1), near(n, dj, j, g.size[1] - 1),
                                         near(n, dk, k, g.size[2] - 1)};
           if (std::min({a[0], a[1], a[2]}) >= d[n]) continue;
-          d[n] = std::min(d[n], static_cast<float>(eikonal(a, h)));
+          const auto t = static_cast<float>(eikonal(a, h));
+          if (t >= d[n]) continue;
+          d[n] = t;
+          const auto mark = [&](std::size_t stride, int c, int last) {
+            if (c > 0) stale[n - stride] = 1;
+            if (c < last) stale[n + stride] = 1;
+          };
+          mark(1, i, g.size[0] - 1);
+          mark(dj, j, g.size[1] - 1);
+          mark(dk, k, g.size[2] - 1);
         }
       }
     }
