@@ -1,41 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/fem/patch.hpp"
 
+#include "blas_threads.hpp"
 #include "discretisation.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+
+extern "C" {
+void dposv_(const char* uplo, const int* n, const int* nrhs, double* a, const int* lda, double* b, const int* ldb,
+            int* info);
+}
 
 namespace stylet {
 
-PatchStiffness patch_stiffness(const Tissue& tissue, std::span<const Index> tets, const Material& material) {
-  PatchStiffness patch;
-  for (const Index t : tets) {
-    const auto nodes = tissue.nodes_of(t);
-    patch.nodes.insert(patch.nodes.end(), nodes.begin(), nodes.end());
+Patch make_patch(const Tissue& tissue, std::span<const Index> tets, std::span<const Index> nodes,
+                 const std::vector<char>& moves, const Material& material) {
+  Patch patch;
+  std::vector<Eigen::Index> row(nodes.size());  // in K, of a node in the given order
+  for (const bool moving : {true, false}) {
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if ((moves[k] != 0) != moving) continue;
+      row[k] = 3 * static_cast<Eigen::Index>(patch.nodes.size());
+      patch.nodes.push_back(nodes[k]);
+      if (moving) ++patch.moving;
+    }
   }
-  std::sort(patch.nodes.begin(), patch.nodes.end());
-  patch.nodes.erase(std::unique(patch.nodes.begin(), patch.nodes.end()), patch.nodes.end());
-  const auto row_of = [&](Index node) {
-    return 3 * (std::lower_bound(patch.nodes.begin(), patch.nodes.end(), node) - patch.nodes.begin());
-  };
-
-  const auto size = 3 * static_cast<Eigen::Index>(patch.nodes.size());
-  patch.K = MatX::Zero(size, size);
+  const Eigen::Index inside = 3 * Eigen::Index{patch.moving};
+  patch.K = MatX::Zero(inside, 3 * static_cast<Eigen::Index>(nodes.size()));
   std::vector<Eigen::Index> rows;
   tissue.discretisation().stiffness(
       tets, [&](Index /*tet*/) { return material; },
-      [&](std::span<const Index> nodes, const MatX& part) {
-        rows.resize(nodes.size());
-        std::transform(nodes.begin(), nodes.end(), rows.begin(), row_of);
-        for (std::size_t a = 0; a < nodes.size(); ++a) {
+      [&](std::span<const Index> of_part, const MatX& part) {
+        rows.resize(of_part.size());
+        std::transform(of_part.begin(), of_part.end(), rows.begin(), [&](Index node) {
+          return row[static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin())];
+        });
+        for (std::size_t a = 0; a < rows.size(); ++a) {
           for (std::size_t b = 0; b <= a; ++b) {
-            const Mat3 block = part.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
-            patch.K.block<3, 3>(rows[a], rows[b]) += block;
-            if (b < a) patch.K.block<3, 3>(rows[b], rows[a]) += block.transpose();
+            // Of two nodes that move once, below the diagonal; of one that moves, in its row.
+            const auto block = part.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
+            if (rows[a] < inside && (rows[b] >= inside || rows[b] <= rows[a])) {
+              patch.K.block<3, 3>(rows[a], rows[b]) += block;
+            } else if (rows[b] < inside) {
+              patch.K.block<3, 3>(rows[b], rows[a]) += block.transpose();
+            }
           }
         }
       });
+  for (Eigen::Index column = 0; column < inside; ++column) {
+    for (Eigen::Index i = 0; i < column; ++i) patch.K(i, column) = patch.K(column, i);
+  }
   return patch;
+}
+
+MatX Patch::displacements(const MatX& given, MatX forces) const {
+  const Eigen::Index inside = 3 * Eigen::Index{moving};
+  if (inside == 0) return forces;
+  forces.noalias() -= K.rightCols(K.cols() - inside) * given;
+  MatX factor = K.leftCols(inside);
+  const auto n = static_cast<int>(inside);
+  const auto loads = static_cast<int>(forces.cols());
+  int info = 0;
+  const detail::OneBlasThread one_thread;
+  dposv_("L", &n, &loads, factor.data(), &n, forces.data(), &n, &info);
+  if (info != 0) throw std::logic_error("the stiffness of a patch is not positive definite");
+  return forces;
 }
 
 }  // namespace stylet

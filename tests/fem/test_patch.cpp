@@ -5,6 +5,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <set>
+
 namespace stylet {
 namespace {
 
@@ -16,14 +19,26 @@ Tissue body(const Material& material, Element element) {
   return test::build(std::move(mesh), {material}, fixed, element);
 }
 
-using PatchStiffnesses = test::ElementTest;
-STYLET_FOR_EVERY_ELEMENT(PatchStiffnesses);
+std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& tets) {
+  std::set<Index> nodes;
+  for (const Index t : tets) nodes.insert(tissue.nodes_of(t).begin(), tissue.nodes_of(t).end());
+  return {nodes.begin(), nodes.end()};
+}
 
-TEST_P(PatchStiffnesses, OfAllElementsIsTheTissuesStiffness) {
+/// The patch that is held nowhere.
+Patch loose(const Tissue& tissue, const std::vector<Index>& tets, const Material& material) {
+  const std::vector<Index> nodes = nodes_of(tissue, tets);
+  return make_patch(tissue, tets, nodes, std::vector<char>(nodes.size(), 1), material);
+}
+
+using Patches = test::ElementTest;
+STYLET_FOR_EVERY_ELEMENT(Patches);
+
+TEST_P(Patches, OfAllElementsHaveTheTissuesStiffness) {
   const Tissue tissue = body(kSoftTissue, GetParam());
   std::vector<Index> all;
   for (Index t = 0; t < tissue.mesh().tet_count(); ++t) all.push_back(t);
-  const PatchStiffness patch = patch_stiffness(tissue, all, kSoftTissue);
+  const Patch patch = loose(tissue, all, kSoftTissue);
   ASSERT_EQ(patch.nodes.size(), static_cast<std::size_t>(tissue.displacement_nodes()));
   const MatX K = tissue.stiffness();
   for (Index a = 0; a < tissue.displacement_nodes(); ++a) {
@@ -35,10 +50,10 @@ TEST_P(PatchStiffnesses, OfAllElementsIsTheTissuesStiffness) {
   }
 }
 
-TEST_P(PatchStiffnesses, HasNoKernelButTheSixRigidMotionsAndTakesItsOwnMaterial) {
+TEST_P(Patches, HaveNoKernelButTheSixRigidMotionsAndTheirOwnMaterial) {
   const Tissue tissue = body({1.0, 0.1}, GetParam());
   const std::vector<Index> tets{42, 36, 37, 38, 39, 40, 41, 43, 44, 45, 46, 47};  // two neighbouring cells
-  const PatchStiffness patch = patch_stiffness(tissue, tets, kSoftTissue);
+  const Patch patch = loose(tissue, tets, kSoftTissue);
   EXPECT_EQ((patch.K - patch.K.transpose()).norm(), 0.0);
   EXPECT_TRUE(std::is_sorted(patch.nodes.begin(), patch.nodes.end()));
   const auto p = static_cast<Eigen::Index>(patch.nodes.size());
@@ -54,8 +69,63 @@ TEST_P(PatchStiffnesses, HasNoKernelButTheSixRigidMotionsAndTakesItsOwnMaterial)
   EXPECT_LT(std::abs(values[5]), 1e-12 * values[values.size() - 1]);
   EXPECT_GT(values[6], 1e-4 * values[values.size() - 1]);
 
-  const PatchStiffness stiffer = patch_stiffness(tissue, tets, {2 * kSoftTissue.young_MPa, kSoftTissue.poisson});
+  const Patch stiffer = loose(tissue, tets, {2 * kSoftTissue.young_MPa, kSoftTissue.poisson});
   EXPECT_LT((stiffer.K - 2 * patch.K).norm(), 1e-12 * stiffer.K.norm());
+}
+
+TEST_P(Patches, HaveTheRowsOfTheNodesThatMoveWithTheOthersBehind) {
+  const Tissue tissue = body(kSoftTissue, GetParam());
+  const std::vector<Index> tets{42, 36, 37, 38, 39, 40, 41, 43, 44, 45, 46, 47};
+  const std::vector<Index> nodes = nodes_of(tissue, tets);
+  std::vector<char> moves(nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) moves[k] = k % 3 != 1 ? 1 : 0;
+  const Patch whole = loose(tissue, tets, kSoftTissue);
+  const Patch patch = make_patch(tissue, tets, nodes, moves, kSoftTissue);
+  ASSERT_EQ(patch.nodes.size(), nodes.size());
+  ASSERT_EQ(patch.moving, std::count(moves.begin(), moves.end(), 1));
+  ASSERT_EQ(patch.K.rows(), 3 * patch.moving);
+  const auto place = [&](Index node) {
+    return 3 * (std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
+  for (Index a = 0; a < patch.moving; ++a) {
+    EXPECT_EQ(moves[static_cast<std::size_t>(place(patch.nodes[static_cast<std::size_t>(a)]) / 3)], 1);
+    for (std::size_t b = 0; b < nodes.size(); ++b) {
+      const Mat3 expected = whole.K.block<3, 3>(place(patch.nodes[static_cast<std::size_t>(a)]), place(patch.nodes[b]));
+      const Mat3 block = patch.K.block<3, 3>(3 * a, 3 * static_cast<Eigen::Index>(b));
+      EXPECT_LT((block - expected).norm(), 1e-14 * whole.K.norm()) << a << ' ' << b;
+    }
+  }
+}
+
+TEST_P(Patches, CarryALinearFieldOnFromTheNodesWhoseDisplacementIsGivenAndBalanceForces) {
+  const Tissue tissue = body(kSoftTissue, GetParam());
+  std::vector<Index> all;
+  for (Index t = 0; t < tissue.mesh().tet_count(); ++t) all.push_back(t);
+  const std::vector<Index> nodes = nodes_of(tissue, all);
+  std::vector<char> moves(nodes.size());
+  const Vec3 lo(-20, 10, 30);
+  const Vec3 hi(20, 50, 90);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Vec3 x = tissue.node_position(nodes[k]);
+    moves[k] = (x - lo).minCoeff() > 1e-9 && (hi - x).minCoeff() > 1e-9 ? 1 : 0;
+  }
+  const Patch patch = make_patch(tissue, all, nodes, moves, kSoftTissue);
+  ASSERT_GT(patch.moving, 0);
+  Mat3 gradient;
+  gradient << 0.02, -0.01, 0.03, 0.01, -0.03, 0.0, 0.02, 0.04, 0.01;
+  VecX field(3 * static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    field.segment<3>(3 * static_cast<Eigen::Index>(k)) = gradient * tissue.node_position(patch.nodes[k]);
+  const Eigen::Index inside = 3 * Eigen::Index{patch.moving};
+  const VecX given = field.tail(field.size() - inside);
+  const VecX carried = patch.displacements(given, VecX::Zero(inside));
+  EXPECT_LT((carried - field.head(inside)).norm(), 1e-10 * field.norm());
+
+  const VecX forces = VecX::LinSpaced(inside, -1.0, 2.0);
+  const VecX pushed = patch.displacements(given, forces);
+  VecX together(field.size());
+  together << pushed, given;
+  EXPECT_LT((patch.K * together - forces).norm(), 1e-10 * forces.norm());
 }
 
 }  // namespace

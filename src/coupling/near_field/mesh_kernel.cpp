@@ -5,11 +5,9 @@
 #include "stylet/coupling/near_field/half_space.hpp"
 #include "stylet/fem/patch.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <utility>
 
 namespace stylet {
 
@@ -69,36 +67,42 @@ Medium MeshKernel::medium(int number) const {
   return {material.mu(), material.poisson};
 }
 
-MeshKernel::Patch MeshKernel::patch_of(Index node) const {
+MeshKernel::Rings MeshKernel::rings_around(Index node) const {
   const Tissue& tissue = *tissue_;
+  const int count = tissue.nodes_of(0).size() == 4 ? kRings : kRingsOfQuadratic;
+  std::vector<char> has_tet(static_cast<std::size_t>(tissue.mesh().tet_count()), 0);
+  std::vector<char> has_node(rows_.size(), 0);
   const auto around = [&](Index of) -> const std::vector<Index>& {
     return ground_->node_tets[static_cast<std::size_t>(of)];
   };
-  const int rings = tissue.nodes_of(0).size() == 4 ? kRings : kRingsOfQuadratic;
-  Patch patch;
-  patch.nodes = {node};
-  for (int ring = 0; ring < rings; ++ring) {
-    patch.tets.clear();
-    for (const Index at : patch.nodes) patch.tets.insert(patch.tets.end(), around(at).begin(), around(at).end());
-    sort_unique(patch.tets);
-    patch.nodes.clear();
-    for (const Index tet : patch.tets) {
-      const auto nodes = tissue.nodes_of(tet);
-      patch.nodes.insert(patch.nodes.end(), nodes.begin(), nodes.end());
+  Rings rings;
+  rings.nodes = {node};
+  has_node[static_cast<std::size_t>(node)] = 1;
+  std::size_t begin = 0;  // of the nodes that the last ring brought
+  for (int ring = 0; ring < count; ++ring) {
+    const std::size_t end = rings.nodes.size();
+    for (; begin < end; ++begin) {
+      for (const Index tet : around(rings.nodes[begin])) {
+        if (std::exchange(has_tet[static_cast<std::size_t>(tet)], char{1}) != 0) continue;
+        rings.tets.push_back(tet);
+        for (const Index at : tissue.nodes_of(tet)) {
+          if (std::exchange(has_node[static_cast<std::size_t>(at)], char{1}) == 0) rings.nodes.push_back(at);
+        }
+      }
     }
-    sort_unique(patch.nodes);
   }
+  std::sort(rings.tets.begin(), rings.tets.end());
+  std::sort(rings.nodes.begin(), rings.nodes.end());
   // Nodes with all their elements in the patch move; the others, and held ones, follow the kernel.
-  for (const Index at : patch.nodes) {
-    const bool inside = std::all_of(around(at).begin(), around(at).end(), [&](Index tet) {
-      return std::binary_search(patch.tets.begin(), patch.tets.end(), tet);
-    });
-    patch.moves.push_back(inside && !tissue.is_fixed(at));
+  for (const Index at : rings.nodes) {
+    const bool inside = std::all_of(around(at).begin(), around(at).end(),
+                                    [&](Index tet) { return has_tet[static_cast<std::size_t>(tet)] != 0; });
+    rings.moves.push_back(inside && !tissue.is_fixed(at));
   }
-  return patch;
+  return rings;
 }
 
-MeshKernel::Row MeshKernel::unsolved_row(Index node, const Patch& patch) const {
+MeshKernel::Row MeshKernel::unsolved_row(Index node, const Rings& rings) const {
   const Tissue& tissue = *tissue_;
   const Vec3 x = tissue.node_position(node);
   Row row;
@@ -113,55 +117,58 @@ MeshKernel::Row MeshKernel::unsolved_row(Index node, const Patch& patch) const {
     }
   }
   row.edge = length / edges;
-  row.skin = ground_->skin.nearest(x);
+  row.skin = nearest_skin(node);
   row.skin.share = fading(row.skin.depth / row.edge);
-  for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
-    if (patch.moves[k]) row.near.push_back(patch.nodes[k]);
+  row.blocks.resize(ground_->poisson.size());
+  if (tissue.is_fixed(node)) return row;  // nothing to solve for: the kernel will do
+  for (std::size_t k = 0; k < rings.nodes.size(); ++k) {
+    if (rings.moves[k] != 0) row.near.push_back(rings.nodes[k]);
   }
-  if (tissue.is_fixed(node)) row.near.clear();  // nothing to solve for: the kernel will do
-  row.blocks.assign(ground_->poisson.size(), std::vector<Mat3>(row.near.size(), Mat3::Zero()));
+  for (const Index tet : rings.tets) {
+    auto& blocks =
+        row.blocks[static_cast<std::size_t>(medium_of(tissue.mesh().tet_region[static_cast<std::size_t>(tet)]))];
+    if (blocks.empty()) blocks.assign(row.near.size(), Mat3::Zero());
+  }
   return row;
 }
 
-void MeshKernel::solve(Row& row, const Patch& patch) const {
+void MeshKernel::solve(Row& row, const Rings& rings, const SkinAt& skin_at) const {
   const Tissue& tissue = *tissue_;
-  if (tissue.is_fixed(row.node)) return;
   const Vec3 x = tissue.node_position(row.node);
-  std::vector<Eigen::Index> moving;
-  std::vector<Eigen::Index> rim;
-  for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
-    for (int axis = 0; axis < 3; ++axis)
-      (patch.moves[k] ? moving : rim).push_back(3 * static_cast<Eigen::Index>(k) + axis);
-  }
-  const auto rim_node = [&](std::size_t k) { return patch.nodes[static_cast<std::size_t>(rim[k] / 3)]; };
+  std::vector<Index> rim;
   std::vector<NearSurface> at_rim;
-  for (std::size_t k = 0; k < rim.size(); k += 3) {
-    at_rim.push_back(ground_->skin.nearest(tissue.node_position(rim_node(k))));
+  for (std::size_t k = 0; k < rings.nodes.size(); ++k) {
+    if (rings.moves[k] != 0) continue;
+    rim.push_back(rings.nodes[k]);
+    at_rim.push_back(skin_at(rings.nodes[k]));
     at_rim.back().share = row.skin.share;  // all around one source alike
   }
-  for (int m = 0; m < static_cast<int>(ground_->poisson.size()); ++m) {
-    const PatchStiffness stiffness =
-        patch_stiffness(tissue, patch.tets, {kUnit_MPa, ground_->poisson[static_cast<std::size_t>(m)]});
-    MatX prescribed(static_cast<Eigen::Index>(rim.size()), 3);
-    for (std::size_t k = 0; k < rim.size(); k += 3) {
-      const Vec3 r = tissue.node_position(rim_node(k)) - x;
-      prescribed.middleRows<3>(static_cast<Eigen::Index>(k)) =
-          kelvinlet(r, kPoint_mm, medium(m)) + surface_image(r, at_rim[k / 3], row.skin, kPoint_mm, medium(m));
+  for (int m = 0; m < media(); ++m) {
+    auto& blocks = row.blocks[static_cast<std::size_t>(m)];
+    if (blocks.empty()) continue;
+    MatX on_rim(3 * static_cast<Eigen::Index>(rim.size()), 3);
+    for (std::size_t k = 0; k < rim.size(); ++k) {
+      const Vec3 r = tissue.node_position(rim[k]) - x;
+      on_rim.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
+          kelvinlet(r, kPoint_mm, medium(m)) + surface_image(r, at_rim[k], row.skin, kPoint_mm, medium(m));
     }
-    MatX f = -stiffness.K(moving, rim) * prescribed;
-    const auto own = std::lower_bound(patch.nodes.begin(), patch.nodes.end(), row.node) - patch.nodes.begin();
-    const auto load = std::find(moving.begin(), moving.end(), 3 * own) - moving.begin();
-    f.middleRows<3>(load) += Mat3::Identity();
-    const MatX u = stiffness.K(moving, moving).eval().llt().solve(f);
-    for (std::size_t k = 0; k < row.near.size(); ++k)  // moving nodes, in this order
-      row.blocks[static_cast<std::size_t>(m)][k] = u.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+    MatX force = MatX::Zero(3 * static_cast<Eigen::Index>(row.near.size()), 3);
+    force.middleRows<3>(3 * place_of(row.node, row)).setIdentity();
+    const Patch patch = make_patch(tissue, rings.tets, rings.nodes, rings.moves,
+                                   {kUnit_MPa, ground_->poisson[static_cast<std::size_t>(m)]});
+    const MatX u = patch.displacements(on_rim, std::move(force));
+    for (std::size_t k = 0; k < blocks.size(); ++k) blocks[k] = u.middleRows<3>(3 * static_cast<Eigen::Index>(k));
   }
 }
 
-const Mat3* MeshKernel::find(const Row& row, Index node, int medium) const {
+std::ptrdiff_t MeshKernel::place_of(Index node, const Row& row) {
   const auto found = std::lower_bound(row.near.begin(), row.near.end(), node);
-  if (found == row.near.end() || *found != node) return nullptr;
-  return &row.blocks[static_cast<std::size_t>(medium)][static_cast<std::size_t>(found - row.near.begin())];
+  return found != row.near.end() && *found == node ? found - row.near.begin() : -1;
+}
+
+const Mat3* MeshKernel::find(const Row& row, Index node, int medium) {
+  const std::ptrdiff_t place = place_of(node, row);
+  return place < 0 ? nullptr : &row.blocks[static_cast<std::size_t>(medium)][static_cast<std::size_t>(place)];
 }
 
 std::vector<Index> MeshKernel::missing(std::span<const Index> nodes) const {
@@ -174,23 +181,43 @@ std::vector<Index> MeshKernel::missing(std::span<const Index> nodes) const {
 }
 
 std::shared_ptr<const MeshKernel::Row> MeshKernel::make_row(Index node) const {
-  const Patch patch = patch_of(node);
-  auto row = std::make_shared<Row>(unsolved_row(node, patch));
-  solve(*row, patch);
+  const Rings rings = rings_around(node);
+  auto row = std::make_shared<Row>(unsolved_row(node, rings));
+  solve(*row, rings, [&](Index at) { return nearest_skin(at); });
   return row;
 }
 
 void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progress) {
   const std::vector<Index> wanted = missing(nodes);
-  std::vector<std::shared_ptr<const Row>> fresh(wanted.size());  // taken only when all are done: progress may throw
+  std::vector<Rings> rings(wanted.size());
+  std::vector<std::shared_ptr<Row>> fresh(wanted.size());  // taken only when all are done: progress may throw
   constexpr std::size_t together = 16;
-  for_each_in_parallel((wanted.size() + together - 1) / together,
-                       [&](std::size_t piece) {
-                         const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
-                         for (std::size_t k = piece * together; k < end; ++k) fresh[k] = make_row(wanted[k]);
-                       },
-                       progress, "near field");
-  for (std::size_t k = 0; k < wanted.size(); ++k) exchange(wanted[k], fresh[k]);
+  const std::size_t pieces = (wanted.size() + together - 1) / together;
+  const auto each_of_piece = [&](std::size_t piece, const auto& work) {
+    const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
+    for (std::size_t k = piece * together; k < end; ++k) work(k);
+  };
+  for_each_in_parallel(pieces, [&](std::size_t piece) {
+    each_of_piece(piece, [&](std::size_t k) {
+      rings[k] = rings_around(wanted[k]);
+      fresh[k] = std::make_shared<Row>(unsolved_row(wanted[k], rings[k]));
+    });
+  });
+  // Patches overlap: the surface near a node is looked for once.
+  std::vector<NearSurface> skin(rows_.size());
+  std::vector<Index> seen;
+  for (const Rings& patch : rings) seen.insert(seen.end(), patch.nodes.begin(), patch.nodes.end());
+  sort_unique(seen);
+  for (const Index node : seen) skin[static_cast<std::size_t>(node)] = nearest_skin(node);
+  for_each_in_parallel(
+      pieces,
+      [&](std::size_t piece) {
+        each_of_piece(piece, [&](std::size_t k) {
+          solve(*fresh[k], rings[k], [&](Index node) { return skin[static_cast<std::size_t>(node)]; });
+        });
+      },
+      progress, "near field");
+  for (std::size_t k = 0; k < wanted.size(); ++k) rows_[static_cast<std::size_t>(wanted[k])] = std::move(fresh[k]);
   added_.insert(added_.end(), wanted.begin(), wanted.end());
 }
 
@@ -211,12 +238,12 @@ bool MeshKernel::add_nodes(std::span<const Index> nodes, std::span<const double>
   for_each_in_parallel((wanted.size() + together - 1) / together, [&](std::size_t piece) {
     const std::size_t end = std::min(wanted.size(), (piece + 1) * together);
     for (std::size_t k = piece * together; k < end; ++k)
-      rows[k] = std::make_shared<Row>(unsolved_row(wanted[k], patch_of(wanted[k])));
+      rows[k] = std::make_shared<Row>(unsolved_row(wanted[k], rings_around(wanted[k])));
   });
   std::size_t at = 0;
   for (const auto& row : rows) {
-    if (numbers.size() - at < 9 * media() * row->near.size()) return false;
     for (auto& blocks : row->blocks) {
+      if (numbers.size() - at < 9 * blocks.size()) return false;
       for (Mat3& block : blocks) {
         block = Eigen::Map<const Mat3>(numbers.data() + at);
         at += 9;
@@ -246,7 +273,9 @@ MeshKernel::Blur MeshKernel::blur() const {
   for (const Index node : added_) {
     const Row& own = row(node);
     if (own.near.empty() || own.skin.share > 0.0) continue;  // held, or not the medium's alone
-    radii.push_back(3.0 * kelvinlet_self(medium(0)) / find(own, node, 0)->trace());
+    int of = 0;
+    while (own.blocks[static_cast<std::size_t>(of)].empty()) ++of;
+    radii.push_back(3.0 * kelvinlet_self(medium(of)) / find(own, node, of)->trace());
   }
   if (radii.empty()) return {};
   std::sort(radii.begin(), radii.end());

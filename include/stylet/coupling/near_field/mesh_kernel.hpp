@@ -6,6 +6,7 @@
 #include "stylet/fem/tissue.hpp"
 #include "stylet/geom/topology.hpp"
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -32,7 +33,7 @@ class MeshKernel {
     double edge = 0.0;
     NearSurface skin;
     std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
-    std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa
+    std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa; none of a medium not in the patch
   };
 
   /// @param tissue its mesh
@@ -58,11 +59,11 @@ class MeshKernel {
   [[nodiscard]] bool has(Index node) const { return rows_[static_cast<std::size_t>(node)] != nullptr; }
 
   /// g(p,q) for E = 1 MPa [mm/N]: displacement of p per force on q. Both must be there.
-  /// @param medium number of the medium, medium_of()
+  /// @param medium number of the medium, medium_of() of an element that has p or q
   [[nodiscard]] Mat3 operator()(Index p, Index q, int medium) const;
 
   /// Whether two nodes are so near each other through the material that one's patch has the other inside.
-  [[nodiscard]] bool neighbours(Index p, Index q) const { return find(row(q), p, 0) != nullptr; }
+  [[nodiscard]] bool neighbours(Index p, Index q) const { return place_of(p, row(q)) >= 0; }
 
   /// Media differ by their Poisson ratio; E only scales.
   [[nodiscard]] int medium_of(int region) const { return ground_->region_medium[static_cast<std::size_t>(region)]; }
@@ -93,17 +94,24 @@ class MeshKernel {
     std::vector<int> region_medium;             ///< (regions)
     std::vector<std::vector<Index>> node_tets;  ///< (n) elements around a displacement node
   };
-  struct Patch {
+  /// The elements of a patch and their nodes.
+  struct Rings {
     std::vector<Index> tets;   ///< ascending
     std::vector<Index> nodes;  ///< of the elements, ascending
     std::vector<char> moves;   ///< (nodes) neither held nor on the rim
   };
+  using SkinAt = std::function<NearSurface(Index node)>;
   [[nodiscard]] std::vector<Index> missing(std::span<const Index> nodes) const;
-  [[nodiscard]] Patch patch_of(Index node) const;
-  [[nodiscard]] Row unsolved_row(Index node, const Patch& patch) const;
-  void solve(Row& row, const Patch& patch) const;
+  [[nodiscard]] Rings rings_around(Index node) const;
+  [[nodiscard]] Row unsolved_row(Index node, const Rings& rings) const;
+  void solve(Row& row, const Rings& rings, const SkinAt& skin_at) const;
+  [[nodiscard]] NearSurface nearest_skin(Index node) const {
+    return ground_->skin.nearest(tissue_->node_position(node));
+  }
   [[nodiscard]] const Row& row(Index node) const { return *rows_[static_cast<std::size_t>(node)]; }
-  [[nodiscard]] const Mat3* find(const Row& row, Index node, int medium) const;
+  /// Number of a node among those near a row's node, or −1.
+  [[nodiscard]] static std::ptrdiff_t place_of(Index node, const Row& row);
+  [[nodiscard]] static const Mat3* find(const Row& row, Index node, int medium);
 
   std::shared_ptr<const Tissue> tissue_;
   std::shared_ptr<const Ground> ground_;
