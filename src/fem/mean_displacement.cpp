@@ -2,6 +2,7 @@
 #include "stylet/fem/mean_displacement.hpp"
 
 #include "discretisation.hpp"
+#include "quadratic_solve.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +13,8 @@ namespace {
 
 /// Mean of every node's shape function over the volume, in each direction by itself (3n × 3): exact up to quadratic
 /// elements.
-MatX uniform_load(const Tissue& tissue, std::span<const int> regions) {
-  const TetMesh& mesh = tissue.mesh();
-  MatX load = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, 3);
+MatX uniform_load(const detail::Discretisation& discretisation, const TetMesh& mesh, std::span<const int> regions) {
+  MatX load = MatX::Zero(3 * Eigen::Index{discretisation.nodes()}, 3);
   double volume = 0.0;
   const double inner = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;  // four points, exact for quadratic functions
   const double outer = (5.0 - std::sqrt(5.0)) / 20.0;
@@ -26,7 +26,7 @@ MatX uniform_load(const Tissue& tissue, std::span<const int> regions) {
     for (int point = 0; point < 4; ++point) {
       Vec4 weights = Vec4::Constant(outer);
       weights[point] = inner;
-      const Shape shape = tissue.shape(t, weights);
+      const Shape shape = discretisation.shape(t, weights);
       for (int i = 0; i < shape.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         load.middleRows<3>(3 * Eigen::Index{shape.node[k]}) += 0.25 * v * shape.weight[k] * Mat3::Identity();
@@ -51,7 +51,7 @@ Result<MeanDisplacement> MeanDisplacement::solve(const Tissue& tissue, std::span
   const TetMesh& mesh = tissue.mesh();
   if (accuracy == Accuracy::of_the_tissue) {
     MeanDisplacement mean(mesh, tissue.element(), nullptr);
-    mean.w_ = tissue.solve(uniform_load(tissue, regions));
+    mean.w_ = tissue.solve(uniform_load(*mean.discretisation_, mesh, regions));
     return mean;
   }
   std::vector<Index> fixed;
@@ -66,11 +66,12 @@ Result<MeanDisplacement> MeanDisplacement::solve(const Tissue& tissue, std::span
         fixed.push_back(mesh.node_count() + static_cast<Index>(k));
     }
   }
-  const auto finer =
-      Tissue::build(halved ? halved->mesh : mesh, tissue.materials(), std::move(fixed), progress, Element::p2);
-  if (!finer) return finer.error();
   MeanDisplacement mean(mesh, Element::p2, std::move(halved));
-  mean.w_ = finer->solve(uniform_load(*finer, regions));
+  const TetMesh& finer = mean.halved_ ? mean.halved_->mesh : mesh;
+  auto w = detail::solve_quadratic(*mean.discretisation_, finer, tissue.materials(), fixed,
+                                   uniform_load(*mean.discretisation_, finer, regions), progress);
+  if (!w) return w.error();
+  mean.w_ = std::move(*w);
   return mean;
 }
 

@@ -104,12 +104,33 @@ TEST(MeanDisplacement, comes_nearer_to_that_of_a_fine_mesh_with_quadratic_elemen
   EXPECT_LT(halved, 0.5 * quadratic);
 }
 
+// The iteration on quadratic elements against their factor.
+TEST(MeanDisplacement, on_quadratic_elements_is_that_of_their_factor) {
+  const TetMesh mesh = sliced_bar({3, 3, 6});
+  for (const double poisson : {0.0, 0.45, 0.49, 0.4999}) {
+    const Tissue linear = bar(mesh, 0.01, poisson, Element::p1);
+    const Tissue quadratic = bar(mesh, 0.01, poisson, Element::p2);
+    const auto iterated = MeanDisplacement::solve(linear, kSlice, Accuracy::quadratic);
+    const auto factorised = MeanDisplacement::solve(quadratic, kSlice, Accuracy::of_the_tissue);
+    ASSERT_TRUE(iterated) << iterated.error().message();
+    ASSERT_TRUE(factorised) << factorised.error().message();
+    for (Index tet = 0; tet < mesh.tet_count(); tet += 7) {
+      const MaterialPoint at{tet, Vec4(0.1, 0.2, 0.3, 0.4)};
+      const Mat3 expected = factorised->per_force(at);
+      EXPECT_LT((iterated->per_force(at) - expected).norm(), 1e-7 * expected.norm()) << poisson << ", element " << tet;
+    }
+  }
+}
+
 TEST(MeanDisplacement, of_nothing_is_nothing) {
   const TetMesh mesh = sliced_bar({2, 2, 4});
   const Tissue tissue = bar(mesh, 0.01, 0.3, Element::p1);
   const auto mean = MeanDisplacement::solve(tissue, {}, Accuracy::of_the_tissue);
   ASSERT_TRUE(mean) << mean.error().message();
   EXPECT_TRUE(mean->per_force({0, Vec4::Constant(0.25)}).isZero(0.0));
+  const auto finer = MeanDisplacement::solve(tissue, {}, Accuracy::quadratic);
+  ASSERT_TRUE(finer) << finer.error().message();
+  EXPECT_TRUE(finer->per_force({0, Vec4::Constant(0.25)}).isZero(0.0));
 }
 
 }  // namespace

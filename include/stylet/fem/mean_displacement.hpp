@@ -26,7 +26,7 @@ class MeanDisplacement {
     quadratic_halved,  ///< quadratic elements on its mesh with every edge halved
   };
 
-  /// Factorises the tissue anew but for Accuracy::of_the_tissue.
+  /// Takes seconds but for Accuracy::of_the_tissue, which has its factor already.
   /// @param tissue its mesh outlives this
   /// @param regions whose elements make the volume; the mean is zero where there are none
   static Result<MeanDisplacement> solve(const Tissue& tissue, std::span<const int> regions, Accuracy accuracy,
