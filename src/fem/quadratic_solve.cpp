@@ -13,9 +13,9 @@
 namespace stylet::detail {
 namespace {
 
-/// Of the residual against the load. The solution's own error is some hundred times smaller.
+/// Largest residual, as a share of the load.
 constexpr double kTolerance = 1e-8;
-/// More iterations than these take longer than a factor. At ν = 0.45 it takes about 80, at 0.49 about 150.
+/// Iterations after which the factor of K is made instead.
 constexpr int kMostIterations = 1000;
 
 /// Three loads side by side: each has an iteration of its own, with one pass over K for all.
