@@ -36,6 +36,11 @@ class Serve(InFolder):
         self.said = json.loads(text)
         return server, self.said["url"]
 
+    def end(self, server):
+        """Asks the server to end and waits until it has. Whatever it wrote lies still from now on."""
+        server.terminate()
+        self.assertEqual(server.wait(PATIENCE_S), 0)
+
     def address(self, path):
         """Of a path of the server, with its token."""
         at = urlsplit(self.said["url"])
@@ -58,6 +63,14 @@ class Serve(InFolder):
 
     def recordings(self):
         return sorted((self.folder / "out" / "live").glob("*/run.h5"))
+
+    def push(self, viewer, depth_mm, speed_mm_per_s, steps):
+        """Has the viewer's hand push until the recording holds more than so many steps. The hand says what it wants again and again,
+        as a page does: the server forgets what it hears before the needle is there, which is later than the recording is."""
+        def pushed():
+            viewer.hand(depth_mm, speed_mm_per_s)
+            return self.steps() > steps
+        self.until(pushed)
 
     def steps(self):
         """Number of steps that are in the recording now."""

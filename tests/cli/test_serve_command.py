@@ -34,8 +34,7 @@ class ServeCommand(Serve):
     def test_a_killed_server_leaves_a_recording_that_repeats(self):
         server, _ = self.start("case.toml", *SMALL)
         self.until(self.recordings)
-        self.viewer().hand(40.0, 20.0)
-        self.until(lambda: self.steps() > 1000)
+        self.push(self.viewer(), 40.0, 20.0, steps=1000)
         server.kill()
         server.wait(PATIENCE_S)
         recording = str(self.recordings()[-1])
@@ -47,8 +46,7 @@ class ServeCommand(Serve):
         server, _ = self.start("case.toml", *SMALL)
         self.until(self.recordings)
         viewer = self.viewer()
-        viewer.hand(20.0, 100.0)
-        self.until(lambda: self.steps() > 100)
+        self.push(viewer, 20.0, 100.0, steps=100)
         recording = self.recordings()[0]
 
         def rests():
@@ -59,8 +57,7 @@ class ServeCommand(Serve):
         time.sleep(3)
         viewer.hand(10.0, 100.0)
         time.sleep(1)
-        server.terminate()
-        self.assertEqual(server.wait(PATIENCE_S), 0)
+        self.end(server)
         told = self.json_of("info", str(recording))
         self.assertGreater(told["duration_s"], 4)
         self.assertGreater(told["steps_at_rest"], 1000)
@@ -76,8 +73,7 @@ class ServeCommand(Serve):
         server, _ = self.start("case.toml", *SMALL, "--keep", "0.0035")
         self.until(lambda: not (live / "2020-01-01-120000-old").exists())
         self.assertTrue((live / "kept" / "run.h5").exists())
-        server.terminate()
-        self.assertEqual(server.wait(PATIENCE_S), 0)
+        self.end(server)
         self.assertIn("2020-01-01-120000-old was removed", server.stderr.read())
         self.refuse("serve", "case.toml", "--keep", "-1", says=["--keep"])
 
@@ -96,8 +92,7 @@ class ServeCommand(Serve):
         before = len(self.recordings())
         server, _ = self.start("case.toml", *SMALL, *arguments)
         self.until(lambda: len(self.recordings()) > before)
-        server.terminate()
-        self.assertEqual(server.wait(PATIENCE_S), 0)
+        self.end(server)
         return server
 
     def test_models_are_kept_for_the_next_time(self):
@@ -168,12 +163,14 @@ class ServeCommand(Serve):
     def test_a_token_of_ones_own_or_none(self):
         os.environ["STYLET_TOKEN"] = "from-the-environment"
         self.addCleanup(os.environ.pop, "STYLET_TOKEN")
-        self.assertTrue(self.start("case.toml", *SMALL)[1].endswith("/?token=from-the-environment"))
+        server, url = self.start("case.toml", *SMALL)
+        self.assertTrue(url.endswith("/?token=from-the-environment"))
+        self.end(server)
         os.environ["STYLET_TOKEN"] = ""
         server, url = self.start("case.toml", "--no-token", *SMALL)
         self.assertNotIn("token", url)
         LiveViewer(url).close()
-        server.terminate()
+        self.end(server)
         self.assertIn("Every user of this machine", server.stderr.read())
         self.refuse("serve", "case.toml", "--no-token", "--address", "0.0.0.0", says=["0.0.0.0", "move the needle"])
         self.refuse("serve", "case.toml", "--no-token", "--token", "mine", says=["--no-token"])
