@@ -522,7 +522,8 @@ TEST(Server, removes_old_recordings_but_not_the_one_it_replays) {
   client->command(R"({"do":"take"})");
   client->command(R"({"do":"replay","name":")" + first + "\"}");
   ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay"; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  // Longer than a second: a recording is named by the second it began in, and a name is free again once it is removed.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
   EXPECT_TRUE(std::filesystem::exists(serving.folder.path / first / "run.h5"));
   client->command(R"({"do":"live"})");
   ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && recording("name") == first; }))
