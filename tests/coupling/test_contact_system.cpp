@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The linear equations of an iteration, against the same equations written down whole.
-#include "coupling/contact_system.hpp"
+#include "coupling/balance/contact_system.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -16,9 +16,9 @@ enum class Springs { none, at_grips, everywhere };
 
 /// Contacts along a curved needle in a medium whose compliance falls off with distance.
 struct Equations {
-  explicit Equations(int contacts, Springs springs) : system(contacts) {
+  explicit Equations(int contacts, Springs springs) : rows(settings, contacts), system(rows, contacts) {
     const bool lend_springs = springs != Springs::none;
-    system.count = contacts;
+    system.needle.count = contacts;
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(contacts);
     for (int c = 0; c < contacts; ++c) {
       for (int d = 0; d < contacts; ++d) {
@@ -26,101 +26,103 @@ struct Equations {
         const double fall = 2.0 / (1.0 + r.norm());
         system.A.block<3, 3>(3 * c, 3 * d) = fall * (Mat3::Identity() + r * r.transpose() / (1.0 + r.squaredNorm()));
         const double lever = std::min(c + 1, d + 1);
-        system.N.block<3, 3>(3 * c, 3 * d) =
+        system.needle.N.block<3, 3>(3 * c, 3 * d) =
             0.05 * lever * lever * (3.0 * std::max(c + 1, d + 1) - lever) * Vec3(1.0, 1.0, 1e-3).asDiagonal();
       }
       const double angle = 0.02 * c;
-      system.frame[static_cast<std::size_t>(c)] = Eigen::AngleAxisd(angle, Vec3(0.6, 0.8, 0.0)).toRotationMatrix();
-      Yield& yield = system.yield[static_cast<std::size_t>(c)];
+      rows.frame[static_cast<std::size_t>(c)] = Eigen::AngleAxisd(angle, Vec3(0.6, 0.8, 0.0)).toRotationMatrix();
+      Yield& yield = rows.yield[static_cast<std::size_t>(c)];
       const double softness = c % 4 == 1 ? 0.1 : 0.0;
-      yield = {system.frame[static_cast<std::size_t>(c)].col(2), softness, c % 3 == 0 ? 4.0 : softness};
+      yield = {rows.frame[static_cast<std::size_t>(c)].col(2), softness, c % 3 == 0 ? 4.0 : softness};
       // Lent a while ago, so a little off the contact's direction of now.
       if (lend_springs && (c > 0 || contacts == 1) && c % 5 != 2)
-        system.spring[static_cast<std::size_t>(c)] = {(yield.along + Vec3(0.01, -0.02, 0.0)).normalized(), 0.4};
-      if (c == 0 && springs == Springs::everywhere) system.spring.front() = {Vec3::Zero(), 0.7};
+        system.needle.spring[static_cast<std::size_t>(c)] = {(yield.along + Vec3(0.01, -0.02, 0.0)).normalized(), 0.4};
+      if (c == 0 && springs == Springs::everywhere) system.needle.spring.front() = {Vec3::Zero(), 0.7};
       for (int k = 0; k < 3; ++k) {
         const Eigen::Index i = 3 * c + k;
-        system.now[i] = 0.1 * std::sin(1.0 + 2.0 * static_cast<double>(i));
-        system.gap[i] = 0.2 * std::cos(3.0 * static_cast<double>(i));
-        system.free[i] = 0.1 * std::sin(0.7 * static_cast<double>(i));
-        system.shift[i] = 0.05 * std::cos(static_cast<double>(i));
-        system.drift[i] = 0.1 * std::sin(0.3 + static_cast<double>(i));
+        rows.now[i] = 0.1 * std::sin(1.0 + 2.0 * static_cast<double>(i));
+        rows.gap[i] = 0.2 * std::cos(3.0 * static_cast<double>(i));
+        system.needle.free[i] = 0.1 * std::sin(0.7 * static_cast<double>(i));
+        rows.shift[i] = 0.05 * std::cos(static_cast<double>(i));
+        rows.tip.drift[i] = 0.1 * std::sin(0.3 + static_cast<double>(i));
       }
     }
-    system.supported = lend_springs;
-    rows = n;
+    system.needle.supported = lend_springs;
+    size = n;
   }
 
   /// What solve() is to find: λ in the frames and p, from all equations at once.
   [[nodiscard]] std::pair<VecX, VecX> whole(TipRows held) const {
-    MatX Q = MatX::Zero(rows, rows);
-    MatX D = MatX::Zero(rows, rows);
-    MatX G = MatX::Zero(rows, rows);
-    for (int c = 0; c < system.count; ++c) {
+    MatX Q = MatX::Zero(size, size);
+    MatX D = MatX::Zero(size, size);
+    MatX G = MatX::Zero(size, size);
+    for (int c = 0; c < system.needle.count; ++c) {
       const auto i = static_cast<std::size_t>(c);
-      Q.block<3, 3>(3 * c, 3 * c) = system.frame[i];
-      for (int k = 0; k < 3; ++k) D.col(3 * c + k).segment<3>(3 * c) = system.yield[i].of(Vec3::Unit(k));
-      G.block<3, 3>(3 * c, 3 * c) = system.spring[i].matrix();
+      Q.block<3, 3>(3 * c, 3 * c) = rows.frame[i];
+      for (int k = 0; k < 3; ++k) D.col(3 * c + k).segment<3>(3 * c) = rows.yield[i].of(Vec3::Unit(k));
+      G.block<3, 3>(3 * c, 3 * c) = system.needle.spring[i].matrix();
     }
-    const MatX A = system.A.topLeftCorner(rows, rows);
-    const MatX N = system.N.topLeftCorner(rows, rows);
-    const VecX now = system.now.head(rows);
+    const MatX A = system.A.topLeftCorner(size, size);
+    const MatX N = system.needle.N.topLeftCorner(size, size);
+    const VecX now = rows.now.head(size);
     // Unknown λ and p: λ − p − G (free − N (p − now)) = 0, and in the frames either the row or λ = 0.
-    MatX left = MatX::Zero(2 * rows, 2 * rows);
-    VecX right = VecX::Zero(2 * rows);
-    left.topLeftCorner(rows, rows).setIdentity();
-    left.topRightCorner(rows, rows) = -MatX::Identity(rows, rows) + G * N;
-    right.head(rows) = G * (system.free.head(rows) + N * now);
-    left.bottomLeftCorner(rows, rows) = Q.transpose() * (A + D);
-    left.bottomRightCorner(rows, rows) = Q.transpose() * N;
-    right.tail(rows) =
-        Q.transpose() * (A * now + N * now + system.free.head(rows) - system.gap.head(rows)) + system.shift.head(rows);
+    MatX left = MatX::Zero(2 * size, 2 * size);
+    VecX right = VecX::Zero(2 * size);
+    left.topLeftCorner(size, size).setIdentity();
+    left.topRightCorner(size, size) = -MatX::Identity(size, size) + G * N;
+    right.head(size) = G * (system.needle.free.head(size) + N * now);
+    left.bottomLeftCorner(size, size) = Q.transpose() * (A + D);
+    left.bottomRightCorner(size, size) = Q.transpose() * N;
+    right.tail(size) = Q.transpose() * (A * now + N * now + system.needle.free.head(size) - rows.gap.head(size)) +
+                       rows.shift.head(size);
     // As the cut goes on with the tip's axial force the gaps change.
-    const VecX drift = Q.transpose() * system.drift.head(rows);
-    const Vec3 t = system.frame[0].col(2);
-    left.bottomLeftCorner(rows, 3) += system.cut_per_N * drift * t.transpose();
-    right.tail(rows) -=
-        (system.cut_per_N > 0.0 ? system.cut_due - system.cut_per_N * t.dot(now.head<3>()) : 0.0) * drift;
+    const VecX drift = Q.transpose() * rows.tip.drift.head(size);
+    const Vec3 t = rows.frame[0].col(2);
+    left.bottomLeftCorner(size, 3) += rows.tip.cut_per_N * drift * t.transpose();
+    right.tail(size) -=
+        (rows.tip.cut_per_N > 0.0 ? rows.tip.cut_due - rows.tip.cut_per_N * t.dot(now.head<3>()) : 0.0) * drift;
     // The direction of a tip held along the needle only: t + w, w = ((r − r_now) of the tip − that behind it)/way.
-    const bool turns = held == TipRows::axial && system.behind > 0;
-    MatX w_of_p = MatX::Zero(3, rows);
+    const bool turns = held == TipRows::axial && rows.tip.behind > 0;
+    MatX w_of_p = MatX::Zero(3, size);
     Vec3 w = Vec3::Zero();
     if (turns) {
-      const Eigen::Index g = 3 * static_cast<Eigen::Index>(system.behind);
-      w_of_p = -(N.topRows<3>() - N.middleRows<3>(g)) / system.behind_mm;
-      w = (system.free.head<3>() - system.free.segment<3>(g)) / system.behind_mm - w_of_p * now;
+      const Eigen::Index g = 3 * static_cast<Eigen::Index>(rows.tip.behind);
+      w_of_p = -(N.topRows<3>() - N.middleRows<3>(g)) / rows.tip.behind_mm;
+      w = (system.needle.free.head<3>() - system.needle.free.segment<3>(g)) / rows.tip.behind_mm - w_of_p * now;
     }
     for (int k = 0; k < 3; ++k) {
       const bool is_held = held == TipRows::all || (held == TipRows::axial && k == 2);
       if (is_held) {  // how far it is aside now comes to be along t + w
-        const Vec3 aside = system.error(0)[0] * Q.block<3, 1>(0, 0) + system.error(0)[1] * Q.block<3, 1>(0, 1);
+        const Vec3 aside = rows.error(0)[0] * Q.block<3, 1>(0, 0) + rows.error(0)[1] * Q.block<3, 1>(0, 1);
         if (turns) {
-          left.row(rows + k).tail(rows) += aside.transpose() * w_of_p;
-          right[rows + k] -= aside.dot(w);
+          left.row(size + k).tail(size) += aside.transpose() * w_of_p;
+          right[size + k] -= aside.dot(w);
         }
         continue;
       }
       // n·λ = 0, n turning with t: n·λ = (n·w) (t·λ_now).
       const Vec3 across = Q.block<3, 1>(0, k);
       const double pressed = t.dot(now.head<3>());
-      left.row(rows + k).setZero();
-      left.row(rows + k).head<3>() = across.transpose();
-      left.row(rows + k).tail(rows) -= pressed * across.transpose() * w_of_p;
-      right[rows + k] = pressed * across.dot(w);
+      left.row(size + k).setZero();
+      left.row(size + k).head<3>() = across.transpose();
+      left.row(size + k).tail(size) -= pressed * across.transpose() * w_of_p;
+      right[size + k] = pressed * across.dot(w);
     }
     const VecX solution = left.partialPivLu().solve(right);
-    return {Q.transpose() * solution.head(rows), solution.tail(rows)};
+    return {Q.transpose() * solution.head(size), solution.tail(size)};
   }
 
   void expect_solved(TipRows held, const char* what) {
     ASSERT_TRUE(system.solve(held)) << what;
     const auto [lambda, push] = whole(held);
-    EXPECT_LT((system.lambda.head(rows) - lambda).norm(), 1e-9 * lambda.norm() + 1e-14) << what;
-    EXPECT_LT((system.push.head(rows) - push).norm(), 1e-9 * push.norm() + 1e-14) << what;
+    EXPECT_LT((system.lambda.head(size) - lambda).norm(), 1e-9 * lambda.norm() + 1e-14) << what;
+    EXPECT_LT((system.push.head(size) - push).norm(), 1e-9 * push.norm() + 1e-14) << what;
   }
 
+  CouplingSettings settings;
+  ContactRows rows;
   ContactSystem system;
-  Eigen::Index rows;
+  Eigen::Index size;
 };
 
 class ContactEquations : public testing::TestWithParam<Springs> {};
@@ -138,8 +140,8 @@ TEST_P(ContactEquations, are_solved_whatever_of_the_tip_is_held) {
 TEST_P(ContactEquations, are_solved_while_compliance_changes_with_the_cut) {
   for (const int contacts : {1, 2, 9, 31}) {
     Equations equations(contacts, GetParam());
-    equations.system.cut_per_N = 0.7;
-    equations.system.cut_due = 0.3;
+    equations.rows.tip.cut_per_N = 0.7;
+    equations.rows.tip.cut_due = 0.3;
     ASSERT_TRUE(equations.system.factorise());
     for (const TipRows held : {TipRows::all, TipRows::axial})
       equations.expect_solved(held, std::to_string(contacts).c_str());
@@ -151,11 +153,12 @@ TEST_P(ContactEquations, are_solved_while_the_tip_turns_with_the_needle) {
     for (const bool cuts : {false, true}) {
       Equations equations(contacts, GetParam());
       ContactSystem& system = equations.system;
-      system.now.head<3>() = 8.0 * system.frame[0].col(2);
-      system.behind = contacts - 1;
-      system.behind_mm = 3.0;
-      system.cut_per_N = cuts ? 0.7 : 0.0;
-      system.cut_due = cuts ? 0.3 : 0.0;
+      ContactRows& rows = equations.rows;
+      rows.now.head<3>() = 8.0 * rows.frame[0].col(2);
+      rows.tip.behind = contacts - 1;
+      rows.tip.behind_mm = 3.0;
+      rows.tip.cut_per_N = cuts ? 0.7 : 0.0;
+      rows.tip.cut_due = cuts ? 0.3 : 0.0;
       ASSERT_TRUE(system.factorise());
       for (const TipRows held : {TipRows::axial, TipRows::all, TipRows::none})
         equations.expect_solved(held, std::to_string(contacts).c_str());
@@ -167,19 +170,20 @@ TEST_P(ContactEquations, are_solved_with_a_tangent_that_was_prepared_when_there_
   for (const int fewer : {1, 2, 9}) {
     Equations equations(12, GetParam());
     ContactSystem& system = equations.system;
+    ContactRows& rows = equations.rows;
     ASSERT_TRUE(system.factorise());
     system.prepared.count = fewer;
-    system.prepared.N = 1.3 * system.N;
-    system.prepared.spring = system.spring;
+    system.prepared.N = 1.3 * system.needle.N;
+    system.prepared.spring = system.needle.spring;
     for (LentSpring& spring : system.prepared.spring) spring.stiffness *= 0.8;
     system.prepared.supported = GetParam() != Springs::none;
     system.fill_prepared();
     ASSERT_TRUE(system.factorise_prepared());
     equations.expect_solved(TipRows::all, "beside it, the one in use");
     system.take_prepared();
-    equations.rows = 3 * fewer;
+    equations.size = 3 * fewer;
     equations.expect_solved(TipRows::all, "the one that was prepared");
-    system.yield[static_cast<std::size_t>(fewer * 2 / 3)].axial = 5.0;
+    rows.yield[static_cast<std::size_t>(fewer * 2 / 3)].axial = 5.0;
     equations.expect_solved(TipRows::axial, "a contact slides");
   }
 }
@@ -188,7 +192,7 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_slide_or_hold_since_the_m
   Equations equations(20, GetParam());
   ASSERT_TRUE(equations.system.factorise());
   equations.system.add_tip();
-  auto& yield = equations.system.yield;
+  auto& yield = equations.rows.yield;
   yield[3].axial = 0.1;
   equations.expect_solved(TipRows::all, "one holds");
   yield[4].axial = 7.0;
@@ -211,10 +215,11 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_slide_or_hold_since_the_m
 TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_contacts_are_gone) {
   Equations equations(12, GetParam());
   ContactSystem& system = equations.system;
+  ContactRows& rows = equations.rows;
   ASSERT_TRUE(system.factorise());
   const Mat3 more = 0.3 * Mat3::Identity();
   if (GetParam() == Springs::none) {
-    system.yield[6].axial = 5.0;
+    rows.yield[6].axial = 5.0;
     ASSERT_TRUE(system.solve(TipRows::all));
   }
   const bool last_has_a_spring = GetParam() != Springs::none;
@@ -222,13 +227,13 @@ TEST_P(ContactEquations, are_solved_when_the_tip_has_moved_on_and_the_last_conta
   if (last_has_a_spring) {
     ASSERT_TRUE(system.factorise());
   }
-  equations.rows = 27;
+  equations.size = 27;
   system.A.topLeftCorner<3, 3>() += more;
   system.add_tip();
   equations.expect_solved(TipRows::all, "nine of twelve, a softer tip");
-  EXPECT_FALSE(system.keep_first(4)) << "rows of older ones stay";
+  EXPECT_FALSE(system.keep_first(4)) << "size of older ones stay";
   ASSERT_TRUE(system.factorise());
-  equations.rows = 12;
+  equations.size = 12;
   equations.expect_solved(TipRows::all, "four of twelve");
 }
 
@@ -236,22 +241,23 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matr
   for (const int before : {1, 2, 12}) {
     Equations equations(before + 3, GetParam());
     ContactSystem& system = equations.system;
-    for (int c = before; c < before + 3; ++c) system.spring[static_cast<std::size_t>(c)] = {};
-    system.count = before;
+    ContactRows& rows = equations.rows;
+    for (int c = before; c < before + 3; ++c) system.needle.spring[static_cast<std::size_t>(c)] = {};
+    system.needle.count = before;
     ASSERT_TRUE(system.factorise());
     for (int c = before; c < before + 3; ++c) {
-      system.count = c + 1;
-      system.yield.back().lateral = 1e4;  // the youngest
+      system.needle.count = c + 1;
+      rows.yield.back().lateral = 1e4;  // the youngest
       ASSERT_TRUE(system.append()) << before;
       system.add_tip();
-      equations.rows = 3 * system.count;
+      equations.size = 3 * system.needle.count;
       equations.expect_solved(TipRows::all, "as they come");
     }
-    system.yield.back().lateral = 2.0;
-    system.yield[static_cast<std::size_t>(before)].axial = 9.0;
+    rows.yield.back().lateral = 2.0;
+    rows.yield[static_cast<std::size_t>(before)].axial = 9.0;
     equations.expect_solved(TipRows::axial, "one older, one slides");
     ASSERT_TRUE(system.keep_first(before + 2)) << before;
-    equations.rows = 3 * system.count;
+    equations.size = 3 * system.needle.count;
     equations.expect_solved(TipRows::all, "the youngest is gone");
   }
 }
@@ -259,17 +265,17 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matr
 TEST_P(ContactEquations, are_put_in_order_again_when_many_contacts_have_come_alive) {
   Equations equations(30, GetParam());
   ContactSystem& system = equations.system;
-  for (std::size_t c = 5; c < 30; ++c) system.spring[c] = {};
-  system.count = 5;
+  for (std::size_t c = 5; c < 30; ++c) system.needle.spring[c] = {};
+  system.needle.count = 5;
   ASSERT_TRUE(system.factorise());
   int anew = 0;
   for (int c = 5; c < 30; ++c) {
-    system.count = c + 1;
+    system.needle.count = c + 1;
     if (!system.append()) {
       ++anew;
       ASSERT_TRUE(system.factorise());
     }
-    equations.rows = 3 * system.count;
+    equations.size = 3 * system.needle.count;
     equations.expect_solved(TipRows::all, std::to_string(c).c_str());
   }
   EXPECT_GE(anew, 1);
@@ -279,18 +285,19 @@ TEST_P(ContactEquations, are_put_in_order_again_when_many_contacts_have_come_ali
 TEST_P(ContactEquations, tell_how_far_the_needle_is_beyond_the_tissue_where_the_tip_is_free) {
   Equations equations(7, GetParam());
   ContactSystem& system = equations.system;
+  ContactRows& rows = equations.rows;
   ASSERT_TRUE(system.factorise());
   system.add_tip();
   ASSERT_TRUE(system.solve(TipRows::none));
   const auto [lambda, push] = equations.whole(TipRows::none);
-  VecX force(equations.rows);
+  VecX force(equations.size);
   for (int c = 0; c < 7; ++c)
-    force.segment<3>(3 * c) = system.frame[static_cast<std::size_t>(c)] * lambda.segment<3>(3 * c);
-  const VecX now = system.now.head(equations.rows);
-  const auto n = equations.rows;
-  const VecX way = system.free.head(n) - system.N.topLeftCorner(n, n) * (push - now) - system.gap.head(n) -
+    force.segment<3>(3 * c) = rows.frame[static_cast<std::size_t>(c)] * lambda.segment<3>(3 * c);
+  const VecX now = rows.now.head(equations.size);
+  const auto n = equations.size;
+  const VecX way = system.needle.free.head(n) - system.needle.N.topLeftCorner(n, n) * (push - now) - rows.gap.head(n) -
                    system.A.topLeftCorner(n, n) * (force - now);
-  EXPECT_NEAR(system.opening(), system.frame[0].col(2).dot(way.head<3>()), 1e-10);
+  EXPECT_NEAR(system.opening(), rows.frame[0].col(2).dot(way.head<3>()), 1e-10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Needle, ContactEquations,

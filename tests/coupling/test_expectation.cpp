@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A balance is solved from where the sub-step will probably end (src/coupling/expectation.cpp).
+// A balance is solved from where the sub-step will probably end (src/coupling/balance/predictor.hpp).
 #include "needle_in_block.hpp"
 
 #include <random>

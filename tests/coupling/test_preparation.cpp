@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The next tangent is made in pieces beside the one in use (src/coupling/preparation.cpp).
+// The next tangent is made in pieces beside the one in use (src/coupling/balance/needle_tangent.hpp).
 #include "needle_in_block.hpp"
 
 namespace stylet {

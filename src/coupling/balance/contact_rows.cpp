@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/balance/contact_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stylet {
+
+namespace {
+/// [N s/mm] Stands for no viscosity in a division. Raised, a contact without viscosity slides less freely.
+constexpr double kNoViscosity = 1e-12;
+/// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined. At 100 mm/s this adds 1e-7
+/// N/mm; raised, it adds more.
+constexpr double kLeastViscosity = 1e-9;
+/// What is left of friction's growth with speed beyond the speed where it ends: enough to tell how far a contact
+/// slides. Raised, fast contacts carry more friction than their law says.
+constexpr double kFlat = 1e-3;
+}  // namespace
+
+ContactRows::ContactRows(const CouplingSettings& settings, int most)
+    : frame(static_cast<std::size_t>(most), Mat3::Identity()),
+      yield(static_cast<std::size_t>(most)),
+      shift(VecX::Zero(3 * static_cast<Eigen::Index>(most))),
+      now(shift),
+      gap(shift),
+      tip{.drift = shift},
+      settings_(settings),
+      needle_(static_cast<std::size_t>(most), Vec3::Zero()),
+      past_(static_cast<std::size_t>(most), Vec3::Zero()) {
+  loads_.reserve(static_cast<std::size_t>(most));
+}
+
+void ContactRows::take_places(const Contacts& contacts) {
+  for (int c = 0; c < contacts.count(); ++c) {
+    const double s = contacts.arc(c);
+    const double beyond = c == 0 ? 0.0 : contacts.of_shaft(c).s - s;
+    const AxisPlace at = contacts.needle.place(s);
+    const Vec3& t = at.tangent;
+    needle_[static_cast<std::size_t>(c)] = at.point + beyond * t;
+    // Any pair of normals will do: both lateral directions are treated alike.
+    const Vec3 helper = std::abs(t.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+    const Vec3 n1 = t.cross(helper).normalized();
+    Mat3& Q = frame[static_cast<std::size_t>(c)];
+    Q.col(0) = n1;
+    Q.col(1) = t.cross(n1);
+    Q.col(2) = t;
+    past_[static_cast<std::size_t>(c)] = contacts.tissue.past_displacement(contacts.point(c));
+  }
+}
+
+void ContactRows::take_loads(const Contacts& contacts) {
+  loads_.resize(static_cast<std::size_t>(contacts.count()));
+  for (int c = 0; c < contacts.count(); ++c)
+    loads_[static_cast<std::size_t>(c)] = {contacts.arc(c), -contacts.force(c)};
+}
+
+double ContactRows::largest_load() const {
+  double largest = 1.0;
+  for (const PointLoad& load : loads_) largest = std::max(largest, load.force.norm());
+  return largest;
+}
+
+double ContactRows::slip_of_cut(double h) const {
+  return h / std::max(settings_.tip_viscosity_Ns_per_mm, kNoViscosity);
+}
+
+void ContactRows::soften(const Contacts& contacts, double h, bool foresees_cut) {
+  soften_tip(contacts, h, foresees_cut);
+  for (int c = 1; c < contacts.count(); ++c) soften_shaft(contacts.of_shaft(c), c, h);
+}
+
+void ContactRows::soften_tip(const Contacts& contacts, double h, bool foresees_cut) {
+  const TipContact& contact = contacts.tip;
+  const Mat3& Q = frame.front();
+  Yield& own = yield.front();
+  Vec3 by_state = Vec3::Zero();
+  own.along = Q.col(2);
+  tip.cut_per_N = 0.0;
+  own.lateral = contact.has_lateral_rows() ? contact.lateral_softness() : 0.0;
+  own.axial = settings_.axial_compliance_mm_per_N;
+  by_state.head<2>().noalias() = own.lateral * (Q.leftCols<2>().transpose() * contact.bevel_force());
+  if (contact.state() == TipContact::State::cut) {
+    const double slip = slip_of_cut(h);
+    const double cutting = contact.ahead.cutting();
+    own.axial += slip;
+    by_state[2] = slip * cutting + contact.cut.advance();
+    if (foresees_cut && contact.touches()) {
+      tip.cut_per_N = slip;
+      tip.cut_due = slip * (Q.col(2).dot(contact.force) - cutting) - contact.cut.advance();
+    }
+  }
+  shift.head<3>() = by_state;
+}
+
+void ContactRows::soften_shaft(ShaftContact& contact, int load, double h) {
+  const double slow = std::max(contact.law.viscous_Ns_per_mm2, kLeastViscosity);
+  const double viscosity = contact.fast ? std::max(kFlat * slow, kLeastViscosity) : slow;
+  contact.coulomb = contact.law.coulomb_N_per_mm * contact.length;
+  if (contact.fast) contact.coulomb += (slow - viscosity) * contact.law.viscous_to_mm_per_s * contact.length;
+  contact.slip = h / std::max(viscosity * contact.length, kNoViscosity);
+  contact.reach =
+      slow > kLeastViscosity ? contact.law.viscous_to_mm_per_s * h : std::numeric_limits<double>::infinity();
+  Yield& own = yield[static_cast<std::size_t>(load)];
+  Vec3 by_state = Vec3::Zero();
+  own.along = frame[static_cast<std::size_t>(load)].col(2);
+  own.lateral = own.axial = contact.softness;
+  if (!contact.sticks()) {
+    own.axial += contact.slip;
+    by_state[2] = contact.slip * contact.sense() * contact.coulomb + contact.s_start - contact.s;
+  }
+  shift.segment<3>(3 * load) = by_state;
+}
+
+}  // namespace stylet

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/balance/contact_states.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+/// [mm] A contact with less length carries no friction. Raised, contacts next to the tip come to hold later.
+constexpr double kNoLength_mm = 1e-6;
+/// [mm] Less is not sliding. Raised, a contact may be taken to slide the wrong way by that much.
+constexpr double kStill_mm = 1e-9;
+/// [mm] On either side of the speed where friction stops growing its two laws agree; a way so near to it says nothing
+/// about the side. Raised, friction is off by more next to that speed.
+constexpr double kSameSpeed_mm = 1e-6;
+}  // namespace
+
+void ContactStates::begin(int most_toggles) {
+  most_toggles_ = most_toggles;
+  for (ShaftContact& contact : contacts_.shaft.all()) contact.toggles = 0;
+  contacts_.tip.toggles = 0;
+}
+
+bool ContactStates::is_frictionless(const ShaftContact& contact) { return contact.length < kNoLength_mm; }
+
+double ContactStates::contradiction(int load, const Trial& trial) const {
+  if (load == 0) return contradiction_of_tip(trial);
+  const ShaftContact& contact = contacts_.of_shaft(load);
+  if (contact.toggles > most_toggles_ || is_frictionless(contact)) return 0.0;
+  if (contact.sticks()) return std::abs(trial.axial) - contact.law.static_N_per_mm * contact.length;
+  // Sliding the other way than its state says, or faster or slower. A length is what tells, since forces hardly differ
+  // where friction does not depend on speed; it counts as the force that pushes the tissue so far.
+  const double slides = trial.slides;
+  const double wrong =
+      contact.fast ? contact.reach - slides - kSameSpeed_mm : std::max(-slides, slides - contact.reach - kSameSpeed_mm);
+  if (wrong <= kStill_mm) return 0.0;
+  const TissueResponse& tissue = contacts_.tissue;
+  return 3.0 * wrong / (tissue.share() * tissue.compliance()(contact.point, contact.point).trace());
+}
+
+/// A surface ahead breaks on a balance only, so it contradicts nothing here (TipContact::breaks_surface).
+double ContactStates::contradiction_of_tip(const Trial& trial) const {
+  const TipContact& tip = contacts_.tip;
+  if (!tip.touches() || tip.toggles > most_toggles_) return 0.0;
+  switch (tip.state()) {
+    case TipContact::State::open:
+      return trial.opening;
+    case TipContact::State::stick: {
+      const bool surface = tip.cut.is_blocked() || tip.ahead.is_surface();
+      return std::max(-trial.axial, surface ? 0.0 : trial.axial - tip.ahead.limit());
+    }
+    case TipContact::State::cut:
+      return tip.cut.advance() > 0.0 ? 0.0 : tip.ahead.cutting() - trial.axial;
+  }
+  return 0.0;
+}
+
+void ContactStates::change(int load, const Trial& trial, StepReport& report) {
+  ++report.pivots;
+  int& toggles = load == 0 ? contacts_.tip.toggles : contacts_.of_shaft(load).toggles;
+  if (++toggles > most_toggles_) report.flags |= StepReport::contact_cycling;
+  if (load == 0) {
+    change_tip(trial);
+    return;
+  }
+  ShaftContact& contact = contacts_.of_shaft(load);
+  if (contact.sticks()) {
+    contact.state = trial.axial > 0.0 ? ShaftContact::State::forward : ShaftContact::State::backward;
+    contact.fast = false;
+  } else if (contact.fast || trial.slides > contact.reach) {
+    contact.fast = !contact.fast;
+  } else {
+    contact.state = ShaftContact::State::stick;
+    contact.s = contact.s_start;  // back to where it was held
+  }
+}
+
+void ContactStates::change_tip(const Trial& trial) {
+  TipContact& tip = contacts_.tip;
+  if (tip.state() != TipContact::State::stick) {
+    tip.set_state(TipContact::State::stick);
+  } else {
+    tip.set_state(trial.axial < 0.0 ? TipContact::State::open : TipContact::State::cut);
+  }
+}
+
+}  // namespace stylet

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/balance/contact_system.hpp"
+
+#include "core/dense_kernels.hpp"
+
+#include <Eigen/LU>
+
+#include <utility>
+
+namespace stylet {
+
+ContactSystem::ContactSystem(const ContactRows& rows, int most)
+    : needle(most), prepared(most), rows_(rows), grips_(most - 1), prepared_grips_(most - 1), columns_(most) {
+  const Eigen::Index n = 3 * static_cast<Eigen::Index>(most);
+  A = MatX::Zero(dense::column_length(n), n);
+  lambda = push = work_ = VecX::Zero(n);
+  beyond_ = MatX::Zero(dense::column_length(n), 3);
+}
+
+bool ContactSystem::factorise() {
+  columns_.outdate();
+  const Eigen::Index n = grip_rows();
+  fits_ = n == 0 ||
+          grips_.factorise(A.block(3, 3, n, n), needle.N.block(3, 3, n, n), needle.shaft_springs(), yields_of(needle));
+  return fits_;
+}
+
+bool ContactSystem::append() {
+  if (!fits_) return false;
+  columns_.outdate();
+  const Eigen::Index n = grip_rows();
+  if (n == 3) return factorise();
+  fits_ = grips_.append(A.block(3, 3, n, n), needle.N.block(3, 3, n, n), yields_of(needle).back());
+  return fits_;
+}
+
+bool ContactSystem::keep_first(int contacts) {
+  needle.count = contacts;
+  if (!fits_) return false;
+  columns_.outdate();
+  fits_ = grips_.keep_first(contacts - 1);
+  return fits_;
+}
+
+void ContactSystem::fill_prepared() {
+  const Eigen::Index n = prepared.rows() - 3;
+  prepared_grips_.fill(A.block(3, 3, n, n), prepared.N.block(3, 3, n, n), prepared.shaft_springs(),
+                       yields_of(prepared));
+}
+
+bool ContactSystem::factorise_prepared() { return prepared_grips_.factorise_filled(); }
+
+void ContactSystem::take_prepared() {
+  columns_.outdate();
+  fits_ = true;
+  std::swap(needle, prepared);
+  std::swap(grips_, prepared_grips_);
+}
+
+void ContactSystem::add_tip() { columns_.take_tip(A, needle, grips_); }
+
+Vec3 ContactSystem::own_yield(int contact) const {
+  const auto c = static_cast<std::size_t>(contact);
+  const Mat3& Q = rows_.frame[c];
+  const Mat3 own = A.block<3, 3>(3 * contact, 3 * contact) + needle.N.block<3, 3>(3 * contact, 3 * contact);
+  const Yield& yield = rows_.yield[c];
+  Vec3 result;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 q = Q.col(k);
+    const double along = q.dot(yield.along);
+    result[k] = q.dot(own * q) + yield.lateral + (yield.axial - yield.lateral) * along * along;
+  }
+  return result;
+}
+
+/// The grips and springs by themselves: B⁻¹ of the tip's columns, of the right-hand side and of the drift.
+bool ContactSystem::solve_grips() {
+  const Eigen::Index n = grip_rows();
+  if (n > 0 && !grips_.change(yields_of(needle)) && !(factorise() && grips_.change(yields_of(needle)))) return false;
+  if (!columns_.is_current()) add_tip();
+  if (n == 0) return true;
+
+  const Eigen::Index all = grips_.rows();
+  auto right = columns_.right(all);
+  for (int c = 1; c < needle.count; ++c)
+    right.segment<3>(3 * c - 3).noalias() = rows_.frame[static_cast<std::size_t>(c)] * rows_.error(c);
+  grips_.across(right.head(n), right.tail(grips_.spring_rows()));
+  right = -right;
+  right.head(n) += needle.free.segment(3, n);
+  if (rows_.tip.drifts()) {
+    auto drift = columns_.drift(all);
+    drift.head(n) = rows_.tip.drift.segment(3, n);
+    grips_.across(drift.head(n), drift.tail(grips_.spring_rows()));
+  }
+  columns_.solve(needle, grips_, rows_.tip.drifts());
+  if (rows_.tip.drifts()) right -= rows_.tip.cut_due * columns_.drift(all);
+  return true;
+}
+
+/// The tip: its three rows with the others taken out.
+/// @return π of the tip, and the force φ of the spring there
+std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
+  const Eigen::Index n = grip_rows();
+  const Eigen::Index all = n > 0 ? grips_.rows() : 0;
+  const auto column = columns_.push(all);
+  const auto solved = columns_.solved_push(all);
+  const auto of_spring = columns_.solved_spring(all);
+  const auto right = std::as_const(columns_).right(all);
+  const auto drifting = std::as_const(columns_).drift(all);
+  const MatX& N = needle.N;
+  const VecX& free = needle.free;
+  const TipMotion& motion = rows_.tip;
+  const Mat3& Q = rows_.frame.front();
+  const Vec3 t = Q.col(2);
+  const Mat3 N_tip = N.topLeftCorner<3, 3>();
+
+  // What π and φ push the tissue by, and where the tip is off.
+  const Yield& tip = rows_.yield.front();
+  Mat3 own = A.topLeftCorner<3, 3>();
+  own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();
+  Mat3 corner = N_tip;
+  Vec3 rest = free.head<3>() - Q * rows_.error(0);
+  if (motion.drifts()) {
+    own.noalias() += motion.cut_per_N * motion.drift.head<3>() * t.transpose();
+    rest -= motion.cut_due * motion.drift.head<3>();
+  }
+  if (n > 0) {
+    corner.noalias() -= column.transpose().lazyProduct(solved);
+    rest.noalias() -= column.transpose().lazyProduct(right);
+    if (motion.drifts()) {
+      const Vec3 by_grips = column.transpose().lazyProduct(drifting);
+      own.noalias() -= motion.cut_per_N * by_grips * t.transpose();
+    }
+  }
+  corner += own;
+
+  Along lent;  // φ
+  if (needle.lends_at_tip()) {
+    const Mat3 G = needle.spring.front().matrix();
+    Along moves = {free.head<3>(), N_tip};
+    Mat3 borne = Mat3::Identity();
+    if (n > 0) {
+      const Mat3 per_lent = subtract_grips(N.block(3, 0, n, 3), moves);
+      own.noalias() -= column.transpose().lazyProduct(of_spring);
+      borne.noalias() += G * per_lent;
+    }
+    const Eigen::PartialPivLU<Mat3> carried(borne);
+    lent = {carried.solve(G * moves.at), carried.solve(G * moves.per)};
+    corner.noalias() -= own * lent.per;
+    rest.noalias() -= own * lent.at;
+  }
+
+  // Rows that are not held carry nothing any more: λ = 0.
+  Mat3 left = Q.transpose() * corner * Q;
+  Vec3 given = Q.transpose() * rest;
+  const Mat3 free_row = Q.transpose() * (Mat3::Identity() - lent.per) * Q;
+  const Vec3 carried = Q.transpose() * (rows_.now.head<3>() + lent.at);
+  const int held_from = held == TipRows::all ? 0 : held == TipRows::axial ? 2 : 3;
+  for (int k = 0; k < held_from; ++k) {
+    left.row(k) = free_row.row(k);
+    given[k] = -carried[k];
+  }
+  if (turns(held)) {
+    // The force turns with the direction, and more or less of how far the tip is aside is along it.
+    const Eigen::Index g = 3 * static_cast<Eigen::Index>(motion.behind);
+    Along turn = {free.head<3>() - free.segment<3>(g), N_tip - N.block<3, 3>(g, 0)};
+    beyond_.topRows(n) = N.block(3, 0, n, 3) - N.block(3, g, n, 3);
+    const Mat3 per_lent = subtract_grips(beyond_.topRows(n), turn);
+    turn.at -= per_lent * lent.at;
+    turn.per -= per_lent * lent.per;
+    const double pressed = t.dot(rows_.now.head<3>()) / motion.behind_mm;
+    const Vec3 aside = Q.leftCols<2>() * rows_.error(0).head<2>() / motion.behind_mm;
+    left.topRows<2>() += pressed * Q.leftCols<2>().transpose() * turn.per * Q;
+    given.head<2>() += pressed * Q.leftCols<2>().transpose() * turn.at;
+    left.row(2) -= aside.transpose() * turn.per * Q;
+    given[2] -= aside.dot(turn.at);
+  }
+  const Vec3 change = Q * Eigen::PartialPivLU<Mat3>(left).solve(given);
+  return {change, lent.at - lent.per * change};
+}
+
+/// Takes off what of a motion at − per π_0 is due to the grips' pushes.
+/// @param columns of N that give the motion of those pushes
+/// @return what the motion has of the tip's spring by way of the grips: − (…) φ
+Mat3 ContactSystem::subtract_grips(const Eigen::Ref<const MatX>& columns, Along& moves) const {
+  const Eigen::Index n = grip_rows();
+  const auto row = columns.transpose();
+  moves.per -= Mat3(row.lazyProduct(columns_.solved_push(n)));
+  moves.at -= Vec3(row.lazyProduct(columns_.right(n)));
+  Mat3 per_lent = Mat3::Zero();
+  if (needle.lends_at_tip()) per_lent = -Mat3(row.lazyProduct(columns_.solved_spring(n)));
+  if (rows_.tip.drifts()) {
+    const Vec3 more = row.lazyProduct(columns_.drift(n));
+    const Mat3 per_force = rows_.tip.cut_per_N * more * rows_.frame.front().col(2).transpose();
+    moves.per -= per_force;
+    per_lent -= per_force;
+  }
+  return per_lent;
+}
+
+bool ContactSystem::solve(TipRows held) {
+  fits_ = solve_grips();
+  if (!fits_) return false;
+  const auto [change, lent] = solve_tip(held);
+  push.head<3>() = rows_.now.head<3>() + change;
+
+  const Eigen::Index n = grip_rows();
+  auto forces = work_.head(needle.rows());
+  forces.head<3>() = push.head<3>() + lent;
+  if (n > 0) {
+    const Eigen::Index all = grips_.rows();
+    auto right = columns_.right(all);
+    right.noalias() -= columns_.solved_push(all).lazyProduct(change);
+    if (needle.lends_at_tip()) right.noalias() -= columns_.solved_spring(all).lazyProduct(lent);
+    if (rows_.tip.drifts())
+      right -= rows_.tip.cut_per_N * rows_.frame.front().col(2).dot(change + lent) * columns_.drift(all);
+    push.segment(3, n) = rows_.now.segment(3, n) + right.head(n);
+    forces.tail(n) = push.segment(3, n);
+    grips_.add_lent(right.tail(grips_.spring_rows()), forces.tail(n));
+  }
+  for (int c = 0; c < needle.count; ++c) {
+    lambda.segment<3>(3 * c).noalias() =
+        rows_.frame[static_cast<std::size_t>(c)].transpose() * forces.segment<3>(3 * c);
+  }
+  if (held == TipRows::none) lambda.head<3>().setZero();
+  if (held == TipRows::axial && !turns(held)) lambda.head<2>().setZero();
+  fits_ = push.head(needle.rows()).allFinite();
+  return fits_;
+}
+
+double ContactSystem::axial_excess(int contact) const {
+  const auto c = static_cast<std::size_t>(contact);
+  const Vec3 change = rows_.frame[c] * lambda.segment<3>(3 * contact) - rows_.now.segment<3>(3 * contact);
+  return rows_.frame[c].col(2).dot(grips_.yield(contact - 1).of(change) - rows_.yield[c].of(change));
+}
+
+double ContactSystem::opening() const {
+  const Vec3 t = rows_.frame.front().col(2);
+  Vec3 way = needle.free.head<3>() - rows_.gap.head<3>();
+  for (int c = 0; c < needle.count; ++c) {
+    const Vec3 now = rows_.now.segment<3>(3 * c);
+    const Vec3 force = rows_.frame[static_cast<std::size_t>(c)] * lambda.segment<3>(3 * c);
+    way -= needle.N.block<3, 3>(0, 3 * c) * (push.segment<3>(3 * c) - now);
+    way -= A.block<3, 3>(0, 3 * c) * (force - now);
+  }
+  return t.dot(way);
+}
+
+}  // namespace stylet

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "coupling/balance/balance_solver.hpp"
+#include "coupling/balance/contact_rows.hpp"
+#include "coupling/balance/contact_states.hpp"
+#include "coupling/balance/iterate.hpp"
+#include "coupling/balance/needle_tangent.hpp"
+#include "coupling/balance/tissue_block.hpp"
+
+namespace stylet {
+
+/// Needle, tissue and laws in one system: Newton's iteration over the needle's shape, the frames of the contacts and
+/// the place of the cut, with the linear equations of ContactSystem. Their matrix is dear and changes little from step
+/// to step, so it is kept, and errors are taken as they are: an iteration with an old matrix converges to the same
+/// balance, linearly. Sliding and cutting stay in the system as soft rows (viscous friction is a compliance h/(bℓ)), so
+/// a change of state changes D alone.
+class CoupledBalance : public BalanceSolver {
+ public:
+  explicit CoupledBalance(const BalanceParts& parts);
+
+  bool solve(double h, bool from_prediction, Effort& effort, StepReport& report) override;
+  void damp(double ratio) override { tangent_.damp(ratio); }
+  void base_moved(double way_mm) override { tangent_.wear(way_mm); }
+  void forget_tangent() override { tangent_.forget(); }
+  void release() override { tangent_.release(); }
+
+ private:
+  /// What a solve knows of its iterations so far.
+  struct Progress;
+
+  double look(double h);
+  void gather();
+  [[nodiscard]] ContactSystem::TipRows tip_rows() const;
+  [[nodiscard]] ContactStates::Trial trial(int load) const;
+  [[nodiscard]] bool pivot(double h, Effort& effort, StepReport& report, bool& changed);
+  void change_and_tell(int load, StepReport& report);
+  void take_solution();
+  void slide(int load);
+  bool cut_on(double h, int iteration);
+  void march(double advance);
+  [[nodiscard]] double equation_error() const;
+  [[nodiscard]] bool is_astray(double largest_at_start) const;
+  void give_way();
+
+  BalanceParts parts_;
+  Contacts contacts_;
+  ContactRows rows_;
+  ContactSystem system_;
+  ContactStates states_;
+  TissueBlock tissue_;
+  NeedleTangent tangent_;
+  Iterate kept_;
+  bool foresees_cut_ = true;  ///< the equations know that compliance changes as the cut goes on
+};
+
+}  // namespace stylet

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "coupling/balance/contacts.hpp"
+
+#include <vector>
+
+namespace stylet {
+
+/// An iterate of a balance, kept to go back to if the next one leads away. Nothing allocates after construction.
+class Iterate {
+ public:
+  /// @param shape_size of Needle::state() @param most_contacts of the shaft
+  Iterate(Eigen::Index shape_size, int most_contacts)
+      : shape_(VecX::Zero(shape_size)), shaft_(static_cast<std::size_t>(most_contacts)) {}
+
+  void keep(const Contacts& contacts) {
+    shape_ = contacts.needle.state();
+    advance_ = contacts.tip.cut.advance();
+    tip_force_ = contacts.tip.force;
+    for (std::size_t k = 0; k < contacts.shaft.count(); ++k)
+      shaft_[k] = {contacts.shaft.all()[k].force, contacts.shaft.all()[k].s};
+  }
+
+  /// No state may have changed since it was kept.
+  void restore(const Contacts& contacts) const {
+    contacts.needle.set_state(shape_);
+    contacts.tip.force = tip_force_;
+    for (std::size_t k = 0; k < contacts.shaft.count(); ++k) {
+      contacts.shaft.all()[k].force = shaft_[k].force;
+      contacts.shaft.all()[k].s = shaft_[k].s;
+    }
+    if (contacts.tip.cuts()) contacts.tip.cut.march(advance_);
+  }
+
+ private:
+  struct OfShaft {
+    Vec3 force = Vec3::Zero();
+    double s = 0.0;
+  };
+  VecX shape_;
+  double advance_ = 0.0;
+  Vec3 tip_force_ = Vec3::Zero();
+  std::vector<OfShaft> shaft_;
+};
+
+}  // namespace stylet

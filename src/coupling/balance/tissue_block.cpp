@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/balance/tissue_block.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+/// [mm] A shorter cut does not tell how compliance changes. Raised, the change is older; lowered, it loses digits.
+constexpr double kLeastCut_mm = 1e-4;
+/// [mm] A longer way of the tip is no cut but another place. Raised, a change may be believed that is not there.
+constexpr double kMostCut_mm = 1.0;
+/// Part of the tip's way that has to be along the cut for it to tell. Raised, fewer cuts tell.
+constexpr double kAlong = 0.9;
+/// Gaps that change by as much as the tip goes on could close of themselves, and the tip's rows would be singular.
+/// Raised nearer to 1, they come nearer to that.
+constexpr double kMostDrift = 0.5;
+}  // namespace
+
+TissueBlock::TissueBlock(ContactSystem& system, int most_contacts)
+    : system_(system), slope_(MatX::Zero(3 * static_cast<Eigen::Index>(most_contacts), 3)) {
+  points_.reserve(static_cast<std::size_t>(most_contacts));
+}
+
+int TissueBlock::renew(const Contacts& contacts) {
+  const int count = contacts.count();
+  before_ = static_cast<int>(points_.size());
+  int same = 0;
+  while (same < std::min(before_, count) && points_[static_cast<std::size_t>(same)] == contacts.point(same)) ++same;
+  points_.resize(static_cast<std::size_t>(same));
+  for (int c = same; c < count; ++c) points_.push_back(contacts.point(c));
+  return same;
+}
+
+void TissueBlock::take_points(std::span<const int> points) { points_.assign(points.begin(), points.end()); }
+
+/// A's columns and rows of the tip, number by number: they change with every cut. How much, the last cut tells.
+void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
+  const TipContact& tip = contacts.tip;
+  const Vec3 way = tip.cut.x() - tip_;
+  const double cut = tip.cut.direction().dot(way);
+  const bool told = way.norm() < kMostCut_mm && std::abs(cut) > std::max(kLeastCut_mm, kAlong * way.norm()) &&
+                    share == share_ && !tip.cut.is_stale() && !stale_;
+  tip_ = tip.cut.x();
+  stale_ = tip.cut.is_stale();
+  if (told) slope_at_ = tip_;
+  if ((tip_ - slope_at_).norm() > kMostCut_mm) slope_.setZero();  // that was another place
+  const MatX& compliance = contacts.tissue.compliance().matrix();
+  const auto count = static_cast<int>(points_.size());
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double* const from = compliance.col(3 * ContactCompliance::kTip + k).data();
+    double* const column = system_.A.col(k).data();
+    double* const slope = slope_.col(k).data();
+    for (int c = 0; c < count; ++c) {
+      const int point = points_[static_cast<std::size_t>(c)];
+      for (int i = 3 * c; i < 3 * c + 3; ++i) {
+        const double now = share * from[3 * point + i - 3 * c];
+        if (c >= same) {
+          slope[i] = 0.0;
+        } else if (told) {
+          slope[i] = (now - column[i]) / cut;
+        }
+        column[i] = now;
+      }
+    }
+    const Eigen::Index size = 3 * static_cast<Eigen::Index>(count);
+    system_.A.row(k).head(size) = system_.A.col(k).head(size).transpose();
+  }
+}
+
+void TissueBlock::gather(const Contacts& contacts, int same) {
+  const ContactCompliance& compliance = contacts.tissue.compliance();
+  const auto count = static_cast<int>(points_.size());
+  const double share = contacts.tissue.share();
+  const bool whole = version_ != compliance.version() || share_ != share;
+  gather_tip(contacts, share, same);
+  for (int c = 1; c < count; ++c) {
+    for (int d = whole ? c : std::max(c, same); d < count; ++d) {
+      const int point = points_[static_cast<std::size_t>(c)];
+      const Mat3 block = share * compliance(point, points_[static_cast<std::size_t>(d)]);
+      // A contact laid ahead of the shaft changes nothing among those there, unless it changes the mesh.
+      if (d < same && block != system_.A.block<3, 3>(3 * c, 3 * d)) system_.outdate();
+      system_.A.block<3, 3>(3 * c, 3 * d) = block;
+      system_.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
+    }
+  }
+  version_ = compliance.version();
+  share_ = share;
+}
+
+void TissueBlock::gather_drift(const Contacts& contacts, ContactRows& rows) const {
+  const auto size = 3 * static_cast<Eigen::Index>(contacts.count());
+  const auto slope = slope_.topRows(size);
+  auto drift = rows.tip.drift.head(size);
+  drift.noalias() = slope.lazyProduct(rows.now.head<3>());
+  drift.head<3>() += slope.bottomRows(size - 3).transpose().lazyProduct(rows.now.segment(3, size - 3));
+  drift.head<3>() += contacts.tip.cut.direction() - rows.frame.front().col(2);
+  if (!(drift.lpNorm<Eigen::Infinity>() < kMostDrift)) drift.setZero();
+}
+
+}  // namespace stylet

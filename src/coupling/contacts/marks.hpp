@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "coupling/tissue_response.hpp"
+#include "stylet/coupling/insertion.hpp"
+
+namespace stylet {
+
+/// Lays marks on a track: places where the shaft will hold the tissue. Each stands for a point of ContactCompliance.
+class Marks {
+ public:
+  /// All outlive the marks.
+  Marks(const InsertionTissue& mesh, const CouplingSettings& settings, TissueResponse& tissue)
+      : mesh_(mesh), settings_(settings), tissue_(tissue) {}
+
+  /// The next mark comes `ahead` [mm] beyond the end of the track.
+  void go_on_from(const Track& track, double ahead) { next_xi_ = track.end_xi + ahead; }
+
+  /// Lays marks along the piece of track just cut, from `from` [mm] LPS in element `from_tet`, at from_xi, to its end.
+  void lay(Track& track, const Vec3& from, double from_xi, Index from_tet, StepReport& report);
+
+  enum class Outcome { there, dropped, refused };
+  /// Gives a point to a mark that has none: it is on an earlier track, whose points the tissue model has forgotten, or
+  /// there was no compliance yet when it was laid. A mark that follows from those before it is dropped from the track.
+  /// @param number of the mark on the track @param along unit vector LPS along the shaft
+  Outcome represent(Track& track, std::size_t number, const Vec3& along, StepReport& report);
+
+ private:
+  [[nodiscard]] Placement placement() const;
+  void lay_on_faces(Track& track, const Vec3& from, double from_xi, Index tet, StepReport& report);
+  bool lay_one(Track& track, double xi, const Vec3& x, const MaterialPoint& at, Placement placement, const Vec3& travel,
+               StepReport& report);
+  [[nodiscard]] bool follows_from(int point, const Track& track, std::size_t marks) const;
+
+  const InsertionTissue& mesh_;
+  const CouplingSettings& settings_;
+  TissueResponse& tissue_;
+  double next_xi_ = 0.0;  ///< [mm] next place on the track where a mark may be laid
+};
+
+}  // namespace stylet

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/contacts/shaft_contacts.hpp"
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+/// Needle radii behind the tip over which a contact takes hold. Raised, the tip holds the needle sideways for longer,
+/// and a bevel deflects it later.
+constexpr double kHandOver = 6.0;
+/// Smallest age ρ, and how near to 1 it counts as 1. Raised, a contact is born with a force that is not zero.
+constexpr double kYoungest = 1e-6;
+}  // namespace
+
+ShaftContacts::ShaftContacts(const InsertionTissue& mesh, const CouplingSettings& settings, const Needle& needle,
+                             const TissueResponse& tissue)
+    : mesh_(mesh), settings_(settings), needle_(needle), tissue_(tissue) {
+  contacts_.reserve(static_cast<std::size_t>(settings.capacity));
+}
+
+void ShaftContacts::wake_and_drop(Track& track, Marks& marks, const Vec3& tip_force, StepReport& report) {
+  const double length = needle_.length();
+  while (!contacts_.empty() && contacts_.back().s >= length) contacts_.pop_back();
+
+  const Vec3 tip = needle_.point(length);
+  const Vec3 t = needle_.tangent(length);
+  while (contacts_.size() < track.marks.size()) {
+    if (track.marks[contacts_.size()].point < 0) {
+      if (t.dot(track.marks[contacts_.size()].x - tip) > settings_.spacing_mm) break;
+      const Marks::Outcome outcome = marks.represent(track, contacts_.size(), t, report);
+      if (outcome == Marks::Outcome::dropped) continue;
+      if (outcome == Marks::Outcome::refused) break;
+    }
+    const Track::Mark& mark = track.marks[contacts_.size()];
+    const double ahead = t.dot(mark.x + tissue_.displacement(mark.point, {tip_force, contacts_}) - tip);
+    if (ahead >= 0.0) break;
+    ShaftContact contact;
+    contact.point = mark.point;
+    contact.xi = mark.xi;
+    contact.x = mark.x;
+    contact.s = length + ahead;
+    contact.law = mesh_.laws[static_cast<std::size_t>(mark.region)].friction;
+    contact.state = ShaftContact::State::forward;
+    contacts_.push_back(contact);
+  }
+}
+
+/// How far the tip is beyond a contact [mm]: along the shaft, or along the track while that is less. Tissue that the
+/// tip has just passed springs back along the shaft at once; the track grows with the cut only.
+double ShaftContacts::passed_by(const ShaftContact& contact, const Track& track) const {
+  const double along_shaft = needle_.length() - contact.s;
+  if (track.open) return std::max(0.0, along_shaft);
+  return std::max(0.0, std::min(along_shaft, track.end_xi - contact.xi));
+}
+
+double ShaftContacts::share_length(const Track& track) {
+  const double hand_over = kHandOver * settings_.needle_radius_mm;
+  const auto age = [&](const ShaftContact& contact) { return std::min(1.0, passed_by(contact, track) / hand_over); };
+  for (ShaftContact& contact : contacts_) {
+    contact.softness = tissue_.own_yield(contact.point) * (1.0 / std::max(age(contact), kYoungest) - 1.0);
+    contact.length = 0.0;
+  }
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    ShaftContact& contact = contacts_[k];
+    const double rho = age(contact);
+    const double before = k == 0 ? contact.xi : contact.xi - contacts_[k - 1].xi;
+    if (k == 0) {
+      contact.length += before * rho;
+    } else {
+      contact.length += 0.5 * before * rho;
+      contacts_[k - 1].length += before * (1.0 - 0.5 * rho);
+    }
+    if (k + 1 == contacts_.size()) {
+      double after = passed_by(contact, track);
+      if (track.open) after = std::min(after, std::max(0.0, track.air_from_xi - contact.xi));
+      contact.length += after;
+    }
+  }
+  if (contacts_.empty()) return 0.0;
+  const double rho = age(contacts_.front());
+  return rho >= 1.0 - kYoungest ? 1.0 : rho;
+}
+
+}  // namespace stylet

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/paper/staggered_balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// One iteration of the simulator of Goksel et al. 2005 (their figure 3): needle and tissue in turn.
+///
+///      base of the needle moves
+///                │
+///   ┌──► shape of the needle ──► displacements of the tissue it holds          impose_needle_on_tissue
+///   │            │
+///   │    x = K_W y: forces of the tissue                                        solve_tissue
+///   │            │
+///   │    forces to the nearest nodes of the needle                              load_needle
+///   │            │
+///   │    stick or slip: switch boundary conditions                              switch_contacts
+///   │            │
+///   │    tip cuts                                                               cut
+///   │            │
+///   │    in balance? ── yes ──► tip in a new element? remesh: TipPath::commit, Marks
+///   │            │ no
+///   └── bend the needle, damped                                                 bend_needle
+///
+/// What is ours: rows with a softness (young contacts), viscous friction, and how the needle is damped. A factor on the
+/// needle's motion, as in the paper, fails once the forces on the needle exceed what it bears on its own (about 1 N for
+/// 200 mm): it has no stable shape under them. Springs do what the factor was to do: each holds a point of the needle
+/// where it is now, as hard as the tissue would if all other points stood still, so the iteration is Jacobi's with
+/// blocks. At the end the springs carry nothing. docs/theory/paper.md has the derivation.
+namespace stylet::paper {
+
+namespace {
+/// Iterations before a balance is given up. Raised, hopeless balances cost more.
+constexpr int kMaxIterations = 500;
+/// Changes of state in a sub-step, then a contact keeps its state. Raised, cycling costs more.
+constexpr int kMostToggles = 100;
+/// Of imbalance(): the balance is found. Raised, forces are less exact.
+constexpr double kTolerance = 1e-10;
+/// Of imbalance(): contacts may change their state, not on a passing shape. Raised, they change it to and fro.
+constexpr double kNearly = 1e-8;
+/// [N] A contact contradicts its state by more than what is still uncertain. Raised, states change later.
+constexpr double kClear_N = 1e-7;
+/// Weight of friction and cutting forces that still change, in imbalance(). Raised, they settle further.
+constexpr double kSettled = 1e-2;
+/// Smallest divisor.
+constexpr double kSmallest = 1e-12;
+}  // namespace
+
+double loaded_arc(const CouplingSettings& settings, double length, double s) {
+  const double spacing = settings.needle_node_mm;
+  return spacing > 0.0 ? std::min(length, std::round(s / spacing) * spacing) : s;
+}
+
+StaggeredBalance::StaggeredBalance(const BalanceParts& parts)
+    : parts_(parts),
+      contacts_(parts.contacts),
+      rows_(parts.settings, parts.settings.capacity + 1),
+      states_(contacts_),
+      tissue_(parts.settings.capacity + 1),
+      acceleration_(contacts_.needle.state().size()),
+      shape_before_(VecX::Zero(contacts_.needle.state().size())),
+      shape_after_(shape_before_),
+      springs_(static_cast<std::size_t>(parts.settings.capacity) + 1, Mat3::Zero()),
+      y_(VecX::Zero(3 * (static_cast<Eigen::Index>(parts.settings.capacity) + 1))),
+      x_(y_),
+      force_(y_),
+      compliance_(MatX::Zero(y_.size(), y_.size())),
+      motion_(y_) {}
+
+/// Frames turn with the needle; then each row is given what its contact's state asks for.
+void StaggeredBalance::impose_needle_on_tissue(double h) {
+  CondensedSystem& condensed = tissue_.system();
+  const TipContact& tip = contacts_.tip;
+  rows_.soften(contacts_, h, false);
+  for (int c = 0; c < contacts_.count(); ++c) {
+    const Mat3& Q = rows_.frame[static_cast<std::size_t>(c)];
+    tissue_.turn(c, Q);
+    const int row = tissue_.row(c);
+    const ShaftContact* contact = c == 0 ? nullptr : &contacts_.of_shaft(c);
+    const bool held = contact != nullptr || tip.holds();
+    const bool lateral = held && (contact != nullptr || std::isfinite(tip.lateral_hold()));
+    const bool axial = contact != nullptr ? contact->sticks() : held && tip.state() == TipContact::State::stick;
+    const double softness = contact != nullptr ? contact->softness : lateral ? tip.lateral_hold() : 0.0;
+    const double along = contact != nullptr ? contact->softness : parts_.settings.axial_compliance_mm_per_N;
+    condensed.set_softness(row, softness);
+    condensed.set_softness(row + 1, softness);
+    condensed.set_softness(row + 2, along);
+    condensed.control_displacement(row, lateral);
+    condensed.control_displacement(row + 1, lateral);
+    condensed.control_displacement(row + 2, axial);
+
+    const Vec3 gap = Q.transpose() * (rows_.needle_at(c) - rows_.unloaded(contacts_, c));
+    auto y = y_.segment<3>(row);
+    y = Vec3::Zero();
+    if (lateral) y.head<2>() = gap.head<2>() + rows_.shift.segment<2>(3 * c);
+    if (c == 0 && held && !lateral) y.head<2>() = Q.leftCols<2>().transpose() * tip.bevel_force();
+    if (axial) y[2] = gap[2];
+    if (!axial && held) y[2] = force_[3 * c + 2];  // friction or cutting force, from the last iteration
+  }
+}
+
+/// x = K_W y, then friction and cutting forces follow their laws at the displacements that come out (Gauss–Seidel over
+/// the sliding rows: viscous forces depend on how far the needle slides).
+void StaggeredBalance::solve_tissue(double h) {
+  const CondensedSystem& condensed = tissue_.system();
+  const TipContact& tip = contacts_.tip;
+  const Eigen::Index size = 3 * static_cast<Eigen::Index>(condensed.points());
+  auto x = x_.head(size);
+  x.noalias() = condensed.matrix().lazyProduct(y_.head(size));
+  change_ = 0.0;
+  for (int c = 0; c < contacts_.count(); ++c) {
+    const int row = tissue_.row(c) + 2;
+    if (condensed.is_displacement(row)) continue;
+    const Vec3 t = rows_.frame[static_cast<std::size_t>(c)].col(2);
+    const double way = t.dot(rows_.needle_at(c) - rows_.unloaded(contacts_, c));
+    const double own = tissue_.own(row);
+    double force = 0.0;
+    if (c == 0) {
+      if (!tip.cuts()) continue;
+      // The tip cuts as far as the needle is beyond the tissue: force = cutting force + viscosity × speed.
+      const double slip = h / std::max(parts_.settings.tip_viscosity_Ns_per_mm, kSmallest);
+      advance_ = tip.cut.advance() + (way - x[row]) / (t.dot(tip.cut.direction()) + own / slip);
+      force = tip.ahead.cutting() + advance_ / slip;  // less than the cutting force: the needle goes back
+      change_ = std::max(change_, std::abs(force - y_[row]));
+    } else {
+      ShaftContact& contact = contacts_.of_shaft(c);
+      const double ahead = x[row] - way;
+      change_ = std::max(change_, std::abs(ahead) / own);
+      if (ContactStates::is_frictionless(contact)) {
+        contact.s += ahead;
+      } else {
+        contact.s += ahead / (1.0 + own / contact.slip);
+        force = contact.sense() * contact.coulomb - (contact.s - contact.s_start) / contact.slip;
+      }
+    }
+    const double change = force - y_[row];
+    y_[row] = force;
+    x += change * condensed.matrix().col(row);
+  }
+  for (int c = 0; c < contacts_.count(); ++c) {
+    const int row = tissue_.row(c);
+    for (int i = 0; i < 3; ++i) force_[3 * c + i] = condensed.is_displacement(row + i) ? x[row + i] : y_[row + i];
+    contacts_.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * force_.segment<3>(3 * c);
+  }
+}
+
+/// Stick to slip where friction exceeds its limit, slip to stick where the motion turns round; the tip likewise.
+/// @return true when a boundary condition was switched
+bool StaggeredBalance::switch_contacts(StepReport& report) {
+  const int tip_row = tissue_.row(0) + 2;
+  const double opening = rows_.frame[0].col(2).dot(rows_.needle_at(0) - rows_.unloaded(contacts_, 0)) - x_[tip_row];
+  bool changed = false;
+  for (int c = contacts_.count() - 1; c >= 0; --c) {
+    const double axial = force_[3 * c + 2];
+    const ContactStates::Trial trial{.axial = axial,
+                                     .slides = c > 0 ? ContactStates::way(contacts_.of_shaft(c), axial) : 0.0,
+                                     .opening = opening / std::max(tissue_.own(tip_row), kSmallest)};
+    if (states_.contradiction(c, trial) <= kClear_N) continue;
+    states_.change(c, trial, report);
+    changed = true;
+  }
+  return changed;
+}
+
+/// Contact forces go to the needle where they act, or to its nearest node as in the paper.
+void StaggeredBalance::load_needle() {
+  rows_.take_loads(contacts_);
+  for (PointLoad& load : rows_.loads()) load.s = loaded_arc(parts_.settings, contacts_.needle.length(), load.s);
+}
+
+/// One Newton step of the needle under the tissue's forces, damped by springs as hard as the tissue around each contact
+/// while all other contacts stand still.
+void StaggeredBalance::bend_needle() {
+  const CondensedSystem& condensed = tissue_.system();
+  const int count = contacts_.count();
+  for (int c = 0; c < count; ++c) {
+    const int row = tissue_.row(c);
+    Vec3 stiffness = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+      if (condensed.is_displacement(row + i)) stiffness[i] = tissue_.own(row + i);
+    const Mat3& Q = rows_.frame[static_cast<std::size_t>(c)];
+    springs_[static_cast<std::size_t>(c)] = parts_.settings.damping * Q * stiffness.asDiagonal() * Q.transpose();
+  }
+  const auto size = static_cast<Eigen::Index>(3 * count);
+  Needle& needle = contacts_.needle;
+  needle.linearise(rows_.loads(), compliance_.topLeftCorner(size, size), motion_.head(size),
+                   {springs_.data(), static_cast<std::size_t>(count)});
+  shape_before_ = needle.state();
+  needle.advance(rows_.loads());
+  shape_after_ = needle.state();
+  acceleration_.accelerate(shape_before_, shape_after_);
+  needle.set_state(shape_after_);
+}
+
+/// How far needle and tissue are from balance, over the largest force or 1 N: out-of-balance moment of the needle over
+/// its length, and what friction and cutting forces still change by.
+double StaggeredBalance::imbalance() const {
+  const Needle& needle = contacts_.needle;
+  return std::max(needle.residual(rows_.loads()) / needle.length(), kSettled * change_) / rows_.largest_load();
+}
+
+/// Moves the end of the track to where the cut has come to.
+/// @param nearly the balance is near enough to believe that a surface is in the way; the tip sticks there then
+/// @return false when it does
+bool StaggeredBalance::cut(bool nearly) {
+  TipContact& tip = contacts_.tip;
+  if (!tip.cuts()) return true;
+  tip.cut.march(std::max(0.0, advance_));
+  if (!nearly || !tip.cut.is_blocked()) return true;
+  tip.set_state(TipContact::State::stick);
+  return false;
+}
+
+bool StaggeredBalance::solve(double h, bool /*from_prediction*/, Effort& /*effort*/, StepReport& report) {
+  TipContact& tip = contacts_.tip;
+  states_.begin(kMostToggles);
+  tip.begin(contacts_.forces());
+  rows_.take_places(contacts_);
+  for (int c = 0; c < contacts_.count(); ++c)
+    force_.segment<3>(3 * c) = rows_.frame[static_cast<std::size_t>(c)].transpose() * contacts_.force(c);
+  advance_ = 0.0;
+  acceleration_.restart();
+
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    ++report.iterations;
+    rows_.take_places(contacts_);
+    tissue_.take(contacts_, rows_.frame);
+    impose_needle_on_tissue(h);
+    solve_tissue(h);
+    load_needle();
+    const double error = imbalance();
+    if (error < kNearly && switch_contacts(report)) {
+      acceleration_.restart();
+      continue;
+    }
+    if (cut(error < kNearly) && error < kTolerance) {
+      if (!tip.breaks_surface()) return false;
+      parts_.path.break_surface(parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, contacts_.forces()),
+                                report);
+      acceleration_.restart();
+      continue;
+    }
+    bend_needle();
+  }
+  report.flags |= StepReport::not_converged;
+  return false;
+}
+
+}  // namespace stylet::paper

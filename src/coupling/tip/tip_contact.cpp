@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/tip/tip_contact.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stylet {
+
+namespace {
+/// Slope of the cut back to the needle's axis. Raised, the track follows a needle that is moved sideways sooner, with
+/// sharper bends.
+constexpr double kSteepest = 0.5;
+/// det(I + ∇u) of tissue around the tip. Below this its deformation is beyond the linear model, and the cut does not
+/// follow it.
+constexpr double kLeastVolume = 0.2;
+/// A lateral row so many times softer than the tissue carries its given force and nothing else. Raised much further,
+/// its equation loses digits.
+constexpr double kNotHeld = 1e6;
+}  // namespace
+
+void TipContact::put(const Vec3& x, const MaterialPoint& at, bool touches, State state) {
+  forget();
+  touches_ = touches;
+  state_ = state;
+  cut.put(x, at);
+}
+
+void TipContact::forget() {
+  cut.forget();
+  ahead = {};
+  force.setZero();
+  history = {};
+  toggles = 0;
+  state_ = State::open;
+  touches_ = false;
+  lateral_hold_ = 0.0;
+}
+
+void TipContact::exit() {
+  touches_ = false;
+  state_ = State::open;
+  force.setZero();
+}
+
+void TipContact::begin(const ContactForces& forces) {
+  if (waits()) cut.take_compliance();
+  cut.begin();
+  if (touches_) aim(forces);
+}
+
+/// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; tissue
+/// turned by the deformation gradient F = I + ∇u is cut along F⁻¹ t. Where the track's end has drifted off the axis
+/// (the base moved sideways while the tip did not cut) the cut leads back to the axis. A bevelled tip leads it to a
+/// line beside the axis instead.
+void TipContact::aim(const ContactForces& forces) {
+  const Vec3 t = tangent();
+  const Mat3 F = Mat3::Identity() + tissue_.compliance().gradient_at_tip(tissue_.filtered_forces(forces));
+  Vec3 along = t + lead_of_bevel(t);
+  if (!std::isfinite(lateral_hold_)) {
+    const Vec3 gap = cut.x() + tissue_.displacement(ContactCompliance::kTip, forces) - needle_.point(needle_.length());
+    Vec3 back = -(gap - t * t.dot(gap)) / settings_.merge_mm;
+    if (back.norm() > kSteepest) back *= kSteepest / back.norm();
+    along += back;
+  }
+  Vec3 d = F.determinant() > kLeastVolume ? Vec3(F.inverse() * along) : along;
+  // Strains beyond the linear model must not turn the cut around.
+  if (d.dot(t) < 0.5 * d.norm()) d = along;
+  cut.aim(d.normalized());
+}
+
+bool TipContact::breaks_surface() const {
+  if (!holds()) return false;
+  const Vec3 t = tangent();
+  return ahead.gives(force.dot(t), t, settings_.grazing_cos);
+}
+
+void TipContact::take_back_cut() {
+  if (!touches_) return;
+  if (cut.is_blocked() && state_ == State::stick) state_ = State::cut;
+  if (state_ == State::cut) cut.march(0.0);
+}
+
+void TipContact::hand_over(double share) {
+  lateral_hold_ = share >= 1.0 ? std::numeric_limits<double>::infinity()
+                               : tissue_.own_yield(ContactCompliance::kTip) * share / (1.0 - share);
+}
+
+// A bevelled tip, by one of two laws.
+//
+// offset: the tip's wedge cuts under ψ to the axis, h = d tan ψ beside it after a cut of length d. The point that cuts
+// is part of the needle, so the cut cannot leave the shaft: the way back to the axis holds it at g = 2R tan ψ. Shaft
+// contacts come to lie on that line, the tissue draws the shaft towards it, and the needle bends.
+//
+// force: the tissue pushes the tip towards its sharp side by a share of the tip's axial force; the opposite acts on the
+// tissue. Where shaft contacts have taken over the tip's lateral hold, its lateral rows stay in the system as soft as
+// rows may be, and carry this force.
+
+Vec3 Bevel::sharp_side(const Pose& base, const Vec3& tangent) {
+  const Vec3 axis = base.rotation * Vec3::UnitZ();
+  return Eigen::Quaterniond::FromTwoVectors(axis, tangent) * (base.rotation * Vec3::UnitX());
+}
+
+/// What a bevel of law `offset` adds to the direction of the cut, so that the cut leaves the axis at ψ and goes over to
+/// the line g beside it.
+Vec3 TipContact::lead_of_bevel(const Vec3& tangent) const {
+  const double slope = settings_.bevel.slope();
+  if (slope == 0.0) return Vec3::Zero();
+  const Vec3 side = Bevel::sharp_side(base_, tangent);
+  if (!std::isfinite(lateral_hold_)) return slope * side;  // the way back does the rest
+  // While the tip itself is held sideways the end of its track cannot leave it. How far it would be away were it let go
+  // is told by the force that holds it.
+  const double own = tissue_.own_yield(ContactCompliance::kTip);
+  const double beside = -(lateral_hold_ + own) * force.dot(side);
+  return std::clamp(slope - beside / settings_.merge_mm, 0.0, slope) * side;
+}
+
+bool TipContact::has_lateral_rows() const { return std::isfinite(lateral_hold_) || settings_.bevel.pushes(); }
+
+double TipContact::lateral_softness() const {
+  if (std::isfinite(lateral_hold_)) return lateral_hold_;
+  if (!settings_.bevel.pushes()) return 0.0;
+  return kNotHeld * tissue_.compliance()(ContactCompliance::kTip, ContactCompliance::kTip).trace() / 3.0;
+}
+
+Vec3 TipContact::bevel_force() const {
+  if (!settings_.bevel.pushes()) return Vec3::Zero();
+  const Vec3 t = tangent();
+  return -settings_.bevel.force_ratio * std::max(0.0, force.dot(t)) * Bevel::sharp_side(base_, t);
+}
+
+}  // namespace stylet

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/tip/tip_path.hpp"
+
+#include "coupling/step_events.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+/// [mm] A point of the surface is not inside by this much. Raised, a tip that is just inside counts as outside.
+constexpr double kAtSurface_mm = 1e-6;
+}  // namespace
+
+TipPath::TipPath(const InsertionTissue& mesh, const CouplingSettings& settings, const Pose& base, const Needle& needle,
+                 TissueResponse& tissue)
+    : tip(settings, *mesh.locator, base, needle, tissue),
+      tracks(settings.capacity, settings.join_mm),
+      marks(mesh, settings, tissue),
+      mesh_(mesh),
+      settings_(settings),
+      needle_(needle),
+      tissue_(tissue) {}
+
+void TipPath::place_in_air(const Vec3& tip_now) {
+  phase_ = TipPhase::air;
+  air_tip_ = tip_now;
+  forget_entry();
+}
+
+void TipPath::forget_entry() {
+  awaited_entry_.reset();
+  went_past_surface_ = false;
+}
+
+bool TipPath::in_tissue(const Vec3& x) const { return mesh_.locator->find(x - kAtSurface_mm * tangent()).has_value(); }
+
+/// Where the way back along a straight needle from a tip inside the tissue comes out of it, if that is no further than
+/// its diameter.
+std::optional<Vec3> TipPath::surface_behind(const Vec3& x) const {
+  if (!in_tissue(x)) return std::nullopt;
+  const Vec3 from = needle_.point(0.0);
+  const auto crossing = mesh_.locator->first_entry(from, x);
+  if (!crossing) return std::nullopt;
+  const Vec3 surface = from + crossing->t * (x - from);
+  return (x - surface).norm() <= settings_.merge_mm ? std::optional(surface) : std::nullopt;
+}
+
+bool TipPath::meet_surface(const Vec3& from, const Vec3& to, StepReport& report) {
+  if (went_past_surface_) {
+    if (mesh_.locator->find(to)) {
+      report.flags |= StepReport::compliance_missing;
+      return false;
+    }
+    forget_entry();
+    return true;
+  }
+  const bool waited = awaited_entry_.has_value();
+  awaited_entry_.reset();
+  const auto crossing = mesh_.locator->first_entry(from, to);
+  if (!crossing) return true;
+  const Vec3 x = from + crossing->t * (to - from);
+  const Vec3 inwards = -mesh_.locator->face_normal(crossing->tet, crossing->local);
+  if (inwards.dot(tangent()) < settings_.grazing_cos) {
+    add_event(report, InsertionEventKind::grazed, region_of(mesh_, crossing->tet));
+    return true;
+  }
+  went_past_surface_ = waited && (to - x).norm() > settings_.merge_mm;
+  if (went_past_surface_ || !tissue_.compliance().available(crossing->tet)) {
+    report.flags |= StepReport::compliance_missing;
+    awaited_entry_ = {x, tangent(), crossing->tet};
+    return false;
+  }
+  touch_surface(*crossing, x, report,
+                phase_ == TipPhase::exited ? InsertionEventKind::re_entered : InsertionEventKind::skin_contact);
+  return true;
+}
+
+/// The tip touches the patient's surface from outside: a track starts there, or an earlier one that begins there goes
+/// on, or the present one does behind a gap outside the tissue.
+void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report, InsertionEventKind kind) {
+  const int region = region_of(mesh_, crossing.tet);
+  const Vec3 t = tangent();
+  const MaterialPoint at{crossing.tet, mesh_.locator->weights(crossing.tet, x)};
+  Track& track = tracks.now;
+  add_event(report, kind, region);
+  tissue_.leave_behind(track, 1.0);
+
+  bool joins = false;
+  if (kind == InsertionEventKind::skin_contact) {
+    joins = tracks.begin(x, t);
+    marks.go_on_from(track, (joins ? 1.0 : 0.5) * settings_.spacing_mm);
+  } else {
+    track.end_xi += (x - track.end).norm();
+    track.open = false;
+    marks.go_on_from(track, 0.5 * settings_.spacing_mm);
+  }
+  tissue_.compliance().enter_by(laws(region).rigid ? 0.0 : std::max(laws(region).puncture_N, laws(region).cutting_N),
+                                t);
+  tissue_.begin_tip(track.end_xi);
+  if (joins) {
+    tip.put(track.end, track.end_at, !track.open, TipContact::State::open);
+    tip.ahead.be_tissue(laws(region_of(mesh_, track.end_at.tet)).cutting_N);
+    phase_ = TipPhase::in_track;
+  } else {
+    tip.put(x, at, true, TipContact::State::stick);
+    const double membrane = membrane_force(mesh_.laws, -1, region);
+    tip.ahead.be_outer_surface(crossing.tet, -mesh_.locator->face_normal(crossing.tet, crossing.local), membrane,
+                               laws(region).cutting_N);
+    phase_ = std::isinf(membrane) ? TipPhase::bone : TipPhase::pressing;
+    if (std::isinf(membrane)) add_event(report, InsertionEventKind::bone_contact, region);
+    track.end = x;
+    track.end_at = at;
+  }
+  if (tip.cut.is_stale()) tissue_.move_tip(at, x);  // the compliance at the surface stands in for it
+}
+
+void TipPath::break_surface(double hand_N, StepReport& report) {
+  ++report.pivots;
+  ++tip.toggles;
+  tip.set_state(TipContact::State::cut);
+  add_event(report, InsertionEventKind::puncture, region_of(mesh_, tip.ahead.behind()), hand_N);
+  tip.ahead.pass(tip.ahead.behind());
+  cross_surface(report);
+}
+
+/// Goes over to the element behind the surface that the end of the track lies on.
+void TipPath::cross_surface(StepReport& report) {
+  const Index behind = tip.ahead.behind();
+  if (behind < 0) {
+    const int before = region_of(mesh_, tip.cut.at().tet);
+    phase_ = TipPhase::exited;
+    tracks.now.open = true;
+    tracks.now.air_from_xi = tracks.now.end_xi;
+    tip.exit();
+    air_tip_ = tip.cut.x();
+    add_event(report, InsertionEventKind::exited, before);
+    return;
+  }
+  const int region = region_of(mesh_, behind);
+  tip.cut.enter(behind);
+  tip.ahead.be_tissue(laws(region).cutting_N);
+  add_event(report, InsertionEventKind::region_entered, region);
+}
+
+void TipPath::commit(StepReport& report) {
+  Track& track = tracks.now;
+  if (tip.touches() && tip.cut.advance() > 0.0) {
+    const double from_xi = track.end_xi;
+    track.end = tip.cut.x();
+    track.end_at = tip.cut.at();
+    track.end_xi += tip.cut.advance();
+    marks.lay(track, tip.cut.x_start(), from_xi, tip.cut.at_start().tet, report);
+  }
+  if (tip.touches() && tip.cut.is_blocked()) {
+    tip.cut.unblock();
+    const auto face = static_cast<std::size_t>(tip.cut.crossing().local);
+    const Index here = tip.cut.at().tet;
+    const Index behind = mesh_.locator->topology().neighbour[static_cast<std::size_t>(here)][face];
+    const int to = region_of(mesh_, behind);
+    const double break_N = to < 0 ? 0.0 : membrane_force(mesh_.laws, region_of(mesh_, here), to);
+    if (to < 0) {
+      tip.ahead.pass(behind);
+      cross_surface(report);
+    } else if (break_N <= laws(to).cutting_N) {  // no membrane, or none stronger than the tissue behind it
+      tip.ahead.pass(behind);
+      cross_surface(report);
+      tip.set_state(TipContact::State::cut);
+    } else {
+      tip.ahead.be_surface(behind, break_N);
+      if (tip.ahead.is_bone()) add_event(report, InsertionEventKind::bone_contact, to);
+    }
+  }
+  if (!tip.touches()) return;
+  if (tip.waits()) report.flags |= StepReport::compliance_missing;
+  switch (tip.state()) {
+    case TipContact::State::open:
+      phase_ = TipPhase::in_track;
+      break;
+    case TipContact::State::cut:
+      phase_ = TipPhase::cutting;
+      break;
+    case TipContact::State::stick:
+      phase_ = tip.ahead.is_bone() ? TipPhase::bone : TipPhase::pressing;
+      break;
+  }
+}
+
+void TipPath::pass_open_end(const ContactForces& forces, StepReport& report) {
+  const Track& track = tracks.now;
+  if (!track.open) return;
+  const Vec3 shift = tissue_.displacement(ContactCompliance::kTip, forces);
+  const double ahead = tangent().dot(track.end + shift - tip_now());
+  const Vec3 now = tip_now() - shift;
+  if (ahead > 0.0 && phase_ == TipPhase::exited) {
+    phase_ = TipPhase::in_track;
+    forget_entry();
+    add_event(report, InsertionEventKind::re_entered, region_of(mesh_, track.end_at.tet));
+  } else if (ahead <= 0.0 && phase_ == TipPhase::in_track) {
+    phase_ = TipPhase::exited;
+    add_event(report, InsertionEventKind::exited, region_of(mesh_, track.end_at.tet));
+  }
+  if (phase_ != TipPhase::exited || meet_surface(air_tip_, now, report)) air_tip_ = now;
+}
+
+/// On curved or tilted skin a tip beside its entry may be behind it and yet in the tissue, and a needle that is drawn
+/// out is in its track until it is out, however far its hand is beside it.
+bool TipPath::has_left(bool drawn_out) const {
+  if (tip.holds()) return false;
+  const Vec3 t = tangent();
+  const Vec3 from_entry = tip_now() - tracks.now.entry;
+  const double deep = t.dot(from_entry);
+  const double beside = (from_entry - deep * t).norm();
+  const bool beside_mouth = deep < settings_.spacing_mm && beside > settings_.join_mm && phase_ != TipPhase::exited;
+  if (beside_mouth && !drawn_out) return true;
+  return (deep < 0.0 || beside_mouth) && !in_tissue(tip_now());
+}
+
+void TipPath::finish() {
+  tissue_.leave_behind(tracks.now, 1.0);
+  tracks.finish();
+  if (tip.cut.at().tet >= 0) tissue_.set_place(ContactCompliance::kTip, {tip.cut.at(), Vec3::Zero()});
+  tip.forget();
+}
+
+/// A needle that left its track sideways is to meet the surface where its shaft does, unless it is so far inside by now
+/// that this would be a blow. A bowed needle swings that far when it slips off.
+void TipPath::come_out(StepReport& report) {
+  place_in_air(surface_behind(tip_now()).value_or(tip_now()));
+  add_event(report, InsertionEventKind::withdrawn, -1);
+}
+
+NeedleWhereabouts TipPath::whereabouts() const {
+  if (awaited_entry_) return *awaited_entry_;
+  if (is_outside()) return {air_tip_, tangent(), -1};
+  const bool cuts = tip.state() == TipContact::State::cut;
+  return {tip.cut.x(), cuts ? tip.cut.direction() : tangent(), tip.cut.at().tet};
+}
+
+}  // namespace stylet

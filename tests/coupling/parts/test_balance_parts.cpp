@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of the balance, without the balance: states of contacts, prediction, damping, what is kept of the tissue.
+#include "coupling/balance/contact_states.hpp"
+#include "coupling/balance/iterate.hpp"
+#include "coupling/balance/needle_damping.hpp"
+#include "coupling/balance/needle_side.hpp"
+#include "coupling/balance/predictor.hpp"
+#include "coupling/balance/tissue_block.hpp"
+#include "coupling/hand_force.hpp"
+#include "coupling/parts/simple_tissue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace stylet {
+namespace {
+
+using test::SimpleTissue;
+using State = ShaftContact::State;
+
+/// A tip that cuts at 12 mm and three contacts of the shaft behind it.
+struct NeedleInTissue {
+  NeedleInTissue()
+      : marks(block.insertion, block.settings, *block.tissue),
+        shaft(block.insertion, block.settings, block.needle, *block.tissue),
+        tip(block.settings, *block.locator, block.needle.base(), block.needle, *block.tissue),
+        contacts{block.needle, *block.tissue, tip, shaft} {
+    marks.go_on_from(track, 2.0);
+    track.end = Vec3(1, 2, 12);
+    track.end_at = block.at(track.end);
+    track.end_xi = 12.0;
+    StepReport report;
+    marks.lay(track, Vec3(1, 2, 0), 0.0, block.at(Vec3(1, 2, 0.1)).tet, report);
+    block.put_tip(track.end);
+    shaft.wake_and_drop(track, marks, Vec3::Zero(), report);
+    shaft.share_length(track);
+    tip.put(track.end, track.end_at, true, TipContact::State::cut);
+    tip.ahead.be_tissue(0.3);
+    tip.begin(contacts.forces());
+  }
+  ShaftContact& contact(int load) { return contacts.of_shaft(load); }
+
+  SimpleTissue block;
+  Track track;
+  Marks marks;
+  ShaftContacts shaft;
+  TipContact tip;
+  Contacts contacts;
+};
+
+TEST(Contacts, AreNumberedFromTheTip) {
+  NeedleInTissue needle;
+  ASSERT_EQ(needle.contacts.count(), 4);
+  EXPECT_EQ(needle.contacts.point(0), ContactCompliance::kTip);
+  EXPECT_EQ(needle.contacts.arc(0), needle.block.needle.length());
+  EXPECT_NEAR(needle.contacts.arc(1), needle.block.needle.length() - 10.0, 1e-9);
+  needle.contact(1).s = -3.0;
+  EXPECT_EQ(needle.contacts.arc(1), 0.0);
+}
+
+TEST(ContactStates, AStickingContactSlidesTheWayItIsPushedBeyondItsLimit) {
+  NeedleInTissue needle;
+  ContactStates states(needle.contacts);
+  states.begin(6);
+  StepReport report;
+  ShaftContact& contact = needle.contact(2);
+  const double limit = contact.law.static_N_per_mm * contact.length;
+  for (const double sign : {1.0, -1.0}) {
+    contact.state = State::stick;
+    EXPECT_LT(states.contradiction(2, {.axial = 0.99 * sign * limit}), 0.0);
+    const ContactStates::Trial beyond{.axial = 1.01 * sign * limit};
+    EXPECT_NEAR(states.contradiction(2, beyond), 0.01 * limit, 1e-12);
+    states.change(2, beyond, report);
+    EXPECT_EQ(contact.state, sign > 0.0 ? State::forward : State::backward);
+  }
+  EXPECT_EQ(report.pivots, 2);
+}
+
+TEST(ContactStates, ASlidingContactThatTurnsRoundIsHeldWhereItWas) {
+  NeedleInTissue needle;
+  ContactStates states(needle.contacts);
+  states.begin(6);
+  StepReport report;
+  ShaftContact& contact = needle.contact(2);
+  contact.state = State::forward;
+  contact.reach = 1.0;
+  contact.s_start = contact.s;
+  contact.s += 0.01;
+  EXPECT_EQ(states.contradiction(2, {.slides = 0.5}), 0.0);
+  EXPECT_GT(states.contradiction(2, {.slides = -0.01}), 0.0);
+  states.change(2, {.slides = -0.01}, report);
+  EXPECT_EQ(contact.state, State::stick);
+  EXPECT_EQ(contact.s, contact.s_start);
+}
+
+TEST(ContactStates, FrictionStopsGrowingBeyondItsSpeedAndGrowsAgainBelow) {
+  NeedleInTissue needle;
+  ContactStates states(needle.contacts);
+  states.begin(6);
+  StepReport report;
+  ShaftContact& contact = needle.contact(2);
+  contact.state = State::forward;
+  contact.reach = 0.1;
+  EXPECT_GT(states.contradiction(2, {.slides = 0.2}), 0.0);
+  states.change(2, {.slides = 0.2}, report);
+  EXPECT_TRUE(contact.fast);
+  EXPECT_EQ(states.contradiction(2, {.slides = 0.2}), 0.0);
+  EXPECT_GT(states.contradiction(2, {.slides = 0.05}), 0.0);
+  states.change(2, {.slides = 0.05}, report);
+  EXPECT_FALSE(contact.fast);
+  EXPECT_EQ(contact.state, State::forward);
+}
+
+TEST(ContactStates, AContactThatChangesTooOftenKeepsItsStateAndTheStepIsFlagged) {
+  NeedleInTissue needle;
+  ContactStates states(needle.contacts);
+  states.begin(2);
+  StepReport report;
+  needle.contact(1).state = State::stick;
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(report.flags & StepReport::contact_cycling, 0u);
+    states.change(1, {.axial = k % 2 == 0 ? 1.0 : 0.0, .slides = -1.0}, report);
+  }
+  EXPECT_NE(report.flags & StepReport::contact_cycling, 0u);
+  EXPECT_EQ(states.contradiction(1, {.axial = 100.0, .slides = -1.0}), 0.0);
+}
+
+TEST(ContactStates, TheTipCutsAboveItsLimitAndComesAwayWherePulled) {
+  NeedleInTissue needle;
+  ContactStates states(needle.contacts);
+  states.begin(6);
+  StepReport report;
+  TipContact& tip = needle.tip;
+  tip.set_state(TipContact::State::stick);
+  EXPECT_LE(states.contradiction(0, {.axial = 0.29}), 0.0);
+  EXPECT_NEAR(states.contradiction(0, {.axial = 0.31}), 0.01, 1e-12);
+  states.change(0, {.axial = 0.31}, report);
+  EXPECT_EQ(tip.state(), TipContact::State::cut);
+  EXPECT_NEAR(states.contradiction(0, {.axial = 0.2}), 0.1, 1e-12) << "less than what keeps the cut going";
+  states.change(0, {.axial = 0.2}, report);
+  EXPECT_EQ(tip.state(), TipContact::State::stick);
+  EXPECT_NEAR(states.contradiction(0, {.axial = -0.1}), 0.1, 1e-12);
+  states.change(0, {.axial = -0.1}, report);
+  EXPECT_EQ(tip.state(), TipContact::State::open);
+}
+
+TEST(ContactStates, ASurfaceAheadBreaksOnABalanceOnly) {
+  NeedleInTissue needle;
+  ContactStates states(needle.contacts);
+  states.begin(6);
+  needle.tip.set_state(TipContact::State::stick);
+  needle.tip.ahead.be_surface(0, 0.8);
+  EXPECT_EQ(states.contradiction(0, {.axial = 5.0}), 0.0);
+}
+
+/// One sub-step in which the base moves on by `way` along z and all forces change by `gain`.
+void pass(Predictor& predictor, NeedleInTissue& needle, double way, double gain) {
+  const Pose before = needle.block.needle.base();
+  Pose now = before;
+  now.origin.z() += way;
+  needle.block.needle.set_base(now);
+  predictor.begin(before, now, needle.block.needle, needle.tip, needle.shaft.all());
+  needle.tip.force += Vec3(0, 0, gain);
+  for (ShaftContact& contact : needle.shaft.all()) {
+    contact.force += Vec3(0, 0, gain);
+    contact.toggles = 0;
+  }
+  predictor.end(0.0, true, needle.block.needle, needle.tip, needle.shaft.all());
+}
+
+/// The force of the tip that is expected in the next sub-step, less the one it has.
+double expected_gain(Predictor& predictor, NeedleInTissue& needle, double way) {
+  const Pose before = needle.block.needle.base();
+  Pose now = before;
+  now.origin.z() += way;
+  predictor.begin(before, now, needle.block.needle, needle.tip, needle.shaft.all());
+  const double force = needle.tip.force.z();
+  predictor.go_on(needle.block.needle, needle.tip, needle.shaft.all());
+  return needle.tip.force.z() - force;
+}
+
+TEST(Predictor, GoesOnInProportionToTheBasesMotion) {
+  NeedleInTissue needle;
+  Predictor predictor(needle.block.needle.state().size());
+  pass(predictor, needle, 0.1, 0.02);
+  pass(predictor, needle, 0.1, 0.02);
+  pass(predictor, needle, 0.1, 0.02);
+  EXPECT_NEAR(expected_gain(predictor, needle, 0.05), 0.01, 1e-12);
+  for (const ShaftContact& contact : needle.shaft.all()) EXPECT_NEAR(contact.force.z(), 0.07, 1e-12);
+}
+
+TEST(Predictor, ChangesItsPaceAsItDidBefore) {
+  NeedleInTissue needle;
+  Predictor predictor(needle.block.needle.state().size());
+  for (int k = 1; k <= 4; ++k) pass(predictor, needle, 0.1, 0.01 * k);
+  EXPECT_NEAR(expected_gain(predictor, needle, 0.1), 0.05, 1e-12) << "0.01, 0.02, 0.03, 0.04, …";
+}
+
+TEST(Predictor, ExpectsNothingAfterATurnAndAfterAStepWithoutABalance) {
+  NeedleInTissue needle;
+  Predictor predictor(needle.block.needle.state().size());
+  for (int k = 0; k < 3; ++k) pass(predictor, needle, 0.1, 0.02);
+  EXPECT_EQ(expected_gain(predictor, needle, -0.1), 0.0);
+  for (int k = 0; k < 3; ++k) pass(predictor, needle, 0.1, 0.02);
+  predictor.interrupt();
+  EXPECT_EQ(expected_gain(predictor, needle, 0.1), 0.0);
+}
+
+TEST(Predictor, GoesBackToWhereTheSubStepBegan) {
+  NeedleInTissue needle;
+  Predictor predictor(needle.block.needle.state().size());
+  for (int k = 0; k < 3; ++k) pass(predictor, needle, 0.1, 0.02);
+  for (ShaftContact& contact : needle.shaft.all()) contact.slid = -0.1;
+  const Vec3 force = needle.tip.force;
+  const double s = needle.contact(1).s;
+  EXPECT_NE(expected_gain(predictor, needle, 0.1), 0.0);
+  EXPECT_NE(needle.contact(1).s, s);
+  predictor.go_back(needle.block.needle, needle.tip, needle.shaft.all());
+  EXPECT_EQ(needle.tip.force, force);
+  EXPECT_EQ(needle.contact(1).s, s);
+}
+
+TEST(NeedleDamping, GrowsWithTheTimeOnBoneUpToItsMost) {
+  NeedleDamping damping(3e-3);
+  EXPECT_EQ(damping.begin(1e-3, false), 0.0);
+  EXPECT_NEAR(damping.begin(1e-3, true), 1e-4, 1e-12);
+  double last = 0.0;
+  for (int k = 0; k < 100; ++k) last = damping.begin(1e-3, true);
+  EXPECT_EQ(last, 3e-3);
+  EXPECT_EQ(damping.begin(1e-3, false), 0.0);
+}
+
+TEST(NeedleDamping, GrowsWhereNoBalanceIsFoundAndWearsOffAgain) {
+  NeedleDamping damping(3e-3);
+  double before = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    damping.end(false);
+    const double now = damping.begin(1e-3, false);
+    EXPECT_GT(now, before);
+    before = now;
+  }
+  for (int k = 0; k < 100 && before > 0.0; ++k) {
+    damping.end(true);
+    const double now = damping.begin(1e-3, false);
+    EXPECT_LT(now, before);
+    before = now;
+  }
+  EXPECT_EQ(before, 0.0);
+}
+
+TEST(HandForce, BearsWhatAllContactsLeave) {
+  NeedleInTissue needle;
+  HandForce hand(needle.block.needle.base(), needle.block.needle);
+  needle.tip.force = Vec3(0, 0.1, 0.5);
+  for (ShaftContact& contact : needle.shaft.all()) contact.force = Vec3(0.01, 0, 0.1);
+  EXPECT_NEAR((hand.now(needle.contacts.forces()) - Vec3(0.03, 0.1, 0.8)).norm(), 0.0, 1e-12);
+}
+
+TEST(HandForce, AtAPunctureIsFoundBetweenTheBalances) {
+  NeedleInTissue needle;
+  HandForce hand(needle.block.needle.base(), needle.block.needle);
+  needle.tip.force = Vec3(0, 0, 0.6);
+  hand.begin(needle.contacts.forces(), true);
+  const Vec3 start = needle.tip.force;
+  needle.tip.force = Vec3(0, 0, 1.4);
+  for (ShaftContact& contact : needle.shaft.all()) contact.force = Vec3(0, 0, 0.2);
+  EXPECT_NEAR(hand.when_tip_reached(1.0, start, needle.contacts.forces()), 0.5 * 0.6 + 0.5 * 2.0, 1e-12);
+  hand.begin(needle.contacts.forces(), false);
+  EXPECT_NEAR(hand.when_tip_reached(1.0, start, needle.contacts.forces()), 2.0, 1e-12) << "none was there before";
+}
+
+TEST(Iterate, IsComeBackTo) {
+  NeedleInTissue needle;
+  Iterate kept(needle.block.needle.state().size(), needle.block.settings.capacity);
+  needle.tip.force = Vec3(1, 2, 3);
+  needle.tip.cut.march(0.2);
+  needle.contact(2).force = Vec3(0, 0, 1);
+  const double s = needle.contact(2).s;
+  kept.keep(needle.contacts);
+  needle.tip.force.setZero();
+  needle.tip.cut.march(0.7);
+  needle.contact(2).force.setZero();
+  needle.contact(2).s = 0.0;
+  kept.restore(needle.contacts);
+  EXPECT_EQ(needle.tip.force, Vec3(1, 2, 3));
+  EXPECT_NEAR(needle.tip.cut.advance(), 0.2, 1e-12);
+  EXPECT_EQ(needle.contact(2).force, Vec3(0, 0, 1));
+  EXPECT_EQ(needle.contact(2).s, s);
+}
+
+/// A random symmetric compliance with so many points.
+void fill(MatX& A, int points, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const Eigen::Index n = 3 * static_cast<Eigen::Index>(points);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) A(i, j) = A(j, i) = number(random);
+}
+
+TEST(NeedleSide, AContactThatIsAddedHasItsRowsInBothTriangles) {
+  NeedleSide side(5);
+  side.count = 2;
+  fill(side.N, 2, 1);
+  auto rows = side.next_rows();
+  ASSERT_EQ(rows.rows(), 3);
+  ASSERT_EQ(rows.cols(), 9);
+  for (Eigen::Index j = 0; j < 9; ++j)
+    for (Eigen::Index i = 0; i < 3; ++i) rows(i, j) = static_cast<double>(10 * i + j);
+  rows.rightCols<3>() = Mat3::Identity();
+  side.add_contact();
+  EXPECT_EQ(side.count, 3);
+  EXPECT_EQ(side.compliance(), side.compliance().transpose());
+}
+
+TEST(NeedleSide, LendsItsSpringsOnlyWhereItIsSupported) {
+  NeedleSide side(4);
+  side.count = 4;
+  side.spring[0].stiffness = side.spring[2].stiffness = 1.0;
+  EXPECT_TRUE(side.shaft_springs().empty());
+  EXPECT_FALSE(side.lends_at_tip());
+  side.supported = true;
+  ASSERT_EQ(side.shaft_springs().size(), 3u);
+  EXPECT_EQ(side.shaft_springs()[1].stiffness, 1.0);
+  EXPECT_TRUE(side.lends_at_tip());
+}
+
+TEST(TissueBlock, IsTheCompliancesBlockOfThePresentContacts) {
+  NeedleInTissue needle;
+  ContactRows rows(needle.block.settings, 10);
+  ContactSystem system(rows, 10);
+  TissueBlock block(system, 10);
+  const auto expect_whole = [&] {
+    const ContactCompliance& compliance = needle.block.tissue->compliance();
+    for (int c = 0; c < needle.contacts.count(); ++c) {
+      for (int d = 0; d < needle.contacts.count(); ++d) {
+        const Mat3 block_of_A = system.A.block<3, 3>(3 * c, 3 * d);
+        EXPECT_EQ(block_of_A, compliance(needle.contacts.point(c), needle.contacts.point(d)));
+      }
+    }
+  };
+  EXPECT_EQ(block.renew(needle.contacts), 0);
+  block.gather(needle.contacts, 0);
+  expect_whole();
+  EXPECT_EQ(block.renew(needle.contacts), 4) << "nothing is new";
+  needle.shaft.all()[2].s = needle.block.needle.length();
+  StepReport report;
+  needle.track.marks.resize(2);
+  needle.shaft.wake_and_drop(needle.track, needle.marks, Vec3::Zero(), report);
+  EXPECT_EQ(block.renew(needle.contacts), 3);
+  EXPECT_EQ(block.before(), 4);
+  block.gather(needle.contacts, 3);
+  expect_whole();
+}
+
+TEST(TissueBlock, ForeseesHowGapsChangeWithACutThatLeadsAside) {
+  NeedleInTissue needle;
+  ContactRows rows(needle.block.settings, 10);
+  ContactSystem system(rows, 10);
+  TissueBlock block(system, 10);
+  rows.take_places(needle.contacts);
+  block.gather(needle.contacts, block.renew(needle.contacts));
+  const Vec3 aside = Vec3(0.2, 0.0, 1.0).normalized();
+  needle.tip.cut.aim(aside);
+  block.gather_drift(needle.contacts, rows);
+  EXPECT_NEAR((rows.tip.drift.head<3>() - (aside - Vec3::UnitZ())).norm(), 0.0, 1e-12)
+      << "this tissue is the same everywhere";
+}
+
+}  // namespace
+}  // namespace stylet
