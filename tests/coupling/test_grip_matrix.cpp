@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The matrix of the shaft's contacts is factorised once, and takes in what changes: against a dense solution.
-#include "coupling/grip_matrix.hpp"
+#include "coupling/balance/grip_matrix.hpp"
 
 #include <gtest/gtest.h>
 

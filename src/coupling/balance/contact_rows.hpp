@@ -2,7 +2,7 @@
 #pragma once
 
 #include "coupling/balance/contacts.hpp"
-#include "coupling/grip_matrix.hpp"
+#include "coupling/balance/grip_matrix.hpp"
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/dense_kernels.hpp"
-#include "coupling/grip_matrix.hpp"
+#include "coupling/balance/grip_matrix.hpp"
 
 #include <utility>
 
