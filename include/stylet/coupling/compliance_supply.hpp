@@ -5,7 +5,7 @@
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
 #include "stylet/fem/compliance_store.hpp"
 
-#include <atomic>
+#include <cstddef>
 #include <memory>
 
 namespace stylet {
@@ -19,21 +19,22 @@ struct NeedleWhereabouts {
 
 /// Brings compliance to where a needle is about to need it, and forgets what is far behind, so that memory is bounded.
 ///
-/// There are two sides. The step's owns store and kernel, reads them and changes them, wait-free. The worker's solves,
-/// on a thread of its own (realtime/ComplianceWorker) or, between steps, on the same (work_through()). They pass one
-/// parcel to and fro. The worker puts rows into it, and asks for slots whose nodes are far from the tip; the step takes
-/// the rows over, gives up those slots that no contact needs, and writes down where the needle is. What the worker must
-/// know of the store it keeps in a list of its own, which the parcels keep right. docs/theory/coupling.md §2.
+/// There are two sides. The step's side owns store and kernel, reads them and changes them, wait-free. The worker's
+/// side solves, on a thread of its own (realtime/ComplianceWorker) or, between steps, on the step's (work_through()).
+/// They pass one parcel to and fro. The worker puts rows into it, and asks for slots whose nodes are far from the tip;
+/// the step takes the rows over, gives up those slots that no contact needs, and writes down where the needle is. What
+/// the worker must know of the store it keeps in a list of its own, which the parcels keep right.
+/// docs/theory/coupling.md §2.
 class ComplianceSupply {
  public:
   struct Settings {
-    double radius_mm = 6.0;    ///< around the way …
-    double ahead_mm = 0.0;     ///< … from the tip to so far before it
-    Index spare_nodes = 1500;  ///< nodes beyond those that were there before, which are never given up
+    double radius_mm = 6.0;    ///< nodes of elements within this distance of the needle's way ahead are brought in
+    double ahead_mm = 0.0;     ///< length of the way ahead, from the tip on
+    Index spare_nodes = 1500;  ///< room for nodes beyond those that were there before, which are never given up
   };
 
-  /// @param store null: the engine keeps K⁻¹ by itself
-  /// @param kernel null: there is no near field
+  /// @param store null where the engine keeps K⁻¹ by itself
+  /// @param kernel null where there is no near field
   ComplianceSupply(std::shared_ptr<const Tissue> tissue, std::shared_ptr<ComplianceStore> store,
                    std::shared_ptr<MeshKernel> kernel, const Locator& locator);
   ~ComplianceSupply();
@@ -43,7 +44,7 @@ class ComplianceSupply {
   /// Whether serve() has something to do.
   [[nodiscard]] bool awaits_step() const noexcept;
   /// Takes over what the worker has made, lets go of what it asks for. Wait-free; does not allocate, free or solve.
-  /// @param user its nodes stay
+  /// @param user the nodes that its points need stay
   void serve(const ContactCompliance& user, const NeedleWhereabouts& needle) noexcept;
 
   /// Brings in all that is wanted around the needle, or as much as there is room for. Not for the step: solves on this
@@ -57,9 +58,9 @@ class ComplianceSupply {
   void close();
 
   enum class Work {
-    waiting,  ///< for a step
+    waiting,  ///< a step has to come first
     idle,     ///< nothing is wanted
-    full,     ///< something is, but nothing can be given up for it
+    full,     ///< something is wanted, but nothing can be given up for it
     done,     ///< rows are on their way
     failed    ///< memory, or threads, ran out; nothing has changed
   };
