@@ -2,6 +2,10 @@
 #pragma once
 
 #include "needle/beam_shape.hpp"
+#include "needle/load_pulls.hpp"
+#include "needle/scaled_chain.hpp"
+#include "needle/shifted_factor.hpp"
+#include "needle/virtual_work.hpp"
 #include "stylet/needle/needle.hpp"
 
 #include <span>
@@ -9,40 +13,39 @@
 
 namespace stylet::beam {
 
-/// Gradient, Hessian and their factor for a shape under dead loads, in scaled unknowns y: κ_e = scale ∘ y, so that the
-/// elastic part of the Hessian is the unit matrix. Unknowns run from the tip to the base: then a load touches only the
-/// end of its column of Jᵀ, and forward substitution keeps the zeros before it.
+/// Gradient, Hessian and its factor for a shape under dead loads, in the scaled unknowns of ScaledChain, where the
+/// elastic part of the Hessian is the unit matrix. J is the derivative of the load points with respect to them.
 class BeamTangent {
  public:
   BeamTangent(const BeamShape& shape, int load_capacity);
 
-  /// Gradient, Hessian, factor, and L⁻¹Jᵀ for these loads. @param base_rotation base axes to LPS
+  /// Computes gradient, Hessian, its factor, and L⁻¹Jᵀ for these loads. @param base_rotation base axes to LPS
   /// @param springs [N/mm] LPS, one per load or none: added to the Hessian as Jᵀ G J
   /// @return false where it was given up: there is no factor then
   bool assemble(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                 std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift);
-  /// The same in two pieces: all but L⁻¹Jᵀ, then that.
+  /// The same in two pieces: all but L⁻¹Jᵀ, then L⁻¹Jᵀ.
   bool factorise(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
                  std::span<const Mat3> springs, Indefinite otherwise);
   void solve();
 
   /// J H⁻¹ Jᵀ [mm/N] (3w × 3w) LPS and -J H⁻¹ g [mm] (3w) LPS.
   void condense(Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free) const;
-  /// Of the first of both the rows and columns of loads first … last − 1, as far as they are of those and the loads
+  /// A part of J H⁻¹ Jᵀ: the rows and columns of loads first … last − 1, as far as they belong to these loads and those
   /// before them. @param first a multiple of kCondensed
   void condense(Eigen::Ref<MatX> compliance, Eigen::Index first, Eigen::Index last) const;
 
-  [[nodiscard]] Eigen::Index load_count() const { return static_cast<Eigen::Index>(last_pull_.size()); }
+  [[nodiscard]] Eigen::Index load_count() const { return loads_.count(); }
 
-  /// Adds a load after the first ones there: its column of Jᵀ for where it is now, with the levers, the Hessian and the
-  /// other columns of assemble().
+  /// Adds a load after the first ones there. Its columns of Jᵀ are made for where it is now, with the derivatives of
+  /// the chain, the Hessian and the other columns that assemble() left.
   /// @param loads (w) those there, or the first of them, and the new one last
-  /// @param compliance [mm/N] (3 × 3w) LPS rows of J H⁻¹ Jᵀ, written
-  /// @return false, and nothing done, when there is no room or no factor, or there were fewer
+  /// @param compliance [mm/N] (3 × 3w) LPS, the last three rows of J H⁻¹ Jᵀ, written
+  /// @return false, and nothing done, when there is no room or no factor, or there were fewer loads
   bool append(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
               Eigen::Ref<MatX> compliance);
 
-  /// Gradient for this shape and these loads; Hessian, J and springs as assemble() left them.
+  /// Computes the gradient for this shape and these loads; Hessian, J and springs remain as assemble() left them.
   /// @param free -J H⁻¹ g [mm] (3w) LPS, written
   /// @return false, and nothing done, when there were fewer loads, or there is no factor
   bool relax(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads,
@@ -59,44 +62,31 @@ class BeamTangent {
   [[nodiscard]] VecX gradient() const;
   [[nodiscard]] MatX hessian() const;
   /// Multiple of the elastic Hessian that was added to make it positive definite, 0 below the buckling load.
-  [[nodiscard]] double elastic_shift() const { return elastic_shift_; }
+  [[nodiscard]] double elastic_shift() const { return hessian_.shift(); }
 
  private:
   void reserve(Eigen::Index loads);
-  void keep_first(std::size_t loads);
-  void sum_work(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
-  void locate(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load);
+  void add_load(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load);
   void assemble_energy(const BeamShape& shape);
-  [[nodiscard]] bool factorise_shifted(Indefinite otherwise);
-  void assemble_jacobian(const Mat3& base_rotation, Eigen::Index load);
   void add_springs(std::span<const Mat3> springs);
   void move_loads(Eigen::Ref<VecX>& free) const;
   template <class Function>
   void for_groups(Function&& function) const;
-  [[nodiscard]] Eigen::Index row(int e) const { return dof(elements_ - 1 - e); }
-  [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const;
+  [[nodiscard]] Eigen::Index start(Eigen::Index first_load, Eigen::Index last_load) const {
+    return chain_.row(loads_.last_moved(first_load, last_load));
+  }
 
-  int elements_;
-  std::vector<Vec3> scale_;            ///< (n) κ_e = scale_e ∘ y_e, scale_e = (weight_e l diag(EI, EI, GJ))^-1/2
-  std::vector<Pull> pulls_;            ///< base axes, load by load
-  std::vector<Pull> acting_;           ///< pulls of sum_work(), …
-  std::vector<int> next_;              ///< … for each the next one on the same element, or -1, …
-  std::vector<int> first_;             ///< (n) … and the first one of an element
-  std::vector<Vec3> work_;             ///< (n) Σ_c (∂r_c/∂κ_e)ᵀ f_c [N mm²]
-  unsigned work_revision_ = 0;         ///< of the shape that work_ is of, …
-  Mat3 work_rotation_ = Mat3::Zero();  ///< … and the base, …
-  std::vector<PointLoad> work_loads_;  ///< … and the loads
-  std::vector<int> last_pull_;         ///< (w) where in pulls_ each load's pulls end
-  std::vector<int> last_moved_;        ///< (w) element nearest the tip that moves the load point, -1 = none
-  VecX force_;                         ///< [N] (3w) LPS
-  VecX less_;                          ///< [N] (3w) by how much forces have fallen since
-  MatX H_, L_;                         ///< (3n × 3n) lower triangles, of L_ with its tiles' inverses
-  VecX g_, z_, step_;                  ///< (3n) gradient, L⁻¹ g, work
-  MatX spin_, shift_;                  ///< (3n × 3) scaled Ω_eᵀ, D_eᵀ stacked from the tip
-  std::vector<Mat3> lever_;            ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
-  MatX Y_;                             ///< (3n × 3 capacity) L⁻¹ Jᵀ
-  double elastic_shift_ = 0.0;
-  bool factorised_ = false;  ///< not where it was given up
+  ScaledChain chain_;
+  LoadPulls loads_;          ///< the w loads of J
+  VirtualWork work_;         ///< of the loads that the gradient or an imbalance was last asked for
+  ShiftedFactor hessian_;    ///< (3n × 3n)
+  VecX g_;                   ///< (3n) gradient
+  VecX z_;                   ///< (3n) L⁻¹ g
+  VecX step_;                ///< (3n) work space of step()
+  std::vector<Mat3> lever_;  ///< (n) Σ_c [f_c]× ∂r_c/∂y_e over the loads in and beyond element e
+  VecX force_;               ///< [N] (3w) LPS forces of the loads, as the gradient has them
+  VecX less_;                ///< [N] (3w) LPS by how much these are less in step()
+  MatX Y_;                   ///< (3n × 3 capacity) L⁻¹ Jᵀ; Jᵀ between factorise() and solve()
 };
 
 }  // namespace stylet::beam

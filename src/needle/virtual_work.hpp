@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "needle/beam_shape.hpp"
+#include "stylet/needle/needle.hpp"
+
+#include <span>
+#include <vector>
+
+namespace stylet::beam {
+
+/// The virtual work of point loads per curvature of each element, Σ_c (∂r_c/∂κ_e)ᵀ f_c. The last answer is kept,
+/// because an iteration asks twice for the same shape and loads. Nothing allocates after reserve().
+class VirtualWork {
+ public:
+  explicit VirtualWork(int elements);
+
+  /// Makes room for so many loads.
+  void reserve(Eigen::Index loads);
+
+  /// @param base_rotation base axes to LPS
+  /// @return [N mm²] (one per element) in the elements' axes, valid until the next call
+  [[nodiscard]] std::span<const Vec3> of(const BeamShape& shape, const Mat3& base_rotation,
+                                         std::span<const PointLoad> loads);
+
+ private:
+  [[nodiscard]] bool is_known(const BeamShape& shape, const Mat3& base_rotation,
+                              std::span<const PointLoad> loads) const;
+  void sort_pulls(const BeamShape& shape, const Mat3& base_rotation, std::span<const PointLoad> loads);
+
+  std::vector<Vec3> work_;  ///< (one per element) the last answer
+  // What was asked then.
+  unsigned revision_ = 0;         ///< revision of the shape
+  Mat3 rotation_ = Mat3::Zero();  ///< of the base; zero, which is no rotation, before the first question
+  std::vector<PointLoad> loads_;
+  // The loads' pulls, listed element by element.
+  std::vector<Pull> pulls_;  ///< those that act on an element, in base axes
+  std::vector<int> first_;   ///< (one per element) number in pulls_ of the first one on the element; -1: none
+  std::vector<int> next_;    ///< (one per pull) number of the next one on the same element; -1: none
+};
+
+}  // namespace stylet::beam
