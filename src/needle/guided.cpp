@@ -8,13 +8,9 @@
 namespace stylet {
 
 namespace {
-constexpr int kMostRounds = 60;
 /// A hole bears the shaft with a stiffness that turns as the shaft runs along its edge: a tangent with an older one
-/// serves as long as it differs by no more than this part.
+/// serves as long as it differs by no more than this part. Raised, iterations at a hole's edge are more.
 constexpr double kTurned = 0.02;
-constexpr double kOnPlane_mm = 1e-13;
-/// A shaft more oblique to the hole's axis than this does not run through it (cosine).
-constexpr double kMostOblique = 0.1;
 }  // namespace
 
 GuidedNeedle::GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole, int load_capacity)
@@ -29,63 +25,12 @@ GuidedNeedle::GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole,
 }
 
 void GuidedNeedle::place_guide(const Vec3& hole, const Vec3& axis) {
-  placed_ = true;
-  centre_ = hole;
-  axis_ = axis.normalized();
-  meet();
-}
-
-PointLoad GuidedNeedle::guide_load() const { return {meeting_.s, meeting_.force}; }
-
-double GuidedNeedle::offset() const { return meeting_.offset.norm(); }
-
-/// Arc length where the shaft crosses the plane, by Newton's method kept between bounds.
-bool GuidedNeedle::find_crossing() {
-  const auto before_plane = [this](double s) { return axis_.dot(centre_ - inner_->point(s)); };
-  double low = 0.0;
-  double high = length();
-  if (before_plane(low) < 0.0 || before_plane(high) > 0.0) return false;
-  double s = std::clamp(meeting_.s, low, high);
-  for (int round = 0; round < kMostRounds; ++round) {
-    const AxisPlace at = inner_->place(s);
-    const double ahead = axis_.dot(centre_ - at.point);
-    if (std::abs(ahead) < kOnPlane_mm) break;
-    (ahead > 0.0 ? low : high) = s;
-    double next = s + ahead / axis_.dot(at.tangent);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (next == s) break;
-    s = next;
-  }
-  meeting_.s = s;
-  return true;
-}
-
-void GuidedNeedle::meet() {
-  const double s = meeting_.s;
-  meeting_ = {};
-  meeting_.s = s;
-  if (!placed_ || !find_crossing()) return;
-  const auto [point, t] = inner_->place(meeting_.s);
-  const double cosine = axis_.dot(t);
-  if (cosine < kMostOblique) return;
-  meeting_.crosses = true;
-  const Vec3 away = point - centre_;
-  meeting_.offset = away - axis_ * axis_.dot(away);
-  const double d = meeting_.offset.norm();
-  meeting_.beyond = std::max(0.0, d - hole_.clearance_mm);
-  if (!holds()) return;
-
-  const Vec3 e = d > 0.0 ? Vec3(meeting_.offset / d) : Vec3(Vec3::Zero());
-  const double across = d > 0.0 ? meeting_.beyond / d : 1.0;  // stiffness square to e, over that along it
-  const Mat3 in_plane = Mat3::Identity() - axis_ * axis_.transpose();
-  const Mat3 H = hole_.stiffness_N_per_mm * (across * in_plane + (1.0 - across) * e * e.transpose());
-  const Mat3 P = Mat3::Identity() - t * axis_.transpose() / cosine;
-  meeting_.force = -hole_.stiffness_N_per_mm * meeting_.beyond * (P.transpose() * e);
-  meeting_.stiffness = P.transpose() * H * P;
+  hole_.place(hole, axis.normalized());
+  hole_.meet(*inner_);
 }
 
 /// The hole comes first: loads are added and forgotten at the other end.
-std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const {
+std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> loads, const PointLoad& guide) {
   loads_.assign(1, guide);
   loads_.insert(loads_.end(), loads.begin(), loads.end());
   return loads_;
@@ -95,7 +40,7 @@ std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> l
 std::span<const Mat3> GuidedNeedle::with_guide(std::span<const Mat3> springs, std::size_t loads) {
   assert(springs.empty() || springs.size() == loads);
   springs_.assign(loads + 1, Mat3::Zero());
-  springs_.front() = meeting_.stiffness;
+  springs_.front() = hole_.stiffness();
   std::copy(springs.begin(), springs.end(), springs_.begin() + 1);
   return springs_;
 }
@@ -133,8 +78,8 @@ void GuidedNeedle::take_prepared() {
 }
 
 bool GuidedNeedle::fits() const {
-  if (held_.on != holds()) return false;
-  return !held_.on || (meeting_.stiffness - held_.stiffness).norm() <= kTurned * held_.stiffness.norm();
+  if (held_.on != hole_.holds()) return false;
+  return !held_.on || (hole_.stiffness() - held_.stiffness).norm() <= kTurned * held_.stiffness.norm();
 }
 
 bool GuidedNeedle::append(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance) {
@@ -159,30 +104,28 @@ bool GuidedNeedle::relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free
 
 void GuidedNeedle::advance(std::span<const PointLoad> loads) {
   inner_->advance(held_.on ? with_guide(loads, held_.with) : loads);
-  meet();
+  hole_.meet(*inner_);
 }
 
-double GuidedNeedle::residual(std::span<const PointLoad> loads) const {
-  return inner_->residual(holds() ? with_guide(loads, guide_load()) : loads);
+double GuidedNeedle::residual(std::span<const PointLoad> loads) {
+  return inner_->residual(hole_.holds() ? with_guide(loads, guide_load()) : loads);
 }
 
 void GuidedNeedle::set_base(const Pose& base) {
   inner_->set_base(base);
-  meet();
+  hole_.meet(*inner_);
 }
 
 void GuidedNeedle::straighten() {
   inner_->straighten();
-  meet();
+  hole_.meet(*inner_);
 }
 
-double GuidedNeedle::energy() const {
-  return inner_->energy() + 0.5 * hole_.stiffness_N_per_mm * meeting_.beyond * meeting_.beyond;
-}
+double GuidedNeedle::energy() const { return inner_->energy() + hole_.energy(); }
 
 void GuidedNeedle::set_state(const Eigen::Ref<const VecX>& state) {
   inner_->set_state(state);
-  meet();
+  hole_.meet(*inner_);
 }
 
 }  // namespace stylet

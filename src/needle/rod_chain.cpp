@@ -86,7 +86,7 @@ void RodChain::advance(std::span<const PointLoad> loads) {
   parts_->shape.update();
 }
 
-double RodChain::residual(std::span<const PointLoad> loads) const {
+double RodChain::residual(std::span<const PointLoad> loads) {
   return parts_->tangent.largest_imbalance(parts_->shape, parts_->base_rotation, loads);
 }
 

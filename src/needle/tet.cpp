@@ -52,7 +52,7 @@ struct TetNeedle::Parts {
   Mat3 base_rotation = Mat3::Identity();
   tet::TetShape shape;
   tet::TetTangent tangent;
-  mutable VecX imbalance;  ///< work of residual()
+  VecX imbalance;  ///< work of residual()
 };
 
 Result<std::unique_ptr<TetNeedle>> TetNeedle::build(const NeedleSection& section, int segments, int load_capacity,
@@ -99,7 +99,7 @@ void TetNeedle::advance(std::span<const PointLoad> loads) {
   parts_->shape.update();
 }
 
-double TetNeedle::residual(std::span<const PointLoad> loads) const {
+double TetNeedle::residual(std::span<const PointLoad> loads) {
   return tet::largest_imbalance(parts_->shape, parts_->base_rotation, loads, parts_->imbalance);
 }
 

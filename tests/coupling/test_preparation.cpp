@@ -28,7 +28,7 @@ class UnpreparedNeedle final : public Needle {
     return inner_->append(loads, compliance);
   }
   void advance(std::span<const PointLoad> loads) override { inner_->advance(loads); }
-  [[nodiscard]] double residual(std::span<const PointLoad> loads) const override { return inner_->residual(loads); }
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) override { return inner_->residual(loads); }
   void damp(double ratio) override { inner_->damp(ratio); }
   void straighten() override { inner_->straighten(); }
   [[nodiscard]] double energy() const override { return inner_->energy(); }

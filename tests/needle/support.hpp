@@ -17,6 +17,12 @@ namespace stylet::test {
 inline constexpr double kLength = 200.0;
 inline constexpr double kEI = 15722.0;
 
+/// [mm] Length of the needles whose derivatives are looked at.
+inline constexpr double kShort = 120.0;
+
+/// Axes of a base that lies along none of the patient's.
+inline Mat3 tilted() { return Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix(); }
+
 inline std::unique_ptr<BeamNeedle> beam(int elements = 24, const NeedleSection& section = {}, int capacity = 64) {
   auto built = BeamNeedle::build(section, elements, capacity);
   EXPECT_TRUE(built.ok()) << (built.ok() ? "" : built.error().message());

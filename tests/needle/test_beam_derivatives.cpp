@@ -13,10 +13,8 @@ namespace {
 using beam::BeamShape;
 using beam::BeamTangent;
 using beam::RotationTerms;
-
-constexpr double kShort = 120.0;
-
-Mat3 tilted() { return Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix(); }
+using test::kShort;
+using test::tilted;
 
 /// Loads inside elements, on their boundaries, at the tip, at and before the clamp; unordered on purpose.
 std::vector<PointLoad> assorted_loads() {

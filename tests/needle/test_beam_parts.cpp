@@ -19,11 +19,10 @@ using beam::LoadPulls;
 using beam::ScaledChain;
 using beam::ShiftedFactor;
 using beam::VirtualWork;
+using test::kShort;
+using test::tilted;
 
 constexpr int kElements = 8;
-constexpr double kShort = 120.0;
-
-Mat3 tilted() { return Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix(); }
 
 BeamShape curved(ElementKind kind) {
   BeamShape shape(kElements, kShort, 15700.0, 12100.0, kind);
@@ -34,7 +33,7 @@ BeamShape curved(ElementKind kind) {
 }
 
 /// Loads inside elements, at the tip, before the clamp; unordered on purpose.
-std::vector<PointLoad> assorted_loads() {
+std::vector<PointLoad> some_loads() {
   return {{97.3, {0.21, -0.4, 0.13}}, {kShort, {-0.3, 0.25, -0.5}}, {3.1, {1.1, -0.6, 0.4}}, {-5.0, {1.0, 1.0, 1.0}}};
 }
 
@@ -55,7 +54,7 @@ auto derivative(BeamShape shape, Eigen::Index i, Function&& function) {
 }
 
 TEST(VirtualWork, IsTheDerivativeOfTheLoadsWorkWithRespectToCurvature) {
-  const auto loads = assorted_loads();
+  const auto loads = some_loads();
   for (const ElementKind kind : {ElementKind::arc, ElementKind::rod}) {
     const BeamShape shape = curved(kind);
     VirtualWork work(kElements);
@@ -77,7 +76,7 @@ TEST(VirtualWork, IsTheDerivativeOfTheLoadsWorkWithRespectToCurvature) {
 
 TEST(VirtualWork, FollowsEveryChangeOfShapeBaseAndLoads) {
   BeamShape shape = curved(ElementKind::arc);
-  auto loads = assorted_loads();
+  auto loads = some_loads();
   Mat3 base = Mat3::Identity();
   VirtualWork kept(kElements);
   const auto agrees = [&] {
@@ -106,7 +105,7 @@ TEST(LoadPulls, OfALoadPullTogetherAsTheLoadDoesAtItsPoint) {
     const BeamShape shape = curved(kind);
     LoadPulls pulls;
     pulls.reserve(4);
-    const auto loads = assorted_loads();
+    const auto loads = some_loads();
     for (const PointLoad& load : loads) pulls.add(shape, tilted(), load);
     ASSERT_EQ(pulls.count(), 4);
     std::size_t all = 0;
@@ -134,7 +133,7 @@ TEST(LoadPulls, OfALoadPullTogetherAsTheLoadDoesAtItsPoint) {
 TEST(LoadPulls, KeepTheFirstLoadsAsTheyAre) {
   const BeamShape shape = curved(ElementKind::rod);
   LoadPulls pulls;
-  const auto loads = assorted_loads();
+  const auto loads = some_loads();
   for (const PointLoad& load : loads) pulls.add(shape, tilted(), load);
   const auto second = pulls.of(1).size();
   pulls.keep_first(2);
@@ -172,7 +171,7 @@ TEST(ScaledChain, MotionIsTheDerivativeOfALoadsPoint) {
     const BeamShape shape = curved(kind);
     ScaledChain chain(shape);
     chain.update(shape);
-    for (const PointLoad& load : assorted_loads()) {
+    for (const PointLoad& load : some_loads()) {
       LoadPulls pulls;
       pulls.add(shape, tilted(), load);
       Eigen::Matrix<double, Eigen::Dynamic, 3> motion(chain.rows(), 3);

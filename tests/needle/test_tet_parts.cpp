@@ -20,7 +20,7 @@ using tet::TetShape;
 constexpr int kSegments = 3;
 
 /// Bent, twisted and stretched.
-TetShape deformed(Segment kind) {
+TetShape deformed_bar(Segment kind) {
   TetShape shape(tet::make_segment(kind, 1.27, 2.0), kSegments, 2.0, 9000.0, 0.3);
   for (Eigen::Index i = 0; i < shape.displacement.size(); ++i)
     shape.displacement[i] = 0.005 * std::sin(1.9 * static_cast<double>(i) + 0.3);
@@ -30,7 +30,7 @@ TetShape deformed(Segment kind) {
 
 TEST(BarStiffness, IsTheDerivativeOfTheNodalForces) {
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
-    TetShape shape = deformed(kind);
+    TetShape shape = deformed_bar(kind);
     BarStiffness stiffness(shape);
     stiffness.assemble(shape);
     const MatX K = stiffness.whole(shape);
@@ -50,7 +50,7 @@ TEST(BarStiffness, IsTheDerivativeOfTheNodalForces) {
 }
 
 TEST(BarStiffness, FollowsTheShape) {
-  TetShape shape = deformed(Segment::symmetric);
+  TetShape shape = deformed_bar(Segment::symmetric);
   BarStiffness kept(shape);
   kept.assemble(shape);
   shape.displacement *= 0.5;
@@ -75,7 +75,7 @@ MatX whole(const SegmentStiffness& K, int nodes, double shift) {
 }
 
 TEST(MiddleNodes, LeaveTheLayersTheSchurComplement) {
-  const TetShape shape = deformed(Segment::symmetric);
+  const TetShape shape = deformed_bar(Segment::symmetric);
   BarStiffness stiffness(shape);
   stiffness.assemble(shape);
   MiddleNodes middle(shape.mesh(), kSegments);
@@ -118,7 +118,7 @@ VecX solve(MiddleNodes& middle, const BarStiffness& stiffness, const VecX& force
 TEST(MiddleNodes, ReduceAndMoveSolveTheWholeBar) {
   // The asymmetric segment has no middle nodes at all.
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
-    const TetShape shape = deformed(kind);
+    const TetShape shape = deformed_bar(kind);
     BarStiffness stiffness(shape);
     stiffness.assemble(shape);
     MiddleNodes middle(shape.mesh(), kSegments);
@@ -129,7 +129,7 @@ TEST(MiddleNodes, ReduceAndMoveSolveTheWholeBar) {
 }
 
 TEST(MiddleNodes, SayWhereTheStiffnessIsNotDefinite) {
-  const TetShape shape = deformed(Segment::symmetric);
+  const TetShape shape = deformed_bar(Segment::symmetric);
   BarStiffness stiffness(shape);
   stiffness.assemble(shape);
   SegmentStiffness K = stiffness.segment(0);
@@ -139,7 +139,7 @@ TEST(MiddleNodes, SayWhereTheStiffnessIsNotDefinite) {
 }
 
 TEST(MiddleNodes, DisconnectedOnesMoveByTheirOwnForceOnly) {
-  const TetShape shape = deformed(Segment::symmetric);
+  const TetShape shape = deformed_bar(Segment::symmetric);
   MiddleNodes middle(shape.mesh(), kSegments);
   middle.disconnect();
   const VecX gradient = VecX::LinSpaced(shape.displacement.size(), -1.0, 2.0);

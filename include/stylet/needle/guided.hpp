@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/needle/needle.hpp"
+#include "stylet/needle/guide_meeting.hpp"
 
 #include <memory>
 #include <vector>
 
 namespace stylet {
-
-/// A hole of a guide template.
-struct GuideHole {
-  double clearance_mm = 0.05;         ///< radius of the hole less that of the needle, ≥ 0
-  double stiffness_N_per_mm = 100.0;  ///< of shaft against hole, > 0
-};
 
 /// A needle of any model whose shaft runs through a hole. Where the shaft crosses the hole's plane, at x, it is free
 /// while its distance d from the hole's axis is less than the clearance c; beyond, the hole pushes back:
@@ -28,9 +22,9 @@ class GuidedNeedle final : public Needle {
   GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole, int load_capacity);
 
   void place_guide(const Vec3& hole, const Vec3& axis) override;
-  [[nodiscard]] PointLoad guide_load() const override;
+  [[nodiscard]] PointLoad guide_load() const override { return hole_.load(); }
   /// Distance [mm] of the shaft from the hole's axis in its plane; 0 where it does not cross it.
-  [[nodiscard]] double offset() const;
+  [[nodiscard]] double offset() const { return hole_.offset(); }
 
   [[nodiscard]] double length() const override { return inner_->length(); }
   [[nodiscard]] std::string model() const override { return inner_->model(); }
@@ -48,7 +42,7 @@ class GuidedNeedle final : public Needle {
   bool prepared_compliance(Eigen::Ref<MatX> compliance) override;
   void take_prepared() override;
   void advance(std::span<const PointLoad> loads) override;
-  [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) override;
   void damp(double ratio) override { inner_->damp(ratio); }
   void straighten() override;
   /// Elastic energy of shape and hole.
@@ -57,16 +51,6 @@ class GuidedNeedle final : public Needle {
   void set_state(const Eigen::Ref<const VecX>& state) override;
 
  private:
-  /// How hole and shaft meet at the present shape.
-  struct Meeting {
-    bool crosses = false;           ///< the shaft crosses the hole's plane
-    double s = 0.0;                 ///< [mm] where
-    double beyond = 0.0;            ///< [mm] d − c where positive
-    Vec3 offset = Vec3::Zero();     ///< [mm] of the shaft from the hole, in the plane
-    Vec3 force = Vec3::Zero();      ///< [N] on the needle
-    Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
-  };
-
   /// How the hole held when a tangent was made.
   struct Hold {
     bool on = false;
@@ -74,29 +58,21 @@ class GuidedNeedle final : public Needle {
     Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
   };
 
-  void meet();
-  /// The tangent is one with the hole as it holds now.
+  /// Whether the tangent is one with the hole as it holds now.
   [[nodiscard]] bool fits() const;
-  [[nodiscard]] bool holds() const { return meeting_.crosses && (meeting_.beyond > 0.0 || hole_.clearance_mm == 0.0); }
-  [[nodiscard]] bool find_crossing();
-  std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide) const;
-  [[nodiscard]] Hold hold() const { return {holds(), guide_load(), meeting_.stiffness}; }
+  std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide);
+  [[nodiscard]] Hold hold() const { return {hole_.holds(), hole_.load(), hole_.stiffness()}; }
   std::span<const Mat3> with_guide(std::span<const Mat3> springs, std::size_t loads);
 
   std::unique_ptr<Needle> inner_;
-  GuideHole hole_;
-  bool placed_ = false;
-  Vec3 centre_ = Vec3::Zero();  ///< [mm] LPS
-  Vec3 axis_ = Vec3::UnitZ();   ///< unit, LPS
-  Meeting meeting_;
-  Hold held_;      ///< at the last linearise()
-  Hold prepared_;  ///< at the last prepare()
-
-  mutable std::vector<PointLoad> loads_;  ///< the hole's, then the caller's
-  std::vector<Mat3> springs_;
-  MatX N_;           ///< [mm/N] (3w + 3)²
-  VecX free_;        ///< [mm] (3w + 3)
-  MatX prepared_N_;  ///< the first of both, of the tangent that is prepared
+  GuideMeeting hole_;
+  Hold held_;                     ///< at the last linearise()
+  Hold prepared_;                 ///< at the last prepare()
+  std::vector<PointLoad> loads_;  ///< the hole's, then the caller's
+  std::vector<Mat3> springs_;     ///< [N/mm] of the hole and the caller's
+  MatX N_;                        ///< [mm/N] (3w + 3)²
+  VecX free_;                     ///< [mm] (3w + 3)
+  MatX prepared_N_;               ///< as N_, of the tangent that is prepared
 };
 
 }  // namespace stylet

@@ -103,8 +103,8 @@ class Needle {
   /// order).
   virtual void advance(std::span<const PointLoad> loads) = 0;
 
-  /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium.
-  [[nodiscard]] virtual double residual(std::span<const PointLoad> loads) const = 0;
+  /// Norm of the out-of-balance moment under the given loads [N mm], 0 at equilibrium. Writes work space.
+  [[nodiscard]] virtual double residual(std::span<const PointLoad> loads) = 0;
 
   /// From now on whatever is elastic also resists every change from the shape of now, `ratio` times as stiffly as it
   /// is: what internal damping with a time constant τ (Kelvin–Voigt) does within a step of τ / ratio, taken

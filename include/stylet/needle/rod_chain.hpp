@@ -31,7 +31,7 @@ class RodChain : public Needle {
   bool prepared_compliance(Eigen::Ref<MatX> compliance) final;
   void take_prepared() final;
   void advance(std::span<const PointLoad> loads) final;
-  [[nodiscard]] double residual(std::span<const PointLoad> loads) const final;
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) final;
   void damp(double ratio) final;
   void straighten() final;
   [[nodiscard]] double energy() const final;

@@ -44,7 +44,7 @@ class TetNeedle final : public Needle {
                  std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) override;
   bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) override;
   void advance(std::span<const PointLoad> loads) override;
-  [[nodiscard]] double residual(std::span<const PointLoad> loads) const override;
+  [[nodiscard]] double residual(std::span<const PointLoad> loads) override;
   void damp(double ratio) override;
   void straighten() override;
   [[nodiscard]] double energy() const override;

@@ -85,44 +85,43 @@ struct CoupledBalance::Progress {
 
 CoupledBalance::CoupledBalance(const BalanceParts& parts)
     : parts_(parts),
-      contacts_(parts.contacts),
       rows_(parts.settings, parts.settings.capacity + 1),
       system_(rows_, parts.settings.capacity + 1),
-      states_(contacts_),
+      states_(parts_.contacts),
       tissue_(system_, parts.settings.capacity + 1),
-      tangent_(contacts_.needle, system_, rows_, parts.settings.capacity + 1, parts.phases),
-      kept_(contacts_.needle.state().size(), parts.settings.capacity) {}
+      tangent_(parts_.contacts.needle, system_, rows_, parts.settings.capacity + 1, parts.phases),
+      kept_(parts_.contacts.needle.state().size(), parts.settings.capacity) {}
 
 void CoupledBalance::march(double advance) {
   const InPhase in_phase(parts_.phases, StepPhase::tip);
-  contacts_.tip.cut.march(advance);
+  parts_.contacts.tip.cut.march(advance);
 }
 
 /// What the linear equations are about: the tissue's compliance among the contacts, their forces, and how far tissue
 /// and needle are apart.
 void CoupledBalance::gather() {
   const InPhase in_phase(parts_.phases, StepPhase::gather);
-  const int count = contacts_.count();
+  const int count = parts_.contacts.count();
   const auto size = static_cast<Eigen::Index>(3 * count);
-  const int same = tissue_.renew(contacts_);
+  const int same = tissue_.renew(parts_.contacts);
   if (same < std::min(tissue_.before(), count)) {
     tangent_.outdate();
     system_.outdate();
   } else if (count < tissue_.before()) {  // the last ones slid off the tip
     system_.keep_first(count);
   }
-  tissue_.gather(contacts_, same);
+  tissue_.gather(parts_.contacts, same);
   for (int c = same; c < count; ++c) tangent_.append(c);
 
   auto now = rows_.now.head(size);
   auto gap = rows_.gap.head(size);
-  for (int c = 0; c < count; ++c) now.segment<3>(3 * c) = contacts_.force(c);
-  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) = rows_.needle_at(c) - rows_.unloaded(contacts_, c);
+  for (int c = 0; c < count; ++c) now.segment<3>(3 * c) = parts_.contacts.force(c);
+  for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) = rows_.needle_at(c) - rows_.unloaded(parts_.contacts, c);
   dense::subtract_product(gap, system_.A.topLeftCorner(size, size), now);
   gap = -gap;
   rows_.tip.behind = 0;
-  if (!contacts_.tip.touches()) return;
-  tissue_.gather_drift(contacts_, rows_);
+  if (!parts_.contacts.tip.touches()) return;
+  tissue_.gather_drift(parts_.contacts, rows_);
   for (int c = count - 1; c > 0 && rows_.tip.behind == 0; --c) {
     rows_.tip.behind_mm = rows_.loads().front().s - rows_.loads()[static_cast<std::size_t>(c)].s;
     if (rows_.tip.behind_mm > kLeastTurn_mm) rows_.tip.behind = c;
@@ -131,22 +130,22 @@ void CoupledBalance::gather() {
 
 /// Takes everything as it is now. @return how far needle, tissue and laws are from balance: 1 is the tolerance
 double CoupledBalance::look(double h) {
-  rows_.take_loads(contacts_);
+  rows_.take_loads(parts_.contacts);
   {
     const InPhase in_phase(parts_.phases, StepPhase::gather);
-    rows_.take_places(contacts_);
-    rows_.soften(contacts_, h, foresees_cut_);
+    rows_.take_places(parts_.contacts);
+    rows_.soften(parts_.contacts, h, foresees_cut_);
   }
   gather();
   const InPhase in_phase(parts_.phases, StepPhase::balance);
   const double allowed = parts_.settings.tolerance * rows_.largest_load();
-  const Needle& needle = contacts_.needle;
+  Needle& needle = parts_.contacts.needle;
   return larger_or_nan(equation_error(), needle.residual(rows_.loads()) / (kNeedleShare * needle.length())) / allowed;
 }
 
 ContactSystem::TipRows CoupledBalance::tip_rows() const {
-  if (!contacts_.tip.holds()) return ContactSystem::TipRows::none;
-  return contacts_.tip.has_lateral_rows() ? ContactSystem::TipRows::all : ContactSystem::TipRows::axial;
+  if (!parts_.contacts.tip.holds()) return ContactSystem::TipRows::none;
+  return parts_.contacts.tip.has_lateral_rows() ? ContactSystem::TipRows::all : ContactSystem::TipRows::axial;
 }
 
 /// Largest error of a held row at the present shape, as a force: error over what the row yields.
@@ -154,13 +153,13 @@ double CoupledBalance::equation_error() const {
   double error = 0.0;
   const auto held = tip_rows();
   const int tip_from = held == ContactSystem::TipRows::all ? 0 : held == ContactSystem::TipRows::axial ? 2 : 3;
-  for (int c = 0; c < contacts_.count(); ++c) {
+  for (int c = 0; c < parts_.contacts.count(); ++c) {
     const Vec3 off = rows_.error(c).cwiseAbs().cwiseQuotient(system_.own_yield(c));
     for (int k = c == 0 ? tip_from : 0; k < 3; ++k) error = larger_or_nan(error, off[k]);
   }
   // A contact that is not held in a direction must carry nothing there.
   if (held == ContactSystem::TipRows::axial)
-    error = larger_or_nan(error, (rows_.frame[0].leftCols<2>().transpose() * contacts_.tip.force).norm());
+    error = larger_or_nan(error, (rows_.frame[0].leftCols<2>().transpose() * parts_.contacts.tip.force).norm());
   return error;
 }
 
@@ -168,10 +167,10 @@ double CoupledBalance::equation_error() const {
 ContactStates::Trial CoupledBalance::trial(int load) const {
   ContactStates::Trial result{.axial = system_.lambda[3 * load + 2]};
   if (load > 0) {
-    const ShaftContact& contact = contacts_.of_shaft(load);
+    const ShaftContact& contact = parts_.contacts.of_shaft(load);
     const double sign = contact.state == ShaftContact::State::backward ? -1.0 : 1.0;
     result.slides = ContactStates::way(contact, result.axial) + sign * system_.axial_excess(load);
-  } else if (contacts_.tip.state() == TipContact::State::open) {
+  } else if (parts_.contacts.tip.state() == TipContact::State::open) {
     result.opening = system_.opening() / std::max(system_.own_yield(0)[2], kTiny);
   }
   return result;
@@ -179,11 +178,11 @@ ContactStates::Trial CoupledBalance::trial(int load) const {
 
 /// A contact that is held again went back along the shaft; the right-hand side must know at once.
 void CoupledBalance::change_and_tell(int load, StepReport& report) {
-  const double s = load == 0 ? 0.0 : contacts_.of_shaft(load).s;
+  const double s = load == 0 ? 0.0 : parts_.contacts.of_shaft(load).s;
   states_.change(load, trial(load), report);
   if (load == 0) return;
   rows_.gap.segment<3>(3 * load) -=
-      (contacts_.of_shaft(load).s - s) * rows_.frame[static_cast<std::size_t>(load)].col(2);
+      (parts_.contacts.of_shaft(load).s - s) * rows_.frame[static_cast<std::size_t>(load)].col(2);
 }
 
 /// Solves the held rows, then lets every state that contradicts its own law change, until none does.
@@ -204,7 +203,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& c
     }
     {
       const InPhase gathering(parts_.phases, StepPhase::gather);
-      rows_.soften(contacts_, h, foresees_cut_);
+      rows_.soften(parts_.contacts, h, foresees_cut_);
     }
     // What an old matrix is off by may make states go to and fro.
     if (round == kAllAtOnce && !system_.factorise()) return false;
@@ -213,7 +212,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& c
     // Find the worst contradiction; while there are many, change all of them at once.
     double worst = kTiny;
     int worst_load = -1;
-    for (int c = 0; c < contacts_.count(); ++c) {
+    for (int c = 0; c < parts_.contacts.count(); ++c) {
       const double size_of_it = states_.contradiction(c, trial(c));
       if (size_of_it > worst) {
         worst = size_of_it;
@@ -228,7 +227,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& c
       continue;
     }
     const bool tip_too = states_.contradiction(0, trial(0)) > kTiny;
-    for (int c = 1; c < contacts_.count(); ++c) {
+    for (int c = 1; c < parts_.contacts.count(); ++c) {
       if (states_.contradiction(c, trial(c)) > kTiny) change_and_tell(c, report);
     }
     if (tip_too) change_and_tell(0, report);
@@ -239,33 +238,33 @@ bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& c
 
 /// Moves a sliding contact along the needle by what the present solution says.
 void CoupledBalance::slide(int load) {
-  ShaftContact& contact = contacts_.of_shaft(load);
+  ShaftContact& contact = parts_.contacts.of_shaft(load);
   if (contact.sticks()) return;
   if (!ContactStates::is_frictionless(contact)) {
     contact.s = contact.s_start - contact.sense() * trial(load).slides;
     return;
   }
-  const double s = contacts_.arc(load);
-  const Vec3 gap = contact.x + contacts_.displacement(contact.point) - contacts_.needle.point(s);
+  const double s = parts_.contacts.arc(load);
+  const Vec3 gap = contact.x + parts_.contacts.displacement(contact.point) - parts_.contacts.needle.point(s);
   contact.s = s + rows_.frame[static_cast<std::size_t>(load)].col(2).dot(gap);
 }
 
 /// Forces, shape and slides of the present solution.
 void CoupledBalance::take_solution() {
-  for (int c = 0; c < contacts_.count(); ++c) {
+  for (int c = 0; c < parts_.contacts.count(); ++c) {
     rows_.loads()[static_cast<std::size_t>(c)].force = -system_.push.segment<3>(3 * c);
-    contacts_.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * system_.lambda.segment<3>(3 * c);
+    parts_.contacts.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * system_.lambda.segment<3>(3 * c);
   }
   {
     const InPhase in_phase(parts_.phases, StepPhase::needle_advance);
-    contacts_.needle.advance(rows_.loads());
+    parts_.contacts.needle.advance(rows_.loads());
   }
-  for (int c = 1; c < contacts_.count(); ++c) slide(c);
+  for (int c = 1; c < parts_.contacts.count(); ++c) slide(c);
 }
 
 /// The cut goes on as the present solution says. @return whether it met a surface: the tip is held there
 bool CoupledBalance::cut_on(double h, int iteration) {
-  TipContact& tip = contacts_.tip;
+  TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return false;
   const double proposed = std::max(0.0, rows_.slip_of_cut(h) * (system_.lambda[2] - tip.ahead.cutting()));
   march(tip.cut.advance() + damping_of_cut(iteration) * (proposed - tip.cut.advance()));
@@ -275,29 +274,29 @@ bool CoupledBalance::cut_on(double h, int iteration) {
 
 /// Whether an iterate is so far from where the sub-step began that it is no guide to the balance that was not found.
 bool CoupledBalance::is_astray(double largest_at_start) const {
-  const Needle& needle = contacts_.needle;
-  return !(contacts_.largest_force() < kMostGrowth * largest_at_start &&
+  const Needle& needle = parts_.contacts.needle;
+  return !(parts_.contacts.largest_force() < kMostGrowth * largest_at_start &&
            (needle.point(needle.length()) - parts_.predictor.tip_start()).norm() < kMostMotion * needle.length());
 }
 
 /// Needle and tissue have no balance nearby: they stay as they were.
 void CoupledBalance::give_way() {
   const InPhase in_phase(parts_.phases, StepPhase::tip);
-  parts_.predictor.go_back(contacts_.needle, contacts_.tip, contacts_.shaft.all());
+  parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
 }
 
 bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepReport& report) {
-  TipContact& tip = contacts_.tip;
+  TipContact& tip = parts_.contacts.tip;
   Predictor& predictor = parts_.predictor;
   states_.begin(kMaxToggles);
   {
     const InPhase in_phase(parts_.phases, StepPhase::tip);
-    tip.begin(contacts_.forces());
+    tip.begin(parts_.contacts.forces());
   }
-  if (const auto points = tangent_.take_prepared(contacts_); !points.empty()) tissue_.take_points(points);
-  const double largest_at_start = contacts_.largest_force();
+  if (const auto points = tangent_.take_prepared(parts_.contacts); !points.empty()) tissue_.take_points(points);
+  const double largest_at_start = parts_.contacts.largest_force();
   bool from_start = !from_prediction || !predictor.expects_forces();
-  if (from_prediction) predictor.go_on(contacts_.needle, tip, contacts_.shaft.all());
+  if (from_prediction) predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
 
   Progress progress;
   Index border_tet = -1;  // where the tip was when it was added to the matrix
@@ -309,7 +308,8 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
     const bool found = iteration > 0 && !progress.changed && error < 1.0;
     if (found && tip.breaks_surface()) {
       const InPhase in_phase(parts_.phases, StepPhase::tip);
-      const double hand_N = parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, contacts_.forces());
+      const double hand_N =
+          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces());
       parts_.path.break_surface(hand_N, report);
       before_break = all;
       iteration = 0;  // another balance is looked for from here
@@ -320,7 +320,8 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
       const bool slow = error > (progress.quiet && iteration > kManyIterations ? kSlowish : kSlow) * before;
       if (slow && iteration > (progress.quiet ? kManyQuiet : kManyIterations)) tangent_.outdate();
       if (iteration > 1 && error > kWorn * before) tangent_.wear_out();
-      if (iteration <= (tip.state() == TipContact::State::cut ? kTimeLeft - 1 : kTimeLeft)) tangent_.prepare(contacts_);
+      if (iteration <= (tip.state() == TipContact::State::cut ? kTimeLeft - 1 : kTimeLeft))
+        tangent_.prepare(parts_.contacts);
       // A balance that took long to find says little about the one that comes next.
       return progress.steady && iteration <= kManyIterations;
     }
@@ -330,7 +331,7 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
       exact = progress.needs_tangent(error, iteration);
       // It led away: from where it began, with a new one.
       if (exact && progress.old_matrix && !progress.changed && !(error < progress.before)) {
-        kept_.restore(contacts_);
+        kept_.restore(parts_.contacts);
         error = look(h);
       }
     }
@@ -340,9 +341,9 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
     ++report.iterations;
     progress.old_matrix = !exact && tangent_.relax();
     if (progress.old_matrix) {
-      kept_.keep(contacts_);
+      kept_.keep(parts_.contacts);
     } else {
-      tangent_.linearise(contacts_, predictor.last_way() > 0.0, effort);
+      tangent_.linearise(parts_.contacts, predictor.last_way() > 0.0, effort);
       progress.new_tangent = true;
     }
     if (!system_.fits()) {

@@ -44,7 +44,6 @@ class CoupledBalance : public BalanceSolver {
   void give_way();
 
   BalanceParts parts_;
-  Contacts contacts_;
   ContactRows rows_;
   ContactSystem system_;
   ContactStates states_;

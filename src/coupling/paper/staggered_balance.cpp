@@ -53,30 +53,24 @@ double loaded_arc(const CouplingSettings& settings, double length, double s) {
 
 StaggeredBalance::StaggeredBalance(const BalanceParts& parts)
     : parts_(parts),
-      contacts_(parts.contacts),
       rows_(parts.settings, parts.settings.capacity + 1),
-      states_(contacts_),
+      states_(parts_.contacts),
       tissue_(parts.settings.capacity + 1),
-      acceleration_(contacts_.needle.state().size()),
-      shape_before_(VecX::Zero(contacts_.needle.state().size())),
-      shape_after_(shape_before_),
-      springs_(static_cast<std::size_t>(parts.settings.capacity) + 1, Mat3::Zero()),
+      bent_(parts_.contacts.needle.state().size(), parts.settings.capacity + 1),
       y_(VecX::Zero(3 * (static_cast<Eigen::Index>(parts.settings.capacity) + 1))),
       x_(y_),
-      force_(y_),
-      compliance_(MatX::Zero(y_.size(), y_.size())),
-      motion_(y_) {}
+      force_(y_) {}
 
 /// Frames turn with the needle; then each row is given what its contact's state asks for.
 void StaggeredBalance::impose_needle_on_tissue(double h) {
   CondensedSystem& condensed = tissue_.system();
-  const TipContact& tip = contacts_.tip;
-  rows_.soften(contacts_, h, false);
-  for (int c = 0; c < contacts_.count(); ++c) {
+  const TipContact& tip = parts_.contacts.tip;
+  rows_.soften(parts_.contacts, h, false);
+  for (int c = 0; c < parts_.contacts.count(); ++c) {
     const Mat3& Q = rows_.frame[static_cast<std::size_t>(c)];
     tissue_.turn(c, Q);
     const int row = tissue_.row(c);
-    const ShaftContact* contact = c == 0 ? nullptr : &contacts_.of_shaft(c);
+    const ShaftContact* contact = c == 0 ? nullptr : &parts_.contacts.of_shaft(c);
     const bool held = contact != nullptr || tip.holds();
     const bool lateral = held && (contact != nullptr || std::isfinite(tip.lateral_hold()));
     const bool axial = contact != nullptr ? contact->sticks() : held && tip.state() == TipContact::State::stick;
@@ -89,7 +83,7 @@ void StaggeredBalance::impose_needle_on_tissue(double h) {
     condensed.control_displacement(row + 1, lateral);
     condensed.control_displacement(row + 2, axial);
 
-    const Vec3 gap = Q.transpose() * (rows_.needle_at(c) - rows_.unloaded(contacts_, c));
+    const Vec3 gap = Q.transpose() * (rows_.needle_at(c) - rows_.unloaded(parts_.contacts, c));
     auto y = y_.segment<3>(row);
     y = Vec3::Zero();
     if (lateral) y.head<2>() = gap.head<2>() + rows_.shift.segment<2>(3 * c);
@@ -103,16 +97,16 @@ void StaggeredBalance::impose_needle_on_tissue(double h) {
 /// the sliding rows: viscous forces depend on how far the needle slides).
 void StaggeredBalance::solve_tissue(double h) {
   const CondensedSystem& condensed = tissue_.system();
-  const TipContact& tip = contacts_.tip;
+  const TipContact& tip = parts_.contacts.tip;
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(condensed.points());
   auto x = x_.head(size);
   x.noalias() = condensed.matrix().lazyProduct(y_.head(size));
   change_ = 0.0;
-  for (int c = 0; c < contacts_.count(); ++c) {
+  for (int c = 0; c < parts_.contacts.count(); ++c) {
     const int row = tissue_.row(c) + 2;
     if (condensed.is_displacement(row)) continue;
     const Vec3 t = rows_.frame[static_cast<std::size_t>(c)].col(2);
-    const double way = t.dot(rows_.needle_at(c) - rows_.unloaded(contacts_, c));
+    const double way = t.dot(rows_.needle_at(c) - rows_.unloaded(parts_.contacts, c));
     const double own = tissue_.own(row);
     double force = 0.0;
     if (c == 0) {
@@ -123,7 +117,7 @@ void StaggeredBalance::solve_tissue(double h) {
       force = tip.ahead.cutting() + advance_ / slip;  // less than the cutting force: the needle goes back
       change_ = std::max(change_, std::abs(force - y_[row]));
     } else {
-      ShaftContact& contact = contacts_.of_shaft(c);
+      ShaftContact& contact = parts_.contacts.of_shaft(c);
       const double ahead = x[row] - way;
       change_ = std::max(change_, std::abs(ahead) / own);
       if (ContactStates::is_frictionless(contact)) {
@@ -137,10 +131,10 @@ void StaggeredBalance::solve_tissue(double h) {
     y_[row] = force;
     x += change * condensed.matrix().col(row);
   }
-  for (int c = 0; c < contacts_.count(); ++c) {
+  for (int c = 0; c < parts_.contacts.count(); ++c) {
     const int row = tissue_.row(c);
     for (int i = 0; i < 3; ++i) force_[3 * c + i] = condensed.is_displacement(row + i) ? x[row + i] : y_[row + i];
-    contacts_.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * force_.segment<3>(3 * c);
+    parts_.contacts.force(c).noalias() = rows_.frame[static_cast<std::size_t>(c)] * force_.segment<3>(3 * c);
   }
 }
 
@@ -148,12 +142,13 @@ void StaggeredBalance::solve_tissue(double h) {
 /// @return true when a boundary condition was switched
 bool StaggeredBalance::switch_contacts(StepReport& report) {
   const int tip_row = tissue_.row(0) + 2;
-  const double opening = rows_.frame[0].col(2).dot(rows_.needle_at(0) - rows_.unloaded(contacts_, 0)) - x_[tip_row];
+  const double opening =
+      rows_.frame[0].col(2).dot(rows_.needle_at(0) - rows_.unloaded(parts_.contacts, 0)) - x_[tip_row];
   bool changed = false;
-  for (int c = contacts_.count() - 1; c >= 0; --c) {
+  for (int c = parts_.contacts.count() - 1; c >= 0; --c) {
     const double axial = force_[3 * c + 2];
     const ContactStates::Trial trial{.axial = axial,
-                                     .slides = c > 0 ? ContactStates::way(contacts_.of_shaft(c), axial) : 0.0,
+                                     .slides = c > 0 ? ContactStates::way(parts_.contacts.of_shaft(c), axial) : 0.0,
                                      .opening = opening / std::max(tissue_.own(tip_row), kSmallest)};
     if (states_.contradiction(c, trial) <= kClear_N) continue;
     states_.change(c, trial, report);
@@ -164,38 +159,30 @@ bool StaggeredBalance::switch_contacts(StepReport& report) {
 
 /// Contact forces go to the needle where they act, or to its nearest node as in the paper.
 void StaggeredBalance::load_needle() {
-  rows_.take_loads(contacts_);
-  for (PointLoad& load : rows_.loads()) load.s = loaded_arc(parts_.settings, contacts_.needle.length(), load.s);
+  rows_.take_loads(parts_.contacts);
+  for (PointLoad& load : rows_.loads()) load.s = loaded_arc(parts_.settings, parts_.contacts.needle.length(), load.s);
 }
 
 /// One Newton step of the needle under the tissue's forces, damped by springs as hard as the tissue around each contact
 /// while all other contacts stand still.
 void StaggeredBalance::bend_needle() {
   const CondensedSystem& condensed = tissue_.system();
-  const int count = contacts_.count();
+  const int count = parts_.contacts.count();
   for (int c = 0; c < count; ++c) {
     const int row = tissue_.row(c);
     Vec3 stiffness = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
       if (condensed.is_displacement(row + i)) stiffness[i] = tissue_.own(row + i);
     const Mat3& Q = rows_.frame[static_cast<std::size_t>(c)];
-    springs_[static_cast<std::size_t>(c)] = parts_.settings.damping * Q * stiffness.asDiagonal() * Q.transpose();
+    bent_.spring(c) = parts_.settings.damping * Q * stiffness.asDiagonal() * Q.transpose();
   }
-  const auto size = static_cast<Eigen::Index>(3 * count);
-  Needle& needle = contacts_.needle;
-  needle.linearise(rows_.loads(), compliance_.topLeftCorner(size, size), motion_.head(size),
-                   {springs_.data(), static_cast<std::size_t>(count)});
-  shape_before_ = needle.state();
-  needle.advance(rows_.loads());
-  shape_after_ = needle.state();
-  acceleration_.accelerate(shape_before_, shape_after_);
-  needle.set_state(shape_after_);
+  bent_.bend(parts_.contacts.needle, rows_.loads());
 }
 
 /// How far needle and tissue are from balance, over the largest force or 1 N: out-of-balance moment of the needle over
 /// its length, and what friction and cutting forces still change by.
 double StaggeredBalance::imbalance() const {
-  const Needle& needle = contacts_.needle;
+  Needle& needle = parts_.contacts.needle;
   return std::max(needle.residual(rows_.loads()) / needle.length(), kSettled * change_) / rows_.largest_load();
 }
 
@@ -203,7 +190,7 @@ double StaggeredBalance::imbalance() const {
 /// @param nearly the balance is near enough to believe that a surface is in the way; the tip sticks there then
 /// @return false when it does
 bool StaggeredBalance::cut(bool nearly) {
-  TipContact& tip = contacts_.tip;
+  TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return true;
   tip.cut.march(std::max(0.0, advance_));
   if (!nearly || !tip.cut.is_blocked()) return true;
@@ -212,32 +199,32 @@ bool StaggeredBalance::cut(bool nearly) {
 }
 
 bool StaggeredBalance::solve(double h, bool /*from_prediction*/, Effort& /*effort*/, StepReport& report) {
-  TipContact& tip = contacts_.tip;
+  TipContact& tip = parts_.contacts.tip;
   states_.begin(kMostToggles);
-  tip.begin(contacts_.forces());
-  rows_.take_places(contacts_);
-  for (int c = 0; c < contacts_.count(); ++c)
-    force_.segment<3>(3 * c) = rows_.frame[static_cast<std::size_t>(c)].transpose() * contacts_.force(c);
+  tip.begin(parts_.contacts.forces());
+  rows_.take_places(parts_.contacts);
+  for (int c = 0; c < parts_.contacts.count(); ++c)
+    force_.segment<3>(3 * c) = rows_.frame[static_cast<std::size_t>(c)].transpose() * parts_.contacts.force(c);
   advance_ = 0.0;
-  acceleration_.restart();
+  bent_.restart();
 
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     ++report.iterations;
-    rows_.take_places(contacts_);
-    tissue_.take(contacts_, rows_.frame);
+    rows_.take_places(parts_.contacts);
+    tissue_.take(parts_.contacts, rows_.frame);
     impose_needle_on_tissue(h);
     solve_tissue(h);
     load_needle();
     const double error = imbalance();
     if (error < kNearly && switch_contacts(report)) {
-      acceleration_.restart();
+      bent_.restart();
       continue;
     }
     if (cut(error < kNearly) && error < kTolerance) {
       if (!tip.breaks_surface()) return false;
-      parts_.path.break_surface(parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, contacts_.forces()),
-                                report);
-      acceleration_.restart();
+      parts_.path.break_surface(
+          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces()), report);
+      bent_.restart();
       continue;
     }
     bend_needle();

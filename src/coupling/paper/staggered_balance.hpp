@@ -4,8 +4,8 @@
 #include "coupling/balance/balance_solver.hpp"
 #include "coupling/balance/contact_rows.hpp"
 #include "coupling/balance/contact_states.hpp"
-#include "coupling/paper/anderson.hpp"
 #include "coupling/paper/condensed_tissue.hpp"
+#include "coupling/paper/damped_needle.hpp"
 
 namespace stylet::paper {
 
@@ -26,21 +26,15 @@ class StaggeredBalance : public BalanceSolver {
   [[nodiscard]] double imbalance() const;
 
   BalanceParts parts_;
-  Contacts contacts_;
   ContactRows rows_;
   ContactStates states_;
   CondensedTissue tissue_;
-  Anderson acceleration_;
-  VecX shape_before_;          ///< needle's state before it was bent
-  VecX shape_after_;           ///< the same after it was bent
-  std::vector<Mat3> springs_;  ///< [N/mm] that damp the needle at each load
-  VecX y_;                     ///< (rows of K_W) displacement [mm] or force [N], as each row is controlled
-  VecX x_;                     ///< (rows of K_W) the other one
-  VecX force_;                 ///< [N] (3 contacts) on the tissue, in the frames
-  MatX compliance_;            ///< [mm/N] (3 contacts × 3 contacts) room for the needle's
-  VecX motion_;                ///< [mm] (3 contacts) room for the needle's
-  double advance_ = 0.0;       ///< [mm] of the cut in this sub-step
-  double change_ = 0.0;        ///< [N] by which friction and cutting forces still change from one iteration to the next
+  DampedNeedle bent_;
+  VecX y_;                ///< (rows of K_W) displacement [mm] or force [N], as each row is controlled
+  VecX x_;                ///< (rows of K_W) the other one
+  VecX force_;            ///< [N] (3 contacts) on the tissue, in the frames
+  double advance_ = 0.0;  ///< [mm] of the cut in this sub-step
+  double change_ = 0.0;   ///< [N] by which friction and cutting forces still change from one iteration to the next
 };
 
 /// Where on the needle a force at arc length s is put [mm]: the nearest node as in the paper, or where it acts.

@@ -63,7 +63,7 @@ class StraightNeedle : public Needle {
     return true;
   }
   void advance(std::span<const PointLoad>) override {}
-  [[nodiscard]] double residual(std::span<const PointLoad>) const override { return 0.0; }
+  [[nodiscard]] double residual(std::span<const PointLoad>) override { return 0.0; }
   void straighten() override {}
   [[nodiscard]] double energy() const override { return 0.0; }
   [[nodiscard]] Eigen::Ref<const VecX> state() const override { return state_; }

@@ -7,11 +7,15 @@
 #include "coupling/balance/predictor.hpp"
 #include "coupling/balance/tissue_block.hpp"
 #include "coupling/hand_force.hpp"
+#include "coupling/paper/condensed_tissue.hpp"
+#include "coupling/paper/damped_needle.hpp"
 #include "coupling/parts/simple_tissue.hpp"
+#include "stylet/needle/beam.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 namespace stylet {
 namespace {
@@ -365,6 +369,50 @@ TEST(TissueBlock, ForeseesHowGapsChangeWithACutThatLeadsAside) {
   block.gather_drift(needle.contacts, rows);
   EXPECT_NEAR((rows.tip.drift.head<3>() - (aside - Vec3::UnitZ())).norm(), 0.0, 1e-12)
       << "this tissue is the same everywhere";
+}
+
+TEST(DampedNeedle, BendsIntoTheShapeThatItsLoadsAloneWouldGiveIt) {
+  const std::vector<PointLoad> loads{{150.0, Vec3(0.2, 0, 0)}, {80.0, Vec3(0, -0.3, 0)}};
+  const auto free = BeamNeedle::build({150.0, 1.27, 15700, 12100}, 20, 4).value();
+  ASSERT_TRUE(find_equilibrium(*free, loads, 1e-10));
+  const auto needle = BeamNeedle::build({150.0, 1.27, 15700, 12100}, 20, 4).value();
+  paper::DampedNeedle bent(needle->state().size(), 4);
+  bent.spring(0) = 0.05 * Mat3::Identity();
+  bent.spring(1) = 0.5 * Mat3::Identity();
+  const Vec3 straight = needle->point(150.0);
+  bent.bend(*needle, loads);
+  EXPECT_LT((needle->point(150.0) - straight).norm(), 0.9 * (free->point(150.0) - straight).norm()) << "step by step";
+  for (int k = 0; k < 200; ++k) bent.bend(*needle, loads);
+  EXPECT_NEAR((needle->point(150.0) - free->point(150.0)).norm(), 0.0, 1e-7);
+}
+
+TEST(CondensedTissue, IsTheTissuesComplianceWhileAllRowsAreForces) {
+  NeedleInTissue needle;
+  paper::CondensedTissue tissue(10);
+  std::vector<Mat3> frames(10, Mat3::Identity());
+  tissue.take(needle.contacts, frames);
+  ASSERT_EQ(tissue.system().points(), 4);
+  for (int c = 0; c < 4; ++c) {
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(tissue.own(tissue.row(c) + k), SimpleTissue::kOwn);
+  }
+}
+
+TEST(CondensedTissue, KeepsEveryContactsRowsApartWhenTheTipMovesOnAndFramesTurn) {
+  NeedleInTissue needle;
+  paper::CondensedTissue tissue(10);
+  std::vector<Mat3> frames(10, Mat3::Identity());
+  tissue.take(needle.contacts, frames);
+  needle.tip.cut.march(0.5);
+  const Mat3 turned = Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();
+  tissue.turn(2, turned);
+  frames[2] = turned;
+  tissue.take(needle.contacts, frames);
+  std::set<int> rows;
+  for (int c = 0; c < 4; ++c) {
+    rows.insert(tissue.row(c));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(tissue.own(tissue.row(c) + k), SimpleTissue::kOwn, 1e-12);
+  }
+  EXPECT_EQ(rows.size(), 4u);
 }
 
 }  // namespace
