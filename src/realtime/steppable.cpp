@@ -57,7 +57,7 @@ SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& mod
       contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1),
       forces_(Snapshot::kForces) {
   const PlannedInsertion& plan = model->insertions()[insertion];
-  simulation_.place(plan.motion.at(0.0), plan.entry, plan.direction);
+  simulation_.place(plan);
   simulation_.prepare();
   worker_ = std::make_unique<ComplianceWorker>(simulation_.supply(), simulation_.supply_settings());
 }

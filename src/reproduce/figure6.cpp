@@ -39,7 +39,7 @@ class Recorder {
   void one(std::size_t number) {
     const PlannedInsertion& insertion = model_->insertions()[number];
     const auto steps = static_cast<long>(std::ceil(insertion.motion.duration_s() / dt_s_ - 1e-9));
-    simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
+    simulation_.place(insertion);
     for (long k = 1; k <= steps; ++k) {
       const Pose base = drifted(insertion, number, insertion.motion.at(static_cast<double>(k) * dt_s_));
       simulation_.prepare();

@@ -72,6 +72,7 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
 }  // namespace
 
 Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
+  if (Result<> checked = check_scenario_keys(s, place); !checked) return checked;
   if (s.patient.source.empty()) {
     return input_error(place("patient.source"), "there is no patient: patient.source is missing",
                        "Name a contour set, a mask or a mesh, or write source = \"phantom\" below [patient]");

@@ -124,7 +124,7 @@ class Runner {
     const FlushDenormals flush;  // as the real-time loop does
     const double start = simulation_.time_s();
     const long deepest = deepest_step(insertion, motion);
-    simulation_.place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
+    simulation_.place(insertion);
     if (auto r = take_frame("before"); !r) return r;
     double next_frame = start + frame_every_s_;  // the first of the series is "before"
     for (long k = 1; k <= motion.count; ++k) {

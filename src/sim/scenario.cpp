@@ -144,6 +144,35 @@ Error unknown_key(const std::string& path, const std::string& pattern, const Sce
                      near.empty() ? kAllKeys : fmt::format("Did you mean {}? {}", spelled_out(near, slot), kAllKeys));
 }
 
+Result<> store(Scenario& scenario, const ScenarioEntry& entry, const ScenarioSlot& slot, const std::string& path,
+               const ScenarioValue& value, const std::string& where) {
+  const std::string stated = path + " = " + to_string(value);
+  if (!fits(value, entry.key.type)) {
+    return input_error(where, stated + " is not " + type_name(entry.key.type), cure_for(entry.key));
+  }
+  if (value.type == Type::number && !std::isfinite(value.number)) {
+    return input_error(where, stated + " is not finite", cure_for(entry.key));
+  }
+  const std::string refusal = entry.store(scenario, slot, value);
+  if (!refusal.empty()) return input_error(where, stated + " is " + refusal, cure_for(entry.key));
+  return Ok{};
+}
+
+/// What stands for the wildcards of a pattern in a scenario.
+std::vector<ScenarioSlot> slots(const Scenario& scenario, const std::string& pattern) {
+  std::vector<ScenarioSlot> result;
+  if (pattern.starts_with("tissue.<region>")) {
+    for (const auto& [name, parameters] : scenario.tissue) result.push_back({name, 0});
+  } else if (pattern.starts_with("patient.regions.")) {
+    for (const auto& [name, region] : scenario.patient.regions) result.push_back({name, 0});
+  } else if (pattern.starts_with("insertion[]")) {
+    for (std::size_t k = 0; k < scenario.insertions.size(); ++k) result.push_back({"", k});
+  } else {
+    result.emplace_back();
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string to_string(const ScenarioValue& value) {
@@ -194,15 +223,19 @@ Result<> set_scenario_key(Scenario& scenario, const std::string& path, const Sce
   const std::string pattern = pattern_of(path, slot);
   const ScenarioEntry* entry = find(pattern);
   if (!entry) return unknown_key(path, pattern, slot, where);
-  const std::string stated = path + " = " + to_string(value);
-  if (!fits(value, entry->key.type)) {
-    return input_error(where, stated + " is not " + type_name(entry->key.type), cure_for(entry->key));
+  return store(scenario, *entry, slot, path, value, where);
+}
+
+Result<> check_scenario_keys(const Scenario& scenario, const ScenarioPlace& place) {
+  Scenario unused;  // values are stored in it to hear whether they are refused
+  for (const ScenarioEntry& entry : scenario_table()) {
+    for (const ScenarioSlot& slot : slots(scenario, entry.key.path)) {
+      const auto value = entry.load(scenario, slot);
+      if (!value) continue;
+      const std::string path = spelled_out(entry.key.path, slot);
+      if (Result<> stored = store(unused, entry, slot, path, *value, place(path)); !stored) return stored;
+    }
   }
-  if (value.type == Type::number && !std::isfinite(value.number)) {
-    return input_error(where, stated + " is not finite", cure_for(entry->key));
-  }
-  const std::string refusal = entry->store(scenario, slot, value);
-  if (!refusal.empty()) return input_error(where, stated + " is " + refusal, cure_for(entry->key));
   return Ok{};
 }
 

@@ -14,8 +14,6 @@ constexpr double kPrepareShare = 0.75;
 /// A worker has compliance ready so far ahead of the tip.
 constexpr double kAhead_mm = 10.0;
 constexpr int kNeedleSamples = 81;
-/// The base has turned back when it is this far from where it was furthest: a hand trembles.
-constexpr double kTurn_mm = 0.05;
 
 TipState tip_state(TipPhase phase) {
   switch (phase) {
@@ -71,6 +69,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model)
   std::size_t longest = 0;
   for (const std::string& region : model_->mesh().regions) longest = std::max(longest, region.size());
   for (Event& event : events_) event.region.reserve(longest);
+  place(model_->insertions().front());
 }
 
 double Simulation::base_depth_mm(const Pose& base) const {
@@ -82,9 +81,7 @@ void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& directio
   entry_ = entry;
   direction_ = direction.normalized();
   base_ = base;
-  travel_mm_ = 0.0;
-  turn_ = {};
-  retracting_ = false;
+  turns_ = {};
   slipping_ = true;
   event_count_ = 0;
   insertion_.place_guide(entry_ - model_->scenario().grid.distance_mm * direction_, direction_);
@@ -118,24 +115,16 @@ void Simulation::add_event(EventKind kind, double force_N, int region) {
 }
 
 /// Notices where the base turns round. The event carries the moment of the turn, not that of its discovery.
-void Simulation::follow_direction(double advance_mm, bool in_tissue) {
-  travel_mm_ += advance_mm;
-  const double back = retracting_ ? travel_mm_ - turn_.travel_mm : turn_.travel_mm - travel_mm_;
-  constexpr double still_mm = 1e-9;
-  if (back <= still_mm) {
-    turn_ = {travel_mm_, record_.time_s, record_.base_depth_mm, record_.force_axial_N, in_tissue};
-    return;
-  }
-  if (back <= kTurn_mm) return;
-  retracting_ = !retracting_;
+void Simulation::notice_turn(double advance_mm, bool in_tissue) {
+  const auto turned =
+      turns_.follow(advance_mm, {record_.time_s, record_.base_depth_mm, record_.force_axial_N, in_tissue});
+  if (!turned) return;
   slipping_ = false;
-  if (retracting_ && turn_.in_tissue) {
-    add_event(EventKind::retraction_start, turn_.force_N, -1);
-    Event& event = events_[static_cast<std::size_t>(event_count_ - 1)];
-    event.time_s = turn_.time_s;
-    event.depth_mm = turn_.depth_mm;
-  }
-  turn_ = {travel_mm_, record_.time_s, record_.base_depth_mm, record_.force_axial_N, in_tissue};
+  if (!turns_.retracting() || !turned->in_tissue) return;
+  add_event(EventKind::retraction_start, turned->force_N, -1);
+  Event& event = events_[static_cast<std::size_t>(event_count_ - 1)];
+  event.time_s = turned->time_s;
+  event.depth_mm = turned->depth_mm;
 }
 
 const StepRecord& Simulation::step(const Pose& base, double dt) {
@@ -168,7 +157,7 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   record_.flags = report_.flags;
   record_.step_us = 0.0;
 
-  follow_direction(advance, report_.contacts > 0 || report_.tip == TipPhase::in_track);
+  notice_turn(advance, report_.contacts > 0 || report_.tip == TipPhase::in_track);
   for (int e = 0; e < report_.events; ++e) {
     const InsertionEvent& event = report_.event[static_cast<std::size_t>(e)];
     // A puncture's force is the one that broke the surface, not what is left of it after the step.
@@ -177,7 +166,7 @@ const StepRecord& Simulation::step(const Pose& base, double dt) {
   }
   // Right after the turn what slid in still does: tissue springs back along the shaft. Then it sticks, and is taken
   // along.
-  if (!slipping_ && retracting_ && report_.sliding_out_share > 0.5 && record_.force_axial_N < 0.0) {
+  if (!slipping_ && turns_.retracting() && report_.sliding_out_share > 0.5 && record_.force_axial_N < 0.0) {
     slipping_ = true;
     add_event(EventKind::slip_start, std::min(force_before, record_.force_axial_N), -1);
   }

@@ -75,7 +75,7 @@ void write(const stylet_rt_sim& sim, stylet_rt_result& out) noexcept {
 
 void place(stylet_rt_sim& sim, std::size_t insertion) {
   const PlannedInsertion& plan = sim.model->insertions()[insertion];
-  sim.simulation.place(plan.motion.at(0.0), plan.entry, plan.direction);
+  sim.simulation.place(plan);
   sim.insertion = insertion;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -259,6 +260,83 @@ TEST(ScenarioValues, are_written_as_in_a_file) {
   EXPECT_EQ(to_string(text("a\"b\\c\n")), "\"a\\\"b\\\\c\\u000A\"");
   EXPECT_EQ(to_string(numbers({1, -2.5})), "[1, -2.5]");
   EXPECT_EQ(to_string(texts({"A", "a"})), "[\"A\", \"a\"]");
+}
+
+/// A field as C++ writes it, past set_scenario_key().
+struct Written {
+  std::string path;
+  ScenarioValue value;
+  std::function<void(Scenario&)> write;
+};
+
+/// Values that no key may have: too small, too large, not a number, a word that is none.
+std::vector<Written> bad_fields() {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::vector<Written> all;
+  const auto number_field = [&](const char* path, double low, double high, auto field) {
+    for (const double bad : {low, high, nan, infinite, -infinite})
+      all.push_back({path, number(bad), [=](Scenario& s) { *field(s) = bad; }});
+  };
+  const auto whole_field = [&](const char* path, int low, int high, auto field) {
+    for (const int bad : {low, high}) all.push_back({path, whole(bad), [=](Scenario& s) { *field(s) = bad; }});
+  };
+  const auto word_field = [&](const char* path, const char* bad, auto field) {
+    all.push_back({path, text(bad), [=](Scenario& s) { *field(s) = bad; }});
+  };
+  number_field("patient.scale", -1, 1e7, [](Scenario& s) { return &s.patient.scale; });
+  whole_field("patient.volume", -1, 1000001, [](Scenario& s) { return &s.patient.volume; });
+  word_field("tissue.element", "p3", [](Scenario& s) { return &s.tissue_model.element; });
+  number_field("tissue.relaxation_s", -0.1, 101, [](Scenario& s) { return &s.tissue_model.relaxation_s; });
+  number_field("tissue.prostate.young_kPa", 0, 1e9, [](Scenario& s) { return &s.tissue["prostate"].young_kPa; });
+  number_field("tissue.prostate.poisson", -0.1, 0.5, [](Scenario& s) { return &s.tissue["prostate"].poisson; });
+  number_field("tissue.prostate.cutting_N", -1, 101, [](Scenario& s) { return &s.tissue["prostate"].cutting_N; });
+  number_field("tissue.prostate.friction_viscous_to_mm_per_s", 0, 10001,
+               [](Scenario& s) { return &s.tissue["prostate"].friction_viscous_to_mm_per_s; });
+  word_field("fixed.outer", "some", [](Scenario& s) { return &s.fixed.outer; });
+  all.push_back(
+      {"fixed.box_mm", numbers({0, 0, 0, nan, 1, 1}), [=](Scenario& s) { s.fixed.box_mm = {0, 0, 0, nan, 1, 1}; }});
+  whole_field("mesh.nodes", -1, 1000001, [](Scenario& s) { return &s.mesh.nodes; });
+  word_field("mesh.preset", "fine", [](Scenario& s) { return &s.mesh.preset; });
+  number_field("mesh.cull_mm", -1, 6, [](Scenario& s) { return &s.mesh.cull_mm; });
+  word_field("needle.model", "rod", [](Scenario& s) { return &s.needle.model; });
+  number_field("needle.length_mm", 19, 1001, [](Scenario& s) { return &s.needle.length_mm; });
+  number_field("needle.diameter_mm", 0.1, 6, [](Scenario& s) { return &s.needle.diameter_mm; });
+  number_field("needle.lumen_diameter_mm", -1, 6, [](Scenario& s) { return &s.needle.lumen_diameter_mm; });
+  word_field("needle.bevel_law", "both", [](Scenario& s) { return &s.needle.bevel_law; });
+  word_field("coupling.method", "nearfield", [](Scenario& s) { return &s.coupling.method; });
+  word_field("coupling.rule", "", [](Scenario& s) { return &s.coupling.rule; });
+  word_field("coupling.solver", "Coupled", [](Scenario& s) { return &s.coupling.solver; });
+  word_field("coupling.engine", "inverse", [](Scenario& s) { return &s.coupling.engine; });
+  number_field("coupling.spacing_mm", -4, 1e6, [](Scenario& s) { return &s.coupling.spacing_mm; });
+  number_field("insertion[0].speed_mm_per_s", 0, 1e6, [](Scenario& s) { return &s.insertions[0].speed_mm_per_s; });
+  number_field("insertion[0].approach_mm", -1, 1e6, [](Scenario& s) { return &s.insertions[0].approach_mm; });
+  number_field("insertion[0].depth_mm", -1, 1e6, [](Scenario& s) { return &s.insertions[0].depth_mm; });
+  number_field("run.dt_ms", -1, 1e6, [](Scenario& s) { return &s.run.dt_ms; });
+  return all;
+}
+
+TEST(CheckScenario, refuses_what_was_written_in_cpp_with_the_words_of_a_file) {
+  for (const Written& bad : bad_fields()) {
+    Scenario s = runnable();
+    s.tissue["prostate"] = default_tissue("prostate");
+    bad.write(s);
+    const auto checked = check_scenario(s, [](const std::string& path) { return "at <" + path + ">"; });
+    ASSERT_FALSE(checked) << bad.path << " = " << to_string(bad.value) << " was taken";
+    Scenario other;
+    const auto set = set_scenario_key(other, bad.path, bad.value, "somewhere");
+    ASSERT_FALSE(set) << bad.path << " = " << to_string(bad.value);
+    EXPECT_EQ(checked.error().where, "at <" + bad.path + ">");
+    EXPECT_EQ(checked.error().what, set.error().what);
+    EXPECT_EQ(checked.error().cure, set.error().cure);
+  }
+}
+
+TEST(CheckScenario, takes_every_default_and_whatever_a_key_was_set_to) {
+  Scenario s = runnable();
+  for (const std::string& region : known_tissues()) s.tissue[region] = default_tissue(region);
+  s.patient.regions["CTV"] = "prostate";
+  EXPECT_EQ(complaint(s), "");
 }
 
 TEST(CheckScenario, takes_a_patient_and_a_hole) {

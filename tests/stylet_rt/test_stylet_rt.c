@@ -265,6 +265,31 @@ static int settings_change_what_they_name(void) {
   return 0;
 }
 
+static int bad_settings_are_refused_with_the_words_of_a_file(void) {
+  const char* const bad[][2] = {
+      {"coupling.method=\"nearfield\"", "not one of its words (did you mean \"near-field\"?)"},
+      {"coupling.spacing_mm=-4", "coupling.spacing_mm = -4 is outside its range"},
+      {"run.dt_ms=-1", "run.dt_ms = -1 is outside its range"},
+      {"run.dt_ms=nan", "run.dt_ms = nan is not finite"},
+      {"insertion[0].speed_mm_per_s=0", "insertion[0].speed_mm_per_s = 0 is outside its range"},
+      {"insertion[0].speed_mm_per_s=inf", "insertion[0].speed_mm_per_s = inf is not finite"},
+      {"needle.length_mm=1e9", "needle.length_mm = 1000000000 is outside its range"},
+      {"needle.model=\"rod\"", "needle.model = \"rod\" is not one of its words"},
+      {"mesh.nodes=1.5", "mesh.nodes = 1.5 is not a whole number"},
+      {"tissue.prostate.poisson=0.5", "tissue.prostate.poisson = 0.5 is outside its range"},
+      {"coupling.contacts=0", "coupling.contacts = 0 is outside its range"}};
+  for (size_t k = 0; k < sizeof bad / sizeof bad[0]; ++k) {
+    stylet_rt_model* model = NULL;
+    char error[512];
+    CHECK(stylet_rt_model_load(in_folder("box.stylet"), &bad[k][0], 1, &model, error, sizeof error) ==
+          STYLET_RT_INPUT_ERROR);
+    CHECK(model == NULL);
+    if (strstr(error, bad[k][1]) == NULL) fprintf(stderr, "%s: %s\n", bad[k][0], error);
+    CHECK(strstr(error, bad[k][1]) != NULL);
+  }
+  return 0;
+}
+
 static int arguments_that_make_no_sense_are_statuses(void) {
   stylet_rt_model* model = loaded();
   stylet_rt_model* no_model = NULL;
@@ -628,6 +653,7 @@ static const struct {
               CLAIM(files_that_are_no_model_are_refused_with_place_and_cure),
               CLAIM(a_file_with_any_bit_changed_is_refused),
               CLAIM(settings_change_what_they_name),
+              CLAIM(bad_settings_are_refused_with_the_words_of_a_file),
               CLAIM(arguments_that_make_no_sense_are_statuses),
               CLAIM(a_pose_that_is_none_leaves_everything_as_it_was),
               CLAIM(what_there_is_no_room_for_is_left_out),

@@ -198,8 +198,12 @@ std::optional<ScenarioValue> scenario_value(const Scenario& scenario, const std:
 /// single key is at fault, "insertion[0]" or "".
 using ScenarioPlace = std::function<std::string(const std::string& path)>;
 
-/// What single keys cannot show: at least one insertion, entry given one way, depth within the needle, corners and
-/// template in order.
+/// Whether every key of a scenario has a value that set_scenario_key() takes, with its words where one has not: fields
+/// that were written in C++ are held to the same table as files are.
+Result<> check_scenario_keys(const Scenario& scenario, const ScenarioPlace& place);
+
+/// The same, and what single keys cannot show: at least one insertion, entry given one way, depth within the needle,
+/// corners and template in order.
 Result<> check_scenario(const Scenario& scenario, const ScenarioPlace& place);
 /// @param where what to call the scenario in messages
 Result<> check_scenario(const Scenario& scenario, const std::string& where);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/sim/model.hpp"
+#include "stylet/sim/turn_watch.hpp"
 
 namespace stylet {
 
@@ -9,10 +10,16 @@ namespace stylet {
 /// not allocate once the compliance around the tip is there (prepare()).
 class Simulation {
  public:
+  /// The needle is placed where the model's first insertion starts.
   explicit Simulation(std::shared_ptr<const Model> model);
 
   /// Starts an insertion: the needle, straight, at its base pose outside the patient. Time goes on from where it was.
+  /// @param base of the needle @param entry [mm] LPS, skin point on its line @param direction LPS, into the patient
   void place(const Pose& base, const Vec3& entry, const Vec3& direction);
+  /// The same, where a planned insertion starts.
+  void place(const PlannedInsertion& insertion) {
+    place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
+  }
 
   /// Moves the base to `base`.
   /// @param dt [s] taken as a whole number of nanoseconds, so that times do not drift
@@ -51,17 +58,8 @@ class Simulation {
   [[nodiscard]] double time_s() const { return record_.time_s; }
 
  private:
-  /// Where the base was furthest in its present direction: the turning point, should it go back from there.
-  struct Turn {
-    double travel_mm = 0.0;  ///< along the base's own axis
-    double time_s = 0.0;
-    double depth_mm = 0.0;
-    double force_N = 0.0;
-    bool in_tissue = false;
-  };
-
   void add_event(EventKind kind, double force_N, int region);
-  void follow_direction(double advance_mm, bool in_tissue);
+  void notice_turn(double advance_mm, bool in_tissue);
   [[nodiscard]] double base_depth_mm(const Pose& base) const;
 
   std::shared_ptr<const Model> model_;
@@ -74,10 +72,8 @@ class Simulation {
   std::array<Event, 24> events_;
   int event_count_ = 0;
   std::int64_t time_ns_ = 0;
-  double travel_mm_ = 0.0;  ///< of the base along its own axis
-  Turn turn_;
-  bool retracting_ = false;  ///< the base moves outwards
-  bool slipping_ = true;     ///< since the last reversal more than half of the shaft has begun to slide
+  TurnWatch turns_;
+  bool slipping_ = true;  ///< since the last reversal more than half of the shaft has begun to slide
 };
 
 }  // namespace stylet

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// When a base that moves to and fro is said to have turned round.
+#include "stylet/sim/turn_watch.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace stylet;
+
+namespace {
+
+/// Moves a base from depth to depth [mm]; every depth is its own time.
+struct Base {
+  TurnWatch watch;
+  double depth = 0.0;
+  double time = 0.0;
+
+  std::optional<TurnWatch::Moment> to(double there) {
+    const double advance = there - depth;
+    depth = there;
+    time += 1.0;
+    return watch.follow(advance, {time, depth, -depth, true});
+  }
+};
+
+}  // namespace
+
+TEST(TurnWatch, TellsOfATurnWhereItWas) {
+  Base base;
+  EXPECT_FALSE(base.to(10.0));
+  EXPECT_FALSE(base.to(20.0));
+  const auto turned = base.to(19.0);
+  ASSERT_TRUE(turned);
+  EXPECT_EQ(turned->depth_mm, 20.0);
+  EXPECT_EQ(turned->time_s, 2.0);
+  EXPECT_EQ(turned->force_N, -20.0);
+  EXPECT_TRUE(base.watch.retracting());
+  const auto in_again = base.to(21.0);
+  ASSERT_TRUE(in_again);
+  EXPECT_EQ(in_again->depth_mm, 19.0);
+  EXPECT_FALSE(base.watch.retracting());
+}
+
+TEST(TurnWatch, TakesATremorForNone) {
+  Base base;
+  base.to(20.0);
+  for (int k = 0; k < 100; ++k) EXPECT_FALSE(base.to(k % 2 == 0 ? 19.96 : 20.0)) << k;
+  EXPECT_FALSE(base.watch.retracting());
+}
+
+TEST(TurnWatch, AddsUpSmallStepsBack) {
+  Base base;
+  base.to(20.0);
+  int turns = 0;
+  for (int k = 1; k <= 10; ++k) turns += base.to(20.0 - 0.02 * k) ? 1 : 0;
+  EXPECT_EQ(turns, 1);
+}
+
+TEST(TurnWatch, ABaseThatStandsStillHasNotTurned) {
+  Base base;
+  base.to(20.0);
+  for (int k = 0; k < 100; ++k) EXPECT_FALSE(base.to(20.0));
+}
