@@ -275,7 +275,7 @@ static int bad_settings_are_refused_with_the_words_of_a_file(void) {
       {"insertion[0].speed_mm_per_s=inf", "insertion[0].speed_mm_per_s = inf is not finite"},
       {"needle.length_mm=1e9", "needle.length_mm = 1000000000 is outside its range"},
       {"needle.model=\"rod\"", "needle.model = \"rod\" is not one of its words"},
-      {"mesh.nodes=1.5", "mesh.nodes = 1.5 is not a whole number"},
+      {"coupling.contacts=40.5", "coupling.contacts = 40.5 is not a whole number"},
       {"tissue.prostate.poisson=0.5", "tissue.prostate.poisson = 0.5 is outside its range"},
       {"coupling.contacts=0", "coupling.contacts = 0 is outside its range"}};
   for (size_t k = 0; k < sizeof bad / sizeof bad[0]; ++k) {
