@@ -9,7 +9,7 @@ namespace stylet {
 /// once it is so far back from where it was furthest.
 class TurnWatch {
  public:
-  /// What there was at a place of the base.
+  /// Time, depth and force at one place of the base.
   struct Moment {
     double time_s = 0.0;
     double depth_mm = 0.0;
@@ -20,8 +20,8 @@ class TurnWatch {
   /// Whether the base moves outwards.
   [[nodiscard]] bool retracting() const { return retracting_; }
 
-  /// The base has moved on. @param advance_mm along its axis, inwards > 0 @param now what there is where it is
-  /// @return what there was where it turned round, if that is noticed now
+  /// The base has moved on. @param advance_mm along its axis, inwards > 0 @param now the moment at its new place
+  /// @return the moment at which it turned round, if the turn is noticed now
   std::optional<Moment> follow(double advance_mm, const Moment& now) {
     travel_mm_ += advance_mm;
     const double back = retracting_ ? travel_mm_ - furthest_mm_ : furthest_mm_ - travel_mm_;

@@ -10,7 +10,7 @@
 
 namespace stylet {
 
-/// What a solver of the balance works on. All outlive it.
+/// The parts of an insertion that a solver of the balance reads and changes. All outlive the solver.
 struct BalanceParts {
   const CouplingSettings& settings;
   Contacts contacts;

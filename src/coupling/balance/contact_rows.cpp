@@ -13,8 +13,8 @@ constexpr double kNoViscosity = 1e-12;
 /// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined. At 100 mm/s this adds 1e-7
 /// N/mm; raised, it adds more.
 constexpr double kLeastViscosity = 1e-9;
-/// What is left of friction's growth with speed beyond the speed where it ends: enough to tell how far a contact
-/// slides. Raised, fast contacts carry more friction than their law says.
+/// Part of friction's growth with speed that is kept beyond the speed where growth ends: enough to tell how far a
+/// contact slides. Raised, fast contacts carry more friction than their law says.
 constexpr double kFlat = 1e-3;
 }  // namespace
 

@@ -55,8 +55,8 @@ class ContactRows {
   /// [N] Largest of the loads, at least 1.
   [[nodiscard]] double largest_load() const;
 
-  /// What each contact yields in a sub-step of h seconds in its present state, and what that adds to the right-hand
-  /// side.
+  /// Writes the yield of each contact in a sub-step of h seconds, in the contact's present state, and the shift that
+  /// this state adds to the right-hand side.
   /// @param foresees_cut whether the equations know that compliance changes as the cut goes on
   void soften(const Contacts& contacts, double h, bool foresees_cut);
   /// [mm/N] Way that the tip cuts in a sub-step of h seconds for each newton beyond the cutting force.

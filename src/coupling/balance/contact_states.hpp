@@ -12,7 +12,7 @@ class ContactStates {
  public:
   explicit ContactStates(const Contacts& contacts) : contacts_(contacts) {}
 
-  /// What a solution says of a contact.
+  /// Force and motion of a contact in a solution that is tried.
   struct Trial {
     double axial = 0.0;    ///< [N] axial force on the tissue
     double slides = 0.0;   ///< [mm] way it slides in this sub-step, in the sense of its state

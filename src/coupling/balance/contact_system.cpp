@@ -114,7 +114,7 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
   const Vec3 t = Q.col(2);
   const Mat3 N_tip = N.topLeftCorner<3, 3>();
 
-  // What π and φ push the tissue by, and where the tip is off.
+  // The tissue's and the contact's compliance, by which π and φ move the tip, and the error of the tip's rows.
   const Yield& tip = rows_.yield.front();
   Mat3 own = A.topLeftCorner<3, 3>();
   own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();

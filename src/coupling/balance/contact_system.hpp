@@ -17,14 +17,14 @@ namespace stylet {
 ///   (P + N) π + P E f = free − error,   Eᵀ P π + (Eᵀ P E − K⁻¹) f = −Eᵀ error.
 /// docs/theory/coupling.md §4 derives them.
 ///
-/// What is dear, the matrix of the shaft's contacts, is factorised by factorise() and used for as long as iterations
-/// converge with it (GripMatrix). The tip, whose compliance changes with every cut and which may be held in none, one
-/// or all of its directions, is added by a border of three rows each time. Three rows a contact, the tip first; LPS but
-/// for ContactRows::shift and `lambda`, which are in the contacts' frames (n1, n2, t). Nothing allocates after
-/// construction.
+/// The matrix of the shaft's contacts takes most of the time. It is factorised by factorise() and used for as long as
+/// iterations converge with it (GripMatrix). The tip, whose compliance changes with every cut and which may be held in
+/// none, one or all of its directions, is added by a border of three rows each time. Three rows a contact, the tip
+/// first; LPS but for ContactRows::shift and `lambda`, which are in the contacts' frames (n1, n2, t). Nothing allocates
+/// after construction.
 class ContactSystem {
  public:
-  /// What of the tip is held.
+  /// The directions in which the tip is held.
   enum class TipRows { none, axial, all };
 
   /// @param rows of the contacts; outlives the system @param most contacts, tip included
@@ -54,11 +54,11 @@ class ContactSystem {
   /// The first `contacts` are all that are left. @return whether the matrix fits them
   bool keep_first(int contacts);
 
-  /// The matrix of the needle's side that is prepared, with the present A and D, …
+  /// Makes the matrix of the needle's side that is prepared, with the present A and D.
   void fill_prepared();
-  /// … and then its factor. False where it is singular.
+  /// Factorises that matrix. @return false where it is singular
   [[nodiscard]] bool factorise_prepared();
-  /// Both are in use from now on.
+  /// The needle's side that is prepared and its factor are in use from now on.
   void take_prepared();
 
   /// Adds the tip with the present A and N: good for as long as neither the tip nor the matrix changes much.

@@ -24,8 +24,8 @@ constexpr int kMaxToggles = 6;
 constexpr int kManyIterations = 5;
 /// The same where no state changed.
 constexpr int kManyQuiet = 3;
-/// … and if the last iteration left more than this part of the error, which is the matrix's fault. Raised, matrices are
-/// kept longer.
+/// Both ask for that only if the last iteration left more than this part of the error, which is the matrix's fault.
+/// Raised, matrices are kept longer.
 constexpr double kSlow = 0.08;
 /// The same where many iterations were taken and no state changed.
 constexpr double kSlowish = 0.02;
@@ -43,8 +43,8 @@ constexpr double kNear = 1e-4;
 /// Where states have changed, a tangent of this balance serves on while no more than this part of the error is left
 /// each time. Raised, fewer tangents are made in a balance.
 constexpr double kFalls = 0.3;
-/// Of the tolerance, for the needle: out-of-balance moment over the largest force × the length. Raised, the needle's
-/// shape is less exact.
+/// Part of the tolerance that the needle is held to, as out-of-balance moment over the largest force × the length.
+/// Raised, the needle's shape is less exact.
 constexpr double kNeedleShare = 0.1;
 /// [N] Smaller contradictions are rounding, and a smaller yield counts as this in a division.
 constexpr double kTiny = 1e-12;
@@ -64,13 +64,13 @@ constexpr int kSmoothCut = 6;
 double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : iteration < 2 * kSmoothCut ? 0.5 : 0.25; }
 }  // namespace
 
-/// What a solve knows of its iterations so far.
+/// State of a solve between its iterations.
 struct CoupledBalance::Progress {
   double before = std::numeric_limits<double>::infinity();  ///< error over the tolerance in the iteration before
   bool changed = true;                                      ///< a state changed in the last iteration
   bool quiet = true;                                        ///< none has changed so far
-  bool old_matrix = false;         ///< the last iteration was with a matrix of an earlier shape, …
-  bool old_matrix_failed = false;  ///< … and found no solution
+  bool old_matrix = false;         ///< the last iteration was with a matrix of an earlier shape
+  bool old_matrix_failed = false;  ///< the last iteration was so, and found no solution
   bool new_tangent = false;        ///< a tangent was made in this balance
   bool steady = true;              ///< what solve() returns
 
@@ -97,8 +97,8 @@ void CoupledBalance::march(double advance) {
   parts_.contacts.tip.cut.march(advance);
 }
 
-/// What the linear equations are about: the tissue's compliance among the contacts, their forces, and how far tissue
-/// and needle are apart.
+/// Gathers the numbers of the linear equations: the tissue's compliance among the contacts, the contacts' forces, and
+/// the gaps between tissue and needle.
 void CoupledBalance::gather() {
   const InPhase in_phase(parts_.phases, StepPhase::gather);
   const int count = parts_.contacts.count();
@@ -163,7 +163,7 @@ double CoupledBalance::equation_error() const {
   return error;
 }
 
-/// What the present solution of the system says of a contact.
+/// Force and motion of a contact in the present solution of the system.
 ContactStates::Trial CoupledBalance::trial(int load) const {
   ContactStates::Trial result{.axial = system_.lambda[3 * load + 2]};
   if (load > 0) {
@@ -205,7 +205,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& c
       const InPhase gathering(parts_.phases, StepPhase::gather);
       rows_.soften(parts_.contacts, h, foresees_cut_);
     }
-    // What an old matrix is off by may make states go to and fro.
+    // The error of an old matrix may make states go to and fro.
     if (round == kAllAtOnce && !system_.factorise()) return false;
     if (!system_.solve(tip_rows())) return false;
 

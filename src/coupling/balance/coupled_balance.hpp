@@ -26,7 +26,7 @@ class CoupledBalance : public BalanceSolver {
   void release() override { tangent_.release(); }
 
  private:
-  /// What a solve knows of its iterations so far.
+  /// State of a solve between its iterations.
   struct Progress;
 
   double look(double h);

@@ -16,11 +16,11 @@ class Effort {
       : square_(contacts * static_cast<double>(contacts)),
         left_(std::max(kLeast, 3.0 * tangent() + 6.0 * iteration())) {}
 
-  /// An iteration with the tangent of before, …
+  /// An iteration with a tangent that is there already.
   [[nodiscard]] double iteration() const { return 10.0 + 0.015 * square_; }
-  /// … what a new tangent of the needle and the matrix made of it add, …
+  /// What a new tangent of the needle, and the matrix made of it, add to an iteration.
   [[nodiscard]] double tangent() const { return needle() + matrix(); }
-  /// … and what each further solution adds, after states have changed.
+  /// What each further solution adds, after states of contacts have changed.
   [[nodiscard]] double solution() const { return 2.0 + 0.02 * square_; }
   /// The parts of a tangent, each of which may be wanted more than once.
   [[nodiscard]] double needle() const { return 20.0 + 0.04 * square_; }
@@ -34,7 +34,8 @@ class Effort {
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
-  /// That of up to some 40 contacts. Three tangents always: with fewer a needle that bows or snaps is not followed.
+  /// Effort that balances of up to some 40 contacts may take. Three tangents always: with fewer a needle that bows or
+  /// snaps is not followed.
   static constexpr double kLeast = 700.0;
 
   double square_;

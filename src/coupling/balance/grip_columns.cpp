@@ -14,7 +14,7 @@ void GripColumns::take_tip(const MatX& A, const NeedleSide& needle, GripMatrix& 
   solved_for_ = 0;
   const Eigen::Index n = needle.rows() - 3;
   if (n == 0) return;
-  // Of a push at the tip, and of a force of its spring, which is the tissue's alone.
+  // The columns of a push at the tip, and of a force of its spring, which moves the tissue alone.
   auto column = column_.topRows(grips.rows());
   for (int k = 0; k < 3; ++k) {
     auto of_spring = column.col(k);

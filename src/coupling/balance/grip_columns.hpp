@@ -25,9 +25,9 @@ class GripColumns {
 
   /// (rows of B × 3) a push at the tip; the transpose is the tip's rows.
   [[nodiscard]] auto push(Eigen::Index rows) const { return column_.block(0, kTip, rows, 3); }
-  /// (rows of B × 3) B⁻¹ of a push at the tip, …
+  /// (rows of B × 3) B⁻¹ of a push at the tip.
   [[nodiscard]] auto solved_push(Eigen::Index rows) const { return solved_.block(0, kTip, rows, 3); }
-  /// … and of a force of the spring there.
+  /// (rows of B × 3) B⁻¹ of a force of the spring at the tip.
   [[nodiscard]] auto solved_spring(Eigen::Index rows) const { return solved_.block(0, kSpring, rows, 3); }
   /// (rows of B) the right-hand side, and after solve() B⁻¹ of it.
   [[nodiscard]] auto right(Eigen::Index rows) { return solved_.col(kRight).head(rows); }

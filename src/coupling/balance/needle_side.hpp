@@ -30,7 +30,7 @@ class NeedleSide {
   [[nodiscard]] auto compliance() { return N.topLeftCorner(rows(), rows()); }
   /// [mm] (3 count)
   [[nodiscard]] auto motion() { return free.head(rows()); }
-  /// Of a contact that is to be added: room for the motion of its point by each push [mm/N] (3 × 3 count + 3).
+  /// Room for the rows of a contact that is to be added: the motion of its point by each push [mm/N] (3 × 3 count + 3).
   [[nodiscard]] auto next_rows() { return N.block(rows(), 0, 3, rows() + 3); }
   /// Adds the contact whose rows are in next_rows(). No spring is lent at it.
   void add_contact() {

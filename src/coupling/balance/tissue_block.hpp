@@ -17,7 +17,7 @@ class TissueBlock {
   TissueBlock(ContactSystem& system, int most_contacts);
 
   /// Goes over to the present contacts.
-  /// @return how many of the first ones are those of before
+  /// @return how many of the first contacts were there before, in this order
   int renew(const Contacts& contacts);
   /// How many contacts there were before renew().
   [[nodiscard]] int before() const { return before_; }

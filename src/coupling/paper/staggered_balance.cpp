@@ -34,9 +34,10 @@ namespace {
 constexpr int kMaxIterations = 500;
 /// Changes of state in a sub-step, then a contact keeps its state. Raised, cycling costs more.
 constexpr int kMostToggles = 100;
-/// Of imbalance(): the balance is found. Raised, forces are less exact.
+/// The balance is found where imbalance() is smaller than this. Raised, forces are less exact.
 constexpr double kTolerance = 1e-10;
-/// Of imbalance(): contacts may change their state, not on a passing shape. Raised, they change it to and fro.
+/// Contacts may change their state where imbalance() is smaller than this, not on a passing shape. Raised, they change
+/// it to and fro.
 constexpr double kNearly = 1e-8;
 /// [N] A contact contradicts its state by more than what is still uncertain. Raised, states change later.
 constexpr double kClear_N = 1e-7;

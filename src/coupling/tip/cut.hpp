@@ -41,7 +41,7 @@ class Cut {
   void march_before_surface(double advance);
   /// Goes over to the element behind the surface that the end lies on; the way is counted from there.
   void enter(Index tet);
-  /// What is to become of the surface that was met has been decided.
+  /// The surface that was met no longer stops the cut: somebody has decided what becomes of it.
   void unblock() { blocked_ = false; }
 
  private:

@@ -54,9 +54,9 @@ class TipContact {
   void hand_over(double share);
   /// [mm/N] Softness of the lateral hold; infinite once the shaft has taken it over.
   [[nodiscard]] double lateral_hold() const { return lateral_hold_; }
-  /// Whether the balance has equations for lateral forces at the tip, …
+  /// Whether the balance has equations for lateral forces at the tip.
   [[nodiscard]] bool has_lateral_rows() const;
-  /// … and how soft these are [mm/N].
+  /// [mm/N] Softness of these equations.
   [[nodiscard]] double lateral_softness() const;
   /// [N] LPS, force on the tissue of a bevel that is pushed sideways.
   [[nodiscard]] Vec3 bevel_force() const;

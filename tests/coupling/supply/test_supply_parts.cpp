@@ -166,7 +166,7 @@ TEST(SupplyHandOver, GoesToAndFro) {
   EXPECT_FALSE(hand_over.failed());
 }
 
-TEST(SupplyHandOver, AnswersACallWithARoundThatBeganAfterItAndHadNothingToDo) {
+TEST(SupplyHandOver, ACallIsAnsweredByARoundThatKnewOfItAndFoundNoMoreWork) {
   SupplyHandOver hand_over;
   hand_over.give_to_worker({});
   hand_over.call();
