@@ -74,17 +74,17 @@ std::string mesh_changes_text(const Summary& summary) {
 class Recorder final : public RunObserver {
  public:
   explicit Recorder(ResultsWriter& writer) : writer_(writer) {}
-  Result<> on_step(const StepRecord& step) override {
+  Result<> on_step(const Step& step) override {
     steps_.push_back(step);
     return writer_.add_step(step);
   }
   Result<> on_frame(const Frame& frame) override { return writer_.add_frame(frame); }
 
-  [[nodiscard]] const std::vector<StepRecord>& steps() const { return steps_; }
+  [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
 
  private:
   ResultsWriter& writer_;
-  std::vector<StepRecord> steps_;
+  std::vector<Step> steps_;
 };
 
 std::string title(EventKind kind, const std::string& region) {

@@ -8,6 +8,7 @@
 #include "validators.hpp"
 
 #include "stylet/geom/flat_tets.hpp"
+#include "stylet/sim/choices.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ Error pointless(const MeshArguments& arguments, const char* option, const char* 
 /// Options of the mesher from the command line.
 MeshOptions mesher_options(const MeshArguments& arguments, const RegionNames& regions) {
   MeshOptions options;
-  options.preset = arguments.preset == "paper" ? MeshPreset::paper : MeshPreset::standard;
+  options.preset = choice<MeshPreset>(arguments.preset).value_or(MeshPreset::standard);
   options.nodes = arguments.nodes;
   options.regions = regions;
   options.skip = arguments.skip;

@@ -19,9 +19,9 @@ struct Peaks {
 };
 
 /// Largest absolute forces and the deepest base position; from the steps, since a killed run has no summary.
-Peaks peaks_of(const std::vector<StepRecord>& steps) {
+Peaks peaks_of(const std::vector<Step>& steps) {
   Peaks peaks;
-  for (const StepRecord& step : steps) {
+  for (const Step& step : steps) {
     peaks.axial_N = std::max(peaks.axial_N, std::abs(step.force_axial_N));
     peaks.sagittal_N = std::max(peaks.sagittal_N, std::abs(step.force_sagittal_N));
     peaks.lateral_N = std::max(peaks.lateral_N, std::abs(step.force_lateral_N));

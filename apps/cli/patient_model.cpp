@@ -83,7 +83,7 @@ Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshO
 
 Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&, const Progress& progress) {
   MeshOptions options;
-  options.preset = scenario.mesh.preset == "paper" ? MeshPreset::paper : MeshPreset::standard;
+  options.preset = scenario.mesh.preset;
   options.nodes = scenario.mesh.nodes;
   options.cull_tolerance_mm = scenario.mesh.cull_mm;
   options.regions = scenario.patient.regions;

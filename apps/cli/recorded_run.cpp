@@ -20,7 +20,7 @@ namespace {
 
 using Forces = std::array<double, 6>;
 
-Forces forces(const StepRecord& s) {
+Forces forces(const Step& s) {
   return {s.force_axial_N, s.force_sagittal_N, s.force_lateral_N, s.torque_Nmm.x(), s.torque_Nmm.y(), s.torque_Nmm.z()};
 }
 
@@ -56,7 +56,7 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
   return run;
 }
 
-std::string compare_forces(std::span<const StepRecord> recorded, std::span<const StepRecord> repeated) {
+std::string compare_forces(std::span<const Step> recorded, std::span<const Step> repeated) {
   const RecordedSteps all(recorded);
   const std::size_t count = std::min(static_cast<std::size_t>(all.count()), repeated.size());
   std::size_t differ = 0;
@@ -64,12 +64,12 @@ std::string compare_forces(std::span<const StepRecord> recorded, std::span<const
   double first_s = 0.0;
   double most_N = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    const StepRecord before = all.at(static_cast<std::int64_t>(k));
+    const Step before = all.at(static_cast<std::int64_t>(k));
     const Forces a = forces(before);
     const Forces b = forces(repeated[k]);
     const bool is_counted_only = !all.is_recorded(static_cast<std::int64_t>(k));
     if (is_counted_only) ++at_rest;
-    StepRecord again = repeated[k];
+    Step again = repeated[k];
     again.flags = before.flags;  // forces are compared; recordings of earlier versions have no flags
     if (is_counted_only ? is_at_rest(before, again) : same_bits(a, b)) continue;
     if (differ++ == 0) first_s = before.time_s;

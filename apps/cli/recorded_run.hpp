@@ -13,7 +13,7 @@ namespace stylet::cli {
 
 /// A recording to be carried out again, and the model it was made with.
 struct RecordedRun {
-  std::vector<StepRecord> steps;
+  std::vector<Step> steps;
   PreparedModel prepared;
 };
 
@@ -23,6 +23,6 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
                                  const Progress& progress);
 
 /// How the forces of a repeated run compare with the recorded ones, in words: to the last bit, or where not.
-std::string compare_forces(std::span<const StepRecord> recorded, std::span<const StepRecord> repeated);
+std::string compare_forces(std::span<const Step> recorded, std::span<const Step> repeated);
 
 }  // namespace stylet::cli

@@ -69,14 +69,14 @@ struct Insertion::Parts {
   Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_);
 
   void place(const Pose& pose);
-  StepReport step(const Pose& pose, double dt);
-  void sub_step(const Pose& pose, double h, StepReport& report);
+  Step step(const Pose& pose, double dt);
+  void sub_step(const Pose& pose, double h, Step& step);
   /// @return false where the needle stays in the air
-  bool enter(StepReport& report);
-  void find_balance(double h, StepReport& report);
-  void finish_insertion(StepReport& report);
-  void settle_in_air(StepReport& report);
-  void summarise(StepReport& report) const;
+  bool enter(Step& step);
+  void find_balance(double h, Step& step);
+  void finish_insertion(Step& step);
+  void settle_in_air(Step& step);
+  void summarise(Step& step) const;
   void share_length() { path.tip.hand_over(shaft.share_length(path.tracks.now)); }
 
   [[nodiscard]] ContactForces forces() const { return {path.tip.force, shaft.all()}; }
@@ -124,12 +124,12 @@ Insertion::Parts::Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, 
       room(settings, *mesh.store) {}
 
 /// Nothing but a guide bends the needle in the air.
-void Insertion::Parts::settle_in_air(StepReport& report) {
+void Insertion::Parts::settle_in_air(Step& step) {
   MatX no_compliance(0, 0);
   VecX no_motion(0);
   for (int iteration = 0; needle->residual({}) > kSettled_N * needle->length(); ++iteration) {
     if (iteration == kMostInAir) {
-      report.flags |= StepReport::not_converged;
+      step.flags |= Step::not_converged;
       return;
     }
     balance->forget_tangent();
@@ -140,7 +140,7 @@ void Insertion::Parts::settle_in_air(StepReport& report) {
 
 /// The needle is out: the tissue model is what it was before the first contact, or goes back to it as it relaxes. The
 /// tracks stay known.
-void Insertion::Parts::finish_insertion(StepReport& report) {
+void Insertion::Parts::finish_insertion(Step& step) {
   path.finish();
   shaft.clear();
   balance->release();
@@ -148,12 +148,12 @@ void Insertion::Parts::finish_insertion(StepReport& report) {
   balance->damp(0.0);
   tissue.let_go();
   needle->straighten();
-  settle_in_air(report);
-  path.come_out(report);
+  settle_in_air(step);
+  path.come_out();
 }
 
 void Insertion::Parts::place(const Pose& pose) {
-  StepReport unused;
+  Step unused;
   if (!path.in_air()) finish_insertion(unused);
   if (tissue.is_relaxing()) tissue.reset();
   room.forget();
@@ -163,13 +163,14 @@ void Insertion::Parts::place(const Pose& pose) {
   needle->set_base(pose);
   settle_in_air(unused);
   path.place_in_air(path.tip_now());
+  path.forget_events();
 }
 
 /// The needle is in the air and its base has moved: does it meet the patient?
-bool Insertion::Parts::enter(StepReport& report) {
+bool Insertion::Parts::enter(Step& step) {
   predictor.interrupt();
-  settle_in_air(report);
-  const bool arrived = path.move_through_air(report);
+  settle_in_air(step);
+  const bool arrived = path.move_through_air(step);
   if (!path.in_air()) {
     share_length();
     return true;
@@ -180,62 +181,63 @@ bool Insertion::Parts::enter(StepReport& report) {
 }
 
 /// The balance of a sub-step; where a surface broke or was met in it, of what comes behind.
-void Insertion::Parts::find_balance(double h, StepReport& report) {
+void Insertion::Parts::find_balance(double h, Step& step) {
   Effort effort(1 + static_cast<int>(shaft.count()));
   TipContact& tip = path.tip;
   bool steady = true;
   bool broke = false;
   int surfaces = 0;
   double cut = 0.0;
-  const unsigned flags_before = std::exchange(report.flags, 0u);
+  const unsigned flags_before = std::exchange(step.flags, 0u);
   do {
-    steady = balance->solve(h, surfaces == 0, effort, report) && steady;
+    steady = balance->solve(h, surfaces == 0, effort, step) && steady;
     // What is held by a surface for the rest of a sub-step pushes it on; viscous tissue resists that at once, and with
     // more than the surface bears.
     const bool met = tissue.is_viscous() && tip.touches() && tip.cut.is_blocked();
     cut = tip.touches() ? tip.cut.advance() : 0.0;
     {
       const InPhase in_phase(phases, StepPhase::tip);
-      path.commit(report);
+      path.commit(step);
     }
     broke = met && tip.touches() && tip.force.norm() > tip.ahead.limit();
   } while (broke && ++surfaces < kMostSurfaces);
-  damping.end((report.flags & StepReport::not_converged) == 0);
-  report.flags |= flags_before;
+  damping.end((step.flags & Step::not_converged) == 0);
+  step.flags |= flags_before;
   predictor.end(cut, steady, *needle, tip, shaft.all());
 }
 
-void Insertion::Parts::sub_step(const Pose& pose, double h, StepReport& report) {
+void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
   const Pose before = needle->base();
   hand.begin(forces(), damping.balanced());
   base = pose;
   needle->set_base(pose);
   tissue.begin(h);
-  if (path.in_air() && !enter(report)) return;
+  if (path.in_air() && !enter(step)) return;
   balance->damp(damping.begin(h, path.tip.is_on_bone()) / h);
   predictor.begin(before, pose, *needle, path.tip, shaft.all());
   balance->base_moved(predictor.last_motion());
-  find_balance(h, report);
+  find_balance(h, step);
   for (ShaftContact& contact : shaft.all()) {
     if (std::abs(contact.slid) / h < settings.zero_band_mm_per_s) contact.state = ShaftContact::State::stick;
   }
   {
     const InPhase in_phase(phases, StepPhase::contacts);
-    shaft.wake_and_drop(path.tracks.now, path.marks, path.tip.force, report);
+    shaft.wake_and_drop(path.tracks.now, path.marks, path.tip.force, step);
     share_length();
   }
-  path.pass_open_end(forces(), report);
+  path.pass_open_end(forces(), step);
   tissue.end(forces(), path.tracks.now);
   const bool drawn_out = (pose.origin - before.origin).dot(pose.rotation * Vec3::UnitZ()) < 0.0;
-  if (shaft.empty() && path.has_left(drawn_out)) finish_insertion(report);
+  if (shaft.empty() && path.has_left(drawn_out)) finish_insertion(step);
 }
 
-StepReport Insertion::Parts::step(const Pose& pose, double dt) {
-  StepReport report;
+Step Insertion::Parts::step(const Pose& pose, double dt) {
+  Step step;
+  path.forget_events();
   if (!pose.origin.allFinite() || !pose.rotation.coeffs().allFinite() || !(dt > 0.0) || !std::isfinite(dt)) {
-    report.flags = StepReport::invalid_input;
-    summarise(report);
-    return report;
+    step.flags = Step::invalid_input;
+    summarise(step);
+    return step;
   }
   if (supply.awaits_step()) supply.serve(tissue.compliance(), whereabouts());
   const Pose from = base;
@@ -247,7 +249,7 @@ StepReport Insertion::Parts::step(const Pose& pose, double dt) {
   if (way <= kMaxSubSteps * settings.max_advance_mm) {
     count = std::max(1, static_cast<int>(std::ceil(way / settings.max_advance_mm)));
   } else {
-    report.flags |= StepReport::too_fast;
+    step.flags |= Step::too_fast;
   }
   for (int k = 1; k <= count; ++k) {
     const double fraction = static_cast<double>(k) / count;
@@ -257,49 +259,50 @@ StepReport Insertion::Parts::step(const Pose& pose, double dt) {
       between.rotation = from.rotation.slerp(fraction, pose.rotation);
     }
     const std::size_t before = tissue.compliance().remeshing().size();
-    sub_step(between, dt / count, report);
+    sub_step(between, dt / count, step);
     // Withdrawal forgets all changes; a sub-step that withdraws lays no contact.
     const std::size_t after = tissue.compliance().remeshing().size();
-    report.remeshings = after >= before ? report.remeshings + static_cast<int>(after - before) : 0;
+    step.remeshings = after >= before ? step.remeshings + static_cast<int>(after - before) : 0;
   }
   room.note(shaft.count(), path.tracks.earlier().size());
-  room.note_events(report.events);
-  summarise(report);
-  const bool explained = (report.flags & StepReport::compliance_missing) != 0;
-  if (path.is_outside() && report.contacts == 0 && !explained && path.in_tissue(report.tip_position))
-    report.flags |= StepReport::no_contact_inside;
-  return report;
+  room.note_events(path.events().size());
+  summarise(step);
+  const bool explained = (step.flags & Step::compliance_missing) != 0;
+  if (path.is_outside() && step.contacts == 0 && !explained && path.in_tissue(step.tip_mm))
+    step.flags |= Step::no_contact_inside;
+  return step;
 }
 
-void Insertion::Parts::summarise(StepReport& report) const {
+void Insertion::Parts::summarise(Step& step) const {
   const TipContact& tip = path.tip;
   const Vec3& at_base = base.origin;
   const double length = needle->length();
-  report.tip = path.phase();
-  report.tip_position = needle->point(length);
-  report.contacts = static_cast<int>(shaft.count()) + (tip.holds() ? 1 : 0);
+  step.base = base;
+  step.tip_state = path.phase();
+  step.tip_mm = needle->point(length);
+  step.contacts = static_cast<int>(shaft.count()) + (tip.holds() ? 1 : 0);
   const PointLoad guide = needle->guide_load();
-  report.guide_force = guide.force;
-  report.hand_force = hand.now(forces());
-  report.hand_torque =
+  step.guide_force_N = guide.force;
+  step.hand_force_N = hand.now(forces());
+  step.torque_Nmm =
       (needle->point(length) - at_base).cross(tip.force) - (needle->point(guide.s) - at_base).cross(guide.force);
   double sliding = 0.0;
   double sliding_out = 0.0;
   for (const ShaftContact& contact : shaft.all()) {
     const double arc = paper::loaded_arc(settings, length, std::clamp(contact.s, 0.0, length));
-    report.hand_torque += (needle->point(arc) - at_base).cross(contact.force);
-    report.inserted_mm += contact.length;
+    step.torque_Nmm += (needle->point(arc) - at_base).cross(contact.force);
+    step.inserted_mm += contact.length;
     if (contact.sticks()) {
-      ++report.sticking;
+      ++step.sticking;
     } else {
       sliding += contact.length;
       if (contact.state == ShaftContact::State::backward) sliding_out += contact.length;
     }
   }
-  if (tip.holds() && tip.state() == TipContact::State::stick) ++report.sticking;
-  if (report.inserted_mm > 0.0) {
-    report.sliding_share = sliding / report.inserted_mm;
-    report.sliding_out_share = sliding_out / report.inserted_mm;
+  if (tip.holds() && tip.state() == TipContact::State::stick) ++step.sticking;
+  if (step.inserted_mm > 0.0) {
+    step.sliding_share = sliding / step.inserted_mm;
+    step.sliding_out_share = sliding_out / step.inserted_mm;
   }
 }
 
@@ -326,7 +329,8 @@ Insertion& Insertion::operator=(Insertion&&) noexcept = default;
 
 void Insertion::place(const Pose& base) { parts_->place(base); }
 void Insertion::place_guide(const Vec3& hole, const Vec3& axis) { parts_->needle->place_guide(hole, axis); }
-StepReport Insertion::step(const Pose& base, double dt) { return parts_->step(base, dt); }
+Step Insertion::step(const Pose& base, double dt) { return parts_->step(base, dt); }
+std::span<const InsertionEvent> Insertion::events() const { return parts_->path.events(); }
 
 void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "coupling/tip/tracks.hpp"
+#include "coupling/tip/tip_path.hpp"
 #include "stylet/coupling/insertion.hpp"
 
 #include <limits>
@@ -16,14 +16,14 @@ class RoomWatch {
     uses_.contacts.room = settings.capacity;
     uses_.spare_nodes.room = settings.spare_nodes;
     uses_.tracks.room = Tracks::kRoom;
-    uses_.events.room = static_cast<int>(StepReport{}.event.size());
+    uses_.events.room = static_cast<int>(TipPath::most_events());
   }
   void note(std::size_t contacts, std::size_t tracks) {
     uses_.contacts.note(static_cast<int>(contacts));
     uses_.spare_nodes.note(static_cast<int>(store_.stored_nodes() - nodes_at_start_));
     uses_.tracks.note(static_cast<int>(tracks));
   }
-  void note_events(int events) { uses_.events.note(events); }
+  void note_events(std::size_t events) { uses_.events.note(static_cast<int>(events)); }
   [[nodiscard]] const CapacityUses& uses() const { return uses_; }
 
   /// All compliance around the tip is there now.

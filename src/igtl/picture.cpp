@@ -27,9 +27,9 @@ Pose tip_pose(const Pose& base, std::span<const Triple> centreline) {
 
 Picture picture_of(const Snapshot& snapshot, const DeviceSnapshot& device) {
   Picture p;
-  p.time_s = snapshot.time_s;
-  p.base = snapshot.base;
-  p.tip = plain(tip_pose(pose(snapshot.base), snapshot.centreline));
+  p.time_s = snapshot.step.time_s;
+  p.base = plain(snapshot.step.base);
+  p.tip = plain(tip_pose(snapshot.step.base, snapshot.centreline));
   p.on_hand = device.sent;
   for (std::size_t k = 0; k < Picture::kShaft; ++k)
     p.shaft[k] = snapshot.centreline[k * (Snapshot::kCentreline - 1) / (Picture::kShaft - 1)];

@@ -13,7 +13,7 @@ namespace stylet {
 /// what comes to a full queue is dropped.
 template <class T, std::size_t Capacity>
 class EventQueue {
-  static_assert(std::is_trivially_copyable_v<T>, "what crosses threads is plain data: copying it never allocates");
+  static_assert(std::is_trivially_destructible_v<T>, "what crosses threads owns nothing: copying it never allocates");
 
  public:
   /// Writer. @return false when the queue was full and the value was dropped

@@ -33,7 +33,7 @@ struct Exchange {
   LatestValue<Snapshot> snapshot;             ///< step → reader
   LatestValue<DeviceSnapshot> device;         ///< device → reader
   EventQueue<EventSnapshot, kEvents> events;  ///< step → reader
-  EventQueue<StepSnapshot, kSteps> steps;     ///< step → reader; RunnerSettings::keep_steps
+  EventQueue<Step, kSteps> steps;             ///< step → reader; RunnerSettings::keep_steps
 
   std::atomic<bool> stop{false};
   std::atomic<bool> paused{false};

@@ -8,9 +8,9 @@ namespace stylet {
 namespace {
 
 /// How far along its track the tip is [mm]. Contacts on the shaft sit on the first marks.
-double tip_xi(const Insertion& insertion, TipPhase tip, std::span<const ContactState> contacts) {
+double tip_xi(const Insertion& insertion, TipState tip, std::span<const ContactState> contacts) {
   const Track& track = insertion.track();
-  if (tip != TipPhase::in_track) return track.end_xi;
+  if (tip != TipState::in_track) return track.end_xi;
   const auto grips = static_cast<std::size_t>(
       std::count_if(contacts.begin(), contacts.end(), [](const ContactState& c) { return !c.tip; }));
   if (grips == 0 || grips > track.marks.size()) return 0.0;
@@ -19,18 +19,17 @@ double tip_xi(const Insertion& insertion, TipPhase tip, std::span<const ContactS
 
 }  // namespace
 
-void NeedleRegions::follow(const Insertion& insertion, const StepReport& report) {
-  for (int e = 0; e < report.events; ++e) {
-    const InsertionEvent& event = report.event[static_cast<std::size_t>(e)];
-    if (event.kind == InsertionEventKind::withdrawn) count_ = 0;
-    if (event.kind == InsertionEventKind::region_entered && count_ < entered_.size())
+void NeedleRegions::follow(const Insertion& insertion) {
+  for (const InsertionEvent& event : insertion.events()) {
+    if (event.kind == EventKind::withdrawn) count_ = 0;
+    if (event.kind == EventKind::region_entered && count_ < entered_.size())
       entered_[count_++] = {insertion.track().end_xi, event.region};
   }
 }
 
-std::size_t NeedleRegions::now(const Insertion& insertion, TipPhase tip, std::span<const ContactState> contacts,
+std::size_t NeedleRegions::now(const Insertion& insertion, TipState tip, std::span<const ContactState> contacts,
                                std::span<std::int16_t> out) const {
-  if (tip == TipPhase::air) return 0;
+  if (tip == TipState::air) return 0;
   const double here = tip_xi(insertion, tip, contacts);
   std::array<double, 64> deepest{};  // of each that is written
   std::size_t count = 0;

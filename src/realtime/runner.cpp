@@ -154,7 +154,7 @@ const Snapshot& RealtimeRunner::snapshot() const { return parts_->exchange.snaps
 bool RealtimeRunner::fetch_device() { return parts_->exchange.device.fetch(); }
 const DeviceSnapshot& RealtimeRunner::device_snapshot() const { return parts_->exchange.device.value(); }
 std::size_t RealtimeRunner::take_events(std::span<EventSnapshot> out) { return parts_->exchange.events.pop(out); }
-std::size_t RealtimeRunner::take_steps(std::span<StepSnapshot> out) { return parts_->exchange.steps.pop(out); }
+std::size_t RealtimeRunner::take_steps(std::span<Step> out) { return parts_->exchange.steps.pop(out); }
 
 std::unique_ptr<RunnerTimes> RealtimeRunner::times() const {
   const LoopTimes& t = parts_->times;

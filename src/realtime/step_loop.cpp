@@ -59,7 +59,7 @@ void StepLoop::step(double dt, double now_s) {
   for (std::size_t k = 0; k < count; ++k) exchange_.events.push(events[k]);
   counters_.dropped_events = exchange_.events.dropped();
   if (!settings_.keep_steps) return;
-  StepSnapshot taken;
+  Step taken;
   if (!body_.record(taken)) return;
   taken.step_us = 1e-3 * static_cast<double>(took);
   exchange_.steps.push(taken);
@@ -81,7 +81,7 @@ void StepLoop::publish(bool paused) {
   // After the force, which is urgent.
   Snapshot& snapshot = exchange_.snapshot.draft();
   body_.describe(snapshot);
-  snapshot.time_s = simulated_s;
+  snapshot.step.time_s = simulated_s;
   snapshot.clock_s = clock_s();
   snapshot.trusted = outcome_.trusted;
   snapshot.paused = paused;

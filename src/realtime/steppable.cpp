@@ -14,44 +14,6 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   return out.first(count);
 }
 
-StepSnapshot plain(const StepRecord& r) {
-  return {.time_s = r.time_s,
-          .dt_s = r.dt_s,
-          .base = plain(r.base),
-          .base_depth_mm = r.base_depth_mm,
-          .force_axial_N = r.force_axial_N,
-          .force_sagittal_N = r.force_sagittal_N,
-          .force_lateral_N = r.force_lateral_N,
-          .torque_Nmm = plain(r.torque_Nmm),
-          .tip_mm = plain(r.tip_mm),
-          .tip_state = r.tip_state,
-          .contacts = r.contacts,
-          .sticking = r.sticking,
-          .iterations = r.iterations,
-          .flags = r.flags,
-          .step_us = r.step_us};
-}
-
-StepRecord step_record(const StepSnapshot& s) {
-  StepRecord r;
-  r.time_s = s.time_s;
-  r.dt_s = s.dt_s;
-  r.base = pose(s.base);
-  r.base_depth_mm = s.base_depth_mm;
-  r.force_axial_N = s.force_axial_N;
-  r.force_sagittal_N = s.force_sagittal_N;
-  r.force_lateral_N = s.force_lateral_N;
-  r.torque_Nmm = vec3(s.torque_Nmm);
-  r.tip_mm = vec3(s.tip_mm);
-  r.tip_state = s.tip_state;
-  r.contacts = s.contacts;
-  r.sticking = s.sticking;
-  r.iterations = s.iterations;
-  r.flags = s.flags;
-  r.step_us = s.step_us;
-  return r;
-}
-
 SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion)
     : simulation_(model),
       contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1),
@@ -65,22 +27,14 @@ SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& mod
 Pose SimulationSteppable::base() const noexcept { return simulation_.insertion().needle().base(); }
 
 StepOutcome SimulationSteppable::step(const Pose& base, double dt) noexcept {
-  simulation_.step(base, dt);
-  const StepReport& report = simulation_.report();
-  regions_.follow(simulation_.insertion(), report);
-  return {{report.hand_force, report.hand_torque}, (report.flags & StepReport::kDistrusted) == 0};
+  const Step& step = simulation_.step(base, dt);
+  regions_.follow(simulation_.insertion());
+  return {{step.hand_force_N, step.torque_Nmm}, (step.flags & Step::kDistrusted) == 0};
 }
 
 void SimulationSteppable::describe(Snapshot& out) noexcept {
-  const StepRecord& record = simulation_.record();
-  const StepReport& report = simulation_.report();
   const Needle& needle = simulation_.insertion().needle();
-  out.base_depth_mm = record.base_depth_mm;
-  out.base = plain(needle.base());
-  out.hand = plain(Wrench{report.hand_force, report.hand_torque});
-  out.force_axial_N = record.force_axial_N;
-  out.tip = plain(record.tip_mm);
-  out.tip_state = record.tip_state;
+  out.step = simulation_.last_step();
   constexpr std::size_t last = Snapshot::kCentreline - 1;
   for (std::size_t k = 0; k <= last; ++k)
     out.centreline[k] = plain(needle.point(needle.length() * static_cast<double>(k) / static_cast<double>(last)));
@@ -102,15 +56,12 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   out.force_count = static_cast<int>(kept);
   out.forces_left_out = static_cast<int>(forces - kept);
   out.region_count = static_cast<int>(
-      regions_.now(simulation_.insertion(), report.tip, std::span(contacts_).first(found), out.regions));
-  out.sticking = record.sticking;
-  out.iterations = record.iterations;
-  out.flags = report.flags;
+      regions_.now(simulation_.insertion(), out.step.tip_state, std::span(contacts_).first(found), out.regions));
 }
 
-bool SimulationSteppable::record(StepSnapshot& out) noexcept {
-  if ((simulation_.report().flags & StepReport::invalid_input) != 0) return false;
-  out = plain(simulation_.record());
+bool SimulationSteppable::record(Step& out) noexcept {
+  if ((simulation_.last_step().flags & Step::invalid_input) != 0) return false;
+  out = simulation_.last_step();
   return true;
 }
 

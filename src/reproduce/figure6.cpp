@@ -25,7 +25,7 @@ class Recorder {
   Result<Figure6Run> all() {
     for (std::size_t i = 0; i < model_->insertions().size(); ++i) {
       one(i);
-      if (simulation_.record().tip_state != TipState::air) {
+      if (simulation_.last_step().tip_state != TipState::air) {
         return failure("figure 6, " + run_.variant.label, "the needle is still in the tissue at the end",
                        "Run the same scenario with stylet insert to see why");
       }
@@ -44,17 +44,17 @@ class Recorder {
       const Pose base = drifted(insertion, number, insertion.motion.at(static_cast<double>(k) * dt_s_));
       simulation_.prepare();
       const double seconds = cpu_seconds([&] { simulation_.step(base, dt_s_); });
-      StepRecord record = simulation_.record();
+      Step record = simulation_.last_step();
       record.step_us = 1e6 * seconds;
       const std::size_t iteration = run_.steps.size();
       for (const Event& event : simulation_.new_events()) run_.events.push_back({iteration, number, event});
       const auto remeshing = simulation_.insertion().compliance().remeshing();
-      const auto made = std::min(static_cast<std::size_t>(simulation_.report().remeshings), remeshing.size());
+      const auto made = std::min(static_cast<std::size_t>(simulation_.last_step().remeshings), remeshing.size());
       for (const RemeshEvent& change : remeshing.last(made)) run_.remeshes.push_back({iteration, number, change});
       run_.remeshings.push_back(static_cast<int>(made));
       run_.insertion.push_back(number);
       run_.steps.push_back(record);
-      if (simulation_.report().flags & StepReport::not_converged) ++run_.not_converged;
+      if (simulation_.last_step().flags & Step::not_converged) ++run_.not_converged;
       if (k % 64 == 0) report(progress_, "figure 6, " + run_.variant.label, record.time_s / total_s_);
     }
   }
@@ -88,7 +88,7 @@ std::vector<double> chosen(const Figure6Run& run, bool with_remeshing) {
 
 double Figure6Run::total_s() const {
   double sum = 0.0;
-  for (const StepRecord& step : steps) sum += 1e-6 * step.step_us;
+  for (const Step& step : steps) sum += 1e-6 * step.step_us;
   return sum;
 }
 
@@ -115,9 +115,9 @@ Scenario figure6_scenario(bool quick) {
   Scenario scenario;
   scenario.name = "Figure 6";
   scenario.patient.source = "phantom";
-  scenario.mesh.preset = "paper";
+  scenario.mesh.preset = MeshPreset::paper;
   scenario.fixed.regions = {"band"};  // the pubic side, as the paper holds it
-  scenario.fixed.outer = "none";
+  scenario.fixed.outer = OuterSupport::none;
   scenario.run.dt_ms = quick ? 2.0 : 1.0;
 
   InsertionPlan straight;
@@ -141,9 +141,9 @@ Vec3 figure6_drift_mm(std::size_t insertion) { return insertion % 2 == 0 ? Vec3(
 Result<std::shared_ptr<const Model>> figure6_model(const Scenario& scenario, const Figure6Variant& variant,
                                                    const TetMesh& mesh, const Progress& progress) {
   Scenario own = scenario;
-  own.coupling.method = variant.method;
-  own.coupling.rule = variant.rule;
-  own.coupling.engine = variant.engine;
+  own.coupling.method = choice<CouplingSettings::Method>(variant.method).value();
+  own.coupling.rule = choice<CouplingSettings::Rule>(variant.rule).value();
+  own.coupling.engine = choice<CouplingSettings::Engine>(variant.engine).value();
   return Model::compile(own, mesh, "figure 6, " + variant.label, {}, progress);
 }
 

@@ -91,7 +91,7 @@ std::optional<std::pair<double, double>> force_at_rest(const Figure6Run& run, st
 /// Largest absolute axial force [N].
 double peak(const Figure6Run& run) {
   double most = 0.0;
-  for (const StepRecord& step : run.steps) most = std::max(most, std::abs(step.force_axial_N));
+  for (const Step& step : run.steps) most = std::max(most, std::abs(step.force_axial_N));
   return most;
 }
 

@@ -125,10 +125,10 @@ Json table_json(const std::vector<TableRow>& rows) {
 }
 
 template <class Value>
-std::string column(const std::vector<StepRecord>& steps, Value value) {
+std::string column(const std::vector<Step>& steps, Value value) {
   std::vector<float> values;
   values.reserve(steps.size());
-  for (const StepRecord& step : steps) values.push_back(static_cast<float>(value(step)));
+  for (const Step& step : steps) values.push_back(static_cast<float>(value(step)));
   return results::base64_of<float>(values);
 }
 
@@ -177,10 +177,10 @@ Json figure2_json(const Figure2& figure) {
 
 Json curves_json(const Figure6Run& run) {
   double cumulative_s = 0.0;
-  return {{"cumulative_s", column(run.steps, [&](const StepRecord& s) { return cumulative_s += 1e-6 * s.step_us; })},
-          {"axial_N", column(run.steps, [](const StepRecord& s) { return s.force_axial_N; })},
-          {"sagittal_N", column(run.steps, [](const StepRecord& s) { return s.force_sagittal_N; })},
-          {"lateral_N", column(run.steps, [](const StepRecord& s) { return s.force_lateral_N; })}};
+  return {{"cumulative_s", column(run.steps, [&](const Step& s) { return cumulative_s += 1e-6 * s.step_us; })},
+          {"axial_N", column(run.steps, [](const Step& s) { return s.force_axial_N; })},
+          {"sagittal_N", column(run.steps, [](const Step& s) { return s.force_sagittal_N; })},
+          {"lateral_N", column(run.steps, [](const Step& s) { return s.force_lateral_N; })}};
 }
 
 Json reproduction_data(const Reproduction& r) {

@@ -42,7 +42,7 @@ std::string figure6_csv(const Figure6Run& run) {
       "remeshings,dk_dimension,contacts,sticking,events\n";
   double cumulative_s = 0.0;
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    const StepRecord& s = run.steps[i];
+    const Step& s = run.steps[i];
     cumulative_s += 1e-6 * s.step_us;
     csv +=
         fmt::format("{},{},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.3f},{:.9f},{},{},{},{},{}\n", i, run.insertion[i] + 1,

@@ -11,7 +11,7 @@ namespace stylet::serve {
 
 /// Where a hand at a page wants the needle's base: about the skin point of a planned insertion.
 struct HandTarget {
-  double depth_mm = 0.0;           ///< as StepRecord::base_depth_mm
+  double depth_mm = 0.0;           ///< as Step::base_depth_mm
   double speed_mm_per_s = 20.0;    ///< to get there with
   double roll_deg = 0.0;           ///< about the axis, from local x to local y
   double tilt_left_deg = 0.0;      ///< the hub towards the patient's left

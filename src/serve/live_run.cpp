@@ -105,26 +105,22 @@ void LiveRun::stop_recording(const std::string& why) {
   problem_ = why;
 }
 
-void LiveRun::record_step(const std::optional<StepRecord>& step) {
+void LiveRun::record_step(const std::optional<Step>& step) {
   if (recorder_ && step) record(recorder_->add_step(*step));
 }
 
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
-    for (const StepSnapshot& step : std::span(step_room_).first(count)) {
-      const StepRecord taken = step_record(step);
-      if (!rests_.follows(taken)) {  // steps are missing in between: the rest before them ends there
+    for (const Step& step : std::span(step_room_).first(count)) {
+      if (!rests_.follows(step)) {  // steps are missing in between: the rest before them ends there
         record_step(rests_.end());
         rests_ = {};
       }
-      record_step(rests_.add(taken));
-      const Sample sample{step.time_s,          step.base_depth_mm, step.force_axial_N, step.force_sagittal_N,
-                          step.force_lateral_N, step.step_us,       step.tip_state,     step.flags};
-      unsent_.push_back(sample);
-      curve_.push_back(sample);
+      record_step(rests_.add(step));
+      unsent_.push_back(step);
+      curve_.push_back(step);
     }
-    last_step_ = step_room_[count - 1];
-    time_s_ = last_step_.time_s;
+    time_s_ = step_room_[count - 1].time_s;
   }
   if (curve_.size() > 2 * kCurve) wire::thin(curve_, kCurve);
   if (unsent_.size() > 2 * kCurve) wire::thin(unsent_, kCurve);
@@ -159,9 +155,10 @@ void LiveRun::compute_displacement() {
 
 /// A needle at rest makes no frames; when it moves again, first its last one at the time until which it rested.
 void LiveRun::record_frame(const Snapshot& snapshot) {
-  if (last_frame_ && snapshot.base.origin == last_base_.origin && snapshot.base.rotation == last_base_.rotation &&
-      std::abs(snapshot.force_axial_N - last_force_N_) < kStill_N) {
-    resting_until_s_ = snapshot.time_s;
+  if (last_frame_ && snapshot.step.base.origin == last_base_.origin &&
+      snapshot.step.base.rotation.coeffs() == last_base_.rotation.coeffs() &&
+      std::abs(snapshot.step.force_axial_N - last_force_N_) < kStill_N) {
+    resting_until_s_ = snapshot.step.time_s;
     return;
   }
   if (last_frame_ && resting_until_s_ > last_frame_->time_s) {
@@ -171,8 +168,8 @@ void LiveRun::record_frame(const Snapshot& snapshot) {
   }
   const double before = now_s();
   Frame frame;
-  frame.time_s = snapshot.time_s;
-  frame.base_depth_mm = snapshot.base_depth_mm;
+  frame.time_s = snapshot.step.time_s;
+  frame.base_depth_mm = snapshot.step.base_depth_mm;
   Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(all_nodes_.size()));
   open_.field->displacement(all_nodes_, *load_, u);
   near_nodes_.set(tissue_forces(snapshot, room_));
@@ -183,9 +180,9 @@ void LiveRun::record_frame(const Snapshot& snapshot) {
     frame.contacts.push_back({vec3(c.position), vec3(c.force), c.s, c.sticking, c.tip});
   record(recorder_->add_frame(frame));
   last_frame_ = std::move(frame);
-  last_base_ = snapshot.base;
-  last_force_N_ = snapshot.force_axial_N;
-  next_frame_s_ = snapshot.time_s + std::max(frame_every_s_, (now_s() - before) / kShareForFrames);
+  last_base_ = snapshot.step.base;
+  last_force_N_ = snapshot.step.force_axial_N;
+  next_frame_s_ = snapshot.step.time_s + std::max(frame_every_s_, (now_s() - before) / kShareForFrames);
 }
 
 std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
@@ -198,27 +195,17 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const Snapshot& s = runner_->snapshot();
   if (load_) {
     open_.field->set(tissue_forces(s, room_), *load_);
-    if (recorder_ && fresh && s.time_s > 0.0 && s.time_s >= next_frame_s_) record_frame(s);
+    if (recorder_ && fresh && s.step.time_s > 0.0 && s.step.time_s >= next_frame_s_) record_frame(s);
   }
 
   auto frame = std::make_shared<LiveFrame>();
-  frame->time_s = s.time_s;
+  frame->time_s = s.step.time_s;
   frame->bits = (s.paused ? LiveFrame::paused : 0U) | (s.trusted ? LiveFrame::trusted : 0U) |
                 (whole_curve ? LiveFrame::whole_curve : 0U);
-  frame->flags = s.flags;
-  frame->tip_state = s.tip_state;
-  frame->sticking = static_cast<std::uint32_t>(s.sticking);
-  frame->iterations = static_cast<std::uint32_t>(s.iterations);
+  frame->step = s.step;
   frame->steps = static_cast<std::uint32_t>(s.counters.steps);
   frame->missed = static_cast<std::uint32_t>(s.counters.missed_deadlines);
-  frame->depth_mm = s.base_depth_mm;
-  frame->force_axial_N = s.force_axial_N;
-  frame->force_sagittal_N = last_step_.force_sagittal_N;
-  frame->force_lateral_N = last_step_.force_lateral_N;
-  frame->torque_Nmm = vec3(s.hand.torque);
-  frame->tip_mm = vec3(s.tip);
-  frame->base = pose(s.base);
-  const HandTarget hand = hand_ ? hand_->place() : hand_angles(frame->base, plan_);
+  const HandTarget hand = hand_ ? hand_->place() : hand_angles(s.step.base, plan_);
   frame->roll_deg = hand.roll_deg;
   frame->tilt_left_deg = hand.tilt_left_deg;
   frame->tilt_anterior_deg = hand.tilt_anterior_deg;
@@ -229,10 +216,10 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   if (load_) frame->left_out_N = std::max(load_->left_out_N(), near_.left_out_N());  // of the same forces
   if (due || (load_ && whole_curve)) set_displacement(*frame, shown_);
   if (whole_curve) {
-    frame->samples = curve_;
+    frame->curve = curve_;
     unsent_.clear();
   } else {
-    frame->samples = std::exchange(unsent_, {});
+    frame->curve = std::exchange(unsent_, {});
   }
   if (const std::int64_t lost = s.counters.dropped_steps; lost > 0 && problem_.empty())
     problem_ = fmt::format("{} steps were not recorded: the disk or this machine is too slow", lost);

@@ -80,7 +80,7 @@ class LiveRun {
  private:
   LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s);
   void record(const Result<>& done);
-  void record_step(const std::optional<StepRecord>& step);
+  void record_step(const std::optional<Step>& step);
   void record_frame(const Snapshot& snapshot);
   [[nodiscard]] bool displacement_is_due() const;
   void compute_displacement();
@@ -103,15 +103,14 @@ class LiveRun {
   bool shown_anew_ = false;                 ///< since show_to()
   std::vector<Index> all_nodes_;            ///< of the mesh
   std::vector<TissueForce> room_;           ///< for forces
-  std::vector<StepSnapshot> step_room_;
-  std::vector<Sample> unsent_;  ///< since the last picture
-  std::vector<Sample> curve_;   ///< since the start, thinned
-  StepSnapshot last_step_;
+  std::vector<Step> step_room_;
+  std::vector<Step> unsent_;  ///< since the last picture
+  std::vector<Step> curve_;   ///< since the start, thinned
   double time_s_ = 0.0;
   double frame_every_s_;             ///< of the recording, at least
   double next_frame_s_ = 0.0;        ///< simulated time
   std::optional<Frame> last_frame_;  ///< recorded
-  PlainPose last_base_;              ///< of it
+  Pose last_base_;                   ///< of it
   double last_force_N_ = 0.0;        ///< of it, axial
   double resting_until_s_ = 0.0;     ///< nothing has moved since it
   double picture_after_s_ = 0.0;     ///< wall: the next displacement for the page

@@ -42,11 +42,11 @@ void Replay::advance(double dt_s) {
 }
 
 /// The last one at or before now, before the first that one: the needle was never anywhere else. Null: there is none.
-const StepRecord* Replay::step() const {
+const Step* Replay::step() const {
   const auto& steps = recording_.steps;
   if (steps.empty()) return nullptr;
   const auto after =
-      std::upper_bound(steps.begin(), steps.end(), time_s_, [](double t, const StepRecord& s) { return t < s.time_s; });
+      std::upper_bound(steps.begin(), steps.end(), time_s_, [](double t, const Step& s) { return t < s.time_s; });
   return after == steps.begin() ? &steps.front() : &*(after - 1);
 }
 
@@ -54,11 +54,11 @@ const StepRecord* Replay::step() const {
 void Replay::put_needle(LiveFrame& out) const {
   set_displacement(out, Eigen::Matrix3Xf::Zero(3, points_.count()));
   if (recording_.steps.empty()) return;
-  const StepRecord& s = *step();
+  const Step& s = *step();
   if (!s.base.origin.allFinite()) return;
   for (const Vec3& point : {s.base.origin, s.tip_mm})
     for (const double value : point) out.centreline.push_back(static_cast<float>(value));
-  out.tip_mm = s.tip_mm;
+  out.step.tip_mm = s.tip_mm;
   out.left_out_N = Vec3(s.force_axial_N, s.force_sagittal_N, s.force_lateral_N).norm();
 }
 
@@ -77,7 +77,7 @@ void Replay::put_frame(LiveFrame& out) const {
     const Vec3 point = k < b.needle.size() ? Vec3(from + share * (b.needle[k] - from)) : from;
     for (const double value : point) out.centreline.push_back(static_cast<float>(value));
   }
-  if (!a.needle.empty()) out.tip_mm = a.needle.back();  // until the first step says it exactly
+  if (!a.needle.empty()) out.step.tip_mm = a.needle.back();  // until the first step says it exactly
   for (const ContactView& c : (share < 0.5 ? a : b).contacts) out.contacts.push_back(plain_contact(c));
   Eigen::Matrix3Xf u(3, points_.count());
   for (std::size_t k = 0; k < points_.nodes.size(); ++k) {
@@ -91,7 +91,7 @@ void Replay::put_frame(LiveFrame& out) const {
 
 std::vector<std::string> Replay::inside() const {
   std::vector<std::string> names;
-  const StepRecord* now = step();
+  const Step* now = step();
   if (now == nullptr || now->tip_state == TipState::air) return names;
   for (const Event& e : recording_.events) {
     if (e.time_s > time_s_) break;
@@ -111,25 +111,17 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
   frame->bits = LiveFrame::replayed | LiveFrame::trusted | (rate_ == 0.0 ? LiveFrame::paused : 0U) |
                 (whole_curve ? LiveFrame::whole_curve : 0U);
   put_frame(*frame);
-  if (const StepRecord* s = step()) {
-    frame->flags = s->flags;
-    if ((s->flags & StepReport::kDistrusted) != 0) frame->bits &= ~static_cast<std::uint32_t>(LiveFrame::trusted);
-    frame->tip_state = s->tip_state;
-    frame->sticking = static_cast<std::uint32_t>(s->sticking);
-    frame->iterations = static_cast<std::uint32_t>(s->iterations);
+  if (const Step* s = step()) {
+    const Vec3 shown_tip = frame->step.tip_mm;
+    const Pose shown_base = frame->step.base;
+    frame->step = *s;
+    if ((s->flags & Step::kDistrusted) != 0) frame->bits &= ~static_cast<std::uint32_t>(LiveFrame::trusted);
     frame->steps = static_cast<std::uint32_t>(steps_.last_at(time_s_)) + 1;
-    frame->depth_mm = s->base_depth_mm;
-    frame->force_axial_N = s->force_axial_N;
-    frame->force_sagittal_N = s->force_sagittal_N;
-    frame->force_lateral_N = s->force_lateral_N;
-    frame->torque_Nmm = s->torque_Nmm;
-    if (time_s_ >= s->time_s || frame->centreline.empty()) frame->tip_mm = s->tip_mm;  // else the frame's
-    if (s->base.origin.allFinite()) frame->base = s->base;  // not in recordings of the first version
+    if (time_s_ < s->time_s && !frame->centreline.empty()) frame->step.tip_mm = shown_tip;
+    if (!s->base.origin.allFinite()) frame->step.base = shown_base;  // recordings of the first version have none
   }
   if (whole_curve) {
-    for (const StepRecord& s : with_ends_of_rests(recording_.steps))
-      frame->samples.push_back({s.time_s, s.base_depth_mm, s.force_axial_N, s.force_sagittal_N, s.force_lateral_N,
-                                s.step_us, s.tip_state, s.flags});
+    frame->curve = with_ends_of_rests(recording_.steps);
   }
   return frame;
 }

@@ -38,7 +38,7 @@ class Replay {
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
 
  private:
-  [[nodiscard]] const StepRecord* step() const;
+  [[nodiscard]] const Step* step() const;
   void put_frame(LiveFrame& out) const;
   void put_needle(LiveFrame& out) const;
 

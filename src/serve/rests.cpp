@@ -8,11 +8,11 @@
 
 namespace stylet::serve {
 
-bool Rests::follows(const StepRecord& step) const {
+bool Rests::follows(const Step& step) const {
   return !record_ || std::abs(step.time_s - last_.time_s - step.dt_s) < 0.5 * step.dt_s;
 }
 
-std::optional<StepRecord> Rests::add(const StepRecord& step) {
+std::optional<Step> Rests::add(const Step& step) {
   last_ = step;
   // Compared with the record, not with the step before, so that no drift can add up.
   if (record_ && is_at_rest(*record_, step)) {
@@ -24,7 +24,7 @@ std::optional<StepRecord> Rests::add(const StepRecord& step) {
   return record_;
 }
 
-std::optional<StepRecord> Rests::end() {
+std::optional<Step> Rests::end() {
   if (resting_ == 0) return std::nullopt;
   last_.rest_steps = std::exchange(resting_, 0) - 1;
   return last_;

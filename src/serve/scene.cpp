@@ -174,7 +174,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
        {{"length_mm", scenario.needle.length_mm},
         {"diameter_mm", scenario.needle.diameter_mm},
         {"bevel_deg", scenario.needle.bevel_deg},
-        {"model", scenario.needle.model}}},
+        {"model", word(scenario.needle.model)}}},
       {"limits",
        {{"depth_mm", limits.depth_mm},
         {"behind_mm", limits.behind_mm},

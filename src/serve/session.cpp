@@ -412,7 +412,7 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   plan.entry = recording->info.entry_mm;
   plan.direction = recording->info.direction;
   plan.name = name;
-  for (const StepRecord& step : recording->steps) plan.depth_mm = std::max(plan.depth_mm, step.base_depth_mm);
+  for (const Step& step : recording->steps) plan.depth_mm = std::max(plan.depth_mm, step.base_depth_mm);
   MadeScene made = make_scene(recording->mesh, recording->info.target_regions, *scenario, {plan},
                               recording->info.warnings, cases(), nullptr);
   audience.show(made.scene);

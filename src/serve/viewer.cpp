@@ -96,7 +96,7 @@ void Viewer::hear(std::span<const std::byte> message) {
 
 void Viewer::send(std::shared_ptr<const Scene> scene) {
   frame_.reset();  // of the scene before
-  samples_.clear();
+  curve_.clear();
   waiting_.push_back({wire::Kind::scene, std::move(scene), {}});
   write();
 }
@@ -115,12 +115,12 @@ void Viewer::send_status(std::string json) {
 void Viewer::send(std::shared_ptr<const LiveFrame> frame) {
   if (frame_) ++skipped_;
   if ((frame->bits & LiveFrame::whole_curve) != 0) {
-    samples_ = frame->samples;
+    curve_ = frame->curve;
     whole_curve_ = true;
   } else {
-    samples_.insert(samples_.end(), frame->samples.begin(), frame->samples.end());
+    curve_.insert(curve_.end(), frame->curve.begin(), frame->curve.end());
   }
-  wire::thin(samples_, kMostSamples);
+  wire::thin(curve_, kMostSamples);
   frame_ = std::move(frame);
   write();
 }
@@ -139,9 +139,9 @@ bool Viewer::next_message() {
     return true;
   }
   if (!frame_) return false;
-  outgoing_ = wire::encode(*frame_, samples_, whole_curve_, sent_++);
+  outgoing_ = wire::encode(*frame_, curve_, whole_curve_, sent_++);
   frame_.reset();
-  samples_.clear();
+  curve_.clear();
   whole_curve_ = false;
   return true;
 }

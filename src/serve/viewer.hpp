@@ -73,8 +73,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   std::deque<Waiting> waiting_;
   std::optional<std::string> status_;
   std::shared_ptr<const LiveFrame> frame_;
-  std::vector<Sample> samples_;  ///< not sent yet
-  bool whole_curve_ = false;     ///< they are all
+  std::vector<Step> curve_;   ///< not sent yet
+  bool whole_curve_ = false;  ///< they are all
   std::int64_t skipped_ = 0;
   std::uint32_t sent_ = 0;
   wire::Bytes outgoing_;  ///< while it is written

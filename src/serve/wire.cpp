@@ -124,30 +124,33 @@ Bytes encode(const Scene& scene, std::uint32_t number) {
   return out.take();
 }
 
-Bytes encode(const LiveFrame& f, std::span<const Sample> samples, bool whole_curve, std::uint32_t number) {
+Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, std::uint32_t number) {
   Writer out(Kind::frame, number,
-             256 + 4 * f.centreline.size() + 32 * f.contacts.size() + 32 * samples.size() + 2 * f.displacement.size());
+             256 + 4 * f.centreline.size() + 32 * f.contacts.size() + 32 * curve.size() + 2 * f.displacement.size());
   out.put(f.time_s);
   std::uint32_t bits = f.bits & ~static_cast<std::uint32_t>(LiveFrame::whole_curve);
   if (!f.displacement.empty()) bits |= LiveFrame::displaced;
   if (whole_curve) bits |= LiveFrame::whole_curve;
-  const auto tip_state = static_cast<std::uint32_t>(f.tip_state);
-  for (const std::uint32_t value : {bits, f.flags, tip_state, f.sticking, f.iterations, f.steps, f.missed})
+  const Step& step = f.step;
+  const auto tip_state = static_cast<std::uint32_t>(step.tip_state);
+  const auto sticking = static_cast<std::uint32_t>(step.sticking);
+  const auto iterations = static_cast<std::uint32_t>(step.iterations);
+  for (const std::uint32_t value : {bits, step.flags, tip_state, sticking, iterations, f.steps, f.missed})
     out.put(value);
-  out.put_floats(f.depth_mm, f.force_axial_N, f.force_sagittal_N, f.force_lateral_N);
-  for (const Vec3& v : {f.torque_Nmm, f.tip_mm, f.base.origin}) out.put_floats(v.x(), v.y(), v.z());
-  const Eigen::Quaterniond& q = f.base.rotation;
+  out.put_floats(step.base_depth_mm, step.force_axial_N, step.force_sagittal_N, step.force_lateral_N);
+  for (const Vec3& v : {step.torque_Nmm, step.tip_mm, step.base.origin}) out.put_floats(v.x(), v.y(), v.z());
+  const Eigen::Quaterniond& q = step.base.rotation;
   out.put_floats(q.w(), q.x(), q.y(), q.z());
   out.put_floats(f.roll_deg, f.tilt_left_deg, f.tilt_anterior_deg, f.left_out_N, f.unit_mm);
-  out.put_counts({f.centreline.size() / 3, f.contacts.size(), samples.size(), f.displacement.size() / 3});
+  out.put_counts({f.centreline.size() / 3, f.contacts.size(), curve.size(), f.displacement.size() / 3});
   out.put_all(std::span<const float>(f.centreline));
   for (const ContactSnapshot& c : f.contacts) {
     out.put_floats(c.position[0], c.position[1], c.position[2], c.force[0], c.force[1], c.force[2], c.s);
     out.put((c.sticking ? 1U : 0U) | (c.tip ? 2U : 0U));
   }
-  for (const Sample& s : samples) {
-    out.put_floats(s.time_s - f.time_s, s.depth_mm, s.axial_N, s.sagittal_N, s.lateral_N, s.step_us,
-                   static_cast<int>(s.tip_state), s.flags);
+  for (const Step& s : curve) {
+    out.put_floats(s.time_s - f.time_s, s.base_depth_mm, s.force_axial_N, s.force_sagittal_N, s.force_lateral_N,
+                   s.step_us, static_cast<int>(s.tip_state), s.flags);
   }
   out.put_all(std::span<const std::int16_t>(f.displacement));
   return out.take();
@@ -172,22 +175,22 @@ std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byt
   return std::nullopt;
 }
 
-void thin(std::vector<Sample>& samples, std::size_t most) {
-  if (samples.size() <= most) return;
+void thin(std::vector<Step>& curve, std::size_t most) {
+  if (curve.size() <= most) return;
   const std::size_t runs = std::max<std::size_t>(1, most / 2);
-  std::vector<Sample> kept;
+  std::vector<Step> kept;
   kept.reserve(2 * runs);
-  const auto by_force = [](const Sample& a, const Sample& b) { return a.axial_N < b.axial_N; };
+  const auto by_force = [](const Step& a, const Step& b) { return a.force_axial_N < b.force_axial_N; };
   for (std::size_t k = 0; k < runs; ++k) {
-    const auto from = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * k / runs);
-    const auto to = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() * (k + 1) / runs);
+    const auto from = curve.begin() + static_cast<std::ptrdiff_t>(curve.size() * k / runs);
+    const auto to = curve.begin() + static_cast<std::ptrdiff_t>(curve.size() * (k + 1) / runs);
     if (from == to) continue;
     auto [least, largest] = std::minmax_element(from, to, by_force);
     if (largest < least) std::swap(least, largest);
     kept.push_back(*least);
     if (largest != least) kept.push_back(*largest);
   }
-  samples = std::move(kept);
+  curve = std::move(kept);
 }
 
 }  // namespace stylet::serve::wire

@@ -28,7 +28,7 @@ using Bytes = std::vector<std::byte>;
 Bytes encode(const Scene& scene, std::uint32_t number);
 /// @param samples those that this connection has not got yet, instead of the frame's own
 /// @param whole_curve they are all there are
-Bytes encode(const LiveFrame& frame, std::span<const Sample> samples, bool whole_curve, std::uint32_t number);
+Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
 /// status, event or notice
 Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
@@ -59,6 +59,6 @@ struct Command {
 std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byte> message);
 
 /// At most `most` samples: of each of equal runs the ones with the least and the largest axial force, in their order.
-void thin(std::vector<Sample>& samples, std::size_t most);
+void thin(std::vector<Step>& curve, std::size_t most);
 
 }  // namespace stylet::serve::wire

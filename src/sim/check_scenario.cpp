@@ -72,6 +72,9 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
 }  // namespace
 
 Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
+  using Method = CouplingSettings::Method;
+  using Engine = CouplingSettings::Engine;
+  using Solver = CouplingSettings::Solver;
   if (Result<> checked = check_scenario_keys(s, place); !checked) return checked;
   if (s.patient.source.empty()) {
     return input_error(place("patient.source"), "there is no patient: patient.source is missing",
@@ -103,35 +106,35 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                                    s.coupling.spacing_mm, s.needle.diameter_mm),
                        "Contacts closer than the diameter cannot be told apart: give at least the diameter");
   }
-  if (s.coupling.method == "node-repositioning" && s.coupling.engine == "condensed") {
+  if (s.coupling.method == Method::node_repositioning && s.coupling.engine == Engine::condensed) {
     return input_error(place("coupling.method"),
                        "coupling.method = \"node-repositioning\" changes the stiffness of all elements around the node "
                        "that moves, and coupling.engine = \"condensed\" never changes the stiffness of the mesh",
                        "Choose engine = \"woodbury\" or \"bcs\", or method = \"node-addition\"");
   }
-  if (s.tissue_model.element == "nodal-pressure" || s.tissue_model.element == "p2") {
+  if (s.tissue_model.element == ElementChoice::nodal_pressure || s.tissue_model.element == ElementChoice::p2) {
     const auto refused = [&](const std::string& setting, const char* cure) {
       return input_error(
           place("tissue.element"),
           fmt::format("{} changes the stiffness of linear tetrahedra, and tissue.element = \"{}\" has none", setting,
-                      s.tissue_model.element),
+                      word(s.tissue_model.element)),
           cure);
     };
-    if (s.coupling.method == "node-addition" || s.coupling.method == "node-repositioning") {
-      return refused(fmt::format("coupling.method = \"{}\"", s.coupling.method),
+    if (s.coupling.method == Method::node_addition || s.coupling.method == Method::node_repositioning) {
+      return refused(fmt::format("coupling.method = \"{}\"", word(s.coupling.method)),
                      "Set tissue.element = \"p1\", or coupling.method = \"near-field\" or \"embedded\"");
     }
-    if (s.coupling.engine != "condensed") {
-      return refused(fmt::format("coupling.engine = \"{}\"", s.coupling.engine),
+    if (s.coupling.engine != Engine::condensed) {
+      return refused(fmt::format("coupling.engine = \"{}\"", word(s.coupling.engine)),
                      "Set tissue.element = \"p1\", or coupling.engine = \"condensed\"");
     }
   }
-  if (s.coupling.damping != Scenario{}.coupling.damping && s.coupling.solver != "staggered") {
+  if (s.coupling.damping != Scenario{}.coupling.damping && s.coupling.solver != Solver::staggered) {
     return input_error(place("coupling.damping"),
                        "coupling.damping belongs to coupling.solver = \"staggered\", and the solver is \"coupled\"",
                        "Set solver = \"staggered\", or leave damping out");
   }
-  if (s.coupling.projection == "nearest-node" && s.coupling.solver != "staggered") {
+  if (s.coupling.projection == Projection::nearest_node && s.coupling.solver != Solver::staggered) {
     return input_error(
         place("coupling.projection"),
         "coupling.projection = \"nearest-node\" belongs to coupling.solver = \"staggered\", and the solver "

@@ -52,22 +52,18 @@ std::vector<int> find_target(const TetMesh& mesh) {
 
 CouplingSettings coupling_settings(const Scenario& s) {
   CouplingSettings c;
-  c.method = s.coupling.method == "near-field"           ? CouplingSettings::Method::near_field
-             : s.coupling.method == "embedded"           ? CouplingSettings::Method::embedded
-             : s.coupling.method == "node-repositioning" ? CouplingSettings::Method::node_repositioning
-                                                         : CouplingSettings::Method::node_addition;
-  c.engine = s.coupling.engine == "bcs"        ? CouplingSettings::Engine::bcs
-             : s.coupling.engine == "woodbury" ? CouplingSettings::Engine::woodbury
-                                               : CouplingSettings::Engine::condensed;
-  c.solver = s.coupling.solver == "staggered" ? CouplingSettings::Solver::staggered : CouplingSettings::Solver::coupled;
-  c.rule = s.coupling.rule == "paper" ? CouplingSettings::Rule::paper : CouplingSettings::Rule::interior;
+  c.method = s.coupling.method;
+  c.engine = s.coupling.engine;
+  c.solver = s.coupling.solver;
+  c.rule = s.coupling.rule;
   c.damping = s.coupling.damping;
-  if (s.coupling.projection == "nearest-node") {
-    const int elements = s.needle.elements > 0 ? s.needle.elements : default_needle_elements(s.needle.model).value();
+  if (s.coupling.projection == Projection::nearest_node) {
+    const int elements =
+        s.needle.elements > 0 ? s.needle.elements : default_needle_elements(word(s.needle.model)).value();
     c.needle_node_mm = s.needle.length_mm / elements;
   }
   c.bevel.angle_rad = s.needle.bevel_deg * std::numbers::pi / 180.0;
-  c.bevel.law = s.needle.bevel_law == "force" ? Bevel::Law::force : Bevel::Law::offset;
+  c.bevel.law = s.needle.bevel_law;
   c.bevel.force_ratio = s.needle.bevel_force_ratio;
   c.spacing_mm = s.coupling.spacing_mm;
   c.needle_radius_mm = 0.5 * s.needle.diameter_mm;
@@ -88,17 +84,16 @@ CouplingSettings coupling_settings(const Scenario& s) {
 /// need. Averaged pressure couples two rings of nodes: beyond some size its factor does not fit into memory, and
 /// locking has become small (docs/theory/tissue.md).
 Element element_of(const Scenario& s, Index nodes) {
-  const std::string& method = s.coupling.method;
-  const bool of_the_paper = method == "node-addition" || method == "node-repositioning" || method == "embedded" ||
-                            s.coupling.engine != "condensed";
+  const bool of_the_paper = s.coupling.method != CouplingSettings::Method::near_field ||
+                            s.coupling.engine != CouplingSettings::Engine::condensed;
   const bool p1 = of_the_paper || nodes > kMostAveraged;
-  return element_named(s.tissue_model.element).value_or(p1 ? Element::p1 : Element::nodal_pressure);
+  return element_named(word(s.tissue_model.element)).value_or(p1 ? Element::p1 : Element::nodal_pressure);
 }
 
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
   const auto section = needle_section(n);
   if (!section) return section.error();
-  return make_needle(n.model, *section, n.elements, capacity + 2);  // the tip, and a guide
+  return make_needle(word(n.model), *section, n.elements, capacity + 2);  // the tip, and a guide
 }
 
 constexpr const char* kPrepareAgain = "Prepare the model again (stylet prepare)";
@@ -313,7 +308,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // as it was at first, and as it is
     if (gigabytes > kLargestInverse_GB) {
       return input_error(
-          fmt::format("{}, coupling.engine = \"{}\"", where, scenario.coupling.engine),
+          fmt::format("{}, coupling.engine = \"{}\"", where, word(scenario.coupling.engine)),
           fmt::format("the full inverse of a mesh of {} nodes takes {:.1f} GB, more than {:g} GB",
                       model->mesh().node_count(), gigabytes, kLargestInverse_GB),
           "Use engine = \"condensed\", which keeps only what the needle touches, or a coarser mesh (mesh.nodes)");

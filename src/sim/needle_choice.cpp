@@ -15,7 +15,7 @@ Cannula cannula_of(const Scenario::NeedleChoice& choice) {
   c.lumen_diameter_mm = choice.lumen_diameter_mm.value_or(kLumenShare * choice.diameter_mm);
   c.young_MPa = choice.young_GPa * kMPa_per_GPa;
   c.stylet_young_MPa = choice.stylet_young_GPa * kMPa_per_GPa;
-  if (choice.stylet == "in")
+  if (choice.stylet == StyletPlace::in)
     c.stylet_diameter_mm = choice.stylet_diameter_mm.value_or(kStyletShare * c.lumen_diameter_mm);
   return c;
 }

@@ -61,7 +61,7 @@ class Runner {
     choose_frames();
     for (std::size_t i = 0; i < insertions.size(); ++i) {
       if (auto done = one(insertions[i], planned(insertions[i])); !done) return done.error();
-      if (i + 1 < insertions.size() && simulation_.record().tip_state != TipState::air) {
+      if (i + 1 < insertions.size() && simulation_.last_step().tip_state != TipState::air) {
         return input_error(fmt::format("insertion[{}]", i),
                            "the needle is still in the tissue when the next one is to start",
                            "Pull it out further: a larger approach_mm, or a longer recorded motion");
@@ -70,7 +70,7 @@ class Runner {
     return sum_up();
   }
 
-  Result<Summary> recorded(std::span<const StepRecord> steps) {
+  Result<Summary> recorded(std::span<const Step> steps) {
     const RecordedSteps all(steps);
     BaseSteps motion;
     motion.count = static_cast<long>(all.count());
@@ -133,7 +133,7 @@ class Runner {
       simulation_.prepare();
       const double before = thread_cpu_us();
       simulation_.step(base, dt);
-      StepRecord record = simulation_.record();
+      Step record = simulation_.last_step();
       record.step_us = thread_cpu_us() - before;
       if (auto r = account(record, insertion); !r) return r;
       std::string label;
@@ -172,7 +172,7 @@ class Runner {
     return deepest;
   }
 
-  Result<> account(const StepRecord& record, const PlannedInsertion& insertion) {
+  Result<> account(const Step& record, const PlannedInsertion& insertion) {
     ++summary_.steps;
     summary_.peak_axial_N = std::max(summary_.peak_axial_N, std::abs(record.force_axial_N));
     summary_.peak_sagittal_N = std::max(summary_.peak_sagittal_N, std::abs(record.force_sagittal_N));
@@ -184,9 +184,9 @@ class Runner {
         std::max(summary_.tip_deflection_mm, (off - insertion.direction * insertion.direction.dot(off)).norm());
     step_us_.push_back(record.step_us);
     const auto changes = simulation_.insertion().compliance().remeshing();
-    for (const RemeshEvent& change : changes.last(static_cast<std::size_t>(simulation_.report().remeshings)))
+    for (const RemeshEvent& change : changes.last(static_cast<std::size_t>(simulation_.last_step().remeshings)))
       summary_.mesh_changes.push_back({record.time_s, record.base_depth_mm, change});
-    const unsigned flags = simulation_.report().flags;
+    const unsigned flags = simulation_.last_step().flags;
     for (std::size_t bit = 0; bit < flag_counts_.size(); ++bit) {
       if (flags & (1u << bit)) ++flag_counts_[bit];
     }
@@ -270,7 +270,7 @@ class Runner {
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
-  static constexpr std::size_t kFlags = 7;  ///< of StepReport
+  static constexpr std::size_t kFlags = 7;  ///< of Step
   std::array<long, kFlags> flag_counts_{};
   Summary summary_;
 };
@@ -281,7 +281,7 @@ Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& obse
   return Runner(model, observer, progress).all();
 }
 
-Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const StepRecord> steps,
+Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const Step> steps,
                              RunObserver& observer, const Progress& progress) {
   if (steps.empty()) return input_error("recording", "it has no steps", "Record one with `stylet serve`");
   if (model->insertions().size() != 1)

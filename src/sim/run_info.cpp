@@ -105,7 +105,7 @@ void add_guide(std::vector<ParameterRow>& rows, const TemplateGrid& grid) {
 void add_tet(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
   const auto section = needle_section(choice);
   if (!section) return;  // compile() has seen it succeed
-  const int segments = choice.elements > 0 ? choice.elements : default_needle_elements(choice.model).value();
+  const int segments = choice.elements > 0 ? choice.elements : default_needle_elements(word(choice.model)).value();
   const auto built = TetNeedle::build(*section, segments, 1);
   if (!built) return;
   const TetNeedle* tet = built->get();
@@ -122,10 +122,11 @@ RunInfo Model::info(std::size_t insertion) const {
   RunInfo info;
   info.version = version();
   info.scenario_name = scenario_.name;
-  info.method = scenario_.coupling.method +
-                (scenario_.coupling.method == "node-addition" ? ", " + scenario_.coupling.rule + " rule" : "") +
-                (scenario_.coupling.engine == "condensed" ? "" : ", engine " + scenario_.coupling.engine) +
-                (scenario_.coupling.solver == "coupled" ? "" : ", " + scenario_.coupling.solver);
+  const Scenario::Coupling& coupling = scenario_.coupling;
+  info.method = word(coupling.method);
+  if (coupling.method == CouplingSettings::Method::node_addition) info.method += ", " + word(coupling.rule) + " rule";
+  if (coupling.engine != CouplingSettings::Engine::condensed) info.method += ", engine " + word(coupling.engine);
+  if (coupling.solver != CouplingSettings::Solver::coupled) info.method += ", " + word(coupling.solver);
   info.needle_diameter_mm = scenario_.needle.diameter_mm;
   info.needle_length_mm = scenario_.needle.length_mm;
   info.target_regions = target_;
@@ -139,7 +140,7 @@ RunInfo Model::info(std::size_t insertion) const {
     add_tissue(info.parameters, mesh().regions[r], tissue_parameters_[r], laws_[r].rigid);
   info.parameters.push_back(
       {"tissue.element", to_string(tissue_->element()), "",
-       scenario_.tissue_model.element == "auto"
+       scenario_.tissue_model.element == ElementChoice::automatic
            ? "by coupling.method: linear tetrahedra where it needs them or is compared, else one that does not lock"
            : kFromScenario});
   info.parameters.push_back({"tissue.relaxation_s", fmt::format("{:g}", scenario_.tissue_model.relaxation_s), "s",
@@ -151,12 +152,12 @@ RunInfo Model::info(std::size_t insertion) const {
     std::string text = as_shown(*value);
     const bool is_default = text == as_shown(*scenario_value(standard, shown.path));
     if (shown.path == kElements && scenario_.needle.elements == 0)
-      text = std::to_string(default_needle_elements(scenario_.needle.model).value());
+      text = std::to_string(default_needle_elements(word(scenario_.needle.model)).value());
     info.parameters.push_back({shown.path, text, unit_of(shown.path), is_default ? shown.source : kFromScenario});
   }
   if (scenario_.grid.guide) add_guide(info.parameters, scenario_.grid);
   add_section(info.parameters, scenario_.needle);
-  if (scenario_.needle.model == "tet") add_tet(info.parameters, scenario_.needle);
+  if (scenario_.needle.model == NeedleModel::tet) add_tet(info.parameters, scenario_.needle);
   return info;
 }
 

@@ -26,6 +26,10 @@ inline std::optional<ScenarioValue> value_of(bool x) { return ScenarioValue{.typ
 inline std::optional<ScenarioValue> value_of(const std::string& x) {
   return ScenarioValue{.type = Type::text, .text = x};
 }
+template <Choice E>
+std::optional<ScenarioValue> value_of(E x) {
+  return ScenarioValue{.type = Type::text, .text = word(x)};
+}
 inline std::optional<ScenarioValue> value_of(const std::vector<std::string>& x) {
   return ScenarioValue{.type = Type::texts, .texts = x};
 }
@@ -93,16 +97,19 @@ class ScenarioEntries {
         });
   }
 
-  /// One of several words.
+  /// One of an enumeration's words.
   template <class Field>
-  void choice(const char* path, const std::vector<std::string>& words, const char* meaning, Field field) {
+  void choice(const char* path, const char* meaning, Field field) {
+    using E = std::decay_t<decltype(field_value(field, ScenarioSlot{}))>;
+    const std::vector<std::string> words(Words<E>::all.begin(), Words<E>::all.end());
     add({path, Type::text, "", "", fmt::format("\"{}\"", fmt::join(words, "\", \"")), meaning, ""}, field, {},
         [=](auto& target, const ScenarioValue& v) -> std::string {
-          if (std::find(words.begin(), words.end(), v.text) == words.end()) {
+          const auto chosen = stylet::choice<E>(v.text);
+          if (!chosen) {
             const std::string near = nearest_name(v.text, words);
             return "not one of its words" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");
           }
-          target = v.text;
+          target = *chosen;
           return {};
         });
   }

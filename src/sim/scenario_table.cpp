@@ -45,7 +45,7 @@ void describe_patient(ScenarioEntries& keys) {
 
 void describe_tissue(ScenarioEntries& keys) {
   keys.choice(
-      "tissue.element", {"auto", "p1", "nodal-pressure", "p2"},
+      "tissue.element",
       "finite element; p1 = linear tetrahedra, stiffen as Poisson's ratio nears 0.5; nodal-pressure = linear "
       "tetrahedra with the change of volume averaged around nodes, do not; p2 = quadratic tetrahedra, nearly do "
       "not, eight times the nodes; auto = p1 with the coupling methods node-addition, "
@@ -83,7 +83,7 @@ void describe_supports(ScenarioEntries& keys) {
   keys.texts(
       "fixed.regions", 0, "regions whose nodes are all held", [](auto& s, const Slot&) { return &s.fixed.regions; },
       {.standard = "the bones: pubic_arch, femur_left, femur_right where present", .example = "[\"pubic_arch\"]"});
-  keys.choice("fixed.outer", {"auto", "none", "sides", "all"},
+  keys.choice("fixed.outer",
               "outer faces held: sides = all but the perineal face and the surroundings of the entry; auto = none with "
               "a pubic arch, else sides",
               [](auto& s, const Slot&) { return &s.fixed.outer; });
@@ -95,7 +95,7 @@ void describe_supports(ScenarioEntries& keys) {
 void describe_mesh(ScenarioEntries& keys) {
   keys.integer("mesh.nodes", 0, 1000000, "nodes of the mesh; 0 = 3,000 (standard) or 570 (paper)",
                [](auto& s, const Slot&) { return &s.mesh.nodes; });
-  keys.choice("mesh.preset", {"standard", "paper"},
+  keys.choice("mesh.preset",
               "what is meshed: standard = all anatomy there is; paper = the target and its surroundings only, as "
               "Goksel et al. 2005",
               [](auto& s, const Slot&) { return &s.mesh.preset; });
@@ -107,7 +107,7 @@ void describe_mesh(ScenarioEntries& keys) {
 
 void describe_needle(ScenarioEntries& keys) {
   keys.choice(
-      "needle.model", {"beam", "springs", "tet"},
+      "needle.model",
       "needle model; beam = geometrically exact rod, springs = rigid rods joined by angular springs, tet = bar of "
       "tetrahedra as Goksel et al. 2005",
       [](auto& s, const Slot&) { return &s.needle.model; });
@@ -120,7 +120,7 @@ void describe_needle(ScenarioEntries& keys) {
               {.standard = "0.787 of the outer diameter, 1.0 for 18 gauge", .example = "1"});
   keys.number("needle.young_GPa", "GPa", 0.5, 230, "Young's modulus of the tube; steel has 200",
               [](auto& s, const Slot&) { return &s.needle.young_GPa; });
-  keys.choice("needle.stylet", {"out", "in"},
+  keys.choice("needle.stylet",
               "whether the stylet is in the tube: it slides freely, so its bending stiffness adds to the tube's",
               [](auto& s, const Slot&) { return &s.needle.stylet; });
   keys.number("needle.stylet_diameter_mm", "mm", 0.05, 5, "diameter of the stylet",
@@ -139,7 +139,7 @@ void describe_needle(ScenarioEntries& keys) {
               "angle between the face of the tip's bevel and the axis, 10 … 30 for bevelled needles; 0 = symmetric tip",
               [](auto& s, const Slot&) { return &s.needle.bevel_deg; });
   keys.choice(
-      "needle.bevel_law", {"offset", "force"},
+      "needle.bevel_law",
       "what a bevel does: the cut runs beside the axis on the sharp side; or the tissue pushes the tip sideways",
       [](auto& s, const Slot&) { return &s.needle.bevel_law; });
   keys.number("needle.bevel_force_ratio", "", 0, 1, "bevel_law force: lateral over axial force of the tip",
@@ -157,21 +157,21 @@ void describe_needle(ScenarioEntries& keys) {
 }
 
 void describe_coupling(ScenarioEntries& keys) {
-  keys.choice("coupling.method", {"near-field", "node-addition", "node-repositioning", "embedded"},
+  keys.choice("coupling.method",
               "how needle and tissue are coupled: forces are interpolated and the needle's near field, which no mesh "
               "represents, "
               "is put right; a tissue node is added where the needle needs one; the nearest one is moved there (engine "
               "woodbury "
               "or bcs); forces are interpolated",
               [](auto& s, const Slot&) { return &s.coupling.method; });
-  keys.choice("coupling.rule", {"interior", "paper"},
+  keys.choice("coupling.rule",
               "where node-addition adds them: inside elements at the contact spacing, or on every face crossed",
               [](auto& s, const Slot&) { return &s.coupling.rule; });
-  keys.choice("coupling.solver", {"coupled", "staggered"},
+  keys.choice("coupling.solver",
               "needle and tissue in one solve, or in turn as in Goksel et al. 2005 (slower, same answer)",
               [](auto& s, const Slot&) { return &s.coupling.solver; });
   keys.choice(
-      "coupling.engine", {"condensed", "woodbury", "bcs"},
+      "coupling.engine",
       "what is kept of the inverse stiffness: what the needle touches, or all of it, changed in place by the "
       "matrix inversion lemma or by boundary condition switches (Goksel et al. 2005; up to some thousand nodes)",
       [](auto& s, const Slot&) { return &s.coupling.engine; });
@@ -179,7 +179,7 @@ void describe_coupling(ScenarioEntries& keys) {
               "staggered solver: springs that damp the needle, over the tissue's own stiffness around each contact",
               [](auto& s, const Slot&) { return &s.coupling.damping; });
   keys.choice(
-      "coupling.projection", {"exact", "nearest-node"},
+      "coupling.projection",
       "staggered solver: contact forces act on the needle where the contacts are, or at the nearest node of the "
       "needle as in Goksel et al. 2005",
       [](auto& s, const Slot&) { return &s.coupling.projection; });

@@ -15,46 +15,6 @@ constexpr double kPrepareShare = 0.75;
 constexpr double kAhead_mm = 10.0;
 constexpr int kNeedleSamples = 81;
 
-TipState tip_state(TipPhase phase) {
-  switch (phase) {
-    case TipPhase::air:
-      return TipState::air;
-    case TipPhase::pressing:
-      return TipState::pressing;
-    case TipPhase::cutting:
-      return TipState::cutting;
-    case TipPhase::in_track:
-      return TipState::in_track;
-    case TipPhase::bone:
-      return TipState::bone;
-    case TipPhase::exited:
-      return TipState::exited;
-  }
-  return TipState::air;
-}
-
-EventKind event_kind(InsertionEventKind kind) {
-  switch (kind) {
-    case InsertionEventKind::skin_contact:
-      return EventKind::skin_contact;
-    case InsertionEventKind::puncture:
-      return EventKind::puncture;
-    case InsertionEventKind::region_entered:
-      return EventKind::region_entered;
-    case InsertionEventKind::bone_contact:
-      return EventKind::bone_contact;
-    case InsertionEventKind::exited:
-      return EventKind::exited;
-    case InsertionEventKind::re_entered:
-      return EventKind::re_entered;
-    case InsertionEventKind::withdrawn:
-      return EventKind::withdrawn;
-    case InsertionEventKind::grazed:
-      return EventKind::grazed;
-  }
-  return EventKind::skin_contact;
-}
-
 /// Compliance in copies, which share what the model has and grow on their own.
 InsertionTissue tissue_of(const Model& model) {
   return {std::make_shared<ComplianceStore>(*model.store()), &model.locator(), model.laws(), model.inverse(),
@@ -80,19 +40,17 @@ double Simulation::base_depth_mm(const Pose& base) const {
 void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& direction) {
   entry_ = entry;
   direction_ = direction.normalized();
-  base_ = base;
   turns_ = {};
   slipping_ = true;
   event_count_ = 0;
   insertion_.place_guide(entry_ - model_->scenario().grid.distance_mm * direction_, direction_);
   insertion_.place(base);
-  report_ = {};
-  const double now = record_.time_s;
-  record_ = {};
-  record_.time_s = now;
-  record_.base = base;
-  record_.base_depth_mm = base_depth_mm(base);
-  record_.tip_mm = insertion_.needle().point(insertion_.needle().length());
+  Step placed;
+  placed.time_s = step_.time_s;
+  placed.base = base;
+  placed.base_depth_mm = base_depth_mm(base);
+  placed.tip_mm = insertion_.needle().point(insertion_.needle().length());
+  step_ = placed;
 }
 
 ComplianceSupply::Settings Simulation::supply_settings() const {
@@ -107,8 +65,8 @@ void Simulation::add_event(EventKind kind, double force_N, int region) {
   if (event_count_ == static_cast<int>(events_.size())) return;
   Event& event = events_[static_cast<std::size_t>(event_count_++)];
   event.kind = kind;
-  event.time_s = record_.time_s;
-  event.depth_mm = record_.base_depth_mm;
+  event.time_s = step_.time_s;
+  event.depth_mm = step_.base_depth_mm;
   event.force_N = force_N;
   event.region.clear();
   if (region >= 0) event.region.assign(model_->mesh().regions[static_cast<std::size_t>(region)]);
@@ -116,8 +74,7 @@ void Simulation::add_event(EventKind kind, double force_N, int region) {
 
 /// Notices where the base turns round. The event carries the moment of the turn, not that of its discovery.
 void Simulation::notice_turn(double advance_mm, bool in_tissue) {
-  const auto turned =
-      turns_.follow(advance_mm, {record_.time_s, record_.base_depth_mm, record_.force_axial_N, in_tissue});
+  const auto turned = turns_.follow(advance_mm, {step_.time_s, step_.base_depth_mm, step_.force_axial_N, in_tissue});
   if (!turned) return;
   slipping_ = false;
   if (!turns_.retracting() || !turned->in_tissue) return;
@@ -127,56 +84,47 @@ void Simulation::notice_turn(double advance_mm, bool in_tissue) {
   event.depth_mm = turned->depth_mm;
 }
 
-const StepRecord& Simulation::step(const Pose& base, double dt) {
-  const double force_before = record_.force_axial_N;
+const Step& Simulation::step(const Pose& base, double dt) {
+  const double force_before = step_.force_axial_N;
   const Vec3 axis = base.rotation * Vec3::UnitZ();
-  const double advance = (base.origin - base_.origin).dot(axis);
-  report_ = insertion_.step(base, dt);
+  const double advance = (base.origin - step_.base.origin).dot(axis);
+  const Step taken = insertion_.step(base, dt);
   event_count_ = 0;
-  if ((report_.flags & StepReport::invalid_input) != 0) return record_;  // not taken
-  base_ = base;
-
+  if ((taken.flags & Step::invalid_input) != 0) {
+    step_.flags = Step::invalid_input;
+    return step_;
+  }
+  step_ = taken;
   time_ns_ += std::llround(dt * 1e9);
-  record_.time_s = static_cast<double>(time_ns_) / 1e9;
-  record_.dt_s = dt;
-  record_.base = base;
-  record_.base_depth_mm = base_depth_mm(base);
+  step_.time_s = static_cast<double>(time_ns_) / 1e9;
+  step_.dt_s = dt;
+  step_.base_depth_mm = base_depth_mm(base);
   // Axial, lateral towards patient left, sagittal = axial × lateral.
   Vec3 lateral = Vec3::UnitX() - axis.x() * axis;
   if (lateral.norm() < 1e-3) lateral = Vec3::UnitY() - axis.y() * axis;
   lateral.normalize();
-  record_.force_axial_N = report_.hand_force.dot(axis);
-  record_.force_lateral_N = report_.hand_force.dot(lateral);
-  record_.force_sagittal_N = report_.hand_force.dot(axis.cross(lateral));
-  record_.torque_Nmm = report_.hand_torque;
-  record_.tip_mm = report_.tip_position;
-  record_.tip_state = tip_state(report_.tip);
-  record_.contacts = report_.contacts;
-  record_.sticking = report_.sticking;
-  record_.iterations = report_.iterations;
-  record_.flags = report_.flags;
-  record_.step_us = 0.0;
+  step_.force_axial_N = step_.hand_force_N.dot(axis);
+  step_.force_lateral_N = step_.hand_force_N.dot(lateral);
+  step_.force_sagittal_N = step_.hand_force_N.dot(axis.cross(lateral));
 
-  notice_turn(advance, report_.contacts > 0 || report_.tip == TipPhase::in_track);
-  for (int e = 0; e < report_.events; ++e) {
-    const InsertionEvent& event = report_.event[static_cast<std::size_t>(e)];
+  notice_turn(advance, step_.contacts > 0 || step_.tip_state == TipState::in_track);
+  for (const InsertionEvent& event : insertion_.events()) {
     // A puncture's force is the one that broke the surface, not what is left of it after the step.
-    const double force = std::isfinite(event.force_N) ? event.force_N : record_.force_axial_N;
-    add_event(event_kind(event.kind), force, event.region);
+    add_event(event.kind, std::isfinite(event.force_N) ? event.force_N : step_.force_axial_N, event.region);
   }
   // Right after the turn what slid in still does: tissue springs back along the shaft. Then it sticks, and is taken
   // along.
-  if (!slipping_ && turns_.retracting() && report_.sliding_out_share > 0.5 && record_.force_axial_N < 0.0) {
+  if (!slipping_ && turns_.retracting() && step_.sliding_out_share > 0.5 && step_.force_axial_N < 0.0) {
     slipping_ = true;
-    add_event(EventKind::slip_start, std::min(force_before, record_.force_axial_N), -1);
+    add_event(EventKind::slip_start, std::min(force_before, step_.force_axial_N), -1);
   }
-  return record_;
+  return step_;
 }
 
 Frame Simulation::frame(const std::string& label) const {
   Frame frame;
-  frame.time_s = record_.time_s;
-  frame.base_depth_mm = record_.base_depth_mm;
+  frame.time_s = step_.time_s;
+  frame.base_depth_mm = step_.base_depth_mm;
   frame.label = label;
   frame.displacement = insertion_.displacement();
   const Needle& needle = insertion_.needle();

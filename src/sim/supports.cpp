@@ -56,13 +56,13 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
 
   // Outer faces.
   const bool anatomy = !target.empty() && mesh.region_index("body") >= 0;
-  std::string mode = fixed.outer;
-  if (mode == "auto") mode = arch ? "none" : "sides";
+  OuterSupport mode = fixed.outer;
+  if (mode == OuterSupport::automatic) mode = arch ? OuterSupport::none : OuterSupport::sides;
   std::set<Index> outer;
-  if (mode == "all") {
+  if (mode == OuterSupport::all) {
     for (const Face& face : topology.boundary) outer.insert(face.nodes.begin(), face.nodes.end());
     supports.description.push_back("All outer faces are held: " + count_text(outer.size()) + ".");
-  } else if (mode == "sides" && anatomy) {
+  } else if (mode == OuterSupport::sides && anatomy) {
     double target_bottom = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
       if (std::find(target.begin(), target.end(), mesh.tet_region[t]) == target.end()) continue;
@@ -84,7 +84,7 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
     supports.description.push_back(
         "The outer faces of the body are held: " + count_text(outer.size()) +
         ". The perineal face (facing inferior, below the gland) and what lies within 30 mm of an entry are free.");
-  } else if (mode == "sides") {
+  } else if (mode == OuterSupport::sides) {
     // No anatomy to go by: hold what lies on the far side of the body as the first needle sees it.
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = -low;

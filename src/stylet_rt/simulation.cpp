@@ -14,13 +14,13 @@ static_assert(sizeof(stylet_rt_options) == 16);
 static_assert(sizeof(stylet_rt_pose) == 56);
 static_assert(sizeof(stylet_rt_result) == 200);
 
-static_assert(STYLET_RT_NOT_CONVERGED == StepReport::not_converged);
-static_assert(STYLET_RT_CONTACT_CYCLING == StepReport::contact_cycling);
-static_assert(STYLET_RT_COMPLIANCE_MISSING == StepReport::compliance_missing);
-static_assert(STYLET_RT_OUT_OF_CONTACTS == StepReport::out_of_contacts);
-static_assert(STYLET_RT_TOO_FAST == StepReport::too_fast);
-static_assert(STYLET_RT_INVALID_INPUT == StepReport::invalid_input);
-static_assert(STYLET_RT_NO_CONTACT_INSIDE == StepReport::no_contact_inside);
+static_assert(STYLET_RT_NOT_CONVERGED == Step::not_converged);
+static_assert(STYLET_RT_CONTACT_CYCLING == Step::contact_cycling);
+static_assert(STYLET_RT_COMPLIANCE_MISSING == Step::compliance_missing);
+static_assert(STYLET_RT_OUT_OF_CONTACTS == Step::out_of_contacts);
+static_assert(STYLET_RT_TOO_FAST == Step::too_fast);
+static_assert(STYLET_RT_INVALID_INPUT == Step::invalid_input);
+static_assert(STYLET_RT_NO_CONTACT_INSIDE == Step::no_contact_inside);
 
 static_assert(STYLET_RT_TIP_AIR == static_cast<int>(TipState::air));
 static_assert(STYLET_RT_TIP_PRESSING == static_cast<int>(TipState::pressing));
@@ -51,16 +51,16 @@ std::optional<Pose> pose_of(const stylet_rt_pose& given) noexcept {
 }
 
 void write(const stylet_rt_sim& sim, stylet_rt_result& out) noexcept {
-  const StepRecord& record = sim.simulation.record();
-  const StepReport& report = sim.simulation.report();
+  const Step& record = sim.simulation.last_step();
+  const Step& report = sim.simulation.last_step();
   out.time_s = record.time_s;
   out.base_depth_mm = record.base_depth_mm;
-  copy(report.hand_force, out.hand_force_N);
-  copy(report.hand_torque, out.hand_torque_Nmm);
+  copy(report.hand_force_N, out.hand_force_N);
+  copy(report.torque_Nmm, out.hand_torque_Nmm);
   out.force_axial_N = record.force_axial_N;
   out.force_lateral_N = record.force_lateral_N;
   out.force_sagittal_N = record.force_sagittal_N;
-  copy(report.guide_force, out.guide_force_N);
+  copy(report.guide_force_N, out.guide_force_N);
   copy(sim.simulation.insertion().needle().base().origin, out.base_mm);
   copy(record.tip_mm, out.tip_mm);
   out.inserted_mm = report.inserted_mm;

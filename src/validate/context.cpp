@@ -15,7 +15,7 @@ namespace {
 class Keeper final : public RunObserver {
  public:
   explicit Keeper(RecordedRun& run) : run_(run) {}
-  Result<> on_step(const StepRecord& step) override {
+  Result<> on_step(const Step& step) override {
     run_.steps.push_back(step);
     return Ok{};
   }
@@ -51,7 +51,7 @@ Scenario demo_scenario() {
   Scenario scenario;
   scenario.name = "Demo: one needle into the left half of the prostate";
   scenario.patient.source = "phantom";
-  scenario.fixed.outer = "sides";
+  scenario.fixed.outer = OuterSupport::sides;
   scenario.mesh.nodes = 3000;
   scenario.needle.lumen_diameter_mm = 1.0;
   InsertionPlan plan;

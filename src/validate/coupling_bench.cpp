@@ -60,8 +60,8 @@ std::vector<Case> cases(Index largest, bool mesh_only) {
 Scenario scenario_of(const Case& one, double depth_mm) {
   Scenario scenario = demo_scenario();
   scenario.mesh.nodes = one.nodes;
-  scenario.tissue_model.element = one.element;
-  scenario.coupling.method = one.method;
+  scenario.tissue_model.element = choice<ElementChoice>(one.element).value();
+  scenario.coupling.method = choice<CouplingSettings::Method>(one.method).value();
   scenario.coupling.spacing_mm = one.spacing_mm;
   scenario.coupling.corridor_mm = kCorridor_mm;
   scenario.run.dt_ms = one.dt_ms;

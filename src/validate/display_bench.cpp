@@ -198,7 +198,7 @@ DisplayRow measure(const std::shared_ptr<const Model>& model, const DisplayField
   Pose base = plan.motion.at(0.0);
   simulation.place(base, plan.entry, plan.direction);
   const auto steps =
-      static_cast<int>((kWay_mm - simulation.record().base_depth_mm) / (kDisplayedSpeed_mm_per_s * kDt_s));
+      static_cast<int>((kWay_mm - simulation.last_step().base_depth_mm) / (kDisplayedSpeed_mm_per_s * kDt_s));
   const int every = steps / static_cast<int>(kFrames);
   const Vec3 across = plan.direction.unitOrthogonal();
   std::vector<double> solve_us;
@@ -211,7 +211,7 @@ DisplayRow measure(const std::shared_ptr<const Model>& model, const DisplayField
     report(progress, "showing", static_cast<double>(k) / steps);
     const std::vector<TissueForce> forces = simulation.insertion().tissue_forces();
     const double turn = 2.0 * std::numbers::pi * row.frames / kFrames;
-    display.show(forces, simulation.record().tip_mm, Eigen::AngleAxisd(turn, plan.direction) * across);
+    display.show(forces, simulation.last_step().tip_mm, Eigen::AngleAxisd(turn, plan.direction) * across);
     ++row.frames;
 
     const double started = reproduce::thread_cpu_s();
@@ -239,7 +239,7 @@ Result<std::vector<DisplayRow>> bench_display(const DisplayBenchOptions& options
     auto anatomy = mesh_demo(nodes, progress);
     if (!anatomy) return anatomy.error();
     Scenario scenario = driven_scenario(kContacts);
-    if (nodes > kNodalPressureFits) scenario.tissue_model.element = "p1";
+    if (nodes > kNodalPressureFits) scenario.tissue_model.element = ElementChoice::p1;
     const auto model = Model::compile(scenario, std::move(anatomy->mesh), "the demo", {}, progress);
     if (!model) return model.error();
     const auto field = DisplayField::prepare(*model, {}, progress);

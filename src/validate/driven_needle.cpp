@@ -67,7 +67,7 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
   const PlannedInsertion& plan = simulation.model().insertions().front();
   const Pose first = plan.motion.at(0.0);
   simulation.place(first, plan.entry, plan.direction);
-  const double start = simulation.record().base_depth_mm;
+  const double start = simulation.last_step().base_depth_mm;
   const std::vector<double> way = driven_depths(start);
   const double wanted = static_cast<double>(std::max(least, static_cast<long>(way.size())));
   if (steps.empty()) {
@@ -89,10 +89,10 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
     step.cpu_us = 1e6 * (reproduce::thread_cpu_s() - cpu);
     step.wall_us = 1e6 * (reproduce::wall_s() - wall);
     if (fixed != nullptr) step.fixed_us = fixed->run();
-    step.contacts = simulation.record().contacts;
-    step.iterations = simulation.record().iterations;
+    step.contacts = simulation.last_step().contacts;
+    step.iterations = simulation.last_step().iterations;
     step.events = static_cast<int>(simulation.new_events().size());
-    step.flagged = simulation.report().flags != 0;
+    step.flagged = simulation.last_step().flags != 0;
     steps.push_back(step);
     if (steps.size() % 512 == 0) report(progress, "stepping", static_cast<double>(steps.size()) / wanted);
   }

@@ -71,7 +71,7 @@ struct Ground {
 
 Result<std::shared_ptr<const Model>> compile(const TetMesh& mesh, const std::string& method, const Progress& progress) {
   Scenario scenario = demo_scenario();
-  scenario.coupling.method = method;
+  scenario.coupling.method = choice<CouplingSettings::Method>(method).value();
   scenario.insertions.front().depth_mm = kDepth_mm;
   return Model::compile(scenario, mesh, "the demo", {}, progress);
 }

@@ -13,10 +13,10 @@ double ForceCurve::peak_N() const {
   return peak;
 }
 
-ForceCurve force_curve(std::span<const StepRecord> steps, double dt_s) {
+ForceCurve force_curve(std::span<const Step> steps, double dt_s) {
   ForceCurve curve{.dt_s = dt_s, .force_N = {}};
   curve.force_N.reserve(steps.size());
-  for (const StepRecord& step : steps) curve.force_N.push_back(step.force_axial_N);
+  for (const Step& step : steps) curve.force_N.push_back(step.force_axial_N);
   return curve;
 }
 

@@ -63,16 +63,16 @@ class Hand {
   void step(const Pose& next, double dt_s) {
     simulation_.prepare();
     simulation_.step(next, dt_s);
-    const StepReport& report = simulation_.report();
+    const Step& report = simulation_.last_step();
     const Eigen::AngleAxisd turn(next.rotation * base_.rotation.conjugate());
     const double angle = std::remainder(turn.angle(), 2.0 * std::numbers::pi);
-    const double work = 0.5 * (force_ + report.hand_force).dot(next.origin - base_.origin) +
-                        0.5 * (torque_ + report.hand_torque).dot(angle * turn.axis());
+    const double work = 0.5 * (force_ + report.hand_force_N).dot(next.origin - base_.origin) +
+                        0.5 * (torque_ + report.torque_Nmm).dot(angle * turn.axis());
     work_.net += work;
     work_.put_in += std::max(0.0, work);
     flags_ |= report.flags;
-    force_ = report.hand_force;
-    torque_ = report.hand_torque;
+    force_ = report.hand_force_N;
+    torque_ = report.torque_Nmm;
     base_ = next;
   }
 

@@ -40,7 +40,7 @@ struct HandWork {
   double put_in = 0.0;  ///< work of the hand over the steps in which it works
   double net = 0.0;     ///< over all steps
   double stored = 0.0;  ///< elastic energy of tissue and needle at the end less that at the beginning
-  unsigned flags = 0;   ///< StepReport::flags of all steps, over all passages
+  unsigned flags = 0;   ///< Step::flags of all steps, over all passages
 
   /// What the hand got back beyond what was taken from the store, over what it put in; below 0: energy was lost.
   [[nodiscard]] double given_back() const { return (stored - net) / put_in; }

@@ -18,7 +18,7 @@ Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& p
   if (!model) return model.error();
 
   auto body = std::make_unique<SimulationSteppable>(*model);
-  const double start_mm = body->simulation().record().base_depth_mm;
+  const double start_mm = body->simulation().last_step().base_depth_mm;
   auto device =
       std::make_unique<ScriptedDevice>(driven_motion((*model)->insertions().front(), start_mm, options.seconds + 1.0));
   auto runner = RealtimeRunner::create(std::move(body), std::move(device), RunnerSettings{});
@@ -39,7 +39,7 @@ Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& p
   report.seconds = passed();
   (*runner)->stop();
   (*runner)->fetch_snapshot();
-  report.simulated_s = (*runner)->snapshot().time_s;
+  report.simulated_s = (*runner)->snapshot().step.time_s;
   report.counters = (*runner)->snapshot().counters;
   report.times = *(*runner)->times();
   report.rights = (*runner)->rights();

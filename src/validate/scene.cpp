@@ -40,7 +40,7 @@ Result<std::shared_ptr<const Model>> Block::compile(const std::vector<std::array
   Scenario complete = scenario;
   complete.patient.source = "block";
   complete.fixed.regions = {"wall"};
-  complete.fixed.outer = "none";
+  complete.fixed.outer = OuterSupport::none;
   complete.output.frames_per_s = 0.0;
   std::vector<std::array<double, 3>> entries{entry_mm};
   entries.insert(entries.end(), more.begin(), more.end());
@@ -98,8 +98,8 @@ void Drive::step(double dt_s) {
   simulation_.prepare();
   DriveStep made;
   made.record = simulation_.step(next, dt_s);
-  const StepReport& report = simulation_.report();
-  made.hand_force = report.hand_force;
+  const Step& report = simulation_.last_step();
+  made.hand_force = report.hand_force_N;
   const bool tip = made.record.tip_state == TipState::pressing || made.record.tip_state == TipState::cutting ||
                    made.record.tip_state == TipState::bone;
   made.shaft_contacts = report.contacts - (tip ? 1 : 0);
@@ -123,7 +123,7 @@ double Drive::peak_N() const {
   return peak;
 }
 
-std::vector<double> column(const std::vector<DriveStep>& steps, double StepRecord::*quantity) {
+std::vector<double> column(const std::vector<DriveStep>& steps, double Step::*quantity) {
   std::vector<double> values;
   values.reserve(steps.size());
   for (const DriveStep& s : steps) values.push_back(s.record.*quantity);

@@ -35,7 +35,7 @@ struct Block {
 
 /// What a step of a drive left.
 struct DriveStep {
-  StepRecord record;
+  Step record;
   Vec3 hand_force = Vec3::Zero();  ///< [N] LPS
   int shaft_contacts = 0;
   double work_Nmm = 0.0;  ///< of the hand, since the start; the base is only translated
@@ -80,6 +80,6 @@ class Drive {
 };
 
 /// A quantity of all steps of a drive.
-std::vector<double> column(const std::vector<DriveStep>& steps, double StepRecord::*quantity);
+std::vector<double> column(const std::vector<DriveStep>& steps, double Step::*quantity);
 
 }  // namespace stylet::validate

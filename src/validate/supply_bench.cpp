@@ -74,11 +74,11 @@ SupplyRow measure(const std::shared_ptr<const Model>& model, double speed_mm_per
     const double cpu = reproduce::thread_cpu_s();
     body.step(way[k], kStep_s);
     row.longest_cpu_us = std::max(row.longest_cpu_us, 1e6 * (reproduce::thread_cpu_s() - cpu));
-    const bool flagged = simulation.report().flags != 0;
-    if (!flagged && simulation.report().tip == TipPhase::air) continue;
+    const bool flagged = simulation.last_step().flags != 0;
+    if (!flagged && simulation.last_step().tip_state == TipState::air) continue;
     ++row.steps;
     row.flagged += flagged ? 1 : 0;
-    row.force_off_N = std::max(row.force_off_N, std::abs(simulation.record().force_axial_N - expected[k]));
+    row.force_off_N = std::max(row.force_off_N, std::abs(simulation.last_step().force_axial_N - expected[k]));
     row.force_peak_N = std::max(row.force_peak_N, expected[k]);
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();

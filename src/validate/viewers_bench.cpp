@@ -44,7 +44,7 @@ class Script final : public serve::Companion {
   [[nodiscard]] std::unique_ptr<Device> device() override { return std::make_unique<ScriptedDevice>(motion_); }
   [[nodiscard]] std::string why_no_pose() const override { return {}; }
   void show(const serve::Scene& /*scene*/) override {}
-  void show(const Snapshot& snapshot, const DeviceSnapshot& /*device*/) override { time_s_ = snapshot.time_s; }
+  void show(const Snapshot& snapshot, const DeviceSnapshot& /*device*/) override { time_s_ = snapshot.step.time_s; }
   void show(const Eigen::Ref<const Eigen::Matrix3Xf>& /*displacement*/) override {}
 
  private:
@@ -118,9 +118,9 @@ fs::path recording_in(const fs::path& folder) {
   return {};
 }
 
-void add_turn(const Turn& turn, const std::vector<StepRecord>& steps, ViewersReport::Condition& condition) {
+void add_turn(const Turn& turn, const std::vector<Step>& steps, ViewersReport::Condition& condition) {
   DeadlineHistogram times;
-  for (const StepRecord& step : steps) {
+  for (const Step& step : steps) {
     if (step.time_s <= turn.from_s || step.time_s > turn.to_s) continue;
     times.add(std::llround(1e3 * step.step_us));
     if (step.dt_s > 1.5 * kDrivenStep_s) ++condition.late;

@@ -43,7 +43,7 @@ struct BlockOptions {
 };
 
 struct Happened {
-  InsertionEventKind kind;
+  EventKind kind;
   int region;
   double depth;
   double force;  ///< along the motion's axis, before the step
@@ -120,26 +120,24 @@ class NeedleInBlock {
     report = insertion->step(pose(), dt);
     last_base = pose().origin;
     // The base is only translated in these tests: the hand's work is force times way.
-    if (!forces.empty()) work += 0.5 * (report.hand_force + last_force).dot(last_base - base_before);
-    last_force = report.hand_force;
-    forces.push_back(report.hand_force.dot(axis));
+    if (!forces.empty()) work += 0.5 * (report.hand_force_N + last_force).dot(last_base - base_before);
+    last_force = report.hand_force_N;
+    forces.push_back(report.hand_force_N.dot(axis));
     depths.push_back(depth);
     int shaft = 0;
     for (const ContactState& contact : insertion->contacts()) shaft += contact.tip ? 0 : 1;
     contact_counts.push_back(shaft);
     flags |= report.flags;
-    for (int e = 0; e < report.events; ++e) {
-      happened.push_back({report.event[static_cast<std::size_t>(e)].kind,
-                          report.event[static_cast<std::size_t>(e)].region, depth, before});
-    }
+    for (const InsertionEvent& event : insertion->events())
+      happened.push_back({event.kind, event.region, depth, before});
   }
 
-  [[nodiscard]] int count(InsertionEventKind kind, int region = -2) const {
+  [[nodiscard]] int count(EventKind kind, int region = -2) const {
     int n = 0;
     for (const Happened& h : happened) n += h.kind == kind && (region == -2 || h.region == region) ? 1 : 0;
     return n;
   }
-  [[nodiscard]] const Happened* first(InsertionEventKind kind, int region = -2) const {
+  [[nodiscard]] const Happened* first(EventKind kind, int region = -2) const {
     for (const Happened& h : happened) {
       if (h.kind == kind && (region == -2 || h.region == region)) return &h;
     }
@@ -162,7 +160,7 @@ class NeedleInBlock {
   Vec3 sideways = Vec3::Zero();
   double depth = 0.0;
   double roll = 0.0;  ///< [rad] of the base about the axis
-  StepReport report;
+  Step report;
   unsigned flags = 0;
   double work = 0.0;
   Vec3 last_force = Vec3::Zero();

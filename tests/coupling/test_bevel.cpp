@@ -40,7 +40,7 @@ std::vector<Vec3> way(const BlockOptions& options, double roll_deg = 0.0, double
     while (run.depth < to - 1e-9) {
       run.depth += 20.0 * dt;
       run.step(dt);
-      const Vec3 off = run.report.tip_position - entry;
+      const Vec3 off = run.report.tip_mm - entry;
       offsets.emplace_back(off.x(), off.y(), 0.0);
     }
   };
@@ -52,7 +52,7 @@ std::vector<Vec3> way(const BlockOptions& options, double roll_deg = 0.0, double
     }
     advance(kDepth);
   }
-  EXPECT_EQ(run.flags & ~StepReport::contact_cycling, 0u);
+  EXPECT_EQ(run.flags & ~Step::contact_cycling, 0u);
   return offsets;
 }
 
@@ -128,7 +128,7 @@ TEST_P(BevelledTip, LeavesActionAndReactionEqual) {
   run.go(40.0);
   Vec3 sum = Vec3::Zero();
   for (const ContactState& contact : run.insertion->contacts()) sum += contact.force;
-  EXPECT_LT((sum - run.report.hand_force).norm(), 1e-12);
+  EXPECT_LT((sum - run.report.hand_force_N).norm(), 1e-12);
   const ContactCompliance::Nodes nodes = run.insertion->nodes();
   Vec3 held = Vec3::Zero();
   for (std::size_t k = 0; k < nodes.position.size(); ++k)
@@ -177,7 +177,7 @@ double sideways(const BlockOptions& options, double roll_deg) {
   run.roll = roll_deg * kDegree;
   run.aim({0.0, 2.0, 0.0});
   run.go(50.0, 20.0, 2e-3);
-  return run.report.tip_position.x();
+  return run.report.tip_mm.x();
 }
 
 TEST(SymmetricTip, GoesStraightInASymmetricBlockWhateverTheRollAndTheLaw) {

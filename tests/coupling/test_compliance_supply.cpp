@@ -6,7 +6,7 @@
 using namespace stylet;
 using namespace stylet::test;
 using Work = ComplianceSupply::Work;
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 namespace {
 
@@ -46,11 +46,10 @@ struct WithWorker : NeedleInBlock {
 
   void one_step(double dt = kStep_s) {
     report = insertion->step(pose(), dt);
-    forces.push_back(report.hand_force.dot(axis));
+    forces.push_back(report.hand_force_N.dot(axis));
     flags |= report.flags;
-    flagged += (report.flags & StepReport::compliance_missing) != 0 ? 1 : 0;
-    for (int e = 0; e < report.events; ++e) {
-      const InsertionEvent& event = report.event[static_cast<std::size_t>(e)];
+    flagged += (report.flags & Step::compliance_missing) != 0 ? 1 : 0;
+    for (const InsertionEvent& event : insertion->events()) {
       happened.push_back({event.kind, event.region, depth, event.force_N});
     }
     if (rounds_every > 0 && ++taken % rounds_every == 0) insertion->supply().work(kAtOnce);
@@ -171,9 +170,9 @@ TEST(ComplianceSupply, an_outrun_needle_goes_on_with_the_last_row_is_flagged_and
     EXPECT_EQ(run.flags, 0u);
     run.rounds_every = 0;  // the worker stands still
     run.go_on(60);
-    EXPECT_EQ(run.flags, static_cast<unsigned>(StepReport::compliance_missing));
+    EXPECT_EQ(run.flags, static_cast<unsigned>(Step::compliance_missing));
     EXPECT_NE(run.report.flags, 0u);
-    EXPECT_EQ(run.report.tip, TipPhase::cutting) << "it is not held";
+    EXPECT_EQ(run.report.tip_state, TipState::cutting) << "it is not held";
     EXPECT_GT(run.insertion->track().end_xi, 50.0);
     // Neither jump nor wall: the last contact carries the friction of those that wait.
     const auto largest_jump = [](const std::vector<double>& forces) {
@@ -207,7 +206,7 @@ TEST(ComplianceSupply, an_outrun_needle_at_rest_gets_what_it_lacks_from_prepare)
     run.depth += 0.02;
     run.report = run.insertion->step(run.pose(), 1e-3);
   }
-  ASSERT_EQ(run.report.flags, static_cast<unsigned>(StepReport::compliance_missing));
+  ASSERT_EQ(run.report.flags, static_cast<unsigned>(Step::compliance_missing));
   for (int k = 0; k < 50 && run.report.flags != 0; ++k) run.step(1e-3);  // prepares, then steps
   EXPECT_EQ(run.report.flags, 0u);
   EXPECT_GT(run.insertion->contacts().size(), 12u);
@@ -225,7 +224,7 @@ TEST(ComplianceSupply, an_outrun_needle_that_left_through_the_far_side_gets_its_
   run.go_on(8);
   run.rounds_every = 0;
   run.go_on(60);
-  ASSERT_EQ(run.report.tip, TipPhase::exited);
+  ASSERT_EQ(run.report.tip_state, TipState::exited);
   ASSERT_NE(run.report.flags, 0u);
   run.rest();
   EXPECT_EQ(run.report.flags, 0u);
@@ -249,7 +248,7 @@ TEST(ComplianceSupply, an_old_track_that_was_forgotten_is_joined_all_the_same) {
   run.rest();
   run.rounds_every = 0;
   run.go_on(50.0, 20.0, 2 * kStep_s);  // through the old track and on
-  EXPECT_EQ(run.flags, static_cast<unsigned>(StepReport::compliance_missing));
+  EXPECT_EQ(run.flags, static_cast<unsigned>(Step::compliance_missing));
   for (const double force : run.forces) ASSERT_TRUE(std::isfinite(force));
   run.rest();
   EXPECT_EQ(run.report.flags, 0u);
@@ -262,8 +261,8 @@ TEST(ComplianceSupply, a_surface_met_without_compliance_is_entered_when_it_has_c
   run.rounds_every = 0;
   run.aim({3, 2, 0});
   run.go_on(1.2);
-  EXPECT_TRUE(run.report.flags & StepReport::compliance_missing);
-  EXPECT_EQ(run.report.tip, TipPhase::air);
+  EXPECT_TRUE(run.report.flags & Step::compliance_missing);
+  EXPECT_EQ(run.report.tip_state, TipState::air);
   EXPECT_EQ(run.peak(), 0.0);
   EXPECT_EQ(run.count(Kind::skin_contact), 0);
   run.rest();
@@ -283,8 +282,8 @@ TEST(ComplianceSupply, a_needle_far_inside_when_the_first_compliance_comes_is_to
   run.go_on(30.0);
   run.rounds_every = 1;
   run.go_on(40.0);
-  EXPECT_TRUE(run.report.flags & StepReport::compliance_missing);
-  EXPECT_EQ(run.report.tip, TipPhase::air);
+  EXPECT_TRUE(run.report.flags & Step::compliance_missing);
+  EXPECT_EQ(run.report.tip_state, TipState::air);
   run.go_on(-1.0);
   EXPECT_EQ(run.report.flags, 0u);
   EXPECT_EQ(run.peak(), 0.0);
@@ -310,7 +309,7 @@ TEST(ComplianceSupply, a_needle_that_went_past_the_skin_may_leave_sideways_and_e
     run.sideways.x() += 0.1;
     run.one_step();
     if (run.sideways.x() < 45.0) {
-      ASSERT_TRUE(run.report.flags & StepReport::compliance_missing);
+      ASSERT_TRUE(run.report.flags & Step::compliance_missing);
     }
   }
   EXPECT_EQ(run.report.flags, 0u);

@@ -35,8 +35,8 @@ const GuidedNeedle& needle_of(const NeedleInBlock& run) {
 
 /// Action and reaction: the hand and the guide together are what the contacts are.
 void expect_balance(const NeedleInBlock& run) {
-  Vec3 force = run.report.hand_force + run.report.guide_force;
-  Vec3 torque = run.report.hand_torque;
+  Vec3 force = run.report.hand_force_N + run.report.guide_force_N;
+  Vec3 torque = run.report.torque_Nmm;
   const Needle& needle = run.insertion->needle();
   torque += (needle.point(needle.guide_load().s) - needle.base().origin).cross(needle.guide_load().force);
   for (const ContactState& contact : run.insertion->contacts()) {
@@ -57,13 +57,13 @@ TEST(Guide, HoldsTheShaftInAnInsertionAndItsForceIsTheHandsToo) {
     run.sideways.x() = 3.0 * (k + 1) / 200.0;
     run.step(1e-3);
     iterations += run.report.iterations;
-    ASSERT_LE(needle_of(run).offset(), 0.05 + 1.01 * run.report.guide_force.norm() / 100.0);
+    ASSERT_LE(needle_of(run).offset(), 0.05 + 1.01 * run.report.guide_force_N.norm() / 100.0);
     expect_balance(run);
   }
   EXPECT_LT(iterations / 200.0, 6.0);
-  EXPECT_GT(run.report.guide_force.norm(), 0.05);
-  EXPECT_LT(run.report.guide_force.x(), 0.0);  // back towards its hole
-  EXPECT_NEAR(run.report.guide_force.dot(needle_of(run).tangent(needle_of(run).guide_load().s)), 0.0, 1e-9);
+  EXPECT_GT(run.report.guide_force_N.norm(), 0.05);
+  EXPECT_LT(run.report.guide_force_N.x(), 0.0);  // back towards its hole
+  EXPECT_NEAR(run.report.guide_force_N.dot(needle_of(run).tangent(needle_of(run).guide_load().s)), 0.0, 1e-9);
   EXPECT_EQ(run.flags, 0u);
 }
 
@@ -82,7 +82,7 @@ TEST(Guide, HoldsAShaftThatRunsRoundTheEdgeOfItsHole) {
           run.sideways = from + by * static_cast<double>(k) / steps;
           run.step(1e-3);
           most = std::max(most, run.report.iterations);
-          largest = std::max(largest, run.report.guide_force.norm());
+          largest = std::max(largest, run.report.guide_force_N.norm());
         }
       };
       pull({3.0, 0.0, 0.0}, 200);
@@ -138,14 +138,14 @@ TEST(Guide, ABowedNeedleLeansOnItsHoleInTheAirAndComesOutAgain) {
   NeedleInBlock run(guided(4.0));
   aim_through_template(run);
   run.step(1e-3);
-  EXPECT_GT(run.report.guide_force.norm(), 0.005);
-  EXPECT_NEAR((run.report.guide_force + run.report.hand_force).norm(), 0.0, 1e-12);
+  EXPECT_GT(run.report.guide_force_N.norm(), 0.005);
+  EXPECT_NEAR((run.report.guide_force_N + run.report.hand_force_N).norm(), 0.0, 1e-12);
   run.go(30.0);
   expect_balance(run);
   run.go(-1.0);
-  EXPECT_EQ(run.count(InsertionEventKind::withdrawn), 1);
-  EXPECT_EQ(run.report.tip, TipPhase::air);
-  EXPECT_LT(run.report.guide_force.norm(), 0.5);
+  EXPECT_EQ(run.count(EventKind::withdrawn), 1);
+  EXPECT_EQ(run.report.tip_state, TipState::air);
+  EXPECT_LT(run.report.guide_force_N.norm(), 0.5);
   EXPECT_EQ(run.flags, 0u);
 }
 

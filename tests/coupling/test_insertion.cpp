@@ -4,7 +4,7 @@
 
 using namespace stylet;
 using namespace stylet::test;
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 TEST(Insertion, skin_contact_puncture_capsule_and_withdrawal_happen_in_order) {
   NeedleInBlock run;
@@ -45,7 +45,7 @@ TEST(Insertion, reversal_sticks_first_then_slips_and_the_force_changes_sign) {
   run.go(45);
   EXPECT_EQ(run.report.sliding_share, 1.0);
   EXPECT_LT(run.forces.back(), -0.5);
-  EXPECT_EQ(run.report.tip, TipPhase::in_track);
+  EXPECT_EQ(run.report.tip_state, TipState::in_track);
 }
 
 TEST(Insertion, no_cutting_on_the_track_until_the_deepest_point_is_passed) {
@@ -57,13 +57,13 @@ TEST(Insertion, no_cutting_on_the_track_until_the_deepest_point_is_passed) {
   const double deepest = run.insertion->track().end_xi;
   run.go(20, 10.0);
   run.go(35, 10.0);
-  EXPECT_EQ(run.report.tip, TipPhase::in_track);
+  EXPECT_EQ(run.report.tip_state, TipState::in_track);
   EXPECT_EQ(run.insertion->track().end_xi, deepest);
   // Friction of 35 mm at 10 mm/s and nothing for the tip.
   EXPECT_NEAR(run.forces.back(), (11e-3 + 2.5e-3) * 35.0, 0.03);
   run.go(40, 10.0);
   run.go(42, 10.0);
-  EXPECT_EQ(run.report.tip, TipPhase::cutting);
+  EXPECT_EQ(run.report.tip_state, TipState::cutting);
   EXPECT_GT(run.insertion->track().end_xi, deepest + 1.0);
   EXPECT_NEAR(run.forces.back(), cutting + 2.0 * 13.5e-3, 0.03);
 }
@@ -110,8 +110,8 @@ TEST(Insertion, hand_force_and_torque_balance_the_contacts_and_the_supports) {
       force += c.force;
       torque += (run.insertion->needle().point(c.s) - base).cross(c.force);
     }
-    EXPECT_LT((force - run.report.hand_force).norm(), 1e-9 * force.norm());
-    EXPECT_LT((torque - run.report.hand_torque).norm(), 1e-9 * torque.norm());
+    EXPECT_LT((force - run.report.hand_force_N).norm(), 1e-9 * force.norm());
+    EXPECT_LT((torque - run.report.torque_Nmm).norm(), 1e-9 * torque.norm());
     // The supports know of the needle only through the tissue.
     const VecX u = run.insertion->displacement();
     const VecX support = run.tissue->support_forces(u);
@@ -178,8 +178,8 @@ TEST(Insertion, moved_turned_and_mirrored_scene_gives_the_same_forces_in_its_fra
   };
   reference.aim(through, axis);
   drive(reference, {0.5, 0.2, 0.0});
-  const Vec3 expected = reference.report.hand_force;
-  const Vec3 expected_torque = reference.report.hand_torque;
+  const Vec3 expected = reference.report.hand_force_N;
+  const Vec3 expected_torque = reference.report.torque_Nmm;
 
   Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   Mat3 mirror = Mat3::Identity();
@@ -202,8 +202,8 @@ TEST(Insertion, moved_turned_and_mirrored_scene_gives_the_same_forces_in_its_fra
     for (std::size_t i = 0; i < run.forces.size(); ++i)
       difference = std::max(difference, std::abs(run.forces[i] - reference.forces[i]));
     EXPECT_LT(difference, 1e-8 * reference.peak());
-    EXPECT_LT((run.report.hand_force - map * expected).norm(), 1e-8 * reference.peak());
-    EXPECT_LT((run.report.hand_torque - map.determinant() * (map * expected_torque)).norm(),
+    EXPECT_LT((run.report.hand_force_N - map * expected).norm(), 1e-8 * reference.peak());
+    EXPECT_LT((run.report.torque_Nmm - map.determinant() * (map * expected_torque)).norm(),
               1e-7 * expected_torque.norm());
   }
 }
@@ -269,7 +269,7 @@ TEST(Insertion, contacts_denser_than_elements_do_not_make_the_system_singular) {
       run.sideways = Vec3(2, 1, 0);
       run.wait(0.05);
       run.go(-1);
-      EXPECT_EQ(run.flags & ~unsigned(StepReport::out_of_contacts), 0u);
+      EXPECT_EQ(run.flags & ~unsigned(Step::out_of_contacts), 0u);
       EXPECT_EQ(run.count(Kind::withdrawn), 1);
       EXPECT_LT(run.peak(), 4.0);
     }

@@ -12,7 +12,7 @@ namespace {
 
 using test::BlockOptions;
 using test::NeedleInBlock;
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 constexpr FrictionLaw kFriction{18e-3, 11e-3, 250e-6, 50.0};
 
@@ -51,7 +51,7 @@ BlockOptions layered_slab(double thickness, int layers, double spacing, double i
 void pierce(NeedleInBlock& run, double depth) {
   run.aim({3, 2, 0});
   run.go(depth, 20.0, 0.25 / 20.0);
-  ASSERT_EQ(run.report.tip, TipPhase::exited);
+  ASSERT_EQ(run.report.tip_state, TipState::exited);
 }
 
 /// Moves on (or back) by `way` in steps that are sub-steps of their own.
@@ -272,8 +272,7 @@ std::vector<Drop> drops(double speed, double dt) {
   while (run.depth < 34.0) {
     run.depth += speed * dt;
     run.step(dt);
-    for (int e = 0; e < run.report.events; ++e) {
-      const InsertionEvent& event = run.report.event[static_cast<std::size_t>(e)];
+    for (const InsertionEvent& event : run.insertion->events()) {
       if (event.kind != Kind::puncture) continue;
       found.push_back({event.force_N});
       last_break = run.depth;
@@ -360,7 +359,7 @@ TEST(Membrane, ASecondPassAlongTheTrackNeedsFrictionOnly) {
   run.aim({3, 2, 0});
   for (const double depth : {8.0, 16.0, 24.0, 32.0}) {  // through skin and capsule
     run.go(depth, 20.0, 5e-3);
-    EXPECT_EQ(run.report.tip, TipPhase::in_track);
+    EXPECT_EQ(run.report.tip_state, TipState::in_track);
     EXPECT_FALSE(run.insertion->contacts().front().tip);
     // Friction grows with the length and drags the tissue along: the shaft slides more slowly than the hand moves.
     EXPECT_GT(run.forces.back(), kFriction.coulomb_N_per_mm * run.report.inserted_mm) << depth;
@@ -390,7 +389,7 @@ double sideways(bool bevelled, Bevel::Law law, double roll, double spacing_mm = 
   run.aim({0.0, 2.0, 0.0});
   run.go(40.0, 20.0, 5e-3);
   EXPECT_EQ(run.flags, 0u);
-  return run.report.tip_position.x();
+  return run.report.tip_mm.x();
 }
 
 class TipInTheNearField : public testing::TestWithParam<Bevel::Law> {};

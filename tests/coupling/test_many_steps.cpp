@@ -5,7 +5,7 @@
 
 using namespace stylet;
 using namespace stylet::test;
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 TEST(Step, neither_takes_nor_gives_back_memory_in_a_hundred_thousand) {
   if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
@@ -35,12 +35,11 @@ TEST(Step, neither_takes_nor_gives_back_memory_in_a_hundred_thousand) {
     const Pose pose = run.pose();
     run.insertion->prepare(8.0);
     const AllocationCount counter;
-    const StepReport report = run.insertion->step(pose, 1e-3);
+    const Step report = run.insertion->step(pose, 1e-3);
     heap_calls += counter.count();
-    flags |= report.flags & ~StepReport::too_fast;  // aside, in the air
+    flags |= report.flags & ~Step::too_fast;  // aside, in the air
     most_contacts = std::max(most_contacts, report.contacts);
-    for (int e = 0; e < report.events; ++e) {
-      const InsertionEvent& event = report.event[static_cast<std::size_t>(e)];
+    for (const InsertionEvent& event : run.insertion->events()) {
       punctures += event.kind == Kind::puncture && event.region == 0 ? 1 : 0;
       withdrawn += event.kind == Kind::withdrawn ? 1 : 0;
     }

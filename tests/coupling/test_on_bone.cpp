@@ -6,7 +6,7 @@
 
 using namespace stylet;
 using namespace stylet::test;
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 namespace {
 
@@ -32,7 +32,7 @@ TEST(OnBone, bone_cannot_be_cut_and_the_force_rises) {
   run.go(42, 5.0);
   ASSERT_EQ(run.count(Kind::bone_contact, 1), 1);
   EXPECT_NEAR(run.first(Kind::bone_contact)->depth, 40.0, 1.5);
-  EXPECT_EQ(run.report.tip, TipPhase::bone);
+  EXPECT_EQ(run.report.tip_state, TipState::bone);
   EXPECT_LT(run.insertion->track().end.z(), 40.0 + 1e-9);
   EXPECT_GT(run.forces.back(), before + 2.0);
   EXPECT_EQ(run.count(Kind::puncture, 1), 0);
@@ -63,7 +63,7 @@ struct PressedOnBone : NeedleInBlock {
       const double before = largest;
       largest = 1.0;
       for (const ContactState& contact : insertion->contacts()) largest = std::max(largest, contact.force.norm());
-      if (report.flags & StepReport::not_converged) {
+      if (report.flags & Step::not_converged) {
         ++unbalanced;
         grown = std::max(grown, largest / before);
       }
@@ -79,7 +79,7 @@ struct PressedOnBone : NeedleInBlock {
     return result;
   }
   /// [mm] how far the tip is beside the needle's line.
-  [[nodiscard]] double bow() const { return axis.cross(report.tip_position - point).norm(); }
+  [[nodiscard]] double bow() const { return axis.cross(report.tip_mm - point).norm(); }
   int iterations = 0;
   int most = 0;          ///< in a step
   int unbalanced = 0;    ///< steps
@@ -93,7 +93,7 @@ struct PressedOnBone : NeedleInBlock {
 TEST(OnBone, a_needle_bows_between_hand_and_bone_in_a_few_iterations_a_step) {
   // Its end is held along the needle only: its direction, and so the force, turns as the needle bows.
   const PressedOnBone run(220.0);
-  EXPECT_EQ(run.report.tip, TipPhase::bone);
+  EXPECT_EQ(run.report.tip_state, TipState::bone);
   EXPECT_GT(run.peak(), 10.0);
   EXPECT_EQ(run.flags, 0u);
   EXPECT_LT(run.iterations, 6 * run.steps);
@@ -159,7 +159,7 @@ TEST(OnBone, a_guide_in_front_of_the_skin_makes_a_needle_bear_more_on_bone) {
     PressedOnBone guided(options);
     PressedOnBone alone(length);
     EXPECT_LE(guided.unbalanced, 1);
-    EXPECT_GT(guided.report.guide_force.norm(), 0.1);
+    EXPECT_GT(guided.report.guide_force_N.norm(), 0.1);
     EXPECT_GT(guided.forces.back(), 1.2 * alone.forces.back());
   }
 }
@@ -182,7 +182,7 @@ TEST(OnBone, damping_on_bone_leaves_a_needle_at_rest_where_it_would_be_without) 
 TEST(OnBone, a_balance_that_is_not_found_is_broken_off_and_leaves_no_force_beyond_those_that_were) {
   // Without damping there is none on the way to the next shape.
   const PressedOnBone run(150.0, 0.0);
-  EXPECT_TRUE(run.flags & StepReport::not_converged) << "the situation this is about has not come about";
+  EXPECT_TRUE(run.flags & Step::not_converged) << "the situation this is about has not come about";
   EXPECT_LT(run.most, 25) << "it was not broken off";
   EXPECT_LE(run.grown, 2.0);
 }

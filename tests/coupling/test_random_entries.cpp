@@ -9,7 +9,7 @@
 namespace stylet::test {
 namespace {
 
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 constexpr double kDiameter_mm = 1.27;
 constexpr double kDt_s = 4e-3;
@@ -75,19 +75,19 @@ class Entry {
     time_s_ += kDt_s;
     block_.sideways = tremor_.at(time_s_);
     block_.step(kDt_s);
-    const StepReport& report = block_.report;
-    for (int e = 0; e < report.events; ++e) {
-      const Kind kind = report.event[static_cast<std::size_t>(e)].kind;
+    const Step& report = block_.report;
+    for (const InsertionEvent& event : block_.insertion->events()) {
+      const Kind kind = event.kind;
       grazed_ = grazed_ || kind == Kind::grazed;
       punctured_ = punctured_ || kind == Kind::puncture;
       if (kind == Kind::withdrawn && inside()) note("the insertion ends with the tip in the tissue");
     }
-    joined_ = joined_ || (report.tip == TipPhase::in_track && !punctured_);
+    joined_ = joined_ || (report.tip_state == TipState::in_track && !punctured_);
     // Before the first contact of a joined track there may be some millimetres without a force.
-    const double deep = block_.axis.dot(report.tip_position - surface_);
-    const bool unheld = report.hand_force.norm() < 1e-6 && (report.tip == TipPhase::air || deep > 7.0);
+    const double deep = block_.axis.dot(report.tip_mm - surface_);
+    const bool unheld = report.hand_force_N.norm() < 1e-6 && (report.tip_state == TipState::air || deep > 7.0);
     if (!unheld || !inside()) return;
-    const bool says_so = (report.flags & StepReport::no_contact_inside) != 0;
+    const bool says_so = (report.flags & Step::no_contact_inside) != 0;
     if (!says_so) note("no force acts on a needle in the tissue, and nothing is said");
     if (!grazed_) note("no force acts on a needle in the tissue");
   }

@@ -9,7 +9,7 @@
 namespace stylet::test {
 namespace {
 
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 constexpr double kSkin_N = 1.0;
 constexpr double kRise_N = 0.05;  ///< of the force in a step
@@ -64,10 +64,9 @@ class Levering {
     if (turn.norm() > 0.0)
       pose.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * pose.rotation;
     block_.insertion->prepare(8.0);
-    const double before = block_.report.hand_force.norm();
+    const double before = block_.report.hand_force_N.norm();
     block_.report = block_.insertion->step(pose, dt);
-    for (int e = 0; e < block_.report.events; ++e) {
-      const InsertionEvent& event = block_.report.event[static_cast<std::size_t>(e)];
+    for (const InsertionEvent& event : block_.insertion->events()) {
       if (event.kind != Kind::puncture) continue;
       punctured_ = true;
       // Nothing but the tip holds the needle, so the hand's force is that of the tip.

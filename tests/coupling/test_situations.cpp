@@ -7,7 +7,7 @@
 
 using namespace stylet;
 using namespace stylet::test;
-using Kind = InsertionEventKind;
+using Kind = EventKind;
 
 TEST(Situation, an_element_with_only_held_nodes_is_passed_without_a_singular_system) {
   for (const auto method : {CouplingSettings::Method::near_field, CouplingSettings::Method::node_addition,
@@ -58,7 +58,7 @@ TEST(Situation, a_grazing_needle_slides_off_without_a_puncture) {
   EXPECT_EQ(run.count(Kind::puncture), 0);
   EXPECT_EQ(run.count(Kind::skin_contact), 0);
   EXPECT_EQ(run.peak(), 0.0);
-  EXPECT_EQ(run.report.flags, unsigned(StepReport::no_contact_inside)) << "no force, and it says so";
+  EXPECT_EQ(run.report.flags, unsigned(Step::no_contact_inside)) << "no force, and it says so";
 }
 
 TEST(Situation, a_needle_leaves_through_the_far_side_and_comes_back) {
@@ -73,14 +73,14 @@ TEST(Situation, a_needle_leaves_through_the_far_side_and_comes_back) {
   const double inside = run.forces.back();
   run.go(60);
   ASSERT_EQ(run.count(Kind::exited), 1);
-  EXPECT_EQ(run.report.tip, TipPhase::exited);
+  EXPECT_EQ(run.report.tip_state, TipState::exited);
   // Outside nothing is cut: only friction of the 40 mm inside is left, shaft contacts stay.
   EXPECT_NEAR(run.forces.back(), (11e-3 + 5e-3) * 40.0, 0.06);
   EXPECT_LT(run.forces.back(), inside + 0.05);
   EXPECT_NEAR(run.report.inserted_mm, 40.0, 1.5);
   run.go(30);
   EXPECT_EQ(run.count(Kind::re_entered), 1);
-  EXPECT_EQ(run.report.tip, TipPhase::in_track);
+  EXPECT_EQ(run.report.tip_state, TipState::in_track);
   run.go(60);
   EXPECT_EQ(run.count(Kind::exited), 2);
   run.go(-1);
@@ -99,11 +99,11 @@ TEST(Situation, an_entry_near_an_old_track_joins_it_and_one_further_off_does_not
   run.aim({3.8, 2.3, 0});  // 0.85 mm beside: within the needle's diameter
   run.go(38);
   EXPECT_EQ(run.count(Kind::puncture), 0) << "the old track needs no puncture";
-  EXPECT_EQ(run.report.tip, TipPhase::in_track);
+  EXPECT_EQ(run.report.tip_state, TipState::in_track);
   EXPECT_GT(run.report.contacts, 4);
   EXPECT_LT(run.peak(), 0.9);  // friction alone
   run.go(45);
-  EXPECT_EQ(run.report.tip, TipPhase::cutting);
+  EXPECT_EQ(run.report.tip_state, TipState::cutting);
   run.go(-1);
   EXPECT_EQ(run.insertion->old_tracks().size(), 1u);
 
@@ -131,7 +131,7 @@ TEST(Situation, a_track_joined_on_tilted_skin_begins_where_the_needle_met_the_sk
       run.go(15);
       EXPECT_EQ(run.count(Kind::withdrawn), 0) << "no hand has drawn it out";
       EXPECT_EQ(run.count(Kind::puncture), 0);
-      EXPECT_EQ(run.report.tip, TipPhase::in_track);
+      EXPECT_EQ(run.report.tip_state, TipState::in_track);
       EXPECT_GT(run.forces.back(), 0.05);
       const Track& track = run.insertion->track();
       EXPECT_LT((track.entry - Vec3(-10 + beside, 2, 0)).norm(), 1e-9);
@@ -148,9 +148,9 @@ TEST(Situation, a_tip_placed_in_the_tissue_says_that_no_force_acts_on_it) {
   NeedleInBlock run;
   run.aim({3, 2, 0}, Vec3::UnitZ(), 10.0);
   run.go(20);
-  EXPECT_EQ(run.report.tip, TipPhase::air);
+  EXPECT_EQ(run.report.tip_state, TipState::air);
   EXPECT_EQ(run.peak(), 0.0);
-  EXPECT_EQ(run.report.flags, unsigned(StepReport::no_contact_inside));
+  EXPECT_EQ(run.report.flags, unsigned(Step::no_contact_inside));
   run.go(-1);
   EXPECT_EQ(run.report.flags, 0u);
   run.go(20);
@@ -223,11 +223,11 @@ TEST(Situation, a_fold_of_skin_is_left_through_the_air_and_the_body_entered_agai
   run.aim({3, 2, 0});
   run.go(30);
   EXPECT_EQ(run.count(Kind::exited), 1);
-  EXPECT_EQ(run.report.tip, TipPhase::exited);
+  EXPECT_EQ(run.report.tip_state, TipState::exited);
   run.go(60);
   EXPECT_EQ(run.count(Kind::re_entered), 1);
   EXPECT_EQ(run.count(Kind::puncture, 0), 2);
-  EXPECT_EQ(run.report.tip, TipPhase::cutting);
+  EXPECT_EQ(run.report.tip_state, TipState::cutting);
   run.go(-1);
   EXPECT_EQ(run.count(Kind::withdrawn), 1);
   EXPECT_EQ(run.flags, 0u);
@@ -280,14 +280,14 @@ TEST(Situation, a_base_moved_sideways_while_stuck_bends_the_needle_and_drags_the
   const double axial = run.forces.back();
   run.sideways = Vec3(3, 0, 0);
   run.wait(0.01);
-  EXPECT_GT(run.report.hand_force.x(), 0.01);
+  EXPECT_GT(run.report.hand_force_N.x(), 0.01);
   const double free = 110.0;  // clamped base to skin
-  EXPECT_LT(run.report.hand_force.x(), 12.0 * 15700 * 3.0 / (free * free * free) * 1.1)
+  EXPECT_LT(run.report.hand_force_N.x(), 12.0 * 15700 * 3.0 / (free * free * free) * 1.1)
       << "no stiffer than a clamped beam";
   EXPECT_GT(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.02);
   run.sideways = Vec3::Zero();
   run.wait(0.01);
-  EXPECT_NEAR(run.report.hand_force.x(), 0.0, 0.02);
+  EXPECT_NEAR(run.report.hand_force_N.x(), 0.0, 0.02);
   EXPECT_NEAR(run.forces.back(), axial, 0.1);
   EXPECT_EQ(run.flags, 0u);
 }
@@ -298,8 +298,8 @@ TEST(Situation, a_full_contact_list_is_flagged_and_the_run_goes_on) {
   NeedleInBlock run(options);
   run.aim({3, 2, 0});
   run.go(50);
-  EXPECT_TRUE(run.flags & StepReport::out_of_contacts);
-  EXPECT_EQ(run.report.tip, TipPhase::cutting);
+  EXPECT_TRUE(run.flags & Step::out_of_contacts);
+  EXPECT_EQ(run.report.tip_state, TipState::cutting);
   run.go(-1);
   EXPECT_EQ(run.count(Kind::withdrawn), 1);
 }
@@ -309,14 +309,14 @@ TEST(Situation, a_pose_that_is_not_finite_is_refused_and_the_last_state_kept) {
   run.aim({3, 2, 0});
   run.go(20);
   run.wait(0.2);
-  const Vec3 force = run.report.hand_force;
+  const Vec3 force = run.report.hand_force_N;
   Pose bad = run.pose();
   bad.origin.z() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(run.insertion->step(bad, 1e-3).flags, unsigned(StepReport::invalid_input));
-  EXPECT_EQ(run.insertion->step(run.pose(), 0.0).flags, unsigned(StepReport::invalid_input));
+  EXPECT_EQ(run.insertion->step(bad, 1e-3).flags, unsigned(Step::invalid_input));
+  EXPECT_EQ(run.insertion->step(run.pose(), 0.0).flags, unsigned(Step::invalid_input));
   run.step(1e-3);
   EXPECT_EQ(run.flags, 0u);
-  EXPECT_LT((run.report.hand_force - force).norm(), 1e-3);
+  EXPECT_LT((run.report.hand_force_N - force).norm(), 1e-3);
 }
 
 TEST(Situation, a_needle_placed_elsewhere_while_still_in_leaves_the_tissue_unloaded) {
@@ -339,8 +339,7 @@ TEST(Situation, the_force_of_a_puncture_is_that_of_the_break_at_any_speed) {
     for (int k = 0; k < 400 && force == 0.0; ++k) {
       run.depth += 40.0 * dt;
       run.step(dt);
-      for (int e = 0; e < run.report.events; ++e) {
-        const InsertionEvent& event = run.report.event[static_cast<std::size_t>(e)];
+      for (const InsertionEvent& event : run.insertion->events()) {
         if (event.kind == Kind::puncture) force = event.force_N;
       }
     }
@@ -394,6 +393,6 @@ TEST(Step, does_not_allocate_over_puncture_full_contact_and_retraction) {
     EXPECT_EQ(flags, 0u);
     EXPECT_GT(most_contacts, rule == Rule::paper ? 5 : 10);  // one at each face
     EXPECT_EQ(nodes_added > 0, method == Method::node_addition);
-    EXPECT_EQ(run.report.tip, TipPhase::air);
+    EXPECT_EQ(run.report.tip_state, TipState::air);
   }
 }

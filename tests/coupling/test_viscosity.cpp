@@ -142,8 +142,8 @@ TEST(ViscousTissue, AStuckNeedleMovedSidewaysRelaxesToTheElasticForce) {
 TEST(ViscousTissue, DentsLessBeforeItsSkinBreaksAtTheSameForce) {
   NeedleInBlock run = pushed_in(0.01, 1e-3);
   NeedleInBlock elastic = pushed_in(0.0, 1e-3);
-  const auto* broke = run.first(InsertionEventKind::puncture);
-  const auto* broke_elastic = elastic.first(InsertionEventKind::puncture);
+  const auto* broke = run.first(EventKind::puncture);
+  const auto* broke_elastic = elastic.first(EventKind::puncture);
   ASSERT_NE(broke, nullptr);
   EXPECT_NEAR(broke->force, broke_elastic->force, 0.05);
   // The dent d grows at v, so the force is k (d + v τ): it breaks v τ = 0.2 mm earlier, once the motion is steady.
@@ -196,7 +196,7 @@ TEST(ViscousTissue, WithTheNearFieldNoStepShowsAForceThatIsNotThere) {
   for (const double relaxation_s : {0.005, 0.05, 0.2}) {
     for (const double dt : {1e-3, 4e-3}) {
       const NeedleInBlock run = near_field_in(relaxation_s, dt);
-      EXPECT_GE(run.count(InsertionEventKind::puncture), 2);
+      EXPECT_GE(run.count(EventKind::puncture), 2);
       EXPECT_LT(run.peak(), 1.05 * elastic) << relaxation_s << " s, dt " << dt;
     }
   }
@@ -207,7 +207,7 @@ TEST(ViscousTissue, HandForceBalancesContactForcesAndSupports) {
     NeedleInBlock run = pushed_in(kQuick_s, 2e-3, method);
     Vec3 contacts = Vec3::Zero();
     for (const ContactState& contact : run.insertion->contacts()) contacts += contact.force;
-    EXPECT_LT((run.report.hand_force - contacts).norm(), 1e-9 * contacts.norm());
+    EXPECT_LT((run.report.hand_force_N - contacts).norm(), 1e-9 * contacts.norm());
     const auto nodes = run.insertion->nodes();
     Vec3 support = Vec3::Zero();
     for (Eigen::Index a = 0; a < nodes.support.size() / 3; ++a) support += nodes.support.segment<3>(3 * a);
@@ -218,7 +218,7 @@ TEST(ViscousTissue, HandForceBalancesContactForcesAndSupports) {
 TEST(ViscousTissue, ComesBackAfterWithdrawalAndThenIsAsNew) {
   NeedleInBlock run = pushed_in(kQuick_s, 2e-3);
   run.go(-2.0, 40.0, 2e-3);
-  ASSERT_EQ(run.count(InsertionEventKind::withdrawn), 1);
+  ASSERT_EQ(run.count(EventKind::withdrawn), 1);
   const double left = run.insertion->displacement().cwiseAbs().maxCoeff();
   EXPECT_GT(left, 1e-3);
   run.wait(kQuick_s, 2e-3);
@@ -232,10 +232,10 @@ TEST(ViscousTissue, ComesBackAfterWithdrawalAndThenIsAsNew) {
 TEST(ViscousTissue, CanBeEnteredAgainBeforeItHasRelaxed) {
   NeedleInBlock run = pushed_in(kQuick_s, 2e-3, CouplingSettings::Method::node_addition);
   run.go(-2.0, 40.0, 2e-3);
-  ASSERT_EQ(run.count(InsertionEventKind::withdrawn), 1);
+  ASSERT_EQ(run.count(EventKind::withdrawn), 1);
   run.go(30.0, 20.0, 2e-3);
   EXPECT_EQ(run.flags, 0u);
-  EXPECT_EQ(run.count(InsertionEventKind::skin_contact), 2);
+  EXPECT_EQ(run.count(EventKind::skin_contact), 2);
   run.go(-2.0, 40.0, 2e-3);
   run.wait(17.0 * kQuick_s, 2e-3);
   EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);

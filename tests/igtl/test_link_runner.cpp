@@ -46,7 +46,7 @@ struct LinkedRun {
   }
   [[nodiscard]] Triple base() {
     const std::scoped_lock lock(mutex);
-    return snapshot.base.origin;
+    return plain(snapshot.step.base.origin);
   }
   [[nodiscard]] int port() const { return link->state().port; }
 };

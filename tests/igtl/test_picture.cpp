@@ -58,9 +58,9 @@ TEST(TipPose, a_needle_without_length_is_where_its_base_is) {
 
 TEST(PictureOf, a_runners_snapshots) {
   Snapshot s;
-  s.time_s = 1.5;
-  s.base.origin = {0, 0, 0};
-  s.hand.force = {9, 9, 9};
+  s.step.time_s = 1.5;
+  s.step.base.origin = {0, 0, 0};
+  s.step.hand_force_N = {9, 9, 9};
   const auto line = quarter(100.0, Snapshot::kCentreline);
   std::copy(line.begin(), line.end(), s.centreline.begin());
   DeviceSnapshot d;

@@ -66,8 +66,9 @@ struct SpringBody final : Steppable {
     return {hand, !distrust.load()};
   }
   void describe(Snapshot& out) noexcept override {
-    out.base = plain(at);
-    out.hand = plain(hand);
+    out.step.base = at;
+    out.step.hand_force_N = hand.force;
+    out.step.torque_Nmm = hand.torque;
   }
   std::size_t events(std::span<EventSnapshot> out) noexcept override {
     const auto count = static_cast<std::size_t>(events_per_step);

@@ -54,10 +54,10 @@ TEST(ComplianceWorker, brings_what_prepare_would_have) {
     alone.step(base, kStep_s);
     helped.prepare();  // waits for the worker
     helped.step(base, kStep_s);
-    ASSERT_EQ(helped.report().flags, 0u) << k;
-    ASSERT_NEAR(helped.record().force_axial_N, alone.record().force_axial_N, 1e-7) << k;
+    ASSERT_EQ(helped.last_step().flags, 0u) << k;
+    ASSERT_NEAR(helped.last_step().force_axial_N, alone.last_step().force_axial_N, 1e-7) << k;
   }
-  EXPECT_GT(alone.record().force_axial_N, 0.2);
+  EXPECT_GT(alone.last_step().force_axial_N, 0.2);
 }
 
 TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
@@ -68,18 +68,18 @@ TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));  // some rows come, some do not
     const StepOutcome outcome = body.step(beside(-1.0 + k * kStep_mm), kStep_s);
     ASSERT_TRUE(outcome.hand.finite());
-    const unsigned flags = body.simulation().report().flags;
-    ASSERT_EQ(flags & ~static_cast<unsigned>(StepReport::compliance_missing), 0u);
+    const unsigned flags = body.simulation().last_step().flags;
+    ASSERT_EQ(flags & ~static_cast<unsigned>(Step::compliance_missing), 0u);
   }
   const Pose last = beside(-1.0 + kSteps * kStep_mm);
   int in_a_row = 0;
   for (int k = 0; k < 20000 && in_a_row < 100; ++k) {
     body.step(last, kStep_s);
-    in_a_row = body.simulation().report().flags == 0 ? in_a_row + 1 : 0;
+    in_a_row = body.simulation().last_step().flags == 0 ? in_a_row + 1 : 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_EQ(in_a_row, 100);
-  EXPECT_GT(body.simulation().report().contacts, 4);
+  EXPECT_GT(body.simulation().last_step().contacts, 4);
   const ComplianceStore& store = body.simulation().insertion().store();
   EXPECT_LE(store.stored_nodes(), narrow()->store()->stored_nodes() + narrow()->scenario().coupling.spare_nodes);
 }
@@ -105,7 +105,7 @@ TEST(ComplianceWorker, may_stop_whatever_is_under_way_and_another_may_go_on) {
   place_beside(simulation);
   for (int k = 0; k < kSteps; ++k) {
     const Pose base = beside(-1.0 + k * kStep_mm);
-    if (simulation.report().contacts == 0) simulation.prepare();  // so that it gets in
+    if (simulation.last_step().contacts == 0) simulation.prepare();  // so that it gets in
     const ComplianceWorker worker(simulation.supply(), simulation.supply_settings());
     simulation.step(base, kStep_s);
     simulation.step(base, kStep_s);
@@ -116,6 +116,6 @@ TEST(ComplianceWorker, may_stop_whatever_is_under_way_and_another_may_go_on) {
     simulation.prepare();
     simulation.step(last, kStep_s);
   }
-  EXPECT_EQ(simulation.report().flags, 0u);
-  EXPECT_GT(simulation.report().contacts, 4);
+  EXPECT_EQ(simulation.last_step().flags, 0u);
+  EXPECT_GT(simulation.last_step().contacts, 4);
 }

@@ -71,7 +71,7 @@ TEST(Display, shows_a_running_simulation_from_other_threads) {
     (*field)->displacement(nodes, load, u);
     largest = std::max(largest, u.cwiseAbs().maxCoeff());
     ++frames;
-    return snapshot.time_s > half;
+    return snapshot.step.time_s > half;
   });
   (*runner)->stop();
   over.store(true);

@@ -22,17 +22,17 @@ struct Watched {
     base.origin += mm * plan.direction;
     simulation.prepare();
     simulation.step(base, 4e-3);
-    regions.follow(simulation.insertion(), simulation.report());
+    regions.follow(simulation.insertion());
   }
   void go_to(double depth_mm) {
-    const double way = depth_mm - simulation.record().base_depth_mm;
+    const double way = depth_mm - simulation.last_step().base_depth_mm;
     const int steps = static_cast<int>(std::ceil(std::abs(way) / 0.2));
     for (int k = 0; k < steps; ++k) move(way / steps);
   }
   [[nodiscard]] std::vector<std::string> inside() const {
     std::array<std::int16_t, 8> room{};
     const auto contacts = simulation.insertion().contacts();
-    const std::size_t count = regions.now(simulation.insertion(), simulation.report().tip, contacts, room);
+    const std::size_t count = regions.now(simulation.insertion(), simulation.last_step().tip_state, contacts, room);
     std::vector<std::string> names;
     for (std::size_t k = 0; k < count; ++k) names.push_back(model->mesh().regions[static_cast<std::size_t>(room[k])]);
     return names;

@@ -41,8 +41,8 @@ TEST(RealtimeRunner, the_base_follows_the_hand_and_the_hand_feels_what_holds_the
   run.start();
   EXPECT_TRUE(pressed(run));
   run.runner->fetch_snapshot();
-  EXPECT_EQ(run.runner->snapshot().base.origin[2], 4.0);
-  EXPECT_EQ(run.runner->snapshot().hand.force[2], 4.0);
+  EXPECT_EQ(run.runner->snapshot().step.base.origin[2], 4.0);
+  EXPECT_EQ(run.runner->snapshot().step.hand_force_N[2], 4.0);
   EXPECT_TRUE(run.runner->snapshot().trusted);
   run.runner->stop();
   run.expect_gentle();
@@ -67,7 +67,7 @@ TEST(RealtimeRunner, a_step_stands_for_whole_periods_and_for_no_more_than_the_li
   }
   run.runner->fetch_snapshot();
   const LoopCounters& counters = run.runner->snapshot().counters;
-  EXPECT_NEAR(run.runner->snapshot().time_s, sum, 1e-9);
+  EXPECT_NEAR(run.runner->snapshot().step.time_s, sum, 1e-9);
   EXPECT_GE(counters.missed_deadlines, 1);
   EXPECT_GE(counters.skipped_periods, 15);
   EXPECT_GE(counters.lost_ns, 15'000'000) << "the stall beyond the limit is no simulated time";
@@ -130,7 +130,7 @@ TEST(RealtimeRunner, a_handle_lost_from_sight_leaves_the_base_where_it_is_and_fe
       EXPECT_TRUE(nothing_felt(run));
       run.hand->z = 7.0;
       ASSERT_TRUE(goes_on(run));
-      EXPECT_NEAR(run.runner->snapshot().base.origin[2], 4.0 * share, 1e-6);
+      EXPECT_NEAR(run.runner->snapshot().step.base.origin[2], 4.0 * share, 1e-6);
       EXPECT_GT(run.runner->snapshot().counters.without_input, 0);
       lose(false);
       EXPECT_TRUE(felt(7.0));
@@ -150,7 +150,7 @@ TEST(RealtimeRunner, in_pause_nothing_moves_the_force_fades_and_the_device_goes_
     return run.runner->snapshot().paused;
   }));
   const std::int64_t before = run.body->steps;
-  const double time = run.runner->snapshot().time_s;
+  const double time = run.runner->snapshot().step.time_s;
   EXPECT_TRUE(nothing_felt(run));
   EXPECT_TRUE(turns(run, 50));
   EXPECT_EQ(run.body->steps, before);
@@ -159,7 +159,7 @@ TEST(RealtimeRunner, in_pause_nothing_moves_the_force_fades_and_the_device_goes_
   run.runner->stop();
   run.expect_gentle();
   // The first step after a pause stands for no more time than any other.
-  EXPECT_GT(run.runner->snapshot().time_s, time - 1e-12);
+  EXPECT_GT(run.runner->snapshot().step.time_s, time - 1e-12);
 }
 
 TEST(RealtimeRunner, takes_exactly_the_single_steps_asked_for) {
@@ -172,7 +172,7 @@ TEST(RealtimeRunner, takes_exactly_the_single_steps_asked_for) {
   ASSERT_TRUE(comes_true([&] { return steps(run) == 3; }));
   ASSERT_TRUE(turns(run, 20));
   EXPECT_EQ(steps(run), 3);
-  EXPECT_NEAR(run.runner->snapshot().time_s, 3e-3, 1e-12) << "of one period each, however long it waited";
+  EXPECT_NEAR(run.runner->snapshot().step.time_s, 3e-3, 1e-12) << "of one period each, however long it waited";
   EXPECT_TRUE(run.runner->snapshot().paused);
   run.runner->stop();
   EXPECT_EQ(run.body->steps, 3);
@@ -212,7 +212,7 @@ TEST(RealtimeRunner, through_the_coupling_the_hand_feels_the_coupling_however_st
   const double balance = -4.0 * 0.5 * 1000.0 / 1000.5;
   EXPECT_TRUE(comes_true([&] { return std::abs(run.felt() - balance) < 1e-6; })) << run.felt();
   run.runner->fetch_snapshot();
-  EXPECT_NEAR(run.runner->snapshot().base.origin[2], 4.0 * 0.5 / 1000.5, 1e-6);
+  EXPECT_NEAR(run.runner->snapshot().step.base.origin[2], 4.0 * 0.5 / 1000.5, 1e-6);
   run.runner->stop();
   run.expect_gentle();
 }

@@ -55,7 +55,7 @@ struct BoxRun {
     ASSERT_TRUE(runner->start().ok());
     ASSERT_TRUE(comes_true([&] {
       if (runner->fetch_snapshot() && look) look(runner->snapshot());
-      return runner->snapshot().time_s > end + 0.02;
+      return runner->snapshot().step.time_s > end + 0.02;
     }));
     runner->stop();
   }
@@ -70,22 +70,22 @@ TEST(RealtimeRunner, takes_a_simulation_through_an_insertion_led_by_a_script) {
   double most_N = 0.0;
   box.run([&](const Snapshot& s) {
     ++seen;
-    ASSERT_GT(s.time_s, last);
-    last = s.time_s;
-    most_N = std::max(most_N, s.force_axial_N);
+    ASSERT_GT(s.step.time_s, last);
+    last = s.step.time_s;
+    most_N = std::max(most_N, s.step.force_axial_N);
     // All of one step: the needle runs from base to tip, and the hand bears what the contacts exert.
-    ASSERT_EQ(s.centreline.front(), s.base.origin);
-    ASSERT_EQ(s.centreline.back(), s.tip);
+    ASSERT_EQ(vec3(s.centreline.front()), s.step.base.origin);
+    ASSERT_EQ(vec3(s.centreline.back()), s.step.tip_mm);
     Vec3 contacts = Vec3::Zero();
     for (int k = 0; k < s.contact_count; ++k) contacts += vec3(s.contacts[static_cast<std::size_t>(k)].force);
-    ASSERT_NEAR((contacts - vec3(s.hand.force)).norm(), 0.0, 1e-9);
+    ASSERT_NEAR((contacts - s.step.hand_force_N).norm(), 0.0, 1e-9);
     ASSERT_EQ(s.contacts_left_out, 0);
     ASSERT_TRUE(s.trusted);
-    ASSERT_EQ(s.flags & StepReport::compliance_missing, 0u) << "the plan's corridor is there from the start";
+    ASSERT_EQ(s.step.flags & Step::compliance_missing, 0u) << "the plan's corridor is there from the start";
   });
   EXPECT_GT(seen, 10);
   EXPECT_GT(most_N, 0.3);
-  EXPECT_EQ(box.runner->snapshot().tip_state, TipState::air) << "it came out again";
+  EXPECT_EQ(box.runner->snapshot().step.tip_state, TipState::air) << "it came out again";
 
   std::vector<EventSnapshot> events(100);
   events.resize(box.runner->take_events(events));
@@ -121,8 +121,8 @@ TEST(SimulationSteppable, shows_what_the_simulation_says) {
   for (double t = 0.0; t < 0.4; t += 4e-3) {
     const StepOutcome outcome = body.step(motion.at(t), 4e-3);
     body.describe(shown);
-    EXPECT_EQ(outcome.hand.force, simulation.report().hand_force);
-    EXPECT_EQ(outcome.hand.torque, simulation.report().hand_torque);
+    EXPECT_EQ(outcome.hand.force, simulation.last_step().hand_force_N);
+    EXPECT_EQ(outcome.hand.torque, simulation.last_step().torque_Nmm);
     EXPECT_TRUE(outcome.trusted);
     const std::vector<ContactState> expected = simulation.insertion().contacts();
     ASSERT_EQ(static_cast<std::size_t>(shown.contact_count), expected.size());
@@ -133,7 +133,7 @@ TEST(SimulationSteppable, shows_what_the_simulation_says) {
       EXPECT_EQ(shown.contacts[k].tip, expected[k].tip);
     }
     contacts = std::max(contacts, shown.contact_count);
-    EXPECT_EQ(shown.base_depth_mm, simulation.record().base_depth_mm);
+    EXPECT_EQ(shown.step.base_depth_mm, simulation.last_step().base_depth_mm);
     EXPECT_EQ(vec3(shown.centreline[32]), simulation.insertion().needle().point(60.0)) << "halfway";
   }
   EXPECT_GT(contacts, 3);

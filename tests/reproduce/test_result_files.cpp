@@ -27,7 +27,7 @@ Figure6Run made_up_run(const Figure6Variant& variant) {
   Figure6Run run;
   run.variant = variant;
   for (int i = 0; i < 6; ++i) {
-    StepRecord step;
+    Step step;
     step.time_s = 0.001 * (i + 1);
     step.force_axial_N = 0.1 * i;
     step.base_depth_mm = i < 3 ? 1.0 * i : 4.5 - i;

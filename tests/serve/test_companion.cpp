@@ -50,7 +50,7 @@ class Friend final : public serve::Companion {
   void show(const Snapshot& snapshot, const DeviceSnapshot& device) override {
     const std::scoped_lock lock(mutex_);
     ++pictures;
-    base = snapshot.base;
+    base = plain(snapshot.step.base);
     pushes_N = std::max(pushes_N, vec3(device.sent.force).norm());
   }
   void show(const Eigen::Ref<const Matrix>& displacement) override {

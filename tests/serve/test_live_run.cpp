@@ -44,7 +44,7 @@ struct Paused {
     hand.depth_mm = 20.0;
     hand.speed_mm_per_s = 100.0;
     run->hand()->aim(hand);
-    until([](const LiveFrame& frame) { return frame.depth_mm > 19.9; });
+    until([](const LiveFrame& frame) { return frame.step.base_depth_mm > 19.9; });
     run->runner().pause();
     until([](const LiveFrame& frame) { return (frame.bits & LiveFrame::paused) != 0; });
   }

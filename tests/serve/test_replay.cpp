@@ -17,7 +17,7 @@ RunRecording recording() {
   RunRecording run;
   run.mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int k = 1; k <= 10; ++k) {
-    StepRecord step;
+    Step step;
     step.time_s = 0.1 * k;
     step.base_depth_mm = k;
     step.force_axial_N = 0.5 * k;
@@ -43,8 +43,8 @@ TEST(Replay, shows_any_moment_between_its_frames) {
   const auto frame = replay.picture(false);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->time_s, 0.45);
-  EXPECT_EQ(frame->depth_mm, 4.0) << "of the step before";
-  EXPECT_EQ(frame->force_axial_N, 2.0);
+  EXPECT_EQ(frame->step.base_depth_mm, 4.0) << "of the step before";
+  EXPECT_EQ(frame->step.force_axial_N, 2.0);
   ASSERT_EQ(frame->displacement.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(moved(*frame, k), 0.45, 1e-3);
   ASSERT_EQ(frame->centreline.size(), 6u);
@@ -71,7 +71,7 @@ TEST(Replay, stays_within_the_recording) {
   EXPECT_EQ(replay.time_s(), 0.0);
   const auto before = replay.picture(false);
   EXPECT_EQ(before->steps, 0u);
-  EXPECT_EQ(before->tip_mm.z(), 10.0) << "the needle's end, though there was no step yet";
+  EXPECT_EQ(before->step.tip_mm.z(), 10.0) << "the needle's end, though there was no step yet";
   replay.seek(99.0);
   EXPECT_EQ(replay.time_s(), 1.0);
   EXPECT_EQ(replay.picture(false)->steps, 10u);
@@ -79,18 +79,18 @@ TEST(Replay, stays_within_the_recording) {
 
 TEST(Replay, has_the_needle_where_the_first_step_had_it_before_that_step) {
   RunRecording late = recording();
-  for (StepRecord& step : late.steps) step.base_depth_mm -= 30.0;
+  for (Step& step : late.steps) step.base_depth_mm -= 30.0;
   Replay replay(late, {{0}, {}});
   const auto frame = replay.picture(true);
   EXPECT_EQ(frame->time_s, 0.0);
-  EXPECT_EQ(frame->depth_mm, -29.0) << "not 0 mm, where it never was";
-  EXPECT_EQ(frame->force_axial_N, 0.5);
+  EXPECT_EQ(frame->step.base_depth_mm, -29.0) << "not 0 mm, where it never was";
+  EXPECT_EQ(frame->step.force_axial_N, 0.5);
   EXPECT_EQ(frame->steps, 0u);
 }
 
 TEST(Replay, of_a_recording_with_rests_shows_every_moment_of_them) {
   RunRecording rested = recording();
-  for (StepRecord& step : rested.steps) {
+  for (Step& step : rested.steps) {
     step.dt_s = 0.1;
     if (step.time_s > 0.35) step.time_s += 0.5;
   }
@@ -105,45 +105,45 @@ TEST(Replay, of_a_recording_with_rests_shows_every_moment_of_them) {
     ASSERT_TRUE(frame) << time_s;
     EXPECT_EQ(frame->time_s, time_s);
     EXPECT_EQ(frame->steps, steps) << time_s;
-    EXPECT_EQ(frame->depth_mm, depth_mm) << time_s;
+    EXPECT_EQ(frame->step.base_depth_mm, depth_mm) << time_s;
   }
   const auto whole = replay.picture(true);
-  ASSERT_EQ(whole->samples.size(), 11u) << "the last step of the rest as well";
-  EXPECT_NEAR(whole->samples[3].time_s, 0.8, 1e-12);
-  EXPECT_EQ(whole->samples[3].axial_N, 1.5);
+  ASSERT_EQ(whole->curve.size(), 11u) << "the last step of the rest as well";
+  EXPECT_NEAR(whole->curve[3].time_s, 0.8, 1e-12);
+  EXPECT_EQ(whole->curve[3].force_axial_N, 1.5);
 }
 
 TEST(Replay, warns_where_the_live_needle_did) {
   RunRecording flagged = recording();
-  flagged.steps[3].flags = StepReport::no_contact_inside;
-  flagged.steps[4].flags = StepReport::not_converged;
+  flagged.steps[3].flags = Step::no_contact_inside;
+  flagged.steps[4].flags = Step::not_converged;
   Replay replay(flagged, {{0}, {}});
   for (const auto& [time_s, flags, trusted] : {std::tuple{0.35, 0U, true},
-                                               {0.45, unsigned(StepReport::no_contact_inside), true},
-                                               {0.55, unsigned(StepReport::not_converged), false},
+                                               {0.45, unsigned(Step::no_contact_inside), true},
+                                               {0.55, unsigned(Step::not_converged), false},
                                                {0.65, 0U, true}}) {
     replay.seek(time_s);
     const auto frame = replay.picture(false);
-    EXPECT_EQ(frame->flags, flags) << time_s;
+    EXPECT_EQ(frame->step.flags, flags) << time_s;
     EXPECT_EQ((frame->bits & LiveFrame::trusted) != 0, trusted) << time_s;
   }
   const auto whole = replay.picture(true);
-  EXPECT_EQ(whole->samples[3].flags, unsigned(StepReport::no_contact_inside));
-  EXPECT_EQ(whole->samples[5].flags, 0U);
+  EXPECT_EQ(whole->curve[3].flags, unsigned(Step::no_contact_inside));
+  EXPECT_EQ(whole->curve[5].flags, 0U);
 }
 
 TEST(Replay, gives_the_whole_curve_when_asked) {
   Replay replay(recording(), {{0}, {}});
   const auto frame = replay.picture(true);
-  ASSERT_EQ(frame->samples.size(), 10u);
+  ASSERT_EQ(frame->curve.size(), 10u);
   EXPECT_TRUE(frame->bits & LiveFrame::whole_curve);
-  EXPECT_EQ(frame->samples[9].axial_N, 5.0);
+  EXPECT_EQ(frame->curve[9].force_axial_N, 5.0);
 }
 
 TEST(Replay, shows_a_straight_needle_where_no_frame_was_recorded_yet) {
   RunRecording late = recording();
   late.frames.erase(late.frames.begin());  // the one that is left is of 1 s
-  for (StepRecord& step : late.steps) {
+  for (Step& step : late.steps) {
     step.base.origin = {1, 2, step.base_depth_mm - 100.0};
     step.tip_mm = {1, 2, step.base_depth_mm};
   }
@@ -153,7 +153,7 @@ TEST(Replay, shows_a_straight_needle_where_no_frame_was_recorded_yet) {
     replay.seek(0.45);
     const auto frame = replay.picture(false);
     EXPECT_EQ(frame->centreline, (std::vector<float>{1, 2, -96, 1, 2, 4}));
-    EXPECT_EQ(frame->tip_mm, Vec3(1, 2, 4));
+    EXPECT_EQ(frame->step.tip_mm, Vec3(1, 2, 4));
     ASSERT_EQ(frame->displacement.size(), 6u);
     for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(moved(*frame, k), 0.0);
     EXPECT_EQ(frame->left_out_N, 2.0) << "the force whose displacement was not recorded";

@@ -13,10 +13,10 @@ using namespace stylet::serve;
 namespace {
 
 /// Steps of a millisecond with these forces, and what is recorded of them.
-std::vector<StepRecord> recorded(const std::vector<double>& forces_N) {
+std::vector<Step> recorded(const std::vector<double>& forces_N) {
   Rests rests;
-  std::vector<StepRecord> records;
-  StepRecord step;
+  std::vector<Step> records;
+  Step step;
   step.dt_s = 1e-3;
   for (std::size_t k = 0; k < forces_N.size(); ++k) {
     step.time_s = 1e-3 * static_cast<double>(k + 1);
@@ -60,7 +60,7 @@ TEST(Rests, rounding_is_no_motion_and_a_drift_is_one) {
 
 TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
   Rests rests;
-  StepRecord step;
+  Step step;
   step.dt_s = 1e-3;
   EXPECT_TRUE(rests.add(step));
   EXPECT_FALSE(rests.add(step));
@@ -76,7 +76,7 @@ TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
   EXPECT_TRUE(rests.add(step));
   step.sticking = 1;
   EXPECT_TRUE(rests.add(step));
-  step.flags = StepReport::no_contact_inside;  // a warning begins with a step, and ends with one
+  step.flags = Step::no_contact_inside;  // a warning begins with a step, and ends with one
   EXPECT_TRUE(rests.add(step));
   EXPECT_FALSE(rests.add(step));
   step.flags = 0;
@@ -85,7 +85,7 @@ TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
 
 TEST(Rests, a_step_that_is_missing_ends_a_rest) {
   Rests rests;
-  StepRecord step;
+  Step step;
   step.dt_s = 1e-3;
   const auto at = [&](double time_s) {
     step.time_s = time_s;

@@ -153,7 +153,7 @@ TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
   double time = 0.0;
   const RecordedSteps steps(run->steps);
   for (std::int64_t k = 0; k < steps.count(); ++k) {
-    const StepRecord step = steps.at(k);
+    const Step step = steps.at(k);
     ASSERT_NEAR(step.time_s, time + step.dt_s, 1e-9) << "a gap in the recording";
     time = step.time_s;
   }
@@ -301,7 +301,7 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
     at_rest += frame.time_s > rests_from && frame.time_s < rests_from + 0.9 ? 1 : 0;
   EXPECT_LE(at_rest, 1);
   std::int64_t rest = 0;
-  for (const StepRecord& step : run->steps) rest = std::max(rest, step.rest_steps);
+  for (const Step& step : run->steps) rest = std::max(rest, step.rest_steps);
   EXPECT_GT(rest, 20) << "steps at rest are only counted";
   const auto scenario = parse_scenario(run->info.scenario_text, "recording");
   ASSERT_TRUE(scenario.ok()) << scenario.error().message();
@@ -311,8 +311,8 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   const RecordedSteps recorded(run->steps);
   ASSERT_EQ(static_cast<std::int64_t>(kept.steps.size()), recorded.count());
   for (std::size_t k = 0; k < kept.steps.size(); ++k) {
-    const StepRecord a = recorded.at(static_cast<std::int64_t>(k));
-    const StepRecord& b = kept.steps[k];
+    const Step a = recorded.at(static_cast<std::int64_t>(k));
+    const Step& b = kept.steps[k];
     ASSERT_TRUE(same_bits(a.time_s, b.time_s));
     if (!recorded.is_recorded(static_cast<std::int64_t>(k))) {
       ASSERT_TRUE(is_at_rest(a, b)) << "step " << k << " of " << kept.steps.size();

@@ -65,20 +65,20 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
   LiveFrame f;
   f.time_s = 1.25;
   f.bits = LiveFrame::paused | LiveFrame::trusted;
-  f.flags = 9;
-  f.tip_state = TipState::cutting;
-  f.sticking = 3;
-  f.iterations = 4;
+  f.step.flags = 9;
+  f.step.tip_state = TipState::cutting;
+  f.step.sticking = 3;
+  f.step.iterations = 4;
   f.steps = 1250;
   f.missed = 2;
-  f.depth_mm = 31.5;
-  f.force_axial_N = 1.5;
-  f.force_sagittal_N = -0.25;
-  f.force_lateral_N = 0.125;
-  f.torque_Nmm = {1, 2, 3};
-  f.tip_mm = {4, 5, 6};
-  f.base.origin = {7, 8, 9};
-  f.base.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);
+  f.step.base_depth_mm = 31.5;
+  f.step.force_axial_N = 1.5;
+  f.step.force_sagittal_N = -0.25;
+  f.step.force_lateral_N = 0.125;
+  f.step.torque_Nmm = {1, 2, 3};
+  f.step.tip_mm = {4, 5, 6};
+  f.step.base.origin = {7, 8, 9};
+  f.step.base.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);
   f.roll_deg = 10;
   f.tilt_left_deg = 11;
   f.tilt_anterior_deg = 12;
@@ -88,7 +88,16 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
   Eigen::Matrix3Xf u(3, 2);
   u << 0.5F, -1.F, 0.F, 2.F, 0.001F, 0.F;
   set_displacement(f, u);
-  const std::vector<Sample> samples{{1.0, 30.0, 1.25, 0.5, 0.25, 60.0, TipState::pressing, 1}};
+  Step before;
+  before.time_s = 1.0;
+  before.base_depth_mm = 30.0;
+  before.force_axial_N = 1.25;
+  before.force_sagittal_N = 0.5;
+  before.force_lateral_N = 0.25;
+  before.step_us = 60.0;
+  before.tip_state = TipState::pressing;
+  before.flags = 1;
+  const std::vector<Step> samples{before};
 
   const wire::Bytes bytes = wire::encode(f, samples, true, 77);
   Reader r{bytes};
@@ -190,28 +199,28 @@ TEST(Wire, noise_is_never_taken_for_a_number_that_is_none) {
 }
 
 TEST(Wire, thinning_keeps_the_largest_and_the_least_force_and_the_order) {
-  std::vector<Sample> samples(10'000);
+  std::vector<Step> samples(10'000);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     samples[k].time_s = 1e-3 * static_cast<double>(k);
-    samples[k].axial_N = std::sin(0.01 * static_cast<double>(k));
+    samples[k].force_axial_N = std::sin(0.01 * static_cast<double>(k));
   }
-  samples[4321].axial_N = 9.0;
-  samples[8765].axial_N = -9.0;
+  samples[4321].force_axial_N = 9.0;
+  samples[8765].force_axial_N = -9.0;
   wire::thin(samples, 500);
   EXPECT_LE(samples.size(), 500u);
   EXPECT_GE(samples.size(), 250u);
   double most = 0.0;
   double least = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    most = std::max(most, samples[k].axial_N);
-    least = std::min(least, samples[k].axial_N);
+    most = std::max(most, samples[k].force_axial_N);
+    least = std::min(least, samples[k].force_axial_N);
     if (k > 0) {
       ASSERT_GT(samples[k].time_s, samples[k - 1].time_s);
     }
   }
   EXPECT_EQ(most, 9.0);
   EXPECT_EQ(least, -9.0);
-  std::vector<Sample> few(3);
+  std::vector<Step> few(3);
   wire::thin(few, 500);
   EXPECT_EQ(few.size(), 3u);
 }

@@ -32,7 +32,7 @@ inline Scenario box_scenario() {
   Scenario s;
   s.name = "box";
   s.patient.source = "box";
-  s.fixed.outer = "sides";
+  s.fixed.outer = OuterSupport::sides;
   s.needle.length_mm = 120.0;
   s.run.dt_ms = 4.0;
   s.insertions.resize(1);
@@ -64,9 +64,9 @@ inline Error refused(const Scenario& scenario, TetMesh mesh = box_patient(),
 
 /// Keeps everything a run reports.
 struct Kept final : RunObserver {
-  std::vector<StepRecord> steps;
+  std::vector<Step> steps;
   std::vector<Frame> frames;
-  Result<> on_step(const StepRecord& step) override {
+  Result<> on_step(const Step& step) override {
     steps.push_back(step);
     return Ok{};
   }

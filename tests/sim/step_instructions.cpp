@@ -28,11 +28,11 @@ Scenario scenario() {
   Scenario s;
   s.name = "block";
   s.patient.source = "block";
-  s.fixed.outer = "sides";
+  s.fixed.outer = OuterSupport::sides;
   s.needle.length_mm = 160.0;
   s.coupling.spacing_mm = kSpacing_mm;
   s.coupling.corridor_mm = 2.0;
-  s.tissue_model.element = "p1";  // quickly factorised; no step depends on it
+  s.tissue_model.element = ElementChoice::p1;  // quickly factorised; no step depends on it
   s.insertions.resize(1);
   s.insertions[0].entry_mm = {1.0, 1.5, -20.0};
   s.insertions[0].depth_mm = kDepth_mm + 5.0;
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     simulation.prepare();
     simulation.step(base, dt);
   };
-  while (simulation.record().base_depth_mm < kDepth_mm) advance(0.2, 10e-3);
+  while (simulation.last_step().base_depth_mm < kDepth_mm) advance(0.2, 10e-3);
 
   CALLGRIND_START_INSTRUMENTATION;
   unsigned flags = 0;
@@ -71,9 +71,9 @@ int main(int argc, char** argv) {
     CALLGRIND_TOGGLE_COLLECT;
     simulation.step(base, 1e-3);
     CALLGRIND_TOGGLE_COLLECT;
-    flags |= simulation.report().flags;
-    iterations += simulation.report().iterations;
-    contacts = simulation.report().contacts;
+    flags |= simulation.last_step().flags;
+    iterations += simulation.last_step().iterations;
+    contacts = simulation.last_step().contacts;
   }
   std::printf("{\"nodes\": %d, \"steps\": %d, \"contacts\": %d, \"iterations\": %d, \"flags\": %u}\n",
               (*model)->mesh().node_count(), kForwards + kBackwards, contacts, iterations, flags);

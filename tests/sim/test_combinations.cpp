@@ -16,12 +16,12 @@ Scenario scenario_with(const std::string& method, const std::string& engine, con
   s.insertions[0].depth_mm = 24.0;
   s.insertions[0].dwell_s = 0.02;
   s.run.dt_ms = 5.0;
-  s.coupling.method = method;
-  s.coupling.engine = engine;
-  s.coupling.solver = solver;
+  s.coupling.method = choice<CouplingSettings::Method>(method).value();
+  s.coupling.engine = choice<CouplingSettings::Engine>(engine).value();
+  s.coupling.solver = choice<CouplingSettings::Solver>(solver).value();
   s.coupling.tolerance = 1e-9;  // what the staggered solver's slow iterations leave is many times that
-  s.needle.model = needle;
-  s.tissue_model.element = "p1";  // what the engines with a full inverse are for
+  s.needle.model = choice<NeedleModel>(needle).value();
+  s.tissue_model.element = ElementChoice::p1;  // what the engines with a full inverse are for
   s.needle.elements = needle == "tet" ? 48 : 12;
   return s;
 }
@@ -38,7 +38,8 @@ TEST_P(EveryMethod, runs_to_the_same_events_and_forces_with_every_engine_solver_
       for (const char* needle : {"beam", "springs", "tet"}) {
         SCOPED_TRACE(std::string(method) + " " + engine + " " + solver + " " + needle);
         const Scenario scenario = scenario_with(method, engine, solver, needle);
-        if (scenario.coupling.method == "node-repositioning" && scenario.coupling.engine == "condensed") {
+        if (scenario.coupling.method == CouplingSettings::Method::node_repositioning &&
+            scenario.coupling.engine == CouplingSettings::Engine::condensed) {
           const Error error = refused(scenario);
           EXPECT_SAYS(error.message(), "never changes the stiffness of the mesh");
           EXPECT_SAYS(error.cure, "\"woodbury\" or \"bcs\"");
@@ -76,18 +77,18 @@ INSTANTIATE_TEST_SUITE_P(Combinations, EveryMethod,
 TEST(Combinations, forces_at_the_needles_nearest_nodes_come_close_to_forces_where_they_act) {
   Scenario scenario = scenario_with("node-addition", "condensed", "staggered", "beam");
   const Finished exact(compiled(scenario));
-  scenario.coupling.projection = "nearest-node";
+  scenario.coupling.projection = Projection::nearest_node;
   const Finished nearest(compiled(scenario));
   EXPECT_NE(nearest.summary.peak_axial_N, exact.summary.peak_axial_N);
   EXPECT_NEAR(nearest.summary.peak_axial_N, exact.summary.peak_axial_N, 0.02 * exact.summary.peak_axial_N);
 
-  scenario.coupling.solver = "coupled";
+  scenario.coupling.solver = CouplingSettings::Solver::coupled;
   EXPECT_SAYS(refused(scenario).message(), "belongs to coupling.solver = \"staggered\"");
 }
 
 TEST(Combinations, a_full_inverse_that_would_not_fit_in_memory_is_refused_with_its_size) {
   Scenario scenario = box_scenario();
-  scenario.coupling.engine = "woodbury";
+  scenario.coupling.engine = CouplingSettings::Engine::woodbury;
   TetMesh mesh = box_mesh({-30, -30, 0}, {30, 30, 60}, {24, 24, 24});
   assign_regions(mesh, {"body", "prostate"}, [](const Vec3& x) { return (x - Vec3(0, 5, 32)).norm() < 17 ? 1 : 0; });
   const Error error = refused(scenario, std::move(mesh));

@@ -206,8 +206,8 @@ TEST(DisplayField, reading_does_not_allocate) {
 
 TEST(DisplayField, needs_the_compliance_store) {
   Scenario s = box_scenario();
-  s.coupling.method = "node-addition";
-  s.coupling.engine = "woodbury";
+  s.coupling.method = CouplingSettings::Method::node_addition;
+  s.coupling.engine = CouplingSettings::Engine::woodbury;
   const auto field = DisplayField::prepare(compiled(s));
   ASSERT_FALSE(field.ok());
   EXPECT_SAYS(field.error().message(), "condensed");

@@ -31,13 +31,13 @@ struct Pushed {
   Pose base = plan.motion.at(0.0);
 
   Pushed() { simulation.place(base, plan.entry, plan.direction); }
-  const StepRecord& push() {
+  const Step& push() {
     base.origin += kStep_mm * plan.direction;
     simulation.prepare();
     return simulation.step(base, 4e-3);
   }
   void push_to(double depth_mm) {
-    while (simulation.record().base_depth_mm < depth_mm) push();
+    while (simulation.last_step().base_depth_mm < depth_mm) push();
   }
 };
 
@@ -141,7 +141,7 @@ TEST(DisplayNearField, the_skin_is_drawn_at_the_tip_that_presses_on_it_until_it_
   double worst = 0.0;
   double worst_of_mesh = 0.0;
   std::optional<double> pressed;  // at the last picture before the break
-  const StepRecord* record = &needle.push();
+  const Step* record = &needle.push();
   while (record->tip_state == TipState::air) record = &needle.push();
   while (record->tip_state == TipState::pressing) {
     const Vec3 entry = needle.simulation.insertion().track().entry;

@@ -10,11 +10,11 @@ using namespace stylet::test;
 TEST(ModelElement, is_the_chosen_one_and_linear_by_itself_for_the_methods_of_the_paper) {
   Scenario s = box_scenario();
   for (const char* method : {"node-addition", "embedded"}) {
-    s.coupling.method = method;
+    s.coupling.method = choice<CouplingSettings::Method>(method).value();
     EXPECT_EQ(compiled(s)->tissue().element(), Element::p1);
   }
   for (const Element element : {Element::p1, Element::nodal_pressure, Element::p2}) {
-    s.tissue_model.element = to_string(element);
+    s.tissue_model.element = choice<ElementChoice>(to_string(element)).value();
     EXPECT_EQ(compiled(s)->tissue().element(), element);
   }
 }
@@ -60,7 +60,7 @@ TEST(ModelRefuses, a_held_region_that_is_not_there_and_names_the_nearest) {
 
 TEST(ModelRefuses, tissue_that_nothing_holds) {
   Scenario s = box_scenario();
-  s.fixed.outer = "none";
+  s.fixed.outer = OuterSupport::none;
   const Error error = refused(s, box_patient(false));
   EXPECT_EQ(error.where, "case.toml, [fixed]");
   EXPECT_SAYS(error.what, "nothing holds the tissue");
@@ -191,7 +191,7 @@ TEST(Planning, the_target_is_the_gland_or_its_zones_or_a_planning_volume_or_the_
     TetMesh mesh = box_patient();
     mesh.regions = std::move(names);
     Scenario s = box_scenario();
-    s.fixed.outer = "all";
+    s.fixed.outer = OuterSupport::all;
     std::vector<std::string> found;
     const auto model = compiled(s, mesh);
     for (const int region : model->target_regions())
@@ -229,7 +229,7 @@ TEST(ModelLaws, no_membrane_lies_between_the_gland_its_zones_and_the_urethra) {
   TetMesh mesh = box_patient();
   mesh.regions = {"body", "transition_zone", "urethra"};
   Scenario s = box_scenario();
-  s.fixed.outer = "all";
+  s.fixed.outer = OuterSupport::all;
   const auto model = compiled(s, mesh);
   EXPECT_EQ(membrane_force(model->laws(), 1, 2), 0.0);
   EXPECT_EQ(membrane_force(model->laws(), 2, 1), 0.0);

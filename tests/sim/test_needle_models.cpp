@@ -13,14 +13,14 @@ namespace {
 /// A thin needle, which bends and buckles well before the capsule breaks.
 Scenario thin_needle(const std::string& model) {
   Scenario s = box_scenario();
-  s.needle.model = model;
+  s.needle.model = choice<NeedleModel>(model).value();
   s.needle.diameter_mm = 1.0;
   s.needle.bending_stiffness_Nmm2 = 4000.0;
   return s;
 }
 
 /// Base force axial, sagittal, lateral [N].
-Vec3 force(const StepRecord& step) { return {step.force_axial_N, step.force_sagittal_N, step.force_lateral_N}; }
+Vec3 force(const Step& step) { return {step.force_axial_N, step.force_sagittal_N, step.force_lateral_N}; }
 
 const ParameterRow* row(const RunInfo& info, const std::string& name) {
   const auto found =
@@ -33,7 +33,7 @@ const ParameterRow* row(const RunInfo& info, const std::string& name) {
 TEST(NeedleModels, AnInsertionIsTheSameWithEach) {
   const Finished beam(compiled(thin_needle("beam")));
   double peak = 0.0;
-  for (const StepRecord& step : beam.kept.steps) peak = std::max(peak, force(step).norm());
+  for (const Step& step : beam.kept.steps) peak = std::max(peak, force(step).norm());
   for (const char* model : {"springs", "tet"}) {
     SCOPED_TRACE(model);
     const Finished other(compiled(thin_needle(model)));
@@ -50,7 +50,7 @@ TEST(NeedleModels, AnInsertionIsTheSameWithEach) {
     double iterations = 0.0;
     double steps = 0.0;
     for (std::size_t k = 0; k < beam.kept.steps.size(); ++k) {
-      const StepRecord& step = other.kept.steps[k];
+      const Step& step = other.kept.steps[k];
       squares += (force(step) - force(beam.kept.steps[k])).squaredNorm();
       apart = std::max(apart, (step.tip_mm - beam.kept.steps[k].tip_mm).norm());
       iterations += step.iterations;
@@ -87,7 +87,7 @@ TEST(NeedleSectionOfAScenario, StyletAndLumenDecideTheStiffnessUnlessItIsGiven) 
   s.needle.lumen_diameter_mm = 0.838;
   EXPECT_NEAR(stiffness(s), 20.7e3, 100.0);
   s.needle.lumen_diameter_mm = 1.0;
-  s.needle.stylet = "in";
+  s.needle.stylet = StyletPlace::in;
   EXPECT_NEAR(stiffness(s), 15722.0 + 200e3 * 0.0322062, 1.0);
   s.needle.stylet_diameter_mm = 0.8;
   EXPECT_NEAR(stiffness(s), 15722.0 + 200e3 * 0.0201062, 1.0);
@@ -102,10 +102,10 @@ TEST(NeedleSectionOfAScenario, TheTubesWallDecidesHowMuchItStretches) {
   Scenario s = box_scenario();
   const double thin = compiled(s)->coupling().axial_compliance_mm_per_N;
   EXPECT_NEAR(thin, 120.0 / (200e3 * 0.48137), 1e-7);
-  s.needle.stylet = "in";  // slides freely: it does not hold the tube
+  s.needle.stylet = StyletPlace::in;  // slides freely: it does not hold the tube
   EXPECT_EQ(compiled(s)->coupling().axial_compliance_mm_per_N, thin);
   s.needle.lumen_diameter_mm = 0.0;
-  s.needle.stylet = "out";
+  s.needle.stylet = StyletPlace::out;
   EXPECT_NEAR(compiled(s)->coupling().axial_compliance_mm_per_N, 120.0 / (200e3 * 1.266769), 1e-7);
 }
 
@@ -174,7 +174,7 @@ TEST(BevelOfAScenario, TheLawIsTheOneNamed) {
   Scenario s = box_scenario();
   s.needle.bevel_deg = 20.0;
   EXPECT_TRUE(compiled(s)->coupling().bevel.offsets());
-  s.needle.bevel_law = "force";
+  s.needle.bevel_law = Bevel::Law::force;
   s.needle.bevel_force_ratio = 0.04;
   EXPECT_TRUE(compiled(s)->coupling().bevel.pushes());
   EXPECT_EQ(compiled(s)->coupling().bevel.force_ratio, 0.04);

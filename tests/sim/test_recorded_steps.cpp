@@ -7,8 +7,8 @@ using namespace stylet;
 
 namespace {
 
-StepRecord step_at(double time_s, double force_N, std::int64_t rest_steps = 0) {
-  StepRecord step;
+Step step_at(double time_s, double force_N, std::int64_t rest_steps = 0) {
+  Step step;
   step.time_s = time_s;
   step.dt_s = 1e-3;
   step.force_axial_N = force_N;
@@ -17,7 +17,7 @@ StepRecord step_at(double time_s, double force_N, std::int64_t rest_steps = 0) {
 }
 
 /// Steps at 1, 2, … 8 ms; those at 3, 4, 5, 6 ms are at rest.
-const std::vector<StepRecord> kRecords{step_at(0.001, 1), step_at(0.002, 2), step_at(0.007, 3, 4), step_at(0.008, 4)};
+const std::vector<Step> kRecords{step_at(0.001, 1), step_at(0.002, 2), step_at(0.007, 3, 4), step_at(0.008, 4)};
 
 }  // namespace
 

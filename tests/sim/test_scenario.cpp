@@ -281,33 +281,36 @@ std::vector<Written> bad_fields() {
   const auto whole_field = [&](const char* path, int low, int high, auto field) {
     for (const int bad : {low, high}) all.push_back({path, whole(bad), [=](Scenario& s) { *field(s) = bad; }});
   };
-  const auto word_field = [&](const char* path, const char* bad, auto field) {
-    all.push_back({path, text(bad), [=](Scenario& s) { *field(s) = bad; }});
+  const auto choice_field = [&](const char* path, auto field) {
+    Scenario any;
+    using E = std::decay_t<decltype(*field(any))>;
+    for (const auto bad : {static_cast<E>(-1), static_cast<E>(Words<E>::all.size()), static_cast<E>(77)})
+      all.push_back({path, text(word(bad)), [=](Scenario& s) { *field(s) = bad; }});
   };
   number_field("patient.scale", -1, 1e7, [](Scenario& s) { return &s.patient.scale; });
   whole_field("patient.volume", -1, 1000001, [](Scenario& s) { return &s.patient.volume; });
-  word_field("tissue.element", "p3", [](Scenario& s) { return &s.tissue_model.element; });
+  choice_field("tissue.element", [](Scenario& s) { return &s.tissue_model.element; });
   number_field("tissue.relaxation_s", -0.1, 101, [](Scenario& s) { return &s.tissue_model.relaxation_s; });
   number_field("tissue.prostate.young_kPa", 0, 1e9, [](Scenario& s) { return &s.tissue["prostate"].young_kPa; });
   number_field("tissue.prostate.poisson", -0.1, 0.5, [](Scenario& s) { return &s.tissue["prostate"].poisson; });
   number_field("tissue.prostate.cutting_N", -1, 101, [](Scenario& s) { return &s.tissue["prostate"].cutting_N; });
   number_field("tissue.prostate.friction_viscous_to_mm_per_s", 0, 10001,
                [](Scenario& s) { return &s.tissue["prostate"].friction_viscous_to_mm_per_s; });
-  word_field("fixed.outer", "some", [](Scenario& s) { return &s.fixed.outer; });
+  choice_field("fixed.outer", [](Scenario& s) { return &s.fixed.outer; });
   all.push_back(
       {"fixed.box_mm", numbers({0, 0, 0, nan, 1, 1}), [=](Scenario& s) { s.fixed.box_mm = {0, 0, 0, nan, 1, 1}; }});
   whole_field("mesh.nodes", -1, 1000001, [](Scenario& s) { return &s.mesh.nodes; });
-  word_field("mesh.preset", "fine", [](Scenario& s) { return &s.mesh.preset; });
+  choice_field("mesh.preset", [](Scenario& s) { return &s.mesh.preset; });
   number_field("mesh.cull_mm", -1, 6, [](Scenario& s) { return &s.mesh.cull_mm; });
-  word_field("needle.model", "rod", [](Scenario& s) { return &s.needle.model; });
+  choice_field("needle.model", [](Scenario& s) { return &s.needle.model; });
   number_field("needle.length_mm", 19, 1001, [](Scenario& s) { return &s.needle.length_mm; });
   number_field("needle.diameter_mm", 0.1, 6, [](Scenario& s) { return &s.needle.diameter_mm; });
   number_field("needle.lumen_diameter_mm", -1, 6, [](Scenario& s) { return &s.needle.lumen_diameter_mm; });
-  word_field("needle.bevel_law", "both", [](Scenario& s) { return &s.needle.bevel_law; });
-  word_field("coupling.method", "nearfield", [](Scenario& s) { return &s.coupling.method; });
-  word_field("coupling.rule", "", [](Scenario& s) { return &s.coupling.rule; });
-  word_field("coupling.solver", "Coupled", [](Scenario& s) { return &s.coupling.solver; });
-  word_field("coupling.engine", "inverse", [](Scenario& s) { return &s.coupling.engine; });
+  choice_field("needle.bevel_law", [](Scenario& s) { return &s.needle.bevel_law; });
+  choice_field("coupling.method", [](Scenario& s) { return &s.coupling.method; });
+  choice_field("coupling.rule", [](Scenario& s) { return &s.coupling.rule; });
+  choice_field("coupling.solver", [](Scenario& s) { return &s.coupling.solver; });
+  choice_field("coupling.engine", [](Scenario& s) { return &s.coupling.engine; });
   number_field("coupling.spacing_mm", -4, 1e6, [](Scenario& s) { return &s.coupling.spacing_mm; });
   number_field("insertion[0].speed_mm_per_s", 0, 1e6, [](Scenario& s) { return &s.insertions[0].speed_mm_per_s; });
   number_field("insertion[0].approach_mm", -1, 1e6, [](Scenario& s) { return &s.insertions[0].approach_mm; });
@@ -418,18 +421,18 @@ TEST(CheckScenario, keeps_contacts_apart_by_a_diameter) {
 TEST(CheckScenario, wants_linear_tetrahedra_where_their_stiffness_changes) {
   Scenario s = runnable();
   for (const char* element : {"nodal-pressure", "p2"}) {
-    s.tissue_model.element = element;
+    s.tissue_model.element = choice<ElementChoice>(element).value();
     for (const char* method : {"node-addition", "node-repositioning"}) {
-      s.coupling.method = method;
-      s.coupling.engine = "woodbury";
+      s.coupling.method = choice<CouplingSettings::Method>(method).value();
+      s.coupling.engine = CouplingSettings::Engine::woodbury;
       EXPECT_SAYS(complaint(s),
                   "at <tissue.element>: coupling.method = \"" + std::string(method) + "\" changes the stiffness");
       EXPECT_SAYS(complaint(s), "tissue.element = \"" + std::string(element) + "\"");
       EXPECT_SAYS(complaint(s), "Set tissue.element = \"p1\", or coupling.method = \"near-field\" or \"embedded\"");
     }
-    s.coupling.method = "embedded";
+    s.coupling.method = CouplingSettings::Method::embedded;
     EXPECT_SAYS(complaint(s), "coupling.engine = \"woodbury\" changes the stiffness");
-    s.coupling.engine = "condensed";
+    s.coupling.engine = CouplingSettings::Engine::condensed;
     EXPECT_EQ(complaint(s), "");
   }
 }

@@ -27,7 +27,7 @@ std::string what_happened(const Summary& summary) {
   return all;
 }
 
-void expect_same_bits(const StepRecord& a, const StepRecord& b) {
+void expect_same_bits(const Step& a, const Step& b) {
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.base_depth_mm, b.base_depth_mm);
   EXPECT_EQ(a.force_axial_N, b.force_axial_N);
@@ -48,7 +48,7 @@ class ByHand {
       : model_(compiled(scenario)), simulation(model_), insertion(model_->insertions()[0]) {
     simulation.place(pose(), insertion.entry, insertion.direction);
   }
-  const StepRecord& go(double depth_mm, const Vec3& aside = Vec3::Zero(), double dt = 4e-3) {
+  const Step& go(double depth_mm, const Vec3& aside = Vec3::Zero(), double dt = 4e-3) {
     const double from = depth;
     const Vec3 aside_from = sideways;
     const int steps =
@@ -61,7 +61,7 @@ class ByHand {
       simulation.step(pose(), dt);
       for (const Event& e : simulation.new_events()) events.push_back(e);
     }
-    return simulation.record();
+    return simulation.last_step();
   }
   [[nodiscard]] Pose pose() const {
     return pose_along(
@@ -180,7 +180,7 @@ TEST(Run, the_summary_is_that_of_the_records) {
   double axial = 0, sagittal = 0, lateral = 0, off = 0;
   int contacts = 0;
   std::vector<double> us;
-  for (const StepRecord& step : r.kept.steps) {
+  for (const Step& step : r.kept.steps) {
     axial = std::max(axial, std::abs(step.force_axial_N));
     sagittal = std::max(sagittal, std::abs(step.force_sagittal_N));
     lateral = std::max(lateral, std::abs(step.force_lateral_N));
@@ -220,9 +220,9 @@ TEST(Run, needle_tissue_and_supports_balance) {
   for (const char* rule : {"paper", "embedded"}) {
     Scenario s = box_scenario();
     if (rule == std::string("paper")) {
-      s.coupling.rule = rule;
+      s.coupling.rule = choice<CouplingSettings::Rule>(rule).value();
     } else {
-      s.coupling.method = rule;
+      s.coupling.method = choice<CouplingSettings::Method>(rule).value();
     }
     const Finished r(compiled(s));
     EXPECT_LE(r.summary.residual_force_balance, 1e-9) << rule;
@@ -234,7 +234,7 @@ TEST(Run, needle_tissue_and_supports_balance) {
 
 TEST(Run, a_second_needle_finds_the_tissue_unloaded) {
   Scenario first = box_scenario();
-  first.fixed.outer = "none";  // "sides" would hold other nodes for other entries
+  first.fixed.outer = OuterSupport::none;  // "sides" would hold other nodes for other entries
   first.fixed.box_mm = {-31, -31, 45, 31, 31, 61};
   Scenario alone = first;
   alone.insertions[0].entry_mm = {-8.0, 2.0, -20.0};
@@ -247,8 +247,8 @@ TEST(Run, a_second_needle_finds_the_tissue_unloaded) {
   ASSERT_EQ(two.kept.steps.size(), first_steps + second.kept.steps.size());
   const double started = two.kept.steps[first_steps - 1].time_s;
   for (std::size_t k = 0; k < second.kept.steps.size(); ++k) {
-    const StepRecord& a = second.kept.steps[k];
-    const StepRecord& b = two.kept.steps[first_steps + k];
+    const Step& a = second.kept.steps[k];
+    const Step& b = two.kept.steps[first_steps + k];
     ASSERT_NEAR(a.force_axial_N, b.force_axial_N, 1e-9) << k;
     ASSERT_NEAR(a.force_lateral_N, b.force_lateral_N, 1e-9) << k;
     ASSERT_NEAR(a.base_depth_mm, b.base_depth_mm, 1e-9) << k;
@@ -334,7 +334,7 @@ TEST(Run, deepest_is_the_deepest_point_also_where_the_needle_goes_in_twice) {
 TEST(Run, an_observer_can_stop_it) {
   struct Stops final : RunObserver {
     int steps = 0;
-    Result<> on_step(const StepRecord&) override {
+    Result<> on_step(const Step&) override {
       if (++steps == 5) return failure("disk", "is full", "Make room");
       return Ok{};
     }
@@ -357,8 +357,8 @@ TEST(HandForce, is_positive_pushing_and_negative_pulling) {
 TEST(HandForce, is_lateral_to_the_patients_left_and_sagittal_to_posterior) {
   ByHand left;
   left.go(30);
-  StepRecord before = left.simulation.record();
-  const StepRecord to_left = left.go(30, {3, 0, 0});
+  Step before = left.simulation.last_step();
+  const Step to_left = left.go(30, {3, 0, 0});
   EXPECT_GT(to_left.force_lateral_N - before.force_lateral_N, 0.05);
   EXPECT_LT(std::abs(to_left.force_sagittal_N - before.force_sagittal_N), 0.3 * to_left.force_lateral_N);
   // The tissue lies ahead (+z) of the base: r × F = z × x = +y.
@@ -366,8 +366,8 @@ TEST(HandForce, is_lateral_to_the_patients_left_and_sagittal_to_posterior) {
 
   ByHand back;
   back.go(30);
-  before = back.simulation.record();
-  const StepRecord to_posterior = back.go(30, {0, 3, 0});
+  before = back.simulation.last_step();
+  const Step to_posterior = back.go(30, {0, 3, 0});
   EXPECT_GT(to_posterior.force_sagittal_N - before.force_sagittal_N, 0.05);
   EXPECT_LT(to_posterior.torque_Nmm.x() - before.torque_Nmm.x(), -5.0);  // z × y = −x
 }
@@ -377,12 +377,12 @@ TEST(Run, slip_starts_when_the_shaft_slides_out_and_the_hand_pulls) {
     SCOPED_TRACE(testing::Message() << out_mm << " mm a step");
     ByHand hand;
     hand.go(35.0);
-    ASSERT_GT(hand.simulation.record().force_axial_N, 0.0);
+    ASSERT_GT(hand.simulation.last_step().force_axial_N, 0.0);
     double most_sticking = 0.0;  // share of the contacts, until it slips
     const Event* slip = nullptr;
     while (slip == nullptr && hand.depth > 20.0) {
       const std::size_t before = hand.events.size();
-      const StepRecord& record = hand.go(hand.depth - out_mm);
+      const Step& record = hand.go(hand.depth - out_mm);
       most_sticking = std::max(most_sticking, static_cast<double>(record.sticking) / record.contacts);
       for (std::size_t k = before; k < hand.events.size(); ++k)
         if (hand.events[k].kind == EventKind::slip_start) slip = &hand.events[k];
@@ -390,7 +390,7 @@ TEST(Run, slip_starts_when_the_shaft_slides_out_and_the_hand_pulls) {
     ASSERT_NE(slip, nullptr);
     EXPECT_LT(slip->force_N, 0.0) << "a pull";
     EXPECT_GT(most_sticking, 0.6) << "the tissue stuck to the needle first";
-    EXPECT_GT(hand.simulation.report().sliding_out_share, 0.5);
+    EXPECT_GT(hand.simulation.last_step().sliding_out_share, 0.5);
     EXPECT_LT(slip->depth_mm, 35.0 - 0.3);
     EXPECT_NEAR(slip->depth_mm, hand.depth, 1e-9);
   }
@@ -430,7 +430,7 @@ TEST(Simulation, a_step_does_not_allocate) {
     const AllocationCount count;
     hand.simulation.step(base, 4e-3);
     allocations += count.count();
-    most_contacts = std::max(most_contacts, hand.simulation.record().contacts);
+    most_contacts = std::max(most_contacts, hand.simulation.last_step().contacts);
   }
   for (double depth = 40.0; depth > -3.0; depth -= 0.2) {
     hand.depth = depth;
@@ -442,7 +442,7 @@ TEST(Simulation, a_step_does_not_allocate) {
   }
   EXPECT_EQ(allocations, 0);
   EXPECT_GT(most_contacts, 5);
-  EXPECT_EQ(hand.simulation.record().tip_state, TipState::air);
+  EXPECT_EQ(hand.simulation.last_step().tip_state, TipState::air);
 }
 
 TEST(Simulation, a_step_to_nowhere_or_in_no_time_is_not_taken) {
@@ -455,16 +455,15 @@ TEST(Simulation, a_step_to_nowhere_or_in_no_time_is_not_taken) {
     const Pose base = plan.motion.at(4e-3 * k);
     Pose nowhere = base;
     nowhere.origin[k % 3] = nan;
-    const StepRecord before = disturbed.record();
-    for (const StepRecord& record :
-         {disturbed.step(nowhere, 4e-3), disturbed.step(base, nan), disturbed.step(base, 0.0)})
+    const Step before = disturbed.last_step();
+    for (const Step& record : {disturbed.step(nowhere, 4e-3), disturbed.step(base, nan), disturbed.step(base, 0.0)})
       expect_same_bits(record, before);
-    EXPECT_EQ(disturbed.report().flags, unsigned(StepReport::invalid_input));
+    EXPECT_EQ(disturbed.last_step().flags, unsigned(Step::invalid_input));
     EXPECT_TRUE(disturbed.new_events().empty());
     expect_same_bits(disturbed.step(base, 4e-3), plain.step(base, 4e-3));
     ASSERT_EQ(disturbed.new_events().size(), plain.new_events().size());
   }
-  EXPECT_GT(plain.record().force_axial_N, 0.3);
+  EXPECT_GT(plain.last_step().force_axial_N, 0.3);
 }
 
 TEST(Simulation, reports_the_bone_it_hits) {
@@ -476,7 +475,7 @@ TEST(Simulation, reports_the_bone_it_hits) {
   ASSERT_FALSE(hand.events.empty());
   EXPECT_EQ(hand.events.back().kind, EventKind::bone_contact);
   EXPECT_EQ(hand.events.back().region, "pubic_arch");
-  EXPECT_EQ(hand.simulation.record().tip_state, TipState::bone);
+  EXPECT_EQ(hand.simulation.last_step().tip_state, TipState::bone);
 }
 
 // Where the base is.

@@ -39,7 +39,7 @@ struct Held {
 
 Scenario::Fixed outer(const std::string& mode) {
   Scenario::Fixed fixed;
-  fixed.outer = mode;
+  fixed.outer = choice<OuterSupport>(mode).value();
   return fixed;
 }
 

@@ -16,14 +16,14 @@ inline std::vector<double> numbers_of(Simulation& simulation, std::size_t insert
   const auto add = [&](const Vec3& v) { numbers.insert(numbers.end(), v.data(), v.data() + 3); };
   simulation.place(plan.motion.at(0.0), plan.entry, plan.direction);
   for (int k = 1; k * dt < plan.motion.duration_s(); ++k) {
-    const StepRecord& record = simulation.step(plan.motion.at(k * dt), dt);
-    const StepReport& report = simulation.report();
+    const Step& record = simulation.step(plan.motion.at(k * dt), dt);
+    const Step& report = simulation.last_step();
     const Needle& needle = simulation.insertion().needle();
     numbers.insert(numbers.end(), {record.time_s, record.base_depth_mm});
-    add(report.hand_force);
-    add(report.hand_torque);
+    add(report.hand_force_N);
+    add(report.torque_Nmm);
     numbers.insert(numbers.end(), {record.force_axial_N, record.force_lateral_N, record.force_sagittal_N});
-    add(report.guide_force);
+    add(report.guide_force_N);
     add(needle.base().origin);
     add(record.tip_mm);
     numbers.insert(numbers.end(), {report.inserted_mm, report.sliding_share});

@@ -4,8 +4,10 @@
 #include "stylet/coupling/capacity_use.hpp"
 #include "stylet/coupling/compliance_supply.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
+#include "stylet/coupling/event.hpp"
 #include "stylet/coupling/laws.hpp"
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
+#include "stylet/coupling/step.hpp"
 #include "stylet/coupling/step_phases.hpp"
 #include "stylet/coupling/track.hpp"
 #include "stylet/fem/compliance_store.hpp"
@@ -16,68 +18,6 @@
 #include <span>
 
 namespace stylet {
-
-/// What the tip does.
-enum class TipPhase {
-  air,       ///< outside the tissue
-  pressing,  ///< touches tissue it does not cut (yet)
-  cutting,   ///< moves the end of the track forward
-  in_track,  ///< behind the end of the track
-  bone,      ///< against a rigid region
-  exited     ///< through the far side
-};
-
-/// Things that happen to the needle in a step.
-enum class InsertionEventKind {
-  skin_contact,
-  puncture,
-  region_entered,
-  bone_contact,
-  exited,
-  re_entered,
-  withdrawn,
-  grazed
-};
-struct InsertionEvent {
-  InsertionEventKind kind{};
-  int region = -1;
-  double force_N = std::numeric_limits<double>::quiet_NaN();  ///< axial force of the hand at a puncture's very moment
-};
-
-/// What a step came to. Flags tell what to do: nothing is repaired in silence.
-struct StepReport {
-  enum Flag : unsigned {
-    not_converged = 1u << 0,       ///< the balance was broken off, the last iterate kept; use a smaller time step
-    contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step
-    compliance_missing = 1u << 2,  ///< not there yet where the needle is: that of the tip's last place stood in, and
-                                   ///< contacts wait; prepare() between steps, or let a worker (supply()) keep ahead.
-                                   ///< A tip in the air: it went in before there was any, and is to be drawn out
-    out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
-    too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
-    invalid_input = 1u << 5,       ///< a pose that is not finite, or dt ≤ 0: the step was not taken
-    no_contact_inside = 1u << 6    ///< no contact, tip in the air or exited, and yet inside the tissue: it was put
-                                   ///< there, went in flat to the surface, slipped off it, or had gone through; nothing
-                                   ///< resists it, and it is to be drawn out. Where compliance_missing says so already
-                                   ///< it is not said twice
-  };
-  static constexpr unsigned kDistrusted = not_converged | invalid_input;  ///< with one of them: not the model's force
-  unsigned flags = 0;
-  int iterations = 0;  ///< of the solver, summed over sub-steps
-  int pivots = 0;      ///< changes of contact state
-  int remeshings = 0;  ///< changes of the mesh: ContactCompliance::remeshing() has them
-  int contacts = 0;    ///< tip included when it touches
-  int sticking = 0;
-  double sliding_share = 0.0;      ///< share of the inserted length that slides, …
-  double sliding_out_share = 0.0;  ///< … and that slides out of the tissue
-  TipPhase tip = TipPhase::air;
-  Vec3 tip_position = Vec3::Zero();  ///< [mm] LPS
-  Vec3 hand_force = Vec3::Zero();    ///< [N] LPS, exerted by the hand on the base
-  Vec3 guide_force = Vec3::Zero();   ///< [N] LPS, exerted by the guide template on the shaft
-  Vec3 hand_torque = Vec3::Zero();   ///< [N mm] LPS, about the base
-  double inserted_mm = 0.0;          ///< length of shaft in tissue
-  int events = 0;
-  std::array<InsertionEvent, 16> event{};
-};
 
 /// Contact as seen from outside.
 struct ContactState {
@@ -122,8 +62,12 @@ class Insertion {
   /// Puts the guide template's hole, if the needle has one, at `hole` [mm] LPS. @param axis LPS, towards the patient
   void place_guide(const Vec3& hole, const Vec3& axis);
 
-  /// Moves the base from where it is to `base` in dt seconds.
-  StepReport step(const Pose& base, double dt);
+  /// Moves the base from where it is to `base` in dt seconds. The step's time, dt and depth are the caller's to fill
+  /// in.
+  Step step(const Pose& base, double dt);
+
+  /// What happened in the last step, as far as there was room for it.
+  [[nodiscard]] std::span<const InsertionEvent> events() const;
 
   /// Makes the compliance of all elements within `radius` of the tip available. Call between steps; returns at once
   /// when the tip has not moved far. Allocates and solves, or waits for the worker that does.

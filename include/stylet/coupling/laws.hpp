@@ -57,8 +57,8 @@ struct CouplingSettings {
   };
   enum class Engine {
     condensed,  ///< compliance among the points held only; the stiffness of the mesh is never touched
-    bcs,        ///< the full inverse, changed by boundary condition switches
-    woodbury    ///< the full inverse, changed by the matrix inversion lemma
+    woodbury,   ///< the full inverse, changed by the matrix inversion lemma
+    bcs         ///< the full inverse, changed by boundary condition switches
   };
   enum class Solver {
     coupled,   ///< needle, tissue and laws in one system

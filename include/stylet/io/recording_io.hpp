@@ -15,7 +15,7 @@ namespace stylet {
 struct RunRecording {
   RunInfo info;
   TetMesh mesh;
-  std::vector<StepRecord> steps;
+  std::vector<Step> steps;
   std::vector<Frame> frames;       ///< displacements were stored with single precision
   std::optional<Summary> summary;  ///< empty while the run goes on, or when it was killed
   std::vector<Event> events{};     ///< of a live session also when it was killed

@@ -21,7 +21,7 @@ class ResultsWriter {
                                                      std::function<MatX(const VecX&)> stress_of = {});
   ~ResultsWriter();
 
-  Result<> add_step(const StepRecord& step);
+  Result<> add_step(const Step& step);
   Result<> add_frame(const Frame& frame);
   /// Writes all files. Progress covers the pictures.
   /// @param pictures still pictures in the report; without them it has its interactive view only

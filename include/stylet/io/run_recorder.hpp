@@ -22,7 +22,7 @@ class RunRecorder {
                                                    const TetMesh& mesh);
   ~RunRecorder();  ///< what was added is on the disk afterwards
 
-  Result<> add_step(const StepRecord& step);
+  Result<> add_step(const Step& step);
   Result<> add_event(const Event& event);
   Result<> add_frame(const Frame& frame);  ///< displacement with single precision
 
@@ -33,6 +33,6 @@ class RunRecorder {
 };
 
 /// forces.csv of steps: the header and a line for each.
-std::string forces_csv_text(std::span<const StepRecord> steps);
+std::string forces_csv_text(std::span<const Step> steps);
 
 }  // namespace stylet

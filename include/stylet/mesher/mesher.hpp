@@ -4,6 +4,7 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/geom/contours.hpp"
 #include "stylet/geom/label_image.hpp"
+#include "stylet/geom/mesh_preset.hpp"
 #include "stylet/geom/quality.hpp"
 #include "stylet/geom/surface.hpp"
 
@@ -11,11 +12,6 @@
 #include <optional>
 
 namespace stylet {
-
-enum class MeshPreset {
-  standard,  ///< all anatomy of the input, about 3,000 nodes
-  paper      ///< the target and its surroundings only, 570 nodes, as Goksel et al. 2005
-};
 
 struct MeshOptions {
   MeshPreset preset = MeshPreset::standard;

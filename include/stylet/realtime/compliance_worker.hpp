@@ -9,7 +9,7 @@ namespace stylet {
 
 /// A thread that keeps compliance ahead of a needle while somebody else steps it: the worker's side of a
 /// ComplianceSupply. Ordinary scheduling, less urgent than its neighbours. It has nothing to do while the needle stays
-/// in the prepared corridor. A needle may outrun it: a step then says so (StepReport::compliance_missing).
+/// in the prepared corridor. A needle may outrun it: a step then says so (Step::compliance_missing).
 class ComplianceWorker {
  public:
   /// Starts the thread; std::system_error when there is none to be had. No step may be under way.

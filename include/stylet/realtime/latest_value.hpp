@@ -14,7 +14,7 @@ namespace stylet {
 /// one LatestValue each.
 template <class T>
 class LatestValue {
-  static_assert(std::is_trivially_copyable_v<T>, "what crosses threads is plain data: copying it never allocates");
+  static_assert(std::is_trivially_destructible_v<T>, "what crosses threads owns nothing: copying it never allocates");
 
  public:
   /// @param initial what the reader sees before the first write

@@ -13,13 +13,13 @@ namespace stylet {
 /// step by step; does not allocate.
 class NeedleRegions {
  public:
-  /// After every step. @param report that of the step
-  void follow(const Insertion& insertion, const StepReport& report);
+  /// After every step.
+  void follow(const Insertion& insertion);
 
   /// Writes the regions that the needle is in, each once, that of the tip first.
   /// @param contacts of now, as Insertion::contacts() has them
   /// @return how many; those beyond out.size() are left out
-  std::size_t now(const Insertion& insertion, TipPhase tip, std::span<const ContactState> contacts,
+  std::size_t now(const Insertion& insertion, TipState tip, std::span<const ContactState> contacts,
                   std::span<std::int16_t> out) const;
 
  private:

@@ -74,7 +74,7 @@ class RealtimeRunner {
 
   /// With keep_steps: takes the oldest steps not yet taken. Room is for four thousand; what comes beyond is dropped and
   /// counted (LoopCounters::dropped_steps). @return how many
-  std::size_t take_steps(std::span<StepSnapshot> out);
+  std::size_t take_steps(std::span<Step> out);
 
   /// Any thread, any time; about 95 kB.
   [[nodiscard]] std::unique_ptr<RunnerTimes> times() const;

@@ -39,21 +39,15 @@ struct ForceSnapshot {
   Triple along{};                   ///< TissueForce::along
 };
 
-/// Everything a display needs of one step, of fixed size: plain data.
+/// Everything a display needs of one step, of fixed size.
 struct Snapshot {
   static constexpr std::size_t kCentreline = 65;
   static constexpr std::size_t kContacts = 128;
   static constexpr std::size_t kForces = 256;  ///< viscous tissue remembers points left behind
   static constexpr std::size_t kRegions = 16;
 
-  double time_s = 0.0;         ///< simulated, since the runner was made
-  double clock_s = 0.0;        ///< on the runner's clock, which starts when it is made: when the step was over
-  double base_depth_mm = 0.0;  ///< as in StepRecord
-  PlainPose base;
-  PlainWrench hand;  ///< what the hand exerts on the base: by needle and tissue, before any device's limits
-  double force_axial_N = 0.0;
-  Triple tip{};  ///< [mm] LPS
-  TipState tip_state = TipState::air;
+  Step step;             ///< its time is simulated since the runner was made, its base where the needle's base is
+  double clock_s = 0.0;  ///< on the runner's clock, which starts when it is made: when the step was over
   std::array<Triple, kCentreline> centreline{};  ///< [mm] LPS, base to tip, evenly spaced
   int contact_count = 0;                         ///< used entries of `contacts`
   int contacts_left_out = 0;
@@ -63,11 +57,8 @@ struct Snapshot {
   std::array<ForceSnapshot, kForces> forces{};   ///< all that displaces the tissue: with them a DisplayField has it
   int region_count = 0;                          ///< used entries of `regions`
   std::array<std::int16_t, kRegions> regions{};  ///< of the mesh, that the needle is in; the tip's first
-  int sticking = 0;
-  int iterations = 0;
-  unsigned flags = 0;    ///< StepReport::Flag
-  bool trusted = false;  ///< the force may go to a device
-  bool paused = false;   ///< nothing moves until resume() or single_step()
+  bool trusted = false;                          ///< the force may go to a device
+  bool paused = false;                           ///< nothing moves until resume() or single_step()
   LoopCounters counters;
 };
 
@@ -84,27 +75,6 @@ struct DeviceSnapshot {
   std::int64_t damped = 0;             ///< periods in which the passivity control added damping
   std::int64_t damped_too_little = 0;  ///< of those, with less than was owed
 };
-
-/// A step that was taken: StepRecord as plain data.
-struct StepSnapshot {
-  double time_s = 0.0;
-  double dt_s = 0.0;
-  PlainPose base;
-  double base_depth_mm = 0.0;
-  double force_axial_N = 0.0;
-  double force_sagittal_N = 0.0;
-  double force_lateral_N = 0.0;
-  Triple torque_Nmm{};
-  Triple tip_mm{};
-  TipState tip_state = TipState::air;
-  std::int32_t contacts = 0;
-  std::int32_t sticking = 0;
-  std::int32_t iterations = 0;
-  unsigned flags = 0;    ///< StepReport::Flag
-  double step_us = 0.0;  ///< thread CPU time of the step [µs]
-};
-[[nodiscard]] StepSnapshot plain(const StepRecord& record);
-[[nodiscard]] StepRecord step_record(const StepSnapshot& snapshot);
 
 /// Event of a step, plain data.
 struct EventSnapshot {

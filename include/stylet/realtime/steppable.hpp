@@ -31,7 +31,7 @@ class Steppable {
   /// Copies the last step's events. @return how many; those beyond out.size() are left out
   virtual std::size_t events(std::span<EventSnapshot> out) noexcept = 0;
   /// The last step as it is recorded; step_us is the loop's own. @return false: there is none, or it was not taken
-  virtual bool record(StepSnapshot& /*out*/) noexcept { return false; }
+  virtual bool record(Step& /*out*/) noexcept { return false; }
 };
 
 /// The forces of a snapshot as a DisplayField takes them. @param out room for Snapshot::kForces
@@ -39,7 +39,7 @@ class Steppable {
 std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<TissueForce> out);
 
 /// A Simulation in the loop, with a worker that keeps compliance ahead of the tip. Where the tip outruns it, the steps
-/// are flagged (StepReport::compliance_missing).
+/// are flagged (Step::compliance_missing).
 class SimulationSteppable final : public Steppable {
  public:
   /// Places the needle at the start of one of the model's insertions.
@@ -53,7 +53,7 @@ class SimulationSteppable final : public Steppable {
   StepOutcome step(const Pose& base, double dt) noexcept override;
   void describe(Snapshot& out) noexcept override;
   std::size_t events(std::span<EventSnapshot> out) noexcept override;
-  bool record(StepSnapshot& out) noexcept override;
+  bool record(Step& out) noexcept override;
 
  private:
   Simulation simulation_;

@@ -41,7 +41,7 @@ struct Figure6Remesh {
 /// All iterations of one variant, both insertions in a row.
 struct Figure6Run {
   Figure6Variant variant;
-  std::vector<StepRecord> steps;       ///< step_us: processor time of the whole iteration, median of all runs
+  std::vector<Step> steps;             ///< step_us: processor time of the whole iteration, median of all runs
   std::vector<std::size_t> insertion;  ///< (steps) number of the insertion, from 0
   std::vector<int> remeshings;         ///< (steps) changes of the mesh in this iteration
   std::vector<Figure6Event> events;

@@ -17,38 +17,20 @@ struct Scene {
   std::vector<std::uint32_t> triangles;  ///< (3 t) corners, patch by patch
 };
 
-/// A step on the force curve.
-struct Sample {
-  double time_s = 0.0;
-  double depth_mm = 0.0;
-  double axial_N = 0.0, sagittal_N = 0.0, lateral_N = 0.0;
-  double step_us = 0.0;
-  TipState tip_state = TipState::air;
-  unsigned flags = 0;  ///< StepReport::Flag
-};
-
-/// One moment.
+/// One moment, as it goes to viewers (wire.hpp).
 struct LiveFrame {
   enum Bit : std::uint32_t { paused = 1, replayed = 2, trusted = 4, displaced = 8, whole_curve = 16 };
 
-  double time_s = 0.0;  ///< simulated
+  double time_s = 0.0;  ///< simulated; of a replay between two steps later than the step's
+  Step step;            ///< the last one
   std::uint32_t bits = 0;
-  std::uint32_t flags = 0;  ///< StepReport::Flag
-  TipState tip_state = TipState::air;
-  std::uint32_t sticking = 0;
-  std::uint32_t iterations = 0;
-  std::uint32_t steps = 0;
-  std::uint32_t missed = 0;  ///< deadlines
-  double depth_mm = 0.0;
-  double force_axial_N = 0.0, force_sagittal_N = 0.0, force_lateral_N = 0.0;  ///< as StepRecord
-  Vec3 torque_Nmm = Vec3::Zero();
-  Vec3 tip_mm = Vec3::Zero();
-  Pose base;
+  std::uint32_t steps = 0;                                              ///< so many have been taken
+  std::uint32_t missed = 0;                                             ///< deadlines
   double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< of the hand
   double left_out_N = 0.0;                                              ///< far or near field is not shown, the larger
   std::vector<float> centreline;                                        ///< (3 p) [mm] LPS, base to tip
   std::vector<ContactSnapshot> contacts;
-  std::vector<Sample> samples;             ///< steps since the last frame; with whole_curve all
+  std::vector<Step> curve;                 ///< steps since the last frame; with whole_curve all
   double unit_mm = 0.0;                    ///< of `displacement`
   std::vector<std::int16_t> displacement;  ///< (3 n) of the scene's nodes; may be empty
 };

@@ -4,60 +4,14 @@
 #include "stylet/core/types.hpp"
 #include "stylet/coupling/capacity_use.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
+#include "stylet/coupling/event.hpp"
+#include "stylet/coupling/step.hpp"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace stylet {
-
-enum class TipState {
-  air,       ///< outside the patient, before or after
-  pressing,  ///< touches tissue that it does not cut yet
-  cutting,   ///< moves the cut forward
-  in_track,  ///< behind the deepest point reached, in tissue already cut
-  bone,      ///< against a fixed region
-  exited     ///< through the far side
-};
-const char* to_string(TipState state);
-
-/// A step: what went in and what came out; but for dt_s, base and flags a line of forces.csv. Force and torque are what
-/// the hand exerts on the needle's base: axial along the base's axis, positive when pushing in; lateral towards the
-/// patient's left, sagittal = axial × lateral (towards posterior for a needle going superior). Torque about the base
-/// point, in patient axes.
-struct StepRecord {
-  double time_s = 0;
-  double dt_s = 0;           ///< as it was given: steps of the same dt and base from the same start give the same bits
-  Pose base;                 ///< [mm] LPS, where the hand brought the needle's base
-  double base_depth_mm = 0;  ///< how far a rigid straight needle's tip would be beyond the entry point
-  double force_axial_N = 0;
-  double force_sagittal_N = 0;
-  double force_lateral_N = 0;
-  Vec3 torque_Nmm = Vec3::Zero();  ///< LPS axes
-  Vec3 tip_mm = Vec3::Zero();      ///< LPS
-  TipState tip_state = TipState::air;
-  int contacts = 0;
-  int sticking = 0;
-  int iterations = 0;
-  unsigned flags = 0;  ///< StepReport::Flag; 0 of recordings that do not have them
-  double step_us = 0;  ///< thread CPU time of the step [µs]; the only number that differs between two runs
-  /// Steps at rest between the record before and this one: with its dt and base, and results as near as is_at_rest().
-  std::int64_t rest_steps = 0;
-};
-
-enum class EventKind {
-  skin_contact,
-  puncture,
-  region_entered,
-  retraction_start,
-  slip_start,
-  withdrawn,
-  bone_contact,
-  exited,
-  re_entered,
-  grazed
-};
-const char* to_string(EventKind kind);
 
 struct Event {
   EventKind kind{};

@@ -11,7 +11,7 @@ namespace stylet {
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
-  virtual Result<> on_step(const StepRecord& step) = 0;
+  virtual Result<> on_step(const Step& step) = 0;
   virtual Result<> on_frame(const Frame& frame) = 0;
 };
 
@@ -23,10 +23,10 @@ Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& obse
 
 /// Carries out the model's only insertion with the base led as it was in a recording, step by step. With the model that
 /// the recording was made with every number is the same to the last bit, but where the needle had outrun its compliance
-/// (StepReport::compliance_missing): how far a worker had come then is not recorded.
+/// (Step::compliance_missing): how far a worker had come then is not recorded.
 /// @param steps their base and dt_s are used
 /// Errors: no steps, steps without base (files of the first version), a model of several insertions
-Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const StepRecord> steps,
+Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const Step> steps,
                              RunObserver& observer, const Progress& progress = {});
 
 }  // namespace stylet

@@ -3,6 +3,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/core/types.hpp"
+#include "stylet/sim/choices.hpp"
 
 #include <array>
 #include <functional>
@@ -84,37 +85,37 @@ struct Scenario {
     bool operator==(const Patient&) const = default;
   } patient;
   struct TissueModel {
-    std::string element = "auto";  ///< auto, p1, nodal-pressure, p2
-    double relaxation_s = 0.0;     ///< Kelvin–Voigt's relaxation time; 0 = elastic
+    ElementChoice element = ElementChoice::automatic;
+    double relaxation_s = 0.0;  ///< Kelvin–Voigt's relaxation time; 0 = elastic
     bool operator==(const TissueModel&) const = default;
   } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
   struct Fixed {
     std::vector<std::string> regions;  ///< regions whose nodes are all held; empty = pubic arch and femurs if there
-    std::string outer = "auto";        ///< auto, none, all, sides (all but the perineal face)
-    std::optional<std::array<double, 6>> box_mm;  ///< LPS, low and high corner: nodes inside are held as well
+    OuterSupport outer = OuterSupport::automatic;  ///< sides: all but the perineal face
+    std::optional<std::array<double, 6>> box_mm;   ///< LPS, low and high corner: nodes inside are held as well
     bool operator==(const Fixed&) const = default;
   } fixed;
   struct Mesh {
     int nodes = 0;  ///< 0 = the preset's default
-    std::string preset = "standard";
+    MeshPreset preset = MeshPreset::standard;
     double cull_mm = 0.3;
     bool stiff_band = true;
     bool operator==(const Mesh&) const = default;
   } mesh;
   struct NeedleChoice {
-    std::string model = "beam";
+    NeedleModel model = NeedleModel::beam;
     double length_mm = 200.0;
     double diameter_mm = 1.27;
     std::optional<double> lumen_diameter_mm;  ///< unset: that of an 18 gauge needle in proportion
     double young_GPa = 200.0;
-    std::string stylet = "out";                ///< in, out
+    StyletPlace stylet = StyletPlace::out;
     std::optional<double> stylet_diameter_mm;  ///< unset: 0.9 of the lumen
     double stylet_young_GPa = 200.0;
     std::optional<double> bending_stiffness_Nmm2;  ///< instead of the section's
     std::optional<double> torsion_stiffness_Nmm2;  ///< instead of the section's
     double bevel_deg = 0.0;                        ///< between the bevel's face and the axis; 0 = symmetric
-    std::string bevel_law = "offset";
+    Bevel::Law bevel_law = Bevel::Law::offset;
     double bevel_force_ratio = 0.06;
     double bow_mm = 0.0;   ///< offset of the unloaded needle's tip
     double bow_deg = 0.0;  ///< towards which side, about the axis
@@ -122,12 +123,12 @@ struct Scenario {
     bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {
-    std::string method = "near-field";
-    std::string rule = "interior";
-    std::string solver = "coupled";
-    std::string engine = "condensed";
+    CouplingSettings::Method method = CouplingSettings::Method::near_field;
+    CouplingSettings::Rule rule = CouplingSettings::Rule::interior;
+    CouplingSettings::Solver solver = CouplingSettings::Solver::coupled;
+    CouplingSettings::Engine engine = CouplingSettings::Engine::condensed;
     double damping = 1.0;
-    std::string projection = "exact";
+    Projection projection = Projection::exact;
     double spacing_mm = 4.0;
     double tip_viscosity_Ns_per_m = 2.0;
     double bone_damping_ms = 3.0;

@@ -23,15 +23,15 @@ class Simulation {
 
   /// Moves the base to `base`.
   /// @param dt [s] taken as a whole number of nanoseconds, so that times do not drift
-  /// @return the record of this step; step_us is left at 0 (the caller owns the clock). Of a step that is not taken
-  /// (StepReport::invalid_input) the last one
-  const StepRecord& step(const Pose& base, double dt);
+  /// @return last_step(); step_us is left at 0 (the caller owns the clock)
+  const Step& step(const Pose& base, double dt);
 
   /// Makes the compliance near the tip available; call between steps. Allocates when the tip has left the corridor.
   void prepare();
 
-  [[nodiscard]] const StepRecord& record() const { return record_; }
-  [[nodiscard]] const StepReport& report() const { return report_; }
+  /// The last step that was taken, or what there was after the placing. Where a step was not taken, the one before it,
+  /// with no flag but Step::invalid_input.
+  [[nodiscard]] const Step& last_step() const { return step_; }
   [[nodiscard]] std::span<const Event> new_events() const {
     return {events_.data(), static_cast<std::size_t>(event_count_)};
   }
@@ -55,7 +55,7 @@ class Simulation {
   [[nodiscard]] ComplianceSupply::Settings supply_settings() const;
   /// Insertion::observe_phases().
   void observe_phases(PhaseObserver* observer) { insertion_.observe_phases(observer); }
-  [[nodiscard]] double time_s() const { return record_.time_s; }
+  [[nodiscard]] double time_s() const { return step_.time_s; }
 
  private:
   void add_event(EventKind kind, double force_N, int region);
@@ -66,9 +66,7 @@ class Simulation {
   Insertion insertion_;
   Vec3 entry_ = Vec3::Zero();
   Vec3 direction_ = Vec3::UnitZ();
-  Pose base_;
-  StepRecord record_;
-  StepReport report_;
+  Step step_;
   std::array<Event, 24> events_;
   int event_count_ = 0;
   std::int64_t time_ns_ = 0;

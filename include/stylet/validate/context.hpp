@@ -20,7 +20,7 @@ Result<MeshedAnatomy> mesh_demo(Index nodes, const Progress& progress);
 /// An insertion, carried out, with every step.
 struct RecordedRun {
   std::shared_ptr<const Model> model;
-  std::vector<StepRecord> steps;
+  std::vector<Step> steps;
   std::vector<Frame> events;  ///< frames taken at events and at the deepest point, labelled
   Summary summary;
 

@@ -17,7 +17,7 @@ struct ForceCurve {
 };
 
 /// Of a run whose steps are all `dt_s` long.
-ForceCurve force_curve(std::span<const StepRecord> steps, double dt_s);
+ForceCurve force_curve(std::span<const Step> steps, double dt_s);
 
 /// Root mean square of the difference of two curves [N], at the times both have, as long as both last. The longer of
 /// the two steps must be a multiple of the other. NaN when they have no time in common.

@@ -28,7 +28,7 @@ struct ScaleRow {
   double spacing_mm = 0.0;  ///< that gave them
   long steps = 0;           ///< measured: those with at least kShare of the most contacts
   long events = 0;          ///< of the insertion in them
-  long flagged = 0;         ///< of them, with a flag (StepReport)
+  long flagged = 0;         ///< of them, with a flag (Step)
   double iterations = 0.0;  ///< of the solver in a step, mean
   StepTimes cpu_us;         ///< thread CPU time
   StepTimes wall_us;

@@ -56,10 +56,10 @@ double ContactStates::contradiction_of_tip(const Trial& trial) const {
   return 0.0;
 }
 
-void ContactStates::change(int load, const Trial& trial, StepReport& report) {
-  ++report.pivots;
+void ContactStates::change(int load, const Trial& trial, Step& step) {
+  ++step.pivots;
   int& toggles = load == 0 ? contacts_.tip.toggles : contacts_.of_shaft(load).toggles;
-  if (++toggles > most_toggles_) report.flags |= StepReport::contact_cycling;
+  if (++toggles > most_toggles_) step.flags |= Step::contact_cycling;
   if (load == 0) {
     change_tip(trial);
     return;

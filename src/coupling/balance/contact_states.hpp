@@ -25,7 +25,7 @@ class ContactStates {
   /// By how much [N] a solution contradicts the state of a contact; 0 where it does not, or where the state is kept.
   [[nodiscard]] double contradiction(int load, const Trial& trial) const;
   /// Changes the state of a contact as a solution that contradicts it asks for.
-  void change(int load, const Trial& trial, StepReport& report);
+  void change(int load, const Trial& trial, Step& step);
 
   /// [mm] By how much a sliding contact slides in this sub-step, in the sense of its state, under an axial force [N].
   [[nodiscard]] static double way(const ShaftContact& contact, double axial) {

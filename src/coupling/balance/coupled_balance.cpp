@@ -177,9 +177,9 @@ ContactStates::Trial CoupledBalance::trial(int load) const {
 }
 
 /// A contact that is held again went back along the shaft; the right-hand side must know at once.
-void CoupledBalance::change_and_tell(int load, StepReport& report) {
+void CoupledBalance::change_and_tell(int load, Step& step) {
   const double s = load == 0 ? 0.0 : parts_.contacts.of_shaft(load).s;
-  states_.change(load, trial(load), report);
+  states_.change(load, trial(load), step);
   if (load == 0) return;
   rows_.gap.segment<3>(3 * load) -=
       (parts_.contacts.of_shaft(load).s - s) * rows_.frame[static_cast<std::size_t>(load)].col(2);
@@ -189,7 +189,7 @@ void CoupledBalance::change_and_tell(int load, StepReport& report) {
 /// @param changed whether a state has
 /// @param effort has ended where it was broken off
 /// @return false when the matrix is singular
-bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& changed) {
+bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) {
   const InPhase in_phase(parts_.phases, StepPhase::solve);
   changed = false;
   for (int round = 0; round < kMaxPivots; ++round) {
@@ -223,16 +223,16 @@ bool CoupledBalance::pivot(double h, Effort& effort, StepReport& report, bool& c
 
     changed = true;
     if (round >= kAllAtOnce) {
-      change_and_tell(worst_load, report);
+      change_and_tell(worst_load, step);
       continue;
     }
     const bool tip_too = states_.contradiction(0, trial(0)) > kTiny;
     for (int c = 1; c < parts_.contacts.count(); ++c) {
-      if (states_.contradiction(c, trial(c)) > kTiny) change_and_tell(c, report);
+      if (states_.contradiction(c, trial(c)) > kTiny) change_and_tell(c, step);
     }
-    if (tip_too) change_and_tell(0, report);
+    if (tip_too) change_and_tell(0, step);
   }
-  report.flags |= StepReport::contact_cycling;
+  step.flags |= Step::contact_cycling;
   return true;
 }
 
@@ -285,7 +285,7 @@ void CoupledBalance::give_way() {
   parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
 }
 
-bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepReport& report) {
+bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   Predictor& predictor = parts_.predictor;
   states_.begin(kMaxToggles);
@@ -310,7 +310,7 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
       const InPhase in_phase(parts_.phases, StepPhase::tip);
       const double hand_N =
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces());
-      parts_.path.break_surface(hand_N, report);
+      parts_.path.break_surface(hand_N, step);
       before_break = all;
       iteration = 0;  // another balance is looked for from here
       foresees_cut_ = true;
@@ -338,7 +338,7 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
     if (all > 0 && !effort.allows(effort.iteration() + (exact ? effort.tangent() : 0.0))) break;
     effort.spend(effort.iteration());
     progress.before = iteration == 0 ? std::max(error, kNear / parts_.settings.tolerance) : error;
-    ++report.iterations;
+    ++step.iterations;
     progress.old_matrix = !exact && tangent_.relax();
     if (progress.old_matrix) {
       kept_.keep(parts_.contacts);
@@ -356,12 +356,12 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
       const InPhase in_phase(parts_.phases, StepPhase::solve);
       system_.add_tip();
     }
-    if (!system_.fits() || !pivot(h, effort, report, progress.changed)) {
+    if (!system_.fits() || !pivot(h, effort, step, progress.changed)) {
       if (!progress.old_matrix) {
         progress.steady = false;
         give_way();
         if (from_start) {
-          report.flags |= StepReport::not_converged;
+          step.flags |= Step::not_converged;
           return false;
         }
         from_start = true;
@@ -380,7 +380,7 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, StepR
     }
   }
   if (progress.changed || !(look(h) < kPoor)) {
-    report.flags |= StepReport::not_converged;
+    step.flags |= Step::not_converged;
     if (is_astray(largest_at_start)) {
       give_way();
     } else {

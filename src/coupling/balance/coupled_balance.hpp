@@ -19,7 +19,7 @@ class CoupledBalance : public BalanceSolver {
  public:
   explicit CoupledBalance(const BalanceParts& parts);
 
-  bool solve(double h, bool from_prediction, Effort& effort, StepReport& report) override;
+  bool solve(double h, bool from_prediction, Effort& effort, Step& step) override;
   void damp(double ratio) override { tangent_.damp(ratio); }
   void base_moved(double way_mm) override { tangent_.wear(way_mm); }
   void forget_tangent() override { tangent_.forget(); }
@@ -33,8 +33,8 @@ class CoupledBalance : public BalanceSolver {
   void gather();
   [[nodiscard]] ContactSystem::TipRows tip_rows() const;
   [[nodiscard]] ContactStates::Trial trial(int load) const;
-  [[nodiscard]] bool pivot(double h, Effort& effort, StepReport& report, bool& changed);
-  void change_and_tell(int load, StepReport& report);
+  [[nodiscard]] bool pivot(double h, Effort& effort, Step& step, bool& changed);
+  void change_and_tell(int load, Step& step);
   void take_solution();
   void slide(int load);
   bool cut_on(double h, int iteration);

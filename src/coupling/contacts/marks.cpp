@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/contacts/marks.hpp"
 
-#include "coupling/step_events.hpp"
+#include "coupling/regions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -39,19 +39,19 @@ bool Marks::follows_from(int point, const Track& track, std::size_t marks) const
 }
 
 bool Marks::lay_one(Track& track, double xi, const Vec3& x, const MaterialPoint& at, Placement placement,
-                    const Vec3& travel, StepReport& report) {
+                    const Vec3& travel, Step& step) {
   if (track.marks.size() == static_cast<std::size_t>(settings_.capacity)) {
-    report.flags |= StepReport::out_of_contacts;
+    step.flags |= Step::out_of_contacts;
     return true;  // counts as laid: no other place would be better
   }
   const ContactCompliance::Added added = tissue_.compliance().add(at, x, placement, travel);
   if (added.refusal == ContactCompliance::Refusal::geometry) return false;
   if (added.refusal == ContactCompliance::Refusal::missing) {
-    report.flags |= StepReport::compliance_missing;
+    step.flags |= Step::compliance_missing;
     track.marks.push_back({xi, x, at, region_of(mesh_, at.tet), -1});  // represent() gives it a point when it can
     return true;
   }
-  if (added.refusal == ContactCompliance::Refusal::capacity) report.flags |= StepReport::out_of_contacts;
+  if (added.refusal == ContactCompliance::Refusal::capacity) step.flags |= Step::out_of_contacts;
   if (added.point < 0) return true;
 
   if (placement == Placement::embedded && follows_from(added.point, track, track.marks.size())) {
@@ -63,9 +63,9 @@ bool Marks::lay_one(Track& track, double xi, const Vec3& x, const MaterialPoint&
   return true;
 }
 
-void Marks::lay(Track& track, const Vec3& from, double from_xi, Index from_tet, StepReport& report) {
+void Marks::lay(Track& track, const Vec3& from, double from_xi, Index from_tet, Step& step) {
   if (placement() == Placement::face) {
-    lay_on_faces(track, from, from_xi, from_tet, report);
+    lay_on_faces(track, from, from_xi, from_tet, step);
     return;
   }
   const Vec3 direction = (track.end - from).normalized();
@@ -74,25 +74,25 @@ void Marks::lay(Track& track, const Vec3& from, double from_xi, Index from_tet, 
     const Vec3 x = from + std::max(0.0, next_xi_ - from_xi) * direction;
     const auto at = mesh_.locator->find(x, track.end_at.tet, -direction);
     bool laid = false;
-    if (at && nodes) laid = lay_one(track, next_xi_, x, *at, Placement::interior, direction, report);
+    if (at && nodes) laid = lay_one(track, next_xi_, x, *at, Placement::interior, direction, step);
     // A track that runs along a face or an edge leaves no room for a node: interpolate there.
     const double last = track.marks.empty() ? 0.0 : track.marks.back().xi;
     if (at && !laid && (!nodes || next_xi_ - last >= kPatience * settings_.spacing_mm)) {
-      laid = lay_one(track, next_xi_, x, *at, Placement::embedded, direction, report);
+      laid = lay_one(track, next_xi_, x, *at, Placement::embedded, direction, step);
     }
     next_xi_ += laid ? settings_.spacing_mm : settings_.spacing_mm / kTriesPerSpacing;
   }
 }
 
 /// The rule of Goksel et al. 2005: a node wherever the tip passes from one element into the next.
-void Marks::lay_on_faces(Track& track, const Vec3& from, double from_xi, Index tet, StepReport& report) {
+void Marks::lay_on_faces(Track& track, const Vec3& from, double from_xi, Index tet, Step& step) {
   const Locator& locator = *mesh_.locator;
   const Vec3 to = track.end;
   const double piece = (to - from).norm();
   if (piece <= 0.0) return;
   const Vec3 direction = (to - from) / piece;
   if (from_xi == 0.0 && track.marks.empty()) {  // the skin: a face with one element
-    lay_one(track, 0.0, from, {tet, locator.weights(tet, from)}, Placement::face, direction, report);
+    lay_one(track, 0.0, from, {tet, locator.weights(tet, from)}, Placement::face, direction, step);
   }
   double done = 0.0;
   for (int steps = 0; steps < kMostElements && tet != track.end_at.tet; ++steps) {
@@ -113,7 +113,7 @@ void Marks::lay_on_faces(Track& track, const Vec3& from, double from_xi, Index t
     const double xi = from_xi + first * piece;
     const double last_xi = track.marks.empty() ? -1e9 : track.marks.back().xi;
     if (xi - last_xi >= settings_.merge_mm) {
-      lay_one(track, xi, x, {tet, locator.weights(tet, x)}, Placement::face, direction, report);
+      lay_one(track, xi, x, {tet, locator.weights(tet, x)}, Placement::face, direction, step);
     }
     done = first;
     tet = locator.topology().neighbour[static_cast<std::size_t>(tet)][static_cast<std::size_t>(local)];
@@ -121,7 +121,7 @@ void Marks::lay_on_faces(Track& track, const Vec3& from, double from_xi, Index t
   }
 }
 
-Marks::Outcome Marks::represent(Track& track, std::size_t number, const Vec3& along, StepReport& report) {
+Marks::Outcome Marks::represent(Track& track, std::size_t number, const Vec3& along, Step& step) {
   Track::Mark& mark = track.marks[number];
   Placement where = placement();
   auto added = tissue_.compliance().add(mark.at, mark.x, where, along);
@@ -130,8 +130,8 @@ Marks::Outcome Marks::represent(Track& track, std::size_t number, const Vec3& al
     added = tissue_.compliance().add(mark.at, mark.x, where);
   }
   if (added.point < 0) {
-    report.flags |= added.refusal == ContactCompliance::Refusal::missing ? StepReport::compliance_missing
-                                                                         : StepReport::out_of_contacts;
+    step.flags |=
+        added.refusal == ContactCompliance::Refusal::missing ? Step::compliance_missing : Step::out_of_contacts;
     return Outcome::refused;
   }
   if (where == Placement::embedded && follows_from(added.point, track, number)) {

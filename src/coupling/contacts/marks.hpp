@@ -17,19 +17,19 @@ class Marks {
   void go_on_from(const Track& track, double ahead) { next_xi_ = track.end_xi + ahead; }
 
   /// Lays marks along the piece of track just cut, from `from` [mm] LPS in element `from_tet`, at from_xi, to its end.
-  void lay(Track& track, const Vec3& from, double from_xi, Index from_tet, StepReport& report);
+  void lay(Track& track, const Vec3& from, double from_xi, Index from_tet, Step& step);
 
   enum class Outcome { there, dropped, refused };
   /// Gives a point to a mark that has none: it is on an earlier track, whose points the tissue model has forgotten, or
   /// there was no compliance yet when it was laid. A mark that follows from those before it is dropped from the track.
   /// @param number of the mark on the track @param along unit vector LPS along the shaft
-  Outcome represent(Track& track, std::size_t number, const Vec3& along, StepReport& report);
+  Outcome represent(Track& track, std::size_t number, const Vec3& along, Step& step);
 
  private:
   [[nodiscard]] Placement placement() const;
-  void lay_on_faces(Track& track, const Vec3& from, double from_xi, Index tet, StepReport& report);
+  void lay_on_faces(Track& track, const Vec3& from, double from_xi, Index tet, Step& step);
   bool lay_one(Track& track, double xi, const Vec3& x, const MaterialPoint& at, Placement placement, const Vec3& travel,
-               StepReport& report);
+               Step& step);
   [[nodiscard]] bool follows_from(int point, const Track& track, std::size_t marks) const;
 
   const InsertionTissue& mesh_;

@@ -19,7 +19,7 @@ ShaftContacts::ShaftContacts(const InsertionTissue& mesh, const CouplingSettings
   contacts_.reserve(static_cast<std::size_t>(settings.capacity));
 }
 
-void ShaftContacts::wake_and_drop(Track& track, Marks& marks, const Vec3& tip_force, StepReport& report) {
+void ShaftContacts::wake_and_drop(Track& track, Marks& marks, const Vec3& tip_force, Step& step) {
   const double length = needle_.length();
   while (!contacts_.empty() && contacts_.back().s >= length) contacts_.pop_back();
 
@@ -28,7 +28,7 @@ void ShaftContacts::wake_and_drop(Track& track, Marks& marks, const Vec3& tip_fo
   while (contacts_.size() < track.marks.size()) {
     if (track.marks[contacts_.size()].point < 0) {
       if (t.dot(track.marks[contacts_.size()].x - tip) > settings_.spacing_mm) break;
-      const Marks::Outcome outcome = marks.represent(track, contacts_.size(), t, report);
+      const Marks::Outcome outcome = marks.represent(track, contacts_.size(), t, step);
       if (outcome == Marks::Outcome::dropped) continue;
       if (outcome == Marks::Outcome::refused) break;
     }

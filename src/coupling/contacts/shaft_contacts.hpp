@@ -26,7 +26,7 @@ class ShaftContacts {
   [[nodiscard]] bool empty() const { return contacts_.empty(); }
 
   /// Contacts that the tip has passed come alive; contacts that slid off the tip are dropped.
-  void wake_and_drop(Track& track, Marks& marks, const Vec3& tip_force, StepReport& report);
+  void wake_and_drop(Track& track, Marks& marks, const Vec3& tip_force, Step& step);
   /// Gives each contact its length of shaft and the softness of its age.
   /// @return share of the tip's lateral hold that the shaft has taken over, 0…1
   double share_length(const Track& track);

@@ -141,7 +141,7 @@ void StaggeredBalance::solve_tissue(double h) {
 
 /// Stick to slip where friction exceeds its limit, slip to stick where the motion turns round; the tip likewise.
 /// @return true when a boundary condition was switched
-bool StaggeredBalance::switch_contacts(StepReport& report) {
+bool StaggeredBalance::switch_contacts(Step& step) {
   const int tip_row = tissue_.row(0) + 2;
   const double opening =
       rows_.frame[0].col(2).dot(rows_.needle_at(0) - rows_.unloaded(parts_.contacts, 0)) - x_[tip_row];
@@ -152,7 +152,7 @@ bool StaggeredBalance::switch_contacts(StepReport& report) {
                                      .slides = c > 0 ? ContactStates::way(parts_.contacts.of_shaft(c), axial) : 0.0,
                                      .opening = opening / std::max(tissue_.own(tip_row), kSmallest)};
     if (states_.contradiction(c, trial) <= kClear_N) continue;
-    states_.change(c, trial, report);
+    states_.change(c, trial, step);
     changed = true;
   }
   return changed;
@@ -199,7 +199,7 @@ bool StaggeredBalance::cut(bool nearly) {
   return false;
 }
 
-bool StaggeredBalance::solve(double h, bool /*from_prediction*/, Effort& /*effort*/, StepReport& report) {
+bool StaggeredBalance::solve(double h, bool /*from_prediction*/, Effort& /*effort*/, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   states_.begin(kMostToggles);
   tip.begin(parts_.contacts.forces());
@@ -210,27 +210,27 @@ bool StaggeredBalance::solve(double h, bool /*from_prediction*/, Effort& /*effor
   bent_.restart();
 
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    ++report.iterations;
+    ++step.iterations;
     rows_.take_places(parts_.contacts);
     tissue_.take(parts_.contacts, rows_.frame);
     impose_needle_on_tissue(h);
     solve_tissue(h);
     load_needle();
     const double error = imbalance();
-    if (error < kNearly && switch_contacts(report)) {
+    if (error < kNearly && switch_contacts(step)) {
       bent_.restart();
       continue;
     }
     if (cut(error < kNearly) && error < kTolerance) {
       if (!tip.breaks_surface()) return false;
       parts_.path.break_surface(
-          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces()), report);
+          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces()), step);
       bent_.restart();
       continue;
     }
     bend_needle();
   }
-  report.flags |= StepReport::not_converged;
+  step.flags |= Step::not_converged;
   return false;
 }
 

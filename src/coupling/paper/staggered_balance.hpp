@@ -14,12 +14,12 @@ class StaggeredBalance : public BalanceSolver {
  public:
   explicit StaggeredBalance(const BalanceParts& parts);
 
-  bool solve(double h, bool from_prediction, Effort& effort, StepReport& report) override;
+  bool solve(double h, bool from_prediction, Effort& effort, Step& step) override;
 
  private:
   void impose_needle_on_tissue(double h);
   void solve_tissue(double h);
-  bool switch_contacts(StepReport& report);
+  bool switch_contacts(Step& step);
   void load_needle();
   bool cut(bool nearly);
   void bend_needle();

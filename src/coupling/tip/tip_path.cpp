@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/tip/tip_path.hpp"
 
-#include "coupling/step_events.hpp"
+#include "coupling/regions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,13 @@ TipPath::TipPath(const InsertionTissue& mesh, const CouplingSettings& settings, 
       needle_(needle),
       tissue_(tissue) {}
 
+void TipPath::add_event(EventKind kind, int region, double force_N) {
+  if (event_count_ == event_.size()) return;
+  event_[event_count_++] = {kind, region, force_N};
+}
+
 void TipPath::place_in_air(const Vec3& tip_now) {
-  phase_ = TipPhase::air;
+  phase_ = TipState::air;
   air_tip_ = tip_now;
   forget_entry();
 }
@@ -47,10 +52,10 @@ std::optional<Vec3> TipPath::surface_behind(const Vec3& x) const {
   return (x - surface).norm() <= settings_.merge_mm ? std::optional(surface) : std::nullopt;
 }
 
-bool TipPath::meet_surface(const Vec3& from, const Vec3& to, StepReport& report) {
+bool TipPath::meet_surface(const Vec3& from, const Vec3& to, Step& step) {
   if (went_past_surface_) {
     if (mesh_.locator->find(to)) {
-      report.flags |= StepReport::compliance_missing;
+      step.flags |= Step::compliance_missing;
       return false;
     }
     forget_entry();
@@ -63,32 +68,31 @@ bool TipPath::meet_surface(const Vec3& from, const Vec3& to, StepReport& report)
   const Vec3 x = from + crossing->t * (to - from);
   const Vec3 inwards = -mesh_.locator->face_normal(crossing->tet, crossing->local);
   if (inwards.dot(tangent()) < settings_.grazing_cos) {
-    add_event(report, InsertionEventKind::grazed, region_of(mesh_, crossing->tet));
+    add_event(EventKind::grazed, region_of(mesh_, crossing->tet));
     return true;
   }
   went_past_surface_ = waited && (to - x).norm() > settings_.merge_mm;
   if (went_past_surface_ || !tissue_.compliance().available(crossing->tet)) {
-    report.flags |= StepReport::compliance_missing;
+    step.flags |= Step::compliance_missing;
     awaited_entry_ = {x, tangent(), crossing->tet};
     return false;
   }
-  touch_surface(*crossing, x, report,
-                phase_ == TipPhase::exited ? InsertionEventKind::re_entered : InsertionEventKind::skin_contact);
+  touch_surface(*crossing, x, phase_ == TipState::exited ? EventKind::re_entered : EventKind::skin_contact);
   return true;
 }
 
 /// The tip touches the patient's surface from outside: a track starts there, or an earlier one that begins there goes
 /// on, or the present one does behind a gap outside the tissue.
-void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, StepReport& report, InsertionEventKind kind) {
+void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind kind) {
   const int region = region_of(mesh_, crossing.tet);
   const Vec3 t = tangent();
   const MaterialPoint at{crossing.tet, mesh_.locator->weights(crossing.tet, x)};
   Track& track = tracks.now;
-  add_event(report, kind, region);
+  add_event(kind, region);
   tissue_.leave_behind(track, 1.0);
 
   bool joins = false;
-  if (kind == InsertionEventKind::skin_contact) {
+  if (kind == EventKind::skin_contact) {
     joins = tracks.begin(x, t);
     marks.go_on_from(track, (joins ? 1.0 : 0.5) * settings_.spacing_mm);
   } else {
@@ -102,56 +106,56 @@ void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, StepReport&
   if (joins) {
     tip.put(track.end, track.end_at, !track.open, TipContact::State::open);
     tip.ahead.be_tissue(laws(region_of(mesh_, track.end_at.tet)).cutting_N);
-    phase_ = TipPhase::in_track;
+    phase_ = TipState::in_track;
   } else {
     tip.put(x, at, true, TipContact::State::stick);
     const double membrane = membrane_force(mesh_.laws, -1, region);
     tip.ahead.be_outer_surface(crossing.tet, -mesh_.locator->face_normal(crossing.tet, crossing.local), membrane,
                                laws(region).cutting_N);
-    phase_ = std::isinf(membrane) ? TipPhase::bone : TipPhase::pressing;
-    if (std::isinf(membrane)) add_event(report, InsertionEventKind::bone_contact, region);
+    phase_ = std::isinf(membrane) ? TipState::bone : TipState::pressing;
+    if (std::isinf(membrane)) add_event(EventKind::bone_contact, region);
     track.end = x;
     track.end_at = at;
   }
   if (tip.cut.is_stale()) tissue_.move_tip(at, x);  // the compliance at the surface stands in for it
 }
 
-void TipPath::break_surface(double hand_N, StepReport& report) {
-  ++report.pivots;
+void TipPath::break_surface(double hand_N, Step& step) {
+  ++step.pivots;
   ++tip.toggles;
   tip.set_state(TipContact::State::cut);
-  add_event(report, InsertionEventKind::puncture, region_of(mesh_, tip.ahead.behind()), hand_N);
+  add_event(EventKind::puncture, region_of(mesh_, tip.ahead.behind()), hand_N);
   tip.ahead.pass(tip.ahead.behind());
-  cross_surface(report);
+  cross_surface();
 }
 
 /// Goes over to the element behind the surface that the end of the track lies on.
-void TipPath::cross_surface(StepReport& report) {
+void TipPath::cross_surface() {
   const Index behind = tip.ahead.behind();
   if (behind < 0) {
     const int before = region_of(mesh_, tip.cut.at().tet);
-    phase_ = TipPhase::exited;
+    phase_ = TipState::exited;
     tracks.now.open = true;
     tracks.now.air_from_xi = tracks.now.end_xi;
     tip.exit();
     air_tip_ = tip.cut.x();
-    add_event(report, InsertionEventKind::exited, before);
+    add_event(EventKind::exited, before);
     return;
   }
   const int region = region_of(mesh_, behind);
   tip.cut.enter(behind);
   tip.ahead.be_tissue(laws(region).cutting_N);
-  add_event(report, InsertionEventKind::region_entered, region);
+  add_event(EventKind::region_entered, region);
 }
 
-void TipPath::commit(StepReport& report) {
+void TipPath::commit(Step& step) {
   Track& track = tracks.now;
   if (tip.touches() && tip.cut.advance() > 0.0) {
     const double from_xi = track.end_xi;
     track.end = tip.cut.x();
     track.end_at = tip.cut.at();
     track.end_xi += tip.cut.advance();
-    marks.lay(track, tip.cut.x_start(), from_xi, tip.cut.at_start().tet, report);
+    marks.lay(track, tip.cut.x_start(), from_xi, tip.cut.at_start().tet, step);
   }
   if (tip.touches() && tip.cut.is_blocked()) {
     tip.cut.unblock();
@@ -162,46 +166,46 @@ void TipPath::commit(StepReport& report) {
     const double break_N = to < 0 ? 0.0 : membrane_force(mesh_.laws, region_of(mesh_, here), to);
     if (to < 0) {
       tip.ahead.pass(behind);
-      cross_surface(report);
+      cross_surface();
     } else if (break_N <= laws(to).cutting_N) {  // no membrane, or none stronger than the tissue behind it
       tip.ahead.pass(behind);
-      cross_surface(report);
+      cross_surface();
       tip.set_state(TipContact::State::cut);
     } else {
       tip.ahead.be_surface(behind, break_N);
-      if (tip.ahead.is_bone()) add_event(report, InsertionEventKind::bone_contact, to);
+      if (tip.ahead.is_bone()) add_event(EventKind::bone_contact, to);
     }
   }
   if (!tip.touches()) return;
-  if (tip.waits()) report.flags |= StepReport::compliance_missing;
+  if (tip.waits()) step.flags |= Step::compliance_missing;
   switch (tip.state()) {
     case TipContact::State::open:
-      phase_ = TipPhase::in_track;
+      phase_ = TipState::in_track;
       break;
     case TipContact::State::cut:
-      phase_ = TipPhase::cutting;
+      phase_ = TipState::cutting;
       break;
     case TipContact::State::stick:
-      phase_ = tip.ahead.is_bone() ? TipPhase::bone : TipPhase::pressing;
+      phase_ = tip.ahead.is_bone() ? TipState::bone : TipState::pressing;
       break;
   }
 }
 
-void TipPath::pass_open_end(const ContactForces& forces, StepReport& report) {
+void TipPath::pass_open_end(const ContactForces& forces, Step& step) {
   const Track& track = tracks.now;
   if (!track.open) return;
   const Vec3 shift = tissue_.displacement(ContactCompliance::kTip, forces);
   const double ahead = tangent().dot(track.end + shift - tip_now());
   const Vec3 now = tip_now() - shift;
-  if (ahead > 0.0 && phase_ == TipPhase::exited) {
-    phase_ = TipPhase::in_track;
+  if (ahead > 0.0 && phase_ == TipState::exited) {
+    phase_ = TipState::in_track;
     forget_entry();
-    add_event(report, InsertionEventKind::re_entered, region_of(mesh_, track.end_at.tet));
-  } else if (ahead <= 0.0 && phase_ == TipPhase::in_track) {
-    phase_ = TipPhase::exited;
-    add_event(report, InsertionEventKind::exited, region_of(mesh_, track.end_at.tet));
+    add_event(EventKind::re_entered, region_of(mesh_, track.end_at.tet));
+  } else if (ahead <= 0.0 && phase_ == TipState::in_track) {
+    phase_ = TipState::exited;
+    add_event(EventKind::exited, region_of(mesh_, track.end_at.tet));
   }
-  if (phase_ != TipPhase::exited || meet_surface(air_tip_, now, report)) air_tip_ = now;
+  if (phase_ != TipState::exited || meet_surface(air_tip_, now, step)) air_tip_ = now;
 }
 
 /// On curved or tilted skin a tip beside its entry may be behind it and yet in the tissue, and a needle that is drawn
@@ -212,7 +216,7 @@ bool TipPath::has_left(bool drawn_out) const {
   const Vec3 from_entry = tip_now() - tracks.now.entry;
   const double deep = t.dot(from_entry);
   const double beside = (from_entry - deep * t).norm();
-  const bool beside_mouth = deep < settings_.spacing_mm && beside > settings_.join_mm && phase_ != TipPhase::exited;
+  const bool beside_mouth = deep < settings_.spacing_mm && beside > settings_.join_mm && phase_ != TipState::exited;
   if (beside_mouth && !drawn_out) return true;
   return (deep < 0.0 || beside_mouth) && !in_tissue(tip_now());
 }
@@ -226,9 +230,9 @@ void TipPath::finish() {
 
 /// A needle that left its track sideways is to meet the surface where its shaft does, unless it is so far inside by now
 /// that this would be a blow. A bowed needle swings that far when it slips off.
-void TipPath::come_out(StepReport& report) {
+void TipPath::come_out() {
   place_in_air(surface_behind(tip_now()).value_or(tip_now()));
-  add_event(report, InsertionEventKind::withdrawn, -1);
+  add_event(EventKind::withdrawn, -1);
 }
 
 NeedleWhereabouts TipPath::whereabouts() const {

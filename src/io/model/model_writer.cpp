@@ -99,7 +99,7 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
   if (model.inverse()) {
     return input_error(where,
                        fmt::format("coupling.engine = \"{}\" keeps the full inverse, which is not saved",
-                                   model.scenario().coupling.engine),
+                                   word(model.scenario().coupling.engine)),
                        "Use coupling.engine = \"condensed\"");
   }
   const Tissue& tissue = model.tissue();

@@ -28,11 +28,11 @@ std::string_view forces_csv_header() {
          "tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us";
 }
 
-std::string forces_csv(std::span<const StepRecord> steps) {
+std::string forces_csv(std::span<const Step> steps) {
   std::string text(forces_csv_header());
   text += '\n';
   text.reserve(text.size() + steps.size() * 180);
-  for (const StepRecord& step : steps) {
+  for (const Step& step : steps) {
     append(text, step.time_s, kTimeDigits);
     append(text, step.base_depth_mm, kLengthDigits);
     append(text, step.force_axial_N, kForceDigits);

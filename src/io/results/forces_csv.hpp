@@ -14,6 +14,6 @@ std::string_view forces_csv_header();
 
 /// forces.csv: the header and one line per step. Fixed number formats independent of the locale; the same steps give
 /// the same bytes. A value that is not finite prints as "nan" or "inf".
-std::string forces_csv(std::span<const StepRecord> steps);
+std::string forces_csv(std::span<const Step> steps);
 
 }  // namespace stylet::results

@@ -18,7 +18,7 @@ Recorder::~Recorder() {
   if (!closed_) (void)close(nullptr);
 }
 
-Result<> Recorder::add_step(const StepRecord& step) {
+Result<> Recorder::add_step(const Step& step) {
   const std::lock_guard lock(mutex_);
   if (error_) return *error_;
   steps_.push_back(step);
@@ -40,7 +40,7 @@ Result<> Recorder::add_event(const Event& event) {
 }
 
 Result<> Recorder::write_pending() {
-  std::vector<StepRecord> steps;
+  std::vector<Step> steps;
   std::vector<StoredFrame> frames;
   std::vector<Event> events;
   {

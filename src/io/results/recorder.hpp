@@ -19,7 +19,7 @@ class Recorder {
   ~Recorder();
 
   /// All return the thread's first error, if there was one.
-  Result<> add_step(const StepRecord& step);
+  Result<> add_step(const Step& step);
   Result<> add_frame(StoredFrame frame);
   Result<> add_event(const Event& event);
 
@@ -33,7 +33,7 @@ class Recorder {
   RunFileWriter writer_;  ///< touched by the thread only, until it has ended
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::vector<StepRecord> steps_;    ///< not yet written
+  std::vector<Step> steps_;          ///< not yet written
   std::vector<StoredFrame> frames_;  ///< not yet written
   std::vector<Event> events_;        ///< not yet written
   std::optional<Error> error_;       ///< first failure of the thread

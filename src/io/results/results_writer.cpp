@@ -128,7 +128,7 @@ Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folde
   });
 }
 
-Result<> ResultsWriter::add_step(const StepRecord& step) {
+Result<> ResultsWriter::add_step(const Step& step) {
   if (!std::isfinite(step.time_s)) return not_finite("step", step.time_s);
   return parts_->recorder.add_step(step);
 }

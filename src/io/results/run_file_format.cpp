@@ -82,7 +82,7 @@ std::uint32_t check_of(const EndRow& r) {
 
 std::uint32_t check_of(std::string_view summary) { return Check().bytes(summary.data(), summary.size()).value(); }
 
-StepRow to_row(const StepRecord& s) {
+StepRow to_row(const Step& s) {
   StepRow row;
   row.time_s = s.time_s;
   row.dt_s = s.dt_s;
@@ -114,8 +114,8 @@ StepRow to_row(const StepRecord& s) {
   return row;
 }
 
-StepRecord from_row(const StepRow& row) {
-  StepRecord s;
+Step from_row(const StepRow& row) {
+  Step s;
   s.time_s = row.time_s;
   s.dt_s = row.dt_s;
   s.base.origin = {row.base_x_mm, row.base_y_mm, row.base_z_mm};

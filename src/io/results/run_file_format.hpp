@@ -22,7 +22,7 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  //
 // check is wrong has not reached the disk whole, or was changed since.
 
 /// A row of /steps: the columns of forces.csv, what the step was given, the steps at rest before it, and its flags
-/// (StepReport::Flag). Files of version 1 have no dt_s and no base, those before version 3 no rest_steps, those before
+/// (Step::Flag). Files of version 1 have no dt_s and no base, those before version 3 no rest_steps, those before
 /// version 4 no flags.
 struct StepRow {
   double time_s = kMissing, dt_s = kMissing, base_depth_mm = kMissing;
@@ -39,8 +39,8 @@ struct StepRow {
   std::uint32_t check = 0;
 };
 std::uint32_t check_of(const StepRow& row);
-StepRow to_row(const StepRecord& step);
-StepRecord from_row(const StepRow& row);
+StepRow to_row(const Step& step);
+Step from_row(const StepRow& row);
 h5::Handle step_row_type();
 
 /// A row of /frames/table. The frame's needle points and contacts are runs of rows in their own datasets.

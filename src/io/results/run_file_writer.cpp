@@ -126,10 +126,10 @@ Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo&
   return done.error();
 }
 
-Result<> RunFileWriter::append_steps(std::span<const StepRecord> steps) {
+Result<> RunFileWriter::append_steps(std::span<const Step> steps) {
   std::vector<StepRow> rows;
   rows.reserve(steps.size());
-  std::transform(steps.begin(), steps.end(), std::back_inserter(rows), [](const StepRecord& s) { return to_row(s); });
+  std::transform(steps.begin(), steps.end(), std::back_inserter(rows), [](const Step& s) { return to_row(s); });
   return guarded([&] {
     h5::append_rows(steps_, step_type_, rows.size(), rows.data());
     written_.steps += static_cast<std::int64_t>(rows.size());

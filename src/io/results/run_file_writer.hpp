@@ -28,7 +28,7 @@ class RunFileWriter {
   static Result<RunFileWriter> create(const std::filesystem::path& path, const RunInfo& info, const TetMesh& mesh,
                                       const std::function<Result<>()>& make_way = {});
 
-  Result<> append_steps(std::span<const StepRecord> steps);
+  Result<> append_steps(std::span<const Step> steps);
   Result<> append_frame(const StoredFrame& stored);
   Result<> append_events(std::span<const Event> events);
   Result<> append_summary(

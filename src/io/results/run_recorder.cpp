@@ -21,7 +21,7 @@ Result<std::unique_ptr<RunRecorder>> RunRecorder::open(const std::filesystem::pa
 RunRecorder::RunRecorder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 RunRecorder::~RunRecorder() = default;
 
-Result<> RunRecorder::add_step(const StepRecord& step) { return parts_->recorder.add_step(step); }
+Result<> RunRecorder::add_step(const Step& step) { return parts_->recorder.add_step(step); }
 Result<> RunRecorder::add_event(const Event& event) { return parts_->recorder.add_event(event); }
 Result<> RunRecorder::add_frame(const Frame& frame) {
   results::StoredFrame stored;
@@ -32,6 +32,6 @@ Result<> RunRecorder::add_frame(const Frame& frame) {
   return parts_->recorder.add_frame(std::move(stored));
 }
 
-std::string forces_csv_text(std::span<const StepRecord> steps) { return results::forces_csv(steps); }
+std::string forces_csv_text(std::span<const Step> steps) { return results::forces_csv(steps); }
 
 }  // namespace stylet

@@ -29,7 +29,7 @@ Result<Pressed> press_skin(const std::string& method, int cells, const std::arra
   block.cells = {cells, cells, cells};
   block.entry_mm = entry;
   block.depth_mm = 5.0;
-  block.scenario.coupling.method = method;
+  block.scenario.coupling.method = choice<CouplingSettings::Method>(method).value();
   const auto model = block.compile();
   if (!model) return model.error();
   const Material& skin = (*model)->tissue().material(0);

@@ -22,15 +22,13 @@ Block one_tissue() {
 
 Curve force_curve(const Drive& drive, const std::string& label) {
   return {.label = label,
-          .x = column(drive.steps(), &StepRecord::base_depth_mm),
-          .y = column(drive.steps(), &StepRecord::force_axial_N)};
+          .x = column(drive.steps(), &Step::base_depth_mm),
+          .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
 /// Force against time, for motions that go back and forth.
 Curve force_over_time(const Drive& drive, const std::string& label) {
-  return {.label = label,
-          .x = column(drive.steps(), &StepRecord::time_s),
-          .y = column(drive.steps(), &StepRecord::force_axial_N)};
+  return {.label = label, .x = column(drive.steps(), &Step::time_s), .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
 double percent_off(double value, double expected) { return 100.0 * std::abs(value / expected - 1.0); }
@@ -48,8 +46,8 @@ Result<Finding> steady_cutting(Context&) {
   Drive drive(*model);
   for (double depth = 2.0; depth <= 50.0; depth += 2.0) {
     drive.go(depth, speed);
-    if (drive.simulation().report().tip != TipPhase::cutting || depth < 20.0) continue;
-    const double expected = tip + along * drive.simulation().report().inserted_mm;
+    if (drive.simulation().last_step().tip_state != TipState::cutting || depth < 20.0) continue;
+    const double expected = tip + along * drive.simulation().last_step().inserted_mm;
     finding.value = worse(finding.value, percent_off(drive.last().record.force_axial_N, expected));
     law.x.push_back(depth);
     law.y.push_back(expected);
@@ -74,7 +72,7 @@ Result<Finding> reversal(Context&) {
   const int contacts = drive.last().record.contacts;
   drive.go(40.0, speed);
   const double expected =
-      -(friction.coulomb_N_per_mm + friction.viscous_Ns_per_mm2 * speed) * drive.simulation().report().inserted_mm;
+      -(friction.coulomb_N_per_mm + friction.viscous_Ns_per_mm2 * speed) * drive.simulation().last_step().inserted_mm;
   Finding finding;
   finding.value = percent_off(drive.last().record.force_axial_N, expected);
   finding.note = fmt::format(
@@ -97,7 +95,7 @@ Result<Finding> second_pass(Context&) {
   const double deepest = drive.insertion().track().end_xi;
   drive.go(34.0, speed);
   const double expected =
-      (friction.coulomb_N_per_mm + friction.viscous_Ns_per_mm2 * speed) * drive.simulation().report().inserted_mm;
+      (friction.coulomb_N_per_mm + friction.viscous_Ns_per_mm2 * speed) * drive.simulation().last_step().inserted_mm;
   Finding finding;
   finding.value = percent_off(drive.last().record.force_axial_N, expected);
   const double cut = drive.insertion().track().end_xi - deepest;
@@ -273,7 +271,7 @@ Result<Finding> balance(Context& context, bool torque) {
       (*run)->summary.steps, torque ? ", moments about the entry" : "", torque ? " × 100 mm" : "");
   if (!torque) {
     Curve force{.label = "the demo", .x = {}, .y = {}};
-    for (const StepRecord& s : (*run)->steps) {
+    for (const Step& s : (*run)->steps) {
       force.x.push_back(s.time_s);
       force.y.push_back(s.force_axial_N);
     }

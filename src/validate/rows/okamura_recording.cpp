@@ -91,8 +91,8 @@ Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
   Drive drive(*model, 0.0);
   drive.go(depth_mm, okamura::kSpeed_mm_per_s, 10e-3);
   return Curve{.label = "simulated",
-               .x = column(drive.steps(), &StepRecord::base_depth_mm),
-               .y = column(drive.steps(), &StepRecord::force_axial_N)};
+               .x = column(drive.steps(), &Step::base_depth_mm),
+               .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
 double rms(const OkamuraRecording& recording, const Curve& curve) {

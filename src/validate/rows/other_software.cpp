@@ -48,7 +48,7 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
     tissue.puncture_N = region == mesh->regions.front() ? tissue.puncture_N : 0.0;
     scenario.tissue[region] = tissue;
   }
-  scenario.fixed.outer = "none";
+  scenario.fixed.outer = OuterSupport::none;
   const Vec3 lo = box.min();
   const Vec3 hi = box.max();
   scenario.fixed.box_mm = {lo.x() - 1, lo.y() - 1, lo.z() - 1, hi.x() + 1, hi.y() + 1, lo.z() + 0.01};
@@ -72,10 +72,10 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
     simulation.prepare();
     const Pose base = insertion.motion.at(t);
     const double seconds = reproduce::cpu_seconds([&] { simulation.step(base, dt); });
-    if (simulation.record().base_depth_mm < 0.5 * plan.depth_mm) continue;
+    if (simulation.last_step().base_depth_mm < 0.5 * plan.depth_mm) continue;
     ms.push_back(1e3 * seconds);
     timed.worst_ms = std::max(timed.worst_ms, ms.back());
-    timed.contacts = std::max(timed.contacts, simulation.record().contacts);
+    timed.contacts = std::max(timed.contacts, simulation.last_step().contacts);
   }
   timed.median_ms = reproduce::median(std::move(ms));
   return timed;

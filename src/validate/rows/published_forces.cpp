@@ -32,8 +32,8 @@ Block liver() {
 
 Curve force_curve(const Drive& drive) {
   return {.label = "ours",
-          .x = column(drive.steps(), &StepRecord::base_depth_mm),
-          .y = column(drive.steps(), &StepRecord::force_axial_N)};
+          .x = column(drive.steps(), &Step::base_depth_mm),
+          .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
 /// Goes in at 3 mm/s until 8 mm beyond the puncture.
@@ -130,7 +130,7 @@ Result<Finding> gel_force(Context&) {
 
 Plot demo_plot(const RecordedRun& run) {
   Curve force{.label = "the demo", .x = {}, .y = {}};
-  for (const StepRecord& s : run.steps) {
+  for (const Step& s : run.steps) {
     force.x.push_back(s.time_s);
     force.y.push_back(s.force_axial_N);
   }
@@ -203,7 +203,7 @@ Result<Finding> demo_friction(Context& context) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   const Event* puncture = (*run)->event(EventKind::puncture);
   const double from = (puncture != nullptr ? puncture->depth_mm : 0.0) + 5.0;
-  for (const StepRecord& s : (*run)->steps) {
+  for (const Step& s : (*run)->steps) {
     if (s.tip_state != TipState::cutting || s.base_depth_mm < from || s.base_depth_mm > from + 18.0) continue;
     n += 1;
     sx += s.base_depth_mm;

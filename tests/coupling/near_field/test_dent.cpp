@@ -21,8 +21,8 @@ TEST_P(TipInTheDent, meets_a_force_that_only_falls_once_the_skin_is_broken) {
   run.aim({2.0, 3.0, 0.0}, Vec3::UnitZ(), 0.0);
   // Steps so short that the tip's way through the dent, some hundredths of a second, is seen.
   constexpr double dt = 2e-4;
-  while (run.first(InsertionEventKind::puncture) == nullptr && run.depth < 30.0) run.go(run.depth + 0.01, 20.0, dt);
-  ASSERT_NE(run.first(InsertionEventKind::puncture), nullptr);
+  while (run.first(EventKind::puncture) == nullptr && run.depth < 30.0) run.go(run.depth + 0.01, 20.0, dt);
+  ASSERT_NE(run.first(EventKind::puncture), nullptr);
   const auto broke = static_cast<std::size_t>(run.forces.size()) - 1;
   run.go(run.depth + 15.0, 20.0, dt);
 

@@ -34,7 +34,7 @@ struct NeedleInTissue {
     track.end = Vec3(1, 2, 12);
     track.end_at = block.at(track.end);
     track.end_xi = 12.0;
-    StepReport report;
+    Step report;
     marks.lay(track, Vec3(1, 2, 0), 0.0, block.at(Vec3(1, 2, 0.1)).tet, report);
     block.put_tip(track.end);
     shaft.wake_and_drop(track, marks, Vec3::Zero(), report);
@@ -67,7 +67,7 @@ TEST(ContactStates, AStickingContactSlidesTheWayItIsPushedBeyondItsLimit) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
-  StepReport report;
+  Step report;
   ShaftContact& contact = needle.contact(2);
   const double limit = contact.law.static_N_per_mm * contact.length;
   for (const double sign : {1.0, -1.0}) {
@@ -85,7 +85,7 @@ TEST(ContactStates, ASlidingContactThatTurnsRoundIsHeldWhereItWas) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
-  StepReport report;
+  Step report;
   ShaftContact& contact = needle.contact(2);
   contact.state = State::forward;
   contact.reach = 1.0;
@@ -102,7 +102,7 @@ TEST(ContactStates, FrictionStopsGrowingBeyondItsSpeedAndGrowsAgainBelow) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
-  StepReport report;
+  Step report;
   ShaftContact& contact = needle.contact(2);
   contact.state = State::forward;
   contact.reach = 0.1;
@@ -120,13 +120,13 @@ TEST(ContactStates, AContactThatChangesTooOftenKeepsItsStateAndTheStepIsFlagged)
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(2);
-  StepReport report;
+  Step report;
   needle.contact(1).state = State::stick;
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(report.flags & StepReport::contact_cycling, 0u);
+    EXPECT_EQ(report.flags & Step::contact_cycling, 0u);
     states.change(1, {.axial = k % 2 == 0 ? 1.0 : 0.0, .slides = -1.0}, report);
   }
-  EXPECT_NE(report.flags & StepReport::contact_cycling, 0u);
+  EXPECT_NE(report.flags & Step::contact_cycling, 0u);
   EXPECT_EQ(states.contradiction(1, {.axial = 100.0, .slides = -1.0}), 0.0);
 }
 
@@ -134,7 +134,7 @@ TEST(ContactStates, TheTipCutsAboveItsLimitAndComesAwayWherePulled) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
-  StepReport report;
+  Step report;
   TipContact& tip = needle.tip;
   tip.set_state(TipContact::State::stick);
   EXPECT_LE(states.contradiction(0, {.axial = 0.29}), 0.0);
@@ -348,7 +348,7 @@ TEST(TissueBlock, IsTheCompliancesBlockOfThePresentContacts) {
   expect_whole();
   EXPECT_EQ(block.renew(needle.contacts), 4) << "nothing is new";
   needle.shaft.all()[2].s = needle.block.needle.length();
-  StepReport report;
+  Step report;
   needle.track.marks.resize(2);
   needle.shaft.wake_and_drop(needle.track, needle.marks, Vec3::Zero(), report);
   EXPECT_EQ(block.renew(needle.contacts), 3);

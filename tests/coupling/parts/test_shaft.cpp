@@ -33,7 +33,7 @@ struct ShaftInTrack {
   Marks marks;
   ShaftContacts shaft;
   Track track;
-  StepReport report;
+  Step report;
 };
 
 TEST(Marks, AreLaidAtTheirSpacing) {
@@ -53,7 +53,7 @@ TEST(Marks, WaitForComplianceThatIsNotThere) {
   needle.marks.lay(needle.track, Vec3(1, 2, 0), 0.0, 0, needle.report);
   ASSERT_EQ(needle.track.marks.size(), 4u);
   EXPECT_EQ(needle.track.marks[0].point, -1);
-  EXPECT_NE(needle.report.flags & StepReport::compliance_missing, 0u);
+  EXPECT_NE(needle.report.flags & Step::compliance_missing, 0u);
   EXPECT_EQ(needle.marks.represent(needle.track, 0, Vec3::UnitZ(), needle.report), Marks::Outcome::refused);
   needle.block.compliance->has_all = true;
   EXPECT_EQ(needle.marks.represent(needle.track, 0, Vec3::UnitZ(), needle.report), Marks::Outcome::there);

@@ -10,9 +10,9 @@ namespace {
 
 using test::SimpleTissue;
 
-std::vector<InsertionEventKind> kinds(const StepReport& report) {
-  std::vector<InsertionEventKind> result;
-  for (int k = 0; k < report.events; ++k) result.push_back(report.event[static_cast<std::size_t>(k)].kind);
+std::vector<EventKind> kinds(const TipPath& path) {
+  std::vector<EventKind> result;
+  for (const InsertionEvent& event : path.events()) result.push_back(event.kind);
   return result;
 }
 
@@ -141,14 +141,14 @@ class TipOnItsWay : public testing::Test {
 
   SimpleTissue block;
   TipPath path;
-  StepReport report;
+  Step report;
 };
 
 TEST_F(TipOnItsWay, PressesOnTheSkinItMeets) {
   EXPECT_TRUE(path.in_air());
   meet_skin();
-  EXPECT_EQ(path.phase(), TipPhase::pressing);
-  EXPECT_EQ(kinds(report), std::vector{InsertionEventKind::skin_contact});
+  EXPECT_EQ(path.phase(), TipState::pressing);
+  EXPECT_EQ(kinds(path), std::vector{EventKind::skin_contact});
   EXPECT_TRUE(path.tip.holds());
   EXPECT_NEAR(path.tip.cut.x().z(), 0.0, 1e-12);
   EXPECT_EQ(path.tip.ahead.limit(), 1.0);
@@ -161,7 +161,7 @@ TEST_F(TipOnItsWay, DoesNotEnterWhereNoComplianceIsThere) {
   EXPECT_FALSE(path.move_through_air(report));
   EXPECT_TRUE(path.in_air());
   EXPECT_TRUE(path.awaits_entry());
-  EXPECT_NE(report.flags & StepReport::compliance_missing, 0u);
+  EXPECT_NE(report.flags & Step::compliance_missing, 0u);
   EXPECT_NEAR(path.whereabouts().tip.z(), 0.0, 1e-12) << "that is where it is needed";
 }
 
@@ -172,7 +172,7 @@ TEST_F(TipOnItsWay, GrazesASurfaceThatItMeetsFlat) {
   block.put_tip(Vec3(2, 2, 0.1), axis);
   EXPECT_TRUE(path.move_through_air(report));
   EXPECT_TRUE(path.in_air());
-  EXPECT_EQ(kinds(report), std::vector{InsertionEventKind::grazed});
+  EXPECT_EQ(kinds(path), std::vector{EventKind::grazed});
 }
 
 TEST_F(TipOnItsWay, BreaksTheSkinAndCutsOnBehindIt) {
@@ -182,12 +182,11 @@ TEST_F(TipOnItsWay, BreaksTheSkinAndCutsOnBehindIt) {
   path.tip.force = Vec3(0, 0, 1.1);
   ASSERT_TRUE(path.tip.breaks_surface());
   path.break_surface(1.05, report);
-  EXPECT_EQ(kinds(report), (std::vector{InsertionEventKind::skin_contact, InsertionEventKind::puncture,
-                                        InsertionEventKind::region_entered}));
-  EXPECT_EQ(report.event[1].force_N, 1.05);
+  EXPECT_EQ(kinds(path), (std::vector{EventKind::skin_contact, EventKind::puncture, EventKind::region_entered}));
+  EXPECT_EQ(path.events()[1].force_N, 1.05);
   EXPECT_EQ(path.tip.ahead.cutting(), 0.3);
   cut(2.0);
-  EXPECT_EQ(path.phase(), TipPhase::cutting);
+  EXPECT_EQ(path.phase(), TipState::cutting);
   EXPECT_NEAR(path.tracks.now.end_xi, 2.0, 1e-12);
 }
 
@@ -196,7 +195,7 @@ TEST_F(TipOnItsWay, StopsAtTheOrgansCapsuleAndLaysMarksBeforeIt) {
   path.break_surface(1.0, report);
   for (int k = 0; k < 12; ++k) cut(2.0);
   EXPECT_NEAR(path.tip.cut.x().z(), 20.0, 1e-12);
-  EXPECT_EQ(path.phase(), TipPhase::pressing);
+  EXPECT_EQ(path.phase(), TipState::pressing);
   EXPECT_EQ(path.tip.ahead.limit(), 0.8) << "the stronger membrane";
   const auto& marks = path.tracks.now.marks;
   ASSERT_EQ(marks.size(), 5u);
@@ -207,18 +206,18 @@ TEST_F(TipOnItsWay, StopsAtTheOrgansCapsuleAndLaysMarksBeforeIt) {
 TEST_F(TipOnItsWay, GoesOutAtTheFarSideAndComesBackIntoItsTrack) {
   meet_skin();
   path.break_surface(1.0, report);
-  for (int k = 0; k < 30 && path.phase() != TipPhase::exited; ++k) {
+  for (int k = 0; k < 30 && path.phase() != TipState::exited; ++k) {
     if (path.tip.ahead.is_surface()) path.break_surface(1.0, report);
     cut(2.0);
   }
-  ASSERT_EQ(path.phase(), TipPhase::exited);
+  ASSERT_EQ(path.phase(), TipState::exited);
   EXPECT_TRUE(path.tracks.now.open);
   EXPECT_FALSE(path.tip.touches());
-  report = {};
+  path.forget_events();
   block.put_tip(Vec3(1, 2, 39.0));
   path.pass_open_end({path.tip.force, {}}, report);
-  EXPECT_EQ(path.phase(), TipPhase::in_track);
-  EXPECT_EQ(kinds(report), std::vector{InsertionEventKind::re_entered});
+  EXPECT_EQ(path.phase(), TipState::in_track);
+  EXPECT_EQ(kinds(path), std::vector{EventKind::re_entered});
 }
 
 TEST_F(TipOnItsWay, HasLeftOnlyOnTheWayOut) {
@@ -231,7 +230,7 @@ TEST_F(TipOnItsWay, HasLeftOnlyOnTheWayOut) {
   block.put_tip(Vec3(1, 2, -0.5));
   EXPECT_TRUE(path.has_left(true));
   path.finish();
-  path.come_out(report);
+  path.come_out();
   EXPECT_TRUE(path.in_air());
   EXPECT_EQ(path.tracks.earlier().size(), 1u);
 }

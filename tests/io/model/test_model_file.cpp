@@ -29,7 +29,7 @@ std::vector<double> run_of(const std::shared_ptr<const Model>& model, bool grow 
     const double dt = 1e-3 * model->scenario().run.dt_ms;
     for (int k = 1; k * dt < plan.motion.duration_s(); ++k) {
       if (grow) simulation.prepare();
-      const StepRecord& r = simulation.step(plan.motion.at(k * dt), dt);
+      const Step& r = simulation.step(plan.motion.at(k * dt), dt);
       for (const double x : {r.time_s, r.force_axial_N, r.force_lateral_N, r.force_sagittal_N}) numbers.push_back(x);
       for (int i = 0; i < 3; ++i) numbers.insert(numbers.end(), {r.tip_mm[i], r.torque_Nmm[i]});
       numbers.push_back(r.contacts + 1000.0 * r.sticking + 1e6 * r.iterations);
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, SavedModels, testing::Values("p1", "nodal-pre
 TEST_P(SavedModels, StepAsTheCompiledOneToTheLastBitWithoutAFactor) {
   const Folder folder;
   Scenario scenario = saved_box();
-  scenario.tissue_model.element = GetParam();
+  scenario.tissue_model.element = choice<ElementChoice>(GetParam()).value();
   const auto compiled = test::compiled(scenario, test::box_patient());
   save(*compiled, folder / "box.stylet");
   const auto model = loaded(folder / "box.stylet");
@@ -300,7 +300,7 @@ TEST(SavedModel, ADamagedOneIsKnownByItsName) {
 TEST(SavedModel, IsNotWrittenWhereItWouldNotBeWhole) {
   const Folder folder;
   Scenario scenario = saved_box();
-  scenario.coupling.engine = "woodbury";
+  scenario.coupling.engine = CouplingSettings::Engine::woodbury;
   const auto full = save_model(*test::compiled(scenario), folder / "full.stylet");
   ASSERT_FALSE(full);
   EXPECT_SAYS(full.error().message(), "woodbury");

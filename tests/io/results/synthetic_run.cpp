@@ -150,8 +150,8 @@ TipState tip_state(double time, double depth) {
   return time < kInsertion ? TipState::cutting : TipState::pressing;
 }
 
-StepRecord step_at(double time, int number) {
-  StepRecord s;
+Step step_at(double time, int number) {
+  Step s;
   s.time_s = time;
   s.base_depth_mm = depth_at(time);
   s.force_axial_N = axial_force(time);
@@ -239,7 +239,7 @@ Summary summarise(const SyntheticRun& run) {
   s.nodes = run.mesh.node_count();
   s.tets = run.mesh.tet_count();
   s.steps = static_cast<Index>(run.steps.size());
-  for (const StepRecord& step : run.steps) {
+  for (const Step& step : run.steps) {
     s.peak_axial_N = std::max(s.peak_axial_N, std::abs(step.force_axial_N));
     s.peak_sagittal_N = std::max(s.peak_sagittal_N, std::abs(step.force_sagittal_N));
     s.peak_lateral_N = std::max(s.peak_lateral_N, std::abs(step.force_lateral_N));

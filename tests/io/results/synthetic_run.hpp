@@ -15,7 +15,7 @@ namespace stylet::testing {
 struct SyntheticRun {
   RunInfo info;
   TetMesh mesh;
-  std::vector<StepRecord> steps;
+  std::vector<Step> steps;
   std::vector<Frame> frames;
   Summary summary;
 };

@@ -237,7 +237,7 @@ TEST(ResultFolder, a_run_killed_at_any_moment_has_nothing_of_an_earlier_one_besi
   const auto run = synthetic_run({.cells = {4, 4, 5}, .step_s = 0.02, .frames = 4});
   auto later = run;
   later.info.scenario_name = later.summary.scenario = "later";
-  for (StepRecord& step : later.steps) step.force_axial_N += 1.0;
+  for (Step& step : later.steps) step.force_axial_N += 1.0;
   std::mt19937 random(20051026);
   std::uniform_real_distribution<double> moment(0.0, 0.25);  // such a run takes a fifth of a second
   int killed = 0;
@@ -373,7 +373,7 @@ TEST(ResultFolder, wrong_use_is_an_error_not_a_crash) {
   Frame nan = run.frames.front();
   nan.displacement[5] = std::nan("");
   EXPECT_NE((*writer)->add_frame(nan).error().what.find("not finite"), std::string::npos);
-  StepRecord step;
+  Step step;
   step.time_s = std::nan("");
   EXPECT_FALSE((*writer)->add_step(step).ok());
   EXPECT_FALSE((*writer)->finish(run.summary).ok());  // no frame to show

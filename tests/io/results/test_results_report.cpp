@@ -85,7 +85,7 @@ TEST(Report, a_run_that_ends_inside_the_tissue_is_told_as_such) {
   auto run = synthetic_run();
   run.summary.events.resize(5);  // up to the entry into the prostate
   std::erase_if(run.frames, [](const Frame& f) { return f.time_s > 3; });
-  std::erase_if(run.steps, [](const StepRecord& s) { return s.time_s > 3; });
+  std::erase_if(run.steps, [](const Step& s) { return s.time_s > 3; });
   const auto recording = recording_of(run);
   std::string story;
   for (const auto& p : tell_what_happened(recording, find_moments(recording.frames))) story += p + "\n";

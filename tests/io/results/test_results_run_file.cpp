@@ -36,7 +36,7 @@ StoredFrame stored(const Frame& frame) {
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-void expect_same_step(const StepRecord& a, const StepRecord& b) {
+void expect_same_step(const Step& a, const Step& b) {
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.dt_s, b.dt_s);
   EXPECT_EQ(a.base.origin, b.base.origin);
@@ -132,9 +132,9 @@ TEST(RunFile, holds_steps_at_rest_as_a_number_and_refuses_one_that_does_not_fit_
     {
       auto writer = RunFileWriter::create(path, run.info, run.mesh);
       ASSERT_TRUE(writer.ok()) << writer.error().message();
-      StepRecord first = run.steps[0];
+      Step first = run.steps[0];
       first.dt_s = 1e-3;
-      StepRecord second = first;
+      Step second = first;
       second.time_s = first.time_s + 4e-3;
       second.rest_steps = rest_steps;
       ASSERT_TRUE(writer->append_steps(std::array{first, second}).ok());
@@ -181,7 +181,7 @@ TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
     h5::check(H5Adelete(file, "format_version"), "delete");
     h5::write_attribute(file, "format_version", std::array{1});
     std::vector<StepRow> rows;
-    for (const StepRecord& step : run.steps) rows.push_back(to_row(step));
+    for (const Step& step : run.steps) rows.push_back(to_row(step));
     const h5::Handle steps = h5::growing_dataset(file, "steps", then, {}, 1024, nullptr);
     h5::append_rows(steps, then, rows.size(), rows.data());
   }
@@ -256,7 +256,7 @@ TEST(RunFile, a_killed_run_stays_readable_and_loses_at_most_a_second) {
       auto writer = RunFileWriter::create(path, run.info, run.mesh);
       if (!writer) _exit(1);
       Recorder recorder(std::move(*writer));
-      StepRecord step = run.steps.front();
+      Step step = run.steps.front();
       for (std::size_t n = 0;; ++n) {
         step.time_s = now_s();  // the same clock in parent and child
         if (!recorder.add_step(step)) _exit(2);

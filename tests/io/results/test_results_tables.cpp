@@ -39,7 +39,7 @@ TEST(ForcesCsv, has_exactly_the_documented_columns) {
 }
 
 TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
-  StepRecord step;
+  Step step;
   step.time_s = 1.0005;
   step.base_depth_mm = -2.5;
   step.force_axial_N = 1.0 / 3;

@@ -83,7 +83,7 @@ retract = false
   EXPECT_EQ((*scenario->fixed.box_mm)[2], -3.5);
   EXPECT_EQ(scenario->mesh.nodes, 1234);
   EXPECT_FALSE(scenario->mesh.stiff_band);
-  EXPECT_EQ(scenario->coupling.rule, "paper");
+  EXPECT_EQ(scenario->coupling.rule, CouplingSettings::Rule::paper);
   EXPECT_EQ((*scenario->grid.centre_mm)[0], 1.5);
   ASSERT_EQ(scenario->insertions.size(), 2U);
   EXPECT_EQ((*scenario->insertions[0].direction)[1], 0.1);
@@ -242,7 +242,7 @@ TEST(ReadScenario, takes_keys_of_all_tissue_beside_those_of_one) {
                            "tissue = {element = \"p1\", prostate = {young_kPa = 35}}\n"}) {
     const auto scenario = read(text + kHead + "[[insertion]]\nhole = \"D4\"\n");
     ASSERT_TRUE(scenario.ok()) << scenario.error().message();
-    EXPECT_EQ(scenario->tissue_model.element, "p1");
+    EXPECT_EQ(scenario->tissue_model.element, ElementChoice::p1);
     EXPECT_EQ(scenario->tissue.at("prostate").young_kPa, 35);
     EXPECT_EQ(scenario->tissue.size(), 1U);
   }

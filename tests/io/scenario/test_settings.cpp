@@ -41,8 +41,8 @@ TEST(Settings, replace_what_the_file_says) {
 TEST(Settings, are_applied_in_order) { EXPECT_EQ(one_with({"mesh.nodes=900", "mesh.nodes=950"}).mesh.nodes, 950); }
 
 TEST(Settings, need_no_quotes_around_texts) {
-  EXPECT_EQ(one_with({"coupling.rule=paper"}).coupling.rule, "paper");
-  EXPECT_EQ(one_with({"coupling.rule=\"paper\""}).coupling.rule, "paper");
+  EXPECT_EQ(one_with({"coupling.rule=paper"}).coupling.rule, CouplingSettings::Rule::paper);
+  EXPECT_EQ(one_with({"coupling.rule=\"paper\""}).coupling.rule, CouplingSettings::Rule::paper);
   EXPECT_EQ(one_with({"name=two words, and = # more"}).name, "two words, and = # more");
   EXPECT_EQ(one_with({"name=2024"}).name, "2024");
   EXPECT_EQ(one_with({"name=2024-02-29"}).name, "2024-02-29");

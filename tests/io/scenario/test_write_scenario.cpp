@@ -62,19 +62,30 @@ TEST(ToToml, reads_back_whatever_is_set) {
   s.tissue["a.b c"] = default_tissue("a.b c");
   s.tissue["a.b c"].friction_viscous_Ns_per_m2 = 1e-7;
   s.fixed.regions = {"pubic_arch", "a \"b\""};
-  s.fixed.outer = "all";
+  s.fixed.outer = OuterSupport::all;
   s.fixed.box_mm = {-1e5, -2.5, 1e-9, 1e5, 2.5, 2e-9};
-  s.mesh = {1234567 / 2, "paper", 0.0, false};
+  s.mesh = {1234567 / 2, MeshPreset::paper, 0.0, false};
   s.needle.length_mm = 123.456;
   s.needle.diameter_mm = 0.889;
   s.needle.lumen_diameter_mm = 1.0 / 3.0;
-  s.needle.stylet = "in";
+  s.needle.stylet = StyletPlace::in;
   s.needle.bending_stiffness_Nmm2 = 1e7;
   s.needle.torsion_stiffness_Nmm2 = 1.0;
   s.needle.bevel_deg = 22.5;
-  s.needle.bevel_law = "force";
+  s.needle.bevel_law = Bevel::Law::force;
   s.needle.elements = 200;
-  s.coupling = {"embedded", "paper", "staggered", "bcs", 1.25, "nearest-node", 49.999999999999, 0.01, 0.75, 30, 1.5, 8};
+  s.coupling = {CouplingSettings::Method::embedded,
+                CouplingSettings::Rule::paper,
+                CouplingSettings::Solver::staggered,
+                CouplingSettings::Engine::bcs,
+                1.25,
+                Projection::nearest_node,
+                49.999999999999,
+                0.01,
+                0.75,
+                30,
+                1.5,
+                8};
   s.grid.pitch_mm = 4.2;
   s.grid.centre_mm = {-0.1, 1e4};
   s.grid.columns = {"α", "D"};
@@ -112,7 +123,7 @@ TEST(ToToml, keeps_every_number_to_its_last_bit) {
     ASSERT_TRUE(set.ok()) << set.error().message();
   }
   s.coupling.spacing_mm = std::max(s.coupling.spacing_mm, s.needle.diameter_mm);
-  s.coupling.solver = "staggered";  // damping belongs to it
+  s.coupling.solver = CouplingSettings::Solver::staggered;  // damping belongs to it
   EXPECT_EQ(read_back(to_toml(s)), s);
 }
 

@@ -68,7 +68,7 @@ export type Message =
 
 export class WireError extends Error {}
 
-const COMPLIANCE_MISSING = 1 << 2;  // of StepReport
+const COMPLIANCE_MISSING = 1 << 2;  // of Step::Flag
 const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
 const FRAME_HEADER = 148;

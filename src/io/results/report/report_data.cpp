@@ -24,7 +24,7 @@ constexpr std::size_t kMostSteps = 40000;                // curve points
 constexpr std::size_t kMostDisplacementBytes = 6 << 20;  // before base 64
 
 /// Steps to show: all, or of every bucket of neighbours those with the smallest and the largest axial force.
-std::vector<std::size_t> thin_out(const std::vector<StepRecord>& steps) {
+std::vector<std::size_t> thin_out(const std::vector<Step>& steps) {
   std::vector<std::size_t> kept;
   if (steps.size() <= kMostSteps) {
     kept.resize(steps.size());
@@ -36,7 +36,7 @@ std::vector<std::size_t> thin_out(const std::vector<StepRecord>& steps) {
     const auto first = steps.begin() + static_cast<std::ptrdiff_t>(b * steps.size() / buckets);
     const auto last = steps.begin() + static_cast<std::ptrdiff_t>((b + 1) * steps.size() / buckets);
     const auto [low, high] = std::minmax_element(
-        first, last, [](const StepRecord& x, const StepRecord& y) { return x.force_axial_N < y.force_axial_N; });
+        first, last, [](const Step& x, const Step& y) { return x.force_axial_N < y.force_axial_N; });
     kept.push_back(static_cast<std::size_t>(std::min(low, high) - steps.begin()));
     if (low != high) kept.push_back(static_cast<std::size_t>(std::max(low, high) - steps.begin()));
   }
@@ -44,28 +44,28 @@ std::vector<std::size_t> thin_out(const std::vector<StepRecord>& steps) {
 }
 
 template <class Value>
-std::string column(const std::vector<StepRecord>& steps, const std::vector<std::size_t>& kept, Value value) {
+std::string column(const std::vector<Step>& steps, const std::vector<std::size_t>& kept, Value value) {
   std::vector<float> values;
   values.reserve(kept.size());
   for (const std::size_t k : kept) values.push_back(static_cast<float>(value(steps[k])));
   return base64_of<float>(values);
 }
 
-Json steps_json(const std::vector<StepRecord>& steps) {
+Json steps_json(const std::vector<Step>& steps) {
   const auto kept = thin_out(steps);
   return {{"count", kept.size()},
-          {"time_s", column(steps, kept, [](const StepRecord& s) { return s.time_s; })},
-          {"depth_mm", column(steps, kept, [](const StepRecord& s) { return s.base_depth_mm; })},
-          {"axial_N", column(steps, kept, [](const StepRecord& s) { return s.force_axial_N; })},
-          {"sagittal_N", column(steps, kept, [](const StepRecord& s) { return s.force_sagittal_N; })},
-          {"lateral_N", column(steps, kept, [](const StepRecord& s) { return s.force_lateral_N; })}};
+          {"time_s", column(steps, kept, [](const Step& s) { return s.time_s; })},
+          {"depth_mm", column(steps, kept, [](const Step& s) { return s.base_depth_mm; })},
+          {"axial_N", column(steps, kept, [](const Step& s) { return s.force_axial_N; })},
+          {"sagittal_N", column(steps, kept, [](const Step& s) { return s.force_sagittal_N; })},
+          {"lateral_N", column(steps, kept, [](const Step& s) { return s.force_lateral_N; })}};
 }
 
 /// Counts of step times in bins of equal ratio.
-Json histogram_json(const std::vector<StepRecord>& steps) {
+Json histogram_json(const std::vector<Step>& steps) {
   constexpr int kBinsPerDecade = 20;
   std::vector<double> times;
-  for (const StepRecord& s : steps) {
+  for (const Step& s : steps) {
     if (std::isfinite(s.step_us) && s.step_us > 0) times.push_back(s.step_us);
   }
   if (times.empty()) return {{"edges_us", Json::array()}, {"counts", Json::array()}};

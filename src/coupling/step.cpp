@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stylet/sim/recording.hpp"
+#include "stylet/coupling/step.hpp"
+
+#include "stylet/coupling/event.hpp"
 
 namespace stylet {
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/coupling/laws.hpp"
+#include "stylet/geom/mesh_preset.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+/// What a scenario chooses from, and the words that its file has for it.
+namespace stylet {
+
+enum class ElementChoice { automatic, p1, nodal_pressure, p2 };
+enum class OuterSupport { automatic, none, sides, all };
+enum class NeedleModel { beam, springs, tet };
+enum class StyletPlace { out, in };
+/// Where contact forces act on the needle of the staggered solver.
+enum class Projection { exact, nearest_node };
+
+/// Words of an enumeration, in the order of its values.
+template <class E>
+struct Words;
+
+template <>
+struct Words<ElementChoice> {
+  static constexpr std::array<std::string_view, 4> all{"auto", "p1", "nodal-pressure", "p2"};
+};
+template <>
+struct Words<OuterSupport> {
+  static constexpr std::array<std::string_view, 4> all{"auto", "none", "sides", "all"};
+};
+template <>
+struct Words<MeshPreset> {
+  static constexpr std::array<std::string_view, 2> all{"standard", "paper"};
+};
+template <>
+struct Words<NeedleModel> {
+  static constexpr std::array<std::string_view, 3> all{"beam", "springs", "tet"};
+};
+template <>
+struct Words<StyletPlace> {
+  static constexpr std::array<std::string_view, 2> all{"out", "in"};
+};
+template <>
+struct Words<Projection> {
+  static constexpr std::array<std::string_view, 2> all{"exact", "nearest-node"};
+};
+template <>
+struct Words<Bevel::Law> {
+  static constexpr std::array<std::string_view, 2> all{"offset", "force"};
+};
+template <>
+struct Words<CouplingSettings::Method> {
+  static constexpr std::array<std::string_view, 4> all{"near-field", "node-addition", "node-repositioning", "embedded"};
+};
+template <>
+struct Words<CouplingSettings::Rule> {
+  static constexpr std::array<std::string_view, 2> all{"interior", "paper"};
+};
+template <>
+struct Words<CouplingSettings::Solver> {
+  static constexpr std::array<std::string_view, 2> all{"coupled", "staggered"};
+};
+template <>
+struct Words<CouplingSettings::Engine> {
+  static constexpr std::array<std::string_view, 3> all{"condensed", "woodbury", "bcs"};
+};
+
+template <class E>
+concept Choice = requires {
+  Words<E>::all.size();
+};
+
+/// The word for a value; for one that the enumeration does not have its number.
+template <Choice E>
+[[nodiscard]] std::string word(E value) {
+  const auto at = static_cast<std::size_t>(value);
+  return at < Words<E>::all.size() ? std::string(Words<E>::all[at])
+                                   : "number " + std::to_string(static_cast<int>(value));
+}
+
+/// The value of a word; empty where it is none of the enumeration's.
+template <Choice E>
+[[nodiscard]] std::optional<E> choice(std::string_view word) {
+  const auto& all = Words<E>::all;
+  const auto found = std::find(all.begin(), all.end(), word);
+  if (found == all.end()) return std::nullopt;
+  return static_cast<E>(found - all.begin());
+}
+
+}  // namespace stylet
