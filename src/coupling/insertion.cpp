@@ -217,9 +217,7 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
   predictor.begin(before, pose, *needle, path.tip, shaft.all());
   balance->base_moved(predictor.last_motion());
   find_balance(h, step);
-  for (ShaftContact& contact : shaft.all()) {
-    if (std::abs(contact.slid) / h < settings.zero_band_mm_per_s) contact.state = ShaftContact::State::stick;
-  }
+  ContactStates::stick_where_slow(shaft.all(), h, settings.zero_band_mm_per_s);
   {
     const InPhase in_phase(phases, StepPhase::contacts);
     shaft.wake_and_drop(path.tracks.now, path.marks, path.tip.force, step);

@@ -46,7 +46,7 @@ struct InsertionTissue {
 };
 
 /// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
-/// and keeps the track. Quasi-static; time enters through viscous friction only. step() does not allocate, throw, lock
+/// and keeps the track. Quasi-static; time enters by viscosity and damping. step() does not allocate, throw, lock
 /// or log (engines that keep the full inverse allocate when the mesh changes). docs/theory/coupling.md has the model.
 class Insertion {
  public:

@@ -21,7 +21,7 @@ struct FrictionLaw {
 
 /// What a region does to the needle.
 struct RegionLaws {
-  double cutting_N = 0.0;   ///< axial force at which the tip cuts
+  double cutting_N = 0.0;   ///< axial force at which the tip begins to cut
   double puncture_N = 0.0;  ///< force that breaks the region's surface, 0 = no membrane
   FrictionLaw friction;
   bool rigid = false;        ///< bone: all its nodes are fixed, the tip cannot cut it
@@ -76,7 +76,7 @@ struct CouplingSettings {
       2e-3;  ///< cutting force grows by this times the speed of cutting; makes a puncture's drop a motion
   double bone_damping_s =
       3e-3;  ///< of the needle's bending while its tip stands on bone; makes a snap there a motion, as above
-  double zero_band_mm_per_s = 0.005;  ///< Karnopp: slower sliding than this is sticking
+  double zero_band_mm_per_s = 0.005;  ///< slower sliding than this is sticking (Karnopp 1985)
   double grazing_cos = 0.17;  ///< the tip slides off where |axis · surface normal| is smaller (80° from the normal)
   double max_advance_mm = 0.25;             ///< of the base in one sub-step
   double axial_compliance_mm_per_N = 2e-3;  ///< of the steel shaft, L / (E A)

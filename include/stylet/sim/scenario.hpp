@@ -18,7 +18,7 @@ namespace stylet {
 struct TissueParameters {
   double young_kPa = 0;
   double poisson = 0;
-  double cutting_N = 0;
+  double cutting_N = 0;   ///< axial force at which the tip begins to cut; coupling.tip_viscosity_Ns_per_m adds to it
   double puncture_N = 0;  ///< of the surface around it; 0 = no membrane
   double friction_static_N_per_m = 0;
   double friction_coulomb_N_per_m = 0;

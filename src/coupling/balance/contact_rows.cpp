@@ -8,7 +8,8 @@
 namespace stylet {
 
 namespace {
-/// [N s/mm] Stands for no viscosity in a division. Raised, a contact without viscosity slides less freely.
+/// [N s/mm] Stands for no viscosity in a division and is far below any that a balance could be found with. Raised, a
+/// contact without viscosity slides less freely.
 constexpr double kNoViscosity = 1e-12;
 /// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined. At 100 mm/s this adds 1e-7
 /// N/mm; raised, it adds more.
@@ -61,10 +62,6 @@ double ContactRows::largest_load() const {
   return largest;
 }
 
-double ContactRows::slip_of_cut(double h) const {
-  return h / std::max(settings_.tip_viscosity_Ns_per_mm, kNoViscosity);
-}
-
 void ContactRows::soften(const Contacts& contacts, double h, bool foresees_cut) {
   soften_tip(contacts, h, foresees_cut);
   for (int c = 1; c < contacts.count(); ++c) soften_shaft(contacts.of_shaft(c), c, h);
@@ -81,13 +78,12 @@ void ContactRows::soften_tip(const Contacts& contacts, double h, bool foresees_c
   own.axial = settings_.axial_compliance_mm_per_N;
   by_state.head<2>().noalias() = own.lateral * (Q.leftCols<2>().transpose() * contact.bevel_force());
   if (contact.state() == TipContact::State::cut) {
-    const double slip = slip_of_cut(h);
-    const double cutting = contact.ahead.cutting();
-    own.axial += slip;
-    by_state[2] = slip * cutting + contact.cut.advance();
+    const CuttingLaw law = contact.cutting_law(h);
+    own.axial += law.slip_mm_per_N;
+    by_state[2] = law.slip_mm_per_N * law.start_N + contact.cut.advance();
     if (foresees_cut && contact.touches()) {
-      tip.cut_per_N = slip;
-      tip.cut_due = slip * (Q.col(2).dot(contact.force) - cutting) - contact.cut.advance();
+      tip.cut_per_N = law.slip_mm_per_N;
+      tip.cut_due = law.way(Q.col(2).dot(contact.force)) - contact.cut.advance();
     }
   }
   shift.head<3>() = by_state;

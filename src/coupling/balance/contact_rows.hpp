@@ -56,11 +56,10 @@ class ContactRows {
   [[nodiscard]] double largest_load() const;
 
   /// Writes the yield of each contact in a sub-step of h seconds, in the contact's present state, and the shift that
-  /// this state adds to the right-hand side.
+  /// this state adds to the right-hand side; and in each contact of the shaft the numbers of its friction: `coulomb`,
+  /// `slip` and `reach`.
   /// @param foresees_cut whether the equations know that compliance changes as the cut goes on
   void soften(const Contacts& contacts, double h, bool foresees_cut);
-  /// [mm/N] Way that the tip cuts in a sub-step of h seconds for each newton beyond the cutting force.
-  [[nodiscard]] double slip_of_cut(double h) const;
 
   /// [mm] LPS, the needle at a contact, straight on past its ends; as of take_places().
   [[nodiscard]] const Vec3& needle_at(int load) const { return needle_[static_cast<std::size_t>(load)]; }

@@ -76,6 +76,12 @@ void ContactStates::change(int load, const Trial& trial, Step& step) {
   }
 }
 
+void ContactStates::stick_where_slow(std::span<ShaftContact> contacts, double h, double zero_band_mm_per_s) {
+  for (ShaftContact& contact : contacts) {
+    if (std::abs(contact.slid) / h < zero_band_mm_per_s) contact.state = ShaftContact::State::stick;
+  }
+}
+
 void ContactStates::change_tip(const Trial& trial) {
   TipContact& tip = contacts_.tip;
   if (tip.state() != TipContact::State::stick) {

@@ -3,11 +3,15 @@
 
 #include "coupling/balance/contacts.hpp"
 
+#include <span>
+
 namespace stylet {
 
 /// Where friction is decided: whether each contact sticks, slides forward or backward, slowly or fast, and whether the
 /// tip is held, cuts, or has come away. A solution of the balance is tried against the law of each contact's state
-/// (docs/theory/coupling.md §3); the state changes where the solution contradicts it.
+/// (docs/theory/coupling.md §3); the state changes where the solution contradicts it. When a sub-step's balance has
+/// been found, contacts that hardly slid in it stick. The numbers of friction are in the contacts: ContactRows::soften
+/// puts them there.
 class ContactStates {
  public:
   explicit ContactStates(const Contacts& contacts) : contacts_(contacts) {}
@@ -26,6 +30,10 @@ class ContactStates {
   [[nodiscard]] double contradiction(int load, const Trial& trial) const;
   /// Changes the state of a contact as a solution that contradicts it asks for.
   void change(int load, const Trial& trial, Step& step);
+
+  /// Lets contacts stick that slid more slowly than Karnopp's zero band in a sub-step of h seconds.
+  /// @cite Karnopp1985
+  static void stick_where_slow(std::span<ShaftContact> contacts, double h, double zero_band_mm_per_s);
 
   /// [mm] By how much a sliding contact slides in this sub-step, in the sense of its state, under an axial force [N].
   [[nodiscard]] static double way(const ShaftContact& contact, double axial) {

@@ -266,7 +266,7 @@ void CoupledBalance::take_solution() {
 bool CoupledBalance::cut_on(double h, int iteration) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return false;
-  const double proposed = std::max(0.0, rows_.slip_of_cut(h) * (system_.lambda[2] - tip.ahead.cutting()));
+  const double proposed = std::max(0.0, tip.cutting_law(h).way(system_.lambda[2]));
   march(tip.cut.advance() + damping_of_cut(iteration) * (proposed - tip.cut.advance()));
   if (tip.cut.is_blocked()) tip.set_state(TipContact::State::stick);
   return tip.cut.is_blocked();

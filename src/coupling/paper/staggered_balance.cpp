@@ -112,10 +112,10 @@ void StaggeredBalance::solve_tissue(double h) {
     double force = 0.0;
     if (c == 0) {
       if (!tip.cuts()) continue;
-      // The tip cuts as far as the needle is beyond the tissue: force = cutting force + viscosity × speed.
-      const double slip = h / std::max(parts_.settings.tip_viscosity_Ns_per_mm, kSmallest);
-      advance_ = tip.cut.advance() + (way - x[row]) / (t.dot(tip.cut.direction()) + own / slip);
-      force = tip.ahead.cutting() + advance_ / slip;  // less than the cutting force: the needle goes back
+      // The tip cuts as far as the needle is beyond the tissue; a force below its law's start: the needle goes back.
+      const CuttingLaw law = tip.cutting_law(h);
+      advance_ = tip.cut.advance() + (way - x[row]) / (t.dot(tip.cut.direction()) + own / law.slip_mm_per_N);
+      force = law.force(advance_);
       change_ = std::max(change_, std::abs(force - y_[row]));
     } else {
       ShaftContact& contact = parts_.contacts.of_shaft(c);

@@ -19,7 +19,15 @@ constexpr double kLeastVolume = 0.2;
 /// A lateral row so many times softer than the tissue carries its given force and nothing else. Raised much further,
 /// its equation loses digits.
 constexpr double kNotHeld = 1e6;
+/// [N s/mm] Stands for no viscosity in a division and is far below any that a balance could be found with: a scenario
+/// gives at least 1e-5. Raised, a tip without viscosity cuts less freely.
+constexpr double kLeastViscosity = 1e-12;
 }  // namespace
+
+CuttingLaw TipContact::cutting_law(double h) const {
+  return {.start_N = ahead.cutting(),
+          .slip_mm_per_N = h / std::max(settings_.tip_viscosity_Ns_per_mm, kLeastViscosity)};
+}
 
 void TipContact::put(const Vec3& x, const MaterialPoint& at, bool touches, State state) {
   forget();

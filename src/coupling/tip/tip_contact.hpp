@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/tip/cut.hpp"
+#include "coupling/tip/cutting_law.hpp"
 #include "coupling/tip/resistance.hpp"
 #include "stylet/needle/needle.hpp"
 
@@ -30,6 +31,8 @@ class TipContact {
   [[nodiscard]] bool holds() const { return touches_ && state_ != State::open; }
   [[nodiscard]] bool cuts() const { return touches_ && state_ == State::cut; }
   [[nodiscard]] bool is_on_bone() const { return touches_ && state_ == State::stick && ahead.is_bone(); }
+  /// The law of a tip that cuts here, in a sub-step of h seconds.
+  [[nodiscard]] CuttingLaw cutting_law(double h) const;
   /// Whether it waits for compliance that is not there yet.
   [[nodiscard]] bool waits() const { return touches_ && cut.is_stale(); }
 

@@ -116,6 +116,21 @@ TEST(ContactStates, FrictionStopsGrowingBeyondItsSpeedAndGrowsAgainBelow) {
   EXPECT_EQ(contact.state, State::forward);
 }
 
+TEST(ContactStates, AContactThatHardlySlidSticksWhicheverWayItWent) {
+  const double h = 1e-3, zero_band = 0.005;
+  std::array<ShaftContact, 4> contacts;
+  const std::array<double, 4> slid{0.9 * zero_band * h, -0.9 * zero_band * h, 1.1 * zero_band * h,
+                                   -1.1 * zero_band * h};
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    contacts[c].state = slid[c] > 0.0 ? ShaftContact::State::forward : ShaftContact::State::backward;
+    contacts[c].slid = slid[c];
+  }
+  ContactStates::stick_where_slow(contacts, h, zero_band);
+  EXPECT_TRUE(contacts[0].sticks() && contacts[1].sticks());
+  EXPECT_EQ(contacts[2].state, ShaftContact::State::forward);
+  EXPECT_EQ(contacts[3].state, ShaftContact::State::backward);
+}
+
 TEST(ContactStates, AContactThatChangesTooOftenKeepsItsStateAndTheStepIsFlagged) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);

@@ -57,6 +57,13 @@ TEST(Cut, TellsThatCompliancesOfAnotherPlaceStandIn) {
   EXPECT_FALSE(cut.is_stale());
 }
 
+TEST(CuttingLaw, ItsForceAndItsWayAreInversesAndNothingIsCutAtItsStart) {
+  const CuttingLaw law{.start_N = 0.25, .slip_mm_per_N = 3.0};
+  EXPECT_EQ(law.way(0.25), 0.0);
+  EXPECT_LT(law.way(0.2), 0.0) << "too little to cut";
+  for (const double way : {-0.1, 0.0, 0.004, 1.7}) EXPECT_NEAR(law.way(law.force(way)), way, 1e-12);
+}
+
 TEST(Resistance, OfTheSkinGivesAboveItsLimitToATipThatIsNotFlat) {
   Resistance ahead;
   ahead.be_outer_surface(3, Vec3::UnitZ(), 1.0, 0.3);
@@ -185,6 +192,9 @@ TEST_F(TipOnItsWay, BreaksTheSkinAndCutsOnBehindIt) {
   EXPECT_EQ(kinds(path), (std::vector{EventKind::skin_contact, EventKind::puncture, EventKind::region_entered}));
   EXPECT_EQ(path.events()[1].force_N, 1.05);
   EXPECT_EQ(path.tip.ahead.cutting(), 0.3);
+  const double h = 1e-3, speed_mm_per_s = 20.0;
+  EXPECT_NEAR(path.tip.cutting_law(h).force(speed_mm_per_s * h),
+              0.3 + block.settings.tip_viscosity_Ns_per_mm * speed_mm_per_s, 1e-12);
   cut(2.0);
   EXPECT_EQ(path.phase(), TipState::cutting);
   EXPECT_NEAR(path.tracks.now.end_xi, 2.0, 1e-12);

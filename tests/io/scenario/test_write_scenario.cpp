@@ -74,18 +74,18 @@ TEST(ToToml, reads_back_whatever_is_set) {
   s.needle.bevel_deg = 22.5;
   s.needle.bevel_law = Bevel::Law::force;
   s.needle.elements = 200;
-  s.coupling = {CouplingSettings::Method::embedded,
-                CouplingSettings::Rule::paper,
-                CouplingSettings::Solver::staggered,
-                CouplingSettings::Engine::bcs,
-                1.25,
-                Projection::nearest_node,
-                49.999999999999,
-                0.01,
-                0.75,
-                30,
-                1.5,
-                8};
+  s.coupling = {.method = CouplingSettings::Method::embedded,
+                .rule = CouplingSettings::Rule::paper,
+                .solver = CouplingSettings::Solver::staggered,
+                .engine = CouplingSettings::Engine::bcs,
+                .damping = 1.25,
+                .projection = Projection::nearest_node,
+                .spacing_mm = 49.999999999999,
+                .tip_viscosity_Ns_per_m = 0.01,
+                .bone_damping_ms = 0.75,
+                .grazing_deg = 30,
+                .corridor_mm = 1.5,
+                .corridor_nodes = 8};
   s.grid.pitch_mm = 4.2;
   s.grid.centre_mm = {-0.1, 1e4};
   s.grid.columns = {"α", "D"};
