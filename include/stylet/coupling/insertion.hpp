@@ -66,7 +66,7 @@ class Insertion {
   /// in.
   Step step(const Pose& base, double dt);
 
-  /// What happened in the last step, as far as there was room for it.
+  /// The events of the last step, as far as there was room for them.
   [[nodiscard]] std::span<const InsertionEvent> events() const;
 
   /// Makes the compliance of all elements within `radius` of the tip available. Call between steps; returns at once

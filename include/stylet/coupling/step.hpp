@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// What the tip does.
+/// The state of the needle's tip.
 enum class TipState {
   air,       ///< outside the patient, before or after
   pressing,  ///< touches tissue that it does not cut yet
@@ -25,7 +25,7 @@ const char* to_string(TipState state);
 /// Force and torque are what the hand exerts on the needle's base: axial along the base's axis, positive when pushing
 /// in; lateral towards the patient's left, sagittal = axial × lateral (towards posterior for a needle going superior).
 struct Step {
-  /// What a step has to say of itself, and what to do: nothing is repaired in silence.
+  /// Warnings about a step, each with what to do about it: nothing is repaired in silence.
   enum Flag : unsigned {
     not_converged = 1u << 0,       ///< the balance was broken off, the last iterate kept; use a smaller time step
     contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-/// What a scenario chooses from, and the words that its file has for it.
+/// The choices that a scenario makes, and the words that its file has for them.
 namespace stylet {
 
 enum class ElementChoice { automatic, p1, nodal_pressure, p2 };

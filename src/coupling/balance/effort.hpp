@@ -18,9 +18,9 @@ class Effort {
 
   /// An iteration with a tangent that is there already.
   [[nodiscard]] double iteration() const { return 10.0 + 0.015 * square_; }
-  /// What a new tangent of the needle, and the matrix made of it, add to an iteration.
+  /// The effort that a new tangent of the needle, and the matrix made of it, add to an iteration.
   [[nodiscard]] double tangent() const { return needle() + matrix(); }
-  /// What each further solution adds, after states of contacts have changed.
+  /// The effort of each further solution, after states of contacts have changed.
   [[nodiscard]] double solution() const { return 2.0 + 0.02 * square_; }
   /// The parts of a tangent, each of which may be wanted more than once.
   [[nodiscard]] double needle() const { return 20.0 + 0.04 * square_; }

@@ -26,7 +26,7 @@ class TipPath {
   Marks marks;
 
   [[nodiscard]] TipState phase() const { return phase_; }
-  /// What has happened since the events were forgotten.
+  /// The events since they were last forgotten.
   [[nodiscard]] std::span<const InsertionEvent> events() const { return {event_.data(), event_count_}; }
   [[nodiscard]] static constexpr std::size_t most_events() { return kMostEvents; }
   void forget_events() { event_count_ = 0; }
