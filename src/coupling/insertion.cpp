@@ -59,8 +59,12 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
   auto engine = engine_of(tissue, settings, capacity);
   if (settings.method != CouplingSettings::Method::near_field) return engine;
   const NeedleKernel needle{settings.needle_radius_mm, settings.spacing_mm};
+  std::vector<double> stiffening_MPa;
+  if (knows_stiffening(settings)) {
+    for (const RegionLaws& laws : tissue.laws) stiffening_MPa.push_back(laws.stiffening_MPa);
+  }
   return std::make_unique<NearFieldCompliance>(std::move(engine), tissue.store->shared_tissue(), tissue.kernel, needle,
-                                               capacity);
+                                               capacity, std::move(stiffening_MPa));
 }
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace stylet {
 
 namespace {
-/// Needle radii over which a tip's field (ε = 1.5 R) falls to a half along the force. Raised, the track takes over more
+/// Needle radii over which a tip's field falls to a half along the force. Raised, the track takes over more
 /// slowly what the tip has left behind.
 constexpr double kTipReach = 2.5;
 /// The same in depths of the dent. Lowered, the tissue would start back past a tip that cuts.
@@ -23,6 +23,20 @@ TissueResponse::TissueResponse(std::unique_ptr<ContactCompliance> compliance, do
       forces_(MatX::Zero(3, points + 1)),
       places_(static_cast<std::size_t>(points) + 1) {}
 
+TipRelief TissueResponse::relief(const ContactForces& contacts) const {
+  if (!compliance_->stiffens()) return {};
+  const MatX& scale = compliance_->needle_scale();
+  const auto by = [&](int point, const Vec3& force) -> Vec3 {
+    return scale.middleRows<3>(3 * point).transpose() * force;
+  };
+  const double share = memory_.share();
+  Vec3 of_others = Vec3::Zero();
+  for (const ShaftContact& contact : contacts.shaft) of_others += by(contact.point, share * contact.force);
+  for (int point = 1; memory_.on() && point < compliance_->points(); ++point)
+    of_others += by(point, memory_.past(point));
+  return {*compliance_, filtered_force(ContactCompliance::kTip, contacts), of_others};
+}
+
 Vec3 TissueResponse::displacement(int point, const ContactForces& contacts) const {
   Vec3 u = Vec3::Zero();
   const auto columns = compliance_->matrix().middleCols<3>(3 * point);  // or rows: A is symmetric
@@ -30,6 +44,7 @@ Vec3 TissueResponse::displacement(int point, const ContactForces& contacts) cons
   for (const ShaftContact& contact : contacts.shaft)
     u.noalias() += columns.middleRows<3>(3 * contact.point).transpose() * contact.force;
   if (memory_.on()) u = memory_.share() * u + past_displacement(point);
+  if (compliance_->stiffens()) u -= relief(contacts).of(point);
   return u;
 }
 
@@ -66,22 +81,25 @@ MatX TissueResponse::filtered_forces_of_all(const ContactForces& contacts) const
 
 Vec3 TissueResponse::filtered_force(int point, const ContactForces& contacts) const {
   Vec3 force = Vec3::Zero();
-  if (point == ContactCompliance::kTip) force = contacts.tip;
-  for (const ShaftContact& contact : contacts.shaft) {
-    if (contact.point == point) force = contact.force;
+  if (point == ContactCompliance::kTip) {
+    force = contacts.tip;
+  } else {
+    for (const ShaftContact& contact : contacts.shaft) {
+      if (contact.point == point) force = contact.force;
+    }
   }
   if (memory_.on()) force = memory_.share() * force + memory_.past(point);
   return force;
 }
 
 double TissueResponse::energy(const ContactForces& contacts) const {
-  double energy = 0.0;
+  double energy = compliance_->stiffens() ? relief(contacts).energy_Nmm() : 0.0;
   if (memory_.on()) {
     for (int point = 0; point < compliance_->points(); ++point)
       energy += 0.5 * filtered_force(point, contacts).dot(displacement(point, contacts));
     return energy;
   }
-  energy = 0.5 * contacts.tip.dot(displacement(ContactCompliance::kTip, contacts));
+  energy += 0.5 * contacts.tip.dot(displacement(ContactCompliance::kTip, contacts));
   for (const ShaftContact& contact : contacts.shaft)
     energy += 0.5 * contact.force.dot(displacement(contact.point, contacts));
   return energy;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/contacts/shaft_contact.hpp"
+#include "coupling/tip_relief.hpp"
 #include "coupling/tissue_memory.hpp"
 #include "stylet/coupling/track.hpp"
 
@@ -10,8 +11,9 @@
 
 namespace stylet {
 
-/// How the tissue gives way to the needle: by its compliance among the contacts and, where it is viscous, by what it
-/// remembers of earlier forces. Nothing allocates after construction unless a comment says so.
+/// How the tissue gives way to the needle: by its compliance among the contacts, where it stiffens under the tip by
+/// less than that, and where it is viscous by what it remembers of earlier forces. Nothing allocates after construction
+/// unless a comment says so.
 class TissueResponse {
  public:
   /// @param relaxation_s τ [s] of the tissue, 0 = elastic
@@ -28,10 +30,12 @@ class TissueResponse {
   void begin(double h) { memory_.begin(h); }
   /// Weight of this sub-step's forces in the displacement; 1 for elastic tissue.
   [[nodiscard]] double share() const { return memory_.share(); }
-  /// [mm] LPS, displacement of a point by earlier forces alone.
+  /// [mm] LPS, displacement of a point by earlier forces alone, as far as the tissue is linear.
   [[nodiscard]] Vec3 past_displacement(int point) const { return memory_.displacement(*compliance_, point); }
   /// [mm] LPS, displacement of a point by all forces.
   [[nodiscard]] Vec3 displacement(int point, const ContactForces& contacts) const;
+  /// What of that a tissue that stiffens under the tip does not do: displacement() has it taken off.
+  [[nodiscard]] TipRelief relief(const ContactForces& contacts) const;
   /// [mm/N] mean over the directions of how far a point gives way to a force on itself.
   [[nodiscard]] double own_yield(int point) const { return (*compliance_)(point, point).trace() / 3.0; }
 
@@ -44,7 +48,7 @@ class TissueResponse {
   [[nodiscard]] Vec3 filtered_force(int point, const ContactForces& contacts) const;
   /// Forces of the present contacts [N] (3 × points). Allocates.
   [[nodiscard]] MatX present_forces(const ContactForces& contacts) const;
-  /// ½ fᵀ A f, elastic energy in the tissue [N mm]; what a viscous tissue has stored.
+  /// Elastic energy in the tissue [N mm], ½ fᵀ A f where it is linear; what a viscous tissue has stored.
   [[nodiscard]] double energy(const ContactForces& contacts) const;
 
   /// Where a point of the compliance is, and which way the piece of shaft runs that its force is spread over (LPS;

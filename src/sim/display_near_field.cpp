@@ -70,22 +70,41 @@ std::size_t DisplayNearField::slot_for(const TissueForce& force) {
   return slot;
 }
 
-void DisplayNearField::compute(std::size_t slot) {
+NearPlace DisplayNearField::place_of(const TissueForce& force) const {
   const MeshKernel& kernel = *model_->kernel();
   const Tissue& tissue = model_->tissue();
-  const TissueForce& force = sources_[slot].force;
   const auto& corners = tissue.mesh().tets[static_cast<std::size_t>(force.at.tet)];
   Vec3 x = Vec3::Zero();
   for (std::size_t i = 0; i < 4; ++i)
     x += force.at.weights[static_cast<Eigen::Index>(i)] * tissue.mesh().nodes[static_cast<std::size_t>(corners[i])];
   NearPlace on = near_place(tissue, kernel, force.at, x);
   if (force.along.isZero(0.0)) {
-    on.epsilon = needle_.tip_epsilon(on.skin.depth, kernel.medium(on.medium).poisson);
+    take_tip_radii(needle_, kernel, on);
   } else {
     on.epsilon = needle_.shaft_epsilon();
     on.piece.direction = force.along;
     on.piece.length = needle_.segment_mm;
   }
+  return on;
+}
+
+/// Takes off what tissue that stiffens under the tip does not move by.
+void DisplayNearField::stiffen(const TissueForce& tip) {
+  const int region = model_->mesh().tet_region[static_cast<std::size_t>(tip.at.tet)];
+  const double stiffening_MPa = model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa;
+  if (stiffening_MPa == 0.0 || !knows_stiffening(model_->coupling())) return;
+  const NearPlace on = place_of(tip);
+  const TipDent dent{needle_scale(*model_->kernel(), on, on), stiffening_MPa};
+  const Vec3 spared = tip.force - dent.under(tip.force).linear;
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    const Vec3 less = needle_scale(*model_->kernel(), acted_on_by(places_[p], on), on) * spared;
+    moved_.segment<3>(3 * static_cast<Eigen::Index>(p)) -= less.cast<float>();
+  }
+}
+
+void DisplayNearField::compute(std::size_t slot) {
+  const MeshKernel& kernel = *model_->kernel();
+  const NearPlace on = place_of(sources_[slot].force);
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Shape node{.count = 1, .node = {nodes_[n]}, .weight = {1.0}};
     of_node_[n] = mesh_kernel_between(kernel, node, on.shape, on.medium);
@@ -123,6 +142,7 @@ void DisplayNearField::set(std::span<const TissueForce> forces) {
     const std::size_t slot = slot_for(force);
     moved_.noalias() +=
         blocks_.middleCols<3>(3 * static_cast<Eigen::Index>(slot)).lazyProduct(force.force.cast<float>());
+    if (force.along.isZero(0.0)) stiffen(force);
   }
 }
 

@@ -168,27 +168,28 @@ Error named(Error error, const std::string& where) {
 }  // namespace
 
 double tenting_mm(const TissueParameters& t, double force_N, double needle_diameter_mm) {
-  return force_N * (1.0 - t.poisson * t.poisson) / (needle_diameter_mm * t.young_kPa * 1e-3);
+  const double young_MPa = t.young_kPa * 1e-3;
+  const DentLaw punch{(1.0 - t.poisson * t.poisson) / (needle_diameter_mm * young_MPa), t.stiffening * young_MPa};
+  return punch.depth(force_N);
 }
 
 std::vector<std::string> tenting_warnings(const std::string& region, const TissueParameters& t,
                                           double needle_diameter_mm) {
   std::vector<std::string> warnings;
+  const std::string stiffening = t.stiffening > 0.0 ? fmt::format(" and stiffening = {:g}", t.stiffening) : "";
   const double tenting = tenting_mm(t, t.puncture_N, needle_diameter_mm);
   if (t.puncture_N > 0.0 && (tenting < kTentingMin_mm || tenting > kTentingMax_mm)) {
-    warnings.push_back(
-        fmt::format("tissue.{}: puncture_N = {:g} with young_kPa = {:g} means {:.1f} mm of tenting before the surface "
-                    "breaks; {:g} to {:g} mm is "
-                    "plausible. Change the two together.",
-                    region, t.puncture_N, t.young_kPa, tenting, kTentingMin_mm, kTentingMax_mm));
+    warnings.push_back(fmt::format(
+        "tissue.{}: puncture_N = {:g} with young_kPa = {:g}{} means {:.1f} mm of tenting before the surface "
+        "breaks; {:g} to {:g} mm is plausible. Change them together.",
+        region, t.puncture_N, t.young_kPa, stiffening, tenting, kTentingMin_mm, kTentingMax_mm));
   }
   const double lag = tenting_mm(t, t.cutting_N, needle_diameter_mm);
   if (lag > kLagMax_mm) {
-    warnings.push_back(
-        fmt::format("tissue.{}: cutting_N = {:g} with young_kPa = {:g} means that the tip cuts {:.1f} mm behind where "
-                    "it pushes; at most {:g} mm "
-                    "is plausible. Change the two together.",
-                    region, t.cutting_N, t.young_kPa, lag, kLagMax_mm));
+    warnings.push_back(fmt::format(
+        "tissue.{}: cutting_N = {:g} with young_kPa = {:g}{} means that the tip cuts {:.1f} mm behind where "
+        "it pushes; at most {:g} mm is plausible. Change them together.",
+        region, t.cutting_N, t.young_kPa, stiffening, lag, kLagMax_mm));
   }
   return warnings;
 }
@@ -225,6 +226,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     RegionLaws laws;
     laws.cutting_N = p.cutting_N;
     laws.puncture_N = p.puncture_N;
+    laws.stiffening_MPa = p.stiffening * p.young_kPa * 1e-3;
     laws.friction = {p.friction_static_N_per_m * 1e-3, p.friction_coulomb_N_per_m * 1e-3,
                      p.friction_viscous_Ns_per_m2 * 1e-6, p.friction_viscous_to_mm_per_s};
     laws.surrounding = name == "body";
@@ -262,6 +264,18 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     if (model->laws_[r].rigid) continue;  // nothing gives way there
     for (auto& warning : tenting_warnings(mesh.regions[r], model->tissue_parameters_[r], scenario.needle.diameter_mm))
       model->warnings_.push_back(std::move(warning));
+  }
+
+  if (!knows_stiffening(model->coupling_)) {
+    for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+      if (model->tissue_parameters_[r].stiffening == 0.0 || model->laws_[r].rigid) continue;
+      model->warnings_.push_back(fmt::format(
+          "tissue.{}: stiffening = {:g} has no effect: with coupling.method = \"{}\" and coupling.solver = "
+          "\"{}\" the tissue under the tip is linear, and dents deeper. Use \"near-field\" and \"coupled\".",
+          mesh.regions[r], model->tissue_parameters_[r].stiffening, word(scenario.coupling.method),
+          word(scenario.coupling.solver)));
+      break;  // once is enough
+    }
   }
 
   const Corridor corridor = corridor_of(mesh, insertions, scenario.coupling);

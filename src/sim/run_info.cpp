@@ -75,6 +75,7 @@ void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, cons
   row("poisson", &TissueParameters::poisson, "");
   row("cutting_N", &TissueParameters::cutting_N, "N");
   row("puncture_N", &TissueParameters::puncture_N, "N");
+  row("stiffening", &TissueParameters::stiffening, "");
   row("friction_static_N_per_m", &TissueParameters::friction_static_N_per_m, "N/m");
   row("friction_coulomb_N_per_m", &TissueParameters::friction_coulomb_N_per_m, "N/m");
   row("friction_viscous_Ns_per_m2", &TissueParameters::friction_viscous_Ns_per_m2, "N s/m²");

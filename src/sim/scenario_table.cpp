@@ -66,6 +66,11 @@ void describe_tissue(ScenarioEntries& keys) {
   keys.number("tissue.<region>.puncture_N", "N", 0, 100,
               "force that breaks the surface around the region; 0 = no membrane",
               [](auto& s, const Slot& t) { return &tissue(s, t).puncture_N; }, {.standard = "by region"});
+  keys.number(
+      "tissue.<region>.stiffening", "", 0, 100,
+      "how the dent under the tip stiffens: its force is k1 z + k2 z^2 at a depth z, and this is k2 over Young's "
+      "modulus; 0 = linear. Only with coupling.method = \"near-field\" and coupling.solver = \"coupled\"",
+      [](auto& s, const Slot& t) { return &tissue(s, t).stiffening; });
   keys.number("tissue.<region>.friction_static_N_per_m", "N/m", 0, 1e4,
               "largest friction per inserted length while sticking",
               [](auto& s, const Slot& t) { return &tissue(s, t).friction_static_N_per_m; });

@@ -13,10 +13,11 @@ using test::NeedleInBlock;
 TEST(Expectation, a_needle_that_goes_on_as_before_takes_little_more_than_one_iteration_a_step) {
   NeedleInBlock run;
   run.aim({1.3, 0.7, 0.0});
-  run.go(30.0);
+  run.go(33.0);
+  ASSERT_EQ(run.count(EventKind::puncture), 2) << "skin and capsule";
   int iterations = 0;
   int steps = 0;
-  while (run.depth < 38.0) {
+  while (run.depth < 41.0) {
     run.go(run.depth + 0.02, 20.0, 1e-3);
     iterations += run.report.iterations;
     ++steps;

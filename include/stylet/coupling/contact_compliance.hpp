@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/coupling/tip_dent.hpp"
 #include "stylet/geom/locator.hpp"
 
 #include <limits>
@@ -122,6 +123,14 @@ class ContactCompliance {
   [[nodiscard]] Mat3 operator()(int c, int d) const { return A_.block<3, 3>(3 * c, 3 * d); }
   [[nodiscard]] const MatX& matrix() const { return A_; }  ///< leading 3·points() rows and columns are in use
 
+  /// What of the tip's columns of A is of the needle's own scale and stiffens under force [mm/N] (3 points × 3): there
+  /// the tissue gives way by tip_dent(). Zero where all of A is linear.
+  [[nodiscard]] const MatX& needle_scale() const { return needle_scale_; }
+  /// How the tip's own part of that gives way.
+  [[nodiscard]] TipDent tip_dent() const { return {needle_scale_.topRows<3>(), stiffening_MPa_}; }
+  /// Whether the tissue stiffens where the tip is.
+  [[nodiscard]] bool stiffens() const { return stiffening_MPa_ > 0.0; }
+
   /// Changes whenever compliances among points other than the tip have changed.
   [[nodiscard]] unsigned version() const { return version_; }
 
@@ -135,6 +144,8 @@ class ContactCompliance {
   int points_ = 1;
   unsigned version_ = 0;
   MatX A_;
+  MatX needle_scale_ = MatX::Zero(3, 3);
+  double stiffening_MPa_ = 0.0;  ///< k₂ of DentLaw where the tip is; 0: linear
 };
 
 }  // namespace stylet

@@ -27,6 +27,7 @@ struct RegionLaws {
   bool rigid = false;        ///< bone: all its nodes are fixed, the tip cannot cut it
   bool surrounding = false;  ///< fills the space between organs; its membrane is the outer surface only
   int organ = -1;  ///< regions of one organ (the gland's zones) have no membrane between them; -1 = on its own
+  double stiffening_MPa = 0.0;  ///< k₂ of DentLaw: how the dent under the tip stiffens; 0 = linear
 };
 
 /// Force that breaks the surface between two regions when the tip goes from `from` into `to`. The surface belongs to
@@ -90,5 +91,12 @@ struct CouplingSettings {
   double needle_node_mm = 0.0;  ///< staggered: forces go to the nearest multiple of this along the needle; 0 = where
                                 ///< they act
 };
+
+/// Whether tissue stiffens under the tip as RegionLaws::stiffening_MPa says: other methods and the staggered solver
+/// take all tissue as linear.
+[[nodiscard]] inline bool knows_stiffening(const CouplingSettings& settings) {
+  return settings.method == CouplingSettings::Method::near_field &&
+         settings.solver == CouplingSettings::Solver::coupled;
+}
 
 }  // namespace stylet

@@ -42,6 +42,8 @@ class DisplayNearField {
   };
   [[nodiscard]] std::size_t slot_for(const TissueForce& force);
   void compute(std::size_t slot);
+  [[nodiscard]] NearPlace place_of(const TissueForce& force) const;
+  void stiffen(const TissueForce& tip);
 
   std::shared_ptr<const Model> model_;
   NeedleKernel needle_;

@@ -20,6 +20,7 @@ struct TissueParameters {
   double poisson = 0;
   double cutting_N = 0;   ///< axial force at which the tip begins to cut; coupling.tip_viscosity_Ns_per_m adds to it
   double puncture_N = 0;  ///< of the surface around it; 0 = no membrane
+  double stiffening = 0;  ///< k₂/E of the dent under the tip, F = k₁ z + k₂ z² (docs/theory/stiffening.md); 0 = linear
   double friction_static_N_per_m = 0;
   double friction_coulomb_N_per_m = 0;
   double friction_viscous_Ns_per_m2 = 0;

@@ -119,9 +119,14 @@ void CoupledBalance::gather() {
   for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) = rows_.needle_at(c) - rows_.unloaded(parts_.contacts, c);
   dense::subtract_product(gap, system_.A.topLeftCorner(size, size), now);
   gap = -gap;
+  const TipRelief relief = parts_.contacts.tissue.relief(parts_.contacts.forces());
+  if (relief.is_any()) {
+    for (int c = 0; c < count; ++c) gap.segment<3>(3 * c) -= relief.of(parts_.contacts.point(c));
+    tissue_.stiffen(relief);
+  }
   rows_.tip.behind = 0;
   if (!parts_.contacts.tip.touches()) return;
-  tissue_.gather_drift(parts_.contacts, rows_);
+  tissue_.gather_drift(parts_.contacts, relief, rows_);
   for (int c = count - 1; c > 0 && rows_.tip.behind == 0; --c) {
     rows_.tip.behind_mm = rows_.loads().front().s - rows_.loads()[static_cast<std::size_t>(c)].s;
     if (rows_.tip.behind_mm > kLeastTurn_mm) rows_.tip.behind = c;

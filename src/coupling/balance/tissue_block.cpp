@@ -19,7 +19,7 @@ constexpr double kMostDrift = 0.5;
 }  // namespace
 
 TissueBlock::TissueBlock(ContactSystem& system, int most_contacts)
-    : system_(system), slope_(MatX::Zero(3 * static_cast<Eigen::Index>(most_contacts), 3)) {
+    : system_(system), tip_columns_(MatX::Zero(3 * static_cast<Eigen::Index>(most_contacts), 3)), slope_(tip_columns_) {
   points_.reserve(static_cast<std::size_t>(most_contacts));
 }
 
@@ -50,7 +50,7 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
   const auto count = static_cast<int>(points_.size());
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double* const from = compliance.col(3 * ContactCompliance::kTip + k).data();
-    double* const column = system_.A.col(k).data();
+    double* const column = tip_columns_.col(k).data();
     double* const slope = slope_.col(k).data();
     for (int c = 0; c < count; ++c) {
       const int point = points_[static_cast<std::size_t>(c)];
@@ -65,7 +65,8 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
       }
     }
     const Eigen::Index size = 3 * static_cast<Eigen::Index>(count);
-    system_.A.row(k).head(size) = system_.A.col(k).head(size).transpose();
+    system_.A.col(k).head(size) = tip_columns_.col(k).head(size);
+    system_.A.row(k).head(size) = tip_columns_.col(k).head(size).transpose();
   }
 }
 
@@ -89,12 +90,25 @@ void TissueBlock::gather(const Contacts& contacts, int same) {
   share_ = share;
 }
 
-void TissueBlock::gather_drift(const Contacts& contacts, ContactRows& rows) const {
+void TissueBlock::stiffen(const TipRelief& relief) {
+  if (!relief.is_any()) return;
+  const auto count = static_cast<int>(points_.size());
+  for (int c = 0; c < count; ++c) {
+    const Mat3 less = share_ * relief.slope(points_[static_cast<std::size_t>(c)]);
+    system_.A.block<3, 3>(3 * c, 0) -= less;
+    if (c > 0) system_.A.block<3, 3>(0, 3 * c) -= less.transpose();
+  }
+}
+
+/// What changes with the cut is of the needle's scale. It moves the contacts by φ, the force that makes the same dent
+/// in linear tissue, and the tip by φ′ times as much as linear tissue.
+void TissueBlock::gather_drift(const Contacts& contacts, const TipRelief& relief, ContactRows& rows) const {
   const auto size = 3 * static_cast<Eigen::Index>(contacts.count());
   const auto slope = slope_.topRows(size);
   auto drift = rows.tip.drift.head(size);
-  drift.noalias() = slope.lazyProduct(rows.now.head<3>());
+  drift.noalias() = slope.lazyProduct(relief.is_any() ? relief.linear() : Vec3(rows.now.head<3>()));
   drift.head<3>() += slope.bottomRows(size - 3).transpose().lazyProduct(rows.now.segment(3, size - 3));
+  if (relief.is_any()) drift.head<3>() = (relief.share().transpose() * drift.head<3>()).eval();
   drift.head<3>() += contacts.tip.cut.direction() - rows.frame.front().col(2);
   if (!(drift.lpNorm<Eigen::Infinity>() < kMostDrift)) drift.setZero();
 }

@@ -28,10 +28,13 @@ class TissueBlock {
   /// changed.
   /// @param same what renew() returned
   void gather(const Contacts& contacts, int same);
+  /// Takes off what tissue that stiffens under the tip does not give way to a little more force: from now on A is the
+  /// tangent at the present forces. To be called once after each gather().
+  void stiffen(const TipRelief& relief);
   /// By how much the gaps change as the cut goes on: the tip moves in the direction of the cut, which need not be that
   /// of the needle, and its compliance is another one there. What viscous tissue remembers is left out.
-  /// @param rows of the present contacts, with their forces; the drift is written
-  void gather_drift(const Contacts& contacts, ContactRows& rows) const;
+  /// @param relief at the present forces @param rows of the present contacts, with their forces; the drift is written
+  void gather_drift(const Contacts& contacts, const TipRelief& relief, ContactRows& rows) const;
 
  private:
   void gather_tip(const Contacts& contacts, double share, int same);
@@ -43,7 +46,8 @@ class TissueBlock {
   double share_ = 0.0;            ///< TissueResponse::share() that A is of
   Vec3 tip_ = Vec3::Zero();       ///< [mm] LPS, place of the tip that A is of
   bool stale_ = false;            ///< whether the tip's compliance was that of another place
-  MatX slope_;                    ///< [1/N] (3 contacts × 3) change of A's columns of the tip per mm of cut
+  MatX tip_columns_;              ///< [mm/N] (3 contacts × 3) A's columns of the tip before stiffen()
+  MatX slope_;                    ///< [1/N] (3 contacts × 3) their change per mm of cut
   Vec3 slope_at_ = Vec3::Zero();  ///< [mm] LPS, where the tip was when that was told
 };
 

@@ -48,8 +48,11 @@ void sort_unique(std::vector<Index>& list) {
 
 MeshKernel::MeshKernel(std::shared_ptr<const Tissue> tissue, const Topology& topology)
     : tissue_(std::move(tissue)), rows_(static_cast<std::size_t>(tissue_->displacement_nodes())) {
-  auto ground = std::make_shared<Ground>(
-      Ground{SurfaceDistance(tissue_->mesh().nodes, free_faces(*tissue_, topology)), {}, {}, {}});
+  auto ground = std::make_shared<Ground>(Ground{SurfaceDistance(tissue_->mesh().nodes, free_faces(*tissue_, topology)),
+                                                InterfaceDistance(*tissue_, topology),
+                                                {},
+                                                {},
+                                                {}});
   for (const Material& material : tissue_->materials()) {
     const auto found = std::find(ground->poisson.begin(), ground->poisson.end(), material.poisson);
     ground->region_medium.push_back(static_cast<int>(found - ground->poisson.begin()));
@@ -65,6 +68,11 @@ MeshKernel::MeshKernel(std::shared_ptr<const Tissue> tissue, const Topology& top
 Medium MeshKernel::medium(int number) const {
   const Material material{kUnit_MPa, ground_->poisson[static_cast<std::size_t>(number)]};
   return {material.mu(), material.poisson};
+}
+
+const NearInterface& MeshKernel::interface_of(Index node, int region) const {
+  const auto& interfaces = row(node).interfaces;
+  return std::find_if(interfaces.begin(), interfaces.end(), [&](const auto& of) { return of.first == region; })->second;
 }
 
 MeshKernel::Rings MeshKernel::rings_around(Index node) const {
@@ -119,6 +127,12 @@ MeshKernel::Row MeshKernel::unsolved_row(Index node, const Rings& rings) const {
   row.edge = length / edges;
   row.skin = nearest_skin(node);
   row.skin.share = fading(row.skin.depth / row.edge);
+  for (const Index tet : ground_->node_tets[static_cast<std::size_t>(node)]) {
+    const int region = tissue.mesh().tet_region[static_cast<std::size_t>(tet)];
+    const auto is_there = [&](const auto& of) { return of.first == region; };
+    if (std::none_of(row.interfaces.begin(), row.interfaces.end(), is_there))
+      row.interfaces.emplace_back(region, ground_->interfaces.nearest(region, x));
+  }
   row.blocks.resize(ground_->poisson.size());
   if (tissue.is_fixed(node)) return row;  // nothing to solve for: the kernel will do
   for (std::size_t k = 0; k < rings.nodes.size(); ++k) {

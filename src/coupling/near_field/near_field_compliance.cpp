@@ -17,17 +17,19 @@ Medium scaled(Medium medium, double young_MPa) {
 
 NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                                          std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle,
-                                         int capacity)
+                                         int capacity, std::vector<double> stiffening_MPa)
     : far_(std::move(far)),
       tissue_(std::move(tissue)),
       kernel_(std::move(kernel)),
       needle_(needle),
+      region_stiffening_MPa_(std::move(stiffening_MPa)),
       capacity_(capacity + 1) {
   places_.reserve(static_cast<std::size_t>(capacity) + 1);
   const std::size_t entries = tip_node_entry(kMostElementNodes, 0, 0);
   tip_node_g_.assign(entries, Mat3::Zero());
   tip_node_known_.assign(entries, 0);
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
+  needle_scale_ = MatX::Zero(3 * (capacity + 1), 3);
   reset();
 }
 
@@ -40,6 +42,23 @@ void NearFieldCompliance::reset() {
   tip_tet_ = -1;
   tip_element_.reset();
   A_.setZero();
+  needle_scale_.setZero();
+  stiffening_MPa_ = 0.0;
+}
+
+/// k₂ where the tip is. On an interface it is that of the tissue that stiffens more.
+double NearFieldCompliance::stiffening_at(const NearPlace& tip, Index tet) const {
+  if (region_stiffening_MPa_.empty()) return 0.0;
+  const auto of = [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; };
+  const double own = of(tissue_->mesh().tet_region[static_cast<std::size_t>(tet)]);
+  if (tip.border.beyond < 0) return own;
+  return own + tip.border.weight(tip.own_epsilon) * std::max(0.0, of(tip.border.beyond) - own);
+}
+
+void NearFieldCompliance::write_needle_scale(int point) {
+  const NearPlace& tip = places_[kTip];
+  needle_scale_.middleRows<3>(3 * point) =
+      stylet::needle_scale(*kernel_, places_[static_cast<std::size_t>(point)], tip);
 }
 
 bool NearFieldCompliance::available(Index base_tet) const {
@@ -104,6 +123,7 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
     write_block(added.point, d, [&](int medium) {
       return mesh_kernel_between(*kernel_, place.shape, places_[static_cast<std::size_t>(d)].shape, medium);
     });
+  if (stiffens()) write_needle_scale(added.point);
   return added;
 }
 
@@ -112,16 +132,23 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   far_->move_tip(at, x);
   NearPlace& tip = places_[kTip];
   tip = near_place(*tissue_, *kernel_, at, x);
-  tip.epsilon = needle_.tip_epsilon(tip.skin.depth, kernel_->medium(tip.medium).poisson);
+  take_tip_radii(needle_, *kernel_, tip);
   if (at.tet != tip_tet_) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;
   }
-  write_block(kTip, kTip, [&](int medium) { return mesh_kernel_between(*kernel_, tip.shape, tip.shape, medium); });
+  const Mat3 g = mesh_kernel_between(*kernel_, tip.shape, tip.shape, tip.medium);
+  const Mat3 own = (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, g);
+  A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
-  if (tip.skin.inwards.dot(entry_) > 0.0)  // not the far surface, from inside
-    A_.topLeftCorner<3, 3>() +=
-        tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa));
+  stiffening_MPa_ = stiffening_at(tip, at.tet);
+  for (int d = 0; d < points_ && stiffens(); ++d) write_needle_scale(d);
+  if (tip.skin.inwards.dot(entry_) > 0.0) {  // not the far surface, from inside
+    const Mat3 more = tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa),
+                                               stiffening_MPa_);
+    A_.topLeftCorner<3, 3>() += more;
+    if (stiffens()) needle_scale_.topRows<3>() += more;
+  }
   return true;
 }
 
@@ -158,11 +185,16 @@ Vec3 NearFieldCompliance::near_field(const NearPlace& here, const Eigen::Ref<con
 
 VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
   VecX u = far_->displacement(forces);
+  const Vec3 press = forces.col(kTip);
+  const Vec3 spared = press - tip_dent().under(press).linear;
   for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
     if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
     const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
     const NearPlace here = passive_place(*tissue_, *kernel_, own, tissue_->node_position(node));
     u.segment<3>(3 * Eigen::Index{node}) += near_field(here, forces);
+    if (stiffens())
+      u.segment<3>(3 * Eigen::Index{node}) -=
+          stylet::needle_scale(*kernel_, acted_on_by(here, places_[kTip]), places_[kTip]) * spared;
   }
   return u;
 }

@@ -2,6 +2,9 @@
 #include "stylet/coupling/near_field/near_place.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace stylet {
 
@@ -34,6 +37,33 @@ void describe_surroundings(const Tissue& tissue, const MeshKernel& kernel, int c
   if (!has_skin) place.skin = {};
 }
 
+/// The interface near a place of a region, as the corners of its element have it.
+NearBorder border_at(const MeshKernel& kernel, int region, double young_MPa, const std::array<Index, 4>& corners,
+                     const Vec4& weights) {
+  NearBorder border;
+  double log_beyond = 0.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  border.depth = 0.0;
+  border.inwards.setZero();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const NearInterface& there = kernel.interface_of(corners[i], region);
+    if (!std::isfinite(there.depth)) return {};
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    border.depth += weight * there.depth;
+    border.inwards += weight * there.inwards;
+    log_beyond += weight * std::log(there.beyond_MPa);
+    if (there.depth < nearest) {
+      nearest = there.depth;
+      border.beyond = there.beyond;
+    }
+  }
+  border.depth = std::max(0.0, border.depth);
+  border.inwards.normalize();
+  const double beyond_MPa = std::exp(log_beyond);
+  border.contrast = (young_MPa - beyond_MPa) / (young_MPa + beyond_MPa);
+  return border;
+}
+
 bool touch(const MeshKernel& kernel, const Shape& at, const Shape& on) {
   for (int i = 0; i < at.count; ++i) {
     for (int j = 0; j < on.count; ++j) {
@@ -59,7 +89,14 @@ NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const Mater
         return std::pair{corners[static_cast<std::size_t>(i)], static_cast<double>(at.weights[i])};
       },
       place);
+  place.border = border_at(kernel, region, place.young_MPa, corners, at.weights);
   return place;
+}
+
+void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip) {
+  const double poisson = kernel.medium(tip.medium).poisson;
+  tip.epsilon = needle.tip_epsilon(tip.skin, poisson);
+  tip.own_epsilon = needle.own_tip_epsilon(tip.skin, tip.border, poisson);
 }
 
 NearPlace passive_place(const Tissue& tissue, const MeshKernel& kernel, const Shape& between, const Vec3& x) {
@@ -101,6 +138,35 @@ Mat3 mesh_kernel_between(const MeshKernel& kernel, const Shape& at, const Shape&
     }
   }
   return sum;
+}
+
+Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g) {
+  const Medium medium = kernel.medium(tip.medium);
+  return between_media(tip, tip, [&](int /*medium*/) -> Mat3 {
+    // The mesh knows of the interface, as far as it can tell a force that it spreads over its elements from one on it.
+    const double blur = 3.0 * kelvinlet_self(medium) / g.trace();
+    return tip_kernel(tip.skin, tip.border, tip.own_epsilon, medium) -
+           image_in_border(tip.border, std::max(blur, tip.own_epsilon), medium) - g;
+  });
+}
+
+Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip) {
+  if (&at == &tip) {
+    return between_media(tip, tip, [&](int medium) -> Mat3 {
+      const Medium own = kernel.medium(medium);
+      return tip_kernel(tip.skin, tip.border, tip.own_epsilon, own) -
+             tip_kernel(tip.skin, tip.border, NeedleKernel::kScale_mm, own);
+    });
+  }
+  const double fine = std::sqrt(at.epsilon * tip.epsilon);
+  // The spread force moves a place as far as both are spread out, by the mean of their squares.
+  constexpr double scale2 = NeedleKernel::kScale_mm * NeedleKernel::kScale_mm;
+  const double coarse = std::sqrt(0.5 * (at.epsilon * at.epsilon + scale2));
+  return between_media(at, tip, [&](int medium) -> Mat3 {
+    const Medium own = kernel.medium(medium);
+    return needle_kernel(at.piece, at.skin, tip.piece, tip.skin, fine, own) -
+           needle_kernel(at.piece, at.skin, tip.piece, tip.skin, coarse, own);
+  });
 }
 
 }  // namespace stylet

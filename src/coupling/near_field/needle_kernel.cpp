@@ -2,6 +2,7 @@
 #include "stylet/coupling/near_field/needle_kernel.hpp"
 
 #include "stylet/coupling/near_field/half_space.hpp"
+#include "stylet/coupling/tip_dent.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,6 +27,15 @@ constexpr Rule kFour{4,
 /// An image is as smooth as its source is far: beyond this many lengths of a piece its middle will do.
 constexpr double kSmooth = 2.0;
 
+/// Radius, in those of the needle, of the regularised force that moves a medium as far as the flat end of a rod which
+/// slides in its hole without friction: by finite elements 0.87 at ν = 0.45 and 0.90 at 0.49
+/// (docs/theory/near_field.md, section 2). Raised, the tip is stiffer deep inside.
+constexpr double kRodEnd = 0.88;
+
+/// Needle radii over which the flat end of a rod comes to feel a border. Raised, the tip is softer in front of harder
+/// tissue and behind softer.
+constexpr double kBorderReach = 1.5;
+
 /// Displacement under the tip falls over depth at this many times less than would make tissue overtake the tip. At 1 a
 /// cut would not unload the tip at all.
 constexpr double kDentMargin = 1.5;
@@ -40,18 +50,53 @@ NearSurface moved(const NearSurface& skin, const Vec3& way) {
 
 double NeedleKernel::shaft_epsilon() const { return std::sqrt(std::numbers::e) * radius_mm; }
 
-double NeedleKernel::tip_epsilon(double depth, double poisson) const {
-  const double deep = 1.5 * radius_mm;
-  const double at_surface = (5.0 - 4.0 * poisson) / (2.0 * std::numbers::pi * (1.0 - poisson)) * radius_mm;
-  return deep + (at_surface - deep) * std::exp(-depth / radius_mm);
+double NearBorder::weight(double epsilon) const {
+  if (contrast == 0.0) return 0.0;
+  const double way = 2.0 * depth / epsilon;
+  return 1.0 / std::sqrt(1.0 + way * way);
+}
+
+Mat3 image_in_border(const NearBorder& border, double epsilon, const Medium& medium) {
+  if (border.contrast == 0.0) return Mat3::Zero();
+  // Far from the interface the images of Mindlin's half space at the force, on it the force's own field again.
+  const double nu = medium.poisson;
+  const double own = 5.0 - 6.0 * nu;
+  const double normal = 8.0 * (1.0 - nu) * (1.0 - nu) + 1.0;
+  const double tangential = 1.5 + 2.0 * (1.0 - nu) * (1.0 - 2.0 * nu);
+  const auto image = [&](double strength) {
+    return strength / std::hypot(2.0 * border.depth, strength / own * epsilon);
+  };
+  const double scale = border.contrast / (16.0 * std::numbers::pi * medium.mu * (1.0 - nu));
+  const Vec3& n = border.inwards;
+  return scale * (image(tangential) * Mat3::Identity() + (image(normal) - image(tangential)) * n * n.transpose());
+}
+
+double NeedleKernel::tip_epsilon(const NearSurface& skin, double poisson) const {
+  const double on_surface = (5.0 - 4.0 * poisson) / (2.0 * std::numbers::pi * (1.0 - poisson));
+  return (kRodEnd + (on_surface - kRodEnd) * std::exp(-skin.depth / radius_mm)) * radius_mm;
+}
+
+double NeedleKernel::own_tip_epsilon(const NearSurface& skin, const NearBorder& border, double poisson) const {
+  // On a free surface the force and its image move it as far as each other, together as far as a flat punch.
+  const double on_border = (5.0 - 6.0 * poisson) / (2.0 * std::numbers::pi * (1.0 - poisson) * (1.0 - poisson));
+  // Level on the border itself: the tip's compliance must not rise on its way in.
+  const auto near = [&](double depth) { return std::exp(-std::pow(depth / (kBorderReach * radius_mm), 2)); };
+  const double at_skin = near(skin.depth);
+  const double at_border = std::abs(border.contrast) * near(border.depth);
+  return (kRodEnd + (on_border - kRodEnd) * std::max(at_skin, at_border)) * radius_mm;
+}
+
+Mat3 tip_kernel(const NearSurface& skin, const NearBorder& border, double epsilon, const Medium& medium) {
+  const NearBorder free{skin.depth, skin.inwards, skin.share};
+  return kelvinlet(Vec3::Zero(), epsilon, medium) + image_in_border(free, epsilon, medium) +
+         image_in_border(border, epsilon, medium);
 }
 
 Mat3 NeedleKernel::tip_self(const NearSurface& surface, const Medium& medium) const {
-  const double epsilon = tip_epsilon(surface.depth, medium.poisson);
-  return kelvinlet(Vec3::Zero(), epsilon, medium) + surface_image(Vec3::Zero(), surface, surface, epsilon, medium);
+  return tip_kernel(surface, {}, own_tip_epsilon(surface, {}, medium.poisson), medium);
 }
 
-Mat3 NeedleKernel::dent(const NearSurface& surface, double press, const Medium& medium) const {
+Mat3 NeedleKernel::dent(const NearSurface& surface, double press, const Medium& medium, double stiffening_MPa) const {
   if (press <= 0.0 || !std::isfinite(surface.depth)) return Mat3::Zero();
   const auto own = [&](double depth) {
     NearSurface there = surface;
@@ -62,10 +107,17 @@ Mat3 NeedleKernel::dent(const NearSurface& surface, double press, const Medium& 
   const auto normal = [&](const Mat3& compliance) { return surface.inwards.dot(compliance * surface.inwards); };
   const Mat3 here = own(surface.depth);
   const Mat3 at_surface = own(0.0);
-  const double allowed = normal(at_surface) - surface.depth / (kDentMargin * press);
+  const double fall = surface.depth / kDentMargin;
+  double allowed = normal(at_surface) - fall / press;
+  if (stiffening_MPa > 0.0) {
+    const double left = DentLaw{normal(at_surface), stiffening_MPa}.depth(press) - fall;
+    if (left <= 0.0) return Mat3::Zero();
+    allowed = DentLaw::compliance_for(press, left, stiffening_MPa);
+  }
   const double excess = allowed - normal(here);
-  if (excess <= 0.0) return Mat3::Zero();
-  return excess / (normal(at_surface) - normal(here)) * (at_surface - here);
+  const double most = normal(at_surface) - normal(here);
+  if (excess <= 0.0 || most <= 0.0) return Mat3::Zero();
+  return std::min(1.0, excess / most) * (at_surface - here);
 }
 
 Mat3 needle_kernel(const Segment& at, const NearSurface& skin_at, const Segment& on, const NearSurface& skin_on,

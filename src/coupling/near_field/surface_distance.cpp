@@ -43,7 +43,8 @@ Vec3 nearest_weights(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c)
 struct SurfaceDistance::Tree {
   const std::vector<Vec3>* nodes = nullptr;
   std::vector<std::array<Index, 3>> triangles;
-  std::vector<Vec3> normal;  ///< (n) at the nodes, the triangles' means weighted by area
+  std::vector<Vec3> normal;   ///< (n) at the nodes, the triangles' means weighted by area
+  std::vector<double> value;  ///< (n) the same of the quantity, or none
   Eigen::KdBVH<double, 3, int> boxes;
 
   [[nodiscard]] Vec3 corner(int triangle, int k) const {
@@ -82,7 +83,8 @@ struct Nearest {
 
 }  // namespace
 
-SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& nodes, std::vector<std::array<Index, 3>> triangles)
+SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& nodes, std::vector<std::array<Index, 3>> triangles,
+                                 const std::vector<double>& values)
     : tree_(std::make_unique<Tree>()) {
   Tree& tree = *tree_;
   tree.nodes = &nodes;
@@ -90,13 +92,23 @@ SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& nodes, std::vector<std
   const auto count = static_cast<int>(tree.triangles.size());
   tree.normal.assign(nodes.size(), Vec3::Zero());
   std::vector<Box> boxes(tree.triangles.size());
+  std::vector<double> areas(values.empty() ? 0 : nodes.size(), 0.0);
+  tree.value.assign(areas.size(), 0.0);
   for (int t = 0; t < count; ++t) {
     const Vec3 area = (tree.corner(t, 1) - tree.corner(t, 0)).cross(tree.corner(t, 2) - tree.corner(t, 0));
     for (int k = 0; k < 3; ++k) {
       boxes[static_cast<std::size_t>(t)].extend(tree.corner(t, k));
       tree.normal[static_cast<std::size_t>(tree.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)])] +=
           area;
+      if (values.empty()) continue;
+      const auto node =
+          static_cast<std::size_t>(tree.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)]);
+      areas[node] += area.norm();
+      tree.value[node] += area.norm() * values[static_cast<std::size_t>(t)];
     }
+  }
+  for (std::size_t node = 0; node < areas.size(); ++node) {
+    if (areas[node] > 0.0) tree.value[node] /= areas[node];
   }
   for (Vec3& normal : tree.normal) normal.normalize();
   std::vector<int> numbers(tree.triangles.size());
@@ -108,11 +120,18 @@ SurfaceDistance::~SurfaceDistance() = default;
 SurfaceDistance::SurfaceDistance(SurfaceDistance&&) noexcept = default;
 SurfaceDistance& SurfaceDistance::operator=(SurfaceDistance&&) noexcept = default;
 
-NearSurface SurfaceDistance::nearest(const Vec3& x) const {
+NearSurface SurfaceDistance::nearest(const Vec3& x, Value* value) const {
   if (tree_->triangles.empty()) return {};
   Nearest<Tree> search{.tree = tree_.get(), .x = x};
   const double distance = std::sqrt(Eigen::BVMinimize(tree_->boxes, search));
   const Vec3 weights = tree_->weights(search.triangle, x);
+  if (value != nullptr) {
+    *value = {0.0, search.triangle};
+    for (int k = 0; k < 3; ++k) {
+      const auto& triangle = tree_->triangles[static_cast<std::size_t>(search.triangle)];
+      value->value += weights[k] * tree_->value[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
+    }
+  }
   constexpr double on_surface_mm = 1e-9;
   if (distance > on_surface_mm) return {distance, (x - tree_->point(search.triangle, weights)) / distance};
   Vec3 outwards = Vec3::Zero();

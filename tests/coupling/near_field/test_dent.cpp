@@ -2,21 +2,25 @@
 // A tip that has broken the skin stands in a dent eight times as deep as it is thick (docs/theory/near_field.md §5).
 #include "coupling/needle_in_block.hpp"
 
+#include <tuple>
+
 namespace stylet {
 namespace {
 
 using test::BlockOptions;
 using test::NeedleInBlock;
 
-class TipInTheDent : public testing::TestWithParam<int> {};
+class TipInTheDent : public testing::TestWithParam<std::tuple<int, double>> {};
 
 TEST_P(TipInTheDent, meets_a_force_that_only_falls_once_the_skin_is_broken) {
   constexpr double kPuncture_N = 1.0;
   constexpr double kCutting_N = 0.05;
   BlockOptions options;
-  options.cells = {GetParam(), GetParam(), GetParam()};
+  const auto [cells, stiffening_MPa] = GetParam();
+  options.cells = {cells, cells, cells};
   options.region_at = [](const Vec3&) { return 0; };
   options.laws[0] = {kCutting_N, kPuncture_N, {}, false, true, -1};
+  options.laws[0].stiffening_MPa = stiffening_MPa;
   NeedleInBlock run(options);
   run.aim({2.0, 3.0, 0.0}, Vec3::UnitZ(), 0.0);
   // Steps so short that the tip's way through the dent, some hundredths of a second, is seen.
@@ -37,7 +41,8 @@ TEST_P(TipInTheDent, meets_a_force_that_only_falls_once_the_skin_is_broken) {
   EXPECT_NEAR(run.forces.back(), kCutting_N + options.coupling.tip_viscosity_Ns_per_mm * 20.0, 0.01);
   EXPECT_EQ(run.flags, 0u);
 }
-INSTANTIATE_TEST_SUITE_P(Meshes, TipInTheDent, testing::Values(5, 8, 14));
+INSTANTIATE_TEST_SUITE_P(Meshes, TipInTheDent,
+                         testing::Combine(testing::Values(5, 8, 14), testing::Values(0.0, 0.03, 0.2)));
 
 }  // namespace
 }  // namespace stylet

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/near_field/medium_block.hpp"
 
+#include <iostream>
+
 namespace stylet {
 namespace {
 
@@ -33,7 +35,7 @@ TEST_P(TipNearTheSkin, gives_way_as_mindlin_says_below_it) {
   const NeedleKernel needle;
   for (const double depth : {1.0, 2.0, 4.0, 7.0, 10.0}) {
     const Vec3 x(2.3, -1.7, depth - 50.0);
-    const double epsilon = needle.tip_epsilon(depth, block.medium.poisson);
+    const double epsilon = needle.own_tip_epsilon({depth, Vec3::UnitZ(), 1.0}, {}, block.medium.poisson);
     const Mat3 mindlin = kelvinlet(Vec3::Zero(), epsilon, block.medium) +
                          free_surface_image(Vec3::Zero(), {Vec3::UnitZ(), depth, depth}, epsilon, block.medium);
     const Mat3 ours = tip_in_half_space(block, needle, x);
@@ -83,6 +85,48 @@ TEST(TipNearBone, gives_way_less_the_nearer_it_is_and_not_at_all_on_it) {
     const Vec3& x = block.tissue->mesh().nodes[static_cast<std::size_t>(node)];
     if (x.z() > 15.0 || x.z() < 9.0 || std::max(std::abs(x.x()), std::abs(x.y())) > 25) continue;
     EXPECT_LT(block.tip(needle, x).norm(), 1e-9) << x.transpose();
+  }
+}
+
+/// Stiffness [N/mm] of the flat end of a rod of radius 0.635 mm in its hole, by an axisymmetric finite element model
+/// (tests/reference/rod_end.py): fat of 2 kPa above gland of 30 kPa, ν = 0.45; the end is `above` [mm] the interface,
+/// below it where that is negative.
+struct RodEnd {
+  double above;
+  double stiffness;
+};
+constexpr RodEnd kBetweenFatAndGland[] = {
+#include "rod_end.inc"
+};
+
+TEST(TipBetweenTwoTissues, gives_way_as_finite_elements_around_a_rod_say_on_any_mesh) {
+  for (const int cells : {6, 8, 14}) {  // of these an interface at z = 0 lies on element faces
+    MediumBlock block({.cells = cells,
+                       .jitter = 0.0,
+                       .regions = {"fat", "gland"},
+                       .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : 1; },
+                       .materials = {{0.002, 0.45}, {0.03, 0.45}}});
+    for (const RodEnd& end : kBetweenFatAndGland) {
+      for (const double side : {-1e-6, 1e-6}) {
+        const double product = block.tip({}, {1.3, 0.7, side - end.above})(2, 2) * end.stiffness;
+        EXPECT_NEAR(product, 1.0, 0.15) << cells << " cells, " << end.above << " mm above";
+        if (side > 0.0) std::cout << cells << " cells, " << end.above << " mm above: " << product << '\n';
+      }
+    }
+  }
+}
+
+TEST(TipBetweenTwoTissues, is_never_held_by_less_on_its_way_into_the_harder_one) {
+  MediumBlock block({.cells = 8,
+                     .jitter = 0.0,
+                     .regions = {"fat", "gland"},
+                     .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : 1; },
+                     .materials = {{0.002, 0.45}, {0.03, 0.45}}});
+  double before = 1e9;
+  for (double z = -8.0; z <= 8.0; z += 0.1) {
+    const double compliance = block.tip({}, {1.3, 0.7, z + 1e-6})(2, 2);
+    EXPECT_LT(compliance, 1.01 * before) << z;
+    before = compliance;
   }
 }
 

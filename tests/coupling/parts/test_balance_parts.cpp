@@ -381,7 +381,7 @@ TEST(TissueBlock, ForeseesHowGapsChangeWithACutThatLeadsAside) {
   block.gather(needle.contacts, block.renew(needle.contacts));
   const Vec3 aside = Vec3(0.2, 0.0, 1.0).normalized();
   needle.tip.cut.aim(aside);
-  block.gather_drift(needle.contacts, rows);
+  block.gather_drift(needle.contacts, {}, rows);
   EXPECT_NEAR((rows.tip.drift.head<3>() - (aside - Vec3::UnitZ())).norm(), 0.0, 1e-12)
       << "this tissue is the same everywhere";
 }

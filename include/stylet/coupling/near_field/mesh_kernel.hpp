@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/coupling/near_field/interface_distance.hpp"
 #include "stylet/coupling/near_field/kelvinlet.hpp"
 #include "stylet/coupling/near_field/surface_distance.hpp"
 #include "stylet/fem/tissue.hpp"
@@ -9,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 
 namespace stylet {
 
@@ -32,7 +34,8 @@ class MeshKernel {
     Index node = -1;
     double edge = 0.0;
     NearSurface skin;
-    std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
+    std::vector<std::pair<int, NearInterface>> interfaces;  ///< by the regions that have the node
+    std::vector<Index> near;                                ///< nodes of the patch that are not on its rim, ascending
     std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa; none of a medium not in the patch
   };
 
@@ -73,6 +76,9 @@ class MeshKernel {
   /// The free surface near a node.
   [[nodiscard]] const NearSurface& skin(Index node) const { return row(node).skin; }
 
+  /// The interface near a node of a region, to tissue of another modulus.
+  [[nodiscard]] const NearInterface& interface_of(Index node, int region) const;
+
   /// Mean length of the edges at a node [mm].
   [[nodiscard]] double edge(Index node) const { return row(node).edge; }
 
@@ -90,6 +96,7 @@ class MeshKernel {
   /// What rows are made of; shared by copies.
   struct Ground {
     SurfaceDistance skin;
+    InterfaceDistance interfaces;
     std::vector<double> poisson;                ///< (media)
     std::vector<int> region_medium;             ///< (regions)
     std::vector<std::vector<Index>> node_tets;  ///< (n) elements around a displacement node

@@ -7,6 +7,7 @@
 #include "stylet/fem/tissue.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace stylet {
 
@@ -21,8 +22,10 @@ class NearFieldCompliance final : public ContactCompliance {
  public:
   /// @param far Λ K⁻¹ Λᵀ from whatever engine keeps K⁻¹; has no points yet
   /// @param kernel of the tissue's mesh
+  /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
   NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
-                      std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity);
+                      std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity,
+                      std::vector<double> stiffening_MPa = {});
 
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
@@ -39,7 +42,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// Of the far field: what the mesh represents.
   [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const override;
 
-  /// With the near field, wherever a node lies in it.
+  /// With the near field, wherever a node lies in it, and the dent under the tip as it stiffens.
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
@@ -54,15 +57,18 @@ class NearFieldCompliance final : public ContactCompliance {
     return static_cast<std::size_t>((number * capacity_ + point) * kernel_->media() + medium);
   }
   void forget_tip_node(int number, int first_point, int last_point);
+  [[nodiscard]] double stiffening_at(const NearPlace& tip, Index tet) const;
+  void write_needle_scale(int point);
 
   std::unique_ptr<ContactCompliance> far_;
   std::shared_ptr<const Tissue> tissue_;
   std::shared_ptr<const MeshKernel> kernel_;
   NeedleKernel needle_;
-  double press_N_ = 0.0;           ///< what the surface the needle went in by took before it broke …
-  Vec3 entry_ = Vec3::Zero();      ///< … and which way it went
-  std::vector<NearPlace> places_;  ///< (points)
-  int capacity_;                   ///< of points, tip included
+  std::vector<double> region_stiffening_MPa_;  ///< (regions) or none
+  double press_N_ = 0.0;                       ///< what the surface the needle went in by took before it broke …
+  Vec3 entry_ = Vec3::Zero();                  ///< … and which way it went
+  std::vector<NearPlace> places_;              ///< (points)
+  int capacity_;                               ///< of points, tip included
   int tip_tet_ = -1;
   TipElement tip_element_;
   // g between the nodes of the tip's element and the points, for E = 1 MPa, as it is asked for.

@@ -14,10 +14,12 @@ namespace stylet {
 struct NearPlace {
   Shape shape;
   Segment piece;
-  double epsilon = 0.0;  ///< [mm] of the needle there
+  double epsilon = 0.0;      ///< [mm] of the needle there
+  double own_epsilon = 0.0;  ///< [mm] the same as the tip feels itself; of the tip only
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
+  NearBorder border;
   double edge = 0.0;   ///< [mm] size of the elements there
   double moves = 1.0;  ///< 0…1: weight of the element's nodes that are not held
 };
@@ -25,6 +27,9 @@ struct NearPlace {
 /// The place of a material point at x [mm], undeformed; its epsilon is the caller's to say. The kernel must have the
 /// corners of its element.
 NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const MaterialPoint& at, const Vec3& x);
+
+/// Makes a place that of the needle's tip.
+void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip);
 
 /// A place where the needle is not, as on a surface: between some nodes of the mesh, at `x` [mm], undeformed, in the
 /// medium of whatever acts on it. The kernel must have these nodes.
@@ -41,20 +46,35 @@ bool needs_correction(const MeshKernel& kernel, const NearPlace& at, const NearP
 /// g(at, on) of the mesh for E = 1 MPa [mm/N].
 Mat3 mesh_kernel_between(const MeshKernel& kernel, const Shape& at, const Shape& on, int medium);
 
+/// A kernel between two places, which are in the same medium or in two: for E = 1 MPa in either, over the geometric
+/// mean of their moduli. Dividing rows and columns alike by the root of E makes nothing indefinite, whatever the
+/// moduli.
+/// @param for_unit of a medium, for E = 1 MPa
+template <class ForUnit>
+Mat3 between_media(const NearPlace& at, const NearPlace& on, const ForUnit& for_unit) {
+  const double share = at.moves * on.moves / std::sqrt(at.young_MPa * on.young_MPa);
+  if (at.medium == on.medium) return share * for_unit(at.medium);
+  return 0.5 * share * (for_unit(at.medium) + for_unit(on.medium));
+}
+
 /// Difference of the needle's kernel from the mesh's: displacement of `at` per force on `on` [mm/N] (docs/theory/
 /// near_field.md, section 1). @param g g(at, on) for E = 1 MPa in a medium
 template <class OfMesh>
 Mat3 near_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, const OfMesh& g) {
   if (!needs_correction(kernel, at, on)) return Mat3::Zero();
-  const double share = at.moves * on.moves;
   const double epsilon = std::sqrt(at.epsilon * on.epsilon);
-  const auto for_unit = [&](int medium) -> Mat3 {  // both are inversely proportional to Young's modulus
+  return between_media(at, on, [&](int medium) -> Mat3 {
     return needle_kernel(at.piece, at.skin, on.piece, on.skin, epsilon, kernel.medium(medium)) - g(medium);
-  };
-  const double of_at = 0.5 * share / at.young_MPa;
-  const double of_on = 0.5 * share / on.young_MPa;
-  if (at.medium == on.medium) return (of_at + of_on) * for_unit(at.medium);
-  return of_at * for_unit(at.medium) + of_on * for_unit(on.medium);
+  });
 }
+
+/// near_correction() of the tip's own force, with the borders near it.
+/// @param g g(tip, tip) of the mesh for E = 1 MPa in the tip's medium
+Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);
+
+/// What a tip's force moves a place by that is of the needle's own scale [mm/N]: what of its field a force spread over
+/// NeedleKernel::kScale_mm has not. It depends on no mesh.
+/// @param at contact, the tip itself, or acted_on_by() the tip @param tip where the force is
+Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip);
 
 }  // namespace stylet

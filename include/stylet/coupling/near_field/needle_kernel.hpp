@@ -4,31 +4,63 @@
 #include "stylet/coupling/near_field/kelvinlet.hpp"
 #include "stylet/coupling/near_field/surface_distance.hpp"
 
+#include <limits>
+
 namespace stylet {
+
+/// A border near a place, as a plane: an interface to tissue of another modulus, or a free surface.
+struct NearBorder {
+  double depth = std::numeric_limits<double>::infinity();  ///< [mm]
+  Vec3 inwards = Vec3::UnitZ();                            ///< unit normal, towards the place
+  double contrast = 0.0;  ///< δ = (E − E′)/(E + E′), E′ beyond: 1 a free surface, −1 a rigid wall
+  int beyond = -1;        ///< region there
+
+  /// 0…1: how much of a force that is spread over epsilon [mm] is felt as one on the interface.
+  [[nodiscard]] double weight(double epsilon) const;
+};
+
+/// The image of a force in a border: what it adds to the displacement at the force itself [mm/N] (docs/theory/
+/// near_field.md, section 4). Exact for a Poisson ratio of ½ far from the border and on it.
+/// @param epsilon [mm] radius over which the force is spread
+Mat3 image_in_border(const NearBorder& border, double epsilon, const Medium& medium);
 
 /// The needle as the tissue near it feels it.
 struct NeedleKernel {
   double radius_mm = 0.635;
   double segment_mm = 4.0;  ///< of shaft that a contact stands for: the spacing of contacts
 
+  /// [mm] A force that is spread over this radius strains tissue by a few hundredths, where it is still linear. So much
+  /// of the tip's field as such a force has belongs to the organs; the rest is of the needle's own scale, and stiffens
+  /// (docs/theory/stiffening.md). Raised, more of the tip's compliance stiffens.
+  static constexpr double kScale_mm = 10.0;
+
   /// √e R: a line of regularised forces on the axis with this radius moves the medium like a bonded rigid cylinder of
   /// radius R, laterally and axially, for every Poisson ratio (docs/theory/near_field.md §2).
   [[nodiscard]] double shaft_epsilon() const;
 
-  /// The tip: 1.5 R deep inside; at a free surface the radius that gives a flat punch its stiffness 2RE/(1−ν²).
-  [[nodiscard]] double tip_epsilon(double depth, double poisson) const;
+  /// The tip as the flat end of a rod that slides in its hole, on a free surface a flat punch of stiffness 2RE/(1−ν²):
+  /// as other places feel it. @param skin near the tip
+  [[nodiscard]] double tip_epsilon(const NearSurface& skin, double poisson) const;
+  /// The same as the tip feels itself, by tip_kernel(): before an interface like the flat punch as well, the more so
+  /// the softer the tissue on one side.
+  [[nodiscard]] double own_tip_epsilon(const NearSurface& skin, const NearBorder& border, double poisson) const;
 
   /// What the tip's own compliance is more than the half space's at a depth below a free surface it was pressed on
   /// [mm/N]. The linear dent is so steep that it would turn the tissue under it inside out, and a tip that has broken
   /// the surface would meet a growing force. So the compliance falls over depth no faster than to let the tip through,
   /// until it has come down to the half space's (docs/theory/near_field.md §5). Zero at the surface and from there on.
   /// Does not depend on surface.share.
-  /// @param press [N] force that made the dent
-  [[nodiscard]] Mat3 dent(const NearSurface& surface, double press, const Medium& medium) const;
+  /// @param press [N] force that made the dent @param stiffening_MPa k₂ of DentLaw there, 0 = linear tissue
+  [[nodiscard]] Mat3 dent(const NearSurface& surface, double press, const Medium& medium,
+                          double stiffening_MPa = 0.0) const;
 
  private:
   [[nodiscard]] Mat3 tip_self(const NearSurface& surface, const Medium& medium) const;
 };
+
+/// Displacement of a tip per force on itself, with the images in the borders near it [mm/N].
+/// @param epsilon own_tip_epsilon(), or of a force that is spread wider
+Mat3 tip_kernel(const NearSurface& skin, const NearBorder& border, double epsilon, const Medium& medium);
 
 /// ⟨G⟩: the medium's kernel averaged over two pieces of needle, with the image of a free surface near them [mm/N].
 /// @param skin_at surface nearest to the centre of the piece `at`

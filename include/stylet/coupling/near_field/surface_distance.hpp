@@ -21,12 +21,20 @@ struct NearSurface {
 class SurfaceDistance {
  public:
   /// @param triangles corners ordered so that the normal points out of the tissue; empty = nothing near
-  SurfaceDistance(const std::vector<Vec3>& nodes, std::vector<std::array<Index, 3>> triangles);
+  /// @param values (triangles) of some quantity, or none
+  SurfaceDistance(const std::vector<Vec3>& nodes, std::vector<std::array<Index, 3>> triangles,
+                  const std::vector<double>& values = {});
   ~SurfaceDistance();
   SurfaceDistance(SurfaceDistance&&) noexcept;
   SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
 
-  [[nodiscard]] NearSurface nearest(const Vec3& x) const;
+  /// The quantity at the nearest point; at a node it is the mean of the triangles there, weighted by their areas.
+  struct Value {
+    double value = 0.0;
+    int triangle = -1;  ///< that has the nearest point
+  };
+  /// @param value written, if it is asked for
+  [[nodiscard]] NearSurface nearest(const Vec3& x, Value* value = nullptr) const;
 
  private:
   struct Tree;
