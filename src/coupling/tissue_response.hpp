@@ -34,7 +34,7 @@ class TissueResponse {
   [[nodiscard]] Vec3 past_displacement(int point) const { return memory_.displacement(*compliance_, point); }
   /// [mm] LPS, displacement of a point by all forces.
   [[nodiscard]] Vec3 displacement(int point, const ContactForces& contacts) const;
-  /// What of that a tissue that stiffens under the tip does not do: displacement() has it taken off.
+  /// The displacement that stiffening under the tip takes off the linear one; displacement() is without it.
   [[nodiscard]] TipRelief relief(const ContactForces& contacts) const;
   /// [mm/N] mean over the directions of how far a point gives way to a force on itself.
   [[nodiscard]] double own_yield(int point) const { return (*compliance_)(point, point).trace() / 3.0; }

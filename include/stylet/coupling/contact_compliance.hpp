@@ -123,8 +123,8 @@ class ContactCompliance {
   [[nodiscard]] Mat3 operator()(int c, int d) const { return A_.block<3, 3>(3 * c, 3 * d); }
   [[nodiscard]] const MatX& matrix() const { return A_; }  ///< leading 3·points() rows and columns are in use
 
-  /// What of the tip's columns of A is of the needle's own scale and stiffens under force [mm/N] (3 points × 3): there
-  /// the tissue gives way by tip_dent(). Zero where all of A is linear.
+  /// The part of the tip's columns of A that is of the needle's own scale [mm/N] (3 points × 3). This part of the
+  /// compliance stiffens under force, as tip_dent() says. Zero where all of A is linear.
   [[nodiscard]] const MatX& needle_scale() const { return needle_scale_; }
   /// How the tip's own part of that gives way.
   [[nodiscard]] TipDent tip_dent() const { return {needle_scale_.topRows<3>(), stiffening_MPa_}; }

@@ -100,8 +100,8 @@ void TissueBlock::stiffen(const TipRelief& relief) {
   }
 }
 
-/// What changes with the cut is of the needle's scale. It moves the contacts by φ, the force that makes the same dent
-/// in linear tissue, and the tip by φ′ times as much as linear tissue.
+/// The part of A that changes with the cut is of the needle's own scale. By this part the contacts move as they would
+/// under φ, the force that makes the same dent in linear tissue, and the tip moves φ′ times as far as in linear tissue.
 void TissueBlock::gather_drift(const Contacts& contacts, const TipRelief& relief, ContactRows& rows) const {
   const auto size = 3 * static_cast<Eigen::Index>(contacts.count());
   const auto slope = slope_.topRows(size);

@@ -74,7 +74,7 @@ TEST(FreeSurface, a_tip_pressed_on_it_gives_way_like_a_flat_punch) {
     const NearSurface skin{0.0, Vec3::UnitZ(), 1.0};
     const double punch = (1.0 - poisson * poisson) / (2.0 * needle.radius_mm * young);
     EXPECT_NEAR(tip_kernel(skin, {}, needle.own_tip_epsilon(skin, {}, poisson), medium)(2, 2), punch, 1e-9 * punch);
-    // What other places feel of it goes over into that.
+    // Places right beside the tip move as far as the punch does.
     const double epsilon = needle.tip_epsilon(skin, poisson);
     const Mat3 G = kelvinlet(Vec3::Zero(), epsilon, medium) +
                    free_surface_image(Vec3::Zero(), {Vec3::UnitZ(), 0.0, 0.0}, epsilon, medium);

@@ -72,8 +72,9 @@ Mat3 near_correction(const MeshKernel& kernel, const NearPlace& at, const NearPl
 /// @param g g(tip, tip) of the mesh for E = 1 MPa in the tip's medium
 Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);
 
-/// What a tip's force moves a place by that is of the needle's own scale [mm/N]: what of its field a force spread over
-/// NeedleKernel::kScale_mm has not. It depends on no mesh.
+/// Displacement of a place per force on the tip, less the displacement by the same force spread over
+/// NeedleKernel::kScale_mm [mm/N]: the part of the tip's field that is of the needle's own scale. It depends on no
+/// mesh.
 /// @param at contact, the tip itself, or acted_on_by() the tip @param tip where the force is
 Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip);
 
