@@ -89,6 +89,7 @@ Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&
   options.regions = scenario.patient.regions;
   options.skip = scenario.patient.skip;
   options.stiff_band = scenario.mesh.stiff_band;
+  options.layers = scenario.anatomy;
   if (scenario.patient.source == "phantom" && scenario.patient.volume > 0)
     return input_error("patient.volume", "the phantom is no mask with volumes to choose from", "Leave it out.");
   if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);

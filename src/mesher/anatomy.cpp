@@ -16,7 +16,7 @@ constexpr double kOffsetRoom = 4.0;  // [mm] surfaces may be offset by up to thi
 }  // namespace
 
 int priority(std::string_view c) {
-  constexpr std::array<std::string_view, 18> order{"urethra",
+  constexpr std::array<std::string_view, 23> order{"urethra",
                                                    "anterior_stroma",
                                                    "central_zone",
                                                    "transition_zone",
@@ -28,12 +28,17 @@ int priority(std::string_view c) {
                                                    "ptv",
                                                    "seminal_vesicles",
                                                    "bladder",
+                                                   "rectal_lumen",
                                                    "rectum",
                                                    "pubic_arch",
                                                    "femur_left",
                                                    "femur_right",
                                                    "",
-                                                   "band"};
+                                                   "band",
+                                                   "periprostatic_fat",
+                                                   "levator",
+                                                   "ischiorectal_fat",
+                                                   "subcutaneous_fat"};
   if (c == "body") return static_cast<int>(order.size());
   const auto it = std::find(order.begin(), order.end(), c);
   // Structures the user named himself come after the known organs.
@@ -165,10 +170,12 @@ double offset_for_volume(const Shape& shape, double volume) {
   return 0.5 * (low + high);
 }
 
-/// Whether it is no contradiction that one structure is drawn within another: anything lies in the body, the urethra
-/// and the zones lie in the gland, and a band ends in what it ties.
+/// Whether it is no contradiction that one structure is drawn within another: anything lies in the body and in fat, the
+/// urethra and the zones lie in the gland, the lumen in the rectum, and a band ends in what it ties.
 bool belongs_inside(const Structure& inner, const Structure& outer) {
-  return outer.name == "body" || outer.name == "band" || (outer.target && (inner.target || inner.name == "urethra"));
+  return outer.name == "body" || outer.name == "band" || outer.name.ends_with("_fat") ||
+         (outer.target && (inner.target || inner.name == "urethra")) ||
+         (outer.name == "rectum" && inner.name == "rectal_lumen");
 }
 
 }  // namespace

@@ -72,6 +72,9 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
 /// gland to it. Crops or rounds a body that is there.
 void add_surroundings(Anatomy& anatomy, const MeshOptions& options);
 
+/// Adds the soft layers that the input does not have. Needs a body.
+void add_soft_layers(Anatomy& anatomy, const SoftLayers& layers);
+
 /// Sets the offsets so that each structure's own field has the volume of its input, and works out which part of it is
 /// left after structures of higher priority; notes overlaps.
 void settle_overlaps(Anatomy& anatomy);

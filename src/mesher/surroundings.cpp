@@ -108,6 +108,7 @@ void add_band(Anatomy& a) {
 void add_surroundings(Anatomy& a, const MeshOptions& options) {
   if (a.find("body") == nullptr) add_body(a, options.preset == MeshPreset::paper);
   if (options.stiff_band && a.find("pubic_arch") == nullptr && a.find("band") == nullptr) add_band(a);
+  if (options.preset != MeshPreset::paper) add_soft_layers(a, options.layers);
 }
 
 }  // namespace stylet::meshing

@@ -30,6 +30,11 @@ constexpr Row kRows[] = {
     {"urethra", 30, 0.45, 0.2, 0.0, "stated, no measurement known: softer than the gland, no capsule"},
     {"bladder", 20, 0.45, 0.15, 0.5, "stated: wall and filling as one, 10-100 kPa"},
     {"rectum", 20, 0.45, 0.15, 0.5, "stated: wall and filling as one, 10-100 kPa"},
+    {"periprostatic_fat", 2, 0.45, 0.1, 0.0, ""},
+    {"levator", 25, 0.45, 1.0, 0.0, ""},
+    {"ischiorectal_fat", 2, 0.45, 0.1, 0.0, ""},
+    {"subcutaneous_fat", 10, 0.45, 0.3, 2.8, ""},
+    {"rectal_lumen", 1, 0.45, 0.05, 0.0, ""},
     {"seminal_vesicles", 20, 0.45, 0.15, 0.0, "stated, no measurement known"},
     {"band", 300, 0.45, 0.6, 0.0,
      "stated: ligament, several times stiffer than the gland (Goksel 2005 names it, without a value)"},
@@ -44,6 +49,10 @@ std::vector<std::string> known_tissues() {
   std::vector<std::string> names;
   for (const Row& row : kRows) names.emplace_back(row.region);
   return names;
+}
+
+bool is_surrounding(const std::string& region) {
+  return region == "body" || region == "levator" || region.ends_with("_fat");
 }
 
 TissueParameters default_tissue(const std::string& region) {

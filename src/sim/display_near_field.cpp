@@ -90,10 +90,11 @@ NearPlace DisplayNearField::place_of(const TissueForce& force) const {
 
 /// Takes off what tissue that stiffens under the tip does not move by.
 void DisplayNearField::stiffen(const TissueForce& tip) {
-  const int region = model_->mesh().tet_region[static_cast<std::size_t>(tip.at.tet)];
-  const double stiffening_MPa = model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa;
-  if (stiffening_MPa == 0.0 || !knows_stiffening(model_->coupling())) return;
+  if (!knows_stiffening(model_->coupling())) return;
   const NearPlace on = place_of(tip);
+  const double stiffening_MPa = stiffening_of(
+      on, [&](int region) { return model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa; });
+  if (stiffening_MPa == 0.0) return;
   const TipDent dent{needle_scale(*model_->kernel(), on, on), stiffening_MPa};
   const Vec3 spared = tip.force - dent.under(tip.force).linear;
   for (std::size_t p = 0; p < places_.size(); ++p) {

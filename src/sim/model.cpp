@@ -229,11 +229,11 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     laws.stiffening_MPa = p.stiffening * p.young_kPa * 1e-3;
     laws.friction = {p.friction_static_N_per_m * 1e-3, p.friction_coulomb_N_per_m * 1e-3,
                      p.friction_viscous_Ns_per_m2 * 1e-6, p.friction_viscous_to_mm_per_s};
-    laws.surrounding = name == "body";
+    laws.surrounding = is_surrounding(name);
     const bool in_target =
         std::find(model->target_.begin(), model->target_.end(), static_cast<int>(r)) != model->target_.end();
     // The urethra runs through the gland and has no capsule of its own.
-    laws.organ = in_target || name == "urethra" ? 0 : -1;
+    laws.organ = in_target || name == "urethra" ? 0 : name.starts_with("rect") ? 1 : -1;
     model->laws_.push_back(laws);
   }
 

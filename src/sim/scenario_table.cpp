@@ -97,6 +97,23 @@ void describe_supports(ScenarioEntries& keys) {
                  [](auto& s, const Slot&) { return &s.fixed.box_mm; }, {.example = "[-40, -60, -30, 40, -30, 30]"});
 }
 
+void describe_anatomy(ScenarioEntries& keys) {
+  keys.number("anatomy.periprostatic_fat_mm", "mm", 0, 40,
+              "thickness of fat and venous plexus round gland and seminal vesicles, where the input has none; 0 = none",
+              [](auto& s, const Slot&) { return &s.anatomy.periprostatic_fat_mm; });
+  keys.number("anatomy.levator_mm", "mm", 0, 20,
+              "thickness of the levator muscle round that fat and the rectum, below the gland's base; 0 = none",
+              [](auto& s, const Slot&) { return &s.anatomy.levator_mm; });
+  keys.number("anatomy.ischiorectal_fat_mm", "mm", 0, 60,
+              "width of the fat on either side of the rectum, from the skin to beside the apex; 0 = none",
+              [](auto& s, const Slot&) { return &s.anatomy.ischiorectal_fat_mm; });
+  keys.number("anatomy.subcutaneous_fat_mm", "mm", 0, 60,
+              "thickness of the fat under the perineal skin, along the patient's axis; 0 = none",
+              [](auto& s, const Slot&) { return &s.anatomy.subcutaneous_fat_mm; });
+  keys.number("anatomy.rectal_wall_mm", "mm", 0, 20, "thickness of the rectum's wall, within it is the lumen; 0 = no lumen",
+              [](auto& s, const Slot&) { return &s.anatomy.rectal_wall_mm; });
+}
+
 void describe_mesh(ScenarioEntries& keys) {
   keys.integer("mesh.nodes", 0, 1000000, "nodes of the mesh; 0 = 3,000 (standard) or 570 (paper)",
                [](auto& s, const Slot&) { return &s.mesh.nodes; });
@@ -293,7 +310,8 @@ const std::vector<ScenarioEntry>& scenario_table() {
     describe_patient(keys);
     describe_tissue(keys);
     describe_supports(keys);
-    describe_mesh(keys);
+    describe_anatomy(keys);
+  describe_mesh(keys);
     describe_needle(keys);
     describe_coupling(keys);
     describe_template(keys);

@@ -9,14 +9,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 namespace stylet::validate {
+
+namespace {
+
+/// Moves to each plane the layer of nodes that is nearest to it and not yet in use.
+void move_layers(TetMesh& mesh, const std::vector<double>& planes) {
+  std::set<double> layers;
+  for (const Vec3& x : mesh.nodes) layers.insert(x.z());
+  for (const double plane : planes) {
+    const auto nearer = [&](double a, double b) { return std::abs(a - plane) < std::abs(b - plane); };
+    const double layer = *std::min_element(layers.begin(), layers.end(), nearer);
+    for (Vec3& x : mesh.nodes) {
+      if (x.z() == layer) x.z() = plane;
+    }
+    layers.erase(layer);
+  }
+}
+
+}  // namespace
 
 Result<MediumBlock> MediumBlock::build(const Options& options) {
   MediumBlock block;
   TetMesh mesh = box_mesh(Vec3::Constant(-kHalf_mm), Vec3::Constant(kHalf_mm),
                           {options.cells, options.cells, options.cells}, options.jitter);
+  move_layers(mesh, options.faces_at_z);
   assign_regions(mesh, options.regions, options.region_at);
   block.fixed = nodes_where(mesh, [&](const Vec3& x) {
     constexpr double face = kHalf_mm - 0.01;

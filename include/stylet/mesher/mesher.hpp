@@ -6,6 +6,7 @@
 #include "stylet/geom/label_image.hpp"
 #include "stylet/geom/mesh_preset.hpp"
 #include "stylet/geom/quality.hpp"
+#include "stylet/geom/soft_layers.hpp"
 #include "stylet/geom/surface.hpp"
 
 #include <map>
@@ -22,6 +23,7 @@ struct MeshOptions {
   std::map<std::string, std::string> regions;
   std::vector<std::string> skip;  ///< names of input structures, or labels' numbers as text, to leave out
   bool stiff_band = true;  ///< without a pubic arch in the input: add the band from the gland's anterior-inferior end
+  SoftLayers layers;       ///< to be made where the input has none; MeshPreset::paper has none in any case
 };
 
 /// How well a region of the mesh reproduces its input.
@@ -64,7 +66,8 @@ Contour cull(const Contour& contour, double tolerance_mm);
 
 /// Canonical name of a structure by its synonyms, case-insensitive, separators ignored: prostate, peripheral_zone,
 /// transition_zone, central_zone, anterior_stroma, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band,
-/// body, seminal_vesicles, and the planning volumes ctv, target, ptv, gtv; empty when not recognised. Whole names only:
+/// body, seminal_vesicles, the soft layers periprostatic_fat, levator, ischiorectal_fat, subcutaneous_fat and
+/// rectal_lumen, and the planning volumes ctv, target, ptv, gtv; empty when not recognised. Whole names only:
 /// planning helpers such as "optBladder" are not anatomy.
 std::string canonical_region(std::string_view name);
 

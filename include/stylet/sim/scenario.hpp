@@ -3,6 +3,7 @@
 
 #include "stylet/core/result.hpp"
 #include "stylet/core/types.hpp"
+#include "stylet/geom/soft_layers.hpp"
 #include "stylet/sim/choices.hpp"
 
 #include <array>
@@ -36,6 +37,10 @@ TissueParameters default_tissue(const std::string& region);
 
 /// Regions default_tissue() has values of its own for, in the order of documentation.
 std::vector<std::string> known_tissues();
+
+/// Whether a region fills the space between the organs (fat, muscle, the body): what breaks at its surface is the skin
+/// only, since no membrane parts it from its like.
+bool is_surrounding(const std::string& region);
 
 /// A guide template: a grid of holes in front of the perineum. Columns are lettered A a B b … G from the patient's
 /// right to the left, rows numbered 1, 1.5, … 7 from posterior to anterior.
@@ -97,6 +102,7 @@ struct Scenario {
     std::optional<std::array<double, 6>> box_mm;   ///< LPS, low and high corner: nodes inside are held as well
     bool operator==(const Fixed&) const = default;
   } fixed;
+  SoftLayers anatomy;  ///< what the patient has that contours and masks do not show
   struct Mesh {
     int nodes = 0;  ///< 0 = the preset's default
     MeshPreset preset = MeshPreset::standard;

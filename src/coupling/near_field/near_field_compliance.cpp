@@ -46,15 +46,6 @@ void NearFieldCompliance::reset() {
   stiffening_MPa_ = 0.0;
 }
 
-/// k₂ where the tip is. On an interface it is that of the tissue that stiffens more.
-double NearFieldCompliance::stiffening_at(const NearPlace& tip, Index tet) const {
-  if (region_stiffening_MPa_.empty()) return 0.0;
-  const auto of = [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; };
-  const double own = of(tissue_->mesh().tet_region[static_cast<std::size_t>(tet)]);
-  if (tip.border.beyond < 0) return own;
-  return own + tip.border.weight(tip.own_epsilon) * std::max(0.0, of(tip.border.beyond) - own);
-}
-
 void NearFieldCompliance::write_needle_scale(int point) {
   const NearPlace& tip = places_[kTip];
   needle_scale_.middleRows<3>(3 * point) =
@@ -141,7 +132,10 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   const Mat3 own = (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, g);
   A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
-  stiffening_MPa_ = stiffening_at(tip, at.tet);
+  stiffening_MPa_ = 0.0;
+  if (!region_stiffening_MPa_.empty())
+    stiffening_MPa_ = stiffening_of(
+        tip, [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; });
   for (int d = 0; d < points_ && stiffens(); ++d) write_needle_scale(d);
   if (tip.skin.inwards.dot(entry_) > 0.0) {  // not the far surface, from inside
     const Mat3 more = tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa),

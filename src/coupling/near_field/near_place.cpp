@@ -37,31 +37,17 @@ void describe_surroundings(const Tissue& tissue, const MeshKernel& kernel, int c
   if (!has_skin) place.skin = {};
 }
 
-/// The interface near a place of a region, as the corners of its element have it.
-NearBorder border_at(const MeshKernel& kernel, int region, double young_MPa, const std::array<Index, 4>& corners,
-                     const Vec4& weights) {
-  NearBorder border;
-  double log_beyond = 0.0;
-  double nearest = std::numeric_limits<double>::infinity();
-  border.depth = 0.0;
-  border.inwards.setZero();
-  for (std::size_t i = 0; i < 4; ++i) {
-    const NearInterface& there = kernel.interface_of(corners[i], region);
-    if (!std::isfinite(there.depth)) return {};
-    const double weight = weights[static_cast<Eigen::Index>(i)];
-    border.depth += weight * there.depth;
-    border.inwards += weight * there.inwards;
-    log_beyond += weight * std::log(there.beyond_MPa);
-    if (there.depth < nearest) {
-      nearest = there.depth;
-      border.beyond = there.beyond;
-    }
+/// The interfaces near a place of a region.
+NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, const Vec3& x) {
+  const std::array<NearInterface, 2> interfaces = kernel.interfaces().nearest(region, x);
+  NearBorders borders;
+  for (std::size_t i = 0; i < borders.size(); ++i) {
+    const NearInterface& there = interfaces[i];
+    if (there.beyond < 0) continue;
+    borders[i] = {there.depth, there.inwards, (young_MPa - there.beyond_MPa) / (young_MPa + there.beyond_MPa),
+                  there.beyond};
   }
-  border.depth = std::max(0.0, border.depth);
-  border.inwards.normalize();
-  const double beyond_MPa = std::exp(log_beyond);
-  border.contrast = (young_MPa - beyond_MPa) / (young_MPa + beyond_MPa);
-  return border;
+  return borders;
 }
 
 bool touch(const MeshKernel& kernel, const Shape& at, const Shape& on) {
@@ -89,14 +75,15 @@ NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const Mater
         return std::pair{corners[static_cast<std::size_t>(i)], static_cast<double>(at.weights[i])};
       },
       place);
-  place.border = border_at(kernel, region, place.young_MPa, corners, at.weights);
+  place.region = region;
   return place;
 }
 
 void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip) {
   const double poisson = kernel.medium(tip.medium).poisson;
+  tip.borders = borders_at(kernel, tip.region, tip.young_MPa, tip.piece.centre);
   tip.epsilon = needle.tip_epsilon(tip.skin, poisson);
-  tip.own_epsilon = needle.own_tip_epsilon(tip.skin, tip.border, poisson);
+  tip.own_epsilon = needle.own_tip_epsilon(tip.skin, tip.borders, poisson);
 }
 
 NearPlace passive_place(const Tissue& tissue, const MeshKernel& kernel, const Shape& between, const Vec3& x) {
@@ -145,8 +132,8 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
   return between_media(tip, tip, [&](int /*medium*/) -> Mat3 {
     // The mesh knows of the interface, as far as it can tell a force that it spreads over its elements from one on it.
     const double blur = 3.0 * kelvinlet_self(medium) / g.trace();
-    return tip_kernel(tip.skin, tip.border, tip.own_epsilon, medium) -
-           image_in_border(tip.border, std::max(blur, tip.own_epsilon), medium) - g;
+    return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, medium) -
+           with_borders(g, tip.skin, tip.borders, std::max(blur, tip.own_epsilon), medium.poisson);
   });
 }
 
@@ -154,8 +141,8 @@ Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace
   if (&at == &tip) {
     return between_media(tip, tip, [&](int medium) -> Mat3 {
       const Medium own = kernel.medium(medium);
-      return tip_kernel(tip.skin, tip.border, tip.own_epsilon, own) -
-             tip_kernel(tip.skin, tip.border, NeedleKernel::kScale_mm, own);
+      return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, own) -
+             tip_kernel(tip.skin, tip.borders, NeedleKernel::kScale_mm, own);
     });
   }
   const double fine = std::sqrt(at.epsilon * tip.epsilon);

@@ -4,6 +4,8 @@
 #include "stylet/coupling/near_field/half_space.hpp"
 #include "stylet/coupling/tip_dent.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,40 +58,72 @@ double NearBorder::weight(double epsilon) const {
   return 1.0 / std::sqrt(1.0 + way * way);
 }
 
-Mat3 image_in_border(const NearBorder& border, double epsilon, const Medium& medium) {
-  if (border.contrast == 0.0) return Mat3::Zero();
-  // Far from the interface the images of Mindlin's half space at the force, on it the force's own field again.
-  const double nu = medium.poisson;
+namespace {
+
+/// What a border adds to the stiffness that a force finds where it acts, over that without the border. It lets the
+/// force move that place by 1 + m times as much: far away m is the image of Mindlin's half space, on the border the
+/// force's own field again.
+Mat3 stiffness_by(const NearBorder& border, double epsilon, double nu) {
   const double own = 5.0 - 6.0 * nu;
   const double normal = 8.0 * (1.0 - nu) * (1.0 - nu) + 1.0;
   const double tangential = 1.5 + 2.0 * (1.0 - nu) * (1.0 - 2.0 * nu);
-  const auto image = [&](double strength) {
-    return strength / std::hypot(2.0 * border.depth, strength / own * epsilon);
+  const auto added = [&](double strength) {
+    const double there = strength / own * epsilon;
+    return 1.0 / (1.0 + border.contrast * there / std::hypot(2.0 * border.depth, there)) - 1.0;
   };
-  const double scale = border.contrast / (16.0 * std::numbers::pi * medium.mu * (1.0 - nu));
   const Vec3& n = border.inwards;
-  return scale * (image(tangential) * Mat3::Identity() + (image(normal) - image(tangential)) * n * n.transpose());
+  return added(tangential) * Mat3::Identity() + (added(normal) - added(tangential)) * n * n.transpose();
 }
+
+/// The stiffness with all borders, over that without: each adds to it what it would add alone. Of those that take away
+/// from it only one does, so that something is left.
+Mat3 stiffness_with(std::span<const NearBorder> borders, double epsilon, double nu) {
+  Mat3 stiffness = Mat3::Identity();
+  Mat3 taken = Mat3::Zero();
+  for (const NearBorder& border : borders) {
+    if (border.contrast == 0.0 || !std::isfinite(border.depth)) continue;
+    const Mat3 more = stiffness_by(border, epsilon, nu);
+    if (border.contrast < 0.0) {
+      stiffness += more;
+    } else if (more.trace() < taken.trace()) {
+      taken = more;
+    }
+  }
+  return stiffness + taken;
+}
+
+std::array<NearBorder, 3> all_borders(const NearSurface& skin, const NearBorders& borders) {
+  return {NearBorder{skin.depth, skin.inwards, skin.share}, borders[0], borders[1]};
+}
+
+}  // namespace
 
 double NeedleKernel::tip_epsilon(const NearSurface& skin, double poisson) const {
   const double on_surface = (5.0 - 4.0 * poisson) / (2.0 * std::numbers::pi * (1.0 - poisson));
   return (kRodEnd + (on_surface - kRodEnd) * std::exp(-skin.depth / radius_mm)) * radius_mm;
 }
 
-double NeedleKernel::own_tip_epsilon(const NearSurface& skin, const NearBorder& border, double poisson) const {
+double NeedleKernel::own_tip_epsilon(const NearSurface& skin, const NearBorders& borders, double poisson) const {
   // On a free surface the force and its image move it as far as each other, together as far as a flat punch.
   const double on_border = (5.0 - 6.0 * poisson) / (2.0 * std::numbers::pi * (1.0 - poisson) * (1.0 - poisson));
   // Level on the border itself: the tip's compliance must not rise on its way in.
   const auto near = [&](double depth) { return std::exp(-std::pow(depth / (kBorderReach * radius_mm), 2)); };
-  const double at_skin = near(skin.depth);
-  const double at_border = std::abs(border.contrast) * near(border.depth);
-  return (kRodEnd + (on_border - kRodEnd) * std::max(at_skin, at_border)) * radius_mm;
+  double felt = near(skin.depth);
+  for (const NearBorder& border : borders) felt = std::max(felt, std::abs(border.contrast) * near(border.depth));
+  return (kRodEnd + (on_border - kRodEnd) * felt) * radius_mm;
 }
 
-Mat3 tip_kernel(const NearSurface& skin, const NearBorder& border, double epsilon, const Medium& medium) {
-  const NearBorder free{skin.depth, skin.inwards, skin.share};
-  return kelvinlet(Vec3::Zero(), epsilon, medium) + image_in_border(free, epsilon, medium) +
-         image_in_border(border, epsilon, medium);
+Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsilon, const Medium& medium) {
+  const auto all = all_borders(skin, borders);
+  return kelvinlet_self(medium) / epsilon * stiffness_with(all, epsilon, medium.poisson).inverse();
+}
+
+Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson) {
+  const auto all = all_borders(skin, borders);
+  const Mat3 times = stiffness_with(all, epsilon, poisson).inverse() *
+                     stiffness_with(std::span(all).first(1), epsilon, poisson);
+  const Mat3 both = times * g;
+  return 0.5 * (both + both.transpose());
 }
 
 Mat3 NeedleKernel::tip_self(const NearSurface& surface, const Medium& medium) const {

@@ -54,6 +54,20 @@ struct SurfaceDistance::Tree {
   [[nodiscard]] Vec3 weights(int triangle, const Vec3& x) const {
     return nearest_weights(x, corner(triangle, 0), corner(triangle, 1), corner(triangle, 2));
   }
+  /// Unit normal out of the tissue.
+  [[nodiscard]] Vec3 outwards(int triangle, const Vec3& w) const {
+    Vec3 sum = Vec3::Zero();
+    const auto& corners = triangles[static_cast<std::size_t>(triangle)];
+    for (int k = 0; k < 3; ++k)
+      sum += w[k] * normal[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    return sum.normalized();
+  }
+  [[nodiscard]] Value value_at(int triangle, const Vec3& w) const {
+    Value sum{0.0, triangle};
+    const auto& corners = triangles[static_cast<std::size_t>(triangle)];
+    for (int k = 0; k < 3; ++k) sum.value += w[k] * value[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    return sum;
+  }
   [[nodiscard]] Vec3 point(int triangle, const Vec3& w) const {
     return w[0] * corner(triangle, 0) + w[1] * corner(triangle, 1) + w[2] * corner(triangle, 2);
   }
@@ -61,7 +75,7 @@ struct SurfaceDistance::Tree {
 
 namespace {
 
-/// What Eigen::BVMinimize asks for.
+/// What Eigen::BVMinimize asks for: the squared distance.
 template <class Tree>
 struct Nearest {
   using Scalar = double;
@@ -73,6 +87,30 @@ struct Nearest {
   [[nodiscard]] double minimumOnVolume(const Box& box) const { return box.squaredExteriorDistance(x); }
   double minimumOnObject(int candidate) {
     const double distance = (tree->point(candidate, tree->weights(candidate, x)) - x).squaredNorm();
+    if (distance < best) {
+      best = distance;
+      triangle = candidate;
+    }
+    return distance;
+  }
+};
+
+/// The same of what faces a direction: over the squared cosine between it and the normal.
+template <class Tree>
+struct NearestFacing {
+  using Scalar = double;
+  const Tree* tree;
+  Vec3 x;
+  Vec3 direction;
+  double best = std::numeric_limits<double>::infinity();
+  int triangle = -1;
+
+  [[nodiscard]] double minimumOnVolume(const Box& box) const { return box.squaredExteriorDistance(x); }
+  double minimumOnObject(int candidate) {
+    const Vec3 weights = tree->weights(candidate, x);
+    const double cosine = tree->outwards(candidate, weights).dot(direction);
+    if (cosine <= 0.0) return std::numeric_limits<double>::infinity();
+    const double distance = (tree->point(candidate, weights) - x).squaredNorm() / (cosine * cosine);
     if (distance < best) {
       best = distance;
       triangle = candidate;
@@ -125,21 +163,20 @@ NearSurface SurfaceDistance::nearest(const Vec3& x, Value* value) const {
   Nearest<Tree> search{.tree = tree_.get(), .x = x};
   const double distance = std::sqrt(Eigen::BVMinimize(tree_->boxes, search));
   const Vec3 weights = tree_->weights(search.triangle, x);
-  if (value != nullptr) {
-    *value = {0.0, search.triangle};
-    for (int k = 0; k < 3; ++k) {
-      const auto& triangle = tree_->triangles[static_cast<std::size_t>(search.triangle)];
-      value->value += weights[k] * tree_->value[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-    }
-  }
+  if (value != nullptr) *value = tree_->value_at(search.triangle, weights);
   constexpr double on_surface_mm = 1e-9;
   if (distance > on_surface_mm) return {distance, (x - tree_->point(search.triangle, weights)) / distance};
-  Vec3 outwards = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const auto& triangle = tree_->triangles[static_cast<std::size_t>(search.triangle)];
-    outwards += weights[k] * tree_->normal[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-  }
-  return {0.0, -outwards.normalized()};
+  return {0.0, -tree_->outwards(search.triangle, weights)};
+}
+
+NearSurface SurfaceDistance::opposite(const Vec3& x, const Vec3& inwards, Value* value) const {
+  if (tree_->triangles.empty()) return {};
+  NearestFacing<Tree> search{.tree = tree_.get(), .x = x, .direction = inwards};
+  const double distance = std::sqrt(Eigen::BVMinimize(tree_->boxes, search));
+  if (search.triangle < 0) return {};
+  const Vec3 weights = tree_->weights(search.triangle, x);
+  if (value != nullptr) *value = tree_->value_at(search.triangle, weights);
+  return {distance, -tree_->outwards(search.triangle, weights)};
 }
 
 }  // namespace stylet

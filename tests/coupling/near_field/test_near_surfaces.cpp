@@ -130,5 +130,42 @@ TEST(TipBetweenTwoTissues, is_never_held_by_less_on_its_way_into_the_harder_one)
   }
 }
 
+/// Fat as thick as a few diameters of the needle, often one element, between muscle and gland.
+struct ThinLayer {
+  static constexpr double kThickness = 6.0;
+  MediumBlock block;
+  explicit ThinLayer(int cells)
+      : block({.cells = cells,
+               .jitter = 0.0,
+               .regions = {"muscle", "fat", "gland"},
+               .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : x.z() < kThickness ? 1 : 2; },
+               .materials = {{0.025, 0.45}, {0.002, 0.45}, {0.03, 0.45}},
+               .faces_at_z = {0.0, kThickness}}) {}
+  double compliance(double z) { return block.tip({}, {1.3, 0.7, z})(2, 2); }
+};
+
+TEST(TipInAThinLayer, gives_way_alike_on_any_mesh) {
+  ThinLayer coarse(8), fine(18);
+  for (double z = -8.0; z <= 14.0; z += 0.5) {
+    const double of_fine = fine.compliance(z + 1e-6);
+    EXPECT_NEAR(coarse.compliance(z + 1e-6) / of_fine, 1.0, 0.06) << z;
+  }
+}
+
+/// The next step in (or out) is never further away than a tip's own field falls off in.
+TEST(TipInAThinLayer, feels_both_faces_and_nothing_jumps) {
+  ThinLayer layer(10);
+  const double in_the_middle = layer.compliance(0.5 * ThinLayer::kThickness);
+  EXPECT_GT(in_the_middle, 3.0 * layer.compliance(-4.0));
+  MediumBlock all_fat({.cells = 10, .jitter = 0.0, .materials = {{0.002, 0.45}}});
+  EXPECT_LT(in_the_middle, all_fat.tip({}, {1.3, 0.7, 3.0})(2, 2));
+  double before = layer.compliance(-8.0);
+  for (double z = -8.0; z <= 14.0; z += 0.02) {
+    const double here = layer.compliance(z + 1e-7);
+    EXPECT_NEAR(here / before, 1.0, 0.08) << z;
+    before = here;
+  }
+}
+
 }  // namespace
 }  // namespace stylet

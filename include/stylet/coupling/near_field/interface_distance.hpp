@@ -5,6 +5,7 @@
 #include "stylet/fem/tissue.hpp"
 #include "stylet/geom/topology.hpp"
 
+#include <array>
 #include <vector>
 
 namespace stylet {
@@ -24,8 +25,9 @@ class InterfaceDistance {
   /// @param tissue its mesh must stay
   InterfaceDistance(const Tissue& tissue, const Topology& topology);
 
+  /// The nearest, and the nearest that faces it (SurfaceDistance::opposite()).
   /// @param x [mm] in the region or on its border
-  [[nodiscard]] NearInterface nearest(int region, const Vec3& x) const;
+  [[nodiscard]] std::array<NearInterface, 2> nearest(int region, const Vec3& x) const;
 
  private:
   std::vector<SurfaceDistance> of_region_;  ///< with the logarithm of the modulus beyond

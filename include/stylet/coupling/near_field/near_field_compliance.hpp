@@ -57,7 +57,6 @@ class NearFieldCompliance final : public ContactCompliance {
     return static_cast<std::size_t>((number * capacity_ + point) * kernel_->media() + medium);
   }
   void forget_tip_node(int number, int first_point, int last_point);
-  [[nodiscard]] double stiffening_at(const NearPlace& tip, Index tet) const;
   void write_needle_scale(int point);
 
   std::unique_ptr<ContactCompliance> far_;

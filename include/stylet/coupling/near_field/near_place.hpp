@@ -6,6 +6,7 @@
 #include "stylet/fem/tissue.hpp"
 #include "stylet/geom/locator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stylet {
@@ -19,7 +20,8 @@ struct NearPlace {
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
-  NearBorder border;
+  NearBorders borders;     ///< of the tip only
+  int region = -1;         ///< −1: the place belongs to none of its own
   double edge = 0.0;   ///< [mm] size of the elements there
   double moves = 1.0;  ///< 0…1: weight of the element's nodes that are not held
 };
@@ -28,8 +30,20 @@ struct NearPlace {
 /// corners of its element.
 NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const MaterialPoint& at, const Vec3& x);
 
-/// Makes a place that of the needle's tip.
+/// Makes a place that of the needle's tip: it feels the borders near it.
 void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip);
+
+/// k₂ of DentLaw where a tip is. On an interface it is that of the tissue that stiffens more.
+/// @param of k₂ of a region [MPa]
+template <class OfRegion>
+double stiffening_of(const NearPlace& tip, const OfRegion& of) {
+  const double own = of(tip.region);
+  double more = 0.0;
+  for (const NearBorder& border : tip.borders) {
+    if (border.beyond >= 0) more = std::max(more, border.weight(tip.own_epsilon) * (of(border.beyond) - own));
+  }
+  return own + more;
+}
 
 /// A place where the needle is not, as on a surface: between some nodes of the mesh, at `x` [mm], undeformed, in the
 /// medium of whatever acts on it. The kernel must have these nodes.

@@ -4,7 +4,9 @@
 #include "stylet/coupling/near_field/kelvinlet.hpp"
 #include "stylet/coupling/near_field/surface_distance.hpp"
 
+#include <array>
 #include <limits>
+#include <span>
 
 namespace stylet {
 
@@ -19,10 +21,8 @@ struct NearBorder {
   [[nodiscard]] double weight(double epsilon) const;
 };
 
-/// The image of a force in a border: what it adds to the displacement at the force itself [mm/N] (docs/theory/
-/// near_field.md, section 4). Exact for a Poisson ratio of ½ far from the border and on it.
-/// @param epsilon [mm] radius over which the force is spread
-Mat3 image_in_border(const NearBorder& border, double epsilon, const Medium& medium);
+/// The nearest border, and the nearest that faces it: of a thin layer both count.
+using NearBorders = std::array<NearBorder, 2>;
 
 /// The needle as the tissue near it feels it.
 struct NeedleKernel {
@@ -43,7 +43,7 @@ struct NeedleKernel {
   [[nodiscard]] double tip_epsilon(const NearSurface& skin, double poisson) const;
   /// The same as the tip feels itself, by tip_kernel(): before an interface like the flat punch as well, the more so
   /// the softer the tissue on one side.
-  [[nodiscard]] double own_tip_epsilon(const NearSurface& skin, const NearBorder& border, double poisson) const;
+  [[nodiscard]] double own_tip_epsilon(const NearSurface& skin, const NearBorders& borders, double poisson) const;
 
   /// What the tip's own compliance is more than the half space's at a depth below a free surface it was pressed on
   /// [mm/N]. The linear dent is so steep that it would turn the tissue under it inside out, and a tip that has broken
@@ -58,9 +58,15 @@ struct NeedleKernel {
   [[nodiscard]] Mat3 tip_self(const NearSurface& surface, const Medium& medium) const;
 };
 
-/// Displacement of a tip per force on itself, with the images in the borders near it [mm/N].
+/// Displacement of a tip per force on itself, with the borders near it [mm/N] (docs/theory/near_field.md, section 4). With
+/// one border exact for a Poisson ratio of ½ far from it and on it; of several each adds as much stiffness as it would
+/// alone.
 /// @param epsilon own_tip_epsilon(), or of a force that is spread wider
-Mat3 tip_kernel(const NearSurface& skin, const NearBorder& border, double epsilon, const Medium& medium);
+Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsilon, const Medium& medium);
+
+/// What becomes of a kernel g that knows of the skin when there are borders as well [mm/N].
+/// @param epsilon [mm] over which g spreads a force
+Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson);
 
 /// ⟨G⟩: the medium's kernel averaged over two pieces of needle, with the image of a free surface near them [mm/N].
 /// @param skin_at surface nearest to the centre of the piece `at`

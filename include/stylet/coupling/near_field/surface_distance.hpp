@@ -35,6 +35,10 @@ class SurfaceDistance {
   };
   /// @param value written, if it is asked for
   [[nodiscard]] NearSurface nearest(const Vec3& x, Value* value = nullptr) const;
+  /// The nearest surface that faces another one, as in a layer one face does the other. What faces it askew counts as
+  /// further away, by the cosine between the normals: nothing jumps as x moves.
+  /// @param inwards unit normal of the other surface, into the tissue
+  [[nodiscard]] NearSurface opposite(const Vec3& x, const Vec3& inwards, Value* value = nullptr) const;
 
  private:
   struct Tree;
