@@ -10,6 +10,7 @@
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/results_writer.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/sim/cutting_lag.hpp"
 #include "stylet/sim/run.hpp"
 
 #include <fmt/format.h>
@@ -123,21 +124,40 @@ std::string summary_text(const Summary& summary) {
   return events.text() + "\n\n" + facts.text();
 }
 
-/// The default properties of every tissue and what they mean for a needle of the default diameter.
-std::string tissues_text() {
-  const double diameter = Scenario{}.needle.diameter_mm;
-  Table table({"region", "E [kPa]", "nu", "cutting [N]", "puncture [N]", "tenting [mm]", "cutting lag [mm]"});
+/// The properties of every tissue and what they mean for a needle of the scenario.
+std::string tissues_text(const Scenario& scenario) {
+  const double diameter = scenario.needle.diameter_mm;
+  Table table(
+      {"region", "E [kPa]", "nu", "stiffening", "cutting [N]", "puncture [N]", "tenting [mm]", "cutting lag [mm]"});
+  std::vector<std::string> regions = known_tissues();
+  for (const auto& [region, given] : scenario.tissue) {
+    if (std::find(regions.begin(), regions.end(), region) == regions.end()) regions.push_back(region);
+  }
   std::string sources;
-  for (const std::string& region : known_tissues()) {
-    const TissueParameters t = default_tissue(region);
+  for (const std::string& region : regions) {
+    const auto given = scenario.tissue.find(region);
+    const TissueParameters t = given != scenario.tissue.end() ? given->second : default_tissue(region);
     const bool bone = t.young_kPa > 1e4;
     table.row({region, bone ? "held" : fmt::format("{:g}", t.young_kPa), bone ? "" : fmt::format("{:g}", t.poisson),
-               bone ? "" : fmt::format("{:g}", t.cutting_N), bone ? "" : fmt::format("{:g}", t.puncture_N),
+               bone ? "" : fmt::format("{:g}", t.stiffening), bone ? "" : fmt::format("{:g}", t.cutting_N),
+               bone ? "" : fmt::format("{:g}", t.puncture_N),
                bone || t.puncture_N <= 0.0 ? "" : fmt::format("{:.1f}", tenting_mm(t, t.puncture_N, diameter)),
-               bone ? "" : fmt::format("{:.1f}", tenting_mm(t, t.cutting_N, diameter))});
+               bone ? "" : fmt::format("{:.1f}", cutting_lag_mm(t, t.cutting_N, diameter))});
     sources += fmt::format("\n  {}: {}", region, t.source);
   }
-  return table.text() + "\n\nSources" + sources;
+  return table.text() + "\n\nSources of the defaults" + sources;
+}
+
+/// What --print-tissues prints: the defaults, or what a scenario makes of them.
+Result<std::string> tissues_text(const InsertArguments& arguments) {
+  if (!arguments.scenario.empty()) {
+    const auto scenario = read_scenario(arguments.scenario, arguments.settings);
+    return scenario ? Result<std::string>(tissues_text(*scenario)) : scenario.error();
+  }
+  if (!arguments.settings.empty())
+    return input_error("insert --print-tissues", "--set has no scenario to change",
+                       "Name a scenario file, for example scenarios/demo.toml");
+  return tissues_text(Scenario{});
 }
 
 /// What --json prints: the summary.json of the result folder.
@@ -171,7 +191,9 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
     return console.said();
   }
   if (arguments.print_tissues) {
-    console.say(tissues_text());
+    const auto text = tissues_text(arguments);
+    if (!text) return text.error();
+    console.say(*text);
     return console.said();
   }
   if (arguments.scenario.empty())
@@ -253,8 +275,9 @@ Command add_insert_command(CLI::App& program) {
   shorthand("--needle", "needle.model", "beam, springs or tet");
   app->add_flag("--print-schema", arguments->print_schema,
                 "Print every key of a scenario with unit, default, range and meaning");
-  app->add_flag("--print-tissues", arguments->print_tissues,
-                "Print the default properties of every tissue with their sources");
+  app->add_flag(
+      "--print-tissues", arguments->print_tissues,
+      "Print the properties of every tissue with their sources: the defaults, or those of a scenario and --set");
   return {app, [arguments](Console& console) { return run_insert(*arguments, console); }};
 }
 

@@ -4,10 +4,13 @@
 #include "needle_choice.hpp"
 #include "planning.hpp"
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/coupling/near_field/needle_kernel.hpp"
 #include "stylet/coupling/paper/dense_inverse.hpp"
+#include "stylet/coupling/tip_dent.hpp"
 #include "stylet/geom/flat_tets.hpp"
 #include "stylet/needle/guided.hpp"
 #include "stylet/needle/make_needle.hpp"
+#include "stylet/sim/cutting_lag.hpp"
 
 #include <fmt/format.h>
 
@@ -159,6 +162,19 @@ Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& i
   return find_corridor(mesh, ways, coupling.corridor_mm, coupling.corridor_nodes);
 }
 
+/// How far a tip moves tissue under a force: what is of the organs' scale follows it, what is of the needle's stiffens.
+double pressed_mm(const TissueParameters& t, double force_N, double needle_diameter_mm, const NearSurface& skin) {
+  const Material material{t.young_kPa * 1e-3, t.poisson};
+  const Medium medium{material.mu(), t.poisson};
+  const NeedleKernel needle{.radius_mm = 0.5 * needle_diameter_mm};
+  const auto moves = [&](double epsilon) {
+    return skin.inwards.dot(tip_kernel(skin, {}, epsilon, medium) * skin.inwards);
+  };
+  const double organs = moves(NeedleKernel::kScale_mm);
+  const double dent = moves(needle.own_tip_epsilon(skin, {}, t.poisson)) - organs;
+  return organs * force_N + DentLaw{dent, t.stiffening * material.young_MPa}.depth(force_N);
+}
+
 /// The same message with the scenario's name in front of its place.
 Error named(Error error, const std::string& where) {
   error.where = where + ", " + error.where;
@@ -168,9 +184,11 @@ Error named(Error error, const std::string& where) {
 }  // namespace
 
 double tenting_mm(const TissueParameters& t, double force_N, double needle_diameter_mm) {
-  const double young_MPa = t.young_kPa * 1e-3;
-  const DentLaw punch{(1.0 - t.poisson * t.poisson) / (needle_diameter_mm * young_MPa), t.stiffening * young_MPa};
-  return punch.depth(force_N);
+  return pressed_mm(t, force_N, needle_diameter_mm, {.depth = 0.0, .share = 1.0});
+}
+
+double cutting_lag_mm(const TissueParameters& t, double force_N, double needle_diameter_mm) {
+  return pressed_mm(t, force_N, needle_diameter_mm, {});
 }
 
 std::vector<std::string> tenting_warnings(const std::string& region, const TissueParameters& t,
@@ -184,7 +202,7 @@ std::vector<std::string> tenting_warnings(const std::string& region, const Tissu
         "breaks; {:g} to {:g} mm is plausible. Change them together.",
         region, t.puncture_N, t.young_kPa, stiffening, tenting, kTentingMin_mm, kTentingMax_mm));
   }
-  const double lag = tenting_mm(t, t.cutting_N, needle_diameter_mm);
+  const double lag = cutting_lag_mm(t, t.cutting_N, needle_diameter_mm);
   if (lag > kLagMax_mm) {
     warnings.push_back(fmt::format(
         "tissue.{}: cutting_N = {:g} with young_kPa = {:g}{} means that the tip cuts {:.1f} mm behind where "

@@ -24,6 +24,7 @@ std::vector<RowSpec> step_and_tolerance_rows();
 std::vector<RowSpec> insertion_over_meshes_rows();
 std::vector<RowSpec> other_software_rows();
 std::vector<RowSpec> published_force_rows();
+std::vector<RowSpec> liver_curve_rows();
 std::vector<RowSpec> okamura_recording_rows();
 std::vector<RowSpec> tip_tracking_rows();
 std::vector<RowSpec> prostate_motion_rows();

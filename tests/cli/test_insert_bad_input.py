@@ -29,6 +29,10 @@ class BadScenario(InFolder):
     def test_no_scenario(self):
         self.refuse("insert", says=["no scenario", "scenarios/demo.toml"])
 
+    def test_settings_of_tissues_without_a_scenario(self):
+        self.refuse("insert", "--print-tissues", "--set", "tissue.body.young_kPa=5",
+                    says=["--set has no scenario to change", "scenarios/demo.toml"])
+
     def test_scenario_that_is_not_there(self):
         self.refuse("insert", "nowhere.toml", says=["nowhere.toml"])
 

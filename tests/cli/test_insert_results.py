@@ -166,6 +166,26 @@ class Insert(InFolder):
         summary = check_results(self, self.folder / "out")
         self.assertTrue(any("tissue.lump" in warning for warning in summary["warnings"]))
 
+    def test_tenting_and_lag_of_tissues_are_those_of_the_scenario_and_less_where_tissue_stiffens(self):
+        def body(*settings):
+            text = self.succeed("insert", "block.toml", "--print-tissues", *(word for s in settings for word in ("--set", s))).stdout
+            lines = [line.split() for line in text.splitlines()]
+            names = next(line for line in lines if line[:1] == ["region"])
+            self.assertEqual([name for name in names if name[0] != "["],
+                             ["region", "E", "nu", "stiffening", "cutting", "puncture", "tenting", "cutting", "lag"])
+            return [float(number) for number in next(line for line in lines if line[:1] == ["body"])[1:]]
+
+        *linear, tenting, lag = body()
+        *stiff, less_tenting, less_lag = body("tissue.body.stiffening=2")
+        self.assertEqual(stiff, [*linear[:2], 2.0, *linear[3:]])
+        # Of a punch on a surface 2 R E / (1 - nu^2); what is wider than 10 mm does not stiffen.
+        young, poisson, _, cutting, puncture = linear
+        self.assertAlmostEqual(tenting, puncture * (1 - poisson**2) / (1.27 * 1e-3 * young), delta=0.06)
+        self.assertLess(less_tenting, 0.5 * tenting)
+        self.assertLess(less_lag, 0.8 * lag)
+        self.assertGreater(less_lag, 0.2 * lag)
+        self.assertAlmostEqual(body("needle.diameter_mm=0.635")[-1], 2 * lag, delta=0.11)
+
     def test_the_schema_lists_every_key_and_is_a_scenario_itself(self):
         schema = self.succeed("insert", "--print-schema").stdout
         for key in ("young_kPa", "hole", "spacing_mm", "frames_per_s", "pitch_mm", "box_mm", "dt_ms", "preset"):

@@ -16,11 +16,10 @@ Quadratic elements (CAX8R), the smallest 0.3 µm, at the edge of the rod's end, 
 import argparse
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
-RADIUS_MM = 0.635
+from axisymmetric import RADIUS_MM, Mesh, away, pushed, radii
+
 DEPTH_MM = 40.0  # of the rod's end below the free surface
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
 NO_FAT_MM = -1000.0  # the end is so far below the gland's surface that there is no fat
@@ -28,93 +27,21 @@ SMALLEST_MM, GROWTH = 3e-4, 0.2
 TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "rod_end.inc"
 
 
-def away(start, end, stops=()):
-    """Points from start to end, further apart the further from start; all of stops are among them."""
-    points = [start]
-    direction = 1.0 if end > start else -1.0
-    for stop in sorted([*stops, end], key=lambda s: direction * s):
-        here = points[-1]
-        pieces = [0.0]
-        while pieces[-1] < abs(stop - here):
-            pieces.append(pieces[-1] + SMALLEST_MM + GROWTH * (abs(here - start) + pieces[-1]))
-        if len(pieces) > 2 and pieces[-1] - abs(stop - here) > 0.5 * (pieces[-1] - pieces[-2]):
-            pieces.pop()
-        scale = abs(stop - here) / pieces[-1]
-        points += [here + direction * scale * p for p in pieces[1:]]
-    return points
-
-
-def grid(above_mm, far_mm, depth_mm):
-    """Radii and heights of a grid with lines along the rod's wall, its end at height 0 and the interface."""
-    radii = sorted({*away(RADIUS_MM, 0.0), *away(RADIUS_MM, far_mm)})
+def heights(above_mm, far_mm, depth_mm):
+    """Heights of a grid that has lines along the rod's end, at height 0, and along the interface."""
     interface = -above_mm
-    stops = [interface] if interface < 0.0 else []
-    down = away(0.0, -far_mm, stops)
-    up = away(0.0, depth_mm, [interface] if 0.0 < interface < depth_mm else [])
-    return radii, sorted({*down, *up})
-
-
-def model(above_mm, far_mm, poisson, depth_mm):
-    """The input of CalculiX: the rod's end goes down by a millionth of a millimetre."""
-    radii, heights = grid(above_mm, far_mm, depth_mm)
-    number = {}
-
-    def node(i, j):  # twice the grid's indices: middle nodes are odd
-        return number.setdefault((i, j), len(number) + 1)
-
-    elements = {"FAT": [], "GLAND": []}
-    for i in range(len(radii) - 1):
-        for j in range(len(heights) - 1):
-            middle = 0.5 * (heights[j] + heights[j + 1])
-            if radii[i] < RADIUS_MM and middle > 0.0:
-                continue  # the hole
-            a, b = 2 * i, 2 * j
-            corners = [(a, b), (a + 2, b), (a + 2, b + 2), (a, b + 2), (a + 1, b), (a + 2, b + 1), (a + 1, b + 2), (a, b + 1)]
-            elements["GLAND" if middle < -above_mm else "FAT"].append([node(*at) for at in corners])
-
-    def place(values, k):
-        return values[k // 2] if k % 2 == 0 else 0.5 * (values[k // 2] + values[k // 2 + 1])
-
-    lines = ["*NODE"]
-    end, held, axis = [], [], []
-    for (i, j), n in number.items():
-        r, z = place(radii, i), place(heights, j)
-        lines.append(f"{n}, {r:.12g}, {z:.12g}, 0")
-        if i == 2 * (len(radii) - 1) or j == 0:
-            held.append(n)
-        elif j == 2 * heights.index(0.0) and r <= RADIUS_MM:
-            end.append(n)
-        elif i == 0:
-            axis.append(n)
-    count = 0
-    for material, of_it in elements.items():
-        if not of_it:
-            continue
-        lines.append(f"*ELEMENT, TYPE=CAX8R, ELSET={material}")
-        for nodes in of_it:
-            count += 1
-            lines.append(", ".join(map(str, [count, *nodes])))
-        young = FAT_MPA if material == "FAT" else GLAND_MPA
-        lines += [f"*MATERIAL, NAME={material}", "*ELASTIC", f"{young}, {poisson}", f"*SOLID SECTION, ELSET={material}, MATERIAL={material}"]
-    lines.append("*NSET, NSET=END")
-    lines += [f"{n}," for n in end]
-    lines += ["*STEP", "*STATIC, SOLVER=SPOOLES", "*BOUNDARY"]
-    lines += [f"{n}, 1, 2" for n in held] + [f"{n}, 1, 1" for n in axis + end] + [f"{n}, 2, 2, -1e-6" for n in end]
-    lines += ["*NODE PRINT, NSET=END, TOTALS=ONLY", "RF", "*END STEP"]
-    return "\n".join(lines) + "\n"
+    down = away(0.0, -far_mm, SMALLEST_MM, GROWTH, [interface] if interface < 0.0 else [])
+    up = away(0.0, depth_mm, SMALLEST_MM, GROWTH, [interface] if 0.0 < interface < depth_mm else [])
+    return sorted({*down, *up})
 
 
 def stiffness(above_mm, far_mm, poisson, depth_mm):
-    """[N/mm] with the block held `far_mm` away."""
-    with tempfile.TemporaryDirectory() as folder:
-        pathlib.Path(folder, "rod.inp").write_text(model(above_mm, far_mm, poisson, depth_mm), encoding="utf-8")
-        done = subprocess.run(["ccx", "-i", "rod"], cwd=folder, capture_output=True, text=True, check=False)
-        printed = pathlib.Path(folder, "rod.dat")
-        if done.returncode != 0 or not printed.exists():
-            sys.exit("CalculiX failed:\n" + done.stdout[-2000:] + done.stderr[-2000:])
-        numbers = re.findall(r"[-+]?\d+\.\d+E[-+]\d+", printed.read_text(encoding="utf-8"))
-        # CalculiX computes a wedge of two degrees.
-        return abs(float(numbers[-2])) / 1e-6 * 180.0
+    """[N/mm] with the block held `far_mm` away: the rod's end goes down by a millionth of a millimetre."""
+    mesh = Mesh(radii(far_mm, SMALLEST_MM, GROWTH), heights(above_mm, far_mm, depth_mm),
+                lambda height: "GLAND" if height < -above_mm else "FAT")
+    materials = {"FAT": ["*ELASTIC", f"{FAT_MPA}, {poisson}"], "GLAND": ["*ELASTIC", f"{GLAND_MPA}, {poisson}"]}
+    held = ["*BOUNDARY"] + [f"{n}, 1, 2" for n in mesh.rim] + [f"{n}, 1, 1" for n in mesh.axis + mesh.end]
+    return pushed(mesh.deck(materials) + held, 1e-6, ["*STEP", "*STATIC, SOLVER=SPOOLES"])[-1][1] / 1e-6
 
 
 def unbounded(above_mm, poisson=POISSON, depth_mm=DEPTH_MM):

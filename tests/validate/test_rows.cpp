@@ -5,11 +5,13 @@
 #include "stylet/validate/calculix.hpp"
 #include "stylet/validate/context.hpp"
 #include "stylet/validate/validation.hpp"
+#include "validate/number_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 
 using namespace stylet;
@@ -100,4 +102,34 @@ TEST(DemoScenario, is_the_demo_that_is_shipped) {
   Scenario ours = demo_scenario();
   ours.name = shipped->name;
   EXPECT_EQ(to_toml(ours), to_toml(*shipped));
+}
+
+/// Root mean square of how far a row's curve is from its reference, over the reference's largest value [%].
+double rms_percent(const Curve& curve, const Curve& reference) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < reference.x.size(); ++i)
+    sum += std::pow(interpolated(curve.x, curve.y, reference.x[i]) - reference.y[i], 2);
+  return 100.0 * std::sqrt(sum / static_cast<double>(reference.x.size())) / reference.y.back();
+}
+
+TEST(LiverCurves, are_met_by_the_dent_that_stiffens_twice_as_nearly_as_by_any_linear_tissue) {
+  const auto validation = validate::validate({.only = {"liver_curve", "liver_other_curve"}});
+  ASSERT_TRUE(validation.ok());
+  ASSERT_EQ(validation->rows.size(), 2u);
+  for (const Row& row : validation->rows) {
+    EXPECT_EQ(row.verdict, Verdict::pass) << row.finding.value << ", " << row.note();
+    EXPECT_NE(row.spec.reference.find("NOT VERIFIED"), std::string::npos) << row.spec.reference;
+    const std::vector<Curve>& curves = row.finding.plot.curves;
+    ASSERT_EQ(curves.size(), 3u);
+    const Curve& published = curves[2];
+    EXPECT_EQ(published.x.front(), 2.0);
+    EXPECT_NEAR(row.finding.value, rms_percent(curves[0], published), 1e-9);
+    EXPECT_LT(2.0 * row.finding.value, rms_percent(curves[1], published)) << row.note();
+    // The null model is the best there is of its kind.
+    for (const double factor : {0.95, 1.05}) {
+      Curve other = curves[1];
+      for (double& force : other.y) force *= factor;
+      EXPECT_GT(rms_percent(other, published), rms_percent(curves[1], published));
+    }
+  }
 }

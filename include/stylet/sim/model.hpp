@@ -92,8 +92,8 @@ class Model {
   std::vector<std::string> warnings_;
 };
 
-/// Depth [mm] by which tissue of these parameters tents before a flat punch of the needle's radius reaches `force_N`:
-/// F (1 − ν²) / (2 R E).
+/// Depth [mm] by which the surface of tissue of these parameters tents under a force [N] on a flat punch of the
+/// needle's radius: F (1 − ν²) / (2 R E), or less where it stiffens (docs/theory/stiffening.md).
 double tenting_mm(const TissueParameters& tissue, double force_N, double needle_diameter_mm);
 
 /// What is wrong with a set of parameters before anything is simulated: tenting outside 5 … 20 mm, a cutting lag over

@@ -4,6 +4,7 @@
 #include "../rows.hpp"
 #include "../scene.hpp"
 #include "published_values.hpp"
+#include "stylet/sim/cutting_lag.hpp"
 
 #include <fmt/format.h>
 
@@ -192,7 +193,7 @@ Result<Finding> demo_cutting_force(Context& context) {
       "{:.0f} "
       "mm behind the base (docs/parameters.md).",
       tissue.young_kPa, okamura::kCutting.mean,
-      tenting_mm(tissue, okamura::kCutting.mean, (*run)->model->scenario().needle.diameter_mm));
+      cutting_lag_mm(tissue, okamura::kCutting.mean, (*run)->model->scenario().needle.diameter_mm));
   return finding;
 }
 

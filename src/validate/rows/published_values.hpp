@@ -25,6 +25,9 @@ inline constexpr double kSpeed_mm_per_s = 3.0;
 /// Force [N] on the tip before the puncture, at a depth [mm].
 inline double stiffness_N(double z_mm) { return 0.0480 * z_mm + 0.0052 * z_mm * z_mm; }
 
+/// The same of another set of insertions, of which no depth of puncture is known.
+inline double other_stiffness_N(double z_mm) { return 0.0020 * z_mm + 0.0023 * z_mm * z_mm; }
+
 /// Modulus of linear tissue that a flat punch of the needle's diameter presses in as far at the mean depth of puncture:
 /// F/z = 2 R E / (1 − ν²).
 inline double modulus_kPa(double diameter_mm, double poisson) {

@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <functional>
+#include <iostream>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -172,6 +174,68 @@ TEST_F(StiffTissue, gives_way_to_more_force_by_less_and_less_but_always_by_more)
     before = dent;
   }
 }
+
+/// The flat end of a rod pressed into a Yeoh solid of 30 kPa, C20 = C10, deep inside a medium without borders: an
+/// axisymmetric finite element model (tests/reference/hyperelastic_punch.py) that knows nothing of the law.
+struct Pressed {
+  double poisson;
+  double depth_mm;  ///< of the rod's end, the far field with it
+  double force_N;
+};
+constexpr Pressed kYeohSolid[] = {
+#include "hyperelastic_punch.inc"
+};
+
+class YeohSolid : public testing::TestWithParam<double> {
+ protected:
+  static constexpr double kYoung_MPa = 0.03;
+
+  /// Force on a tip inside tissue that moves it by a depth [N], with the law of k₂ = stiffening × E.
+  static std::function<double(double)> law(int cells, double poisson, double stiffening) {
+    MediumBlock block({.cells = cells, .materials = {{kYoung_MPa, poisson}}, .element = Element::nodal_pressure});
+    const Vec3 x(1.3, 0.7, -2.1);
+    block.prepare({x});
+    NearFieldCompliance compliance(std::make_unique<TrackCompliance>(block.store, *block.locator, 1), block.tissue,
+                                   block.kernel, NeedleKernel{}, 1, std::vector<double>{stiffening * kYoung_MPa});
+    compliance.move_tip(block.at(x), x);
+    // The block's faces move as the medium would without them.
+    std::vector<Mat3> field;
+    for (const Index node : block.fixed)
+      field.push_back(kelvinlet(block.tissue->node_position(node) - x, 1e-6, block.medium));
+    const Mat3 own = compliance(0, 0) + block.lift(x, field);
+    const TipDent dent = compliance.tip_dent();
+    return [own, dent](double depth) {
+      double low = 0.0;
+      double high = depth / own(2, 2) * 100.0;
+      for (int k = 0; k < 60; ++k) {
+        const double force = 0.5 * (low + high);
+        const Vec3 g = force * Vec3::UnitZ();
+        const double moved = (own * g - dent.compliance * (g - dent.under(g).linear)).z();
+        (moved < depth ? low : high) = force;
+      }
+      return low;
+    };
+  }
+};
+
+TEST_P(YeohSolid, under_a_rod_is_as_stiff_as_the_law_says_at_every_depth_on_any_mesh) {
+  const double poisson = GetParam();
+  for (const int cells : {7, 12}) {
+    const auto ours = law(cells, poisson, 2.0);
+    const auto linear = law(cells, poisson, 0.0);
+    double deepest = 0.0;
+    for (const Pressed& pressed : kYeohSolid) {
+      if (pressed.poisson != poisson) continue;
+      const double ratio = ours(pressed.depth_mm) / pressed.force_N;
+      EXPECT_NEAR(ratio, 1.0, 0.05) << cells << " cells, " << pressed.depth_mm << " mm";
+      deepest = std::max(deepest, pressed.depth_mm);
+      std::cout << cells << " cells, " << pressed.depth_mm << " mm: " << ratio << ", linear "
+                << linear(pressed.depth_mm) / pressed.force_N << '\n';
+    }
+    EXPECT_GT(deepest, 4.0);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(PoissonsRatio, YeohSolid, testing::Values(0.45, 0.49));
 
 /// A block of one tissue with a strong skin, whose dent stiffens.
 BlockOptions stiff_block(int cells, double puncture_N, double cutting_N) {
