@@ -50,7 +50,7 @@ std::string tell(const RunRecording& run, const GlandMotion& gland) {
                   anatomical(gland.shift_max_mm), anatomical(gland.shift_in_place_mm));
   if (gland.shift_residual_mm) {
     text += gland.shift_residual_mm->norm() < 0.0005
-                ? " One second after the needle was out, it was back."
+                ? " Once the needle was out, it was back where it had been."
                 : fmt::format(" One second after the needle was out, it still lay {} from there.",
                               anatomical(*gland.shift_residual_mm));
   }

@@ -123,7 +123,7 @@ export function buildCurvePlot(data: ReportData, family: CurveFamily, choice: Cu
     x: extent([xs], abscissa === 'time' ? 0 : 0.02),
     y: extent(curves.map((c) => c.values), 0.06),
   };
-  const axisSize = fontSize() * 3.2;
+  const axisSize = fontSize() * 4;
   const top = labelsHeight(events, whole.x[0], whole.x[1], box.clientWidth - 2 * axisSize);
 
   const plot = new uPlot(
