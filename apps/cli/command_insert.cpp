@@ -96,6 +96,30 @@ std::string title(EventKind kind, const std::string& region) {
   return region.empty() ? text : text + " (" + name + ")";
 }
 
+/// A number with three digits; one that rounds to nothing has no sign.
+std::string thousandths(double value) { return fmt::format("{:.3f}", std::abs(value) < 5e-4 ? 0.0 : value); }
+
+/// What clinics report of the gland: its shifts as a table, its turn and its volume.
+std::string gland_text(const GlandMotion& gland) {
+  Table shifts({"gland moved", "total [mm]", "left", "posterior", "superior"});
+  for (const NamedShift& shift : named_shifts(gland)) {
+    if (!shift.mm) {
+      shifts.row({shift.name, "", "", "", ""});
+      continue;
+    }
+    const Vec3& mm = *shift.mm;
+    shifts.row({shift.name, thousandths(mm.norm()), thousandths(mm.x()), thousandths(mm.y()), thousandths(mm.z())});
+  }
+  std::string turns;
+  for (const NamedTurn& turn : named_turns(gland))
+    turns +=
+        fmt::format("{}{} {}° ({})", turns.empty() ? "" : ", ", turn.plane, thousandths(turn.degrees), turn.direction);
+  Facts facts;
+  facts.add("gland turned", turns);
+  facts.add("its volume", fmt::format("changed by {} %", thousandths(gland.volume_change_percent)));
+  return shifts.text() + "\n\n" + facts.text();
+}
+
 std::string summary_text(const Summary& summary) {
   Table events({"event", "time [s]", "base depth [mm]", "axial force [N]"});
   for (const Event& event : summary.events) {
@@ -121,7 +145,8 @@ std::string summary_text(const Summary& summary) {
                                 summary.step_us_p50, summary.step_us_p99, summary.step_us_p999, summary.step_us_max,
                                 summary.steps, summary.contacts_max));
   if (const std::string changes = mesh_changes_text(summary); !changes.empty()) facts.add("mesh", changes);
-  return events.text() + "\n\n" + facts.text();
+  const std::string gland = summary.gland ? gland_text(*summary.gland) + "\n\n" : "";
+  return events.text() + "\n\n" + gland + facts.text();
 }
 
 /// The properties of every tissue and what they mean for a needle of the scenario.

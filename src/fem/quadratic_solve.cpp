@@ -18,9 +18,9 @@ constexpr double kTolerance = 1e-8;
 /// Iterations after which the factor of K is made instead.
 constexpr int kMostIterations = 1000;
 
-/// Three loads side by side: each has an iteration of its own, with one pass over K for all.
-using Loads = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using Scalars = Eigen::Array<double, 1, 3>;
+/// Loads side by side: each has an iteration of its own, with one pass over K for all.
+using Loads = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Scalars = Eigen::Array<double, 1, Eigen::Dynamic>;
 
 Scalars products(const Loads& a, const Loads& b) { return a.cwiseProduct(b).colwise().sum().array(); }
 
@@ -41,13 +41,13 @@ class TwoLevels {
 
   /// An approximation of K⁻¹ r: what linear elements make of r, and each node by itself.
   [[nodiscard]] Loads operator()(const Loads& r) const {
-    MatX on_corners = MatX::Zero(3 * Eigen::Index{linear_.displacement_nodes()}, 3);
+    MatX on_corners = MatX::Zero(3 * Eigen::Index{linear_.displacement_nodes()}, r.cols());
     for_each_free([&](Eigen::Index dof, Eigen::Index one, Eigen::Index other) {
       on_corners.middleRows<3>(one) += 0.5 * r.middleRows<3>(dof);
       on_corners.middleRows<3>(other) += 0.5 * r.middleRows<3>(dof);
     });
     const MatX u = linear_.solve(on_corners);
-    Loads z(r.rows(), 3);
+    Loads z(r.rows(), r.cols());
     for_each_free([&](Eigen::Index dof, Eigen::Index one, Eigen::Index other) {
       z.middleRows<3>(dof).noalias() =
           inverse_diagonal_[static_cast<std::size_t>(dof / 3)].lazyProduct(r.middleRows<3>(dof));
@@ -83,16 +83,17 @@ Rows rows_of(const Eigen::SparseMatrix<double>& K) {
 /// @return whether x came within the tolerance
 bool iterate(const Rows& K, const TwoLevels& preconditioned, Loads r, Loads& x, const Progress& progress) {
   const Scalars wanted = kTolerance * kTolerance * products(r, r);
-  x = Loads::Zero(r.rows(), 3);
+  x = Loads::Zero(r.rows(), r.cols());
   Loads z = preconditioned(r);
   Loads p = z;
-  Loads Kp(r.rows(), 3);
+  Loads Kp(r.rows(), r.cols());
   Scalars rz = products(r, z);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const Scalars left = products(r, r);
     if ((left <= wanted).all()) return true;
     const double worst = (wanted > 0.0).select(left / wanted, 1.0).maxCoeff();
-    report(progress, "mean displacement", std::clamp(1.0 + std::log(worst) / (2.0 * std::log(kTolerance)), 0.0, 1.0));
+    report(progress, "motion of the target",
+           std::clamp(1.0 + std::log(worst) / (2.0 * std::log(kTolerance)), 0.0, 1.0));
     Kp.noalias() = K * p;
     // A load that is done, or is none, has nothing left to divide by.
     const auto ratio = [](const Scalars& a, const Scalars& b) -> Scalars { return (b > 0.0).select(a / b, 0.0); };
@@ -126,7 +127,7 @@ Result<MatX> solve_quadratic(const Discretisation& quadratic, const TetMesh& mes
       quadratic, mesh.tet_count(),
       [&](Index tet) { return materials[static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(tet)])]; },
       first_dof, free_dofs);
-  Loads load(free_dofs, 3);
+  Loads load(free_dofs, f.cols());
   const auto for_each_free = [&](const auto& visit) {
     for (Index node = 0; node < quadratic.nodes(); ++node) {
       const Eigen::Index dof = first_dof[static_cast<std::size_t>(node)];

@@ -3,6 +3,7 @@
 
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
+#include "stylet/sim/gland_watch.hpp"
 #include "stylet/sim/harms.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 #include "stylet/sim/target_motion.hpp"
@@ -125,6 +126,11 @@ class Runner {
     const double start = simulation_.time_s();
     const long deepest = deepest_step(insertion, motion);
     simulation_.place(insertion);
+    std::optional<GlandWatch> gland;
+    if (!model_->target_regions().empty()) {
+      if (auto ready = prepare_target_motion(); !ready) return ready;
+      gland.emplace(target_names());
+    }
     if (auto r = take_frame("before"); !r) return r;
     double next_frame = start + frame_every_s_;  // the first of the series is "before"
     for (long k = 1; k <= motion.count; ++k) {
@@ -136,6 +142,11 @@ class Runner {
       Step record = simulation_.last_step();
       record.step_us = thread_cpu_us() - before;
       if (auto r = account(record, insertion); !r) return r;
+      if (gland) {
+        const TargetMotion::Moment now = target_motion_->now(simulation_.insertion());
+        summary_.gland_path.push_back(
+            gland->add(record, simulation_.new_events(), now.motion, now.at_rest, k == deepest));
+      }
       std::string label;
       for (const Event& event : simulation_.new_events()) {
         summary_.events.push_back(event);
@@ -151,7 +162,21 @@ class Runner {
       }
       if (k % 64 == 0) report(progress_, "inserting " + insertion.name, record.time_s / total_s_);
     }
+    if (gland) keep(gland->result());
     return take_frame("after");
+  }
+
+  void keep(const GlandMotion& motion) {
+    summary_.gland_motions.push_back(motion);
+    const auto& shifts = summary_.target_shifts;
+    if (!shifts.empty() && shifts.back().largest_mm >= summary_.target_shift_max_mm) summary_.gland = motion;
+  }
+
+  [[nodiscard]] std::vector<std::string> target_names() const {
+    std::vector<std::string> names;
+    for (const int region : model_->target_regions())
+      names.push_back(model_->mesh().regions[static_cast<std::size_t>(region)]);
+    return names;
   }
 
   /// Time of step k since the insertion's start [s].
@@ -200,10 +225,8 @@ class Runner {
     summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
     summary_.compliance_condition =
         std::max(summary_.compliance_condition, simulation_.insertion().compliance_condition());
-    if (label == "deepest" && !model_->target_regions().empty()) {
-      const auto measured = target_shift();
-      if (!measured) return measured.error();
-      const TargetShift& shift = *measured;
+    if (label == "deepest" && target_motion_) {
+      const TargetShift shift = target_motion_->shift(simulation_.insertion());
       summary_.target_shifts.push_back(shift);
       if (shift.largest_mm >= summary_.target_shift_max_mm) {
         summary_.target_shift_centroid_mm = shift.centroid_mm;
@@ -213,13 +236,12 @@ class Runner {
     return observer_.on_frame(frame);
   }
 
-  Result<TargetShift> target_shift() {
-    if (!target_motion_) {
-      auto motion = TargetMotion::of(*model_, progress_);
-      if (!motion) return motion.error();
-      target_motion_ = std::move(*motion);
-    }
-    return target_motion_->shift(simulation_.insertion());
+  Result<> prepare_target_motion() {
+    if (target_motion_) return Ok{};
+    auto motion = TargetMotion::of(*model_, progress_);
+    if (!motion) return motion.error();
+    target_motion_ = std::move(*motion);
+    return Ok{};
   }
 
   void note_harms() {
@@ -262,7 +284,7 @@ class Runner {
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;
-  std::optional<TargetMotion> target_motion_;  ///< computed when first asked for
+  std::optional<TargetMotion> target_motion_;  ///< where the model has a target; solved for before the first step
   RunObserver& observer_;
   const Progress& progress_;
   long step_ns_;

@@ -2,12 +2,14 @@
 #include "stylet/sim/target_motion.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 namespace stylet {
 
 namespace {
 
-using Accuracy = MeanDisplacement::Accuracy;
+using Accuracy = VolumeResponse::Accuracy;
 
 /// The finest that takes seconds. docs/theory/near_field.md §8 has what is left between meshes.
 Accuracy affordable(Index nodes) {
@@ -21,15 +23,30 @@ Accuracy affordable(Index nodes) {
 }  // namespace
 
 Result<TargetMotion> TargetMotion::of(const Model& model, const Progress& progress) {
-  auto mean =
-      MeanDisplacement::solve(model.tissue(), model.target_regions(), affordable(model.mesh().node_count()), progress);
-  if (!mean) return mean.error();
-  return TargetMotion(model, std::move(*mean));
+  auto response =
+      VolumeResponse::solve(model.tissue(), model.target_regions(), affordable(model.mesh().node_count()), progress);
+  if (!response) return response.error();
+  return TargetMotion(model, std::move(*response));
 }
 
-TargetShift TargetMotion::shift(const Insertion& insertion) const {
+TargetMotion::Moment TargetMotion::now(const Insertion& insertion) {
+  std::size_t count = insertion.tissue_forces(forces_);
+  if (count > forces_.size()) {
+    forces_.resize(count);
+    count = insertion.tissue_forces(forces_);
+  }
+  Moment moment;
+  moment.at_rest = count == 0;
+  for (const TissueForce& load : std::span(forces_).first(count)) response_.add(load.at, load.force, moment.motion);
+  for (const auto third : {VolumeMotion::superior, VolumeMotion::middle, VolumeMotion::inferior}) {
+    if (!response_.has(third)) moment.motion.third_mm[third].setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return moment;
+}
+
+TargetShift TargetMotion::shift(const Insertion& insertion) {
   TargetShift shift;
-  for (const TissueForce& load : insertion.tissue_forces()) shift.centroid_mm += mean_.per_force(load.at) * load.force;
+  shift.centroid_mm = now(insertion).motion.shift_mm;
   const TetMesh& mesh = model_->mesh();
   const std::vector<int>& regions = model_->target_regions();
   const VecX u = insertion.mesh_displacement();

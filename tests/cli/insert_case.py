@@ -87,6 +87,39 @@ def without_step_times(folder):
     return [line.rsplit(",", 1)[0] for line in text.splitlines()]
 
 
+def gland_path(folder):
+    """The lines of gland.csv, numbers as numbers."""
+    with open(Path(folder) / "gland.csv", newline="", encoding="utf-8") as file:
+        return [{key: float(value) for key, value in line.items()} for line in csv.DictReader(file)]
+
+
+def check_gland(test, folder, summary):
+    """What summary.json says of the gland is what gland.csv says, and where the tables of steps and events put it."""
+    gland, path, steps = summary["gland"], gland_path(folder), forces(folder)
+    test.assertEqual([(p["time_s"], p["base_depth_mm"]) for p in path],
+                     [(s["time_s"], s["base_depth_mm"]) for s in steps])
+
+    def norm(line):
+        return math.hypot(*(line[f"shift_{axis}_mm"] for axis in ("LR", "AP", "SI")))
+
+    def same(shift, line):
+        for axis in ("LR", "AP", "SI"):
+            test.assertAlmostEqual(shift[axis], line[f"shift_{axis}_mm"], delta=1e-6)
+        test.assertAlmostEqual(shift["norm"], norm(line), delta=2e-6)
+
+    deepest = max(range(len(path)), key=lambda k: (path[k]["base_depth_mm"], k))
+    same(gland["shift_in_place_mm"], path[deepest])
+    largest = max(path[:deepest + 1], key=norm)
+    test.assertAlmostEqual(gland["shift_max_mm"]["norm"], norm(largest), delta=2e-6)
+    for plane in ("coronal", "sagittal", "transverse"):
+        test.assertAlmostEqual(gland["rotation_deg"][plane], largest[f"rotation_{plane}_deg"], delta=1e-3)
+    broken = [e["time_s"] for e in summary["events"] if (e["kind"], e["region"]) == ("puncture", "prostate")]
+    same(gland["shift_at_break_mm"], [p for p in path if p["time_s"] < broken[0] - 1e-7][-1])
+    parts = [gland[part]["SI"] for part in ("base_mm", "mid_mm", "apex_mm")]
+    test.assertTrue(min(parts) < gland["shift_max_mm"]["SI"] < max(parts), gland)
+    return gland
+
+
 def kinds(summary):
     return [event["kind"] for event in summary["events"]]
 
@@ -103,7 +136,7 @@ def check_results(test, folder, summary=None, pictures=False):
     if summary is not None:
         test.assertEqual(written, summary)
     for key in ("version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                "target_shift_mm", "residual", "step_us", "contacts_max", "capacity", "mesh_changes", "warnings"):
+                "target_shift_mm", "gland", "residual", "step_us", "contacts_max", "capacity", "mesh_changes", "warnings"):
         test.assertIn(key, written)
     test.assertEqual(set(written["mesh"]), {"nodes", "tets"})
     test.assertEqual(set(written["peak_force_N"]), {"axial", "sagittal", "lateral"})

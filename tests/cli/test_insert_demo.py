@@ -5,7 +5,7 @@ import shutil
 import unittest
 from pathlib import Path
 
-from insert_case import check_results, forces, kinds
+from insert_case import check_gland, check_results, forces, kinds
 from program import InFolder
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
@@ -41,6 +41,13 @@ class Demo(InFolder):
             self.assertIn(text, done.stdout)
         self.assertGreater(summary["mesh"]["nodes"], 2900)
         self.assertLess(summary["target_shift_mm"]["max"], 20)
+        gland = check_gland(self, self.folder / "out/demo", summary)
+        self.assertEqual([gland["shift_in_place_mm"][axis] for axis in ("LR", "AP", "SI")],
+                         summary["target_shift_mm"]["centroid"])
+        self.assertGreater(gland["shift_at_break_mm"]["SI"], 0, "pushed to superior, the way the needle goes")
+        self.assertEqual(gland["shift_residual_mm"]["norm"], 0, "elastic tissue goes back")
+        for text in ("just before its surface broke", "base (superior third)", "gland turned", "sagittal"):
+            self.assertIn(text, done.stdout)
         self.assertEqual(kinds(summary).count("puncture"), 2)
 
 

@@ -108,9 +108,12 @@ class Structures(InFolder):
         said = self.warnings_everywhere(done)
         self.assertTrue(any("no region of the mesh (tissue, lump) is the target" in s for s in said), said)
         self.assertIsNone(json.loads((self.folder / "out/summary.json").read_text())["target_shift_mm"])
+        self.assertIsNone(json.loads((self.folder / "out/summary.json").read_text())["gland"])
+        self.assertFalse((self.folder / "out/gland.csv").exists())
         self.assertNotIn("target moved", done.stdout)
+        self.assertNotIn("gland moved", done.stdout)
         story = (self.folder / "out/report.html").read_text().split("<details>")[0]
-        for words in ("shift of the target", "motion in the target", "lay where it was", "section through the target"):
+        for words in ("How the gland moved", "shift of the target", "motion in the target", "lay where it was", "section through the target"):
             self.assertNotIn(words, story)
 
     def test_warnings_of_the_run_itself_are_everywhere_too(self):

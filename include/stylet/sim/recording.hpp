@@ -6,8 +6,10 @@
 #include "stylet/coupling/contact_compliance.hpp"
 #include "stylet/coupling/event.hpp"
 #include "stylet/coupling/step.hpp"
+#include "stylet/sim/gland_motion.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,7 +75,7 @@ struct MeshChange {
 
 /// How far the target was moved.
 struct TargetShift {
-  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume (MeanDisplacement)
+  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume (VolumeMotion)
   double largest_mm = 0.0;          ///< of any of its nodes, of what the mesh represents: depends on the mesh
 };
 
@@ -90,7 +92,10 @@ struct Summary {
   std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion; none without a target
   Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< of the one that moved it furthest, as the next
   double target_shift_max_mm = 0;
-  double residual_force_balance = 0;  ///< |supports + contacts on the tissue| / peak force, largest of the run
+  std::vector<GlandMotion> gland_motions;  ///< of each insertion; none without a target
+  std::optional<GlandMotion> gland;        ///< of the insertion that target_shift_max_mm is of
+  std::vector<GlandStep> gland_path;       ///< after each step; none without a target, and none when read from a file
+  double residual_force_balance = 0;       ///< |supports + contacts on the tissue| / peak force, largest of the run
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces_csv.hpp"
 
+#include "fixed_number.hpp"
+
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iterator>
 
 namespace stylet::results {
 
 namespace {
 
-/// Fixed-point text; a value that rounds to zero prints without a sign, so that no column flickers between 0 and -0.
-void append(std::string& text, double value, int digits) {
-  const bool zero = std::abs(value) < 0.5 * std::pow(10.0, -digits);
-  fmt::format_to(std::back_inserter(text), "{:.{}f},", zero ? 0.0 : value, digits);
-}
+void append(std::string& text, double value, int digits) { text += fixed(value, digits) + ','; }
 
 constexpr int kLengthDigits = 6;  // mm: a nanometre
 constexpr int kTimeDigits = 6;    // s: a microsecond

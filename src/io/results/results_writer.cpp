@@ -2,6 +2,7 @@
 #include "stylet/io/results_writer.hpp"
 
 #include "forces_csv.hpp"
+#include "gland_csv.hpp"
 #include "output_folder.hpp"
 #include "paraview.hpp"
 #include "pictures/pictures.hpp"
@@ -37,7 +38,8 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
 
 /// Removes everything that an earlier run left but its run.h5. summary.json, which tells a finished run, goes first.
 Result<> remove_earlier_results(const fs::path& folder) {
-  for (const char* name : {"summary.json", "report.html", "forces.csv", "tissue.pvd", "needle.pvd", "needle.vtp"}) {
+  for (const char* name :
+       {"summary.json", "report.html", "forces.csv", "gland.csv", "tissue.pvd", "needle.pvd", "needle.vtp"}) {
     if (auto removed = remove_earlier(folder / name); !removed) return removed;
   }
   if (auto removed = remove_series_from(folder, "tissue", ".vtu", 0); !removed) return removed;
@@ -48,7 +50,8 @@ Result<> remove_earlier_results(const fs::path& folder) {
   return Ok{};
 }
 
-/// Everything but run.h5, made from it: nothing can be in a picture or a table that is not in the recording.
+/// Everything but run.h5, made from it and the summary: nothing can be in a picture or a table that is not in the
+/// recording, but for the gland's path, which follows from the forces there.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
                               bool with_pictures) {
@@ -61,6 +64,9 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   const Moments moments = find_moments(run->frames);
   const auto regions = region_views(run->mesh, run->info.target_regions);
   if (auto done = write_file(folder / "forces.csv", forces_csv(run->steps)); !done) return done;
+  if (!summary.gland_path.empty()) {
+    if (auto done = write_file(folder / "gland.csv", gland_csv(summary.gland_path)); !done) return done;
+  }
   if (auto done = write_tissue(*run, stress_of, folder, progress); !done) return done;
   if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
   const Pictures pictures = with_pictures ? draw_pictures(*run, regions, moments, progress)

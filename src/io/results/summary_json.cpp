@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "summary_json.hpp"
 
+#include "gland_json.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <limits>
@@ -66,6 +68,7 @@ std::string summary_json(const Summary& s) {
       {"events", events},
       {"tip_deflection_mm", s.tip_deflection_mm},
       {"target_shift_mm", target_shift(s)},
+      {"gland", gland_json(s.gland)},
       {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
       {"step_us", {{"p50", s.step_us_p50}, {"p99", s.step_us_p99}, {"p999", s.step_us_p999}, {"max", s.step_us_max}}},
       {"contacts_max", s.contacts_max},
@@ -115,6 +118,7 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
       s.target_shift_max_mm = number(shift.at("max"));
       s.target_shifts.push_back({s.target_shift_centroid_mm, s.target_shift_max_mm});
     }
+    if (json.contains("gland")) s.gland = gland_of(json.at("gland"));  // not in older ones
     s.residual_force_balance = number(json.at("residual").at("force_balance"));
     s.residual_torque_balance = number(json.at("residual").at("torque_balance"));
     const Json& step = json.at("step_us");

@@ -252,6 +252,22 @@ Summary summarise(const SyntheticRun& run) {
   s.target_shift_centroid_mm = {0.21, -0.48, 2.66};
   s.target_shift_max_mm = 3.94;
   s.target_shifts = {{s.target_shift_centroid_mm, s.target_shift_max_mm}};
+  GlandMotion gland;
+  gland.shift_at_break_mm = {0.12, -0.31, 1.84};
+  gland.shift_max_mm = {0.22, -0.5, 2.71};
+  gland.shift_in_place_mm = s.target_shift_centroid_mm;
+  gland.shift_residual_mm = Vec3::Zero();
+  gland.rotation_deg = {1.25, -0.5, 0.25};
+  gland.base_mm = {0.1, -0.3, 2.2};
+  gland.mid_mm = {0.2, -0.5, 2.8};
+  gland.apex_mm = {0.3, -0.7, 3.1};
+  gland.volume_change_percent = -0.4;
+  s.gland = gland;
+  s.gland_motions = {gland};
+  for (const Step& step : run.steps) {
+    const double in = std::max(0.0, step.base_depth_mm) / 76.0;
+    s.gland_path.push_back({step.time_s, step.base_depth_mm, in * gland.shift_max_mm, in * gland.rotation_deg});
+  }
   s.residual_force_balance = 3.1e-13;
   s.residual_torque_balance = 4.7e-13;
   s.step_us_p50 = 214;

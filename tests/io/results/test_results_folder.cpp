@@ -2,6 +2,7 @@
 // The result folder as a whole: what is in it after a good run, after a failed one, and when it cannot be written.
 #include "report_page.hpp"
 #include "results/forces_csv.hpp"
+#include "results/gland_csv.hpp"
 #include "results/output_folder.hpp"
 #include "results/summary_json.hpp"
 #include "stylet/io/mesh_io.hpp"
@@ -94,8 +95,8 @@ TEST(ResultFolder, holds_every_file_with_the_numbers_of_the_run) {
   }
   EXPECT_EQ(stages, (std::vector<std::string>{"tissue files", "pictures", "report"}));
 
-  std::vector<std::string> expected{"forces.csv",  "needle.pvd", "needle.vtp",   "pictures",
-                                    "report.html", "run.h5",     "summary.json", "tissue.pvd"};
+  std::vector<std::string> expected{"forces.csv",  "gland.csv", "needle.pvd",   "needle.vtp", "pictures",
+                                    "report.html", "run.h5",    "summary.json", "tissue.pvd"};
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     expected.push_back(results::series_name("tissue", f, ".vtu"));
     expected.push_back(results::series_name("needle", f, ".vtp"));
@@ -104,6 +105,7 @@ TEST(ResultFolder, holds_every_file_with_the_numbers_of_the_run) {
   EXPECT_EQ(names_in(folder), expected);
 
   EXPECT_EQ(file_text(folder / "forces.csv"), results::forces_csv(run.steps));
+  EXPECT_EQ(file_text(folder / "gland.csv"), results::gland_csv(run.summary.gland_path));
   EXPECT_EQ(file_text(folder / "summary.json"), results::summary_json(run.summary));
   const auto recording = read_recording(folder / "run.h5");
   ASSERT_TRUE(recording.ok()) << recording.error().message();

@@ -100,6 +100,29 @@ TEST(Report, directions_are_words_of_the_patient_frame) {
   EXPECT_EQ(describe_shift({0.01, 0, -0.02}), "less than 0.05 mm in any direction");
 }
 
+TEST(Report, tells_how_the_gland_moved_in_anatomical_words) {
+  auto run = synthetic_run();
+  const std::string page = page_of(recording_of(run));
+  EXPECT_NE(page.find("broke through its surface, the prostate as a whole had moved by 1.84 mm superior, 0.31 mm "
+                      "anterior and 0.12 mm left"),
+            std::string::npos);
+  EXPECT_NE(page.find("it was back"), std::string::npos);
+  EXPECT_NE(page.find("<td>sagittal</td><td class=\"number\">1.250</td><td>base to anterior</td>"), std::string::npos);
+  EXPECT_NE(page.find("<td>coronal</td><td class=\"number\">-0.500</td><td>base to the right</td>"), std::string::npos);
+  EXPECT_NE(page.find("id=\"gland-depth\""), std::string::npos);
+  const auto data = data_of(recording_of(run));
+  const auto si = numbers<float>(data["gland"]["SI_mm"]);
+  ASSERT_EQ(si.size(), run.steps.size());
+  for (std::size_t k = 0; k < si.size(); ++k)
+    EXPECT_FLOAT_EQ(si[k], static_cast<float>(run.summary.gland_path[k].shift_mm.z()));
+
+  run.summary.gland_path.clear();
+  EXPECT_TRUE(data_of(recording_of(run))["gland"].is_null());
+  EXPECT_EQ(page_of(recording_of(run)).find("id=\"gland-depth\""), std::string::npos);
+  run.summary.gland.reset();
+  EXPECT_EQ(page_of(recording_of(run)).find("How the gland moved"), std::string::npos);
+}
+
 TEST(Report, loads_nothing_from_anywhere) {
   const std::string page = page_of(recording_of(synthetic_run()));
   EXPECT_NE(page.find("Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src "

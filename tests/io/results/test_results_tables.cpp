@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// forces.csv and summary.json as text.
+// forces.csv, gland.csv and summary.json as text.
 #include "results/forces_csv.hpp"
+#include "results/gland_csv.hpp"
 #include "results/summary_json.hpp"
 #include "synthetic_run.hpp"
 
@@ -71,12 +72,65 @@ TEST(ForcesCsv, the_same_run_gives_the_same_bytes_apart_from_step_us) {
   }
 }
 
+TEST(GlandCsv, has_the_documented_columns_in_patient_directions_and_planes) {
+  const GlandStep step{1.0005, -2.5, {0.25, -0.5, 1.0 / 3}, {1.0, 2.0, -1e-9}};  // about LR, AP and SI
+  const auto lines = lines_of(gland_csv({&step, 1}));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0],
+            "time_s,base_depth_mm,shift_LR_mm,shift_AP_mm,shift_SI_mm,rotation_coronal_deg,rotation_sagittal_deg,"
+            "rotation_transverse_deg");
+  EXPECT_EQ(lines[1], "1.000500,-2.500000,0.250000,-0.500000,0.333333,2.000000,1.000000,0.000000");
+}
+
+TEST(SummaryJson, tells_how_the_gland_moved_in_patient_directions) {
+  const auto run = stylet::testing::synthetic_run();
+  const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
+  using Keys = std::vector<std::string>;
+  const auto& gland = json["gland"];
+  EXPECT_EQ(keys_of(gland), (Keys{"shift_at_break_mm", "shift_max_mm", "shift_in_place_mm", "shift_residual_mm",
+                                  "rotation_deg", "base_mm", "mid_mm", "apex_mm", "volume_change_percent"}));
+  for (const char* shift :
+       {"shift_at_break_mm", "shift_max_mm", "shift_in_place_mm", "shift_residual_mm", "base_mm", "mid_mm", "apex_mm"})
+    EXPECT_EQ(keys_of(gland[shift]), (Keys{"LR", "AP", "SI", "norm"})) << shift;
+  EXPECT_EQ(gland["shift_max_mm"]["LR"], 0.22);
+  EXPECT_EQ(gland["shift_max_mm"]["AP"], -0.5);
+  EXPECT_EQ(gland["shift_max_mm"]["SI"], 2.71);
+  EXPECT_EQ(gland["shift_max_mm"]["norm"], run.summary.gland->shift_max_mm.norm());
+  EXPECT_EQ(keys_of(gland["rotation_deg"]), (Keys{"coronal", "sagittal", "transverse"}));
+  EXPECT_EQ(gland["rotation_deg"]["coronal"], -0.5) << "about AP";
+  EXPECT_EQ(gland["rotation_deg"]["sagittal"], 1.25) << "about LR";
+  EXPECT_EQ(gland["rotation_deg"]["transverse"], 0.25) << "about SI";
+}
+
+TEST(SummaryJson, of_the_gland_survives_the_round_trip_with_what_is_missing) {
+  Summary summary;
+  summary.gland.emplace();
+  summary.gland->shift_max_mm = {1, 2, 3};
+  summary.gland->rotation_deg = {4, 5, 6};
+  summary.gland->mid_mm.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const auto json = nlohmann::json::parse(summary_json(summary));
+  EXPECT_TRUE(json["gland"]["shift_at_break_mm"].is_null());
+  EXPECT_TRUE(json["gland"]["shift_residual_mm"].is_null());
+  EXPECT_TRUE(json["gland"]["mid_mm"].is_null());
+  const auto back = parse_summary_json(summary_json(summary), "test");
+  ASSERT_TRUE(back.ok()) << back.error().message();
+  ASSERT_TRUE(back->gland);
+  EXPECT_EQ(back->gland->shift_max_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(back->gland->rotation_deg, Vec3(4, 5, 6));
+  EXPECT_FALSE(back->gland->shift_residual_mm);
+  EXPECT_EQ(summary_json(*back), summary_json(summary));
+  EXPECT_TRUE(nlohmann::json::parse(summary_json({}))["gland"].is_null()) << "no target";
+  auto older = json;
+  older.erase("gland");
+  EXPECT_TRUE(parse_summary_json(older.dump(), "test").ok());
+}
+
 TEST(SummaryJson, has_the_documented_keys_in_order) {
   const auto run = stylet::testing::synthetic_run();
   const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keys_of(json), (Keys{"version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                                 "target_shift_mm", "residual", "step_us", "contacts_max", "capacity",
+                                 "target_shift_mm", "gland", "residual", "step_us", "contacts_max", "capacity",
                                  "compliance_condition", "mesh_blur_mm", "mesh_changes", "warnings"}));
   EXPECT_EQ(keys_of(json["mesh"]), (Keys{"nodes", "tets"}));
   EXPECT_EQ(keys_of(json["peak_force_N"]), (Keys{"axial", "sagittal", "lateral"}));

@@ -46,6 +46,17 @@ export function regionTriangles(scene: Scene, region: number): Uint32Array {
   return triangles;
 }
 
+/** Corners of the outer surface of the gland, which is all target regions together. The same way round as the patches. */
+export function glandTriangles(scene: Scene): Uint32Array {
+  const target = (region: number) => scene.regions[region]?.target ?? false;
+  const corners: number[] = [];
+  for (const patch of scene.patches) {
+    if (target(patch.inside) === target(patch.outside)) continue;
+    for (let i = 3 * patch.first; i < 3 * (patch.first + patch.count); i++) corners.push(scene.corners[i]);
+  }
+  return Uint32Array.from(corners);
+}
+
 export interface Hole { name: string; x: number; y: number; column: number; row: number }
 
 /** All holes of a template: columns from the patient's right to the left, rows from posterior to anterior. */

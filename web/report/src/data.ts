@@ -6,6 +6,7 @@ type Base64 = string;
 
 interface RawData {
   steps: { count: number; time_s: Base64; depth_mm: Base64; axial_N: Base64; sagittal_N: Base64; lateral_N: Base64 };
+  gland: { LR_mm: Base64; AP_mm: Base64; SI_mm: Base64 } | null;
   events: EventMark[];
   histogram: { edges_us: number[]; counts: number[] };
   surface: { points_mm: Base64; regions: RawRegion[] };
@@ -40,6 +41,13 @@ export interface Steps {
   lateral: Float32Array;   // [N]
 }
 
+/** Shift of the gland's mean after each step [mm]; null where there is no gland. */
+export interface GlandPath {
+  lr: Float32Array;  // positive to the patient's left
+  ap: Float32Array;  // positive to posterior
+  si: Float32Array;  // positive to superior
+}
+
 export interface Region {
   name: string;
   label: string;
@@ -61,6 +69,7 @@ export interface Frame {
 
 export interface ReportData {
   steps: Steps;
+  gland: GlandPath | null;
   events: EventMark[];
   histogram: { edges_us: number[]; counts: number[] };
   points: Float32Array;       // (3 × surface nodes) [mm] LPS, undeformed
@@ -92,6 +101,7 @@ export function decode(json: string): ReportData {
       sagittal: floats(raw.steps.sagittal_N),
       lateral: floats(raw.steps.lateral_N),
     },
+    gland: raw.gland && { lr: floats(raw.gland.LR_mm), ap: floats(raw.gland.AP_mm), si: floats(raw.gland.SI_mm) },
     events: raw.events,
     histogram: raw.histogram,
     points: floats(raw.surface.points_mm),

@@ -3,7 +3,9 @@ import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { decode } from './data';
 import { Moment } from './moment';
-import { buildForcePlot } from './plots/force_plot';
+import { buildCurvePlot, type CurveFamily } from './plots/curve_plot';
+import { forceCurves } from './plots/force_curves';
+import { glandCurves } from './plots/gland_curves';
 import { buildHistogram } from './plots/histogram';
 import { buildLegend, CurveChoice } from './plots/legend';
 import { buildViewer } from './viewer/panel';
@@ -18,9 +20,16 @@ function box(id: string): HTMLElement {
 document.documentElement.classList.add('with-script');
 const data = decode(box('report-data').textContent ?? '');
 const moment = new Moment(data);
-const choice = new CurveChoice();
-build('force-legend', (b) => buildLegend(b, choice));
-build('force-depth', (b) => buildForcePlot(data, choice, moment, { box: b, abscissa: 'depth', label: 'Depth [mm]' }));
-build('force-time', (b) => buildForcePlot(data, choice, moment, { box: b, abscissa: 'time', label: 'Time [s]' }));
+
+/** Legend and both plots of a family of curves, in the boxes whose names begin with `name`. */
+function buildCurves(name: string, family: CurveFamily): void {
+  const choice = new CurveChoice(family.curves);
+  build(`${name}-legend`, (b) => buildLegend(b, choice));
+  build(`${name}-depth`, (b) => buildCurvePlot(data, family, choice, moment, { box: b, abscissa: 'depth', label: 'Depth [mm]' }));
+  build(`${name}-time`, (b) => buildCurvePlot(data, family, choice, moment, { box: b, abscissa: 'time', label: 'Time [s]' }));
+}
+
+buildCurves('force', forceCurves(data));
+if (data.gland) buildCurves('gland', glandCurves(data, data.gland));
 build('step-times', (b) => buildHistogram(data, b));
 build('viewer', (b) => buildViewer(data, moment, b));

@@ -48,12 +48,6 @@ const Event* find(const std::vector<Event>& events, EventKind kind) {
   return found == events.end() ? nullptr : &*found;
 }
 
-std::string target_name(const RunRecording& run) {
-  std::vector<std::string> names;
-  for (const int r : run.info.target_regions) names.push_back(spoken(run.mesh.regions[static_cast<std::size_t>(r)]));
-  return names.empty() ? "target" : join(names);
-}
-
 std::string tell_motion(const RunRecording& run, const Frame& deepest) {
   const Event* out = find(run.summary->events, EventKind::withdrawn);
   const double end = run.steps.empty() ? run.frames.back().time_s : run.steps.back().time_s;
@@ -163,24 +157,33 @@ std::string tell_retraction(const RunRecording& run, const Frame& after) {
 
 }  // namespace
 
+std::string target_name(const RunRecording& run) {
+  std::vector<std::string> names;
+  for (const int r : run.info.target_regions) names.push_back(spoken(run.mesh.regions[static_cast<std::size_t>(r)]));
+  return names.empty() ? "target" : join(names);
+}
+
 std::string describe_shift(const Vec3& shift) {
-  struct Direction {
-    const char* positive;
-    const char* negative;
-  };
-  constexpr std::array<Direction, 3> kWords{{{"to the patient's left", "to the patient's right"},
-                                             {"backwards", "forwards"},
-                                             {"towards the head", "towards the feet"}}};
+  return in_words(shift,
+                  {{{"to the patient's left", "to the patient's right"},
+                    {"backwards", "forwards"},
+                    {"towards the head", "towards the feet"}}},
+                  1);
+}
+
+std::string in_words(const Vec3& shift, const std::array<DirectionWords, 3>& words, int digits) {
+  const double least = 0.5 * std::pow(10.0, -digits);
   std::array<Eigen::Index, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(),
             [&](Eigen::Index a, Eigen::Index b) { return std::abs(shift[a]) > std::abs(shift[b]); });
   std::vector<std::string> parts;
   for (const Eigen::Index k : order) {
-    if (std::abs(shift[k]) < 0.05) continue;
-    const Direction& words = kWords[static_cast<std::size_t>(k)];
-    parts.push_back(fmt::format("{:.1f} mm {}", std::abs(shift[k]), shift[k] > 0 ? words.positive : words.negative));
+    if (std::abs(shift[k]) < least) continue;
+    const DirectionWords& word = words[static_cast<std::size_t>(k)];
+    parts.push_back(
+        fmt::format("{:.{}f} mm {}", std::abs(shift[k]), digits, shift[k] > 0 ? word.positive : word.negative));
   }
-  return parts.empty() ? "less than 0.05 mm in any direction" : join(parts);
+  return parts.empty() ? fmt::format("less than {:.{}f} mm in any direction", least, digits + 1) : join(parts);
 }
 
 std::string event_label(const Event& e) {

@@ -4,6 +4,7 @@
 #include "report/moments.hpp"
 #include "stylet/io/recording_io.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,17 @@ std::string event_label(const Event& event);
 /// A displacement in patient directions, "2.7 mm towards the head and 0.5 mm forwards".
 /// @param shift [mm] LPS
 std::string describe_shift(const Vec3& shift);
+
+/// What a component is called where it is positive, and where it is negative.
+struct DirectionWords {
+  const char* positive;
+  const char* negative;
+};
+/// A displacement component by component, the largest first; what rounds to nothing is left out.
+/// @param shift [mm] LPS @param digits after the point
+std::string in_words(const Vec3& shift, const std::array<DirectionWords, 3>& words, int digits);
+
+/// The target's regions in a sentence, "peripheral zone and transition zone".
+std::string target_name(const RunRecording& run);
 
 }  // namespace stylet::results

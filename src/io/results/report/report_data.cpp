@@ -43,8 +43,8 @@ std::vector<std::size_t> thin_out(const std::vector<Step>& steps) {
   return kept;
 }
 
-template <class Value>
-std::string column(const std::vector<Step>& steps, const std::vector<std::size_t>& kept, Value value) {
+template <class Record, class Value>
+std::string column(const std::vector<Record>& steps, const std::vector<std::size_t>& kept, Value value) {
   std::vector<float> values;
   values.reserve(kept.size());
   for (const std::size_t k : kept) values.push_back(static_cast<float>(value(steps[k])));
@@ -59,6 +59,17 @@ Json steps_json(const std::vector<Step>& steps) {
           {"axial_N", column(steps, kept, [](const Step& s) { return s.force_axial_N; })},
           {"sagittal_N", column(steps, kept, [](const Step& s) { return s.force_sagittal_N; })},
           {"lateral_N", column(steps, kept, [](const Step& s) { return s.force_lateral_N; })}};
+}
+
+/// The gland's shift after the steps of steps_json(); null without a target.
+Json gland_json(const RunRecording& run) {
+  const std::vector<GlandStep>& path = run.summary->gland_path;
+  if (path.size() != run.steps.size() || path.empty()) return nullptr;
+  const auto kept = thin_out(run.steps);
+  const auto shift = [&](Eigen::Index k) {
+    return column(path, kept, [k](const GlandStep& s) { return s.shift_mm[k]; });
+  };
+  return {{"LR_mm", shift(0)}, {"AP_mm", shift(1)}, {"SI_mm", shift(2)}};
 }
 
 /// Counts of step times in bins of equal ratio.
@@ -220,6 +231,7 @@ std::string report_data(const RunRecording& run, std::span<const RegionView> reg
   const auto shown = std::lower_bound(chosen.begin(), chosen.end(), moments.deepest);
   const Json json = {
       {"steps", steps_json(run.steps)},
+      {"gland", gland_json(run)},
       {"events", events_json(run.summary->events)},
       {"histogram", histogram_json(run.steps)},
       {"surface", surface_json(run.mesh, regions, surface)},

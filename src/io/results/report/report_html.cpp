@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/report_html.hpp"
 
+#include "fixed_number.hpp"
 #include "report/assets.hpp"
+#include "report/gland_section.hpp"
 #include "report/narrative.hpp"
 #include "report/page_template.hpp"
 #include "report/parameter_tables.hpp"
@@ -37,12 +39,6 @@ std::string tiles(const RunRecording& run, const Frame& deepest) {
   html += tile(fmt::format("{:.1f} mm", s.tip_deflection_mm), "tip beside its straight line") +
           tile(fmt::format("{:.0f} µs", s.step_us_p99), "99 % of the steps within");
   return html;
-}
-
-/// Fixed digits, and no sign before a zero.
-std::string fixed(double value, int digits) {
-  const bool zero = std::abs(value) < 0.5 * std::pow(10.0, -digits);
-  return fmt::format("{:.{}f}", zero ? 0.0 : value, digits);
 }
 
 std::string event_rows(const std::vector<Event>& events) {
@@ -161,6 +157,7 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"story", story},
       {"tiles", tiles(run, run.frames[moments.deepest])},
       {"warnings", warning_box(warnings)},
+      {"gland", gland_section(run)},
       {"pictures", picture_section(run, regions, moments, pictures)},
       {"events", event_rows(run.summary->events)},
       {"step_times", html_prose(tell_step_times(*run.summary))},

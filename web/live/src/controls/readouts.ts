@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers of the moment: depth, speed, tip, forces, and whether steps come in time.
+// Numbers of the moment: depth, speed, tip, forces, and whether steps come in time; and the key figures of the insertion.
 import { element } from '../../../shared/dom';
 import { CURVES } from '../../../shared/plot_style';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
 import { SAMPLE_WORDS, TIP_STATES, type Frame } from '../wire';
+import { KeyFigures } from './key_figures';
 
 const WRITE_EVERY_MS = 100;
 
@@ -41,8 +42,10 @@ export class Readouts {
     this.forces[0].row.classList.add('large');
     this.step.row.title = 'Processor time of a step: median, 99th percentile, longest';
     this.warning.hidden = true;
+    const figures = element('div', 'figures');
+    new KeyFigures(figures, session);
     root.append(this.depth.row, this.forces[0].row, this.forces[1].row, this.forces[2].row, this.speed.row, this.tip.row,
-                this.warning, this.step.row, this.deadline);
+                figures, this.warning, this.step.row, this.deadline);
     const write = onRepaintEvery(WRITE_EVERY_MS, () => this.write());
     for (const topic of ['frame', 'status', 'link'] as const) session.on(topic, write);
   }

@@ -13,6 +13,7 @@ import { onRepaint } from '../repaint';
 import { organBounds } from '../scene';
 import type { Frame } from '../wire';
 import { CutPlane } from './cut_plane';
+import { GlandGhost } from './gland_ghost';
 import { Pace } from './pace';
 import { RegionSurface } from './region_surface';
 import { TemplatePlate } from './template_plate';
@@ -22,6 +23,7 @@ export class Stage {
   contacts = new ContactMarks(1.27);
   readonly cut = new CutPlane();
   readonly template = new TemplatePlate();
+  readonly ghost = new GlandGhost(this.cut.clipping);
   readonly canvas: HTMLCanvasElement;
   onFirstPicture: () => void = () => {};
   private needle = new NeedleMesh(1.27);
@@ -46,7 +48,7 @@ export class Stage {
     this.renderer.localClippingEnabled = true;
     this.canvas = this.renderer.domElement;
     box.append(this.canvas);
-    this.scene.add(this.needle.object, this.contacts.object, this.cut.object, this.template.object);
+    this.scene.add(this.needle.object, this.contacts.object, this.cut.object, this.template.object, this.ghost.object);
     this.scene.add(new THREE.HemisphereLight('#ffffff', '#c8ccd2', 1.7));
     const lamp = new THREE.DirectionalLight('#ffffff', 1.6);
     lamp.position.set(-0.4, 0.7, 1);
@@ -80,6 +82,7 @@ export class Stage {
     this.frameOrgans(anatomy);
     this.cut.setSurfaces(this.surfaces, 20 * this.halfSize);
     this.template.setTemplate(scene.template);
+    this.ghost.setScene(scene);
     if (!again) this.look(VIEWS[0].from);
     this.resize();
     void this.renderer.compileAsync(this.scene, this.camera).then(() => {

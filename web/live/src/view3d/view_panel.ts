@@ -16,6 +16,20 @@ import { Stage } from './stage';
 
 const SMALLEST_SCALE_MM = 0.5;
 
+/** Shows or hides a thing of the stage; whatever it is at the start. */
+function visibilityBox(stage: Stage, thing: { object: { visible: boolean } }, text: string): HTMLElement {
+  const label = element('label');
+  const box = element('input');
+  box.type = 'checkbox';
+  box.checked = thing.object.visible;
+  box.addEventListener('change', () => {
+    thing.object.visible = box.checked;
+    stage.draw();
+  });
+  label.append(box, text);
+  return label;
+}
+
 /** The 3D view comes last when the page opens: a WebGL context may hold up all of it for a second or more. */
 export class ViewPanel {
   stage: Stage | null = null;
@@ -179,19 +193,12 @@ export class ViewPanel {
       label.append(input, text);
       colors.append(label);
     }
-    const contacts = element('label');
-    const box = element('input');
-    box.type = 'checkbox';
-    box.checked = true;
-    box.addEventListener('change', () => {
-      stage.contacts.object.visible = box.checked;
-      stage.draw();
-    });
-    contacts.append(box, 'Contact points');
+    const contacts = visibilityBox(stage, stage.contacts, 'Contact points');
+    const ghost = visibilityBox(stage, stage.ghost, 'Gland before the insertion');
     this.cutControl = new CutControl(stage);
     const body = element('div', 'settings-body');
     body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,
-                element('h3', '', 'Shown'), this.list, contacts, contactKey());
+                element('h3', '', 'Shown'), this.list, ghost, contacts, contactKey());
     this.settings.append(summary, body);
     const views = element('div', 'views');
     const names = ['Oblique', 'Left', 'Front', 'Feet'];

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One legend for both force plots: which curves are shown, and what solid and dashed mean.
-import { CURVES, type CurveKey } from '../../../shared/plot_style';
+// One legend for both plots of a family of curves: which are shown, and what solid and dashed mean.
+import type { Curve } from './curve_plot';
 
 export class CurveChoice {
-  private readonly shown = new Set<CurveKey>(CURVES.map((c) => c.key));
+  private readonly shown: Set<string>;
   private readonly listeners: (() => void)[] = [];
 
-  isShown(key: CurveKey): boolean {
+  constructor(readonly curves: Curve[]) {
+    this.shown = new Set(curves.map((c) => c.key));
+  }
+
+  isShown(key: string): boolean {
     return this.shown.has(key);
   }
 
-  toggle(key: CurveKey): void {
+  toggle(key: string): void {
     if (!this.shown.delete(key)) this.shown.add(key);
     for (const listener of this.listeners) listener();
   }
@@ -26,7 +30,7 @@ function sample(color: string, width: number, dashed: boolean): string {
 }
 
 export function buildLegend(box: HTMLElement, choice: CurveChoice): void {
-  for (const curve of CURVES) {
+  for (const curve of choice.curves) {
     const button = document.createElement('button');
     button.type = 'button';
     button.innerHTML = sample(curve.color, curve.width + 0.5, false);

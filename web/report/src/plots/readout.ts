@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the pointer is at: a dot on the curve and a small box with the numbers of that step.
 import type uPlot from 'uplot';
-import type { Steps } from '../data';
-import { newtons } from '../../../shared/plot_style';
 
 export class Readout {
   private readonly box = document.createElement('div');
   private readonly dot = document.createElement('div');
 
-  constructor(private readonly plot: uPlot, private readonly steps: Steps) {
+  /** @param text HTML of a step's numbers */
+  constructor(private readonly plot: uPlot, private readonly text: (step: number) => string) {
     this.box.className = 'readout';
     this.dot.className = 'readout-dot';
     plot.over.append(this.dot, this.box);
@@ -20,14 +19,12 @@ export class Readout {
     this.dot.hidden = true;
   }
 
-  /** Shows step `i` with its axial force at (x, y) on the plot's scales. */
+  /** Shows step `i` at (x, y) on the plot's scales. */
   show(i: number, x: number, y: number): void {
-    const { steps, plot } = this;
+    const { plot } = this;
     const left = plot.valToPos(x, 'x');
     const top = plot.valToPos(y, 'y');
-    this.box.innerHTML =
-      `<b>${steps.time[i].toFixed(3)} s</b>, depth ${steps.depth[i].toFixed(1)} mm<br>` +
-      `axial ${newtons(steps.axial[i])}<br>sagittal ${newtons(steps.sagittal[i])}<br>lateral ${newtons(steps.lateral[i])}`;
+    this.box.innerHTML = this.text(i);
     this.box.hidden = false;
     this.dot.hidden = false;
     this.dot.style.transform = `translate(${left}px, ${top}px)`;

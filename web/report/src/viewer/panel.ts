@@ -34,25 +34,41 @@ function contactList(stage: Stage): HTMLElement {
   return row;
 }
 
-function colorChoice(stage: Stage, bar: HTMLElement): HTMLElement {
+/** One of several, the first at the start. */
+function radioButtons<Value>(name: string, choices: readonly (readonly [string, Value])[], set: (value: Value) => void): HTMLElement {
   const box = element('div', 'choice');
-  const set = (on: boolean) => {
-    for (const mesh of stage.regions) mesh.colorByDisplacement(on);
-    bar.hidden = !on;
-    stage.draw();
-  };
-  for (const [text, on] of [['Tissue', false], ['Displacement', true]] as const) {
+  choices.forEach(([text, value], i) => {
     const label = element('label');
     const input = element('input');
     input.type = 'radio';
-    input.name = 'viewer-color';
-    input.checked = !on;
-    input.addEventListener('change', () => set(on));
+    input.name = name;
+    input.checked = i === 0;
+    input.addEventListener('change', () => set(value));
     label.append(input, text);
     box.append(label);
-  }
-  bar.hidden = true;
+  });
   return box;
+}
+
+function colorChoice(stage: Stage, bar: HTMLElement): HTMLElement {
+  bar.hidden = true;
+  return radioButtons('viewer-color', [['Tissue', false], ['Displacement', true]] as const, (on) => {
+    for (const mesh of stage.regions) mesh.colorByDisplacement(on);
+    bar.hidden = !on;
+    stage.draw();
+  });
+}
+
+/** How much larger than it is the tissue's displacement may be drawn. */
+const EXAGGERATIONS = [1, 5, 20];
+
+/** @param note says in the picture what is exaggerated @param set is told the new factor */
+function exaggerationChoice(note: HTMLElement, set: (times: number) => void): HTMLElement {
+  return radioButtons('viewer-exaggeration', EXAGGERATIONS.map((times) => [`×${times}`, times] as const), (times) => {
+    note.textContent = times === 1 ? '' : `Displacement of the tissue drawn ×${times}. The needle is where it is.`;
+    note.hidden = times === 1;
+    set(times);
+  });
 }
 
 function timeControls(moment: Moment): HTMLElement {
@@ -99,7 +115,9 @@ export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement)
   const picture = element('div', 'picture');
   const canvas = element('div', 'canvas');
   const bar = element('div', 'scale-bar');
-  picture.append(canvas, bar);
+  const note = element('div', 'exaggeration');
+  note.hidden = true;
+  picture.append(canvas, bar, note);
   root.append(picture);
   let stage: Stage;
   try {
@@ -118,11 +136,17 @@ export function buildViewer(data: ReportData, moment: Moment, root: HTMLElement)
   const views = element('div', 'views');
   for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
   const scale = colorBar(marks);
-  side.append(element('h3', '', 'Colours'), colorChoice(stage, scale), scale, element('h3', '', 'Shown'), regionList(stage),
+  let times = 1;
+  const update = () => stage.show(moment.frame, most, times);
+  const exaggeration = exaggerationChoice(note, (chosen) => {
+    times = chosen;
+    update();
+  });
+  side.append(element('h3', '', 'Colours'), colorChoice(stage, scale), scale, element('h3', '', 'Displacement drawn'),
+              exaggeration, element('h3', '', 'Shown'), regionList(stage),
               contactList(stage), element('h3', '', 'View'), views,
               element('p', 'hint', 'Drag to turn, wheel to zoom, right button to move.'));
   root.append(side, timeControls(moment));
-  const update = () => stage.show(moment.frame, most);
   moment.onChange(update);
   update();
 }

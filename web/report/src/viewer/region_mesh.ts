@@ -59,14 +59,18 @@ export class RegionMesh implements RegionLook {
     applyColors(this, on);
   }
 
-  /** Moves the nodes to where they are in a frame. @param most displacement [mm] at the end of the colour scale */
-  show(frame: Frame, most: number): void {
+  /**
+   * Moves the nodes to where they are in a frame.
+   * @param most displacement [mm] at the end of the colour scale
+   * @param times how much larger than it is the displacement is drawn
+   */
+  show(frame: Frame, most: number, times: number): void {
     const { points, displacementScale: scale } = this.data;
     this.nodes.forEach((node, i) => {
       let square = 0;
       for (let k = 0; k < 3; k++) {
         const u = frame.displacement[3 * node + k] * scale;
-        this.position[3 * i + k] = points[3 * node + k] + u;
+        this.position[3 * i + k] = points[3 * node + k] + times * u;
         square += u * u;
       }
       viridis(Math.sqrt(square) / most, this.color, 3 * i);

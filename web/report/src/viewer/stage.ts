@@ -51,8 +51,9 @@ export class Stage {
     this.resize();
   }
 
-  show(frame: Frame, most: number): void {
-    for (const region of this.regions) region.show(frame, most);
+  /** @param most displacement [mm] at the end of the colour scale @param times how much larger the tissue's is drawn */
+  show(frame: Frame, most: number, times: number): void {
+    for (const region of this.regions) region.show(frame, most, times);
     this.needle.show(frame.needle);
     this.contacts.show(frame.needle, frame.contacts);
     this.draw();

@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force curves against time or depth. Depth goes forth and back, so the curves are drawn as paths through all steps
+// Curves of a run against time or depth. Depth goes forth and back, so the curves are drawn as paths through all steps
 // (uPlot's scatter mode), solid on the way in and dashed on the way out.
 import uPlot from 'uplot';
-import { nearestStep, turningStep, type ReportData, type Steps } from '../data';
+import { nearestStep, turningStep, type EventMark, type ReportData } from '../data';
 import type { Moment } from '../moment';
 import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import type { CurveChoice } from './legend';
 import { Readout } from './readout';
-import { axis, CURVES, followWidth, fontSize, INK, lineScale, type CurveKey } from '../../../shared/plot_style';
+import { axis, followWidth, fontSize, INK, lineScale } from '../../../shared/plot_style';
 
-export interface ForcePlotOptions {
+export interface Curve {
+  key: string;
+  label: string;
+  color: string;
+  width: number;
+  values: Float32Array;  // one of each step
+}
+
+/** Curves that share a plot; the first is the one that is pointed at. */
+export interface CurveFamily {
+  label: string;                          // of the ordinate, with its unit
+  curves: Curve[];
+  at(event: EventMark): number;           // where on the ordinate an event is marked
+  numbers(step: number): string;          // HTML, what the curves are at a step
+}
+
+export interface CurvePlotOptions {
   box: HTMLElement;
   abscissa: 'time' | 'depth';
   label: string;
@@ -47,7 +63,7 @@ function stroke(plot: uPlot, xs: Float32Array, ys: Float32Array, from: number, t
   ctx.stroke();
 }
 
-function drawCurve(plot: uPlot, steps: Steps, xs: Float32Array, turn: number, key: CurveKey, color: string, width: number): void {
+function drawCurve(plot: uPlot, xs: Float32Array, turn: number, { values, color, width }: Curve): void {
   const { ctx, bbox } = plot;
   const unit = devicePixelRatio * lineScale();
   ctx.save();
@@ -57,14 +73,14 @@ function drawCurve(plot: uPlot, steps: Steps, xs: Float32Array, turn: number, ke
   ctx.strokeStyle = color;
   ctx.lineWidth = width * unit;
   ctx.lineJoin = 'round';
-  stroke(plot, xs, steps[key], 0, turn);
+  stroke(plot, xs, values, 0, turn);
   ctx.setLineDash([6 * unit, 3 * unit]);
-  stroke(plot, xs, steps[key], turn, xs.length - 1);
+  stroke(plot, xs, values, turn, xs.length - 1);
   ctx.restore();
 }
 
-/** Vertical line (time) or dot on the axial curve (depth) for the frame shown in the 3D view. */
-function drawMoment(plot: uPlot, x: number, y: number, asLine: boolean): void {
+/** Vertical line (time) and dot on the first curve for the frame shown in the 3D view. */
+function drawMoment(plot: uPlot, x: number, y: number, color: string, asLine: boolean): void {
   const { ctx, bbox } = plot;
   const unit = devicePixelRatio * lineScale();
   const at = plot.valToPos(x, 'x', true);
@@ -80,14 +96,17 @@ function drawMoment(plot: uPlot, x: number, y: number, asLine: boolean): void {
   }
   ctx.beginPath();
   ctx.arc(at, plot.valToPos(y, 'y', true), 5 * unit, 0, 2 * Math.PI);
-  ctx.fillStyle = CURVES[0].color;
+  ctx.fillStyle = color;
   ctx.fill();
   ctx.stroke();
   ctx.restore();
 }
 
-export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Moment, options: ForcePlotOptions): void {
+export function buildCurvePlot(data: ReportData, family: CurveFamily, choice: CurveChoice, moment: Moment,
+                               options: CurvePlotOptions): void {
   const { steps } = data;
+  const { curves } = family;
+  const first = curves[0].values;
   const { box, abscissa } = options;
   if (steps.time.length < 2) {
     box.textContent = 'No steps were recorded.';
@@ -98,13 +117,13 @@ export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Mo
   const events: PlacedEvent[] = data.events.map((event) => ({
     event,
     x: abscissa === 'time' ? event.time_s : event.depth_mm,
-    y: event.force_N,
+    y: family.at(event),
   }));
   const whole: Window = {
     x: extent([xs], abscissa === 'time' ? 0 : 0.02),
-    y: extent(CURVES.map((c) => steps[c.key]), 0.06),
+    y: extent(curves.map((c) => c.values), 0.06),
   };
-  const axisSize = fontSize() * 3.2;
+  const axisSize = fontSize() * 4;
   const top = labelsHeight(events, whole.x[0], whole.x[1], box.clientWidth - 2 * axisSize);
 
   const plot = new uPlot(
@@ -119,12 +138,12 @@ export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Mo
         x: { time: false, range: (_u, low, high) => [low ?? whole.x[0], high ?? whole.x[1]] },
         y: { range: (_u, low, high) => [low ?? whole.y[0], high ?? whole.y[1]] },
       },
-      axes: [axis(options.label, fontSize() * 2), axis('Force [N]', axisSize)],
-      series: [{}, ...CURVES.map((c) => ({
+      axes: [axis(options.label, fontSize() * 2), axis(family.label, axisSize)],
+      series: [{}, ...curves.map((c) => ({
         label: c.label,
         facets: [{ scale: 'x', auto: true }, { scale: 'y', auto: true }],
         paths: (u: uPlot) => {
-          if (choice.isShown(c.key)) drawCurve(u, steps, xs, turn, c.key, c.color, c.width);
+          if (choice.isShown(c.key)) drawCurve(u, xs, turn, c);
           return null;
         },
       }))],
@@ -133,12 +152,12 @@ export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Mo
           (u: uPlot) => {
             drawEvents(u, events);
             const i = nearestStep(steps, moment.frame.time);
-            drawMoment(u, xs[i], steps.axial[i], abscissa === 'time');
+            drawMoment(u, xs[i], first[i], curves[0].color, abscissa === 'time');
           },
         ],
       },
     } as uPlot.Options,
-    [null, ...CURVES.map((c) => [xs, steps[c.key]])] as unknown as uPlot.AlignedData,
+    [null, ...curves.map((c) => [xs, c.values])] as unknown as uPlot.AlignedData,
     box,
   );
   const show = (window: Window) => {
@@ -152,14 +171,15 @@ export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Mo
   choice.onChange(() => plot.redraw(false));
   moment.onChange(() => plot.redraw(false));
 
-  const readout = new Readout(plot, steps);
+  const readout = new Readout(plot, (i) =>
+    `<b>${steps.time[i].toFixed(3)} s</b>, depth ${steps.depth[i].toFixed(1)} mm<br>${family.numbers(i)}`);
   const stepAt = (left: number, y: number): number => {
     if (abscissa === 'time') return nearestStep(steps, plot.posToVal(left, 'x'));
     let best = 0;
     let distance = Infinity;
     for (let i = 0; i < xs.length; i++) {
       const dx = plot.valToPos(xs[i], 'x') - left;
-      const dy = plot.valToPos(steps.axial[i], 'y') - y;
+      const dy = plot.valToPos(first[i], 'y') - y;
       const d = dx * dx + dy * dy;
       if (d < distance) [best, distance] = [i, d];
     }
@@ -171,7 +191,7 @@ export function buildForcePlot(data: ReportData, choice: CurveChoice, moment: Mo
   };
   plot.over.addEventListener('mousemove', (e) => {
     const i = place(e);
-    readout.show(i, xs[i], steps.axial[i]);
+    readout.show(i, xs[i], first[i]);
   });
   plot.over.addEventListener('mouseleave', () => readout.hide());
   let pressed: [number, number] = [0, 0];

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fixed_number.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stylet::results {
+
+std::string fixed(double value, int digits) {
+  const bool zero = std::abs(value) < 0.5 * std::pow(10.0, -digits);
+  return fmt::format("{:.{}f}", zero ? 0.0 : value, digits);
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/gland_motion.hpp"
+
+#include <span>
+#include <string>
+
+namespace stylet::results {
+
+/// gland.csv: a header and one line for each step, as in forces.csv. Columns and units: docs/results.md. Fixed number
+/// formats independent of the locale; the same path gives the same bytes.
+std::string gland_csv(std::span<const GlandStep> path);
+
+}  // namespace stylet::results

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What clinics report, in large numbers: the largest force since the needle was put to its start, and where the gland is.
+import { element } from '../../../shared/dom';
+import { GlandFit, length } from '../gland_fit';
+import { onRepaintEvery } from '../repaint';
+import type { Session } from '../session';
+import { SAMPLE_WORDS, type Frame } from '../wire';
+
+const WRITE_EVERY_MS = 100;
+const AXIAL = 2;  // of a sample's words
+
+class Figure {
+  readonly box = element('div', 'figure');
+  private readonly number = element('b');
+
+  constructor(caption: string, unit: string) {
+    const value = element('div');
+    value.append(this.number, element('span', 'unit', unit));
+    this.box.append(element('span', 'name', caption), value);
+  }
+
+  set(text: string, title: string): void {
+    if (this.number.textContent !== text) this.number.textContent = text;
+    if (this.box.title !== title) this.box.title = title;
+  }
+}
+
+/** The largest axial force, by magnitude, of the steps of a frame and of those before. */
+export function peakAfter(peak: number, { samples, whole }: Frame): number {
+  let largest = whole ? 0 : peak;
+  for (let i = 0; i < samples.length; i += SAMPLE_WORDS) largest = Math.max(largest, Math.abs(samples[i + AXIAL]));
+  return largest;
+}
+
+function part(value: number, digits: number, unit: string, positive: string, negative: string): string {
+  return `${Math.abs(value).toFixed(digits)}${unit} ${value < 0 ? negative : positive}`;
+}
+
+export class KeyFigures {
+  private readonly peak = new Figure('Peak force', 'N');
+  private readonly shift = new Figure('Gland shift', 'mm');
+  private readonly turn = new Figure('Gland turn', '°');
+  private largest = 0;  // [N]
+  private gland: GlandFit | null = null;
+
+  constructor(root: HTMLElement, session: Session) {
+    root.append(this.peak.box, this.shift.box, this.turn.box);
+    const write = onRepaintEvery(WRITE_EVERY_MS, () => this.write());
+    session.on('scene', (scene) => {
+      this.gland = GlandFit.of(scene);
+      this.shift.box.hidden = this.turn.box.hidden = this.gland === null;
+      write();
+    });
+    session.on('restart', () => {
+      this.largest = 0;
+      write();
+    });
+    session.on('frame', (frame) => {
+      this.largest = peakAfter(this.largest, frame);
+      if (frame.shown) this.gland?.update(frame.displacement, frame.unit);
+      write();
+    });
+  }
+
+  private write(): void {
+    this.peak.set(this.largest.toFixed(2), 'Largest axial force since the needle was put to its start');
+    if (!this.gland) return;
+    const { shift: [lr, ap, si], rotation: [sagittal, coronal, transverse] } = this.gland;
+    this.shift.set(length([lr, ap, si]).toFixed(2), 'Mean shift of the gland’s surface: ' +
+      [part(si, 2, ' mm', 'superior', 'inferior'), part(ap, 2, ' mm', 'posterior', 'anterior'), part(lr, 2, ' mm', 'left', 'right')].join(', '));
+    this.turn.set(length([sagittal, coronal, transverse]).toFixed(1), 'Rigid rotation of the gland’s surface: ' +
+      [part(coronal, 2, '° coronal, base to the', 'left', 'right'), part(sagittal, 2, '° sagittal, base to', 'anterior', 'posterior'),
+       part(transverse, 2, '° transverse, left side to', 'posterior', 'anterior')].join('; '));
+  }
+}
