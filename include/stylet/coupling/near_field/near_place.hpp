@@ -78,4 +78,12 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
 /// @param at contact, the tip itself, or acted_on_by() the tip @param tip where the force is
 Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip);
 
+/// The same of any two places, when both are spread over kScale_mm: what of the displacement of one place per force on
+/// the other is narrower than that [mm/N]. Symmetric.
+Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on);
+
+/// How many times softer than its own medium the mesh has a place next to a border between organs, 0…2: on the border
+/// itself both sides are as soft as a medium of the mean of their moduli, by equation (4a) of near_field.md.
+double softness_at_border(const MeshKernel& kernel, const NearPlace& place);
+
 }  // namespace stylet
