@@ -20,8 +20,6 @@ namespace stylet {
 namespace {
 /// Sub-steps of a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
-/// Surfaces that are met and break in one sub-step. Raised, a fast needle may pass more of them at once.
-constexpr int kMostSurfaces = 4;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
 constexpr double kBent_mm = 10.0;
@@ -44,7 +42,7 @@ std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, cons
 
 /// Points the tissue may be held at or remember: an insertion may begin before the tissue has forgotten the one before.
 int most_points(const CouplingSettings& settings) {
-  return settings.relaxation_s > 0.0 ? 2 * settings.capacity : settings.capacity;
+  return settings.creep.is_any() ? 2 * settings.capacity : settings.capacity;
 }
 
 /// Without a kernel of the mesh the near field starts with an empty one, which prepare() fills.
@@ -64,7 +62,7 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
     for (const RegionLaws& laws : tissue.laws) stiffening_MPa.push_back(laws.stiffening_MPa);
   }
   return std::make_unique<NearFieldCompliance>(std::move(engine), tissue.store->shared_tissue(), tissue.kernel, needle,
-                                               capacity, std::move(stiffening_MPa));
+                                               capacity, std::move(stiffening_MPa), settings.creep.is_any());
 }
 }  // namespace
 
@@ -115,7 +113,7 @@ Insertion::Parts::Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, 
     : mesh(with_kernel(std::move(mesh_), settings_)),
       settings(settings_),
       needle(std::move(needle_)),
-      tissue(make_compliance(mesh, settings, most_points(settings)), settings.relaxation_s, settings.needle_radius_mm,
+      tissue(make_compliance(mesh, settings, most_points(settings)), settings.creep, settings.needle_radius_mm,
              most_points(settings)),
       supply(mesh.store->shared_tissue(), settings.engine == CouplingSettings::Engine::condensed ? mesh.store : nullptr,
              settings.method == CouplingSettings::Method::near_field ? mesh.kernel : nullptr, *mesh.locator),
@@ -184,27 +182,17 @@ bool Insertion::Parts::enter(Step& step) {
   return false;
 }
 
-/// The balance of a sub-step; where a surface broke or was met in it, of what comes behind.
+/// The balance of a sub-step, and how the track grows by it.
 void Insertion::Parts::find_balance(double h, Step& step) {
   Effort effort(1 + static_cast<int>(shaft.count()));
   TipContact& tip = path.tip;
-  bool steady = true;
-  bool broke = false;
-  int surfaces = 0;
-  double cut = 0.0;
   const unsigned flags_before = std::exchange(step.flags, 0u);
-  do {
-    steady = balance->solve(h, surfaces == 0, effort, step) && steady;
-    // What is held by a surface for the rest of a sub-step pushes it on; viscous tissue resists that at once, and with
-    // more than the surface bears.
-    const bool met = tissue.is_viscous() && tip.touches() && tip.cut.is_blocked();
-    cut = tip.touches() ? tip.cut.advance() : 0.0;
-    {
-      const InPhase in_phase(phases, StepPhase::tip);
-      path.commit(step);
-    }
-    broke = met && tip.touches() && tip.force.norm() > tip.ahead.limit();
-  } while (broke && ++surfaces < kMostSurfaces);
+  const bool steady = balance->solve(h, effort, step);
+  const double cut = tip.touches() ? tip.cut.advance() : 0.0;
+  {
+    const InPhase in_phase(phases, StepPhase::tip);
+    path.commit(step);
+  }
   damping.end((step.flags & Step::not_converged) == 0);
   step.flags |= flags_before;
   predictor.end(cut, steady, *needle, tip, shaft.all());
@@ -381,11 +369,14 @@ ContactCompliance::Nodes Insertion::nodes() const {
 }
 
 VecX Insertion::displacement() const {
-  return compliance().displacement(parts_->tissue.filtered_forces_of_all(parts_->forces()));
+  const ContactForces forces = parts_->forces();
+  VecX u = compliance().displacement(parts_->tissue.present_forces(forces));
+  if (settings().creep.is_any()) u += compliance().wide_displacement(parts_->tissue.lasting_forces(forces));
+  return u;
 }
 
 VecX Insertion::mesh_displacement() const {
-  return compliance().mesh_displacement(parts_->tissue.filtered_forces_of_all(parts_->forces()));
+  return compliance().mesh_displacement(parts_->tissue.all_forces(parts_->forces()));
 }
 
 std::vector<TissueForce> Insertion::tissue_forces() const {
@@ -399,11 +390,12 @@ std::size_t Insertion::tissue_forces(std::span<TissueForce> out) const {
   const MaterialPoint tip = p.path.tip.cut.at();
   std::size_t count = 0;
   for (int point = 0; point < compliance().points(); ++point) {
-    const Vec3 force = p.tissue.filtered_force(point, p.forces());
-    if (force.isZero(0.0)) continue;
+    const Vec3 lasting = p.tissue.lasting_force(point, p.forces());
+    const Vec3 force = p.tissue.present_force(point, p.forces()) + lasting;
+    if (force.isZero(0.0) && lasting.isZero(0.0)) continue;
     const TissueResponse::Place& place = p.tissue.place(point);
     const bool at_tip = point == ContactCompliance::kTip && tip.tet >= 0;
-    if (count < out.size()) out[count] = {at_tip ? tip : place.at, force, place.along};
+    if (count < out.size()) out[count] = {at_tip ? tip : place.at, force, place.along, lasting};
     ++count;
   }
   return count;

@@ -2,47 +2,49 @@
 #pragma once
 
 #include "stylet/coupling/contact_compliance.hpp"
+#include "stylet/coupling/laws.hpp"
 
 namespace stylet {
 
-/// What a viscous tissue still feels of earlier forces. A Kelvin–Voigt solid with one relaxation time τ for all tissue,
-/// K (u + τ u̇) = f, keeps the elastic compliance when the forces are filtered: u = A g with g + τ ġ = f, for every
-/// material point and for those the needle has left. Backward Euler over a sub-step of h:
-///   g = share f + past,   share = 1 / (1 + τ/h),   past = (1 − share) g_before.
-/// Elastic (share 1, nothing past) with τ = 0. Nothing allocates after construction.
+/// How tissue creeps under the forces it has borne: a standard linear solid with one time constant τ for all tissue.
+/// On top of its elastic displacement A f come the displacements F p, with F the wide part of the compliance
+/// (ContactCompliance::wide()) and p the lasting forces,
+///   p = (r − 1) m,   m + τ ṁ = f,
+/// r the creep factor and f the forces of the contacts, for every material point and for those the needle has left.
+/// Backward Euler over a sub-step of h:
+///   p = share f + past,   share = (r − 1) h / (h + τ),   past = (r − 1) τ / (h + τ) m_before.
+/// docs/theory/tissue.md derives it. Nothing allocates after construction.
 class TissueMemory {
  public:
-  /// @param relaxation_s τ [s], ≥ 0
   /// @param points most points of the compliance, tip included
-  TissueMemory(double relaxation_s, int points);
+  TissueMemory(const Creep& creep, int points);
 
-  [[nodiscard]] bool on() const { return relaxation_s_ > 0.0; }
+  [[nodiscard]] bool on() const { return creep_.is_any(); }
 
   /// A sub-step of h seconds begins.
   void begin(double h);
 
-  /// Weight of this sub-step's forces; 0 between sub-steps, when all is past.
-  [[nodiscard]] double share() const { return share_; }
+  /// r − 1: how much of a force becomes lasting in the end.
+  [[nodiscard]] double most() const { return creep_.factor - 1.0; }
 
-  /// Filtered earlier forces on a point [N].
-  [[nodiscard]] auto past(int point) const { return past_.col(point); }
+  /// How much of a sub-step's force has become lasting at its end; 0 between sub-steps, and for elastic tissue.
+  [[nodiscard]] double share() const { return most() * (1.0 - kept_); }
 
-  /// Displacement of a point by earlier forces [mm].
+  /// What is left of the lasting force on a point [N] when this sub-step's force is not counted.
+  [[nodiscard]] Vec3 past(int point) const { return most() * kept_ * remembered_.col(point); }
+
+  /// Displacement of a point by past() on all points [mm].
   [[nodiscard]] Vec3 displacement(const ContactCompliance& compliance, int point) const;
 
   /// The sub-step is over: its forces are past as well.
   /// @param forces [N] (3 × points) on the tissue
   void end(const Eigen::Ref<const MatX>& forces);
 
-  /// Moves a part of what is past from one point to another.
+  /// Moves a part of what is remembered from one point to another.
   void hand_over(int from, int to, double part);
 
-  /// The point's compliance has changed, but it is the same material: changes what is past there so that earlier forces
-  /// displace it by `u` [mm] as before.
-  void keep_displacement(const ContactCompliance& compliance, int point, const Vec3& u);
-
-  /// Forgets a point's past: it is another material point from now on.
-  void forget(int point) { past_.col(point).setZero(); }
+  /// Forgets what is remembered of a point: it is another material point from now on.
+  void forget(int point) { remembered_.col(point).setZero(); }
 
   /// True when earlier forces displace no point by more than a nanometre.
   [[nodiscard]] bool relaxed(const ContactCompliance& compliance) const;
@@ -50,9 +52,9 @@ class TissueMemory {
   void reset();
 
  private:
-  double relaxation_s_;
-  double share_ = 1.0;
-  MatX past_;  ///< [N] (3 × points)
+  Creep creep_;
+  double kept_ = 1.0;  ///< part of what is remembered that is left at the end of the sub-step
+  MatX remembered_;    ///< m [N] (3 × points)
 };
 
 }  // namespace stylet

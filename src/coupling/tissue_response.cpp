@@ -8,42 +8,39 @@
 namespace stylet {
 
 namespace {
-/// Needle radii over which a tip's field falls to a half along the force. Raised, the track takes over more
-/// slowly what the tip has left behind.
-constexpr double kTipReach = 2.5;
-/// The same in depths of the dent. Lowered, the tissue would start back past a tip that cuts.
-constexpr double kDentReach = 4.0;
+/// Needle radii that the tip cuts on while the track takes over what is remembered at the tip. Raised, the tip takes
+/// more along with it; lowered, the tissue moves more abruptly where the first point of a track takes over.
+constexpr double kHandOver = 2.5;
 }  // namespace
 
-TissueResponse::TissueResponse(std::unique_ptr<ContactCompliance> compliance, double relaxation_s,
+TissueResponse::TissueResponse(std::unique_ptr<ContactCompliance> compliance, const Creep& creep,
                                double needle_radius_mm, int points)
     : compliance_(std::move(compliance)),
-      memory_(relaxation_s, points + 1),
-      needle_radius_mm_(needle_radius_mm),
+      memory_(creep, points + 1),
+      reach_mm_(kHandOver * needle_radius_mm),
       forces_(MatX::Zero(3, points + 1)),
       places_(static_cast<std::size_t>(points) + 1) {}
 
 TipRelief TissueResponse::relief(const ContactForces& contacts) const {
   if (!compliance_->stiffens()) return {};
   const MatX& scale = compliance_->needle_scale();
-  const auto by = [&](int point, const Vec3& force) -> Vec3 {
-    return scale.middleRows<3>(3 * point).transpose() * force;
-  };
-  const double share = memory_.share();
   Vec3 of_others = Vec3::Zero();
-  for (const ShaftContact& contact : contacts.shaft) of_others += by(contact.point, share * contact.force);
-  for (int point = 1; memory_.on() && point < compliance_->points(); ++point)
-    of_others += by(point, memory_.past(point));
-  return {*compliance_, filtered_force(ContactCompliance::kTip, contacts), of_others};
+  for (const ShaftContact& contact : contacts.shaft)
+    of_others += scale.middleRows<3>(3 * contact.point).transpose() * contact.force;
+  return {*compliance_, contacts.tip, of_others};
 }
 
 Vec3 TissueResponse::displacement(int point, const ContactForces& contacts) const {
-  Vec3 u = Vec3::Zero();
-  const auto columns = compliance_->matrix().middleCols<3>(3 * point);  // or rows: A is symmetric
-  u.noalias() += columns.topRows<3>().transpose() * contacts.tip;
-  for (const ShaftContact& contact : contacts.shaft)
-    u.noalias() += columns.middleRows<3>(3 * contact.point).transpose() * contact.force;
-  if (memory_.on()) u = memory_.share() * u + past_displacement(point);
+  const auto by_present = [&](const MatX& compliance) {
+    Vec3 u = Vec3::Zero();
+    const auto columns = compliance.middleCols<3>(3 * point);  // or rows: compliances are symmetric
+    u.noalias() += columns.topRows<3>().transpose() * contacts.tip;
+    for (const ShaftContact& contact : contacts.shaft)
+      u.noalias() += columns.middleRows<3>(3 * contact.point).transpose() * contact.force;
+    return u;
+  };
+  Vec3 u = by_present(compliance_->matrix());
+  if (memory_.on()) u += memory_.share() * by_present(compliance_->wide()) + past_displacement(point);
   if (compliance_->stiffens()) u -= relief(contacts).of(point);
   return u;
 }
@@ -54,16 +51,11 @@ void TissueResponse::gather(const ContactForces& contacts, Eigen::Ref<MatX> forc
   for (const ShaftContact& contact : contacts.shaft) forces.col(contact.point) = contact.force;
 }
 
-void TissueResponse::filter(Eigen::Ref<MatX> forces) const {
-  if (!memory_.on()) return;
-  for (int point = 0; point < compliance_->points(); ++point)
-    forces.col(point) = memory_.share() * forces.col(point) + memory_.past(point);
-}
-
-Eigen::Ref<const MatX> TissueResponse::filtered_forces(const ContactForces& contacts) {
+Eigen::Ref<const MatX> TissueResponse::all_forces(const ContactForces& contacts) {
   auto forces = forces_.leftCols(compliance_->points());
   gather(contacts, forces);
-  filter(forces);
+  for (int point = 0; memory_.on() && point < compliance_->points(); ++point)
+    forces.col(point) += memory_.share() * forces.col(point) + memory_.past(point);
   return forces;
 }
 
@@ -73,43 +65,41 @@ MatX TissueResponse::present_forces(const ContactForces& contacts) const {
   return forces;
 }
 
-MatX TissueResponse::filtered_forces_of_all(const ContactForces& contacts) const {
-  MatX forces = present_forces(contacts);
-  filter(forces);
+MatX TissueResponse::lasting_forces(const ContactForces& contacts) const {
+  MatX forces(3, compliance_->points());
+  for (int point = 0; point < compliance_->points(); ++point) forces.col(point) = lasting_force(point, contacts);
   return forces;
 }
 
-Vec3 TissueResponse::filtered_force(int point, const ContactForces& contacts) const {
-  Vec3 force = Vec3::Zero();
-  if (point == ContactCompliance::kTip) {
-    force = contacts.tip;
-  } else {
-    for (const ShaftContact& contact : contacts.shaft) {
-      if (contact.point == point) force = contact.force;
-    }
+Vec3 TissueResponse::present_force(int point, const ContactForces& contacts) const {
+  if (point == ContactCompliance::kTip) return contacts.tip;
+  for (const ShaftContact& contact : contacts.shaft) {
+    if (contact.point == point) return contact.force;
   }
-  if (memory_.on()) force = memory_.share() * force + memory_.past(point);
-  return force;
+  return Vec3::Zero();
 }
 
+Vec3 TissueResponse::lasting_force(int point, const ContactForces& contacts) const {
+  if (!memory_.on()) return Vec3::Zero();
+  return memory_.share() * present_force(point, contacts) + memory_.past(point);
+}
+
+/// That of the spring that gives way at once, and that of the spring beside the damper: of its displacement F p the
+/// latter has stored ½ pᵀ F p / (r − 1).
 double TissueResponse::energy(const ContactForces& contacts) const {
   double energy = compliance_->stiffens() ? relief(contacts).energy_Nmm() : 0.0;
-  if (memory_.on()) {
-    for (int point = 0; point < compliance_->points(); ++point)
-      energy += 0.5 * filtered_force(point, contacts).dot(displacement(point, contacts));
-    return energy;
-  }
-  energy += 0.5 * contacts.tip.dot(displacement(ContactCompliance::kTip, contacts));
-  for (const ShaftContact& contact : contacts.shaft)
-    energy += 0.5 * contact.force.dot(displacement(contact.point, contacts));
+  const auto crept = [&](int point) -> Vec3 {
+    Vec3 u = Vec3::Zero();
+    for (int d = 0; memory_.on() && d < compliance_->points(); ++d)
+      u += compliance_->wide(point, d) * lasting_force(d, contacts);
+    return u;
+  };
+  for (int point = 0; memory_.on() && point < compliance_->points(); ++point)
+    energy += 0.5 * lasting_force(point, contacts).dot(crept(point)) / memory_.most();
+  const auto at_once = [&](int point) -> Vec3 { return displacement(point, contacts) - crept(point); };
+  energy += 0.5 * contacts.tip.dot(at_once(ContactCompliance::kTip));
+  for (const ShaftContact& contact : contacts.shaft) energy += 0.5 * contact.force.dot(at_once(contact.point));
   return energy;
-}
-
-bool TissueResponse::take_tip_compliance(const MaterialPoint& at, const Vec3& x) {
-  const Vec3 there = past_displacement(ContactCompliance::kTip);
-  if (!compliance_->move_tip(at, x)) return false;
-  memory_.keep_displacement(*compliance_, ContactCompliance::kTip, there);
-  return true;
 }
 
 void TissueResponse::begin_tip(double xi) {
@@ -118,10 +108,9 @@ void TissueResponse::begin_tip(double xi) {
   relaxing_ = false;
 }
 
-/// The tip is a new material point wherever it has cut to. What it left behind goes to the last point of the track, but
-/// not at once: such a point stands for a piece of shaft and yields several times less than a tip, and the tissue would
-/// start back. It goes as the tip's own field falls off with the way it has cut, and where the dent is deeper than that
-/// field is wide, no faster than a tip can follow. Before there is such a point it stays.
+/// The tip is a new material point wherever it has cut to, and what is remembered stays with the material: as the tip
+/// cuts on, the last point of the track takes it over. Both points move nearly alike by it, since only the wide part of
+/// the compliance creeps. Before there is such a point it stays at the tip.
 void TissueResponse::end(const ContactForces& contacts, const Track& track) {
   if (!memory_.on()) return;
   auto forces = forces_.leftCols(compliance_->points());
@@ -129,11 +118,7 @@ void TissueResponse::end(const ContactForces& contacts, const Track& track) {
   memory_.end(forces);
   const double cut = track.end_xi - tip_xi_;
   tip_xi_ = track.end_xi;
-  if (cut <= 0.0) return;
-  const double dent =
-      ((*compliance_)(ContactCompliance::kTip, ContactCompliance::kTip) * memory_.past(ContactCompliance::kTip)).norm();
-  const double reach = std::max(kTipReach * needle_radius_mm_, kDentReach * dent);
-  leave_behind(track, 1.0 - std::exp(-cut / reach));
+  if (cut > 0.0) leave_behind(track, 1.0 - std::exp(-cut / reach_mm_));
 }
 
 void TissueResponse::leave_behind(const Track& track, double part) {

@@ -9,7 +9,7 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   const auto count = std::min(out.size(), static_cast<std::size_t>(snapshot.force_count));
   for (std::size_t k = 0; k < count; ++k) {
     const ForceSnapshot& f = snapshot.forces[k];
-    out[k] = {{f.tet, Vec4(f.weights.data())}, vec3(f.force), vec3(f.along)};
+    out[k] = {{f.tet, Vec4(f.weights.data())}, vec3(f.force), vec3(f.along), vec3(f.lasting)};
   }
   return out.first(count);
 }
@@ -50,8 +50,11 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   const std::size_t kept = std::min(forces, Snapshot::kForces);
   for (std::size_t k = 0; k < kept; ++k) {
     const TissueForce& f = forces_[k];
-    out.forces[k] = {
-        f.at.tet, {f.at.weights[0], f.at.weights[1], f.at.weights[2], f.at.weights[3]}, plain(f.force), plain(f.along)};
+    out.forces[k] = {f.at.tet,
+                     {f.at.weights[0], f.at.weights[1], f.at.weights[2], f.at.weights[3]},
+                     plain(f.force),
+                     plain(f.along),
+                     plain(f.lasting)};
   }
   out.force_count = static_cast<int>(kept);
   out.forces_left_out = static_cast<int>(forces - kept);

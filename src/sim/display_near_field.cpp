@@ -64,6 +64,7 @@ std::size_t DisplayNearField::slot_for(const TissueForce& force) {
   if (found == sources_.end()) {
     sources_.push_back({});
     blocks_.conservativeResize(moved_.size(), 3 * static_cast<Eigen::Index>(sources_.size()));
+    if (model_->coupling().creep.is_any()) narrow_.conservativeResize(blocks_.rows(), blocks_.cols());
   }
   sources_[slot] = {force, true};
   if (!known) compute(slot);
@@ -96,7 +97,8 @@ void DisplayNearField::stiffen(const TissueForce& tip) {
       on, [&](int region) { return model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa; });
   if (stiffening_MPa == 0.0) return;
   const TipDent dent{needle_scale(*model_->kernel(), on, on), stiffening_MPa};
-  const Vec3 spared = tip.force - dent.under(tip.force).linear;
+  const Vec3 press = tip.force - tip.lasting;
+  const Vec3 spared = press - dent.under(press).linear;
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const Vec3 less = needle_scale(*model_->kernel(), acted_on_by(places_[p], on), on) * spared;
     moved_.segment<3>(3 * static_cast<Eigen::Index>(p)) -= less.cast<float>();
@@ -106,6 +108,7 @@ void DisplayNearField::stiffen(const TissueForce& tip) {
 void DisplayNearField::compute(std::size_t slot) {
   const MeshKernel& kernel = *model_->kernel();
   const NearPlace on = place_of(sources_[slot].force);
+  const double softness = narrow_.size() > 0 ? softness_at_border(kernel, on) : 1.0;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Shape node{.count = 1, .node = {nodes_[n]}, .weight = {1.0}};
     of_node_[n] = mesh_kernel_between(kernel, node, on.shape, on.medium);
@@ -118,8 +121,12 @@ void DisplayNearField::compute(std::size_t slot) {
         sum += here.shape.weight[k] * of_node_[node_slots_[p][k]];
       return sum;
     };
-    blocks_.block<3, 3>(3 * static_cast<Eigen::Index>(p), 3 * static_cast<Eigen::Index>(slot)) =
-        near_correction(kernel, here, on, g).cast<float>();
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(p);
+    const Eigen::Index column = 3 * static_cast<Eigen::Index>(slot);
+    const Mat3 near = near_correction(kernel, here, on, g);
+    blocks_.block<3, 3>(row, column) = near.cast<float>();
+    if (narrow_.size() > 0)
+      narrow_.block<3, 3>(row, column) = (near - softness * (near - narrow_part(kernel, here, on))).cast<float>();
   }
 }
 
@@ -143,6 +150,9 @@ void DisplayNearField::set(std::span<const TissueForce> forces) {
     const std::size_t slot = slot_for(force);
     moved_.noalias() +=
         blocks_.middleCols<3>(3 * static_cast<Eigen::Index>(slot)).lazyProduct(force.force.cast<float>());
+    if (!force.lasting.isZero(0.0))
+      moved_.noalias() -=
+          narrow_.middleCols<3>(3 * static_cast<Eigen::Index>(slot)).lazyProduct(force.lasting.cast<float>());
     if (force.along.isZero(0.0)) stiffen(force);
   }
 }

@@ -75,7 +75,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
   c.bone_damping_s = s.coupling.bone_damping_ms * 1e-3;
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
-  c.relaxation_s = s.tissue_model.relaxation_s;
+  c.creep = {s.tissue_model.creep, s.tissue_model.creep_s};
   c.capacity = s.coupling.contacts;
   c.spare_nodes = s.coupling.spare_nodes;
   c.tolerance = s.coupling.tolerance;

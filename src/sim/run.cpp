@@ -7,6 +7,7 @@
 #include "stylet/sim/harms.hpp"
 #include "stylet/sim/recorded_steps.hpp"
 #include "stylet/sim/target_motion.hpp"
+#include "stylet/sim/unbroken_surface.hpp"
 
 #include <fmt/format.h>
 
@@ -126,6 +127,7 @@ class Runner {
     const double start = simulation_.time_s();
     const long deepest = deepest_step(insertion, motion);
     simulation_.place(insertion);
+    UnbrokenSurface unbroken;
     std::optional<GlandWatch> gland;
     if (!model_->target_regions().empty()) {
       if (auto ready = prepare_target_motion(); !ready) return ready;
@@ -142,6 +144,7 @@ class Runner {
       Step record = simulation_.last_step();
       record.step_us = thread_cpu_us() - before;
       if (auto r = account(record, insertion); !r) return r;
+      unbroken.add(simulation_);
       if (gland) {
         const TargetMotion::Moment now = target_motion_->now(simulation_.insertion());
         summary_.gland_path.push_back(
@@ -163,6 +166,7 @@ class Runner {
       if (k % 64 == 0) report(progress_, "inserting " + insertion.name, record.time_s / total_s_);
     }
     if (gland) keep(gland->result());
+    if (auto warning = unbroken.warning()) summary_.warnings.push_back(std::move(*warning));
     return take_frame("after");
   }
 

@@ -149,9 +149,14 @@ RunInfo Model::info(std::size_t insertion) const {
        scenario_.tissue_model.element == ElementChoice::automatic
            ? "by coupling.method: linear tetrahedra where it needs them or is compared, else one that does not lock"
            : kFromScenario});
-  info.parameters.push_back({"tissue.relaxation_s", fmt::format("{:g}", scenario_.tissue_model.relaxation_s), "s",
-                             scenario_.tissue_model.relaxation_s == 0.0 ? "stated: elastic" : kFromScenario});
   const Scenario standard;
+  const Scenario::TissueModel& tissue = scenario_.tissue_model;
+  const bool creeps = tissue.creep != standard.tissue_model.creep;
+  info.parameters.push_back(
+      {"tissue.creep", fmt::format("{:g}", tissue.creep), "", creeps ? kFromScenario : "stated: elastic"});
+  if (tissue.creep > 1.0)
+    info.parameters.push_back({"tissue.creep_s", fmt::format("{:g}", tissue.creep_s), "s",
+                               tissue.creep_s == standard.tissue_model.creep_s ? "stated" : kFromScenario});
   for (const Shown& shown : kShown) {
     const auto value = scenario_value(scenario_, shown.path);
     if (!value) continue;

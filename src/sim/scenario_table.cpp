@@ -52,11 +52,18 @@ void describe_tissue(ScenarioEntries& keys) {
       "node-repositioning and embedded and on meshes of more than 45,000 nodes, where the factor of nodal-pressure "
       "takes more than 6 GB, else nodal-pressure",
       [](auto& s, const Slot&) { return &s.tissue_model.element; });
-  keys.number("tissue.relaxation_s", "s", 0, 100,
-              "relaxation time of all tissue (Kelvin-Voigt): under a constant force it yields as 1 - exp(-t/time); 0 = "
-              "elastic",
-              [](auto& s, const Slot&) { return &s.tissue_model.relaxation_s; });
-  keys.number("tissue.<region>.young_kPa", "kPa", 0.1, 1e8, "Young's modulus",
+  keys.number(
+      "tissue.creep", "", 1, 100,
+      "creep of all tissue: under a force that lasts it yields this many times as far as at once, so in the end "
+      "it is as soft as tissue of young_kPa / creep; what is narrower than 10 mm around the needle does not "
+      "creep; 1 = elastic",
+      [](auto& s, const Slot&) { return &s.tissue_model.creep; });
+  keys.number("tissue.creep_s", "s", 0.001, 1000,
+              "time constant of that: after a time t under a constant force 1 - exp(-t/creep_s) of the creep has "
+              "happened; a force under a constant displacement relaxes faster, with creep_s / creep",
+              [](auto& s, const Slot&) { return &s.tissue_model.creep_s; });
+  keys.number("tissue.<region>.young_kPa", "kPa", 0.1, 1e8,
+              "Young's modulus; where tissue creeps the one that a fast load meets",
               [](auto& s, const Slot& t) { return &tissue(s, t).young_kPa; }, {.standard = "by region"});
   keys.number("tissue.<region>.poisson", "", 0, 0.4999,
               "Poisson ratio; linear tetrahedra (tissue.element) stiffen towards 0.5",

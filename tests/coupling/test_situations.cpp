@@ -350,7 +350,7 @@ TEST(Situation, the_force_of_a_puncture_is_that_of_the_break_at_any_speed) {
 TEST(Situation, viscous_tissue_may_remember_more_points_than_a_needle_holds) {
   BlockOptions options;
   options.cells = {6, 6, 6};
-  options.coupling.relaxation_s = 1.0;
+  options.coupling.creep = {3.0, 1.0};
   options.coupling.capacity = 12;
   NeedleInBlock run(options);
   run.aim({2.0, 3.0, 0.0});

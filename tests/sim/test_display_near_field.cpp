@@ -23,14 +23,24 @@ std::shared_ptr<const Model> soft_skin() {
   return model;
 }
 
+std::shared_ptr<const Model> creeping_skin() {
+  Scenario s = box_scenario();
+  s.insertions[0].depth_mm = 40.0;
+  s.tissue_model.creep = 3.0;
+  s.tissue_model.creep_s = 0.3;
+  return compiled(s);
+}
+
 /// A needle that is pushed along its planned way.
 struct Pushed {
-  std::shared_ptr<const Model> model = soft_skin();
+  std::shared_ptr<const Model> model;
   Simulation simulation{model};
   const PlannedInsertion& plan = model->insertions()[0];
   Pose base = plan.motion.at(0.0);
 
-  Pushed() { simulation.place(base, plan.entry, plan.direction); }
+  explicit Pushed(std::shared_ptr<const Model> model_ = soft_skin()) : model(std::move(model_)) {
+    simulation.place(base, plan.entry, plan.direction);
+  }
   const Step& push() {
     base.origin += kStep_mm * plan.direction;
     simulation.prepare();
@@ -101,8 +111,8 @@ struct DrawnSkin {
 
 }  // namespace
 
-TEST(DisplayNearField, with_the_field_of_the_mesh_is_what_the_model_displaces) {
-  Pushed needle;
+void expect_what_the_model_displaces(const std::shared_ptr<const Model>& model) {
+  Pushed needle(model);
   std::vector<SurfacePoint> points;
   std::vector<Index> nodes;
   for (Index n = 0; n < needle.model->mesh().node_count(); ++n) {
@@ -131,6 +141,14 @@ TEST(DisplayNearField, with_the_field_of_the_mesh_is_what_the_model_displaces) {
         << depth << " mm deep";
   }
   EXPECT_GT(most, 0.05) << "else nothing was added";
+}
+
+TEST(DisplayNearField, with_the_field_of_the_mesh_is_what_the_model_displaces) {
+  expect_what_the_model_displaces(soft_skin());
+}
+
+TEST(DisplayNearField, with_the_field_of_the_mesh_is_what_a_model_that_creeps_displaces) {
+  expect_what_the_model_displaces(creeping_skin());
 }
 
 TEST(DisplayNearField, the_skin_is_drawn_at_the_tip_that_presses_on_it_until_it_breaks) {

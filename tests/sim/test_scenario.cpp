@@ -290,7 +290,8 @@ std::vector<Written> bad_fields() {
   number_field("patient.scale", -1, 1e7, [](Scenario& s) { return &s.patient.scale; });
   whole_field("patient.volume", -1, 1000001, [](Scenario& s) { return &s.patient.volume; });
   choice_field("tissue.element", [](Scenario& s) { return &s.tissue_model.element; });
-  number_field("tissue.relaxation_s", -0.1, 101, [](Scenario& s) { return &s.tissue_model.relaxation_s; });
+  number_field("tissue.creep", 0.9, 101, [](Scenario& s) { return &s.tissue_model.creep; });
+  number_field("tissue.creep_s", 0.0, 1001, [](Scenario& s) { return &s.tissue_model.creep_s; });
   number_field("tissue.prostate.young_kPa", 0, 1e9, [](Scenario& s) { return &s.tissue["prostate"].young_kPa; });
   number_field("tissue.prostate.poisson", -0.1, 0.5, [](Scenario& s) { return &s.tissue["prostate"].poisson; });
   number_field("tissue.prostate.cutting_N", -1, 101, [](Scenario& s) { return &s.tissue["prostate"].cutting_N; });

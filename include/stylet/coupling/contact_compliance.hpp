@@ -113,6 +113,11 @@ class ContactCompliance {
     VecX load;                   ///< [N] what the contacts come to on each node; on fixed ones too
     VecX support;                ///< [N] what the supports exert, not counting loads put on fixed nodes directly
   };
+  /// Displacement [mm] (3n) of the material at the base mesh's nodes, through the wide part of A. Allocates.
+  [[nodiscard]] virtual VecX wide_displacement(const Eigen::Ref<const MatX>& forces) const {
+    return displacement(forces);
+  }
+
   /// Forces on the mesh's nodes under forces on the points. Allocates; for checks.
   [[nodiscard]] virtual Nodes nodes(const Eigen::Ref<const MatX>& forces) const = 0;
 
@@ -131,6 +136,12 @@ class ContactCompliance {
   /// Whether the tissue stiffens where the tip is.
   [[nodiscard]] bool stiffens() const { return stiffening_MPa_ > 0.0; }
 
+  /// The wide part of A [mm/N]: what is left of it without the needle's own scale, for every pair of points. It is the
+  /// compliance for forces that are spread over NeedleKernel::kScale_mm, and what of the tissue creeps. A itself where
+  /// an implementation does not know the needle's scale. Leading 3·points() rows and columns are in use.
+  [[nodiscard]] const MatX& wide() const { return wide_.size() > 0 ? wide_ : A_; }
+  [[nodiscard]] Mat3 wide(int c, int d) const { return wide().block<3, 3>(3 * c, 3 * d); }
+
   /// Changes whenever compliances among points other than the tip have changed.
   [[nodiscard]] unsigned version() const { return version_; }
 
@@ -145,6 +156,7 @@ class ContactCompliance {
   unsigned version_ = 0;
   MatX A_;
   MatX needle_scale_ = MatX::Zero(3, 3);
+  MatX wide_;                    ///< empty: all of A
   double stiffening_MPa_ = 0.0;  ///< k₂ of DentLaw where the tip is; 0: linear
 };
 

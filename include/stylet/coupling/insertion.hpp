@@ -32,8 +32,10 @@ struct ContactState {
 /// Force on a point of the tissue.
 struct TissueForce {
   MaterialPoint at;
-  Vec3 force = Vec3::Zero();  ///< [N] LPS
+  Vec3 force = Vec3::Zero();  ///< [N] LPS, `lasting` included
   Vec3 along = Vec3::Zero();  ///< unit vector LPS, of the piece of shaft it is spread over; zero: the tip's, at a point
+  /// [N] LPS, the part of `force` by which the tissue has crept: it acts spread over NeedleKernel::kScale_mm.
+  Vec3 lasting = Vec3::Zero();
 };
 
 /// What the tissue contributes; everything outlives the Insertion.

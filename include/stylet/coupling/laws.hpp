@@ -44,6 +44,14 @@ inline double membrane_force(const std::vector<RegionLaws>& laws, int from, int 
   return into.puncture_N > out_of.puncture_N ? into.puncture_N : out_of.puncture_N;
 }
 
+/// How tissue goes on yielding to a force that lasts (docs/theory/tissue.md): after a time t by
+/// factor − (factor − 1) exp(−t / time_s) times as much as at once.
+struct Creep {
+  double factor = 1.0;  ///< ≥ 1; 1 = elastic
+  double time_s = 1.0;  ///< > 0
+  [[nodiscard]] bool is_any() const { return factor > 1.0; }
+};
+
 /// Settings of the contact between needle and tissue.
 struct CouplingSettings {
   enum class Method {
@@ -81,13 +89,13 @@ struct CouplingSettings {
   double grazing_cos = 0.17;  ///< the tip slides off where |axis · surface normal| is smaller (80° from the normal)
   double max_advance_mm = 0.25;             ///< of the base in one sub-step
   double axial_compliance_mm_per_N = 2e-3;  ///< of the steel shaft, L / (E A)
-  double join_mm = 1.27;      ///< a new entry this near to an old track joins it: twice the needle's radius
-  Bevel bevel;                ///< of the tip
-  double relaxation_s = 0.0;  ///< of the tissue (Kelvin–Voigt); 0 = elastic
-  int capacity = 96;          ///< largest number of contacts
-  int spare_nodes = 1500;     ///< whose compliance is kept beyond what was there before
-  double tolerance = 1e-8;    ///< coupled solver: error of a balance, as a force over the largest one or 1 N
-  double damping = 1.0;       ///< of the staggered solver: springs on the needle, over the tissue's own stiffness there
+  double join_mm = 1.27;    ///< a new entry this near to an old track joins it: twice the needle's radius
+  Bevel bevel;              ///< of the tip
+  Creep creep;              ///< of the tissue
+  int capacity = 96;        ///< largest number of contacts
+  int spare_nodes = 1500;   ///< whose compliance is kept beyond what was there before
+  double tolerance = 1e-8;  ///< coupled solver: error of a balance, as a force over the largest one or 1 N
+  double damping = 1.0;     ///< of the staggered solver: springs on the needle, over the tissue's own stiffness there
   double needle_node_mm = 0.0;  ///< staggered: forces go to the nearest multiple of this along the needle; 0 = where
                                 ///< they act
 };

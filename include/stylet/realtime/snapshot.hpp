@@ -37,6 +37,7 @@ struct ForceSnapshot {
   std::array<double, 4> weights{};  ///< barycentric, of the element's corners
   Triple force{};                   ///< [N] LPS
   Triple along{};                   ///< TissueForce::along
+  Triple lasting{};                 ///< TissueForce::lasting
 };
 
 /// Everything a display needs of one step, of fixed size.

@@ -54,6 +54,7 @@ class DisplayNearField {
   std::vector<Mat3> of_node_;                           ///< (nodes) room for g of one force
   std::vector<Source> sources_;
   Eigen::MatrixXf blocks_;  ///< (3 places × 3 sources) [mm/N]
+  Eigen::MatrixXf narrow_;  ///< what of blocks_ lasting forces lack, being wide; empty: no tissue creeps
   Eigen::VectorXf moved_;   ///< (3 places) [mm]
   double left_out_N_ = 0.0;
 };

@@ -92,7 +92,8 @@ struct Scenario {
   } patient;
   struct TissueModel {
     ElementChoice element = ElementChoice::automatic;
-    double relaxation_s = 0.0;  ///< Kelvin–Voigt's relaxation time; 0 = elastic
+    double creep = 1.0;    ///< how many times as far a force that lasts moves the tissue as at once; 1 = elastic
+    double creep_s = 0.5;  ///< time constant of that under a constant force
     bool operator==(const TissueModel&) const = default;
   } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)

@@ -26,9 +26,8 @@ class BalanceSolver {
   virtual ~BalanceSolver() = default;
 
   /// Finds the balance after a sub-step of h seconds. Where there is none the step has a flag.
-  /// @param from_prediction whether to start where the predictor expects the end; otherwise from where everything is
   /// @return whether it was found soon, the tip having kept its state: the next sub-step will be like this one
-  virtual bool solve(double h, bool from_prediction, Effort& effort, Step& step) = 0;
+  virtual bool solve(double h, Effort& effort, Step& step) = 0;
 
   /// The needle is damped in the sub-step that begins (Needle::damp()).
   virtual void damp(double /*ratio*/) {}

@@ -36,7 +36,7 @@ double ContactStates::contradiction(int load, const Trial& trial) const {
       contact.fast ? contact.reach - slides - kSameSpeed_mm : std::max(-slides, slides - contact.reach - kSameSpeed_mm);
   if (wrong <= kStill_mm) return 0.0;
   const TissueResponse& tissue = contacts_.tissue;
-  return 3.0 * wrong / (tissue.share() * tissue.compliance()(contact.point, contact.point).trace());
+  return 3.0 * wrong / tissue.compliance()(contact.point, contact.point).trace();
 }
 
 /// A surface ahead breaks on a balance only, so it contradicts nothing here (TipContact::breaks_surface).

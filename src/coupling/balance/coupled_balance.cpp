@@ -290,7 +290,7 @@ void CoupledBalance::give_way() {
   parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
 }
 
-bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, Step& step) {
+bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   Predictor& predictor = parts_.predictor;
   states_.begin(kMaxToggles);
@@ -300,8 +300,8 @@ bool CoupledBalance::solve(double h, bool from_prediction, Effort& effort, Step&
   }
   if (const auto points = tangent_.take_prepared(parts_.contacts); !points.empty()) tissue_.take_points(points);
   const double largest_at_start = parts_.contacts.largest_force();
-  bool from_start = !from_prediction || !predictor.expects_forces();
-  if (from_prediction) predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
+  bool from_start = !predictor.expects_forces();
+  predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
 
   Progress progress;
   Index border_tet = -1;  // where the tip was when it was added to the matrix

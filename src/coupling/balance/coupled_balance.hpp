@@ -19,7 +19,7 @@ class CoupledBalance : public BalanceSolver {
  public:
   explicit CoupledBalance(const BalanceParts& parts);
 
-  bool solve(double h, bool from_prediction, Effort& effort, Step& step) override;
+  bool solve(double h, Effort& effort, Step& step) override;
   void damp(double ratio) override { tangent_.damp(ratio); }
   void base_moved(double way_mm) override { tangent_.wear(way_mm); }
   void forget_tangent() override { tangent_.forget(); }

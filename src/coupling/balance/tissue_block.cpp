@@ -46,16 +46,18 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
   stale_ = tip.cut.is_stale();
   if (told) slope_at_ = tip_;
   if ((tip_ - slope_at_).norm() > kMostCut_mm) slope_.setZero();  // that was another place
-  const MatX& compliance = contacts.tissue.compliance().matrix();
+  const ContactCompliance& compliance = contacts.tissue.compliance();
   const auto count = static_cast<int>(points_.size());
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const double* const from = compliance.col(3 * ContactCompliance::kTip + k).data();
+    const double* const from = compliance.matrix().col(3 * ContactCompliance::kTip + k).data();
+    const double* const wide = compliance.wide().col(3 * ContactCompliance::kTip + k).data();
     double* const column = tip_columns_.col(k).data();
     double* const slope = slope_.col(k).data();
     for (int c = 0; c < count; ++c) {
       const int point = points_[static_cast<std::size_t>(c)];
       for (int i = 3 * c; i < 3 * c + 3; ++i) {
-        const double now = share * from[3 * point + i - 3 * c];
+        const int row = 3 * point + i - 3 * c;
+        const double now = share > 0.0 ? from[row] + share * wide[row] : from[row];
         if (c >= same) {
           slope[i] = 0.0;
         } else if (told) {
@@ -73,13 +75,13 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
 void TissueBlock::gather(const Contacts& contacts, int same) {
   const ContactCompliance& compliance = contacts.tissue.compliance();
   const auto count = static_cast<int>(points_.size());
-  const double share = contacts.tissue.share();
+  const double share = contacts.tissue.creep_share();
   const bool whole = version_ != compliance.version() || share_ != share;
   gather_tip(contacts, share, same);
   for (int c = 1; c < count; ++c) {
     for (int d = whole ? c : std::max(c, same); d < count; ++d) {
       const int point = points_[static_cast<std::size_t>(c)];
-      const Mat3 block = share * compliance(point, points_[static_cast<std::size_t>(d)]);
+      const Mat3 block = contacts.tissue.compliance_now(point, points_[static_cast<std::size_t>(d)]);
       // A contact laid ahead of the shaft changes nothing among those there, unless it changes the mesh.
       if (d < same && block != system_.A.block<3, 3>(3 * c, 3 * d)) system_.outdate();
       system_.A.block<3, 3>(3 * c, 3 * d) = block;
@@ -94,7 +96,7 @@ void TissueBlock::stiffen(const TipRelief& relief) {
   if (!relief.is_any()) return;
   const auto count = static_cast<int>(points_.size());
   for (int c = 0; c < count; ++c) {
-    const Mat3 less = share_ * relief.slope(points_[static_cast<std::size_t>(c)]);
+    const Mat3 less = relief.slope(points_[static_cast<std::size_t>(c)]);
     system_.A.block<3, 3>(3 * c, 0) -= less;
     if (c > 0) system_.A.block<3, 3>(0, 3 * c) -= less.transpose();
   }

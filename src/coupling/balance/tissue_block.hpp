@@ -32,7 +32,7 @@ class TissueBlock {
   /// tangent at the present forces. To be called once after each gather().
   void stiffen(const TipRelief& relief);
   /// By how much the gaps change as the cut goes on: the tip moves in the direction of the cut, which need not be that
-  /// of the needle, and its compliance is another one there. What viscous tissue remembers is left out.
+  /// of the needle, and its compliance is another one there. What lasts of earlier forces is left out.
   /// @param relief at the present forces @param rows of the present contacts, with their forces; the drift is written
   void gather_drift(const Contacts& contacts, const TipRelief& relief, ContactRows& rows) const;
 
@@ -43,7 +43,7 @@ class TissueBlock {
   std::vector<int> points_;  ///< points whose compliance A holds
   int before_ = 0;
   unsigned version_ = 0;          ///< of the compliance that A is of
-  double share_ = 0.0;            ///< TissueResponse::share() that A is of
+  double share_ = -1.0;           ///< TissueResponse::creep_share() that A is of
   Vec3 tip_ = Vec3::Zero();       ///< [mm] LPS, place of the tip that A is of
   bool stale_ = false;            ///< whether the tip's compliance was that of another place
   MatX tip_columns_;              ///< [mm/N] (3 contacts × 3) A's columns of the tip before stiffen()

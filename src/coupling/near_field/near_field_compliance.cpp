@@ -17,7 +17,7 @@ Medium scaled(Medium medium, double young_MPa) {
 
 NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                                          std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle,
-                                         int capacity, std::vector<double> stiffening_MPa)
+                                         int capacity, std::vector<double> stiffening_MPa, bool knows_wide)
     : far_(std::move(far)),
       tissue_(std::move(tissue)),
       kernel_(std::move(kernel)),
@@ -25,11 +25,13 @@ NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far,
       region_stiffening_MPa_(std::move(stiffening_MPa)),
       capacity_(capacity + 1) {
   places_.reserve(static_cast<std::size_t>(capacity) + 1);
+  softness_.reserve(places_.capacity());
   const std::size_t entries = tip_node_entry(kMostElementNodes, 0, 0);
   tip_node_g_.assign(entries, Mat3::Zero());
   tip_node_known_.assign(entries, 0);
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
   needle_scale_ = MatX::Zero(3 * (capacity + 1), 3);
+  if (knows_wide) wide_ = A_;
   reset();
 }
 
@@ -37,12 +39,14 @@ void NearFieldCompliance::reset() {
   far_->reset();
   press_N_ = 0.0;
   places_.assign(1, NearPlace{});
+  softness_.assign(1, 1.0);
   points_ = 1;
   ++version_;
   tip_tet_ = -1;
   tip_element_.reset();
   A_.setZero();
   needle_scale_.setZero();
+  wide_.setZero();
   stiffening_MPa_ = 0.0;
 }
 
@@ -88,10 +92,20 @@ template <class OfMesh>
 void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
   const NearPlace& on = places_[static_cast<std::size_t>(other)];
-  Mat3 block = (*far_)(point, other) + near_correction(*kernel_, at, on, g);
+  const Mat3 far = (*far_)(point, other);
+  const Mat3 near = near_correction(*kernel_, at, on, g);
+  Mat3 block = far + near;
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
   A_.block<3, 3>(3 * point, 3 * other) = block;
   A_.block<3, 3>(3 * other, 3 * point) = block.transpose();
+  if (!knows_wide()) return;
+  // What of the mesh's own near field were left at a border between organs would be more than all of a wide field.
+  const double soft =
+      std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
+  block = far + soft * (near - narrow_part(*kernel_, at, on));
+  if (point == other) block = 0.5 * (block + block.transpose()).eval();
+  wide_.block<3, 3>(3 * point, 3 * other) = block;
+  wide_.block<3, 3>(3 * other, 3 * point) = block.transpose();
 }
 
 ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const Vec3& x, Placement /*placement*/,
@@ -106,6 +120,7 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   }
   place.epsilon = needle_.shaft_epsilon();
   places_.push_back(place);
+  softness_.push_back(knows_wide() ? softness_at_border(*kernel_, place) : 1.0);
   ++points_;
   ++version_;
   for (int number = 0; number < kMostElementNodes; ++number) forget_tip_node(number, added.point, added.point + 1);
@@ -131,6 +146,11 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   const Mat3 g = mesh_kernel_between(*kernel_, tip.shape, tip.shape, tip.medium);
   const Mat3 own = (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, g);
   A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());
+  if (knows_wide()) {
+    softness_.front() = softness_at_border(*kernel_, tip);
+    const Mat3 wide = own - stylet::needle_scale(*kernel_, tip, tip);
+    wide_.topLeftCorner<3, 3>() = 0.5 * (wide + wide.transpose());
+  }
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   stiffening_MPa_ = 0.0;
   if (!region_stiffening_MPa_.empty())
@@ -157,6 +177,7 @@ void NearFieldCompliance::mark_nodes(std::span<unsigned> stamps, unsigned stamp)
 void NearFieldCompliance::remove_last_embedded() {
   far_->remove_last_embedded();
   places_.pop_back();
+  softness_.pop_back();
   --points_;
   ++version_;
 }
@@ -165,32 +186,49 @@ Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) 
   return far_->gradient_at_tip(forces);
 }
 
-/// What forces on the points move a passive place by, beyond what the mesh has there.
-Vec3 NearFieldCompliance::near_field(const NearPlace& here, const Eigen::Ref<const MatX>& forces) const {
-  Vec3 sum = Vec3::Zero();
-  for (int d = 0; d < points_; ++d) {
-    if (forces.col(d).isZero(0.0)) continue;
-    const NearPlace& on = places_[static_cast<std::size_t>(d)];
-    const auto g = [&](int medium) { return mesh_kernel_between(*kernel_, here.shape, on.shape, medium); };
-    sum += near_correction(*kernel_, acted_on_by(here, on), on, g) * forces.col(d);
+/// Displacement of the mesh's nodes under forces on the points, with what the mesh lacks where the kernel knows a node.
+/// @param correction of a node's place, per force on a point [mm/N]
+template <class Correction>
+VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const {
+  VecX u = far_->displacement(forces);
+  for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
+    if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
+    const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
+    const NearPlace here = passive_place(*tissue_, *kernel_, own, tissue_->node_position(node));
+    Vec3 sum = Vec3::Zero();
+    for (int d = 0; d < points_; ++d) {
+      if (forces.col(d).isZero(0.0)) continue;
+      const NearPlace& on = places_[static_cast<std::size_t>(d)];
+      const auto g = [&](int medium) { return mesh_kernel_between(*kernel_, here.shape, on.shape, medium); };
+      const NearPlace at = acted_on_by(here, on);
+      sum += correction(at, d, near_correction(*kernel_, at, on, g)) * forces.col(d);
+    }
+    u.segment<3>(3 * Eigen::Index{node}) += sum;
   }
-  return sum;
+  return u;
 }
 
 VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
-  VecX u = far_->displacement(forces);
+  VecX u = with_corrections(forces, [](const NearPlace&, int, const Mat3& near) { return near; });
+  if (!stiffens()) return u;
   const Vec3 press = forces.col(kTip);
   const Vec3 spared = press - tip_dent().under(press).linear;
   for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
     if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
     const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
     const NearPlace here = passive_place(*tissue_, *kernel_, own, tissue_->node_position(node));
-    u.segment<3>(3 * Eigen::Index{node}) += near_field(here, forces);
-    if (stiffens())
-      u.segment<3>(3 * Eigen::Index{node}) -=
-          stylet::needle_scale(*kernel_, acted_on_by(here, places_[kTip]), places_[kTip]) * spared;
+    u.segment<3>(3 * Eigen::Index{node}) -=
+        stylet::needle_scale(*kernel_, acted_on_by(here, places_[kTip]), places_[kTip]) * spared;
   }
   return u;
+}
+
+VecX NearFieldCompliance::wide_displacement(const Eigen::Ref<const MatX>& forces) const {
+  if (!knows_wide()) return displacement(forces);
+  return with_corrections(forces, [&](const NearPlace& at, int point, const Mat3& near) -> Mat3 {
+    const auto p = static_cast<std::size_t>(point);
+    return softness_[p] * (near - narrow_part(*kernel_, at, places_[p]));
+  });
 }
 
 VecX NearFieldCompliance::mesh_displacement(const Eigen::Ref<const MatX>& forces) const {

@@ -50,6 +50,19 @@ NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, c
   return borders;
 }
 
+/// What of the needle's kernel between two places is left when that of a force spread over `coarse` is taken off
+/// [mm/N].
+Mat3 narrower_than(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, double fine, double coarse) {
+  return between_media(at, on, [&](int medium) -> Mat3 {
+    const Medium own = kernel.medium(medium);
+    return needle_kernel(at.piece, at.skin, on.piece, on.skin, fine, own) -
+           needle_kernel(at.piece, at.skin, on.piece, on.skin, coarse, own);
+  });
+}
+
+/// [mm] Radius over which the mesh spreads a force. @param g of the mesh at the force itself, for E = 1 MPa
+double mesh_blur(const Medium& medium, const Mat3& g) { return 3.0 * kelvinlet_self(medium) / g.trace(); }
+
 bool touch(const MeshKernel& kernel, const Shape& at, const Shape& on) {
   for (int i = 0; i < at.count; ++i) {
     for (int j = 0; j < on.count; ++j) {
@@ -76,12 +89,12 @@ NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const Mater
       },
       place);
   place.region = region;
+  place.borders = borders_at(kernel, region, place.young_MPa, x);
   return place;
 }
 
 void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip) {
   const double poisson = kernel.medium(tip.medium).poisson;
-  tip.borders = borders_at(kernel, tip.region, tip.young_MPa, tip.piece.centre);
   tip.epsilon = needle.tip_epsilon(tip.skin, poisson);
   tip.own_epsilon = needle.own_tip_epsilon(tip.skin, tip.borders, poisson);
 }
@@ -131,7 +144,7 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
   const Medium medium = kernel.medium(tip.medium);
   return between_media(tip, tip, [&](int /*medium*/) -> Mat3 {
     // The mesh knows of the interface, as far as it can tell a force that it spreads over its elements from one on it.
-    const double blur = 3.0 * kelvinlet_self(medium) / g.trace();
+    const double blur = mesh_blur(medium, g);
     return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, medium) -
            with_borders(g, tip.skin, tip.borders, std::max(blur, tip.own_epsilon), medium.poisson);
   });
@@ -149,11 +162,18 @@ Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace
   // The spread force moves a place as far as both are spread out, by the mean of their squares.
   constexpr double scale2 = NeedleKernel::kScale_mm * NeedleKernel::kScale_mm;
   const double coarse = std::sqrt(0.5 * (at.epsilon * at.epsilon + scale2));
-  return between_media(at, tip, [&](int medium) -> Mat3 {
-    const Medium own = kernel.medium(medium);
-    return needle_kernel(at.piece, at.skin, tip.piece, tip.skin, fine, own) -
-           needle_kernel(at.piece, at.skin, tip.piece, tip.skin, coarse, own);
-  });
+  return narrower_than(kernel, at, tip, fine, coarse);
+}
+
+double softness_at_border(const MeshKernel& kernel, const NearPlace& place) {
+  if (place.borders[0].contrast == 0.0) return 1.0;
+  const Medium medium = kernel.medium(place.medium);
+  const Mat3 g = mesh_kernel_between(kernel, place.shape, place.shape, place.medium);
+  return with_borders(Mat3::Identity(), {}, place.borders, mesh_blur(medium, g), medium.poisson).trace() / 3.0;
+}
+
+Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on) {
+  return narrower_than(kernel, at, on, std::sqrt(at.epsilon * on.epsilon), NeedleKernel::kScale_mm);
 }
 
 }  // namespace stylet

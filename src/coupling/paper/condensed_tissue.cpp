@@ -19,15 +19,15 @@ CondensedTissue::CondensedTissue(int contacts)
       load_of_(static_cast<std::size_t>(contacts), 0) {}
 
 void CondensedTissue::enter(const Contacts& contacts, int load, const Mat3& frame) {
-  const ContactCompliance& compliance = contacts.tissue.compliance();
+  const TissueResponse& tissue = contacts.tissue;
   const int point = contacts.point(load);
   for (int k = 0; k < system_.points(); ++k) {
     const int other = load_of_[static_cast<std::size_t>(k)];
-    across_.block<3, 3>(3 * k, 0).noalias() = share_ * frames_[static_cast<std::size_t>(other)].transpose() *
-                                              compliance(contacts.point(other), point) * frame;
+    across_.block<3, 3>(3 * k, 0).noalias() = frames_[static_cast<std::size_t>(other)].transpose() *
+                                              tissue.compliance_now(contacts.point(other), point) * frame;
   }
-  const int k =
-      system_.add(across_.topRows(3 * system_.points()), share_ * frame.transpose() * compliance(point, point) * frame);
+  const int k = system_.add(across_.topRows(3 * system_.points()),
+                            frame.transpose() * tissue.compliance_now(point, point) * frame);
   slot_of_[static_cast<std::size_t>(load)] = k;
   load_of_[static_cast<std::size_t>(k)] = load;
   points_[static_cast<std::size_t>(load)] = point;
@@ -35,7 +35,7 @@ void CondensedTissue::enter(const Contacts& contacts, int load, const Mat3& fram
 }
 
 bool CondensedTissue::has_all(const Contacts& contacts) const {
-  if (version_ != contacts.tissue.compliance().version() || share_ != contacts.tissue.share() ||
+  if (version_ != contacts.tissue.compliance().version() || share_ != contacts.tissue.creep_share() ||
       system_.points() != contacts.count())
     return false;
   for (int c = 1; c < contacts.count(); ++c) {
@@ -48,7 +48,7 @@ void CondensedTissue::take(const Contacts& contacts, std::span<const Mat3> frame
   if (!has_all(contacts) || system_.switches() > kSwitchesToRebuild) {
     system_.clear();
     version_ = contacts.tissue.compliance().version();
-    share_ = contacts.tissue.share();
+    share_ = contacts.tissue.creep_share();
     for (int c = 0; c < contacts.count(); ++c) enter(contacts, c, frames[static_cast<std::size_t>(c)]);
   } else if (tip_ != contacts.tip.cut.x()) {
     const int k = slot_of_[0];

@@ -41,7 +41,7 @@ class CondensedTissue {
   std::vector<int> slot_of_;                                 ///< (loads)
   std::vector<int> load_of_;                                 ///< (slots)
   unsigned version_ = std::numeric_limits<unsigned>::max();  ///< of the compliance that K_W is of
-  double share_ = 1.0;                                       ///< TissueResponse::share() that K_W is of
+  double share_ = 0.0;                                       ///< TissueResponse::creep_share() that K_W is of
   Vec3 tip_ = Vec3::Zero();                                  ///< [mm] LPS, where the tip was when its column was made
 };
 

@@ -199,7 +199,7 @@ bool StaggeredBalance::cut(bool nearly) {
   return false;
 }
 
-bool StaggeredBalance::solve(double h, bool /*from_prediction*/, Effort& /*effort*/, Step& step) {
+bool StaggeredBalance::solve(double h, Effort& /*effort*/, Step& step) {
   TipContact& tip = parts_.contacts.tip;
   states_.begin(kMostToggles);
   tip.begin(parts_.contacts.forces());

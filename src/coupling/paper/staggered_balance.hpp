@@ -14,7 +14,7 @@ class StaggeredBalance : public BalanceSolver {
  public:
   explicit StaggeredBalance(const BalanceParts& parts);
 
-  bool solve(double h, bool from_prediction, Effort& effort, Step& step) override;
+  bool solve(double h, Effort& effort, Step& step) override;
 
  private:
   void impose_needle_on_tissue(double h);

@@ -32,7 +32,7 @@ class Cut {
   /// A sub-step begins: its way is counted from here.
   void begin();
   /// Compliance that was missing is taken, if it is there by now; the tissue does not move by it.
-  void take_compliance() { stale_ = !tissue_.take_tip_compliance(at_, x_); }
+  void take_compliance() { stale_ = !tissue_.move_tip(at_, x_); }
   /// @param direction LPS, unit vector
   void aim(const Vec3& direction) { direction_ = direction; }
   /// Puts the end `advance` [mm] beyond where the sub-step began, or on the first surface before that.

@@ -65,7 +65,7 @@ void TipContact::begin(const ContactForces& forces) {
 /// line beside the axis instead.
 void TipContact::aim(const ContactForces& forces) {
   const Vec3 t = tangent();
-  const Mat3 F = Mat3::Identity() + tissue_.compliance().gradient_at_tip(tissue_.filtered_forces(forces));
+  const Mat3 F = Mat3::Identity() + tissue_.compliance().gradient_at_tip(tissue_.all_forces(forces));
   Vec3 along = t + lead_of_bevel(t);
   if (!std::isfinite(lateral_hold_)) {
     const Vec3 gap = cut.x() + tissue_.displacement(ContactCompliance::kTip, forces) - needle_.point(needle_.length());

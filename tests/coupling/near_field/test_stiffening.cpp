@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace stylet {
 namespace {
@@ -77,15 +78,22 @@ class StiffTissue : public testing::Test {
     std::vector<Vec3> all{kTipAt};
     for (int k = 1; k < kPoints; ++k) all.push_back(kTipAt - 4.0 * k * Vec3::UnitZ());
     block_.prepare(all);
-    auto compliance = std::make_unique<NearFieldCompliance>(
-        std::make_unique<TrackCompliance>(block_.store, *block_.locator, kPoints), block_.tissue, block_.kernel,
-        NeedleKernel{}, kPoints, std::vector<double>{0.03, 0.1});
-    for (std::size_t k = 1; k < kPoints; ++k)
-      compliance->add(block_.at(all[k]), all[k], Placement::embedded, Vec3::UnitZ());
-    compliance->move_tip(block_.at(kTipAt), kTipAt);
-    tissue_ = std::make_unique<TissueResponse>(std::move(compliance), 0.0, 0.635, kPoints);
     shaft_.resize(kPoints - 1);
     for (int k = 1; k < kPoints; ++k) shaft_[static_cast<std::size_t>(k - 1)].point = k;
+    make({0.03, 0.1}, {});
+  }
+
+  /// The tissue with these laws, at rest. @param stiffening_MPa of both media
+  void make(std::vector<double> stiffening_MPa, const Creep& creep) {
+    auto compliance = std::make_unique<NearFieldCompliance>(
+        std::make_unique<TrackCompliance>(block_.store, *block_.locator, kPoints), block_.tissue, block_.kernel,
+        NeedleKernel{}, kPoints, std::move(stiffening_MPa), creep.is_any());
+    for (int k = 1; k < kPoints; ++k) {
+      const Vec3 x = kTipAt - 4.0 * k * Vec3::UnitZ();
+      compliance->add(block_.at(x), x, Placement::embedded, Vec3::UnitZ());
+    }
+    compliance->move_tip(block_.at(kTipAt), kTipAt);
+    tissue_ = std::make_unique<TissueResponse>(std::move(compliance), creep, 0.635, kPoints);
   }
 
   static MediumBlock::Options options() {
@@ -236,6 +244,92 @@ TEST_P(YeohSolid, under_a_rod_is_as_stiff_as_the_law_says_at_every_depth_on_any_
   }
 }
 INSTANTIATE_TEST_SUITE_P(PoissonsRatio, YeohSolid, testing::Values(0.45, 0.49));
+
+/// The same tissue creeping, with a dent that stiffens and without.
+class CreepingTissue : public StiffTissue {
+ protected:
+  static constexpr Creep kCreep{3.0, 0.2};
+  static inline const std::vector<std::vector<double>> kStiffenings{{}, {0.03, 0.1}};
+
+  /// The forces after h more seconds. @return displacements
+  VecX act(const VecX& forces, double h) {
+    tissue_->begin(h);
+    displacement(forces);
+    tissue_->end(contacts(forces), {});
+    return displacement(forces);
+  }
+  [[nodiscard]] VecX lasting(const VecX& forces) {
+    const MatX lasting = tissue_->lasting_forces(contacts(forces));
+    return Eigen::Map<const VecX>(lasting.data(), lasting.size());
+  }
+  [[nodiscard]] MatX wide() const { return tissue_->compliance().wide().topLeftCorner(3 * kPoints, 3 * kPoints); }
+};
+
+TEST_F(CreepingTissue, loses_work_in_every_closed_way_of_forces_and_never_gives_any) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> exponent(-2.0, 0.5);
+  for (const auto& stiffening_MPa : kStiffenings) {
+    for (int loop = 0; loop < 4; ++loop) {
+      make(stiffening_MPa, kCreep);
+      VecX now = VecX::Zero(3 * kPoints);
+      VecX u = displacement(now);
+      VecX p = lasting(now);
+      double work = 0.0;
+      double lost = 0.0;  // of the damper: τ (r − 1) ṁᵀ F ṁ
+      const auto go = [&](const VecX& to, double time, int pieces) {
+        const double h = time / pieces;
+        const VecX from = now;
+        for (int k = 1; k <= pieces; ++k) {
+          const VecX before = now;
+          now = from + static_cast<double>(k) / pieces * (to - from);
+          const VecX u_before = std::exchange(u, act(now, h));
+          const VecX p_before = std::exchange(p, lasting(now));
+          work += 0.5 * (now + before).dot(u - u_before);
+          lost += kCreep.time_s / (h * (kCreep.factor - 1.0)) * (p - p_before).dot(wide() * (p - p_before));
+        }
+      };
+      for (int leg = 0; leg < 5; ++leg) {
+        VecX to(3 * kPoints);
+        for (double& f : to) f = normal(random);
+        to.head<3>() *= 4.0;
+        go(to, std::pow(10.0, exponent(random)), 400);
+        EXPECT_NEAR(tissue_->energy(contacts(now)), work - lost, 0.02 * work) << "stored is what is not lost";
+        EXPECT_GT(lost, 0.0);
+      }
+      go(VecX::Zero(3 * kPoints), 0.1, 400);
+      EXPECT_GT(tissue_->energy(contacts(now)), 0.0) << "it has not gone back yet";
+      go(now, 40.0 * kCreep.time_s, 2000);
+      EXPECT_NEAR(work, lost, 0.02 * lost);
+      EXPECT_LT(u.norm(), 1e-12);
+    }
+  }
+}
+
+TEST_F(CreepingTissue, yields_at_once_as_elastic_tissue_does_and_later_by_the_wide_part_more) {
+  VecX forces = VecX::Zero(3 * kPoints);
+  forces << 0.5, 0.3, 3.0, 0.2, -0.1, 0.4, 0.3, 0.1, 0.2, -0.5, 0.2, 0.1;
+  for (const auto& stiffening_MPa : kStiffenings) {
+    make(stiffening_MPa, {});
+    const VecX elastic = displacement(forces);
+    make(stiffening_MPa, kCreep);
+    EXPECT_LT((act(forces, 1e-9) - elastic).norm(), 1e-7 * elastic.norm());
+    EXPECT_LT((act(forces, 1e9) - elastic - 2.0 * wide() * forces).norm(), 1e-7 * elastic.norm());
+    EXPECT_LT((act(VecX::Zero(3 * kPoints), 1e-9) - 2.0 * wide() * forces).norm(), 1e-7 * elastic.norm());
+  }
+}
+
+TEST_F(CreepingTissue, creeps_by_a_part_of_its_compliance_that_is_smooth_at_the_needle) {
+  make({}, kCreep);
+  const MatX F = wide();
+  const MatX A = tissue_->compliance().matrix().topLeftCorner(3 * kPoints, 3 * kPoints);
+  EXPECT_LT((F - F.transpose()).norm(), 1e-14 * F.norm());
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(F).eigenvalues()[0], 0.0);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(A - F).eigenvalues()[0], 0.0);
+  EXPECT_LT(F(2, 2), 0.15 * A(2, 2)) << "most of what a tip moves by is its own dent";
+  const int last = 3 * (kPoints - 1);
+  EXPECT_NEAR(F(2, last + 2), A(2, last + 2), 0.5 * A(2, last + 2)) << "far away all is wide";
+}
 
 /// A block of one tissue with a strong skin, whose dent stiffens.
 BlockOptions stiff_block(int cells, double puncture_N, double cutting_N) {

@@ -79,8 +79,8 @@ class StraightNeedle : public Needle {
 struct SimpleTissue {
   static constexpr double kOwn = 2.0;  ///< [mm/N]
 
-  explicit SimpleTissue(double relaxation_s = 0.0) {
-    settings.relaxation_s = relaxation_s;
+  explicit SimpleTissue(const Creep& creep = {}) {
+    settings.creep = creep;
     settings.capacity = SimpleCompliance::kRoom - 1;
     mesh = box_mesh(Vec3(-20, -20, 0), Vec3(20, 20, 40), {4, 4, 4}, 0.0);
     assign_regions(mesh, {"body", "organ"}, [](const Vec3& x) { return x.z() > 20.0 ? 1 : 0; });
@@ -91,7 +91,7 @@ struct SimpleTissue {
                       {0.2, 0.8, {20e-3, 12e-3, 250e-6, 50.0}, false, false, 0}};
     auto made = std::make_unique<SimpleCompliance>(kOwn);
     compliance = made.get();
-    tissue = std::make_unique<TissueResponse>(std::move(made), relaxation_s, settings.needle_radius_mm,
+    tissue = std::make_unique<TissueResponse>(std::move(made), creep, settings.needle_radius_mm,
                                               SimpleCompliance::kRoom - 1);
   }
 

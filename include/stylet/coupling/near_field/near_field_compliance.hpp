@@ -23,9 +23,10 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param far Λ K⁻¹ Λᵀ from whatever engine keeps K⁻¹; has no points yet
   /// @param kernel of the tissue's mesh
   /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
+  /// @param knows_wide whether wide() is kept; where not it is A itself
   NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                       std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity,
-                      std::vector<double> stiffening_MPa = {});
+                      std::vector<double> stiffening_MPa = {}, bool knows_wide = false);
 
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
@@ -44,13 +45,15 @@ class NearFieldCompliance final : public ContactCompliance {
 
   /// With the near field, wherever a node lies in it, and the dent under the tip as it stiffens.
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] VecX wide_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
 
  private:
   [[nodiscard]] Mat3 of_mesh_at_tip(int point, int medium);
-  [[nodiscard]] Vec3 near_field(const NearPlace& here, const Eigen::Ref<const MatX>& forces) const;
+  template <class Correction>
+  VecX with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const;
   template <class OfMesh>
   void write_block(int point, int other, const OfMesh& g);
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
@@ -58,6 +61,7 @@ class NearFieldCompliance final : public ContactCompliance {
   }
   void forget_tip_node(int number, int first_point, int last_point);
   void write_needle_scale(int point);
+  [[nodiscard]] bool knows_wide() const { return wide_.size() > 0; }
 
   std::unique_ptr<ContactCompliance> far_;
   std::shared_ptr<const Tissue> tissue_;
@@ -67,6 +71,7 @@ class NearFieldCompliance final : public ContactCompliance {
   double press_N_ = 0.0;                       ///< what the surface the needle went in by took before it broke …
   Vec3 entry_ = Vec3::Zero();                  ///< … and which way it went
   std::vector<NearPlace> places_;              ///< (points)
+  std::vector<double> softness_;               ///< (points) softness_at_border(), where wide() is kept
   int capacity_;                               ///< of points, tip included
   int tip_tet_ = -1;
   TipElement tip_element_;

@@ -20,7 +20,7 @@ struct NearPlace {
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
-  NearBorders borders;     ///< of the tip only
+  NearBorders borders;
   int region = -1;         ///< −1: the place belongs to none of its own
   double edge = 0.0;   ///< [mm] size of the elements there
   double moves = 1.0;  ///< 0…1: weight of the element's nodes that are not held
@@ -30,7 +30,7 @@ struct NearPlace {
 /// corners of its element.
 NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const MaterialPoint& at, const Vec3& x);
 
-/// Makes a place that of the needle's tip: it feels the borders near it.
+/// Makes a place that of the needle's tip.
 void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip);
 
 /// k₂ of DentLaw where a tip is. On an interface it is that of the tissue that stiffens more.
@@ -91,5 +91,13 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
 /// mesh.
 /// @param at contact, the tip itself, or acted_on_by() the tip @param tip where the force is
 Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip);
+
+/// The same of any two places, when both are spread over kScale_mm: what of the displacement of one place per force on
+/// the other is narrower than that [mm/N]. Symmetric.
+Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on);
+
+/// How many times softer than its own medium the mesh has a place next to a border between organs, 0…2: on the border
+/// itself both sides are as soft as a medium of the mean of their moduli, by equation (4a) of near_field.md.
+double softness_at_border(const MeshKernel& kernel, const NearPlace& place);
 
 }  // namespace stylet

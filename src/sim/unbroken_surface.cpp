@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/unbroken_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet {
+
+namespace {
+
+constexpr double kBeside_mm = 1e-3;  ///< so far from a surface a place is on one side of it for certain
+
+}  // namespace
+
+void UnbrokenSurface::add(const Simulation& simulation) {
+  for (const Event& event : simulation.new_events()) {
+    if (event.kind == EventKind::puncture || event.kind == EventKind::region_entered) furthest_.reset();
+  }
+  if (simulation.last_step().tip_state != TipState::pressing) return;
+  auto now = pressed_now(simulation);
+  if (now && (!furthest_ || now->past_mm > furthest_->past_mm)) furthest_ = std::move(now);
+}
+
+std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simulation& simulation) {
+  const std::vector<TissueForce> forces = simulation.insertion().tissue_forces();
+  const auto tip =
+      std::find_if(forces.begin(), forces.end(), [](const TissueForce& force) { return force.along.isZero(0.0); });
+  if (tip == forces.end()) return {};
+  const Model& model = simulation.model();
+  const TetMesh& mesh = model.mesh();
+  const Step& step = simulation.last_step();
+  const Vec3 axis = step.base.rotation * Vec3::UnitZ();
+  Vec3 at_rest = Vec3::Zero();
+  const auto& corners = mesh.tets[static_cast<std::size_t>(tip->at.tet)];
+  for (std::size_t i = 0; i < 4; ++i)
+    at_rest += tip->at.weights[static_cast<Eigen::Index>(i)] * mesh.nodes[static_cast<std::size_t>(corners[i])];
+  const auto region_at = [&](double ahead_mm) {
+    const auto found = model.locator().find(at_rest + ahead_mm * axis, tip->at.tet);
+    return found ? mesh.tet_region[static_cast<std::size_t>(found->tet)] : -1;
+  };
+  const int before = region_at(-kBeside_mm);
+  const int behind = region_at(kBeside_mm);
+  if (behind < 0 || before == behind) return {};
+  const double breaks_N = membrane_force(model.laws(), before, behind);
+  if (!(breaks_N > 0.0) || !std::isfinite(breaks_N)) return {};
+  return Pressed{mesh.regions[static_cast<std::size_t>(behind)], (step.tip_mm - at_rest).dot(axis),
+                 tip->force.dot(axis), breaks_N};
+}
+
+std::optional<std::string> UnbrokenSurface::warning() const {
+  if (!furthest_ || furthest_->past_mm <= kFar_mm) return {};
+  return fmt::format(
+      "The tip pressed the surface of the {} {:.1f} mm in front of it, with {:.2f} N where {:.2f} N break it, and it "
+      "never broke: the needle is not in the {}. A lower puncture_N, or a larger young_kPa or stiffening on either side "
+      "of it, lets it break.",
+      furthest_->region, furthest_->past_mm, furthest_->force_N, furthest_->breaks_N, furthest_->region);
+}
+
+}  // namespace stylet

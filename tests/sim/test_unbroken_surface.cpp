@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "box_patient.hpp"
+
+namespace stylet {
+namespace {
+
+using test::box_scenario;
+using test::compiled;
+
+/// What a whole insertion warns of.
+std::string warnings_of(const Scenario& scenario) {
+  struct Nobody : RunObserver {
+    Result<> on_step(const Step&) override { return Ok{}; }
+    Result<> on_frame(const Frame&) override { return Ok{}; }
+  } nobody;
+  const auto done = run(compiled(scenario), nobody);
+  EXPECT_TRUE(done.ok());
+  std::string all;
+  if (done) {
+    for (const std::string& warning : done->warnings) all += warning + '\n';
+  }
+  return all;
+}
+
+Scenario with(const std::string& region, double puncture_N) {
+  Scenario s = box_scenario();
+  TissueParameters p = default_tissue(region);
+  p.puncture_N = puncture_N;
+  s.tissue[region] = p;
+  return s;
+}
+
+TEST(UnbrokenSurface, a_capsule_that_is_pressed_far_in_and_never_breaks_is_told_of) {
+  const std::string said = warnings_of(with("prostate", 50.0));
+  EXPECT_SAYS(said, "pressed the surface of the prostate");
+  EXPECT_SAYS(said, "where 50.00 N break it");
+  EXPECT_SAYS(said, "A lower puncture_N");
+}
+
+TEST(UnbrokenSurface, skin_that_never_breaks_is_told_of_too) {
+  EXPECT_SAYS(warnings_of(with("body", 50.0)), "pressed the surface of the body");
+}
+
+TEST(UnbrokenSurface, nothing_is_said_of_surfaces_that_break) {
+  EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "pressed the surface"));
+}
+
+/// The way that the warning names is that of the tip past the place where the surface lies at rest.
+TEST(UnbrokenSurface, the_way_is_no_longer_than_the_base_went_in) {
+  Scenario s = with("body", 50.0);
+  s.insertions[0].depth_mm = 9.0;
+  EXPECT_FALSE(test::contains(warnings_of(s), "pressed the surface"));
+  s.insertions[0].depth_mm = 12.0;
+  EXPECT_SAYS(warnings_of(s), "pressed the surface of the body 1");
+}
+
+}  // namespace
+}  // namespace stylet
