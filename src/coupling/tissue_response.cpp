@@ -26,7 +26,7 @@ TipRelief TissueResponse::relief(const ContactForces& contacts) const {
   const MatX& scale = compliance_->needle_scale();
   Vec3 of_others = Vec3::Zero();
   for (const ShaftContact& contact : contacts.shaft)
-    of_others += scale.middleRows<3>(3 * contact.point).transpose() * contact.force;
+    of_others += Vec3(scale.middleRows<3>(3 * contact.point).transpose() * contact.force);
   return {*compliance_, contacts.tip, of_others};
 }
 
