@@ -14,12 +14,12 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kLevatorTop = 0.25;      // of the gland's height, below its base: where the muscle begins
-constexpr double kFossaTop = 12.0;        // [mm] above the apex: how far the ischiorectal fat reaches up
-constexpr double kFossaDepth = 50.0;      // [mm] front to back
-constexpr double kBehindGland = 15.0;     // [mm] where a rectum would be that the input does not have
-constexpr double kRectumHalfWidth = 15.0; // [mm] of such a rectum
-constexpr double kFatEnd = 20.0;          // [mm] above the lowest skin: how far the layer under the skin is followed
+constexpr double kLevatorTop = 0.25;       // of the gland's height, below its base: where the muscle begins
+constexpr double kFossaTop = 12.0;         // [mm] above the apex: how far the ischiorectal fat reaches up
+constexpr double kFossaDepth = 50.0;       // [mm] front to back
+constexpr double kBehindGland = 15.0;      // [mm] where a rectum would be that the input does not have
+constexpr double kRectumHalfWidth = 15.0;  // [mm] of such a rectum
+constexpr double kFatEnd = 20.0;           // [mm] above the lowest skin: how far the layer under the skin is followed
 
 using Distance = std::function<double(const Vec3&)>;
 
@@ -118,8 +118,8 @@ class LayerMaker {
     const double depth = rectum->shape->inner_radius() + rectum->offset;
     if (depth < 1.5 * wall) {
       a_.notes.push_back(fmt::format(
-          "the rectum is {:.1f} mm thick: too thin for a wall of {:g} mm and a lumen, so it is meshed as one", 2 * depth,
-          wall));
+          "the rectum is {:.1f} mm thick: too thin for a wall of {:g} mm and a lumen, so it is meshed as one",
+          2 * depth, wall));
       return;
     }
     const double whole = rectum->shape->volume(rectum->offset);
@@ -139,7 +139,8 @@ class LayerMaker {
   void periprostatic_fat() {
     const double thickness = layers_.periprostatic_fat_mm;
     if (!wanted("periprostatic_fat", thickness)) return;
-    add("periprostatic_fat", fmt::format("{:g} mm of fat round the gland", thickness),
+    add(
+        "periprostatic_fat", fmt::format("{:g} mm of fat round the gland", thickness),
         [solid = wrapped_, thickness](const Vec3& p) { return solid.distance(p) - thickness; },
         grown(wrapped_.box(), thickness), thickness);
   }
@@ -155,7 +156,8 @@ class LayerMaker {
     Eigen::AlignedBox3d box = grown(gland, fat + thickness);
     if (tube.is_any()) box.extend(grown(tube.box(), thickness));
     box.max().z() = top;
-    add("levator", fmt::format("{:g} mm of levator muscle", thickness),
+    add(
+        "levator", fmt::format("{:g} mm of levator muscle", thickness),
         [gland = gland_, tube, fat, thickness, top](const Vec3& p) {
           const double round = std::min(gland.distance(p) - fat, tube.distance(p)) - thickness;
           return std::max(round, p.z() - top);
@@ -196,7 +198,8 @@ class LayerMaker {
     const Superquadric right(middle - aside * Vec3::UnitX(), half_axes);
     Eigen::AlignedBox3d box = left.box();
     box.extend(right.box());
-    add("ischiorectal_fat", fmt::format("{:g} mm of ischiorectal fat on either side", width),
+    add(
+        "ischiorectal_fat", fmt::format("{:g} mm of ischiorectal fat on either side", width),
         [left, right](const Vec3& p) { return std::min(left.distance(p), right.distance(p)); }, box, 0.5 * width);
   }
 
@@ -208,7 +211,8 @@ class LayerMaker {
     const double end = skin + thickness + kFatEnd;
     Eigen::AlignedBox3d box = body_.box();
     box.max().z() = end;
-    add("subcutaneous_fat", fmt::format("{:g} mm of fat under the perineal skin", thickness),
+    add(
+        "subcutaneous_fat", fmt::format("{:g} mm of fat under the perineal skin", thickness),
         [body = body_, thickness, end](const Vec3& p) {
           return std::max(-body.distance(p - thickness * Vec3::UnitZ()), p.z() - end);
         },

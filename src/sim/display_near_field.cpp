@@ -93,8 +93,8 @@ NearPlace DisplayNearField::place_of(const TissueForce& force) const {
 void DisplayNearField::stiffen(const TissueForce& tip) {
   if (!knows_stiffening(model_->coupling())) return;
   const NearPlace on = place_of(tip);
-  const double stiffening_MPa = stiffening_of(
-      on, [&](int region) { return model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa; });
+  const double stiffening_MPa =
+      stiffening_of(on, [&](int region) { return model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa; });
   if (stiffening_MPa == 0.0) return;
   const TipDent dent{needle_scale(*model_->kernel(), on, on), stiffening_MPa};
   const Vec3 press = tip.force - tip.lasting;

@@ -117,7 +117,8 @@ void describe_anatomy(ScenarioEntries& keys) {
   keys.number("anatomy.subcutaneous_fat_mm", "mm", 0, 60,
               "thickness of the fat under the perineal skin, along the patient's axis; 0 = none",
               [](auto& s, const Slot&) { return &s.anatomy.subcutaneous_fat_mm; });
-  keys.number("anatomy.rectal_wall_mm", "mm", 0, 20, "thickness of the rectum's wall, within it is the lumen; 0 = no lumen",
+  keys.number("anatomy.rectal_wall_mm", "mm", 0, 20,
+              "thickness of the rectum's wall, within it is the lumen; 0 = no lumen",
               [](auto& s, const Slot&) { return &s.anatomy.rectal_wall_mm; });
 }
 
@@ -318,7 +319,7 @@ const std::vector<ScenarioEntry>& scenario_table() {
     describe_tissue(keys);
     describe_supports(keys);
     describe_anatomy(keys);
-  describe_mesh(keys);
+    describe_mesh(keys);
     describe_needle(keys);
     describe_coupling(keys);
     describe_template(keys);

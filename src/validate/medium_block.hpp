@@ -21,7 +21,8 @@ struct MediumBlock {
     std::vector<std::string> regions{"body"};
     std::function<int(const Vec3&)> region_at = [](const Vec3&) { return 0; };
     std::vector<Material> materials{};  ///< empty: one of 10 kPa
-    std::vector<double> faces_at_z{};  ///< [mm] planes onto which the nearest layers of nodes are moved, for an interface
+    std::vector<double>
+        faces_at_z{};  ///< [mm] planes onto which the nearest layers of nodes are moved, for an interface
     std::function<bool(const Vec3&)> also_held = [](const Vec3&) { return false; };
     Element element = Element::p1;
   };

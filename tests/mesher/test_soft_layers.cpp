@@ -138,9 +138,8 @@ TEST(SoftLayers, TheFatUnderTheSkinIsAsThickAsAskedFor) {
 }
 
 TEST(SoftLayers, WhatTheInputHasIsNotMade) {
-  const auto m =
-      mesh_contours(set_of({gland(), testing::ellipsoid("Levator ani", kCentre + Vec3(0, 0, -26), {22, 12, 4}, 1.5)}),
-                    with_layers());
+  const auto m = mesh_contours(
+      set_of({gland(), testing::ellipsoid("Levator ani", kCentre + Vec3(0, 0, -26), {22, 12, 4}, 1.5)}), with_layers());
   ASSERT_TRUE(m.ok()) << m.error().message();
   for_elements(*m, "levator", [&](const Vec3& p, double) { EXPECT_LT(p.z(), kCentre.z() - 18); });
   EXPECT_FALSE(testing::has_note(*m, "of levator muscle"));
@@ -168,8 +167,8 @@ TEST(SoftLayers, TheRectumKeepsItsOuterVolume) {
 }
 
 TEST(SoftLayers, ARectumTooThinForAWallIsMeshedAsOneAndThatIsSaid) {
-  const auto m = mesh_contours(
-      set_of({gland(), tube("Rectum", kRectumAxis + Vec3(0, 0, -25), 55, 5, 3)}), with_layers());
+  const auto m =
+      mesh_contours(set_of({gland(), tube("Rectum", kRectumAxis + Vec3(0, 0, -25), 55, 5, 3)}), with_layers());
   ASSERT_TRUE(m.ok()) << m.error().message();
   EXPECT_FALSE(testing::has_region(*m, "rectal_lumen"));
   EXPECT_TRUE(testing::has_note(*m, "too thin for a wall"));

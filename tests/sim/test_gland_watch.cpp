@@ -152,7 +152,8 @@ TEST(GlandOfARun, is_told_from_its_path) {
 
 TEST(GlandOfARun, that_is_viscous_and_ends_too_early_does_not_tell_what_is_left) {
   Scenario s = box_scenario();
-  s.tissue_model.relaxation_s = 0.5;
+  s.tissue_model.creep = 3.0;
+  s.tissue_model.creep_s = 0.5;
   const Finished r(compiled(s));
   ASSERT_TRUE(r.summary.gland);
   ASSERT_NE(r.event(EventKind::withdrawn), nullptr);

@@ -154,8 +154,8 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   stiffening_MPa_ = 0.0;
   if (!region_stiffening_MPa_.empty())
-    stiffening_MPa_ = stiffening_of(
-        tip, [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; });
+    stiffening_MPa_ =
+        stiffening_of(tip, [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; });
   for (int d = 0; d < points_ && stiffens(); ++d) write_needle_scale(d);
   if (tip.skin.inwards.dot(entry_) > 0.0) {  // not the far surface, from inside
     const Mat3 more = tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa),

@@ -120,8 +120,8 @@ Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsi
 
 Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson) {
   const auto all = all_borders(skin, borders);
-  const Mat3 times = stiffness_with(all, epsilon, poisson).inverse() *
-                     stiffness_with(std::span(all).first(1), epsilon, poisson);
+  const Mat3 times =
+      stiffness_with(all, epsilon, poisson).inverse() * stiffness_with(std::span(all).first(1), epsilon, poisson);
   const Mat3 both = times * g;
   return 0.5 * (both + both.transpose());
 }

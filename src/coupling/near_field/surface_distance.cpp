@@ -58,14 +58,14 @@ struct SurfaceDistance::Tree {
   [[nodiscard]] Vec3 outwards(int triangle, const Vec3& w) const {
     Vec3 sum = Vec3::Zero();
     const auto& corners = triangles[static_cast<std::size_t>(triangle)];
-    for (int k = 0; k < 3; ++k)
-      sum += w[k] * normal[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    for (int k = 0; k < 3; ++k) sum += w[k] * normal[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
     return sum.normalized();
   }
   [[nodiscard]] Value value_at(int triangle, const Vec3& w) const {
     Value sum{0.0, triangle};
     const auto& corners = triangles[static_cast<std::size_t>(triangle)];
-    for (int k = 0; k < 3; ++k) sum.value += w[k] * value[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
+    for (int k = 0; k < 3; ++k)
+      sum.value += w[k] * value[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
     return sum;
   }
   [[nodiscard]] Vec3 point(int triangle, const Vec3& w) const {

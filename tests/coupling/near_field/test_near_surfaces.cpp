@@ -138,7 +138,9 @@ struct ThinLayer {
       : block({.cells = cells,
                .jitter = 0.0,
                .regions = {"muscle", "fat", "gland"},
-               .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : x.z() < kThickness ? 1 : 2; },
+               .region_at = [](const Vec3& x) { return x.z() < 0.0          ? 0
+                                                       : x.z() < kThickness ? 1
+                                                                            : 2; },
                .materials = {{0.025, 0.45}, {0.002, 0.45}, {0.03, 0.45}},
                .faces_at_z = {0.0, kThickness}}) {}
   double compliance(double z) { return block.tip({}, {1.3, 0.7, z})(2, 2); }

@@ -21,7 +21,7 @@ struct NearPlace {
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
   NearBorders borders;
-  int region = -1;         ///< −1: the place belongs to none of its own
+  int region = -1;     ///< −1: the place belongs to none of its own
   double edge = 0.0;   ///< [mm] size of the elements there
   double moves = 1.0;  ///< 0…1: weight of the element's nodes that are not held
 };

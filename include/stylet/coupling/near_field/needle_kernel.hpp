@@ -58,9 +58,9 @@ struct NeedleKernel {
   [[nodiscard]] Mat3 tip_self(const NearSurface& surface, const Medium& medium) const;
 };
 
-/// Displacement of a tip per force on itself, with the borders near it [mm/N] (docs/theory/near_field.md, section 4). With
-/// one border exact for a Poisson ratio of ½ far from it and on it; of several each adds as much stiffness as it would
-/// alone.
+/// Displacement of a tip per force on itself, with the borders near it [mm/N] (docs/theory/near_field.md, section 4).
+/// With one border exact for a Poisson ratio of ½ far from it and on it; of several each adds as much stiffness as it
+/// would alone.
 /// @param epsilon own_tip_epsilon(), or of a force that is spread wider
 Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsilon, const Medium& medium);
 
