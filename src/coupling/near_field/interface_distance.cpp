@@ -39,14 +39,13 @@ InterfaceDistance::InterfaceDistance(const Tissue& tissue, const Topology& topol
   for (std::size_t r = 0; r < regions; ++r) of_region_.emplace_back(mesh.nodes, std::move(faces[r]), modulus[r]);
 }
 
-std::array<NearInterface, 2> InterfaceDistance::nearest(int region, const Vec3& x) const {
+NearInterfaces InterfaceDistance::nearest(int region, const Vec3& x) const {
   const auto r = static_cast<std::size_t>(region);
   const SurfaceDistance& interfaces = of_region_[r];
   SurfaceDistance::Value log_modulus;
   const auto told = [&](const NearSurface& found) -> NearInterface {
     if (!std::isfinite(found.depth)) return {};
-    return {found.depth, found.inwards, std::exp(log_modulus.value),
-            beyond_[r][static_cast<std::size_t>(log_modulus.triangle)]};
+    return {found.depth, found.inwards, log_modulus.value, beyond_[r][static_cast<std::size_t>(log_modulus.triangle)]};
   };
   const NearInterface first = told(interfaces.nearest(x, &log_modulus));
   if (first.beyond < 0) return {};

@@ -70,6 +70,11 @@ Medium MeshKernel::medium(int number) const {
   return {material.mu(), material.poisson};
 }
 
+const NearInterfaces& MeshKernel::interfaces_of(Index node, int region) const {
+  const auto& interfaces = row(node).interfaces;
+  return std::find_if(interfaces.begin(), interfaces.end(), [&](const auto& of) { return of.first == region; })->second;
+}
+
 MeshKernel::Rings MeshKernel::rings_around(Index node) const {
   const Tissue& tissue = *tissue_;
   const int count = tissue.nodes_of(0).size() == 4 ? kRings : kRingsOfQuadratic;
@@ -122,6 +127,12 @@ MeshKernel::Row MeshKernel::unsolved_row(Index node, const Rings& rings) const {
   row.edge = length / edges;
   row.skin = nearest_skin(node);
   row.skin.share = fading(row.skin.depth / row.edge);
+  for (const Index tet : ground_->node_tets[static_cast<std::size_t>(node)]) {
+    const int region = tissue.mesh().tet_region[static_cast<std::size_t>(tet)];
+    const auto is_there = [&](const auto& of) { return of.first == region; };
+    if (std::none_of(row.interfaces.begin(), row.interfaces.end(), is_there))
+      row.interfaces.emplace_back(region, ground_->interfaces.nearest(region, x));
+  }
   row.blocks.resize(ground_->poisson.size());
   if (tissue.is_fixed(node)) return row;  // nothing to solve for: the kernel will do
   for (std::size_t k = 0; k < rings.nodes.size(); ++k) {

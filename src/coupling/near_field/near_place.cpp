@@ -37,15 +37,50 @@ void describe_surroundings(const Tissue& tissue, const MeshKernel& kernel, int c
   if (!has_skin) place.skin = {};
 }
 
-/// The interfaces near a place of a region.
-NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, const Vec3& x) {
-  const std::array<NearInterface, 2> interfaces = kernel.interfaces().nearest(region, x);
+/// A border that a corner does not have, where others have it [mm].
+constexpr double kNoBorder_mm = 100.0;
+
+/// Of an element that reaches through a thin layer some corners lie on one face, which is the nearest to them, and
+/// others on the other. Whether two corners are such: each much nearer to its own face than to what faces it.
+bool on_two_faces(const NearInterfaces& a, const NearInterfaces& b) {
+  constexpr double much = 4.0;
+  return a[0].inwards.dot(b[0].inwards) < -0.5 && much * (a[0].depth + b[0].depth) < std::min(a[1].depth, b[1].depth) &&
+         a[1].beyond >= 0 && b[1].beyond >= 0;
+}
+
+/// The interfaces near a place of a region, as the corners of its element have them.
+NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, const std::array<Index, 4>& corners,
+                       const Vec4& weights) {
+  std::array<const NearInterfaces*, 4> of{};
+  for (std::size_t i = 0; i < 4; ++i) of[i] = &kernel.interfaces_of(corners[i], region);
+  const NearInterfaces& first = **std::min_element(
+      of.begin(), of.end(), [](const auto* a, const auto* b) { return (*a)[0].depth < (*b)[0].depth; });
   NearBorders borders;
-  for (std::size_t i = 0; i < borders.size(); ++i) {
-    const NearInterface& there = interfaces[i];
-    if (there.beyond < 0) continue;
-    borders[i] = {there.depth, there.inwards, (young_MPa - there.beyond_MPa) / (young_MPa + there.beyond_MPa),
-                  there.beyond};
+  for (std::size_t side = 0; side < 2; ++side) {
+    NearBorder border{0.0, Vec3::Zero()};
+    double log_beyond = 0.0;
+    double known = 0.0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const NearInterface& there = (*of[i])[on_two_faces(*of[i], first) ? 1 - side : side];
+      const double weight = weights[static_cast<Eigen::Index>(i)];
+      const bool is_any = there.beyond >= 0;
+      border.depth += weight * (is_any ? std::min(there.depth, kNoBorder_mm) : kNoBorder_mm);
+      if (!is_any) continue;
+      border.inwards += weight * there.inwards;
+      log_beyond += weight * there.log_beyond;
+      known += weight;
+      if (there.depth < nearest) {
+        nearest = there.depth;
+        border.beyond = there.beyond;
+      }
+    }
+    if (border.beyond < 0 || known <= 0.0 || border.inwards.isZero(0.0)) continue;
+    border.depth = std::max(0.0, border.depth);
+    border.inwards.normalize();
+    const double beyond_MPa = std::exp(log_beyond / known);
+    border.contrast = (young_MPa - beyond_MPa) / (young_MPa + beyond_MPa);
+    borders[side] = border;
   }
   return borders;
 }
@@ -89,7 +124,7 @@ NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const Mater
       },
       place);
   place.region = region;
-  place.borders = borders_at(kernel, region, place.young_MPa, x);
+  place.borders = borders_at(kernel, region, place.young_MPa, corners, at.weights);
   return place;
 }
 

@@ -60,36 +60,42 @@ double NearBorder::weight(double epsilon) const {
 
 namespace {
 
-/// What a border adds to the stiffness that a force finds where it acts, over that without the border. It lets the
-/// force move that place by 1 + m times as much: far away m is the image of Mindlin's half space, on the border the
-/// force's own field again.
-Mat3 stiffness_by(const NearBorder& border, double epsilon, double nu) {
-  const double own = 5.0 - 6.0 * nu;
-  const double normal = 8.0 * (1.0 - nu) * (1.0 - nu) + 1.0;
-  const double tangential = 1.5 + 2.0 * (1.0 - nu) * (1.0 - 2.0 * nu);
-  const auto added = [&](double strength) {
-    const double there = strength / own * epsilon;
-    return 1.0 / (1.0 + border.contrast * there / std::hypot(2.0 * border.depth, there)) - 1.0;
-  };
-  const Vec3& n = border.inwards;
-  return added(tangential) * Mat3::Identity() + (added(normal) - added(tangential)) * n * n.transpose();
+/// By how many times more than without it a border lets a force move the place where it acts, less one: far from the
+/// border the image of Mindlin's half space, on it the force's own field again.
+struct BorderImage {
+  double normal, tangential;
+
+  BorderImage(const NearBorder& border, double epsilon, double nu) {
+    const double own = 5.0 - 6.0 * nu;
+    const auto image = [&](double strength) {
+      const double there = strength / own * epsilon;
+      return border.contrast * there / std::hypot(2.0 * border.depth, there);
+    };
+    normal = image(8.0 * (1.0 - nu) * (1.0 - nu) + 1.0);
+    tangential = image(1.5 + 2.0 * (1.0 - nu) * (1.0 - 2.0 * nu));
+  }
+};
+
+Mat3 along_and_across(const Vec3& n, double along, double across) {
+  return across * Mat3::Identity() + (along - across) * n * n.transpose();
 }
 
-/// The stiffness with all borders, over that without: each adds to it what it would add alone. Of those that take away
-/// from it only one does, so that something is left.
+/// The stiffness with all borders, over that without. Harder tissue beyond a border adds as much to it as it would
+/// alone; softer tissue, and air, add their images to the displacement, so that some stiffness is always left.
 Mat3 stiffness_with(std::span<const NearBorder> borders, double epsilon, double nu) {
-  Mat3 stiffness = Mat3::Identity();
-  Mat3 taken = Mat3::Zero();
+  Mat3 softer = Mat3::Identity();
+  Mat3 harder = Mat3::Zero();
   for (const NearBorder& border : borders) {
     if (border.contrast == 0.0 || !std::isfinite(border.depth)) continue;
-    const Mat3 more = stiffness_by(border, epsilon, nu);
-    if (border.contrast < 0.0) {
-      stiffness += more;
-    } else if (more.trace() < taken.trace()) {
-      taken = more;
+    const BorderImage image(border, epsilon, nu);
+    const auto added = [](double m) { return 1.0 / (1.0 + m) - 1.0; };
+    if (border.contrast > 0.0) {
+      softer += along_and_across(border.inwards, image.normal, image.tangential);
+    } else {
+      harder += along_and_across(border.inwards, added(image.normal), added(image.tangential));
     }
   }
-  return stiffness + taken;
+  return softer.inverse() + harder;
 }
 
 std::array<NearBorder, 3> all_borders(const NearSurface& skin, const NearBorders& borders) {

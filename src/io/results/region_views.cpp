@@ -15,6 +15,7 @@ constexpr Colour kOrange{0.902, 0.624, 0.000}, kSkyBlue{0.337, 0.706, 0.914}, kG
     kYellow{0.941, 0.894, 0.259}, kBlue{0.000, 0.447, 0.698}, kVermillion{0.835, 0.369, 0.000},
     kPurple{0.800, 0.475, 0.655};
 constexpr Colour kBone{0.66, 0.66, 0.63}, kFlesh{0.80, 0.74, 0.68};
+constexpr Colour kFat{0.93, 0.85, 0.56}, kMuscle{0.72, 0.36, 0.33};
 
 struct Custom {
   std::string_view part_of_name;
@@ -22,10 +23,14 @@ struct Custom {
 };
 
 /// Organs a reader expects to look alike from report to report; others take the free colours in turn.
-constexpr std::array kCustoms{Custom{"prostate", kOrange},     Custom{"urethra", kYellow}, Custom{"bladder", kSkyBlue},
-                              Custom{"rectum", kPurple},       Custom{"seminal", kGreen},  Custom{"pubic", kBone},
-                              Custom{"bone", kBone},           Custom{"femur", kBone},     Custom{"band", kVermillion},
-                              Custom{"ligament", kVermillion}, Custom{"body", kFlesh},     Custom{"skin", kFlesh}};
+constexpr std::array kCustoms{Custom{"prostate", kOrange}, Custom{"urethra", kYellow},
+                              Custom{"bladder", kSkyBlue}, Custom{"rectum", kPurple},
+                              Custom{"seminal", kGreen},   Custom{"pubic", kBone},
+                              Custom{"bone", kBone},       Custom{"femur", kBone},
+                              Custom{"band", kVermillion}, Custom{"ligament", kVermillion},
+                              Custom{"body", kFlesh},      Custom{"skin", kFlesh},
+                              Custom{"fat", kFat},         Custom{"levator", kMuscle},
+                              Custom{"lumen", kBone}};
 constexpr std::array kFree{kOrange, kBlue, kGreen, kVermillion, kPurple, kSkyBlue, kYellow};
 
 std::string lower(std::string text) {

@@ -14,9 +14,12 @@ namespace stylet {
 struct NearInterface {
   double depth = std::numeric_limits<double>::infinity();  ///< [mm] of a place in the region behind it
   Vec3 inwards = Vec3::UnitZ();                            ///< unit normal, into the region
-  double beyond_MPa = 0.0;                                 ///< Young's modulus on the other side
+  double log_beyond = 0.0;                                 ///< logarithm of Young's modulus [MPa] on the other side
   int beyond = -1;                                         ///< region there
 };
+
+/// The nearest interface, and the nearest that faces it (SurfaceDistance::opposite()); beyond < 0: there is none.
+using NearInterfaces = std::array<NearInterface, 2>;
 
 /// Distances to the interfaces between the regions of a mesh that give way, by region: a face that two regions share is
 /// an interface of both. Held regions have none; what they do to the tissue the mesh knows.
@@ -25,9 +28,8 @@ class InterfaceDistance {
   /// @param tissue its mesh must stay
   InterfaceDistance(const Tissue& tissue, const Topology& topology);
 
-  /// The nearest, and the nearest that faces it (SurfaceDistance::opposite()).
   /// @param x [mm] in the region or on its border
-  [[nodiscard]] std::array<NearInterface, 2> nearest(int region, const Vec3& x) const;
+  [[nodiscard]] NearInterfaces nearest(int region, const Vec3& x) const;
 
  private:
   std::vector<SurfaceDistance> of_region_;  ///< with the logarithm of the modulus beyond

@@ -34,7 +34,8 @@ class MeshKernel {
     Index node = -1;
     double edge = 0.0;
     NearSurface skin;
-    std::vector<Index> near;                ///< nodes of the patch that are not on its rim, ascending
+    std::vector<std::pair<int, NearInterfaces>> interfaces;  ///< by the regions that have the node
+    std::vector<Index> near;                                 ///< nodes of the patch that are not on its rim, ascending
     std::vector<std::vector<Mat3>> blocks;  ///< (media)(near) [mm/N] for E = 1 MPa; none of a medium not in the patch
   };
 
@@ -75,8 +76,8 @@ class MeshKernel {
   /// The free surface near a node.
   [[nodiscard]] const NearSurface& skin(Index node) const { return row(node).skin; }
 
-  /// The interfaces to tissue of another modulus.
-  [[nodiscard]] const InterfaceDistance& interfaces() const { return ground_->interfaces; }
+  /// The interfaces near a node of a region, to tissue of another modulus.
+  [[nodiscard]] const NearInterfaces& interfaces_of(Index node, int region) const;
 
   /// Mean length of the edges at a node [mm].
   [[nodiscard]] double edge(Index node) const { return row(node).edge; }
