@@ -522,5 +522,5 @@ TEST(DefaultTissue, tents_and_lags_within_what_is_plausible) {
 TEST(DefaultTissue, takes_planning_volumes_and_labels_for_the_gland_and_the_unknown_for_the_body) {
   for (const char* region : {"ptv", "ctv", "gtv", "label_1"})
     EXPECT_EQ(default_tissue(region), default_tissue("prostate"));
-  EXPECT_EQ(default_tissue("levator"), default_tissue("body"));
+  EXPECT_EQ(default_tissue("obturator"), default_tissue("body"));
 }

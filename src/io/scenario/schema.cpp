@@ -34,6 +34,8 @@ constexpr std::array kTables{
               "What a tissue is made of; one table for each region that is to differ from its defaults, which are "
               "those of the prostate here. docs/parameters.md gives all defaults and their sources."},
     TableText{"fixed", "[fixed]", "What holds the patient still. Supports decide every force."},
+    TableText{"anatomy", "[anatomy]",
+              "Soft tissue that contours and masks do not show. Each layer is made where the input does not have it."},
     TableText{"mesh", "[mesh]", "How contours or a mask become tetrahedra; a tetrahedral mesh is used as it is."},
     TableText{"needle", "[needle]", "The needle."},
     TableText{"coupling", "[coupling]", "How needle and tissue act on each other."},
