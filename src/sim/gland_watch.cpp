@@ -31,7 +31,7 @@ void GlandWatch::notice(const Event& event) {
 GlandStep GlandWatch::add(const Step& step, std::span<const Event> events, const VolumeMotion& motion, bool at_rest,
                           bool deepest) {
   for (const Event& event : events) notice(event);
-  const GlandStep now{step.time_s, step.base_depth_mm, motion.shift_mm, kDegrees * motion.rotation_rad};
+  GlandStep now{step.time_s, step.base_depth_mm, motion.shift_mm, kDegrees * motion.rotation_rad};
   if (advancing_ && now.shift_mm.norm() > motion_.shift_max_mm.norm()) {
     motion_.shift_max_mm = now.shift_mm;
     motion_.rotation_deg = now.rotation_deg;
