@@ -99,7 +99,7 @@ std::string title(EventKind kind, const std::string& region) {
 /// A number with three digits; one that rounds to nothing has no sign.
 std::string thousandths(double value) { return fmt::format("{:.3f}", std::abs(value) < 5e-4 ? 0.0 : value); }
 
-/// What clinics report of the gland: its shifts as a table, its turn and its volume.
+/// The gland's motion as clinics report it: its shifts as a table, its turn and its volume.
 std::string gland_text(const GlandMotion& gland) {
   Table shifts({"gland moved", "total [mm]", "left", "posterior", "superior"});
   for (const NamedShift& shift : named_shifts(gland)) {
@@ -173,7 +173,7 @@ std::string tissues_text(const Scenario& scenario) {
   return table.text() + "\n\nSources of the defaults" + sources;
 }
 
-/// What --print-tissues prints: the defaults, or what a scenario makes of them.
+/// The tissue table of --print-tissues: the defaults, or the values of a scenario.
 Result<std::string> tissues_text(const InsertArguments& arguments) {
   if (!arguments.scenario.empty()) {
     const auto scenario = read_scenario(arguments.scenario, arguments.settings);

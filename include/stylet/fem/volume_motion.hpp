@@ -35,7 +35,7 @@ struct VolumeMotion {
 /// needle gives its mean well.
 class VolumeResponse {
  public:
-  /// What w is solved with.
+  /// The elements and the mesh with which w is solved for.
   enum class Accuracy {
     of_the_tissue,     ///< the tissue's own mesh, elements and factor
     quadratic,         ///< quadratic elements on its mesh

@@ -10,7 +10,7 @@ namespace stylet {
 /// A tetrahedron inside another: barycentric coordinates of its corners in that one (4 × 4, one column each).
 using TetPart = Eigen::Matrix4d;
 
-/// What share of the whole tetrahedron a part is, ≥ 0.
+/// The share of the whole tetrahedron that a part has, ≥ 0.
 double share_of_tet(const TetPart& part);
 
 /// The part of a tetrahedron in which a linear function lies between two levels, cut into tetrahedra.

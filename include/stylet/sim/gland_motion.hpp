@@ -31,7 +31,7 @@ inline PlaneAngles plane_angles(const Vec3& rotation_deg) {
 }
 inline Vec3 rotation_of(const PlaneAngles& angles) { return {angles.sagittal, angles.coronal, angles.transverse}; }
 
-/// What an insertion did to the gland. Vectors as in GlandStep.
+/// The motion of the gland over one insertion. Vectors as in GlandStep.
 struct GlandMotion {
   std::optional<Vec3> shift_at_break_mm{};  ///< just before its surface broke; empty where it did not
   Vec3 shift_max_mm = Vec3::Zero();         ///< largest on the way in, the dwell included

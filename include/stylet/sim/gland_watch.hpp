@@ -23,7 +23,7 @@ class GlandWatch {
   GlandStep add(const Step& step, std::span<const Event> events, const VolumeMotion& motion, bool at_rest,
                 bool deepest);
 
-  /// What the steps so far come to.
+  /// The gland's motion over the steps that were added so far.
   [[nodiscard]] GlandMotion result() const;
 
  private:

@@ -99,7 +99,7 @@ void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   A_.block<3, 3>(3 * point, 3 * other) = block;
   A_.block<3, 3>(3 * other, 3 * point) = block.transpose();
   if (!knows_wide()) return;
-  // What of the mesh's own near field were left at a border between organs would be more than all of a wide field.
+  // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
   const double soft =
       std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
   block = far + soft * (near - narrow_part(*kernel_, at, on));

@@ -85,7 +85,7 @@ NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, c
   return borders;
 }
 
-/// What of the needle's kernel between two places is left when that of a force spread over `coarse` is taken off
+/// The needle's kernel between two places less the kernel of a force that is spread over `coarse`
 /// [mm/N].
 Mat3 narrower_than(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, double fine, double coarse) {
   return between_media(at, on, [&](int medium) -> Mat3 {

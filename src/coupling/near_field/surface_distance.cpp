@@ -75,7 +75,7 @@ struct SurfaceDistance::Tree {
 
 namespace {
 
-/// What Eigen::BVMinimize asks for: the squared distance.
+/// The search that Eigen::BVMinimize carries out: for the least squared distance.
 template <class Tree>
 struct Nearest {
   using Scalar = double;

@@ -64,7 +64,7 @@ struct NeedleKernel {
 /// @param epsilon own_tip_epsilon(), or of a force that is spread wider
 Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsilon, const Medium& medium);
 
-/// What becomes of a kernel g that knows of the skin when there are borders as well [mm/N].
+/// The kernel g, which knows of the skin, corrected for the borders between organs [mm/N].
 /// @param epsilon [mm] over which g spreads a force
 Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson);
 
