@@ -160,8 +160,7 @@ std::string tissues_text(const Scenario& scenario) {
   }
   std::string sources;
   for (const std::string& region : regions) {
-    const auto given = scenario.tissue.find(region);
-    const TissueParameters t = given != scenario.tissue.end() ? given->second : default_tissue(region);
+    const TissueParameters t = tissue_of(scenario, region);
     const bool bone = t.young_kPa > 1e4;
     table.row({region, bone ? "held" : fmt::format("{:g}", t.young_kPa), bone ? "" : fmt::format("{:g}", t.poisson),
                bone ? "" : fmt::format("{:g}", t.stiffening), bone ? "" : fmt::format("{:g}", t.cutting_N),

@@ -308,6 +308,15 @@ std::string patient_text(const Contents& contents, const DraftSource& source) {
   return out;
 }
 
+std::string needle_text() {
+  return '\n' +
+         comment(
+             "An 18 gauge needle. Its bevel deflects it to the patient's left; roll_deg below [[insertion]] turns "
+             "it.") +
+         "[needle]\nbevel_deg = 20\n\n" + comment("The template's hole holds the needle sideways.") +
+         "[template]\nguide = true\n";
+}
+
 std::string insertion_text(const Contents& contents) {
   const Hole hole = hole_for(contents.target);
   const std::string centre = contents.target.isEmpty() ? "the patient" : "the gland";
@@ -353,7 +362,7 @@ Result<ScenarioDraft> draft_scenario(const PatientInput& patient, const DraftSou
   draft.text +=
       fmt::format("\nname = {}\n", toml_text(name)) + patient_text(*contents, source) + regions_text(*contents);
   for (const std::string& left_out : contents->left_out) draft.text += comment(left_out);
-  draft.text += insertion_text(*contents);
+  draft.text += needle_text() + insertion_text(*contents);
   return draft;
 }
 

@@ -395,7 +395,8 @@ std::size_t Insertion::tissue_forces(std::span<TissueForce> out) const {
     if (force.isZero(0.0) && lasting.isZero(0.0)) continue;
     const TissueResponse::Place& place = p.tissue.place(point);
     const bool at_tip = point == ContactCompliance::kTip && tip.tet >= 0;
-    if (count < out.size()) out[count] = {at_tip ? tip : place.at, force, place.along, lasting};
+    if (count < out.size())
+      out[count] = {at_tip ? tip : place.at, force, place.along, lasting, compliance().softness(point)};
     ++count;
   }
   return count;

@@ -3,6 +3,8 @@
 
 #include "stylet/coupling/contact_compliance.hpp"
 
+#include <cmath>
+
 namespace stylet {
 
 /// By how much less than A g the tissue gives way because it stiffens under the tip. With C the needle's scale of A
@@ -20,6 +22,7 @@ class TipRelief {
       : scale_(&compliance.needle_scale()), dent_(compliance.tip_dent().under(force)), force_(force) {
     const Mat3 C = scale_->topRows<3>();
     at_tip_ = C * spared() + kept().transpose() * of_others;
+    at_tip_slope_ = C * kept() - change_of_share(compliance.tip_dent(), force, of_others);
     energy_Nmm_ = 0.5 * (force.dot(C * force - at_tip_) + spared().dot(of_others)) - dent_.complementary_energy_Nmm;
   }
 
@@ -30,8 +33,10 @@ class TipRelief {
     return point == ContactCompliance::kTip ? at_tip_ : Vec3(scale_->middleRows<3>(3 * point) * spared());
   }
   /// By how much less than A the point gives way to a little more force on the tip [mm/N]; its transpose is that of the
-  /// tip by a little more force on the point. What changes φ′ itself is left out.
-  [[nodiscard]] Mat3 slope(int point) const { return scale_->middleRows<3>(3 * point) * kept(); }
+  /// tip by a little more force on the point.
+  [[nodiscard]] Mat3 slope(int point) const {
+    return point == ContactCompliance::kTip ? at_tip_slope_ : Mat3(scale_->middleRows<3>(3 * point) * kept());
+  }
   /// By how much more than half of the sum of all forces times their displacements is stored in the tissue [N mm].
   [[nodiscard]] double energy_Nmm() const { return energy_Nmm_; }
   /// φ [N]
@@ -43,10 +48,28 @@ class TipRelief {
   [[nodiscard]] Vec3 spared() const { return force_ - dent_.linear; }
   [[nodiscard]] Mat3 kept() const { return Mat3::Identity() - dent_.slope; }
 
+  /// ∂(φ′ᵀ w)/∂g [mm/N], the second derivative of φ · w. With e = gᵀ C g, φ = s(e) g and S = 2 ds/de it is
+  /// S (w (Cg)ᵀ + (Cg) wᵀ + (w·g) C) + 2 dS/de (w·g) (Cg)(Cg)ᵀ. At no force it has no limit, but stays bounded.
+  [[nodiscard]] static Mat3 change_of_share(const TipDent& dent, const Vec3& g, const Vec3& w) {
+    const Vec3 Cg = dent.compliance * g;
+    const double e = g.dot(Cg);
+    if (dent.stiffening_MPa <= 0.0 || !(e > 0.0)) return Mat3::Zero();
+    const double c = dent.compliance.trace() / 3.0;
+    const double q = std::sqrt(e / c);
+    const double grows = 4.0 * dent.stiffening_MPa * c * c;
+    const double root = std::sqrt(1.0 + grows * q);  // z′(q) = c / root, s = 2 / (1 + root)
+    const double S = (1.0 / root - 2.0 / (1.0 + root)) / e;
+    const double dS = (-0.5 * grows / (root * root * root) / (2.0 * c * q) - 1.5 * S) / e;
+    const double along = w.dot(g);
+    return S * (w * Cg.transpose() + Cg * w.transpose() + along * dent.compliance) +
+           2.0 * dS * along * Cg * Cg.transpose();
+  }
+
   const MatX* scale_ = nullptr;
   TipDent::Under dent_;
   Vec3 force_ = Vec3::Zero();
   Vec3 at_tip_ = Vec3::Zero();
+  Mat3 at_tip_slope_ = Mat3::Zero();
   double energy_Nmm_ = 0.0;
 };
 

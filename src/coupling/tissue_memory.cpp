@@ -14,13 +14,11 @@ void TissueMemory::begin(double h) {
 }
 
 Vec3 TissueMemory::displacement(const ContactCompliance& compliance, int point) const {
-  Vec3 u = Vec3::Zero();
-  if (!on()) return u;
-  const auto columns = compliance.wide().middleCols<3>(3 * point);  // or rows: F is symmetric
-  for (int d = 0; d < compliance.points(); ++d) {
-    if (!remembered_.col(d).isZero(0.0)) u.noalias() += columns.middleRows<3>(3 * d).transpose() * past(d);
-  }
-  return u;
+  if (!on()) return Vec3::Zero();
+  const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
+  const Eigen::Map<const VecX> remembered(remembered_.data(), count);
+  const auto columns = compliance.wide().block(0, 3 * point, count, 3);  // or rows: F is symmetric
+  return most() * kept_ * columns.transpose().lazyProduct(remembered);
 }
 
 void TissueMemory::end(const Eigen::Ref<const MatX>& forces) {

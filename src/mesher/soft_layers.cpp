@@ -165,7 +165,7 @@ class LayerMaker {
         box, thickness);
   }
 
-  /// On either side of the rectum, from the skin up to beside the apex.
+  /// On either side of the rectum, from the layer under the skin up to beside the apex.
   void ischiorectal_fat() {
     const double width = layers_.ischiorectal_fat_mm;
     if (!wanted("ischiorectal_fat", width)) return;
@@ -200,7 +200,11 @@ class LayerMaker {
     box.extend(right.box());
     add(
         "ischiorectal_fat", fmt::format("{:g} mm of ischiorectal fat on either side", width),
-        [left, right](const Vec3& p) { return std::min(left.distance(p), right.distance(p)); }, box, 0.5 * width);
+        [left, right, body = body_, skin_layer = layers_.subcutaneous_fat_mm](const Vec3& p) {
+          const double above_skin = body.distance(p - skin_layer * Vec3::UnitZ());
+          return std::max(std::min(left.distance(p), right.distance(p)), above_skin);
+        },
+        box, 0.5 * width);
   }
 
   /// What lies less than the thickness above the skin, seen along the patient's axis.

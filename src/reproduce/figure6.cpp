@@ -116,6 +116,7 @@ Scenario figure6_scenario(bool quick) {
   scenario.name = "Figure 6";
   scenario.patient.source = "phantom";
   scenario.mesh.preset = MeshPreset::paper;
+  scenario.tissue_model.preset = TissuePreset::linear;
   scenario.fixed.regions = {"band"};  // the pubic side, as the paper holds it
   scenario.fixed.outer = OuterSupport::none;
   scenario.run.dt_ms = quick ? 2.0 : 1.0;

@@ -64,7 +64,7 @@ std::size_t DisplayNearField::slot_for(const TissueForce& force) {
   if (found == sources_.end()) {
     sources_.push_back({});
     blocks_.conservativeResize(moved_.size(), 3 * static_cast<Eigen::Index>(sources_.size()));
-    if (model_->coupling().creep.is_any()) narrow_.conservativeResize(blocks_.rows(), blocks_.cols());
+    if (knows_wide()) narrow_.conservativeResize(blocks_.rows(), blocks_.cols());
   }
   sources_[slot] = {force, true};
   if (!known) compute(slot);
@@ -89,26 +89,32 @@ NearPlace DisplayNearField::place_of(const TissueForce& force) const {
   return on;
 }
 
+bool DisplayNearField::knows_wide() const {
+  const auto& laws = model_->laws();
+  return model_->coupling().creep.is_any() ||
+         (knows_stiffening(model_->coupling()) &&
+          std::any_of(laws.begin(), laws.end(), [](const RegionLaws& law) { return law.stiffening_MPa > 0.0; }));
+}
+
 /// Takes off what tissue that stiffens under the tip does not move by.
-void DisplayNearField::stiffen(const TissueForce& tip) {
-  if (!knows_stiffening(model_->coupling())) return;
+void DisplayNearField::stiffen(const TissueForce& tip, std::size_t slot) {
+  if (!knows_wide()) return;
   const NearPlace on = place_of(tip);
   const double stiffening_MPa =
       stiffening_of(on, [&](int region) { return model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa; });
-  if (stiffening_MPa == 0.0) return;
-  const TipDent dent{needle_scale(*model_->kernel(), on, on), stiffening_MPa};
+  if (stiffening_MPa == 0.0 || !knows_stiffening(model_->coupling())) return;
+  const MeshKernel& kernel = *model_->kernel();
+  const Mat3 g = mesh_kernel_between(kernel, on.shape, on.shape, on.medium);
+  const Mat3 own = tip_correction(kernel, on, g) - tip.softness * tip_wide_correction(kernel, on, g);
   const Vec3 press = tip.force - tip.lasting;
-  const Vec3 spared = press - dent.under(press).linear;
-  for (std::size_t p = 0; p < places_.size(); ++p) {
-    const Vec3 less = needle_scale(*model_->kernel(), acted_on_by(places_[p], on), on) * spared;
-    moved_.segment<3>(3 * static_cast<Eigen::Index>(p)) -= less.cast<float>();
-  }
+  const Vec3 spared = press - TipDent{0.5 * (own + own.transpose()), stiffening_MPa}.under(press).linear;
+  moved_.noalias() -= narrow_.middleCols<3>(3 * static_cast<Eigen::Index>(slot)).lazyProduct(spared.cast<float>());
 }
 
 void DisplayNearField::compute(std::size_t slot) {
   const MeshKernel& kernel = *model_->kernel();
   const NearPlace on = place_of(sources_[slot].force);
-  const double softness = narrow_.size() > 0 ? softness_at_border(kernel, on) : 1.0;
+  const double softness = sources_[slot].force.softness;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Shape node{.count = 1, .node = {nodes_[n]}, .weight = {1.0}};
     of_node_[n] = mesh_kernel_between(kernel, node, on.shape, on.medium);
@@ -126,7 +132,7 @@ void DisplayNearField::compute(std::size_t slot) {
     const Mat3 near = near_correction(kernel, here, on, g);
     blocks_.block<3, 3>(row, column) = near.cast<float>();
     if (narrow_.size() > 0)
-      narrow_.block<3, 3>(row, column) = (near - softness * (near - narrow_part(kernel, here, on))).cast<float>();
+      narrow_.block<3, 3>(row, column) = (near - softness * wide_correction(kernel, here, on, g)).cast<float>();
   }
 }
 
@@ -153,7 +159,7 @@ void DisplayNearField::set(std::span<const TissueForce> forces) {
     if (!force.lasting.isZero(0.0))
       moved_.noalias() -=
           narrow_.middleCols<3>(3 * static_cast<Eigen::Index>(slot)).lazyProduct(force.lasting.cast<float>());
-    if (force.along.isZero(0.0)) stiffen(force);
+    if (force.along.isZero(0.0)) stiffen(force, slot);
   }
 }
 

@@ -23,7 +23,7 @@ namespace stylet {
 
 namespace {
 
-constexpr double kTentingMin_mm = 5.0;
+constexpr double kTentingMin_mm = 3.0;
 constexpr double kTentingMax_mm = 20.0;
 constexpr double kLagMax_mm = 5.0;
 /// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
@@ -75,7 +75,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
   c.tip_viscosity_Ns_per_mm = s.coupling.tip_viscosity_Ns_per_m * 1e-3;
   c.bone_damping_s = s.coupling.bone_damping_ms * 1e-3;
   c.grazing_cos = std::cos(s.coupling.grazing_deg * std::numbers::pi / 180.0);
-  c.creep = {s.tissue_model.creep, s.tissue_model.creep_s};
+  c.creep = {creep_of(s), s.tissue_model.creep_s};
   c.capacity = s.coupling.contacts;
   c.spare_nodes = s.coupling.spare_nodes;
   c.tolerance = s.coupling.tolerance;
@@ -237,8 +237,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   std::vector<Material> materials;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::string& name = mesh.regions[r];
-    const auto given = scenario.tissue.find(name);
-    const TissueParameters p = given != scenario.tissue.end() ? given->second : default_tissue(name);
+    const TissueParameters p = tissue_of(scenario, name);
     model->tissue_parameters_.push_back(p);
     materials.push_back({p.young_kPa * 1e-3, p.poisson});
     RegionLaws laws;

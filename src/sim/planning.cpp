@@ -15,7 +15,8 @@ namespace stylet {
 namespace {
 
 constexpr double kBeforeFarEnd_mm = 2.0;  ///< an automatic depth ends so much before the target does
-constexpr double kLeastDepth_mm = 5.0;    ///< of an automatic depth
+constexpr double kRestAfter_s = 1.0;
+constexpr double kLeastDepth_mm = 5.0;  ///< of an automatic depth
 
 bool contains(const std::vector<int>& regions, int region) {
   return std::find(regions.begin(), regions.end(), region) != regions.end();
@@ -122,6 +123,12 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   result.motion = BaseMotion::straight(result.entry, result.direction, scenario.needle.length_mm, plan.approach_mm,
                                        result.depth_mm, plan.speed_mm_per_s, plan.dwell_s, plan.retract,
                                        plan.retract_speed_mm_per_s, plan.roll_deg * std::numbers::pi / 180.0);
+  if (plan.retract && creep_of(scenario) > 1.0) {
+    // Tissue that creeps goes on moving once the needle is out; a report tells where the gland is after a second.
+    std::vector<MotionSample> samples = result.motion.samples();
+    samples.push_back({samples.back().time_s + kRestAfter_s, samples.back().base});
+    result.motion = BaseMotion(std::move(samples));
+  }
   return result;
 }
 

@@ -49,6 +49,19 @@ constexpr std::array kShown{
     Shown{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
 };
 
+/// Layers that were made where the input had none.
+struct ShownLayer {
+  const char* path;
+  const char* region;
+};
+constexpr std::array kShownLayers{
+    ShownLayer{"anatomy.periprostatic_fat_mm", "periprostatic_fat"},
+    ShownLayer{"anatomy.levator_mm", "levator"},
+    ShownLayer{"anatomy.ischiorectal_fat_mm", "ischiorectal_fat"},
+    ShownLayer{"anatomy.subcutaneous_fat_mm", "subcutaneous_fat"},
+    ShownLayer{"anatomy.rectal_wall_mm", "rectal_lumen"},
+};
+
 std::string as_shown(const ScenarioValue& value) {
   return value.type == ScenarioValue::Type::text ? value.text : to_string(value);
 }
@@ -61,12 +74,13 @@ std::string unit_of(const std::string& path) {
 }
 
 /// The rows of a region, or one that says that it is held.
-void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, const TissueParameters& used, bool held) {
+void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, TissuePreset preset,
+                const TissueParameters& used, bool held) {
   if (held) {
     rows.push_back({"tissue." + region, "held", "", "bone, or a region the scenario holds"});
     return;
   }
-  const TissueParameters standard = default_tissue(region);
+  const TissueParameters standard = default_tissue(region, preset);
   const auto row = [&](const char* key, double TissueParameters::*field, const char* unit) {
     rows.push_back({"tissue." + region + "." + key, fmt::format("{:g}", used.*field), unit,
                     used.*field == standard.*field ? standard.source : kFromScenario});
@@ -143,7 +157,8 @@ RunInfo Model::info(std::size_t insertion) const {
     info.direction = insertions_[insertion].direction;
   }
   for (std::size_t r = 0; r < mesh().regions.size(); ++r)
-    add_tissue(info.parameters, mesh().regions[r], tissue_parameters_[r], laws_[r].rigid);
+    add_tissue(info.parameters, mesh().regions[r], scenario_.tissue_model.preset, tissue_parameters_[r],
+               laws_[r].rigid);
   info.parameters.push_back(
       {"tissue.element", to_string(tissue_->element()), "",
        scenario_.tissue_model.element == ElementChoice::automatic
@@ -151,12 +166,27 @@ RunInfo Model::info(std::size_t insertion) const {
            : kFromScenario});
   const Scenario standard;
   const Scenario::TissueModel& tissue = scenario_.tissue_model;
-  const bool creeps = tissue.creep != standard.tissue_model.creep;
-  info.parameters.push_back(
-      {"tissue.creep", fmt::format("{:g}", tissue.creep), "", creeps ? kFromScenario : "stated: elastic"});
-  if (tissue.creep > 1.0)
+  info.parameters.push_back({"tissue.preset", word(tissue.preset), "",
+                             tissue.preset == standard.tissue_model.preset ? "default" : kFromScenario});
+  const double creep = creep_of(scenario_);
+  info.parameters.push_back({"tissue.creep", fmt::format("{:g}", creep), "",
+                             tissue.creep ? kFromScenario
+                                          : (creep > 1.0 ? "fitted: a gland that moves by less when the needle is fast"
+                                                         : "stated: elastic")});
+  if (creep > 1.0) {
     info.parameters.push_back({"tissue.creep_s", fmt::format("{:g}", tissue.creep_s), "s",
-                               tissue.creep_s == standard.tissue_model.creep_s ? "stated" : kFromScenario});
+                               tissue.creep_s == standard.tissue_model.creep_s
+                                   ? "fitted: a gland that moves by less when the needle is fast"
+                                   : kFromScenario});
+  }
+  for (const ShownLayer& layer : kShownLayers) {
+    if (mesh().region_index(layer.region) < 0) continue;
+    const std::string value = as_shown(*scenario_value(scenario_, layer.path));
+    info.parameters.push_back({layer.path, value, "mm",
+                               value == as_shown(*scenario_value(standard, layer.path))
+                                   ? "adult anatomy (docs/meshing.md); no effect where the input has the structure"
+                                   : kFromScenario});
+  }
   for (const Shown& shown : kShown) {
     const auto value = scenario_value(scenario_, shown.path);
     if (!value) continue;

@@ -10,7 +10,7 @@ namespace {
 using Slot = ScenarioSlot;
 
 TissueParameters& tissue(Scenario& s, const Slot& slot) {
-  return s.tissue.try_emplace(slot.name, default_tissue(slot.name)).first->second;
+  return s.tissue.try_emplace(slot.name, tissue_of(s, slot.name)).first->second;
 }
 const TissueParameters& tissue(const Scenario& s, const Slot& slot) { return s.tissue.at(slot.name); }
 
@@ -44,6 +44,12 @@ void describe_patient(ScenarioEntries& keys) {
 }
 
 void describe_tissue(ScenarioEntries& keys) {
+  keys.choice("tissue.preset",
+              "where the defaults of all tissue come from: forces measured in patients, a dent under the tip that "
+              "stiffens, and moduli in the middle of what is published (typical) or 1.6 times as stiff (firm) or as "
+              "soft (soft); or linear elastic tissue (linear), as the methods of Goksel et al. 2005 have it, in which "
+              "forces are small and the gland hardly moves",
+              [](auto& s, const Slot&) { return &s.tissue_model.preset; });
   keys.choice(
       "tissue.element",
       "finite element; p1 = linear tetrahedra, stiffen as Poisson's ratio nears 0.5; nodal-pressure = linear "
@@ -57,7 +63,8 @@ void describe_tissue(ScenarioEntries& keys) {
       "creep of all tissue: under a force that lasts it yields this many times as far as at once, so in the end "
       "it is as soft as tissue of young_kPa / creep; what is narrower than 10 mm around the needle does not "
       "creep; 1 = elastic",
-      [](auto& s, const Slot&) { return &s.tissue_model.creep; });
+      [](auto& s, const Slot&) { return &s.tissue_model.creep; },
+      {.standard = "4, and 1 with preset = \"linear\"", .example = "4"});
   keys.number("tissue.creep_s", "s", 0.001, 1000,
               "time constant of that: after a time t under a constant force 1 - exp(-t/creep_s) of the creep has "
               "happened; a force under a constant displacement relaxes faster, with creep_s / creep",
@@ -77,13 +84,13 @@ void describe_tissue(ScenarioEntries& keys) {
       "tissue.<region>.stiffening", "", 0, 100,
       "how the dent under the tip stiffens: its force is k1 z + k2 z^2 at a depth z, and this is k2 over Young's "
       "modulus; 0 = linear. Only with coupling.method = \"near-field\" and coupling.solver = \"coupled\"",
-      [](auto& s, const Slot& t) { return &tissue(s, t).stiffening; });
+      [](auto& s, const Slot& t) { return &tissue(s, t).stiffening; }, {.standard = "by region"});
   keys.number("tissue.<region>.friction_static_N_per_m", "N/m", 0, 1e4,
               "largest friction per inserted length while sticking",
-              [](auto& s, const Slot& t) { return &tissue(s, t).friction_static_N_per_m; });
+              [](auto& s, const Slot& t) { return &tissue(s, t).friction_static_N_per_m; }, {.standard = "by region"});
   keys.number("tissue.<region>.friction_coulomb_N_per_m", "N/m", 0, 1e4,
               "friction per inserted length while sliding slowly",
-              [](auto& s, const Slot& t) { return &tissue(s, t).friction_coulomb_N_per_m; });
+              [](auto& s, const Slot& t) { return &tissue(s, t).friction_coulomb_N_per_m; }, {.standard = "by region"});
   keys.number("tissue.<region>.friction_viscous_Ns_per_m2", "N s/m²", 0, 1e6, "growth of sliding friction with speed",
               [](auto& s, const Slot& t) { return &tissue(s, t).friction_viscous_Ns_per_m2; });
   keys.number("tissue.<region>.friction_viscous_to_mm_per_s", "mm/s", 0.1, 10000,
@@ -111,9 +118,10 @@ void describe_anatomy(ScenarioEntries& keys) {
   keys.number("anatomy.levator_mm", "mm", 0, 20,
               "thickness of the levator muscle round that fat and the rectum, below the gland's base; 0 = none",
               [](auto& s, const Slot&) { return &s.anatomy.levator_mm; });
-  keys.number("anatomy.ischiorectal_fat_mm", "mm", 0, 60,
-              "width of the fat on either side of the rectum, from the skin to beside the apex; 0 = none",
-              [](auto& s, const Slot&) { return &s.anatomy.ischiorectal_fat_mm; });
+  keys.number(
+      "anatomy.ischiorectal_fat_mm", "mm", 0, 60,
+      "width of the fat on either side of the rectum, from the layer under the skin to beside the apex; 0 = none",
+      [](auto& s, const Slot&) { return &s.anatomy.ischiorectal_fat_mm; });
   keys.number("anatomy.subcutaneous_fat_mm", "mm", 0, 60,
               "thickness of the fat under the perineal skin, along the patient's axis; 0 = none",
               [](auto& s, const Slot&) { return &s.anatomy.subcutaneous_fat_mm; });

@@ -16,7 +16,7 @@ Pose pose_at(const PlannedInsertion& insertion, double length_mm, double depth_m
 }  // namespace
 
 TissueParameters& Block::tissue(const std::string& region) {
-  return scenario.tissue.try_emplace(region, default_tissue(region)).first->second;
+  return scenario.tissue.try_emplace(region, tissue_of(scenario, region)).first->second;
 }
 
 TetMesh Block::mesh() const {

@@ -84,12 +84,13 @@ class Study {
     if (quick_) {
       scenario_.mesh.nodes = 600;
       scenario_.run.dt_ms = 4.0;
-      scenario_.insertions.front().depth_mm = 45.0;
+      scenario_.insertions.front().depth_mm = 70.0;
       scenario_.insertions.front().retract = false;
     }
     MeshOptions options;
     options.nodes = scenario_.mesh.nodes;
     options.cull_tolerance_mm = scenario_.mesh.cull_mm;
+    options.layers = scenario_.anatomy;
     auto meshed = mesh_contours(demo_patient(), options, progress_);
     if (!meshed) return meshed.error();
     mesh_ = std::move(meshed->mesh);
@@ -101,7 +102,7 @@ class Study {
       if (!event.region.empty() && std::find(regions_.begin(), regions_.end(), event.region) == regions_.end())
         regions_.push_back(event.region);
     }
-    for (const std::string& region : regions_) scenario_.tissue.try_emplace(region, default_tissue(region));
+    for (const std::string& region : regions_) scenario_.tissue.try_emplace(region, tissue_of(scenario_, region));
     return Ok{};
   }
 

@@ -17,12 +17,15 @@ class Demo(InFolder):
         done = self.succeed("insert", "demo.toml", "-o", "out/demo")
         summary = check_results(self, self.folder / "out/demo", pictures=True)
         self.assertEqual([(e["kind"], e["region"]) for e in summary["events"]],
-                         [("skin_contact", "body"), ("puncture", "body"), ("region_entered", "body"),
+                         [("skin_contact", "subcutaneous_fat"), ("puncture", "subcutaneous_fat"),
+                          ("region_entered", "subcutaneous_fat"), ("region_entered", "body"),
+                          ("region_entered", "levator"), ("region_entered", "periprostatic_fat"),
                           ("puncture", "prostate"), ("region_entered", "prostate"), ("retraction_start", ""),
                           ("slip_start", ""), ("withdrawn", "")])
-        self.assertEqual(summary["warnings"], [])
+        self.assertEqual([w.split(":")[0] for w in summary["warnings"]],
+                         ["soft tissue that the input does not have was added"])
         force = {(e["kind"], e["region"]): e["force_N"] for e in summary["events"]}
-        self.assertAlmostEqual(force["puncture", "body"], 1.0, delta=0.05)
+        self.assertAlmostEqual(force["puncture", "subcutaneous_fat"], 2.8, delta=0.05)
         self.assertGreater(force["retraction_start", ""], 0, "still pushing when the retraction starts")
         self.assertLess(force["slip_start", ""], 0, "pulling the tissue along until it slips")
 
@@ -37,7 +40,7 @@ class Demo(InFolder):
         slip = next(e["time_s"] for e in summary["events"] if e["kind"] == "slip_start")
         stuck = [l for l in lines if start < l["time_s"] < slip]
         self.assertTrue(any(l["sticking"] >= 0.8 * l["contacts"] > 3 for l in stuck))
-        for text in ("skin contact (body)", "puncture (prostate)", "withdrawn", "Report: out/demo/report.html"):
+        for text in ("skin contact (subcutaneous fat)", "puncture (prostate)", "withdrawn", "Report: out/demo/report.html"):
             self.assertIn(text, done.stdout)
         self.assertGreater(summary["mesh"]["nodes"], 2900)
         self.assertLess(summary["target_shift_mm"]["max"], 20)
@@ -45,7 +48,8 @@ class Demo(InFolder):
         self.assertEqual([gland["shift_in_place_mm"][axis] for axis in ("LR", "AP", "SI")],
                          summary["target_shift_mm"]["centroid"])
         self.assertGreater(gland["shift_at_break_mm"]["SI"], 0, "pushed to superior, the way the needle goes")
-        self.assertEqual(gland["shift_residual_mm"]["norm"], 0, "elastic tissue goes back")
+        residual = gland["shift_residual_mm"]["norm"]
+        self.assertTrue(0 < residual < 0.1 * gland["shift_in_place_mm"]["norm"], "tissue that creeps is nearly back")
         for text in ("just before its surface broke", "base (superior third)", "gland turned", "sagittal"):
             self.assertIn(text, done.stdout)
         self.assertEqual(kinds(summary).count("puncture"), 2)

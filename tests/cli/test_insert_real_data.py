@@ -27,7 +27,7 @@ class RealPatients(InFolder):
     def check_in_and_out(self, summary, regions):
         """Through the skin into every region of `regions`, in that order, and out again."""
         entered = [e["region"] for e in summary["events"] if e["kind"] == "region_entered"]
-        self.assertEqual(entered[:len(regions)], regions)
+        self.assertEqual([region for region in entered if region in regions][:len(regions)], regions)
         for kind in ("skin_contact", "puncture", "retraction_start", "slip_start", "withdrawn"):
             self.assertIn(kind, kinds(summary))
         self.assertEqual(kinds(summary)[-1], "withdrawn")

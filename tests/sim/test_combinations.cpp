@@ -21,7 +21,8 @@ Scenario scenario_with(const std::string& method, const std::string& engine, con
   s.coupling.solver = choice<CouplingSettings::Solver>(solver).value();
   s.coupling.tolerance = 1e-9;  // what the staggered solver's slow iterations leave is many times that
   s.needle.model = choice<NeedleModel>(needle).value();
-  s.tissue_model.element = ElementChoice::p1;  // what the engines with a full inverse are for
+  s.tissue_model.element = ElementChoice::p1;    // what the engines with a full inverse are for
+  s.tissue_model.preset = TissuePreset::linear;  // as every method has it
   s.needle.elements = needle == "tet" ? 48 : 12;
   return s;
 }

@@ -113,6 +113,7 @@ TEST(GuideTemplate, HoldsTheNeedleOfARunAndIsPartOfItsBalance) {
   for (const char* model : {"beam", "tet"}) {
     SCOPED_TRACE(model);
     Scenario s = thin_needle(model);
+    s.tissue_model.preset = TissuePreset::linear;
     s.grid.guide = true;
     s.grid.distance_mm = 15.0;
     s.needle.bow_mm = 3.0;

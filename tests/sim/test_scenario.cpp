@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -289,6 +291,7 @@ std::vector<Written> bad_fields() {
   };
   number_field("patient.scale", -1, 1e7, [](Scenario& s) { return &s.patient.scale; });
   whole_field("patient.volume", -1, 1000001, [](Scenario& s) { return &s.patient.volume; });
+  choice_field("tissue.preset", [](Scenario& s) { return &s.tissue_model.preset; });
   choice_field("tissue.element", [](Scenario& s) { return &s.tissue_model.element; });
   number_field("tissue.creep", 0.9, 101, [](Scenario& s) { return &s.tissue_model.creep; });
   number_field("tissue.creep_s", 0.0, 1001, [](Scenario& s) { return &s.tissue_model.creep_s; });
@@ -443,7 +446,7 @@ TEST(CheckScenario, wants_sliding_friction_below_static) {
   s.tissue["prostate"] = default_tissue("prostate");
   s.tissue["prostate"].friction_static_N_per_m = 10;
   const std::string message = complaint(s);
-  EXPECT_SAYS(message, "tissue.prostate.friction_coulomb_N_per_m = 11 N/m exceeds");
+  EXPECT_SAYS(message, "tissue.prostate.friction_coulomb_N_per_m = 45 N/m exceeds");
   EXPECT_SAYS(message, "friction_static_N_per_m = 10 N/m");
 }
 
@@ -497,26 +500,54 @@ TEST(TemplateGrid, can_be_another_one) {
   EXPECT_EQ(*grid.offset_mm("b2"), (std::array<double, 2>{4, 2}));
 }
 
+constexpr std::array kPresets{TissuePreset::typical, TissuePreset::firm, TissuePreset::soft, TissuePreset::linear};
+
 TEST(DefaultTissue, is_given_for_every_region_with_its_source) {
-  for (const char* region : {"body", "prostate", "peripheral_zone", "transition_zone", "central_zone",
-                             "anterior_stroma", "urethra", "bladder", "rectum", "seminal_vesicles", "band",
-                             "pubic_arch", "femur_left", "femur_right", "ptv", "label_3", "something else"}) {
-    const TissueParameters t = default_tissue(region);
-    EXPECT_GT(t.young_kPa, 0) << region;
-    EXPECT_TRUE(t.poisson > 0 && t.poisson < 0.5) << region;
-    EXPECT_GT(t.cutting_N, 0) << region;
-    EXPECT_GT(t.friction_static_N_per_m, t.friction_coulomb_N_per_m) << region;
-    EXPECT_FALSE(t.source.empty()) << region;
+  std::vector<std::string> regions = known_tissues();
+  for (const char* region : {"ptv", "label_3", "something else"}) regions.emplace_back(region);
+  for (const TissuePreset preset : kPresets) {
+    for (const std::string& region : regions) {
+      const TissueParameters t = default_tissue(region, preset);
+      EXPECT_GT(t.young_kPa, 0) << region;
+      EXPECT_TRUE(t.poisson > 0 && t.poisson < 0.5) << region;
+      EXPECT_GT(t.cutting_N, 0) << region;
+      EXPECT_GT(t.friction_static_N_per_m, t.friction_coulomb_N_per_m) << region;
+      EXPECT_FALSE(t.source.empty()) << region;
+    }
   }
 }
 
 TEST(DefaultTissue, tents_and_lags_within_what_is_plausible) {
-  // A needle of 18 gauge: 5 to 20 mm before a surface breaks, at most 5 mm between the cut and the tip.
-  for (const char* region : {"body", "prostate", "peripheral_zone", "transition_zone", "central_zone",
-                             "anterior_stroma", "urethra", "bladder", "rectum", "seminal_vesicles", "band"}) {
-    const auto warnings = tenting_warnings(region, default_tissue(region), 1.27);
-    EXPECT_TRUE(warnings.empty()) << warnings.front();
+  // A needle of 18 gauge: 3 to 20 mm before a surface breaks, at most 5 mm between the cut and the tip.
+  for (const TissuePreset preset : kPresets) {
+    for (const std::string& region : known_tissues()) {
+      const TissueParameters tissue = default_tissue(region, preset);
+      if (tissue.young_kPa > 1e4) continue;  // bone
+      const auto warnings = tenting_warnings(region, tissue, 1.27);
+      EXPECT_TRUE(warnings.empty()) << word(preset) << ": " << warnings.front();
+    }
   }
+}
+
+TEST(DefaultTissue, of_firm_and_soft_presets_has_other_moduli_and_the_same_forces) {
+  const TissueParameters typical = default_tissue("prostate");
+  const TissueParameters firm = default_tissue("prostate", TissuePreset::firm);
+  const TissueParameters soft = default_tissue("prostate", TissuePreset::soft);
+  EXPECT_GT(firm.young_kPa, typical.young_kPa);
+  EXPECT_LT(soft.young_kPa, typical.young_kPa);
+  EXPECT_EQ(firm.puncture_N, typical.puncture_N);
+  EXPECT_EQ(soft.cutting_N, typical.cutting_N);
+  EXPECT_EQ(default_tissue("pubic_arch", TissuePreset::soft), default_tissue("pubic_arch"));
+}
+
+TEST(DefaultTissue, of_the_linear_preset_neither_stiffens_nor_creeps) {
+  Scenario s = runnable();
+  EXPECT_GT(creep_of(s), 1.0);
+  s.tissue_model.preset = TissuePreset::linear;
+  EXPECT_EQ(creep_of(s), 1.0);
+  for (const std::string& region : known_tissues()) EXPECT_EQ(tissue_of(s, region).stiffening, 0.0) << region;
+  s.tissue_model.creep = 2.0;
+  EXPECT_EQ(creep_of(s), 2.0);
 }
 
 TEST(DefaultTissue, takes_planning_volumes_and_labels_for_the_gland_and_the_unknown_for_the_body) {

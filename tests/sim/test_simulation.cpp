@@ -97,7 +97,7 @@ TEST(Run, events_say_where_and_at_what_force) {
   double rise = 0.0;
   for (std::size_t k = 1; k < r.kept.steps.size(); ++k)
     rise = std::max(rise, r.kept.steps[k].force_axial_N - r.kept.steps[k - 1].force_axial_N);
-  EXPECT_LE(r.event(EventKind::puncture, "body")->force_N, default_tissue("body").puncture_N + 1e-6);
+  EXPECT_LE(r.event(EventKind::puncture, "body")->force_N, default_tissue("body").puncture_N + 1e-5);
   EXPECT_GE(r.event(EventKind::puncture, "body")->force_N, default_tissue("body").puncture_N - rise);
   // At the capsule the shaft's friction comes on top of the membrane.
   EXPECT_GT(r.event(EventKind::puncture, "prostate")->force_N, default_tissue("prostate").puncture_N);
@@ -111,7 +111,7 @@ TEST(Run, events_say_where_and_at_what_force) {
 TEST(Run, retraction_starts_when_the_pause_ends) {
   const Finished& r = standard();
   const auto& samples = r.model->insertions()[0].motion.samples();
-  ASSERT_EQ(samples.size(), 4u);
+  ASSERT_EQ(samples.size(), 5u) << "the last one is a rest, in which the tissue goes back";
   EXPECT_NEAR(r.event(EventKind::retraction_start)->time_s, samples[2].time_s, 0.0041);
 }
 
@@ -155,7 +155,7 @@ TEST(Run, frames_are_labelled_by_what_they_show) {
   EXPECT_GE(deepest.needle.size(), 2u);
   EXPECT_NEAR((deepest.needle.front() - Vec3(4, 7, deepest.base_depth_mm - 120.0)).norm(), 0.0, 1e-9);
   const Frame& after = *r.frame("after");
-  EXPECT_EQ(after.displacement.norm(), 0.0) << "the tissue is back where it was";
+  EXPECT_LT(after.displacement.norm(), 0.05 * deepest.displacement.norm()) << "what crept is nearly back";
   EXPECT_TRUE(after.contacts.empty());
 }
 
@@ -396,8 +396,10 @@ TEST(Run, slip_starts_when_the_shaft_slides_out_and_the_hand_pulls) {
   }
 }
 
-TEST(HandForce, relaxes_in_a_pause_by_the_viscous_parts_only) {
-  ByHand hand;
+TEST(HandForce, of_elastic_tissue_relaxes_in_a_pause_by_the_viscous_parts_only) {
+  Scenario elastic = box_scenario();
+  elastic.tissue_model.creep = 1.0;
+  ByHand hand(elastic);
   const double depth = 35.0;
   const double moving = hand.go(depth).force_axial_N;
   double force = moving;
@@ -410,7 +412,9 @@ TEST(HandForce, relaxes_in_a_pause_by_the_viscous_parts_only) {
   const double v = 0.2 / 4e-3;
   const double viscous = 250e-6 * v * depth + 2e-3 * v;
   EXPECT_LT(moving - force, viscous);
-  EXPECT_GT(force, 0.25 + 0.5 * 11e-3 * depth) << "cutting and Coulomb friction stay";
+  const TissueParameters gland = default_tissue("prostate");
+  EXPECT_GT(force, gland.cutting_N + 0.5 * 1e-3 * gland.friction_coulomb_N_per_m * depth)
+      << "cutting and Coulomb friction stay";
   const double settled = force;
   for (int k = 0; k < 50; ++k) force = hand.go(depth).force_axial_N;
   EXPECT_NEAR(force, settled, 2e-3 * moving);

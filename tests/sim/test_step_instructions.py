@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-MOST_PER_STEP = 0.89e6
+MOST_PER_STEP = 1.6e6
 MOST_FINE_OVER_COARSE = 1.5
 MOST_FINE_OVER_COARSE_PER_ITERATION = 1.1
 COARSE, FINE = 5, 10  # elements along the block's short edges

@@ -38,21 +38,24 @@ TEST(HandWork, counts_as_given_back_what_neither_the_hand_nor_the_store_paid_for
 }
 
 TEST(HandWork, of_a_loop_in_tissue_is_not_negative) {
-  Block block;
-  block.direction = {0.05, 0.1, 1.0};
-  const auto model = block.compile();
-  ASSERT_TRUE(model.ok()) << model.error().message();
-  double smallest_loss = 1.0, largest_loss = 0.0;
-  for (unsigned number = 0; number < 4; ++number) {
-    const HandWork work = pass_loop(*model, HandLoop(number), 2, 250);
-    EXPECT_EQ(work.flags & Step::kDistrusted, 0u) << number;
-    EXPECT_GT(work.put_in, 0.0) << number;
-    EXPECT_LT(work.given_back(), 1e-3) << number;
-    smallest_loss = std::min(smallest_loss, -work.given_back());
-    largest_loss = std::max(largest_loss, -work.given_back());
+  for (const TissuePreset preset : {TissuePreset::linear, TissuePreset::typical}) {
+    Block block;
+    block.direction = {0.05, 0.1, 1.0};
+    block.scenario.tissue_model.preset = preset;
+    const auto model = block.compile();
+    ASSERT_TRUE(model.ok()) << model.error().message();
+    double smallest_loss = 1.0, largest_loss = 0.0;
+    for (unsigned number = 0; number < 4; ++number) {
+      const HandWork work = pass_loop(*model, HandLoop(number), 2, 250);
+      EXPECT_EQ(work.flags & Step::kDistrusted, 0u) << word(preset) << ' ' << number;
+      EXPECT_GT(work.put_in, 0.0) << word(preset) << ' ' << number;
+      EXPECT_LT(work.given_back(), 1e-3) << word(preset) << ' ' << number;
+      smallest_loss = std::min(smallest_loss, -work.given_back());
+      largest_loss = std::max(largest_loss, -work.given_back());
+    }
+    // Both kinds are among them: one that hardly slides and returns nearly all, but for what creeps, and one that loses
+    // much to friction. Work without that of the torque would come out far from balanced.
+    EXPECT_LT(smallest_loss, preset == TissuePreset::linear ? 1e-2 : 5e-2) << word(preset);
+    EXPECT_GT(largest_loss, 0.2) << word(preset);
   }
-  // Both kinds are among them: one that hardly slides and returns nearly all, and one that loses much to friction. Work
-  // without that of the torque would come out far from balanced.
-  EXPECT_LT(smallest_loss, 1e-2);
-  EXPECT_GT(largest_loss, 0.2);
 }

@@ -41,7 +41,7 @@ TEST(Rows, of_one_group_follow_each_other) {
 
 TEST(Rows, say_so_where_their_source_has_not_been_verified) {
   const auto& rows = all_rows();
-  const auto row = std::find_if(rows.begin(), rows.end(), [](const RowSpec& r) { return r.id == "motion_speed"; });
+  const auto row = std::find_if(rows.begin(), rows.end(), [](const RowSpec& r) { return r.id == "demo_speed_ratio"; });
   ASSERT_NE(row, rows.end());
   EXPECT_NE(row->reference.find("NOT VERIFIED"), std::string::npos) << row->reference;
   EXPECT_EQ(row->reference.find("McLaughlin"), std::string::npos)

@@ -141,6 +141,8 @@ class ContactCompliance {
   /// an implementation does not know the needle's scale. Leading 3·points() rows and columns are in use.
   [[nodiscard]] const MatX& wide() const { return wide_.size() > 0 ? wide_ : A_; }
   [[nodiscard]] Mat3 wide(int c, int d) const { return wide().block<3, 3>(3 * c, 3 * d); }
+  /// How much of its own near field the mesh has at a point, with which wide() was made; 1 away from borders.
+  [[nodiscard]] virtual double softness(int /*point*/) const { return 1.0; }
 
   /// Changes whenever compliances among points other than the tip have changed.
   [[nodiscard]] unsigned version() const { return version_; }

@@ -36,6 +36,7 @@ struct TissueForce {
   Vec3 along = Vec3::Zero();  ///< unit vector LPS, of the piece of shaft it is spread over; zero: the tip's, at a point
   /// [N] LPS, the part of `force` by which the tissue has crept: it acts spread over NeedleKernel::kScale_mm.
   Vec3 lasting = Vec3::Zero();
+  double softness = 1.0;  ///< ContactCompliance::softness() of the point
 };
 
 /// What the tissue contributes; everything outlives the Insertion.

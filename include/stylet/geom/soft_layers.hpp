@@ -15,4 +15,13 @@ struct SoftLayers {
   bool operator==(const SoftLayers&) const = default;
 };
 
+/// Those of an adult man.
+constexpr SoftLayers typical_layers() {
+  return {.periprostatic_fat_mm = 6,
+          .levator_mm = 5,
+          .ischiorectal_fat_mm = 25,
+          .subcutaneous_fat_mm = 8,
+          .rectal_wall_mm = 4};
+}
+
 }  // namespace stylet

@@ -13,6 +13,9 @@
 /// The choices that a scenario makes, and the words that its file has for them.
 namespace stylet {
 
+/// Where the defaults of tissue come from: measured forces with moduli in the middle of what is published, or at its
+/// firm or soft end; or linear elastic tissue, as the methods of Goksel et al. 2005 have it.
+enum class TissuePreset { typical, firm, soft, linear };
 enum class ElementChoice { automatic, p1, nodal_pressure, p2 };
 enum class OuterSupport { automatic, none, sides, all };
 enum class NeedleModel { beam, springs, tet };
@@ -24,6 +27,10 @@ enum class Projection { exact, nearest_node };
 template <class E>
 struct Words;
 
+template <>
+struct Words<TissuePreset> {
+  static constexpr std::array<std::string_view, 4> all{"typical", "firm", "soft", "linear"};
+};
 template <>
 struct Words<ElementChoice> {
   static constexpr std::array<std::string_view, 4> all{"auto", "p1", "nodal-pressure", "p2"};

@@ -43,7 +43,8 @@ class DisplayNearField {
   [[nodiscard]] std::size_t slot_for(const TissueForce& force);
   void compute(std::size_t slot);
   [[nodiscard]] NearPlace place_of(const TissueForce& force) const;
-  void stiffen(const TissueForce& tip);
+  void stiffen(const TissueForce& tip, std::size_t slot);
+  [[nodiscard]] bool knows_wide() const;
 
   std::shared_ptr<const Model> model_;
   NeedleKernel needle_;
@@ -54,7 +55,7 @@ class DisplayNearField {
   std::vector<Mat3> of_node_;                           ///< (nodes) room for g of one force
   std::vector<Source> sources_;
   Eigen::MatrixXf blocks_;  ///< (3 places × 3 sources) [mm/N]
-  Eigen::MatrixXf narrow_;  ///< what of blocks_ lasting forces lack, being wide; empty: no tissue creeps
+  Eigen::MatrixXf narrow_;  ///< what of blocks_ lasting forces lack, being wide; empty: no tissue creeps or stiffens
   Eigen::VectorXf moved_;   ///< (3 places) [mm]
   double left_out_N_ = 0.0;
 };

@@ -31,9 +31,9 @@ struct TissueParameters {
   bool operator==(const TissueParameters&) const = default;
 };
 
-/// Published or, where nothing is published, stated defaults for a region by its canonical name ("prostate", "body",
-/// "label_2", …). Unknown names get the values of soft tissue around the gland.
-TissueParameters default_tissue(const std::string& region);
+/// Published or, where nothing is published, fitted or stated defaults for a region by its canonical name ("prostate",
+/// "body", "label_2", …). Unknown names get the values of soft tissue around the gland.
+TissueParameters default_tissue(const std::string& region, TissuePreset preset = TissuePreset::typical);
 
 /// Regions default_tissue() has values of its own for, in the order of documentation.
 std::vector<std::string> known_tissues();
@@ -91,9 +91,10 @@ struct Scenario {
     bool operator==(const Patient&) const = default;
   } patient;
   struct TissueModel {
+    TissuePreset preset = TissuePreset::typical;  ///< of regions without an override
     ElementChoice element = ElementChoice::automatic;
-    double creep = 1.0;    ///< how many times as far a force that lasts moves the tissue as at once; 1 = elastic
-    double creep_s = 0.5;  ///< time constant of that under a constant force
+    std::optional<double> creep;  ///< how many times as far a force that lasts moves the tissue as at once: creep_of()
+    double creep_s = 0.5;         ///< time constant of that under a constant force
     bool operator==(const TissueModel&) const = default;
   } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
@@ -103,7 +104,7 @@ struct Scenario {
     std::optional<std::array<double, 6>> box_mm;   ///< LPS, low and high corner: nodes inside are held as well
     bool operator==(const Fixed&) const = default;
   } fixed;
-  SoftLayers anatomy;  ///< what the patient has that contours and masks do not show
+  SoftLayers anatomy = typical_layers();  ///< what the patient has that contours and masks do not show
   struct Mesh {
     int nodes = 0;  ///< 0 = the preset's default
     MeshPreset preset = MeshPreset::standard;
@@ -163,6 +164,12 @@ struct Scenario {
 
   bool operator==(const Scenario&) const = default;
 };
+
+/// The tissue of a region in a scenario: the override, or the preset's default.
+TissueParameters tissue_of(const Scenario& scenario, const std::string& region);
+
+/// How many times as far a force that lasts moves the tissue as at once; 1 = elastic.
+double creep_of(const Scenario& scenario);
 
 /// A value as it stands in a scenario file.
 struct ScenarioValue {

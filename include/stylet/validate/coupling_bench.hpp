@@ -38,7 +38,7 @@ struct CouplingRow {
 
 struct CouplingBenchOptions {
   Index largest = 40000;   ///< meshes with more nodes are left out
-  double depth_mm = 60.0;  ///< of the base beyond skin contact
+  double depth_mm = 70.0;  ///< of the base beyond skin contact
   bool mesh_only = false;  ///< only the study of meshes
 };
 

@@ -17,7 +17,7 @@ Medium scaled(Medium medium, double young_MPa) {
 
 NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                                          std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle,
-                                         int capacity, std::vector<double> stiffening_MPa, bool knows_wide)
+                                         int capacity, std::vector<double> stiffening_MPa, bool creeps)
     : far_(std::move(far)),
       tissue_(std::move(tissue)),
       kernel_(std::move(kernel)),
@@ -31,7 +31,9 @@ NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far,
   tip_node_known_.assign(entries, 0);
   A_ = MatX::Zero(3 * (capacity + 1), 3 * (capacity + 1));
   needle_scale_ = MatX::Zero(3 * (capacity + 1), 3);
-  if (knows_wide) wide_ = A_;
+  if (creeps || std::any_of(region_stiffening_MPa_.begin(), region_stiffening_MPa_.end(),
+                            [](double stiffening) { return stiffening > 0.0; }))
+    wide_ = A_;
   reset();
 }
 
@@ -50,10 +52,9 @@ void NearFieldCompliance::reset() {
   stiffening_MPa_ = 0.0;
 }
 
-void NearFieldCompliance::write_needle_scale(int point) {
-  const NearPlace& tip = places_[kTip];
-  needle_scale_.middleRows<3>(3 * point) =
-      stylet::needle_scale(*kernel_, places_[static_cast<std::size_t>(point)], tip);
+void NearFieldCompliance::write_needle_scale() {
+  const Eigen::Index rows = 3 * Eigen::Index{points_};
+  needle_scale_.topRows(rows) = A_.topLeftCorner(rows, 3) - wide_.topLeftCorner(rows, 3);
 }
 
 bool NearFieldCompliance::available(Index base_tet) const {
@@ -93,7 +94,8 @@ void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
   const NearPlace& on = places_[static_cast<std::size_t>(other)];
   const Mat3 far = (*far_)(point, other);
-  const Mat3 near = near_correction(*kernel_, at, on, g);
+  const double share = point == kTip ? border_share(at, on) : other == kTip ? border_share(on, at) : 1.0;
+  const Mat3 near = share * near_correction(*kernel_, at, on, g);
   Mat3 block = far + near;
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
   A_.block<3, 3>(3 * point, 3 * other) = block;
@@ -102,7 +104,9 @@ void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
   const double soft =
       std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
-  block = far + soft * (near - narrow_part(*kernel_, at, on));
+  const bool passes_a_border = (point == kTip || other == kTip) && at.region != on.region;
+  block =
+      far + (passes_a_border ? 1.0 : std::min(soft, share < 1.0 ? share : soft)) * wide_correction(*kernel_, at, on, g);
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
   wide_.block<3, 3>(3 * point, 3 * other) = block;
   wide_.block<3, 3>(3 * other, 3 * point) = block.transpose();
@@ -120,7 +124,10 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   }
   place.epsilon = needle_.shaft_epsilon();
   places_.push_back(place);
-  softness_.push_back(knows_wide() ? softness_at_border(*kernel_, place) : 1.0);
+  softness_.push_back(knows_wide()
+                          ? softness_in_mesh(*kernel_, place, (*far_)(added.point, added.point),
+                                             mesh_kernel_between(*kernel_, place.shape, place.shape, place.medium))
+                          : 1.0);
   ++points_;
   ++version_;
   for (int number = 0; number < kMostElementNodes; ++number) forget_tip_node(number, added.point, added.point + 1);
@@ -129,7 +136,7 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
     write_block(added.point, d, [&](int medium) {
       return mesh_kernel_between(*kernel_, place.shape, places_[static_cast<std::size_t>(d)].shape, medium);
     });
-  if (stiffens()) write_needle_scale(added.point);
+  if (stiffens()) write_needle_scale();
   return added;
 }
 
@@ -147,8 +154,9 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   const Mat3 own = (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, g);
   A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());
   if (knows_wide()) {
-    softness_.front() = softness_at_border(*kernel_, tip);
-    const Mat3 wide = own - stylet::needle_scale(*kernel_, tip, tip);
+    const Mat3 far = (*far_)(kTip, kTip);
+    softness_.front() = softness_in_mesh(*kernel_, tip, far, g);
+    const Mat3 wide = far + softness_.front() * tip_wide_correction(*kernel_, tip, g);
     wide_.topLeftCorner<3, 3>() = 0.5 * (wide + wide.transpose());
   }
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
@@ -156,7 +164,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   if (!region_stiffening_MPa_.empty())
     stiffening_MPa_ =
         stiffening_of(tip, [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; });
-  for (int d = 0; d < points_ && stiffens(); ++d) write_needle_scale(d);
+  if (stiffens()) write_needle_scale();
   if (tip.skin.inwards.dot(entry_) > 0.0) {  // not the far surface, from inside
     const Mat3 more = tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa),
                                                stiffening_MPa_);
@@ -187,7 +195,7 @@ Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) 
 }
 
 /// Displacement of the mesh's nodes under forces on the points, with what the mesh lacks where the kernel knows a node.
-/// @param correction of a node's place, per force on a point [mm/N]
+/// @param correction of a node's place, per force on a point, from g between them [mm/N]
 template <class Correction>
 VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const {
   VecX u = far_->displacement(forces);
@@ -201,7 +209,7 @@ VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces,
       const NearPlace& on = places_[static_cast<std::size_t>(d)];
       const auto g = [&](int medium) { return mesh_kernel_between(*kernel_, here.shape, on.shape, medium); };
       const NearPlace at = acted_on_by(here, on);
-      sum += correction(at, d, near_correction(*kernel_, at, on, g)) * forces.col(d);
+      sum += correction(at, d, g) * forces.col(d);
     }
     u.segment<3>(3 * Eigen::Index{node}) += sum;
   }
@@ -209,7 +217,9 @@ VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces,
 }
 
 VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
-  VecX u = with_corrections(forces, [](const NearPlace&, int, const Mat3& near) { return near; });
+  VecX u = with_corrections(forces, [&](const NearPlace& at, int point, const auto& g) {
+    return near_correction(*kernel_, at, places_[static_cast<std::size_t>(point)], g);
+  });
   if (!stiffens()) return u;
   const Vec3 press = forces.col(kTip);
   const Vec3 spared = press - tip_dent().under(press).linear;
@@ -217,17 +227,20 @@ VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) con
     if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
     const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
     const NearPlace here = passive_place(*tissue_, *kernel_, own, tissue_->node_position(node));
+    const NearPlace& tip = places_[kTip];
+    const NearPlace at = acted_on_by(here, tip);
+    const auto g = [&](int medium) { return mesh_kernel_between(*kernel_, here.shape, tip.shape, medium); };
     u.segment<3>(3 * Eigen::Index{node}) -=
-        stylet::needle_scale(*kernel_, acted_on_by(here, places_[kTip]), places_[kTip]) * spared;
+        (near_correction(*kernel_, at, tip, g) - softness_.front() * wide_correction(*kernel_, at, tip, g)) * spared;
   }
   return u;
 }
 
 VecX NearFieldCompliance::wide_displacement(const Eigen::Ref<const MatX>& forces) const {
   if (!knows_wide()) return displacement(forces);
-  return with_corrections(forces, [&](const NearPlace& at, int point, const Mat3& near) -> Mat3 {
+  return with_corrections(forces, [&](const NearPlace& at, int point, const auto& g) -> Mat3 {
     const auto p = static_cast<std::size_t>(point);
-    return softness_[p] * (near - narrow_part(*kernel_, at, places_[p]));
+    return softness_[p] * wide_correction(*kernel_, at, places_[p], g);
   });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/coupling/near_field/near_place.hpp"
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -85,18 +87,20 @@ NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, c
   return borders;
 }
 
-/// The needle's kernel between two places less the kernel of a force that is spread over `coarse`
-/// [mm/N].
-Mat3 narrower_than(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, double fine, double coarse) {
-  return between_media(at, on, [&](int medium) -> Mat3 {
-    const Medium own = kernel.medium(medium);
-    return needle_kernel(at.piece, at.skin, on.piece, on.skin, fine, own) -
-           needle_kernel(at.piece, at.skin, on.piece, on.skin, coarse, own);
-  });
-}
-
 /// [mm] Radius over which the mesh spreads a force. @param g of the mesh at the force itself, for E = 1 MPa
 double mesh_blur(const Medium& medium, const Mat3& g) { return 3.0 * kelvinlet_self(medium) / g.trace(); }
+
+/// The largest s for which `whole` − s `part` has no negative eigenvalue. @param whole symmetric
+double largest_share(const Mat3& whole, const Mat3& part) {
+  const Eigen::LLT<Mat3> root(whole);
+  if (root.info() != Eigen::Success) return 0.0;
+  const Mat3 half = root.matrixL().solve(part);
+  const Mat3 relative = root.matrixL().solve(half.transpose());
+  Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+  eigen.computeDirect(0.5 * (relative + relative.transpose()), Eigen::EigenvaluesOnly);
+  const double largest = eigen.eigenvalues().maxCoeff();
+  return largest > 0.0 ? 1.0 / largest : std::numeric_limits<double>::infinity();
+}
 
 bool touch(const MeshKernel& kernel, const Shape& at, const Shape& on) {
   for (int i = 0; i < at.count; ++i) {
@@ -185,30 +189,38 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
   });
 }
 
-Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip) {
-  if (&at == &tip) {
-    return between_media(tip, tip, [&](int medium) -> Mat3 {
-      const Medium own = kernel.medium(medium);
-      return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, own) -
-             tip_kernel(tip.skin, tip.borders, NeedleKernel::kScale_mm, own);
-    });
+double border_share(const NearPlace& tip, const NearPlace& other) {
+  if (tip.region != other.region) return 1.0;
+  const Vec3 way = other.piece.centre - tip.piece.centre;
+  const double apart2 = std::max(way.squaredNorm(), tip.epsilon * tip.epsilon);
+  double share = 1.0;
+  for (const NearBorder& border : tip.borders) {
+    if (border.contrast >= 0.0) continue;
+    // Of the image: its distance squared is that of the places and four times the product of their depths.
+    const double depth = std::max(0.0, border.depth + way.dot(border.inwards));
+    share *= 1.0 + border.contrast / std::sqrt(1.0 + 4.0 * border.depth * depth / apart2);
   }
-  const double fine = std::sqrt(at.epsilon * tip.epsilon);
-  // The spread force moves a place as far as both are spread out, by the mean of their squares.
-  constexpr double scale2 = NeedleKernel::kScale_mm * NeedleKernel::kScale_mm;
-  const double coarse = std::sqrt(0.5 * (at.epsilon * at.epsilon + scale2));
-  return narrower_than(kernel, at, tip, fine, coarse);
+  return share;
 }
 
-double softness_at_border(const MeshKernel& kernel, const NearPlace& place) {
-  if (place.borders[0].contrast == 0.0) return 1.0;
+Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g) {
+  return between_media(tip, tip, [&](int medium) -> Mat3 {
+    return tip_kernel(tip.skin, {}, NeedleKernel::kScale_mm, kernel.medium(medium)) - g;
+  });
+}
+
+double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const Mat3& far, const Mat3& g) {
   const Medium medium = kernel.medium(place.medium);
-  const Mat3 g = mesh_kernel_between(kernel, place.shape, place.shape, place.medium);
-  return with_borders(Mat3::Identity(), {}, place.borders, mesh_blur(medium, g), medium.poisson).trace() / 3.0;
-}
-
-Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on) {
-  return narrower_than(kernel, at, on, std::sqrt(at.epsilon * on.epsilon), NeedleKernel::kScale_mm);
+  double softness = 1.0;
+  if (place.borders[0].contrast != 0.0)
+    softness = with_borders(Mat3::Identity(), {}, place.borders, mesh_blur(medium, g), medium.poisson).trace() / 3.0;
+  // What is left of the mesh's compliance is at least this share of the wide field in a medium as soft as that.
+  constexpr double least = 0.3;
+  const Mat3 taken = between_media(place, place, [&](int own) -> Mat3 {
+    return g - (1.0 - least) * needle_kernel(place.piece, place.skin, place.piece, place.skin, NeedleKernel::kScale_mm,
+                                             kernel.medium(own));
+  });
+  return std::min(softness, largest_share(far, taken));
 }
 
 }  // namespace stylet

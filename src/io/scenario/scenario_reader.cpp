@@ -183,8 +183,20 @@ Result<> ScenarioReader::take(const TomlItem& item, const std::string& where) {
                        table == "tissue" ? "Write [tissue.REGION] and below it its keys: " + keys_of("tissue.<region>")
                                          : fmt::format("Write {} and below it its keys: {}", header, keys_of(table)));
   }
-  if (Result<> set = set_scenario_key(scenario_, path, item.value, where); !set) return set;
+  if (Result<> done = set(item, where); !done) return done;
   places_[path] = where;
+  return Ok{};
+}
+
+/// A region's override is complete, so a preset that comes after some of its values is put under them.
+Result<> ScenarioReader::set(const TomlItem& item, const std::string& where) {
+  if (Result<> done = set_scenario_key(scenario_, joined(item.path), item.value, where); !done) return done;
+  if (pattern_of(item.path).starts_with("tissue.<region>")) tissue_values_.push_back(item);
+  if (joined(item.path) != "tissue.preset") return Ok{};
+  scenario_.tissue.clear();
+  for (const TomlItem& given : tissue_values_) {
+    if (Result<> done = set_scenario_key(scenario_, joined(given.path), given.value, where); !done) return done;
+  }
   return Ok{};
 }
 

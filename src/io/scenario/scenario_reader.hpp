@@ -25,6 +25,7 @@ class ScenarioReader {
 
  private:
   Result<> take(const TomlItem& item, const std::string& where);
+  Result<> set(const TomlItem& item, const std::string& where);
   Result<> take_setting(const std::vector<std::string>& path, const std::string& text, const std::string& where);
   Result<std::vector<std::string>> setting_path(const std::string& key, const std::string& where) const;
   void resolve_paths(bool current_folder_first);
@@ -33,6 +34,7 @@ class ScenarioReader {
   std::filesystem::path file_;
   Scenario scenario_;
   std::map<std::string, std::string> places_;  ///< key or table → "demo.toml, line 7" or "--set …"
+  std::vector<TomlItem> tissue_values_;        ///< below [tissue.REGION], as given so far
 };
 
 }  // namespace stylet::detail

@@ -110,6 +110,7 @@ Result<Finding> second_pass(Context&) {
 
 Result<Finding> withdrawal(Context&) {
   Block block;
+  block.scenario.tissue_model.creep = 1.0;  // what creeps is left for seconds
   const auto model = block.compile({{-9, 7, 0}});
   if (!model) return model.error();
   Drive used(*model);
@@ -186,6 +187,7 @@ Result<Finding> moved_scene(Context&) {
 
 Result<Finding> contact_changes(Context&) {
   Block block = one_tissue();
+  block.scenario.tissue_model.creep = 1.0;  // forces that relax in the pauses are no jumps of contacts
   block.direction = {0.1, 0.05, 1.0};
   const auto model = block.compile();
   if (!model) return model.error();

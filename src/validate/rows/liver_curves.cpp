@@ -30,6 +30,7 @@ using Law = std::function<double(double)>;  ///< force [N] at a depth [mm]
 /// The tip pressed on liver that has a modulus and stiffens.
 Result<Drive> press(double young_kPa, double stiffening, double puncture_N) {
   Block block;
+  block.scenario.tissue_model.preset = TissuePreset::linear;
   block.gland_radius_mm = 0.0;
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = young_kPa;

@@ -78,6 +78,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
 /// A run with the literature's parameters and the two that are fitted.
 Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
   Block block;
+  block.scenario.tissue_model.preset = TissuePreset::linear;
   block.gland_radius_mm = 0.0;
   TissueParameters& tissue = block.tissue("body");
   tissue.young_kPa = young_kPa;

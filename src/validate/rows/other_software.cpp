@@ -41,8 +41,9 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
   for (const Vec3& x : mesh->nodes) box.extend(x);
   Scenario scenario;
   scenario.patient.source = file.filename().string();
+  scenario.tissue_model.preset = TissuePreset::linear;
   for (const std::string& region : mesh->regions) {
-    TissueParameters tissue = default_tissue("body");
+    TissueParameters tissue = default_tissue("body", TissuePreset::linear);
     tissue.young_kPa = 20.0;
     tissue.poisson = 0.45;
     tissue.puncture_N = region == mesh->regions.front() ? tissue.puncture_N : 0.0;

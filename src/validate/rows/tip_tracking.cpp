@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace stylet::validate {
@@ -154,7 +155,9 @@ Result<Finding> predict(Context& context) {
   if (!straight) return straight.error();
 
   Finding finding;
+  const double unbevelled = rms(straight->lateral_mm, *others);
   finding.value = rms(fit->lateral_mm, *others);
+  if (finding.value >= unbevelled) finding.value = std::numeric_limits<double>::quiet_NaN();
   std::string ends;
   for (const TipRecording& r : *others)
     ends +=
@@ -164,13 +167,15 @@ Result<Finding> predict(Context& context) {
       "{:.2f} "
       "mm. Predicted for the other two; off at 100 mm by {}. Of the deflection there the heading makes {:.1f} mm and "
       "the bevel "
-      "{:.1f} mm; a needle without bevel at its own best heading is off by {:.2f} mm RMS. The four recordings repeat "
+      "{:.1f} mm; a null model, a needle without bevel at its own best heading, is off by {:.2f} mm RMS, which has to "
+      "be "
+      "beaten. The four recordings repeat "
       "one "
       "another within half a millimetre, so this tests little more than the shape. Needle and tissue are the defaults: "
       "the "
       "recordings state neither gauge nor material.",
       fit->bevel_deg, std::atan(fit->heading) * 180.0 / std::numbers::pi, fit->rms_mm, ends, fit->heading * kDeepest_mm,
-      fit->lateral_mm.back() - fit->heading * kDeepest_mm, rms(straight->lateral_mm, *others));
+      fit->lateral_mm.back() - fit->heading * kDeepest_mm, unbevelled);
   finding.why_missed =
       "Gauge, bevel and material of the recordings are not known; the model has two fitted values only.";
   Curve model{.label = "fitted", .x = fitted->front().depth_mm, .y = fit->lateral_mm};

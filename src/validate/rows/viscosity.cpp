@@ -20,6 +20,7 @@ constexpr double kDent_mm = 4.0;
 
 Result<std::shared_ptr<const Model>> block(double creep, double puncture_N) {
   Block block;
+  block.scenario.tissue_model.preset = TissuePreset::linear;
   block.gland_radius_mm = 0.0;
   block.scenario.tissue_model.creep = creep;
   block.scenario.tissue_model.creep_s = kTau_s;

@@ -317,9 +317,29 @@ TEST(ReadScenario, refuses_what_does_not_go_together_and_names_the_line) {
   expect_says(refused(kHead + "[[insertion]]\nhole = \"D4\"\ndepth_mm = 300\n"),
               {"line 5: insertion[0].depth_mm = 300", "(195)", "needle.length_mm"});
   expect_says(refused(kHead + "[tissue.body]\nfriction_static_N_per_m = 5\n" + kTail),
-              {"line 3: tissue.body.friction_coulomb_N_per_m = 11 N/m exceeds friction_static_N_per_m = 5 N/m"});
+              {"line 3: tissue.body.friction_coulomb_N_per_m = 45 N/m exceeds friction_static_N_per_m = 5 N/m"});
   expect_says(refused(kHead + "[coupling]\nspacing_mm = 1\n" + kTail),
               {"line 4: coupling.spacing_mm = 1 is less than needle.diameter_mm = 1.27"});
+}
+
+TEST(ReadScenario, puts_a_preset_under_what_is_given_wherever_it_stands) {
+  const auto young_kPa = [](const Scenario& s) { return s.tissue.at("body").young_kPa; };
+  const double typical = default_tissue("body").young_kPa;
+  const TissueParameters firm = default_tissue("body", TissuePreset::firm);
+  const std::string own = "[tissue.body]\ncutting_N = 0.7\n";
+  const std::string given = "[tissue.body]\nyoung_kPa = " + to_string({.number = typical}) + "\n";
+  const std::string preset = "[tissue]\npreset = \"firm\"\n";
+  for (const std::string& text : {preset + own, own + preset}) {
+    const auto scenario = parse_scenario(kHead + text + kTail, "case.toml");
+    ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+    EXPECT_EQ(young_kPa(*scenario), firm.young_kPa);
+    EXPECT_EQ(scenario->tissue.at("body").cutting_N, 0.7);
+  }
+  const std::vector<std::string> late{"tissue.preset=\"firm\""};
+  const auto scenario = parse_scenario(kHead + given + kTail, "case.toml", late);
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message();
+  EXPECT_EQ(young_kPa(*scenario), typical) << "given, though it is the other preset's default";
+  EXPECT_EQ(tissue_of(*scenario, "prostate"), default_tissue("prostate", TissuePreset::firm));
 }
 
 TEST(ReadScenario, tells_the_first_of_several_mistakes) {

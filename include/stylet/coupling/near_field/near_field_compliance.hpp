@@ -23,10 +23,10 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param far Λ K⁻¹ Λᵀ from whatever engine keeps K⁻¹; has no points yet
   /// @param kernel of the tissue's mesh
   /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
-  /// @param knows_wide whether wide() is kept; where not it is A itself
+  /// @param creeps whether wide() is kept even if nothing stiffens
   NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                       std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity,
-                      std::vector<double> stiffening_MPa = {}, bool knows_wide = false);
+                      std::vector<double> stiffening_MPa = {}, bool creeps = false);
 
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
@@ -47,6 +47,7 @@ class NearFieldCompliance final : public ContactCompliance {
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX wide_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
+  [[nodiscard]] double softness(int point) const override { return softness_[static_cast<std::size_t>(point)]; }
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return {}; }
 
@@ -60,7 +61,7 @@ class NearFieldCompliance final : public ContactCompliance {
     return static_cast<std::size_t>((number * capacity_ + point) * kernel_->media() + medium);
   }
   void forget_tip_node(int number, int first_point, int last_point);
-  void write_needle_scale(int point);
+  void write_needle_scale();
   [[nodiscard]] bool knows_wide() const { return wide_.size() > 0; }
 
   std::unique_ptr<ContactCompliance> far_;
@@ -71,7 +72,7 @@ class NearFieldCompliance final : public ContactCompliance {
   double press_N_ = 0.0;                       ///< what the surface the needle went in by took before it broke …
   Vec3 entry_ = Vec3::Zero();                  ///< … and which way it went
   std::vector<NearPlace> places_;              ///< (points)
-  std::vector<double> softness_;               ///< (points) softness_at_border(), where wide() is kept
+  std::vector<double> softness_;               ///< (points) softness_in_mesh(), where wide() is kept
   int capacity_;                               ///< of points, tip included
   int tip_tet_ = -1;
   TipElement tip_element_;

@@ -60,13 +60,13 @@ bool needs_correction(const MeshKernel& kernel, const NearPlace& at, const NearP
 /// g(at, on) of the mesh for E = 1 MPa [mm/N].
 Mat3 mesh_kernel_between(const MeshKernel& kernel, const Shape& at, const Shape& on, int medium);
 
-/// A kernel between two places, which are in the same medium or in two: for E = 1 MPa in either, over the geometric
-/// mean of their moduli. Dividing rows and columns alike by the root of E makes nothing indefinite, whatever the
-/// moduli.
+/// A kernel between two places, which are in the same medium or in two: for E = 1 MPa in either, over the mean of their
+/// moduli, as a force on one side of a border moves the other side (docs/theory/near_field.md §3). 1/(Eᵢ + Eⱼ) are the
+/// entries of a positive definite matrix (Cauchy's), so multiplying by them makes nothing indefinite.
 /// @param for_unit of a medium, for E = 1 MPa
 template <class ForUnit>
 Mat3 between_media(const NearPlace& at, const NearPlace& on, const ForUnit& for_unit) {
-  const double share = at.moves * on.moves / std::sqrt(at.young_MPa * on.young_MPa);
+  const double share = 2.0 * at.moves * on.moves / (at.young_MPa + on.young_MPa);
   if (at.medium == on.medium) return share * for_unit(at.medium);
   return 0.5 * share * (for_unit(at.medium) + for_unit(on.medium));
 }
@@ -86,18 +86,33 @@ Mat3 near_correction(const MeshKernel& kernel, const NearPlace& at, const NearPl
 /// @param g g(tip, tip) of the mesh for E = 1 MPa in the tip's medium
 Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);
 
-/// Displacement of a place per force on the tip, less the displacement by the same force spread over
-/// NeedleKernel::kScale_mm [mm/N]: the part of the tip's field that is of the needle's own scale. It depends on no
-/// mesh.
-/// @param at contact, the tip itself, or acted_on_by() the tip @param tip where the force is
-Mat3 needle_scale(const MeshKernel& kernel, const NearPlace& at, const NearPlace& tip);
+/// near_correction() for a force that is spread over NeedleKernel::kScale_mm, instead of the needle's: what the wide
+/// part of the compliance has beyond the mesh's [mm/N]. Symmetric. @param g as near_correction()
+template <class OfMesh>
+Mat3 wide_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, const OfMesh& g) {
+  const bool corrects = needs_correction(kernel, at, on);
+  const double epsilon = std::sqrt(at.epsilon * on.epsilon);
+  return between_media(at, on, [&](int medium) -> Mat3 {
+    const auto spread_over = [&](double radius_mm) {
+      return needle_kernel(at.piece, at.skin, on.piece, on.skin, radius_mm, kernel.medium(medium));
+    };
+    return spread_over(NeedleKernel::kScale_mm) - (corrects ? Mat3(g(medium)) : spread_over(epsilon));
+  });
+}
 
-/// The same of any two places, when both are spread over kScale_mm: what of the displacement of one place per force on
-/// the other is narrower than that [mm/N]. Symmetric.
-Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on);
+/// How much of its near field a force on the tip has at another place of the same medium, next to borders to stiffer
+/// tissue: 1 away from them, and on one what it has beyond, so that nothing jumps as the tip goes through. 1 between
+/// places in two regions.
+double border_share(const NearPlace& tip, const NearPlace& other);
 
-/// How many times softer than its own medium the mesh has a place next to a border between organs, 0…2: on the border
-/// itself both sides are as soft as a medium of the mean of their moduli, by equation (4a) of near_field.md.
-double softness_at_border(const MeshKernel& kernel, const NearPlace& place);
+/// wide_correction() of the tip's own force. @param g as tip_correction()
+Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);
+
+/// How many times softer than its own medium the mesh has a place, as far as it can tell: 1 away from borders. On a
+/// border between organs both sides are as soft as a medium of the mean of their moduli, by equation (4a) of
+/// near_field.md; in a thin soft layer a place is stiffer still, and what is left of `far` when the mesh's kernel is
+/// replaced by the wide one has to stay positive.
+/// @param far the mesh's compliance of the place with itself [mm/N] @param g of the mesh there, for E = 1 MPa
+double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const Mat3& far, const Mat3& g);
 
 }  // namespace stylet

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scenario with the soft tissue round the gland: the gland moves as patients' glands are reported to."""
+"""The demo: the gland moves as patients' glands are reported to."""
 import json
 import unittest
 from pathlib import Path
 
 from program import InFolder
 
-SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "moving_gland.toml"
+SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "demo.toml"
 
 
 class MovingGland(InFolder):
