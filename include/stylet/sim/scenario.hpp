@@ -94,7 +94,7 @@ struct Scenario {
     TissuePreset preset = TissuePreset::typical;  ///< of regions without an override
     ElementChoice element = ElementChoice::automatic;
     std::optional<double> creep;  ///< how many times as far a force that lasts moves the tissue as at once: creep_of()
-    double creep_s = 0.5;         ///< time constant of that under a constant force
+    double creep_s = 0.6;         ///< time constant of that under a constant force
     bool operator==(const TissueModel&) const = default;
   } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
