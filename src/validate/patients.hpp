@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <tuple>
 
 namespace stylet::validate {
@@ -19,7 +20,10 @@ struct PatientRun {
   double bevel_deg = 20.0;
   std::string hole{};  ///< empty: the one 15 mm to the left
 
-  auto operator<=>(const PatientRun&) const = default;
+  bool operator<(const PatientRun& other) const { return key() < other.key(); }
+  [[nodiscard]] std::tuple<double, bool, std::optional<double>, double, std::string> key() const {
+    return {speed_mm_per_s, creeps, depth_mm, bevel_deg, hole};
+  }
 };
 
 /// Insertions into patients with all defaults, each carried out once. A needle goes in 15 mm to the left of the gland's

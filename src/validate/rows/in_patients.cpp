@@ -261,12 +261,12 @@ Result<Finding> bevel_deflection(Context& context, Patients& patients, PatientCa
 }
 
 struct Claim {
-  const char* id;
-  const char* claim;
-  const char* reference;
-  const char* unit;
-  Accepted accepted;
-  Measure measure;
+  const char* id = nullptr;
+  const char* claim = nullptr;
+  const char* reference = nullptr;
+  const char* unit = nullptr;
+  Accepted accepted{};
+  Measure measure = nullptr;
 };
 
 const Claim kClaims[] = {
