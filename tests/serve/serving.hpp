@@ -25,6 +25,7 @@ struct Folder {
 inline Scenario hole_scenario() {
   Scenario s = box_scenario();
   s.insertions[0].entry_mm.reset();
+  s.tissue_model.creep = 1.0;  // elastic: at rest as soon as the needle is
   s.insertions[0].hole = "D4";
   s.insertions[0].depth_mm = 30.0;
   return s;
