@@ -88,8 +88,8 @@ std::span<const Row> rows_of(TissuePreset preset) {
   return preset == TissuePreset::linear ? std::span<const Row>(kLinear) : std::span<const Row>(kMeasured);
 }
 
-/// What a preset makes of the modulus of soft tissue. Studies differ by about so much: 24.7 ± 4.5 kPa in muscle, 30.8
-/// to 64.1 kPa in the gland, 1 to 10 kPa in fat.
+/// The factor by which a preset multiplies the moduli of soft tissue. Published moduli differ by similar factors
+/// between studies: 24.7 ± 4.5 kPa in muscle, 30.8 to 64.1 kPa in the gland, 1 to 10 kPa in fat.
 double moduli_factor(TissuePreset preset) {
   constexpr double kFirmer = 1.6;
   if (preset == TissuePreset::firm) return kFirmer;

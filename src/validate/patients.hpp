@@ -12,10 +12,10 @@ namespace stylet::validate {
 
 enum class PatientCase { demo, mask };
 
-/// What a run sets otherwise than the demo does.
+/// The settings in which one insertion into a patient differs from the demo.
 struct PatientRun {
   double speed_mm_per_s = 20.0;
-  bool creeps = true;
+  bool creeps = true;                ///< false: elastic tissue, the null model of the speed
   std::optional<double> depth_mm{};  ///< unset: to the far end of the gland
   double bevel_deg = 20.0;
   std::string hole{};  ///< empty: the one 15 mm to the left

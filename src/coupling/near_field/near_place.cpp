@@ -214,7 +214,8 @@ double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const 
   double softness = 1.0;
   if (place.borders[0].contrast != 0.0)
     softness = with_borders(Mat3::Identity(), {}, place.borders, mesh_blur(medium, g), medium.poisson).trace() / 3.0;
-  // What is left of the mesh's compliance is at least this share of the wide field in a medium as soft as that.
+  // The wide part of the compliance of a place with itself is at least this share of the compliance that a force spread
+  // over 10 mm has in a medium of the same softness.
   constexpr double least = 0.3;
   const Mat3 taken = between_media(place, place, [&](int own) -> Mat3 {
     return g - (1.0 - least) * needle_kernel(place.piece, place.skin, place.piece, place.skin, NeedleKernel::kScale_mm,

@@ -21,7 +21,6 @@ constexpr double kSlow_mm_per_s = 5.0;
 constexpr double kFast_mm_per_s = 150.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-using Runs = std::shared_ptr<const RecordedRun>;
 using Measure = Result<Finding> (*)(Context&, Patients&, PatientCase);
 
 /// The gland's shift when its surface breaks, or nothing where it does not.
@@ -34,7 +33,7 @@ double norm_at_break(const RecordedRun& run) {
   return shift ? shift->norm() : kNone;
 }
 
-/// Events of the way in: the skin, then the gland.
+/// The break of the skin, which is the first surface that the needle breaks; null where it breaks none.
 const Event* skin_break(const RecordedRun& run) { return run.event(EventKind::puncture); }
 
 Plot force_plot(const RecordedRun& run) {
