@@ -2,7 +2,7 @@
 // Screens from small to huge: every control can be seen and reached with a pointer, no text is cut off.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
-import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, untilReadout, waitUntilReady } from './browser.mjs';
+import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
 import { makeFolder, SMALL, startServer } from './server.mjs';
 
 skipWithoutChromium();
@@ -17,6 +17,8 @@ before(async () => {
   await waitUntilReady(visitor.page);
   await turnWheel(visitor.page, 30);
   await untilReadout(visitor.page, 'Depth', (depth) => depth === 27);
+  // Notices about the coarse mesh lie over the curve for some seconds.
+  await until('the notices to go', () => visitor.page.locator('.notice').count(), (count) => count === 0);
 });
 after(async () => {
   await browser?.close();
