@@ -20,6 +20,9 @@ namespace stylet {
 namespace {
 /// Sub-steps of a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
+/// A sub-step without a balance is taken again in so many parts: what cuts or slides against viscosity then moves that
+/// much less at a time. Raised, a needle that snaps is followed more surely, and such a step takes longer.
+constexpr int kParts = 4;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
 constexpr double kBent_mm = 10.0;
@@ -75,7 +78,8 @@ struct Insertion::Parts {
   void sub_step(const Pose& pose, double h, Step& step);
   /// @return false where the needle stays in the air
   bool enter(Step& step);
-  void find_balance(double h, Step& step);
+  bool find_balance(double h, bool may_give_up, Step& step);
+  bool move_on(const Pose& from, const Pose& to, double h, bool may_give_up, Step& step);
   void finish_insertion(Step& step);
   void settle_in_air(Step& step);
   void summarise(Step& step) const;
@@ -183,19 +187,46 @@ bool Insertion::Parts::enter(Step& step) {
 }
 
 /// The balance of a sub-step, and how the track grows by it.
-void Insertion::Parts::find_balance(double h, Step& step) {
+/// @return false where there is none and the sub-step may be given up: all is as it was when it began
+bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   Effort effort(1 + static_cast<int>(shaft.count()));
   TipContact& tip = path.tip;
   const unsigned flags_before = std::exchange(step.flags, 0u);
   const bool steady = balance->solve(h, effort, step);
+  const bool found = (step.flags & Step::not_converged) == 0;
+  if (!found && may_give_up) {
+    predictor.go_back(*needle, tip, shaft.all());
+    predictor.interrupt();
+    step.flags = flags_before;
+    return false;
+  }
   const double cut = tip.touches() ? tip.cut.advance() : 0.0;
   {
     const InPhase in_phase(phases, StepPhase::tip);
     path.commit(step);
   }
-  damping.end((step.flags & Step::not_converged) == 0);
+  damping.end(found);
   step.flags |= flags_before;
   predictor.end(cut, steady, *needle, tip, shaft.all());
+  return true;
+}
+
+/// The base has gone from one pose to another: h seconds of all that follows. @return as find_balance()
+bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, bool may_give_up, Step& step) {
+  tissue.begin(h);
+  balance->damp(damping.begin(h, path.tip.is_on_bone()) / h);
+  predictor.begin(from, to, *needle, path.tip, shaft.all());
+  balance->base_moved(predictor.last_motion());
+  if (!find_balance(h, may_give_up, step)) return false;
+  ContactStates::stick_where_slow(shaft.all(), h, settings.zero_band_mm_per_s);
+  {
+    const InPhase in_phase(phases, StepPhase::contacts);
+    shaft.wake_and_drop(path.tracks.now, path.marks, path.tip.force, step);
+    share_length();
+  }
+  path.pass_open_end(forces(), step);
+  tissue.end(forces(), path.tracks.now);
+  return true;
 }
 
 void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
@@ -205,18 +236,10 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
   needle->set_base(pose);
   tissue.begin(h);
   if (path.in_air() && !enter(step)) return;
-  balance->damp(damping.begin(h, path.tip.is_on_bone()) / h);
-  predictor.begin(before, pose, *needle, path.tip, shaft.all());
-  balance->base_moved(predictor.last_motion());
-  find_balance(h, step);
-  ContactStates::stick_where_slow(shaft.all(), h, settings.zero_band_mm_per_s);
-  {
-    const InPhase in_phase(phases, StepPhase::contacts);
-    shaft.wake_and_drop(path.tracks.now, path.marks, path.tip.force, step);
-    share_length();
+  const bool may_give_up = damping.balanced();
+  if (!move_on(before, pose, h, may_give_up, step)) {
+    for (int part = 0; part < kParts; ++part) move_on(pose, pose, h / kParts, false, step);
   }
-  path.pass_open_end(forces(), step);
-  tissue.end(forces(), path.tracks.now);
   const bool drawn_out = (pose.origin - before.origin).dot(pose.rotation * Vec3::UnitZ()) < 0.0;
   if (shaft.empty() && path.has_left(drawn_out)) finish_insertion(step);
 }

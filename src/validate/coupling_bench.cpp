@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace stylet::validate {
@@ -101,6 +102,14 @@ double puncture_mm(const RecordedRun& run, bool of_target) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+/// The steps of a run without the rest after withdrawal: there is no force there, and the mean of any difference would
+/// look smaller by it.
+std::span<const Step> while_moving(std::span<const Step> steps) {
+  std::size_t count = steps.size();
+  while (count > 1 && steps[count - 2].base.origin == steps.back().base.origin) --count;
+  return steps.first(count);
+}
+
 /// What the needle's way needs of one mesh: the same for every spacing of contacts and every time step.
 struct Offline {
   ModelCompliance compliance;
@@ -133,7 +142,7 @@ Result<CouplingRow> carry_out(const Case& one, const MeshedAnatomy& anatomy, dou
   if (!run) return run.error();
   row.element = to_string((*model)->tissue().element());
   row.nodes = (*model)->mesh().node_count();
-  row.curve = force_curve(run->steps, 1e-3 * one.dt_ms);
+  row.curve = force_curve(while_moving(run->steps), 1e-3 * one.dt_ms);
   row.peak_N = row.curve.peak_N();
   row.target_shift_mm = run->summary.target_shift_centroid_mm.norm();
   row.skin_mm = puncture_mm(*run, false);

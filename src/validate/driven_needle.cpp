@@ -137,6 +137,7 @@ int most_driven_contacts() { return 1 + static_cast<int>(kDeepest_mm / demo_scen
 
 Scenario driven_scenario(int contacts) {
   Scenario scenario = demo_scenario();
+  scenario.tissue_model.preset = TissuePreset::firm;
   scenario.coupling.spacing_mm = kDeepest_mm / (contacts - 1);  // the tip is one of them
   scenario.coupling.contacts = std::max(scenario.coupling.contacts, contacts + 20);
   scenario.insertions.front().depth_mm = kDeepest_mm;

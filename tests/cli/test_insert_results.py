@@ -70,11 +70,12 @@ class Insert(InFolder):
             self.assertIn(text, table)
 
     def test_the_methods_of_the_2005_paper_are_one_word_away_and_agree_with_ours(self):
-        addition = ("--method", "node-addition", "--rule", "paper")
-        ours = self.json_of("insert", "case.toml", "-o", "ours", *addition, *SMALL)
+        # In steps of 4 ms the two solvers take a snap through the capsule in different ways.
+        addition = ("--method", "node-addition", "--rule", "paper", *SMALL, "--set", "run.dt_ms=2")
+        ours = self.json_of("insert", "case.toml", "-o", "ours", *addition)
         for words in (("--engine", "woodbury"), ("--engine", "bcs"), ("--solver", "staggered")):
             with self.subTest(words=words):
-                theirs = self.json_of("insert", "case.toml", "-o", "theirs", *addition, *words, *SMALL)
+                theirs = self.json_of("insert", "case.toml", "-o", "theirs", *addition, *words)
                 self.assertAlmostEqual(theirs["peak_force_N"]["axial"] / ours["peak_force_N"]["axial"], 1, delta=1e-6)
                 self.assertEqual([(m["kind"], m["dimension"]) for m in theirs["mesh_changes"]],
                                  [(m["kind"], m["dimension"]) for m in ours["mesh_changes"]])

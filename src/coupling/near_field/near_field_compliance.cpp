@@ -94,8 +94,7 @@ void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
   const NearPlace& on = places_[static_cast<std::size_t>(other)];
   const Mat3 far = (*far_)(point, other);
-  const double share = point == kTip ? border_share(at, on) : other == kTip ? border_share(on, at) : 1.0;
-  const Mat3 near = share * near_correction(*kernel_, at, on, g);
+  const Mat3 near = near_correction(*kernel_, at, on, g);
   Mat3 block = far + near;
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
   A_.block<3, 3>(3 * point, 3 * other) = block;
@@ -104,9 +103,7 @@ void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
   const double soft =
       std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
-  const bool passes_a_border = (point == kTip || other == kTip) && at.region != on.region;
-  block =
-      far + (passes_a_border ? 1.0 : std::min(soft, share < 1.0 ? share : soft)) * wide_correction(*kernel_, at, on, g);
+  block = far + soft * wide_correction(*kernel_, at, on, g);
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
   wide_.block<3, 3>(3 * point, 3 * other) = block;
   wide_.block<3, 3>(3 * other, 3 * point) = block.transpose();
@@ -123,6 +120,7 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
     place.piece.length = needle_.segment_mm;
   }
   place.epsilon = needle_.shaft_epsilon();
+  place.share = least_share(place.borders, place.epsilon, kernel_->medium(place.medium).poisson);
   places_.push_back(place);
   softness_.push_back(knows_wide()
                           ? softness_in_mesh(*kernel_, place, (*far_)(added.point, added.point),

@@ -129,13 +129,16 @@ NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const Mater
       place);
   place.region = region;
   place.borders = borders_at(kernel, region, place.young_MPa, corners, at.weights);
+  place.blur =
+      mesh_blur(kernel.medium(place.medium), mesh_kernel_between(kernel, place.shape, place.shape, place.medium));
   return place;
 }
 
 void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPlace& tip) {
   const double poisson = kernel.medium(tip.medium).poisson;
-  tip.epsilon = needle.tip_epsilon(tip.skin, poisson);
+  tip.epsilon = std::max(needle.tip_epsilon(tip.skin, poisson), needle.own_tip_epsilon({}, tip.borders, poisson));
   tip.own_epsilon = needle.own_tip_epsilon(tip.skin, tip.borders, poisson);
+  tip.share = least_share(tip.borders, tip.epsilon, poisson);
 }
 
 NearPlace passive_place(const Tissue& tissue, const MeshKernel& kernel, const Shape& between, const Vec3& x) {
@@ -183,24 +186,9 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
   const Medium medium = kernel.medium(tip.medium);
   return between_media(tip, tip, [&](int /*medium*/) -> Mat3 {
     // The mesh knows of the interface, as far as it can tell a force that it spreads over its elements from one on it.
-    const double blur = mesh_blur(medium, g);
     return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, medium) -
-           with_borders(g, tip.skin, tip.borders, std::max(blur, tip.own_epsilon), medium.poisson);
+           with_borders(g, tip.skin, tip.borders, std::max(tip.blur, tip.own_epsilon), medium.poisson);
   });
-}
-
-double border_share(const NearPlace& tip, const NearPlace& other) {
-  if (tip.region != other.region) return 1.0;
-  const Vec3 way = other.piece.centre - tip.piece.centre;
-  const double apart2 = std::max(way.squaredNorm(), tip.epsilon * tip.epsilon);
-  double share = 1.0;
-  for (const NearBorder& border : tip.borders) {
-    if (border.contrast >= 0.0) continue;
-    // Of the image: its distance squared is that of the places and four times the product of their depths.
-    const double depth = std::max(0.0, border.depth + way.dot(border.inwards));
-    share *= 1.0 + border.contrast / std::sqrt(1.0 + 4.0 * border.depth * depth / apart2);
-  }
-  return share;
 }
 
 Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g) {
@@ -210,10 +198,6 @@ Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const M
 }
 
 double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const Mat3& far, const Mat3& g) {
-  const Medium medium = kernel.medium(place.medium);
-  double softness = 1.0;
-  if (place.borders[0].contrast != 0.0)
-    softness = with_borders(Mat3::Identity(), {}, place.borders, mesh_blur(medium, g), medium.poisson).trace() / 3.0;
   // The wide part of the compliance of a place with itself is at least this share of the compliance that a force spread
   // over 10 mm has in a medium of the same softness.
   constexpr double least = 0.3;
@@ -221,7 +205,8 @@ double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const 
     return g - (1.0 - least) * needle_kernel(place.piece, place.skin, place.piece, place.skin, NeedleKernel::kScale_mm,
                                              kernel.medium(own));
   });
-  return std::min(softness, largest_share(far, taken));
+  return std::min(least_share(place.borders, place.blur, kernel.medium(place.medium).poisson),
+                  largest_share(far, taken));
 }
 
 }  // namespace stylet

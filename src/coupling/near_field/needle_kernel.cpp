@@ -132,6 +132,21 @@ Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& bor
   return 0.5 * (both + both.transpose());
 }
 
+double least_share(const NearBorders& borders, double epsilon, double poisson) {
+  double softer = 1.0;
+  double harder = 0.0;
+  for (const NearBorder& border : borders) {
+    if (border.contrast == 0.0 || !std::isfinite(border.depth)) continue;
+    const BorderImage image(border, epsilon, poisson);
+    if (border.contrast > 0.0) {
+      softer += std::min(image.normal, image.tangential);
+    } else {
+      harder += 1.0 / (1.0 + std::min(image.normal, image.tangential)) - 1.0;
+    }
+  }
+  return 1.0 / (1.0 / softer + harder);
+}
+
 Mat3 NeedleKernel::tip_self(const NearSurface& surface, const Medium& medium) const {
   return tip_kernel(surface, {}, own_tip_epsilon(surface, {}, medium.poisson), medium);
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/near_field/medium_block.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <iostream>
+#include <random>
 
 namespace stylet {
 namespace {
@@ -166,6 +169,33 @@ TEST(TipInAThinLayer, feels_both_faces_and_nothing_jumps) {
     const double here = layer.compliance(z + 1e-7);
     EXPECT_NEAR(here / before, 1.0, 0.08) << z;
     before = here;
+  }
+}
+
+/// Needle and tissue have one balance only where no forces of tip and shaft together move what they act on backwards.
+TEST(TipInAThinLayer, forces_of_tip_and_shaft_through_it_do_work_on_any_mesh) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> aside(-3.0, 3.0);
+  for (const int cells : {8, 12, 18}) {
+    ThinLayer layer(cells);
+    for (const double spacing : {1.6, 2.5, 4.0}) {
+      // In at the muscle's side, or at the gland's.
+      const bool upwards = spacing == 2.5;
+      const Vec3 axis = Vec3(0.1 * aside(random), 0.1 * aside(random), upwards ? 1.0 : -1.0).normalized();
+      const Vec3 start(aside(random), aside(random), upwards ? -12.0 : 18.0);
+      std::vector<Vec3> line;
+      for (double way = 0.0; way < 30.0; way += 0.25 * spacing) line.emplace_back(start + way * axis);
+      layer.block.prepare(line);
+      NearFieldCompliance A = layer.block.compliance({.segment_mm = spacing}, 40);
+      for (std::size_t k = 0; k < line.size(); ++k) {
+        const MaterialPoint at = layer.block.at(line[k]);
+        ASSERT_TRUE(A.move_tip(at, line[k]));
+        if (k % 4 == 0) ASSERT_GT(A.add(at, line[k], Placement::embedded, axis).point, 0);
+        const Eigen::Index size = 3 * Eigen::Index{A.points()};
+        const Eigen::SelfAdjointEigenSolver<MatX> eigen(A.matrix().topLeftCorner(size, size));
+        EXPECT_GT(eigen.eigenvalues()[0], 0.0) << cells << " cells, " << spacing << " mm apart, tip at " << line[k].z();
+      }
+    }
   }
 }
 

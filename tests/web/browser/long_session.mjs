@@ -47,7 +47,7 @@ function growth(measures, key) {
   return median(measures.slice(half)) - median(measures.slice(0, half));
 }
 
-/** @returns growth from the first to the second half of what follows the first quarter, minutes between their middles, messages a second */
+/** @returns growth from the third to the last quarter of the time, before which server and page make room for all depths; minutes between their middles, messages a second */
 export async function longSession(seconds, say = () => {}) {
   const { folder, remove } = makeFolder();
   const server = await startServer(folder, { options: SMALL });
@@ -64,7 +64,7 @@ export async function longSession(seconds, say = () => {}) {
       const m = measures.at(-1);
       say(`${((seconds * (i + 1)) / MEASURES).toFixed(0)} s: page ${m.heap.toFixed(2)} MB, ${m.nodes} nodes, ${m.listeners} listeners; server ${m.server.toFixed(1)} MB; ${m.messages} messages`);
     }
-    const settled = measures.slice(MEASURES / 4);
+    const settled = measures.slice(MEASURES / 2);
     const [first, last] = [settled[0], settled.at(-1)];
     return {
       grown: Object.fromEntries(['heap', 'server', 'nodes', 'listeners'].map((key) => [key, growth(settled, key)])),

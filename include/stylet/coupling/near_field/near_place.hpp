@@ -17,6 +17,8 @@ struct NearPlace {
   Segment piece;
   double epsilon = 0.0;      ///< [mm] of the needle there
   double own_epsilon = 0.0;  ///< [mm] the same as the tip feels itself; of the tip only
+  double blur = 0.0;         ///< [mm] over which the mesh spreads a force there
+  double share = 1.0;        ///< least_share() of the needle there
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
@@ -77,9 +79,11 @@ template <class OfMesh>
 Mat3 near_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on, const OfMesh& g) {
   if (!needs_correction(kernel, at, on)) return Mat3::Zero();
   const double epsilon = std::sqrt(at.epsilon * on.epsilon);
-  return between_media(at, on, [&](int medium) -> Mat3 {
-    return needle_kernel(at.piece, at.skin, on.piece, on.skin, epsilon, kernel.medium(medium)) - g(medium);
-  });
+  // The same factor on rows and columns makes nothing indefinite.
+  const double share = at.region == on.region ? std::sqrt(at.share * on.share) : 1.0;
+  return share * between_media(at, on, [&](int medium) -> Mat3 {
+           return needle_kernel(at.piece, at.skin, on.piece, on.skin, epsilon, kernel.medium(medium)) - g(medium);
+         });
 }
 
 /// near_correction() of the tip's own force, with the borders near it.
@@ -99,11 +103,6 @@ Mat3 wide_correction(const MeshKernel& kernel, const NearPlace& at, const NearPl
     return spread_over(NeedleKernel::kScale_mm) - (corrects ? Mat3(g(medium)) : spread_over(epsilon));
   });
 }
-
-/// How much of its near field a force on the tip has at another place of the same medium, next to borders to stiffer
-/// tissue: 1 away from them, and on one what it has beyond, so that nothing jumps as the tip goes through. 1 between
-/// places in two regions.
-double border_share(const NearPlace& tip, const NearPlace& other);
 
 /// wide_correction() of the tip's own force. @param g as tip_correction()
 Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);

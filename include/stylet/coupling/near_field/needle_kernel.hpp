@@ -68,6 +68,10 @@ Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsi
 /// @param epsilon [mm] over which g spreads a force
 Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson);
 
+/// How many times as far as without the borders a force that is spread over epsilon [mm] moves its own place, in the
+/// direction in which that is least; on a border as far as it moves the tissue beyond.
+double least_share(const NearBorders& borders, double epsilon, double poisson);
+
 /// ⟨G⟩: the medium's kernel averaged over two pieces of needle, with the image of a free surface near them [mm/N].
 /// @param skin_at surface nearest to the centre of the piece `at`
 Mat3 needle_kernel(const Segment& at, const NearSurface& skin_at, const Segment& on, const NearSurface& skin_on,
