@@ -12,7 +12,7 @@ class CouplingBench(InFolder):
         for row in result["rows"]:
             self.assertGreater(row["peak_N"], 0)
             self.assertGreater(row["target_shift_mm"], 0)
-            self.assertEqual(len(row["curve_force_axial_N"]), 660)
+            self.assertEqual(len(row["curve_force_axial_N"]), 760)
         self.assertEqual({r["study"] for r in result["rows"]}, {"mesh", "geometry", "spacing", "dt"})
         self.assertEqual({r["method"] for r in result["rows"]}, {"near-field", "node-addition"})
         for study, percent in (("spacing", 3), ("dt", 1)):
