@@ -20,8 +20,9 @@ namespace stylet {
 namespace {
 /// Sub-steps of a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
-/// A sub-step without a balance is taken again in so many parts: what cuts or slides against viscosity then moves that
-/// much less at a time. Raised, a needle that snaps is followed more surely, and such a step takes longer.
+/// A sub-step in which the tip cuts, and that has no balance, is taken again in so many parts: against its viscosity the
+/// tip then goes that much less far at a time. Raised, a tip that snaps through a surface is followed more surely, and
+/// such a step takes longer.
 constexpr int kParts = 4;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
@@ -187,14 +188,14 @@ bool Insertion::Parts::enter(Step& step) {
 }
 
 /// The balance of a sub-step, and how the track grows by it.
-/// @return false where there is none and the sub-step may be given up: all is as it was when it began
+/// @return false where there is none, the tip cuts and the sub-step may be given up: all is as it was when it began
 bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   Effort effort(1 + static_cast<int>(shaft.count()));
   TipContact& tip = path.tip;
   const unsigned flags_before = std::exchange(step.flags, 0u);
   const bool steady = balance->solve(h, effort, step);
   const bool found = (step.flags & Step::not_converged) == 0;
-  if (!found && may_give_up) {
+  if (!found && may_give_up && tip.cuts()) {
     predictor.go_back(*needle, tip, shaft.all());
     predictor.interrupt();
     step.flags = flags_before;
