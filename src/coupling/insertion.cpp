@@ -20,9 +20,9 @@ namespace stylet {
 namespace {
 /// Sub-steps of a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
-/// A sub-step in which the tip cuts, and that has no balance, is taken again in so many parts: against its viscosity the
-/// tip then goes that much less far at a time. Raised, a tip that snaps through a surface is followed more surely, and
-/// such a step takes longer.
+/// A sub-step in which the tip cuts, and that has no balance, is taken again in so many parts: against its viscosity
+/// the tip then goes that much less far at a time. Raised, a tip that snaps through a surface is followed more surely,
+/// and such a step takes longer.
 constexpr int kParts = 4;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
