@@ -16,14 +16,17 @@ function countMessages() {
   };
 }
 
-/** Pushes or pulls with what a key does, between the skin and the gland's far end, as long as it is asked to. */
-async function toAndFro(page, seconds) {
+/** Pushes or pulls with what a key does, between the skin and the gland's far end, as long as it is asked to, or so often in and out. */
+async function toAndFro(page, seconds, times = Infinity) {
   const end = Date.now() + 1000 * seconds;
   let key = 'PageUp';
-  while (Date.now() < end) {
+  for (let out = 0; Date.now() < end && out < times;) {
     const depth = await readout(page, 'Depth');
     if (depth > 60) key = 'PageDown';
-    if (depth < 2) key = 'PageUp';
+    if (depth < 2) {
+      if (key === 'PageDown') out++;
+      key = 'PageUp';
+    }
     await page.keyboard.press(key);
     await page.waitForTimeout(100);
   }
@@ -47,7 +50,7 @@ function growth(measures, key) {
   return median(measures.slice(half)) - median(measures.slice(0, half));
 }
 
-/** @returns growth from the third to the last quarter of the time, before which server and page make room for all depths; minutes between their middles, messages a second */
+/** @returns growth from the first to the second half of what follows the first quarter, minutes between their middles, messages a second */
 export async function longSession(seconds, say = () => {}) {
   const { folder, remove } = makeFolder();
   const server = await startServer(folder, { options: SMALL });
@@ -56,6 +59,7 @@ export async function longSession(seconds, say = () => {}) {
     const { page, problems } = await openVisitor(browser, server.url, { width: 800, height: 600, prepare: (p) => p.addInitScript(countMessages) });
     await waitUntilReady(page);
     await page.keyboard.press('3');
+    await toAndFro(page, 120, 2); // until server and page have made room for all depths
     const client = await page.context().newCDPSession(page);
     const measures = [];
     for (let i = 0; i < MEASURES; i++) {
@@ -64,7 +68,7 @@ export async function longSession(seconds, say = () => {}) {
       const m = measures.at(-1);
       say(`${((seconds * (i + 1)) / MEASURES).toFixed(0)} s: page ${m.heap.toFixed(2)} MB, ${m.nodes} nodes, ${m.listeners} listeners; server ${m.server.toFixed(1)} MB; ${m.messages} messages`);
     }
-    const settled = measures.slice(MEASURES / 2);
+    const settled = measures.slice(MEASURES / 4);
     const [first, last] = [settled[0], settled.at(-1)];
     return {
       grown: Object.fromEntries(['heap', 'server', 'nodes', 'listeners'].map((key) => [key, growth(settled, key)])),

@@ -9,7 +9,7 @@ import { longSession } from './long_session.mjs';
 skipWithoutChromium();
 
 test('page and server do not grow while the needle goes to and fro', async (t) => {
-  const { grown, messagesPerSecond, problems } = await longSession(60);
+  const { grown, messagesPerSecond, problems } = await longSession(30);
   t.diagnostic(`grown: ${JSON.stringify(grown)}, ${messagesPerSecond.toFixed(0)} messages a second`);
   assert.ok(grown.heap < 2, `the page grew by ${grown.heap} MB`);
   assert.ok(grown.nodes < 100 && grown.listeners < 20, `the page grew by ${grown.nodes} nodes and ${grown.listeners} listeners`);
