@@ -24,7 +24,7 @@ std::vector<double> driven_depths(double start_mm);
 BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double seconds);
 
 /// The default scenario in firm tissue, with contacts as near each other as give so many of them. In fat of the typical
-/// preset a quarter of sixty contacts would not be laid, and on coarse meshes the contacts there overtake each other.
+/// preset not all of sixty contacts are laid, and on coarse meshes the contacts there overtake each other.
 Scenario driven_scenario(int contacts);
 
 struct DrivenStep {
