@@ -117,7 +117,8 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
   }
   json["machine"] = machine_json();
   console.say(
-      "The demo's needle, 90 mm in, back and forth three times, and out: time of the steps with nearly all contacts.\n"
+      "The demo's needle in firm tissue, 90 mm in, back and forth three times, and out: time of the steps with nearly "
+      "all contacts.\n"
       "p50 … max: processor time of the thread; p99 / 570: against the coarsest mesh with as many contacts; all "
       "steps, longest, over 1 ms:\n"
       "with however many contacts, processor time; their medians: the longest when each of those is given the median "

@@ -104,7 +104,7 @@ void DisplayNearField::stiffen(const TissueForce& tip, std::size_t slot) {
       stiffening_of(on, [&](int region) { return model_->laws()[static_cast<std::size_t>(region)].stiffening_MPa; });
   if (stiffening_MPa == 0.0 || !knows_stiffening(model_->coupling())) return;
   const MeshKernel& kernel = *model_->kernel();
-  const Mat3 g = mesh_kernel_between(kernel, on.shape, on.shape, on.medium);
+  const Mat3& g = on.mesh_kernel;
   const Mat3 own = tip_correction(kernel, on, g) - tip.softness * tip_wide_correction(kernel, on, g);
   const Vec3 press = tip.force - tip.lasting;
   const Vec3 spared = press - TipDent{0.5 * (own + own.transpose()), stiffening_MPa}.under(press).linear;

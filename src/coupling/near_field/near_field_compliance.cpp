@@ -122,10 +122,8 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   place.epsilon = needle_.shaft_epsilon();
   place.share = least_share(place.borders, place.epsilon, kernel_->medium(place.medium).poisson);
   places_.push_back(place);
-  softness_.push_back(knows_wide()
-                          ? softness_in_mesh(*kernel_, place, (*far_)(added.point, added.point),
-                                             mesh_kernel_between(*kernel_, place.shape, place.shape, place.medium))
-                          : 1.0);
+  softness_.push_back(
+      knows_wide() ? softness_in_mesh(*kernel_, place, (*far_)(added.point, added.point), place.mesh_kernel) : 1.0);
   ++points_;
   ++version_;
   for (int number = 0; number < kMostElementNodes; ++number) forget_tip_node(number, added.point, added.point + 1);
@@ -148,7 +146,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;
   }
-  const Mat3 g = mesh_kernel_between(*kernel_, tip.shape, tip.shape, tip.medium);
+  const Mat3& g = tip.mesh_kernel;
   const Mat3 own = (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, g);
   A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());
   if (knows_wide()) {

@@ -129,8 +129,8 @@ NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const Mater
       place);
   place.region = region;
   place.borders = borders_at(kernel, region, place.young_MPa, corners, at.weights);
-  place.blur =
-      mesh_blur(kernel.medium(place.medium), mesh_kernel_between(kernel, place.shape, place.shape, place.medium));
+  place.mesh_kernel = mesh_kernel_between(kernel, place.shape, place.shape, place.medium);
+  place.blur = mesh_blur(kernel.medium(place.medium), place.mesh_kernel);
   return place;
 }
 

@@ -15,10 +15,11 @@ namespace stylet {
 struct NearPlace {
   Shape shape;
   Segment piece;
-  double epsilon = 0.0;      ///< [mm] of the needle there
-  double own_epsilon = 0.0;  ///< [mm] the same as the tip feels itself; of the tip only
-  double blur = 0.0;         ///< [mm] over which the mesh spreads a force there
-  double share = 1.0;        ///< least_share() of the needle there
+  double epsilon = 0.0;             ///< [mm] of the needle there
+  double own_epsilon = 0.0;         ///< [mm] the same as the tip feels itself; of the tip only
+  Mat3 mesh_kernel = Mat3::Zero();  ///< [mm/N] g of the mesh there with itself, for E = 1 MPa
+  double blur = 0.0;                ///< [mm] over which the mesh spreads a force there, by that
+  double share = 1.0;               ///< least_share() of the needle there
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
