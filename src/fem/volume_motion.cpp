@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace stylet {
@@ -88,6 +89,11 @@ struct Body {
 
 }  // namespace
 
+Vec3 beyond_linear_turn(const Vec3& omega, const Vec3& r) {
+  const double cosine = std::sqrt(std::max(0.0, 1.0 - omega.squaredNorm()));
+  return omega.cross(omega.cross(r)) / (1.0 + cosine);
+}
+
 VolumeResponse::Fields VolumeResponse::loads(const TetMesh& mesh, std::span<const int> regions) {
   Fields load = Fields::Zero(3 * Eigen::Index{discretisation_->nodes()}, kFunctionals);
   const Body body(mesh, regions);
@@ -95,6 +101,7 @@ VolumeResponse::Fields VolumeResponse::loads(const TetMesh& mesh, std::span<cons
   const Mat3 to_rotation = body.inertia.inverse();
   const Quadrature rule;
   std::array<double, 3> volumes{};
+  arm_.fill(Vec3::Zero());
   for (const Index t : body.tets) {
     const Corners x = corners_of(mesh, t);
     const double v = tet_volume(mesh, t);
@@ -103,6 +110,7 @@ VolumeResponse::Fields VolumeResponse::loads(const TetMesh& mesh, std::span<cons
       for (const TetPart& part : parts_between(x.row(2).transpose(), low, high)) {
         const double v_part = v * share_of_tet(part);
         volumes[static_cast<std::size_t>(third)] += v_part;
+        arm_[static_cast<std::size_t>(third)] += v_part * (x * part.rowwise().mean() - body.centroid);
         for (std::size_t point = 0; point < rule.points.size(); ++point) {
           const Vec4 weights = part * rule.points[point];
           const Shape shape = discretisation_->shape(t, weights);
@@ -125,7 +133,9 @@ VolumeResponse::Fields VolumeResponse::loads(const TetMesh& mesh, std::span<cons
   }
   for (std::size_t third = 0; third < 3; ++third) {
     share_[third] = volumes[third] / body.volume;
-    if (volumes[third] > 0.0) load.middleCols<3>(3 * static_cast<Eigen::Index>(third)) /= volumes[third];
+    if (volumes[third] == 0.0) continue;
+    load.middleCols<3>(3 * static_cast<Eigen::Index>(third)) /= volumes[third];
+    arm_[third] /= volumes[third];
   }
   return load;
 }
@@ -181,6 +191,16 @@ void VolumeResponse::add(const MaterialPoint& at, const Vec3& force, VolumeMotio
   }
   motion.rotation_rad += sum.segment<3>(kRotation);
   motion.dilation += sum[kDilation];
+}
+
+VolumeMotion VolumeResponse::finite(const VolumeMotion& linear) const {
+  VolumeMotion motion = linear;
+  const double sine = std::min(1.0, linear.rotation_rad.norm());
+  if (sine == 0.0) return motion;
+  const Vec3 omega = sine * linear.rotation_rad.normalized();
+  for (std::size_t third = 0; third < 3; ++third) motion.third_mm[third] += beyond_linear_turn(omega, arm_[third]);
+  motion.rotation_rad = std::asin(sine) / sine * omega;
+  return motion;
 }
 
 }  // namespace stylet

@@ -38,6 +38,7 @@ TargetMotion::Moment TargetMotion::now(const Insertion& insertion) {
   Moment moment;
   moment.at_rest = count == 0;
   for (const TissueForce& load : std::span(forces_).first(count)) response_.add(load.at, load.force, moment.motion);
+  moment.motion = response_.finite(moment.motion);
   for (const auto third : {VolumeMotion::superior, VolumeMotion::middle, VolumeMotion::inferior}) {
     if (!response_.has(third)) moment.motion.third_mm[third].setConstant(std::numeric_limits<double>::quiet_NaN());
   }

@@ -13,6 +13,7 @@ std::vector<RowSpec> elasticity_rows();
 std::vector<RowSpec> node_addition_rows();
 std::vector<RowSpec> condensed_system_rows();
 std::vector<RowSpec> manufactured_rows();
+std::vector<RowSpec> large_motion_rows();
 std::vector<RowSpec> locking_rows();
 std::vector<RowSpec> needle_theory_rows();
 std::vector<RowSpec> needle_line_rows();

@@ -190,6 +190,29 @@ TEST_P(VolumeMotionBy, forces_that_turn_and_swell_it_is_the_turn_and_the_swellin
   EXPECT_LT((motion.third_mm[VolumeMotion::inferior] - field(centre - third * Vec3::UnitZ())).norm(), 1e-8);
 }
 
+// A linear displacement turns by sin θ about an axis n, and stretches what it turns; finite() is Rodrigues' rotation.
+TEST_P(VolumeMotionBy, forces_that_turn_it_far_is_the_whole_turn_when_it_is_made_finite) {
+  const TetMesh mesh = sliced_bar({2, 3, 8});
+  const Tissue tissue = bar(mesh, 0.01, 0.3, GetParam());
+  const auto response = VolumeResponse::solve(tissue, kSlice, Accuracy::of_the_tissue);
+  ASSERT_TRUE(response) << response.error().message();
+  const Vec3 shift(0.3, -0.2, 0.5), axis = Vec3(1.0, -2.0, 0.5).normalized(), centre(10.0, 10.0, 15.0);
+  constexpr double third = (kUpper_mm - kLower_mm) / 3.0;
+  for (const double angle : {1e-4, 0.1, 0.7, 1.5}) {
+    const auto field = [&](const Vec3& x) -> Vec3 {
+      return x.z() == 0.0 ? Vec3::Zero() : Vec3(shift + std::sin(angle) * axis.cross(x - centre));
+    };
+    const VolumeMotion motion = response->finite(motion_by(*response, forces_for(tissue, sample(tissue, field))));
+    const Mat3 R = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    const auto turned = [&](double z) -> Vec3 { return shift + (R - Mat3::Identity()) * (z * Vec3::UnitZ()); };
+    EXPECT_LT((motion.shift_mm - shift).norm(), 1e-8) << angle;
+    EXPECT_LT((motion.rotation_rad - angle * axis).norm(), 1e-6) << angle;
+    EXPECT_LT((motion.third_mm[VolumeMotion::superior] - turned(third)).norm(), 1e-7) << angle;
+    EXPECT_LT((motion.third_mm[VolumeMotion::middle] - shift).norm(), 1e-7) << angle;
+    EXPECT_LT((motion.third_mm[VolumeMotion::inferior] - turned(-third)).norm(), 1e-7) << angle;
+  }
+}
+
 STYLET_FOR_EVERY_ELEMENT(VolumeMotionBy);
 
 // Without Poisson's effect a force F on a whole cross-section at height z moves a point at height x by F min(x,

@@ -21,11 +21,17 @@ struct VolumeMotion {
 
   Vec3 shift_mm = Vec3::Zero();  ///< LPS, (1/V) ∫ u dV
   /// LPS rotation vector, right-handed: of the rigid motion next to u, which makes ∫ |u − a − ω × (X − X̄)|² dV least.
-  /// Rotations are small: its length is the sine of the angle.
+  /// While linear in u its length is the sine of the angle; after VolumeResponse::finite() the angle.
   Vec3 rotation_rad = Vec3::Zero();
   std::array<Vec3, 3> third_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< LPS, mean over each Third
   double dilation = 0.0;                                                   ///< (1/V) ∫ div u dV
 };
+
+/// What a turn by a finite angle adds to the linear displacement ω × r, which stretches what it turns:
+///   (R − I) r − ω × r = ω × (ω × r) / (1 + cos θ),  |ω| = sin θ,
+/// R being the rotation about ω by θ (Rodrigues). @param omega sine of the angle along the axis, at most 1 long
+/// @param r [mm] from the centre of the turn @return [mm]
+Vec3 beyond_linear_turn(const Vec3& omega, const Vec3& r);
 
 /// How forces on single material points move a volume of tissue. By Betti's reciprocity a linear functional of their
 /// displacement u, which is the work that a load L does on it, is
@@ -56,6 +62,11 @@ class VolumeResponse {
   /// @param at in the tissue's mesh @param force [N] LPS
   void add(const MaterialPoint& at, const Vec3& force, VolumeMotion& motion) const;
 
+  /// The motion with its rigid part exact, of one that add() has summed up: the volume turns about its centroid by the
+  /// whole rotation instead of by ω ×, and what is left, its change of shape, stays as it is. Shift and dilation are
+  /// the same; docs/theory/near_field.md §5 says how near that comes to a nonlinear model.
+  [[nodiscard]] VolumeMotion finite(const VolumeMotion& linear) const;
+
   /// Which thirds the volume has; one may be missing where it is in several pieces, and then never moves.
   [[nodiscard]] bool has(VolumeMotion::Third third) const { return share_[third] > 0.0; }
 
@@ -71,6 +82,7 @@ class VolumeResponse {
   std::unique_ptr<Subdivision> halved_;  ///< where w lives on that
   std::unique_ptr<detail::Discretisation> discretisation_;
   std::array<double, 3> share_{};  ///< of the volume, of each third
+  std::array<Vec3, 3> arm_{};      ///< [mm] from the volume's centroid to each third's
   Fields w_;
 };
 
