@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tissue_memory.hpp"
 
+#include "core/dense_kernels.hpp"
+
 namespace stylet {
 
 namespace {
 constexpr double kRelaxed_mm = 1e-6;
 }
 
-TissueMemory::TissueMemory(const Creep& creep, int points) : creep_(creep), remembered_(MatX::Zero(3, points)) {}
+TissueMemory::TissueMemory(const Creep& creep, int points)
+    : creep_(creep), remembered_(MatX::Zero(3, points)), of_shaft_(remembered_) {}
 
 void TissueMemory::begin(double h) {
   if (on()) kept_ = creep_.time_s / (h + creep_.time_s);
 }
 
+void TissueMemory::gather(const ContactCompliance& compliance) {
+  if (!on() || (gathered_ && version_ == compliance.version())) return;
+  const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
+  Eigen::Map<VecX> sum(of_shaft_.data(), count);
+  sum.setZero();
+  dense::subtract_product(sum, compliance.wide().block(0, 3, count, count - 3),
+                          Eigen::Map<const VecX>(remembered_.data() + 3, count - 3));
+  sum = -sum;
+  gathered_ = true;
+  version_ = compliance.version();
+}
+
 Vec3 TissueMemory::displacement(const ContactCompliance& compliance, int point) const {
   if (!on()) return Vec3::Zero();
+  constexpr int tip = ContactCompliance::kTip;
+  if (point != tip && gathered_ && version_ == compliance.version())
+    return most() * kept_ * (of_shaft_.col(point) + compliance.wide(point, tip) * remembered_.col(tip));
   const Eigen::Index count = 3 * Eigen::Index{compliance.points()};
   const Eigen::Map<const VecX> remembered(remembered_.data(), count);
   const auto columns = compliance.wide().block(0, 3 * point, count, 3);  // or rows: F is symmetric
@@ -23,12 +41,14 @@ Vec3 TissueMemory::displacement(const ContactCompliance& compliance, int point) 
 
 void TissueMemory::end(const Eigen::Ref<const MatX>& forces) {
   if (!on()) return;
+  gathered_ = false;
   remembered_ *= kept_;
   remembered_.leftCols(forces.cols()) += (1.0 - kept_) * forces;
   kept_ = 1.0;
 }
 
 void TissueMemory::hand_over(int from, int to, double part) {
+  gathered_ = false;
   const Vec3 moved = part * remembered_.col(from);
   remembered_.col(from) -= moved;
   remembered_.col(to) += moved;
@@ -41,6 +61,9 @@ bool TissueMemory::relaxed(const ContactCompliance& compliance) const {
   return true;
 }
 
-void TissueMemory::reset() { remembered_.setZero(); }
+void TissueMemory::reset() {
+  gathered_ = false;
+  remembered_.setZero();
+}
 
 }  // namespace stylet

@@ -33,6 +33,9 @@ class TissueMemory {
   /// What is left of the lasting force on a point [N] when this sub-step's force is not counted.
   [[nodiscard]] Vec3 past(int point) const { return most() * kept_ * remembered_.col(point); }
 
+  /// Adds up what is remembered of the shaft's points, after which displacement() is quick: while the tip goes on in a
+  /// sub-step, no other sum changes.
+  void gather(const ContactCompliance& compliance);
   /// Displacement of a point by past() on all points [mm].
   [[nodiscard]] Vec3 displacement(const ContactCompliance& compliance, int point) const;
 
@@ -44,7 +47,10 @@ class TissueMemory {
   void hand_over(int from, int to, double part);
 
   /// Forgets what is remembered of a point: it is another material point from now on.
-  void forget(int point) { remembered_.col(point).setZero(); }
+  void forget(int point) {
+    remembered_.col(point).setZero();
+    gathered_ = false;
+  }
 
   /// True when earlier forces displace no point by more than a nanometre.
   [[nodiscard]] bool relaxed(const ContactCompliance& compliance) const;
@@ -55,6 +61,9 @@ class TissueMemory {
   Creep creep_;
   double kept_ = 1.0;  ///< part of what is remembered that is left at the end of the sub-step
   MatX remembered_;    ///< m [N] (3 × points)
+  MatX of_shaft_;      ///< F m [mm] (3 × points) without the tip's m, where gathered_
+  bool gathered_ = false;
+  unsigned version_ = 0;  ///< of the compliance when it was gathered
 };
 
 }  // namespace stylet

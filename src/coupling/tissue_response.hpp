@@ -25,7 +25,10 @@ class TissueResponse {
   [[nodiscard]] const ContactCompliance& compliance() const { return *compliance_; }
 
   /// A sub-step of h seconds begins.
-  void begin(double h) { memory_.begin(h); }
+  void begin(double h) {
+    memory_.begin(h);
+    compliance_->begin_sub_step();
+  }
   /// How much of this sub-step's forces is lasting when it ends; 0 for elastic tissue.
   [[nodiscard]] double creep_share() const { return memory_.share(); }
   /// [mm/N] Displacement of a point by a force on another one that acts in this sub-step: A, and what creeps meanwhile.
@@ -34,6 +37,8 @@ class TissueResponse {
     if (const double share = memory_.share(); share > 0.0) now += share * compliance_->wide(point, other);
     return now;
   }
+  /// Before past_displacement() is asked for of many points.
+  void gather_past() { memory_.gather(*compliance_); }
   /// [mm] LPS, displacement of a point by what lasts of earlier forces.
   [[nodiscard]] Vec3 past_displacement(int point) const { return memory_.displacement(*compliance_, point); }
   /// [mm] LPS, displacement of a point by all forces.

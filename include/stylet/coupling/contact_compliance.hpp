@@ -74,6 +74,9 @@ class ContactCompliance {
   /// Moves the tip to x in base tetrahedron at.tet. False, and nothing changed, when compliance is missing there.
   virtual bool move_tip(const MaterialPoint& at, const Vec3& x) = 0;
 
+  /// A sub-step begins: wide() is that of the tip's next place.
+  virtual void begin_sub_step() {}
+
   /// The needle is to go in, along the unit vector `direction`, through a surface that breaks at `force` [N]; until it
   /// is told, and after reset(), through none.
   virtual void enter_by(double /*force*/, const Vec3& /*direction*/) {}
@@ -138,7 +141,8 @@ class ContactCompliance {
 
   /// The wide part of A [mm/N]: what is left of it without the needle's own scale, for every pair of points. It is the
   /// compliance for forces that are spread over NeedleKernel::kScale_mm, and what of the tissue creeps. A itself where
-  /// an implementation does not know the needle's scale. Leading 3·points() rows and columns are in use.
+  /// an implementation does not know the needle's scale. Leading 3·points() rows and columns are in use. The tip's are
+  /// those of its first place in a sub-step, from which it goes no further than the cut of that sub-step.
   [[nodiscard]] const MatX& wide() const { return wide_.size() > 0 ? wide_ : A_; }
   [[nodiscard]] Mat3 wide(int c, int d) const { return wide().block<3, 3>(3 * c, 3 * d); }
   /// How much of its own near field the mesh has at a point, with which wide() was made; 1 away from borders.

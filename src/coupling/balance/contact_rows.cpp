@@ -33,6 +33,7 @@ ContactRows::ContactRows(const CouplingSettings& settings, int most)
 }
 
 void ContactRows::take_places(const Contacts& contacts) {
+  contacts.tissue.gather_past();
   for (int c = 0; c < contacts.count(); ++c) {
     const double s = contacts.arc(c);
     const double beyond = c == 0 ? 0.0 : contacts.of_shaft(c).s - s;

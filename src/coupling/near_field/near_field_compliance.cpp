@@ -13,6 +13,15 @@ Medium scaled(Medium medium, double young_MPa) {
   return medium;
 }
 
+/// [mm] The wide part of the compliance hardly changes over less than this, a tenth of its radius at the most.
+constexpr double kWideReach_mm = 0.5;
+
+void write_symmetric(MatX& matrix, int point, int other, Mat3 block) {
+  if (point == other) block = 0.5 * (block + block.transpose()).eval();
+  matrix.block<3, 3>(3 * point, 3 * other) = block;
+  matrix.block<3, 3>(3 * other, 3 * point) = block.transpose();
+}
+
 }  // namespace
 
 NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
@@ -44,6 +53,7 @@ void NearFieldCompliance::reset() {
   softness_.assign(1, 1.0);
   points_ = 1;
   ++version_;
+  wide_is_old_ = true;
   tip_tet_ = -1;
   tip_element_.reset();
   A_.setZero();
@@ -93,20 +103,27 @@ template <class OfMesh>
 void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
   const NearPlace& on = places_[static_cast<std::size_t>(other)];
-  const Mat3 far = (*far_)(point, other);
-  const Mat3 near = near_correction(*kernel_, at, on, g);
-  Mat3 block = far + near;
-  if (point == other) block = 0.5 * (block + block.transpose()).eval();
-  A_.block<3, 3>(3 * point, 3 * other) = block;
-  A_.block<3, 3>(3 * other, 3 * point) = block.transpose();
-  if (!knows_wide()) return;
+  write_symmetric(A_, point, other, (*far_)(point, other) + near_correction(*kernel_, at, on, g));
+}
+
+template <class OfMesh>
+void NearFieldCompliance::write_wide_block(int point, int other, const OfMesh& g) {
+  const NearPlace& at = places_[static_cast<std::size_t>(point)];
+  const NearPlace& on = places_[static_cast<std::size_t>(other)];
   // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
   const double soft =
       std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
-  block = far + soft * wide_correction(*kernel_, at, on, g);
-  if (point == other) block = 0.5 * (block + block.transpose()).eval();
-  wide_.block<3, 3>(3 * point, 3 * other) = block;
-  wide_.block<3, 3>(3 * other, 3 * point) = block.transpose();
+  write_symmetric(wide_, point, other, (*far_)(point, other) + soft * wide_correction(*kernel_, at, on, g));
+}
+
+void NearFieldCompliance::write_wide_of_tip() {
+  const NearPlace& tip = places_[kTip];
+  const Mat3 far = (*far_)(kTip, kTip);
+  softness_.front() = softness_in_mesh(*kernel_, tip, far, tip.mesh_kernel);
+  write_symmetric(wide_, kTip, kTip, far + softness_.front() * tip_wide_correction(*kernel_, tip, tip.mesh_kernel));
+  for (int d = 1; d < points_; ++d) write_wide_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
+  wide_at_ = tip.piece.centre;
+  wide_is_old_ = false;
 }
 
 ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const Vec3& x, Placement /*placement*/,
@@ -127,11 +144,14 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   ++points_;
   ++version_;
   for (int number = 0; number < kMostElementNodes; ++number) forget_tip_node(number, added.point, added.point + 1);
-  write_block(added.point, kTip, [&](int medium) -> Mat3 { return of_mesh_at_tip(added.point, medium).transpose(); });
-  for (int d = 1; d < points_; ++d)
-    write_block(added.point, d, [&](int medium) {
+  for (int d = 0; d < points_; ++d) {
+    const auto g = [&](int medium) -> Mat3 {
+      if (d == kTip) return of_mesh_at_tip(added.point, medium).transpose();
       return mesh_kernel_between(*kernel_, place.shape, places_[static_cast<std::size_t>(d)].shape, medium);
-    });
+    };
+    write_block(added.point, d, g);
+    if (knows_wide()) write_wide_block(added.point, d, g);
+  }
   if (stiffens()) write_needle_scale();
   return added;
 }
@@ -146,16 +166,10 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;
   }
-  const Mat3& g = tip.mesh_kernel;
-  const Mat3 own = (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, g);
-  A_.topLeftCorner<3, 3>() = 0.5 * (own + own.transpose());
-  if (knows_wide()) {
-    const Mat3 far = (*far_)(kTip, kTip);
-    softness_.front() = softness_in_mesh(*kernel_, tip, far, g);
-    const Mat3 wide = far + softness_.front() * tip_wide_correction(*kernel_, tip, g);
-    wide_.topLeftCorner<3, 3>() = 0.5 * (wide + wide.transpose());
-  }
+  write_symmetric(A_, kTip, kTip, (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, tip.mesh_kernel));
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
+  if (knows_wide() && (wide_is_old_ || (x - wide_at_).squaredNorm() > kWideReach_mm * kWideReach_mm))
+    write_wide_of_tip();
   stiffening_MPa_ = 0.0;
   if (!region_stiffening_MPa_.empty())
     stiffening_MPa_ =

@@ -202,8 +202,8 @@ double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const 
   // over 10 mm has in a medium of the same softness.
   constexpr double least = 0.3;
   const Mat3 taken = between_media(place, place, [&](int own) -> Mat3 {
-    return g - (1.0 - least) * needle_kernel(place.piece, place.skin, place.piece, place.skin, NeedleKernel::kScale_mm,
-                                             kernel.medium(own));
+    return g - (1.0 - least) *
+                   point_kernel(Vec3::Zero(), place.skin, place.skin, NeedleKernel::kScale_mm, kernel.medium(own));
   });
   return std::min(least_share(place.borders, place.blur, kernel.medium(place.medium).poisson),
                   largest_share(far, taken));

@@ -175,6 +175,13 @@ Mat3 NeedleKernel::dent(const NearSurface& surface, double press, const Medium& 
   return std::min(1.0, excess / most) * (at_surface - here);
 }
 
+Mat3 point_kernel(const Vec3& r, const NearSurface& skin_at, const NearSurface& skin_on, double epsilon,
+                  const Medium& medium) {
+  const Mat3 G = kelvinlet(r, epsilon, medium);
+  if (skin_at.share + skin_on.share == 0.0) return G;
+  return G + surface_image(r, skin_at, skin_on, epsilon, medium);
+}
+
 Mat3 needle_kernel(const Segment& at, const NearSurface& skin_at, const Segment& on, const NearSurface& skin_on,
                    double epsilon, const Medium& medium) {
   const Vec3 direction = at.length == 0.0   ? on.direction

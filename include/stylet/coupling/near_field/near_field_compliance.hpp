@@ -31,6 +31,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
+  void begin_sub_step() override { wide_is_old_ = true; }
   void enter_by(double force, const Vec3& direction) override {
     press_N_ = force;
     entry_ = direction;
@@ -57,6 +58,9 @@ class NearFieldCompliance final : public ContactCompliance {
   VecX with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const;
   template <class OfMesh>
   void write_block(int point, int other, const OfMesh& g);
+  template <class OfMesh>
+  void write_wide_block(int point, int other, const OfMesh& g);
+  void write_wide_of_tip();
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
     return static_cast<std::size_t>((number * capacity_ + point) * kernel_->media() + medium);
   }
@@ -74,6 +78,8 @@ class NearFieldCompliance final : public ContactCompliance {
   std::vector<NearPlace> places_;              ///< (points)
   std::vector<double> softness_;               ///< (points) softness_in_mesh(), where wide() is kept
   int capacity_;                               ///< of points, tip included
+  bool wide_is_old_ = true;                    ///< the tip's part of it, with the next place
+  Vec3 wide_at_ = Vec3::Zero();                ///< [mm] place of the tip for which it was made
   int tip_tet_ = -1;
   TipElement tip_element_;
   // g between the nodes of the tip's element and the points, for E = 1 MPa, as it is asked for.

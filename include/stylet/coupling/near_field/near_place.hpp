@@ -99,7 +99,7 @@ Mat3 wide_correction(const MeshKernel& kernel, const NearPlace& at, const NearPl
   const double epsilon = std::sqrt(at.epsilon * on.epsilon);
   return between_media(at, on, [&](int medium) -> Mat3 {
     const auto spread_over = [&](double radius_mm) {
-      return needle_kernel(at.piece, at.skin, on.piece, on.skin, radius_mm, kernel.medium(medium));
+      return point_kernel(at.piece.centre - on.piece.centre, at.skin, on.skin, radius_mm, kernel.medium(medium));
     };
     return spread_over(NeedleKernel::kScale_mm) - (corrects ? Mat3(g(medium)) : spread_over(epsilon));
   });
