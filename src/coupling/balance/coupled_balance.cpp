@@ -327,8 +327,9 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       if (iteration > 1 && error > kWorn * before) tangent_.wear_out();
       if (iteration <= (tip.state() == TipContact::State::cut ? kTimeLeft - 1 : kTimeLeft))
         tangent_.prepare(parts_.contacts);
-      // A balance that took long to find says little about the one that comes next.
-      return progress.steady && iteration <= kManyIterations;
+      // On bone a balance that took long is one of a snap and says little about the next. Elsewhere the matrix was old:
+      // a sub-step that began where the last one ended, and not where this one will end, would take as long again.
+      return progress.steady && (iteration <= kManyIterations || !tip.is_on_bone());
     }
     bool exact = progress.old_matrix_failed;
     progress.old_matrix_failed = false;
