@@ -8,6 +8,7 @@
 #include "pictures/pictures.hpp"
 #include "recorder.hpp"
 #include "report/report_html.hpp"
+#include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "summary_json.hpp"
 
@@ -38,8 +39,8 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
 
 /// Removes everything that an earlier run left but its run.h5. summary.json, which tells a finished run, goes first.
 Result<> remove_earlier_results(const fs::path& folder) {
-  for (const char* name :
-       {"summary.json", "report.html", "forces.csv", "gland.csv", "tissue.pvd", "needle.pvd", "needle.vtp"}) {
+  for (const char* name : {"summary.json", "report.html", "forces.csv", "gland.csv", "map.csv", "tissue.pvd",
+                           "needle.pvd", "needle.vtp"}) {
     if (auto removed = remove_earlier(folder / name); !removed) return removed;
   }
   if (auto removed = remove_series_from(folder, "tissue", ".vtu", 0); !removed) return removed;
@@ -114,6 +115,7 @@ struct ResultsWriter::Parts {
   Index nodes;
   std::function<MatX(const VecX&)> stress_of;
   Recorder recorder;
+  std::optional<HoleMap> map{};  ///< of the template's holes
   bool finished = false;
 };
 
@@ -154,11 +156,16 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
   return parts_->recorder.add_frame(std::move(stored));
 }
 
+void ResultsWriter::add_map(HoleMap map) { parts_->map = std::move(map); }
+
 Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
   if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
+    if (parts_->map) {
+      if (auto done = write_file(parts_->folder / "map.csv", hole_map_csv(*parts_->map)); !done) return done;
+    }
     return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures);
   });
 }

@@ -249,6 +249,7 @@ Summary summarise(const SyntheticRun& run) {
   s.capacity = {{s.contacts_max, 96}, {12, 1500}, {1, 64}, {3, 16}};
   s.events = events();
   s.tip_deflection_mm = 2.64;
+  s.tip_error_mm = {0.4, -0.3, -2.1};
   s.target_shift_centroid_mm = {0.21, -0.48, 2.66};
   s.target_shift_max_mm = 3.94;
   s.target_shifts = {{s.target_shift_centroid_mm, s.target_shift_max_mm}};
