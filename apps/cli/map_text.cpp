@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace stylet::cli {
 
 namespace {
@@ -16,17 +14,6 @@ constexpr const char* kNone = "-";
 std::string tenths(const std::optional<double>& mm) { return mm ? fmt::format("{:.1f}", *mm) : kNone; }
 
 std::string hundredths(const std::optional<Vec3>& mm) { return mm ? fmt::format("{:.2f}", mm->norm()) : kNone; }
-
-/// Structures that no row has a clearance to: "bone and urethra"; empty where all are there.
-std::string missing_structures(const HoleMap& map) {
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < kSpared.size(); ++i) {
-    const bool known = std::any_of(map.holes.begin(), map.holes.end(),
-                                   [i](const HoleRow& row) { return row.clearance_mm[i].has_value(); });
-    if (!known) missing.emplace_back(to_string(kSpared[i]));
-  }
-  return fmt::format("{}", fmt::join(missing, " and no "));
-}
 
 }  // namespace
 
@@ -59,8 +46,8 @@ std::string map_text(const HoleMap& map) {
       "it"
       "\n  shift: how far the gland as a whole has moved just before its capsule breaks, and at most on the way in"
       "\n  tip error: from where the tip was to be in the tissue at its deepest to where it is";
-  if (const std::string missing = missing_structures(map); !missing.empty())
-    text += "\n  There is no " + missing + " in this model.";
+  for (const Spared structure : missing_structures(map))
+    text += fmt::format("\n  There is no {} in this model.", to_string(structure));
   if (!remarks.empty()) text += "\n\nRemarks" + remarks;
   return text + "\n\nNot a medical device: do not plan or judge a treatment by this map.";
 }

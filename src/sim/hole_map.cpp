@@ -76,6 +76,16 @@ const char* to_string(Spared structure) {
   return "";
 }
 
+std::vector<Spared> missing_structures(const HoleMap& map) {
+  std::vector<Spared> missing;
+  for (std::size_t i = 0; i < kSpared.size(); ++i) {
+    const bool known = std::any_of(map.holes.begin(), map.holes.end(),
+                                   [i](const HoleRow& row) { return row.clearance_mm[i].has_value(); });
+    if (!known) missing.push_back(kSpared[i]);
+  }
+  return missing;
+}
+
 InsertionPlan plan_through(const InsertionPlan& plan, const std::string& hole) {
   InsertionPlan through = plan;
   through.hole = hole;

@@ -40,6 +40,9 @@ struct HoleMap {
   int missing = 0;                   ///< holes of the template whose way misses the target; they are not in `holes`
 };
 
+/// Structures that the model does not have, so that no hole has a clearance to them.
+std::vector<Spared> missing_structures(const HoleMap& map);
+
 /// The plan of a needle through another hole, otherwise as `plan` has it.
 InsertionPlan plan_through(const InsertionPlan& plan, const std::string& hole);
 

@@ -52,10 +52,10 @@ Result<> remove_earlier_results(const fs::path& folder) {
 }
 
 /// Everything but run.h5, made from it and the summary: nothing can be in a picture or a table that is not in the
-/// recording, but for the gland's path, which follows from the forces there.
+/// recording, but for the gland's path, which follows from the forces there, and the map of the template's holes.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
-                              bool with_pictures) {
+                              bool with_pictures, const HoleMap* map) {
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
   if (run->frames.empty()) {
@@ -68,13 +68,16 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   if (!summary.gland_path.empty()) {
     if (auto done = write_file(folder / "gland.csv", gland_csv(summary.gland_path)); !done) return done;
   }
+  if (map) {
+    if (auto done = write_file(folder / "map.csv", hole_map_csv(*map)); !done) return done;
+  }
   if (auto done = write_tissue(*run, stress_of, folder, progress); !done) return done;
   if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
   const Pictures pictures = with_pictures ? draw_pictures(*run, regions, moments, progress)
                                           : Pictures{.png = {}, .why_not = {}, .wanted = false};
   if (auto done = write_pictures(pictures, folder / "pictures"); !done) return done;
   report(progress, "report", 0.0);
-  auto page = report_html(*run, regions, moments, pictures);
+  auto page = report_html(*run, regions, moments, pictures, map);
   if (!page) return page.error();
   if (auto done = write_file(folder / "report.html", *page); !done) return done;
   if (auto done = write_file(folder / "summary.json", summary_json(summary)); !done) return done;
@@ -163,10 +166,8 @@ Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress,
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
-    if (parts_->map) {
-      if (auto done = write_file(parts_->folder / "map.csv", hole_map_csv(*parts_->map)); !done) return done;
-    }
-    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures);
+    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures,
+                                parts_->map ? &*parts_->map : nullptr);
   });
 }
 

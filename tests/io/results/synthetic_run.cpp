@@ -295,6 +295,45 @@ SyntheticRun synthetic_run(const SyntheticOptions& options) {
   return run;
 }
 
+HoleMap synthetic_map() {
+  const TemplateGrid grid;
+  HoleMap map;
+  map.columns = grid.columns;
+  map.rows = grid.rows;
+  map.planned = "e3.5";
+  for (auto row = grid.rows.rbegin(); row != grid.rows.rend(); ++row) {
+    for (const std::string& column : grid.columns) {
+      const std::string name = column + *row;
+      const auto offset = *grid.offset_mm(name);
+      const double distance = std::hypot(offset[0], offset[1]);
+      if (distance > 23 && name != "D1" && name != "D7") {
+        ++map.missing;
+        continue;
+      }
+      HoleRow hole;
+      hole.hole = name;
+      hole.left_mm = offset[0];
+      hole.anterior_mm = offset[1];
+      if (name == "D1") {
+        hole.failed = "the target's far end lies 210 mm deep, the needle is 200 mm long";
+      } else {
+        hole.depth_mm = 80 - 0.4 * distance;
+        hole.in_target_mm = 40 - distance;
+        hole.clearance_mm = {std::max(0.0, 26 - distance - 0.5 * offset[1]), std::max(0.0, distance - 4), std::nullopt};
+      }
+      if (name != "D1" && name != "D7") {
+        hole.prediction = Prediction{Vec3(0.1, 0.2, 2.5 - 0.05 * distance),
+                                     Vec3(0.1, 0.3, 3 - 0.06 * distance),
+                                     Vec3(0.3, 0.1, -8 - 0.2 * distance),
+                                     {}};
+      }
+      if (name == "D4") hole.prediction->remarks.push_back("The needle entered the urethra, at a depth of 27.0 mm.");
+      map.holes.push_back(std::move(hole));
+    }
+  }
+  return map;
+}
+
 RunRecording recording_of(const SyntheticRun& run) { return {run.info, run.mesh, run.steps, run.frames, run.summary}; }
 
 TemporaryFolder::TemporaryFolder() {
