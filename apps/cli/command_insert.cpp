@@ -254,10 +254,13 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
                        "Name another folder (-o)");
   const std::shared_ptr<const Model>& model = prepared.model;
   const Scenario& scenario = model->scenario();
+  const PlanOfHole plan_of = [&scenario](const std::string& hole) {
+    return plan_through(scenario.insertions.front(), hole);
+  };
   std::optional<HoleMap> map;
   if (arguments.map) {
     if (Result<> possible = check_mappable(scenario, arguments.scenario); !possible) return possible;
-    auto ways = map_ways(*model, scenario.insertions.front(), arguments.scenario);
+    auto ways = map_ways(*model, plan_of, arguments.scenario);
     if (!ways) return ways.error();
     map = std::move(*ways);
   }
@@ -279,7 +282,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   // The run knows of the model's warnings and of its own.
   summary->warnings.insert(summary->warnings.begin(), prepared.notes.begin(), prepared.notes.end());
   if (map) {
-    predict_holes(model, scenario.insertions.front(), *map, progress);
+    predict_holes(model, plan_of, *map, progress);
     (*writer)->add_map(*map);
   }
   if (Result<> finished = (*writer)->finish(*summary, progress, scenario.output.pictures); !finished) return finished;

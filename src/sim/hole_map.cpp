@@ -96,7 +96,7 @@ InsertionPlan plan_through(const InsertionPlan& plan, const std::string& hole) {
   return through;
 }
 
-Result<HoleMap> map_ways(const Model& model, const InsertionPlan& plan, const std::string& where) {
+Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const std::string& where) {
   const TetMesh& mesh = model.mesh();
   const TemplateGrid& grid = model.scenario().grid;
   if (model.target_regions().empty()) {
@@ -115,7 +115,7 @@ Result<HoleMap> map_ways(const Model& model, const InsertionPlan& plan, const st
   map.columns = grid.columns;
   map.rows = grid.rows;
   map.pitch_mm = grid.pitch_mm;
-  map.planned = plan.hole.value_or("");
+  map.planned = model.scenario().insertions.front().hole.value_or("");
   for (auto row = grid.rows.rbegin(); row != grid.rows.rend(); ++row) {
     for (const std::string& column : grid.columns) {
       HoleRow line;
@@ -128,7 +128,7 @@ Result<HoleMap> map_ways(const Model& model, const InsertionPlan& plan, const st
       }
       line.left_mm = (*offset)[0];
       line.anterior_mm = (*offset)[1];
-      const auto planned = plan_insertion(model, plan_through(plan, line.hole), "hole " + line.hole);
+      const auto planned = plan_insertion(model, plan_of(line.hole), "hole " + line.hole);
       if (!planned) {
         line.failed = planned.error().what;
         map.holes.push_back(std::move(line));

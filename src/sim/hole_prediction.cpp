@@ -15,19 +15,17 @@ constexpr Index kNodesAtOnce = 40000;
 
 }  // namespace
 
-Result<Prediction> predict_hole(const std::shared_ptr<const Model>& model, const InsertionPlan& plan,
+Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const InsertionPlan& plan,
                                 const Progress& progress) {
-  const auto& there = model->scenario().insertions;
-  if (there.size() == 1 && there.front() == plan) return predict(model, progress);
-  Scenario scenario = model->scenario();
   scenario.insertions = {plan};
-  const auto compiled = Model::compile(scenario, model->mesh(), "hole " + plan.hole.value_or(""), {}, progress);
+  const auto compiled = Model::compile(scenario, mesh, "hole " + plan.hole.value_or(""), {}, progress);
   if (!compiled) return compiled.error();
   return predict(*compiled, progress);
 }
 
-void predict_holes(const std::shared_ptr<const Model>& model, const InsertionPlan& plan, HoleMap& map,
+void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& plan_of, HoleMap& map,
                    const Progress& progress) {
+  const Scenario& scenario = model->scenario();
   const auto caller = std::this_thread::get_id();
   const auto count = map.holes.size();
   const auto lanes = static_cast<std::size_t>(std::max<Index>(1, kNodesAtOnce / model->mesh().node_count()));
@@ -39,7 +37,9 @@ void predict_holes(const std::shared_ptr<const Model>& model, const InsertionPla
         report(progress, "predicting each hole", static_cast<double>(done) / static_cast<double>(count));
       HoleRow& row = map.holes[i];
       if (row.failed.empty()) {
-        auto predicted = predict_hole(model, plan_through(plan, row.hole));
+        const InsertionPlan plan = plan_of(row.hole);
+        const bool is_the_models = scenario.insertions.size() == 1 && scenario.insertions.front() == plan;
+        auto predicted = is_the_models ? predict(model) : predict_hole(scenario, model->mesh(), plan);
         if (predicted) {
           row.prediction = std::move(*predicted);
         } else {

@@ -30,9 +30,14 @@ const HoleRow& row_of(const HoleMap& map, const std::string& hole) {
   return *row;
 }
 
+/// The same needle through each hole.
+PlanOfHole through_each(const InsertionPlan& plan) {
+  return [plan](const std::string& hole) { return plan_through(plan, hole); };
+}
+
 HoleMap ways_of(const Scenario& scenario, TetMesh mesh = box_patient()) {
   const auto model = compiled(scenario, std::move(mesh));
-  const auto map = map_ways(*model, scenario.insertions.front(), "case.toml");
+  const auto map = map_ways(*model, through_each(scenario.insertions.front()), "case.toml");
   if (!map) throw std::runtime_error(map.error().message());
   return *map;
 }
@@ -107,11 +112,11 @@ TEST(HoleMap, says_what_a_hole_lacks_whose_target_is_out_of_reach) {
   const auto other = compiled(short_needle);
   InsertionPlan plan = short_needle.insertions[0];
   plan.depth_mm = 0.0;
-  const auto map = map_ways(*other, plan, "case.toml");
+  const auto map = map_ways(*other, through_each(plan), "case.toml");
   ASSERT_TRUE(map) << map.error().message();
   EXPECT_SAYS(row_of(*map, "A1").failed, "the needle is 40 mm long");
   HoleMap predicted = *map;
-  predict_holes(other, plan, predicted);
+  predict_holes(other, through_each(plan), predicted);
   EXPECT_FALSE(row_of(predicted, "A1").prediction);
 }
 
@@ -120,7 +125,7 @@ TEST(HoleMap, is_refused_where_it_has_no_sense) {
   mesh.regions[1] = "muscle";
   Scenario s = scenario_with_template();
   const auto no_target = compiled(s, mesh);
-  const auto refused = map_ways(*no_target, s.insertions[0], "case.toml");
+  const auto refused = map_ways(*no_target, through_each(s.insertions[0]), "case.toml");
   ASSERT_FALSE(refused);
   EXPECT_SAYS(refused.error().message(), "case.toml: the patient has no target");
   EXPECT_SAYS(refused.error().message(), "muscle");
@@ -142,7 +147,7 @@ TEST(HoleMap, refuses_a_template_none_of_whose_holes_leads_to_the_target) {
   s.grid.centre_mm = {25.0, 25.0};
   s.grid.pitch_mm = 1.0;
   const auto model = compiled(s);
-  const auto map = map_ways(*model, s.insertions[0], "case.toml");
+  const auto map = map_ways(*model, through_each(s.insertions[0]), "case.toml");
   ASSERT_FALSE(map);
   EXPECT_SAYS(map.error().message(), "no hole of the template leads into the target");
   EXPECT_SAYS(map.error().message(), "template.centre_mm");
@@ -155,10 +160,10 @@ TEST(HolePrediction, is_that_of_the_run_with_this_hole_to_the_last_bit) {
   s.insertions[0].speed_mm_per_s = 80.0;
   s.insertions[0].depth_mm = 30.0;
   const auto model = compiled(s);
-  auto map = map_ways(*model, s.insertions[0], "case.toml");
+  auto map = map_ways(*model, through_each(s.insertions[0]), "case.toml");
   ASSERT_TRUE(map);
   ASSERT_EQ(map->holes.size(), 2U);
-  predict_holes(model, s.insertions[0], *map);
+  predict_holes(model, through_each(s.insertions[0]), *map);
   for (const HoleRow& row : map->holes) {
     ASSERT_TRUE(row.prediction) << row.failed;
     Scenario other = s;

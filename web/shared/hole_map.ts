@@ -38,10 +38,16 @@ export const MEASURES: Measure[] = [
   { key: 'bone', label: 'Clearance to bone', of: (h) => h.clearance_mm.bone, clearance: true },
   { key: 'urethra', label: 'Clearance to the urethra', of: (h) => h.clearance_mm.urethra, clearance: true },
   { key: 'rectum', label: 'Clearance to the rectum', of: (h) => h.clearance_mm.rectum, clearance: true },
-  { key: 'break', label: 'Shift of the gland when its capsule breaks', of: (h) => h.shift_at_break_mm?.norm ?? null, clearance: false },
-  { key: 'shift', label: 'Largest shift of the gland', of: (h) => h.shift_max_mm?.norm ?? null, clearance: false },
+  { key: 'break', label: 'Gland shift when its capsule breaks', of: (h) => h.shift_at_break_mm?.norm ?? null, clearance: false },
+  { key: 'shift', label: 'Largest gland shift', of: (h) => h.shift_max_mm?.norm ?? null, clearance: false },
   { key: 'tip', label: 'Tip error', of: (h) => h.tip_error_mm?.norm ?? null, clearance: false },
 ];
+
+/** The clearance to whichever structure is nearest. */
+export const NEAREST: Measure = {
+  key: 'nearest', label: 'Smallest clearance', clearance: true,
+  of: (h) => Object.values(h.clearance_mm).reduce((least, mm) => (mm === null ? least : least === null ? mm : Math.min(least, mm)), null),
+};
 
 /** Clearances beyond this [mm] look alike: far enough. */
 export const FAR_MM = 20;

@@ -4,6 +4,7 @@
 #include "stylet/sim/prediction.hpp"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,25 +47,26 @@ std::vector<Spared> missing_structures(const HoleMap& map);
 /// The plan of a needle through another hole, otherwise as `plan` has it.
 InsertionPlan plan_through(const InsertionPlan& plan, const std::string& hole);
 
+/// The plan of a needle for each hole of the template.
+using PlanOfHole = std::function<InsertionPlan(const std::string& hole)>;
+
 /// The straight ways through all holes of a model's template, with their clearances; nothing is inserted. A way begins
-/// at the skin and is as long as the plan says, or else leads to the far end of the target.
-/// @param plan of the needle that is to go through each of the holes
+/// at the skin and is as long as its plan says, or else leads to the far end of the target.
+/// @param where what to call the scenario in messages
 /// Errors: a model without a target, a target that no hole leads to.
-Result<HoleMap> map_ways(const Model& model, const InsertionPlan& plan, const std::string& where);
+Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const std::string& where);
 
 /// Inserts a needle through one hole: its model is compiled and the needle driven in, so that the figures are those
-/// that a scenario with this hole gives.
-/// @param model whose patient and scenario the needle is for; where it is the one of this very insertion, it is used
-///   as it is
-/// @param plan of this needle, with its hole
+/// that a scenario with this plan gives.
+/// @param scenario whose insertions the plan replaces @param mesh of its patient
 /// @param progress may throw, to give up
-Result<Prediction> predict_hole(const std::shared_ptr<const Model>& model, const InsertionPlan& plan,
+Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const InsertionPlan& plan,
                                 const Progress& progress = {});
 
 /// Inserts a needle through each of the map's holes, several at a time. An insertion that fails is said in its row.
-/// @param plan of the needle that is to go through each of the holes
+/// @param model whose patient and scenario the needles are for
 /// @param progress is called in the caller's thread
-void predict_holes(const std::shared_ptr<const Model>& model, const InsertionPlan& plan, HoleMap& map,
+void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& plan_of, HoleMap& map,
                    const Progress& progress = {});
 
 /// What stands against a map for a scenario, as an input error that names the key: it has to plan exactly one needle,
