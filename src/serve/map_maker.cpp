@@ -96,7 +96,7 @@ void MapMaker::predict(std::size_t hole) {
   };
   std::optional<Result<Prediction>> predicted;
   try {
-    predicted = predict_hole(scenario_, mesh_, plan, progress);
+    predicted = predict_hole(scenario_, mesh_, plan, targets_, progress);
   } catch (const Unwanted&) {
     return;
   } catch (const std::bad_alloc&) {

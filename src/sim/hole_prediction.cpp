@@ -16,16 +16,17 @@ constexpr Index kNodesAtOnce = 40000;
 }  // namespace
 
 Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const InsertionPlan& plan,
-                                const Progress& progress) {
+                                KnownTargets& targets, const Progress& progress) {
   scenario.insertions = {plan};
   const auto compiled = Model::compile(scenario, mesh, "hole " + plan.hole.value_or(""), {}, progress);
   if (!compiled) return compiled.error();
-  return predict(*compiled, progress);
+  return predict(*compiled, targets, progress);
 }
 
 void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& plan_of, HoleMap& map,
                    const Progress& progress) {
   const Scenario& scenario = model->scenario();
+  KnownTargets targets;
   const auto caller = std::this_thread::get_id();
   const auto count = map.holes.size();
   const auto lanes = static_cast<std::size_t>(std::max<Index>(1, kNodesAtOnce / model->mesh().node_count()));
@@ -39,7 +40,7 @@ void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& 
       if (row.failed.empty()) {
         const InsertionPlan plan = plan_of(row.hole);
         const bool is_the_models = scenario.insertions.size() == 1 && scenario.insertions.front() == plan;
-        auto predicted = is_the_models ? predict(model) : predict_hole(scenario, model->mesh(), plan);
+        auto predicted = is_the_models ? predict(model, targets) : predict_hole(scenario, model->mesh(), plan, targets);
         if (predicted) {
           row.prediction = std::move(*predicted);
         } else {

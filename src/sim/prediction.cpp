@@ -6,7 +6,6 @@
 #include "stylet/sim/gland_watch.hpp"
 #include "stylet/sim/harms.hpp"
 #include "stylet/sim/simulation.hpp"
-#include "stylet/sim/target_motion.hpp"
 #include "stylet/sim/unbroken_surface.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +16,8 @@ namespace stylet {
 
 namespace {
 
-constexpr long kReportEvery = 64;  // steps
+constexpr long kReportEvery = 64;     // steps
+constexpr std::size_t kMostKept = 3;  // motions of targets, each with its model
 
 std::vector<std::string> names_of_target(const Model& model) {
   std::vector<std::string> names;
@@ -35,7 +35,21 @@ bool has_entered(const std::vector<Event>& events, const Event& event) {
 
 }  // namespace
 
-Result<Prediction> predict(const std::shared_ptr<const Model>& model, const Progress& progress) {
+Result<TargetMotion> KnownTargets::of(const std::shared_ptr<const Model>& model, const Progress& progress) {
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const Known& known : known_) {
+      if (auto shared = known.motion.shared_with(*model)) return std::move(*shared);
+    }
+  }
+  auto motion = TargetMotion::of(*model, progress);
+  if (!motion) return motion;
+  const std::scoped_lock lock(mutex_);
+  if (known_.size() < kMostKept && motion->shared_with(*model)) known_.push_back({model, *motion});
+  return motion;
+}
+
+Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTargets& targets, const Progress& progress) {
   const FlushDenormals flush;  // as run() does
   const PlannedInsertion& insertion = model->insertions().front();
   const BaseSteps motion = planned_steps(*model, insertion);
@@ -44,7 +58,7 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, const Prog
   std::optional<TargetMotion> target;
   std::optional<GlandWatch> gland;
   if (!model->target_regions().empty()) {
-    auto response = TargetMotion::of(*model, progress);
+    auto response = targets.of(model, progress);
     if (!response) return response.error();
     target = std::move(*response);
     gland.emplace(names_of_target(*model));
