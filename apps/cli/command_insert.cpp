@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "describe.hpp"
+#include "map_text.hpp"
 #include "mesh_report.hpp"
 #include "output_path.hpp"
 #include "prepared_model.hpp"
 #include "recorded_run.hpp"
 #include "table.hpp"
 
+#include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/results_writer.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/sim/cutting_lag.hpp"
+#include "stylet/sim/hole_map.hpp"
 #include "stylet/sim/run.hpp"
 
 #include <fmt/format.h>
@@ -29,6 +32,7 @@ struct InsertArguments {
   std::string scenario;
   std::string output;
   std::vector<std::string> settings;
+  bool map = false;  ///< of the template's holes
   bool print_schema = false;
   bool print_tissues = false;
 };
@@ -184,7 +188,7 @@ Result<std::string> tissues_text(const InsertArguments& arguments) {
   return tissues_text(Scenario{});
 }
 
-/// What --json prints: the summary.json of the result folder.
+/// The summary.json of the result folder.
 Result<Json> written_summary(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "summary.json";
   std::ifstream file(path);
@@ -193,15 +197,23 @@ Result<Json> written_summary(const std::filesystem::path& folder) {
   return json;
 }
 
+bool is_recording(const std::string& file) { return is_hdf5_file(file) && !is_meant_as_model(file); }
+
 /// A recording with its steps, or a scenario or saved model without any.
 Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress& progress) {
-  if (is_hdf5_file(arguments.scenario) && !is_meant_as_model(arguments.scenario))
-    return recorded_run(arguments.scenario, arguments.settings, progress);
+  if (is_recording(arguments.scenario)) return recorded_run(arguments.scenario, arguments.settings, progress);
   auto prepared = prepared_model(arguments.scenario, arguments.settings, progress);
   if (!prepared) return prepared.error();
   RecordedRun run;
   run.prepared = std::move(*prepared);
   return run;
+}
+
+/// What --json prints: the summary, and the map where there is one.
+Result<Json> result_json(const std::filesystem::path& folder, const std::optional<HoleMap>& map) {
+  Result<Json> json = written_summary(folder);
+  if (json && map) (*json)["map"] = Json::parse(hole_map_json(*map));
+  return json;
 }
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -226,6 +238,12 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
       arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  if (arguments.map && is_recording(arguments.scenario)) {
+    return input_error(arguments.scenario,
+                       "it is a recording, whose base motion is one needle's own and cannot be repeated through every "
+                       "hole of the template",
+                       "Give its scenario in its place, or leave --map out");
+  }
 
   Result<RecordedRun> source = what_to_run(arguments, console.progress());
   if (!source) return source.error();
@@ -234,10 +252,20 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (repeats && same_file(folder / "run.h5", arguments.scenario))
     return input_error(folder.string(), "the recording would be replaced by its repetition",
                        "Name another folder (-o)");
-  const std::vector<std::string> warnings = prepared.warnings();
-  for (const std::string& warning : warnings) console.warn(warning);
   const std::shared_ptr<const Model>& model = prepared.model;
   const Scenario& scenario = model->scenario();
+  const PlanOfHole plan_of = [&scenario](const std::string& hole) {
+    return plan_through(scenario.insertions.front(), hole);
+  };
+  std::optional<HoleMap> map;
+  if (arguments.map) {
+    if (Result<> possible = check_mappable(scenario, arguments.scenario); !possible) return possible;
+    auto ways = map_ways(*model, plan_of, arguments.scenario);
+    if (!ways) return ways.error();
+    map = std::move(*ways);
+  }
+  const std::vector<std::string> warnings = prepared.warnings();
+  for (const std::string& warning : warnings) console.warn(warning);
 
   RunInfo info = model->info();
   info.scenario_text = to_toml(scenario);
@@ -253,15 +281,20 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (!summary) return summary.error();
   // The run knows of the model's warnings and of its own.
   summary->warnings.insert(summary->warnings.begin(), prepared.notes.begin(), prepared.notes.end());
+  if (map) {
+    predict_holes(model, plan_of, *map, progress);
+    (*writer)->add_map(*map);
+  }
   if (Result<> finished = (*writer)->finish(*summary, progress, scenario.output.pictures); !finished) return finished;
 
   for (std::size_t i = warnings.size(); i < summary->warnings.size(); ++i) console.warn(summary->warnings[i]);
   console.say(
       fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario.name, summary->nodes, summary->tets, info.method));
   console.say(summary_text(*summary));
+  if (map) console.say("\n" + map_text(*map));
   if (repeats) console.say("Repeated: " + compare_forces(source->steps, recorder.steps()) + ".");
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
-  const Result<Json> json = written_summary(folder);
+  const Result<Json> json = result_json(folder, map);
   return json ? console.write_json(*json) : Result<>(json.error());
 }
 
@@ -297,6 +330,9 @@ Command add_insert_command(CLI::App& program) {
   shorthand("--engine", "coupling.engine", "what is kept of the inverse stiffness: condensed, woodbury or bcs");
   shorthand("--solver", "coupling.solver", "coupled or staggered");
   shorthand("--needle", "needle.model", "beam, springs or tet");
+  app->add_flag("--map", arguments->map,
+                "Also print what a needle through each hole of the template would come near to, and how far the gland "
+                "and its tip would be off; written as map.csv and into the report");
   app->add_flag("--print-schema", arguments->print_schema,
                 "Print every key of a scenario with unit, default, range and meaning");
   app->add_flag(

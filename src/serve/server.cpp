@@ -6,6 +6,7 @@
 #include "holding.hpp"
 #include "kept_token.hpp"
 #include "pages.hpp"
+#include "stylet/io/hole_map_io.hpp"
 #include "viewer.hpp"
 
 #include <fmt/format.h>
@@ -56,6 +57,13 @@ const char* name_of(SessionStatus::State state) {
   return "failed";
 }
 
+std::string map_text(const LiveMap& live) {
+  return text_of({{"map", live.map ? Json::parse(hole_map_json(*live.map)) : Json(nullptr)},
+                  {"why_not", live.why_not},
+                  {"predicted", live.predicted},
+                  {"predicting", live.predicting}});
+}
+
 std::optional<Request::Kind> request_kind(wire::Command::Do what) {
   using enum wire::Command::Do;
   switch (what) {
@@ -83,6 +91,8 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
       return Request::Kind::play;
     case drawn:
       return Request::Kind::drawn;
+    case predict:
+      return Request::Kind::predict;
     case take:
     case release:
       break;
@@ -112,6 +122,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers;
   std::uint64_t last_id = 0;
   std::shared_ptr<const Scene> scene;
+  std::string map;  ///< as it is sent; empty until there is one
   SessionStatus status;
   std::deque<std::string> events;  ///< since the start of the insertion
   Session session;
@@ -129,6 +140,12 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   void show(std::shared_ptr<const LiveFrame> frame) override {
     asio::post(io, [this, frame = std::move(frame)] {
       for (const auto& [id, viewer] : each()) viewer->send(frame);
+    });
+  }
+  void show(const LiveMap& now) override {
+    asio::post(io, [this, text = map_text(now)] {
+      map = text;
+      for (const auto& [id, viewer] : each()) viewer->send(wire::Kind::map, map);
     });
   }
   void tell(const SessionStatus& now) override {
@@ -161,6 +178,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   void arrived(const std::shared_ptr<Viewer>& viewer) override {
     viewers[viewer->id()] = viewer;
     if (scene) viewer->send(scene);
+    if (!map.empty()) viewer->send(wire::Kind::map, map);
     for (const std::string& event : events) viewer->send(wire::Kind::event, event);
     say_status();
     (void)session.ask({.kind = Request::Kind::greet, .viewer = viewer->id(), .text = {}, .number = 0.0});

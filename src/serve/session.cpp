@@ -4,6 +4,7 @@
 #include "field_maker.hpp"
 #include "folder_lock.hpp"
 #include "live_run.hpp"
+#include "map_maker.hpp"
 #include "replay.hpp"
 #include "room_watch.hpp"
 #include "scene.hpp"
@@ -44,6 +45,15 @@ HandTarget resting() {
   return rest;
 }
 
+/// A needle through a hole: as the case plans it, or like its first one otherwise, to the far end of the target.
+InsertionPlan plan_for(const std::vector<InsertionPlan>& plans, const std::string& hole) {
+  const auto known = std::find_if(plans.begin(), plans.end(), [&](const auto& p) { return p.hole == hole; });
+  if (known != plans.end()) return *known;
+  InsertionPlan plan = plan_through(plans.front(), hole);
+  plan.depth_mm = 0.0;
+  return plan;
+}
+
 }  // namespace
 
 struct Session::Parts {
@@ -69,6 +79,10 @@ struct Session::Parts {
   OpenModel open;                                      ///< without a model: none could be opened
   std::unique_ptr<FieldMaker> field_maker;             ///< of the model that is open, until its field is there
   std::vector<std::unique_ptr<FieldMaker>> abandoned;  ///< of others, which have not ended yet
+  std::unique_ptr<MapMaker> map_maker;                 ///< of the case that is open
+  std::vector<std::unique_ptr<MapMaker>> former_maps;  ///< of others, whose threads have not ended yet
+  LiveMap map;                                         ///< what it had last
+  bool map_is_shown = false;                           ///< to those who watch
   /// What the case itself plans; the model that is open may be of another hole.
   struct Planned {
     Scenario scenario;
@@ -116,6 +130,8 @@ struct Session::Parts {
   void show_model(std::size_t which);
   void take_field();
   void abandon_field();
+  void begin_map();
+  void show_map();
   void choose_hole(const Request& request);
   void choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
   void place(const Request& request, std::size_t which);
@@ -326,6 +342,29 @@ void Session::Parts::abandon_field() {
   abandoned.push_back(std::move(field_maker));
 }
 
+/// The map of another case begins.
+void Session::Parts::begin_map() {
+  if (map_maker) {
+    map_maker->give_up();
+    former_maps.push_back(std::move(map_maker));
+  }
+  map_maker = std::make_unique<MapMaker>(
+      open.model, [plans = planned.scenario.insertions](const std::string& hole) { return plan_for(plans, hole); });
+  map = {};
+  map_is_shown = false;
+}
+
+/// What is new of the map. A replay is of another needle, perhaps of another patient: there is no map of it.
+void Session::Parts::show_map() {
+  std::erase_if(former_maps, [](const auto& maker) { return maker->done(); });
+  std::optional<LiveMap> news = map_maker ? map_maker->news() : std::nullopt;
+  if (news) map = std::move(*news);
+  const bool is_to_be_shown = replay == nullptr;
+  if (!news && is_to_be_shown == map_is_shown) return;
+  map_is_shown = is_to_be_shown;
+  audience.show(is_to_be_shown ? map : LiveMap{});
+}
+
 /// Opens a model in the place of the one that is open. If it cannot be had, what was there goes on as it was.
 void Session::Parts::open_model(const Request& request, std::size_t case_number,
                                 const std::function<Result<LoadedCase>(const Progress&)>& load) {
@@ -345,6 +384,7 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
       planned = {open.model->scenario(), open.model->insertions()};
     open_case = case_number;
     show_model(0);
+    if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion) begin_map();
     field_maker = std::make_unique<FieldMaker>(
         open.model, std::chrono::duration<double>(page_has_drawn ? 0.0 : settings.field_waits_s));
     return place(request, 0);
@@ -361,19 +401,8 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
   fail(usable.error());
 }
 
-/// A needle through a hole: as the case plans it, or like its first one otherwise.
 void Session::Parts::choose_hole(const Request& request) {
-  const auto& plans = planned.scenario.insertions;
-  const auto known = std::find_if(plans.begin(), plans.end(), [&](const auto& p) { return p.hole == request.text; });
-  if (known != plans.end()) return choose_plan(request, *known, "hole " + request.text);
-  InsertionPlan plan = plans.front();
-  plan.entry_mm.reset();
-  plan.direction.reset();
-  plan.target_mm.reset();
-  plan.motion.clear();
-  plan.depth_mm = 0.0;
-  plan.hole = request.text;
-  choose_plan(request, plan, "hole " + request.text);
+  choose_plan(request, plan_for(planned.scenario.insertions, request.text), "hole " + request.text);
 }
 
 /// The same patient with the needle where a plan has it. What its way needs is computed, unless the model that is open
@@ -436,6 +465,9 @@ void Session::Parts::carry_out(const Request& request) {
     refuse(request, input_error(what, fmt::format("there is no number {}, only {}", number, count), "Choose another"));
   };
   switch (request.kind) {
+    case Kind::predict:
+      if (map_maker) map_maker->want_predictions(request.number > 0.0);
+      break;
     case Kind::greet:
       whole_curve = true;
       break;
@@ -527,6 +559,7 @@ void Session::Parts::show_inside() {
 
 void Session::Parts::tick(double dt_s) {
   take_field();
+  show_map();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {
     pump();

@@ -102,6 +102,7 @@ void Viewer::send(std::shared_ptr<const Scene> scene) {
 }
 
 void Viewer::send(wire::Kind kind, std::string json) {
+  if (kind == wire::Kind::map) std::erase_if(waiting_, [](const Waiting& w) { return w.kind == wire::Kind::map; });
   if (waiting_.size() >= kMostWaiting) return close();  // it does not read any more
   waiting_.push_back({kind, nullptr, std::move(json)});
   write();

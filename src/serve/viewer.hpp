@@ -38,7 +38,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
   void send(std::shared_ptr<const Scene> scene);
   void send(std::shared_ptr<const LiveFrame> frame);
-  /// @param kind event or notice
+  /// @param kind event, notice or map; of a map only the newest waits
   void send(wire::Kind kind, std::string json);
   void send_status(std::string json);
 

@@ -87,7 +87,8 @@ const std::map<std::string, Need>& commands() {
       {"resume", {resume, "", false}},       {"step", {step, "count", false}},
       {"case", {open_case, "index", false}}, {"replay", {replay, "name", true}},
       {"live", {live, "", false}},           {"seek", {seek, "time_s", false}},
-      {"play", {play, "rate", false}},       {"drawn", {drawn, "", false}}};
+      {"play", {play, "rate", false}},       {"predict", {predict, "on", false}},
+      {"drawn", {drawn, "", false}}};
   return all;
 }
 

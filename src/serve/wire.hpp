@@ -20,7 +20,16 @@ namespace stylet::serve::wire {
 inline constexpr const char* kSubprotocol = "stylet-live-1";
 inline constexpr std::size_t kLongestMessage = 1024;  ///< of a page [bytes]
 
-enum class Kind : std::uint32_t { scene = 1, frame = 2, status = 3, event = 4, notice = 5, hand = 16, command = 17 };
+enum class Kind : std::uint32_t {
+  scene = 1,
+  frame = 2,
+  status = 3,
+  event = 4,
+  notice = 5,
+  map = 6,
+  hand = 16,
+  command = 17
+};
 
 using Bytes = std::vector<std::byte>;
 
@@ -29,7 +38,7 @@ Bytes encode(const Scene& scene, std::uint32_t number);
 /// @param samples those that this connection has not got yet, instead of the frame's own
 /// @param whole_curve they are all there are
 Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
-/// status, event or notice
+/// status, event, notice or map
 Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
 /// What a page asks for, by the names of the protocol.
@@ -48,11 +57,12 @@ struct Command {
     live,
     seek,
     play,
+    predict,
     drawn
   };
   Do what{};
   std::string text;     ///< of hole and replay
-  double number = 0.0;  ///< of insertion, step, case, seek and play
+  double number = 0.0;  ///< of insertion, step, case, seek, play and predict
 };
 
 /// Empty for what is malformed: wrong length, unknown kind or command, numbers that are not finite or out of range.

@@ -55,6 +55,14 @@ double deepest_mm(const Scenario& scenario) {
   return scenario.needle.length_mm - kNeedleOutside_mm - (scenario.grid.guide ? scenario.grid.distance_mm : 0.0);
 }
 
+Result<Vec3> point_behind_hole(const TemplateGrid& grid, const std::string& hole, const Vec3& target_centre) {
+  const auto offset = grid.offset_mm(hole);
+  if (!offset) return offset.error();
+  const double x = grid.centre_mm ? (*grid.centre_mm)[0] : target_centre.x();
+  const double y = grid.centre_mm ? (*grid.centre_mm)[1] : target_centre.y();
+  return Vec3(x + (*offset)[0], y - (*offset)[1], target_centre.z());
+}
+
 Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t number, const Scenario& scenario,
                                         const Locator& locator, const std::vector<int>& target,
                                         const std::string& where) {
@@ -66,13 +74,11 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
   PlannedInsertion result;
   result.name = plan.hole ? "hole " + *plan.hole : fmt::format("needle {}", number + 1);
   Vec3 on_line = centre;
-  result.direction = Vec3::UnitZ();
+  result.direction = kThroughTemplate;
   if (plan.hole) {
-    const auto offset = scenario.grid.offset_mm(*plan.hole);
-    if (!offset) return offset.error();
-    const double x = scenario.grid.centre_mm ? (*scenario.grid.centre_mm)[0] : centre.x();
-    const double y = scenario.grid.centre_mm ? (*scenario.grid.centre_mm)[1] : centre.y();
-    on_line = {x + (*offset)[0], y - (*offset)[1], centre.z()};
+    const auto behind = point_behind_hole(scenario.grid, *plan.hole, centre);
+    if (!behind) return behind.error();
+    on_line = *behind;
   } else {
     on_line = Vec3(plan.entry_mm->data());
     if (plan.target_mm) {

@@ -9,6 +9,13 @@ namespace stylet {
 
 inline constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
 
+/// Direction of a needle through a hole of the template: to superior.
+inline const Vec3 kThroughTemplate = Vec3::UnitZ();
+
+/// A point on the line of a needle through a hole, as far superior as the target's centre [mm] LPS. A hole that the
+/// template does not have is refused.
+Result<Vec3> point_behind_hole(const TemplateGrid& grid, const std::string& hole, const Vec3& target_centre);
+
 /// The line of a planned insertion: where it meets the skin and how deep it goes. A line that misses the patient is
 /// refused.
 Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t number, const Scenario& scenario,

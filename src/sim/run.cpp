@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/sim/run.hpp"
 
+#include "base_steps.hpp"
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/sim/gland_watch.hpp"
@@ -34,22 +35,10 @@ double quantile(const std::vector<double>& sorted, double q) {
   return sorted[std::min(at, sorted.size() - 1)];
 }
 
-/// What the base does in an insertion, step by step from 1 on.
-struct BaseSteps {
-  long count = 0;
-  double duration_s = 0.0;
-  std::function<Pose(long k)> base;
-  std::function<double(long k)> dt_s;
-};
-
 class Runner {
  public:
   Runner(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress)
-      : model_(model),
-        simulation_(model),
-        observer_(observer),
-        progress_(progress),
-        step_ns_(std::max(1L, std::lround(model->scenario().run.dt_ms * 1e6))) {
+      : model_(model), simulation_(model), observer_(observer), progress_(progress) {
     summary_.version = version();
     summary_.scenario = model->scenario().name;
     summary_.nodes = model->mesh().node_count();
@@ -62,7 +51,7 @@ class Runner {
     for (const PlannedInsertion& insertion : insertions) total_s_ += insertion.motion.duration_s();
     choose_frames();
     for (std::size_t i = 0; i < insertions.size(); ++i) {
-      if (auto done = one(insertions[i], planned(insertions[i])); !done) return done.error();
+      if (auto done = one(insertions[i], planned_steps(*model_, insertions[i])); !done) return done.error();
       if (i + 1 < insertions.size() && simulation_.last_step().tip_state != TipState::air) {
         return input_error(fmt::format("insertion[{}]", i),
                            "the needle is still in the tissue when the next one is to start",
@@ -113,19 +102,10 @@ class Runner {
     return summary_;
   }
 
-  [[nodiscard]] BaseSteps planned(const PlannedInsertion& insertion) const {
-    BaseSteps motion;
-    motion.count = static_cast<long>(std::ceil(insertion.motion.duration_s() / seconds(1) - 1e-9));
-    motion.duration_s = insertion.motion.duration_s();
-    motion.base = [this, &insertion](long k) { return insertion.motion.at(seconds(k)); };
-    motion.dt_s = [this](long /*k*/) { return seconds(1); };
-    return motion;
-  }
-
   Result<> one(const PlannedInsertion& insertion, const BaseSteps& motion) {
     const FlushDenormals flush;  // as the real-time loop does
     const double start = simulation_.time_s();
-    const long deepest = deepest_step(insertion, motion);
+    const long deepest = deepest_step(*model_, insertion, motion);
     simulation_.place(insertion);
     UnbrokenSurface unbroken;
     std::optional<GlandWatch> gland;
@@ -150,6 +130,7 @@ class Runner {
         summary_.gland_path.push_back(
             gland->add(record, simulation_.new_events(), now.motion, now.at_rest, k == deepest));
       }
+      if (k == deepest) keep_largest(tip_error_mm(simulation_.insertion(), simulation_.last_step()));
       std::string label;
       for (const Event& event : simulation_.new_events()) {
         summary_.events.push_back(event);
@@ -176,29 +157,16 @@ class Runner {
     if (!shifts.empty() && shifts.back().largest_mm >= summary_.target_shift_max_mm) summary_.gland = motion;
   }
 
+  void keep_largest(const std::optional<Vec3>& tip_error) {
+    if (!tip_error) return;
+    if (!summary_.tip_error_mm || tip_error->norm() > summary_.tip_error_mm->norm()) summary_.tip_error_mm = tip_error;
+  }
+
   [[nodiscard]] std::vector<std::string> target_names() const {
     std::vector<std::string> names;
     for (const int region : model_->target_regions())
       names.push_back(model_->mesh().regions[static_cast<std::size_t>(region)]);
     return names;
-  }
-
-  /// Time of step k since the insertion's start [s].
-  [[nodiscard]] double seconds(long k) const { return static_cast<double>(k * step_ns_) / 1e9; }
-
-  /// The step after which the base is furthest in; of several the last, just before it goes out.
-  [[nodiscard]] long deepest_step(const PlannedInsertion& insertion, const BaseSteps& motion) const {
-    long deepest = motion.count;
-    double most = -std::numeric_limits<double>::infinity();
-    for (long k = 1; k <= motion.count; ++k) {
-      const Pose base = motion.base(k);
-      const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
-      const double depth = (tip - insertion.entry).dot(insertion.direction);
-      if (depth < most - 1e-9) continue;
-      most = std::max(most, depth);
-      deepest = k;
-    }
-    return deepest;
   }
 
   Result<> account(const Step& record, const PlannedInsertion& insertion) {
@@ -291,7 +259,6 @@ class Runner {
   std::optional<TargetMotion> target_motion_;  ///< where the model has a target; solved for before the first step
   RunObserver& observer_;
   const Progress& progress_;
-  long step_ns_;
   double peak_N_ = 0.0;  ///< largest force of the hand, all components
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;

@@ -17,11 +17,11 @@ constexpr double kFreeAroundEntry_mm = 30.0;
 
 std::string count_text(std::size_t count) { return std::to_string(count) + (count == 1 ? " node" : " nodes"); }
 
+}  // namespace
+
 bool is_bone(const std::string& region) {
   return region == "pubic_arch" || region == "femur_left" || region == "femur_right";
 }
-
-}  // namespace
 
 Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, const Scenario::Fixed& fixed,
                                const std::vector<int>& target, const std::vector<Vec3>& entries,

@@ -26,7 +26,14 @@ Result<TargetMotion> TargetMotion::of(const Model& model, const Progress& progre
   auto response =
       VolumeResponse::solve(model.tissue(), model.target_regions(), affordable(model.mesh().node_count()), progress);
   if (!response) return response.error();
-  return TargetMotion(model, std::move(*response));
+  return TargetMotion(model, std::make_shared<const VolumeResponse>(std::move(*response)));
+}
+
+std::optional<TargetMotion> TargetMotion::shared_with(const Model& other) const {
+  // The tissue's own factor has the nodes of the needle's way last, so its rounding depends on the way.
+  if (affordable(other.mesh().node_count()) == Accuracy::of_the_tissue) return std::nullopt;
+  if (other.supports().nodes != model_->supports().nodes) return std::nullopt;
+  return TargetMotion(other, response_);
 }
 
 TargetMotion::Moment TargetMotion::now(const Insertion& insertion) {
@@ -37,10 +44,10 @@ TargetMotion::Moment TargetMotion::now(const Insertion& insertion) {
   }
   Moment moment;
   moment.at_rest = count == 0;
-  for (const TissueForce& load : std::span(forces_).first(count)) response_.add(load.at, load.force, moment.motion);
-  moment.motion = response_.finite(moment.motion);
+  for (const TissueForce& load : std::span(forces_).first(count)) response_->add(load.at, load.force, moment.motion);
+  moment.motion = response_->finite(moment.motion);
   for (const auto third : {VolumeMotion::superior, VolumeMotion::middle, VolumeMotion::inferior}) {
-    if (!response_.has(third)) moment.motion.third_mm[third].setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (!response_->has(third)) moment.motion.third_mm[third].setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return moment;
 }

@@ -136,7 +136,7 @@ def check_results(test, folder, summary=None, pictures=False):
     if summary is not None:
         test.assertEqual(written, summary)
     for key in ("version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                "target_shift_mm", "gland", "residual", "step_us", "contacts_max", "capacity", "mesh_changes", "warnings"):
+                "tip_error_mm", "target_shift_mm", "gland", "residual", "step_us", "contacts_max", "capacity", "mesh_changes", "warnings"):
         test.assertIn(key, written)
     test.assertEqual(set(written["mesh"]), {"nodes", "tets"})
     test.assertEqual(set(written["peak_force_N"]), {"axial", "sagittal", "lateral"})

@@ -108,6 +108,8 @@ class LiveClient {
       events.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
     } else if (kind == 5) {
       notices.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
+    } else if (kind == 6) {
+      map = nlohmann::json::parse(bytes + 8, bytes + size);
     }
   }
   [[nodiscard]] bool ready() const { return status.value("state", "") == "ready" && frames > 0; }
@@ -117,6 +119,7 @@ class LiveClient {
 
   nlohmann::json scene = nlohmann::json::object();
   nlohmann::json status = nlohmann::json::object();
+  nlohmann::json map = nlohmann::json::object();
   std::vector<nlohmann::json> events, notices;
   std::uint32_t received = 0, scenes = 0, frames = 0, bits = 0, samples = 0, displaced_nodes = 0, scene_nodes = 0;
   double time_s = 0.0;

@@ -154,6 +154,10 @@ TEST(Wire, commands_carry_what_they_need) {
   const auto seek = wire::decode(command(R"({"do":"seek","time_s":1.5})"));
   ASSERT_NE(as_command(seek), nullptr);
   EXPECT_EQ(as_command(seek)->number, 1.5);
+  const auto predict = wire::decode(command(R"({"do":"predict","on":1})"));
+  ASSERT_NE(as_command(predict), nullptr);
+  EXPECT_EQ(as_command(predict)->what, wire::Command::Do::predict);
+  EXPECT_EQ(as_command(predict)->number, 1.0);
   for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn"})
     EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;
 }
@@ -172,9 +176,9 @@ TEST(Wire, what_is_malformed_is_nothing) {
   wire::Bytes longer = hand({1, 20, 0, 0, 0});
   longer.push_back(std::byte{0});
   EXPECT_FALSE(wire::decode(longer));
-  for (const char* text :
-       {"", "{", "[]", "null", "{}", R"({"do":1})", R"({"do":"fly"})", R"({"do":"hole"})", R"({"do":"hole","hole":4})",
-        R"({"do":"seek","time_s":"now"})", R"({"do":"step"})", R"({"do":"seek","time_s":1e300})", R"({"do":"take")"})
+  for (const char* text : {"", "{", "[]", "null", "{}", R"({"do":1})", R"({"do":"fly"})", R"({"do":"hole"})",
+                           R"({"do":"hole","hole":4})", R"({"do":"seek","time_s":"now"})", R"({"do":"step"})",
+                           R"({"do":"predict"})", R"({"do":"seek","time_s":1e300})", R"({"do":"take")"})
     EXPECT_FALSE(wire::decode(command(text))) << text;
   EXPECT_FALSE(wire::decode(command(R"({"do":"hole","hole":")" + std::string(2000, 'x') + "\"}")));
 }

@@ -74,6 +74,11 @@ test('texts come out as they went in, and what is no JSON is refused', () => {
   assert.throws(() => decode(buffer), WireError);
 });
 
+test('a map of the template comes out as it went in', () => {
+  const map = { map: null, why_not: 'there is no gland', predicted: 0, predicting: false };
+  assert.deepEqual(decode(encodeText(6, map)), { kind: 6, map });
+});
+
 test('a kind that is not known is ignored', () => {
   assert.equal(decode(encodeText(99, {})), null);
 });

@@ -4,6 +4,7 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/core/result.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/sim/hole_map.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
@@ -23,6 +24,8 @@ class ResultsWriter {
 
   Result<> add_step(const Step& step);
   Result<> add_frame(const Frame& frame);
+  /// What is known of the other holes of the template; finish() writes it as map.csv.
+  void add_map(HoleMap map);
   /// Writes all files. Progress covers the pictures.
   /// @param pictures still pictures in the report; without them it has its interactive view only
   Result<> finish(const Summary& summary, const Progress& progress = {}, bool pictures = true);

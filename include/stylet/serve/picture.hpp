@@ -2,8 +2,10 @@
 #pragma once
 
 #include "stylet/realtime/snapshot.hpp"
+#include "stylet/sim/hole_map.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +48,14 @@ struct LiveEvent {
   double depth_mm = 0.0;
   double force_N = 0.0;
   std::string region;
+};
+
+/// What is known by now of the holes of the case's template.
+struct LiveMap {
+  std::optional<HoleMap> map{};  ///< empty until the clearances are there, and where there can be none
+  std::string why_not{};         ///< why there can be none; empty: there can
+  int predicted = 0;             ///< holes whose insertion has succeeded or failed
+  bool predicting = false;       ///< more are to come
 };
 
 /// Why a request was not carried out.

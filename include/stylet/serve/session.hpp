@@ -53,6 +53,7 @@ class Audience {
   virtual ~Audience() = default;
   virtual void show(std::shared_ptr<const Scene> scene) = 0;
   virtual void show(std::shared_ptr<const LiveFrame> frame) = 0;
+  virtual void show(const LiveMap& map) = 0;
   virtual void tell(const SessionStatus& status) = 0;
   virtual void tell(const LiveEvent& event) = 0;
   /// @param viewer who asked for what is refused
@@ -73,6 +74,7 @@ struct Request {
     live,       ///< back from it
     seek,       ///< number [s]
     play,       ///< number: rate, 0 stands
+    predict,    ///< number: 1 inserts a needle through each hole for the map, beside the one that moves; 0 no more
     greet,      ///< somebody has come: the whole curve again
     drawn       ///< a page has drawn all it shows
   };

@@ -88,7 +88,11 @@ struct Summary {
   Index steps = 0;
   double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
   std::vector<Event> events;
-  double tip_deflection_mm = 0;                  ///< largest distance of the tip from the straight line of insertion
+  double tip_deflection_mm = 0;  ///< largest distance of the tip from the straight line of insertion
+  /// Where the tip is in the material at its deepest, less where it was planned to be: the point that a rigid straight
+  /// needle would reach in a patient that nothing has moved. LPS; the largest of several insertions; empty where the
+  /// tip is not in the tissue then, and in recordings of earlier versions.
+  std::optional<Vec3> tip_error_mm;
   std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion; none without a target
   Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< of the one that moved it furthest, as the next
   double target_shift_max_mm = 0;

@@ -13,6 +13,9 @@ struct Supports {
   std::vector<std::string> description;
 };
 
+/// Whether a region of this canonical name is a bone: the pubic arch or a femur.
+bool is_bone(const std::string& region);
+
 /// The fundamental displacement constraints. Bones (pubic arch, femurs, or the regions the scenario names) are held
 /// whole. Without a pubic arch, or with fixed.outer = "sides", the outer faces are held too, except the perineal face
 /// (facing inferior, below the target) and what lies within 30 mm of an entry. A mesh of unnamed tissue is held on the

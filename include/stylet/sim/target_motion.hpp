@@ -4,6 +4,9 @@
 #include "stylet/fem/volume_motion.hpp"
 #include "stylet/sim/model.hpp"
 
+#include <memory>
+#include <optional>
+
 namespace stylet {
 
 /// How far a needle has moved the target of a model.
@@ -12,6 +15,11 @@ class TargetMotion {
   /// The target's motion per force is solved for once, on coarse meshes with finer elements than those of the step.
   /// @param model outlives this
   static Result<TargetMotion> of(const Model& model, const Progress& progress = {});
+
+  /// The motion of another model's target, where that is the same to the last bit: the same patient and tissue, held at
+  /// the same nodes, and a mesh on which the needle's way has no part in it. Nothing is solved then; else it is empty.
+  /// @param other outlives what is returned, as does the model of this; of the same mesh, materials and target
+  [[nodiscard]] std::optional<TargetMotion> shared_with(const Model& other) const;
 
   /// The target at one moment.
   struct Moment {
@@ -25,10 +33,11 @@ class TargetMotion {
   [[nodiscard]] TargetShift shift(const Insertion& insertion);
 
  private:
-  TargetMotion(const Model& model, VolumeResponse response) : model_(&model), response_(std::move(response)) {}
+  TargetMotion(const Model& model, std::shared_ptr<const VolumeResponse> response)
+      : model_(&model), response_(std::move(response)) {}
 
   const Model* model_;
-  VolumeResponse response_;
+  std::shared_ptr<const VolumeResponse> response_;
   std::vector<TissueForce> forces_;  ///< room for those of a moment
 };
 

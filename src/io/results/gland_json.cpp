@@ -5,11 +5,17 @@
 
 namespace stylet::results {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
 
-/// Null where there is none or it is not finite.
+namespace {
+
+/// NaN where it is null.
+Vec3 certain(const Json& json) {
+  return vector_of(json).value_or(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+}
+
+}  // namespace
+
 Json vector_json(const std::optional<Vec3>& v) {
   if (!v || !v->allFinite()) return nullptr;
   return {{"LR", v->x()}, {"AP", v->y()}, {"SI", v->z()}, {"norm", v->norm()}};
@@ -19,13 +25,6 @@ std::optional<Vec3> vector_of(const Json& json) {
   if (json.is_null()) return std::nullopt;
   return Vec3(json.at("LR").get<double>(), json.at("AP").get<double>(), json.at("SI").get<double>());
 }
-
-/// NaN where it is null.
-Vec3 certain(const Json& json) {
-  return vector_of(json).value_or(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-}
-
-}  // namespace
 
 Json gland_json(const std::optional<GlandMotion>& gland) {
   if (!gland) return nullptr;

@@ -8,6 +8,7 @@
 #include "pictures/pictures.hpp"
 #include "recorder.hpp"
 #include "report/report_html.hpp"
+#include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/recording_io.hpp"
 #include "summary_json.hpp"
 
@@ -38,8 +39,8 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
 
 /// Removes everything that an earlier run left but its run.h5. summary.json, which tells a finished run, goes first.
 Result<> remove_earlier_results(const fs::path& folder) {
-  for (const char* name :
-       {"summary.json", "report.html", "forces.csv", "gland.csv", "tissue.pvd", "needle.pvd", "needle.vtp"}) {
+  for (const char* name : {"summary.json", "report.html", "forces.csv", "gland.csv", "map.csv", "tissue.pvd",
+                           "needle.pvd", "needle.vtp"}) {
     if (auto removed = remove_earlier(folder / name); !removed) return removed;
   }
   if (auto removed = remove_series_from(folder, "tissue", ".vtu", 0); !removed) return removed;
@@ -51,10 +52,10 @@ Result<> remove_earlier_results(const fs::path& folder) {
 }
 
 /// Everything but run.h5, made from it and the summary: nothing can be in a picture or a table that is not in the
-/// recording, but for the gland's path, which follows from the forces there.
+/// recording, but for the gland's path, which follows from the forces there, and the map of the template's holes.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
-                              bool with_pictures) {
+                              bool with_pictures, const HoleMap* map) {
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
   if (run->frames.empty()) {
@@ -67,13 +68,16 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   if (!summary.gland_path.empty()) {
     if (auto done = write_file(folder / "gland.csv", gland_csv(summary.gland_path)); !done) return done;
   }
+  if (map) {
+    if (auto done = write_file(folder / "map.csv", hole_map_csv(*map)); !done) return done;
+  }
   if (auto done = write_tissue(*run, stress_of, folder, progress); !done) return done;
   if (auto done = write_needle(*run, moments.deepest, folder); !done) return done;
   const Pictures pictures = with_pictures ? draw_pictures(*run, regions, moments, progress)
                                           : Pictures{.png = {}, .why_not = {}, .wanted = false};
   if (auto done = write_pictures(pictures, folder / "pictures"); !done) return done;
   report(progress, "report", 0.0);
-  auto page = report_html(*run, regions, moments, pictures);
+  auto page = report_html(*run, regions, moments, pictures, map);
   if (!page) return page.error();
   if (auto done = write_file(folder / "report.html", *page); !done) return done;
   if (auto done = write_file(folder / "summary.json", summary_json(summary)); !done) return done;
@@ -114,6 +118,7 @@ struct ResultsWriter::Parts {
   Index nodes;
   std::function<MatX(const VecX&)> stress_of;
   Recorder recorder;
+  std::optional<HoleMap> map{};  ///< of the template's holes
   bool finished = false;
 };
 
@@ -154,12 +159,15 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
   return parts_->recorder.add_frame(std::move(stored));
 }
 
+void ResultsWriter::add_map(HoleMap map) { parts_->map = std::move(map); }
+
 Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
   if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;
-    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures);
+    return write_from_recording(parts_->folder, summary, parts_->stress_of, progress, pictures,
+                                parts_->map ? &*parts_->map : nullptr);
   });
 }
 

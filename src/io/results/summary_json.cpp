@@ -67,6 +67,7 @@ std::string summary_json(const Summary& s) {
       {"peak_force_N", {{"axial", s.peak_axial_N}, {"sagittal", s.peak_sagittal_N}, {"lateral", s.peak_lateral_N}}},
       {"events", events},
       {"tip_deflection_mm", s.tip_deflection_mm},
+      {"tip_error_mm", vector_json(s.tip_error_mm)},
       {"target_shift_mm", target_shift(s)},
       {"gland", gland_json(s.gland)},
       {"residual", {{"force_balance", s.residual_force_balance}, {"torque_balance", s.residual_torque_balance}}},
@@ -112,6 +113,7 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
                           e.at("region").get<std::string>()});
     }
     s.tip_deflection_mm = number(json.at("tip_deflection_mm"));
+    if (json.contains("tip_error_mm")) s.tip_error_mm = vector_of(json.at("tip_error_mm"));  // not in older ones
     if (const Json& shift = json.at("target_shift_mm"); !shift.is_null()) {
       for (int k = 0; k < 3; ++k)
         s.target_shift_centroid_mm[k] = number(shift.at("centroid").at(static_cast<size_t>(k)));

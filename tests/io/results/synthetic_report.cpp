@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   for (const auto& frame : run.frames) {
     if (auto added = (*writer)->add_frame(frame); !added) return fail(added.error());
   }
+  (*writer)->add_map(stylet::testing::synthetic_map());
   const auto done = (*writer)->finish(run.summary, [](std::string_view stage, double share) {
     std::printf("%.*s %.0f %%\n", static_cast<int>(stage.size()), stage.data(), 100 * share);
   });

@@ -249,6 +249,7 @@ Summary summarise(const SyntheticRun& run) {
   s.capacity = {{s.contacts_max, 96}, {12, 1500}, {1, 64}, {3, 16}};
   s.events = events();
   s.tip_deflection_mm = 2.64;
+  s.tip_error_mm = {0.4, -0.3, -2.1};
   s.target_shift_centroid_mm = {0.21, -0.48, 2.66};
   s.target_shift_max_mm = 3.94;
   s.target_shifts = {{s.target_shift_centroid_mm, s.target_shift_max_mm}};
@@ -292,6 +293,45 @@ SyntheticRun synthetic_run(const SyntheticOptions& options) {
   for (const auto& [time, label] : moments) run.frames.push_back(frame_at(run.mesh, time, label));
   run.summary = summarise(run);
   return run;
+}
+
+HoleMap synthetic_map() {
+  const TemplateGrid grid;
+  HoleMap map;
+  map.columns = grid.columns;
+  map.rows = grid.rows;
+  map.planned = "e3.5";
+  for (auto row = grid.rows.rbegin(); row != grid.rows.rend(); ++row) {
+    for (const std::string& column : grid.columns) {
+      const std::string name = column + *row;
+      const auto offset = *grid.offset_mm(name);
+      const double distance = std::hypot(offset[0], offset[1]);
+      if (distance > 23 && name != "D1" && name != "D7") {
+        ++map.missing;
+        continue;
+      }
+      HoleRow hole;
+      hole.hole = name;
+      hole.left_mm = offset[0];
+      hole.anterior_mm = offset[1];
+      if (name == "D1") {
+        hole.failed = "the target's far end lies 210 mm deep, the needle is 200 mm long";
+      } else {
+        hole.depth_mm = 80 - 0.4 * distance;
+        hole.in_target_mm = 40 - distance;
+        hole.clearance_mm = {std::max(0.0, 26 - distance - 0.5 * offset[1]), std::max(0.0, distance - 4), std::nullopt};
+      }
+      if (name != "D1" && name != "D7") {
+        hole.prediction = Prediction{Vec3(0.1, 0.2, 2.5 - 0.05 * distance),
+                                     Vec3(0.1, 0.3, 3 - 0.06 * distance),
+                                     Vec3(0.3, 0.1, -8 - 0.2 * distance),
+                                     {}};
+      }
+      if (name == "D4") hole.prediction->remarks.push_back("The needle entered the urethra, at a depth of 27.0 mm.");
+      map.holes.push_back(std::move(hole));
+    }
+  }
+  return map;
 }
 
 RunRecording recording_of(const SyntheticRun& run) { return {run.info, run.mesh, run.steps, run.frames, run.summary}; }

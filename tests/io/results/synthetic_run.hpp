@@ -3,6 +3,7 @@
 
 #include "stylet/geom/tet_mesh.hpp"
 #include "stylet/io/recording_io.hpp"
+#include "stylet/sim/hole_map.hpp"
 #include "stylet/sim/recording.hpp"
 
 #include <array>
@@ -31,6 +32,10 @@ struct SyntheticOptions {
 SyntheticRun synthetic_run(const SyntheticOptions& options = {});
 
 /// What a reader of the run's file would get.
+/// A map of the template's holes as that of a run, with all that may be missing: hole D1 has no way, D7 no prediction,
+/// and there is no rectum.
+HoleMap synthetic_map();
+
 RunRecording recording_of(const SyntheticRun& run);
 
 /// A folder below the test's temporary folder, empty at first, removed with everything in it at the end.

@@ -61,6 +61,34 @@ std::vector<Number> numbers(const std::string& text) {
 
 }  // namespace
 
+TEST(Report, has_a_map_of_the_template_where_there_is_one) {
+  const auto run = recording_of(synthetic_run());
+  EXPECT_EQ(page_of(run).find("A map before the needle"), std::string::npos);
+  EXPECT_TRUE(data_of(run)["map"].is_null());
+
+  const auto regions = region_views(run.mesh, run.info.target_regions);
+  const HoleMap map = synthetic_map();
+  const auto page = report_html(run, regions, find_moments(run.frames), {{}, "no driver"}, &map);
+  ASSERT_TRUE(page);
+  EXPECT_NE(page->find("A map before the needle"), std::string::npos);
+  EXPECT_NE(page->find("There is no rectum in this model."), std::string::npos);
+  EXPECT_EQ(page->find("There is no urethra in this model."), std::string::npos);
+  EXPECT_NE(page->find("e3.5 (planned)"), std::string::npos);
+  EXPECT_NE(page->find("the target&#39;s far end lies 210"), std::string::npos) << "why a hole has no figures";
+  const auto data = nlohmann::json::parse(report_data(run, regions, find_moments(run.frames), &map)).at("map");
+  ASSERT_EQ(data.at("holes").size(), map.holes.size());
+  EXPECT_EQ(data.at("missing"), map.missing);
+  EXPECT_EQ(data.at("columns").size() * data.at("rows").size(),
+            map.holes.size() + static_cast<std::size_t>(map.missing));
+  for (std::size_t k = 0; k < map.holes.size(); ++k) {
+    const auto& hole = data.at("holes")[k];
+    EXPECT_EQ(hole.at("hole"), map.holes[k].hole);
+    EXPECT_TRUE(hole.at("clearance_mm").at("rectum").is_null());
+    EXPECT_EQ(hole.at("predicted"), map.holes[k].prediction.has_value());
+    EXPECT_EQ(hole.at("tip_error_mm").is_null(), !map.holes[k].prediction.has_value());
+  }
+}
+
 TEST(Report, tells_what_happened_from_the_data) {
   auto run = synthetic_run();
   const std::string page = page_of(recording_of(run));

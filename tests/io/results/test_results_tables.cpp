@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// forces.csv, gland.csv and summary.json as text.
+// forces.csv, gland.csv, map.csv and summary.json as text.
 #include "results/forces_csv.hpp"
 #include "results/gland_csv.hpp"
 #include "results/summary_json.hpp"
+#include "stylet/io/hole_map_io.hpp"
 #include "synthetic_run.hpp"
 
 #include <gtest/gtest.h>
@@ -122,7 +123,34 @@ TEST(SummaryJson, of_the_gland_survives_the_round_trip_with_what_is_missing) {
   EXPECT_TRUE(nlohmann::json::parse(summary_json({}))["gland"].is_null()) << "no target";
   auto older = json;
   older.erase("gland");
+  older.erase("tip_error_mm");
   EXPECT_TRUE(parse_summary_json(older.dump(), "test").ok());
+}
+
+TEST(MapCsv, has_a_line_for_each_hole_and_nothing_where_there_is_no_figure) {
+  const HoleMap map = stylet::testing::synthetic_map();
+  std::istringstream lines(hole_map_csv(map));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "hole,left_mm,anterior_mm,depth_mm,in_target_mm,clearance_bone_mm,clearance_urethra_mm,clearance_rectum_mm,"
+            "shift_at_break_mm,shift_max_mm,tip_error_mm,remark");
+  std::size_t count = 0;
+  while (std::getline(lines, line)) {
+    const HoleRow& row = map.holes[count++];
+    EXPECT_TRUE(line.starts_with(row.hole + ",")) << line;
+    if (row.hole == "D1") {
+      EXPECT_TRUE(line.ends_with(R"(,,,,,,,"the target's far end lies 210 mm deep, the needle is 200 mm long")"))
+          << line;
+    }
+    if (row.hole == "D4") {
+      EXPECT_TRUE(line.ends_with(R"(,"The needle entered the urethra, at a depth of 27.0 mm.")")) << line;
+    }
+    if (row.hole == "D7") {
+      EXPECT_TRUE(line.ends_with(R"(,,,,,"")")) << line;
+    }
+  }
+  EXPECT_EQ(count, map.holes.size());
 }
 
 TEST(SummaryJson, has_the_documented_keys_in_order) {
@@ -130,8 +158,8 @@ TEST(SummaryJson, has_the_documented_keys_in_order) {
   const auto json = nlohmann::ordered_json::parse(summary_json(run.summary));
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keys_of(json), (Keys{"version", "scenario", "mesh", "steps", "peak_force_N", "events", "tip_deflection_mm",
-                                 "target_shift_mm", "gland", "residual", "step_us", "contacts_max", "capacity",
-                                 "compliance_condition", "mesh_blur_mm", "mesh_changes", "warnings"}));
+                                 "tip_error_mm", "target_shift_mm", "gland", "residual", "step_us", "contacts_max",
+                                 "capacity", "compliance_condition", "mesh_blur_mm", "mesh_changes", "warnings"}));
   EXPECT_EQ(keys_of(json["mesh"]), (Keys{"nodes", "tets"}));
   EXPECT_EQ(keys_of(json["peak_force_N"]), (Keys{"axial", "sagittal", "lateral"}));
   EXPECT_EQ(keys_of(json["target_shift_mm"]), (Keys{"centroid", "max"}));

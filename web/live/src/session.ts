@@ -2,7 +2,7 @@
 // What this page knows of the simulation at the moment. Parts of the page listen to what concerns them.
 import { understood, type Transport, type TransportListener } from './connection';
 import type { Scene } from './scene';
-import { encodeCommand, encodeHand, Kind, type Command, type Event, type Frame, type Hand, type Notice, type Status } from './wire';
+import { encodeCommand, encodeHand, Kind, type Command, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
 
 interface Topics {
   link: void;       // connected or not
@@ -11,6 +11,7 @@ interface Topics {
   frame: Frame;
   event: Event;
   notice: Notice;
+  map: LiveMap;     // of the template's holes
   restart: void;    // the needle is at a start: what happened before is over
 }
 
@@ -23,10 +24,11 @@ export class Session implements TransportListener {
   status: Status | null = null;
   scene: Scene | null = null;
   frame: Frame | null = null;
+  map: LiveMap | null = null;
   events: Event[] = [];           // since the start of time
   private letGo = false;          // the user gave the needle away: do not take it by itself
   private readonly listeners: { [K in keyof Topics]: ((what: Topics[K]) => void)[] } = {
-    link: [], status: [], scene: [], frame: [], event: [], notice: [], restart: [],
+    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], restart: [],
   };
 
   constructor(private readonly transport: Transport) {}
@@ -100,6 +102,9 @@ export class Session implements TransportListener {
         if (this.events.length > MOST_EVENTS) this.events.shift();
         return this.tell('event', message.event);
       case Kind.notice: return this.tell('notice', message.notice);
+      case Kind.map:
+        this.map = message.map;
+        return this.tell('map', message.map);
     }
   }
 

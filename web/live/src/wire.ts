@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The messages of docs/live_protocol.md. Decoding checks every length before it reads and returns what is wrong as text.
+import type { HoleMap } from '../../shared/hole_map';
 import type { Scene, SceneText } from './scene';
 
 export const SUBPROTOCOL = 'stylet-live-1';
 export const PROTOCOL = 1;
 
-export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, hand = 16, command = 17 }
+export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, hand = 16, command = 17 }
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
 export const SAMPLE_WORDS = 8;  // time, depth, axial, sagittal, lateral force, CPU time [µs], tip state, flags
 
@@ -53,18 +54,21 @@ export interface Status {
 }
 
 export interface Event { kind: string; time_s: number; depth_mm: number; force_N: number; region: string }
+export interface LiveMap { map: HoleMap | null; why_not: string; predicted: number; predicting: boolean }
 export interface Notice { text: string; cure: string }
 
 export type Command =
   | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' | 'drawn' }
   | { do: 'hole'; hole: string } | { do: 'insertion' | 'case'; index: number } | { do: 'step'; count: number }
-  | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number };
+  | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number }
+  | { do: 'predict'; on: 0 | 1 };
 
 export interface Hand { depth: number; speed: number; roll: number; tiltLeft: number; tiltAnterior: number }
 
 export type Message =
   | { kind: Kind.scene; scene: Scene } | { kind: Kind.frame; frame: Frame } | { kind: Kind.status; status: Status }
-  | { kind: Kind.event; event: Event } | { kind: Kind.notice; notice: Notice };
+  | { kind: Kind.event; event: Event } | { kind: Kind.notice; notice: Notice }
+  | { kind: Kind.map; map: LiveMap };
 
 export class WireError extends Error {}
 
@@ -153,6 +157,7 @@ export function decode(buffer: ArrayBuffer): Message | null {
     case Kind.status: return { kind: Kind.status, status: rest() as Status };
     case Kind.event: return { kind: Kind.event, event: rest() as Event };
     case Kind.notice: return { kind: Kind.notice, notice: rest() as Notice };
+    case Kind.map: return { kind: Kind.map, map: rest() as LiveMap };
     default: return null;
   }
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the program writes into the page (src/io/results/report/report_data.cpp), and its decoded form.
+import type { HoleMap } from '../../shared/hole_map';
 
 /** Arrays are base64 of little-endian numbers. */
 type Base64 = string;
 
 interface RawData {
+  map: HoleMap | null;
   steps: { count: number; time_s: Base64; depth_mm: Base64; axial_N: Base64; sagittal_N: Base64; lateral_N: Base64 };
   gland: { LR_mm: Base64; AP_mm: Base64; SI_mm: Base64 } | null;
   events: EventMark[];
@@ -68,6 +70,7 @@ export interface Frame {
 }
 
 export interface ReportData {
+  map: HoleMap | null;        // of the template's holes
   steps: Steps;
   gland: GlandPath | null;
   events: EventMark[];
@@ -102,6 +105,7 @@ export function decode(json: string): ReportData {
       lateral: floats(raw.steps.lateral_N),
     },
     gland: raw.gland && { lr: floats(raw.gland.LR_mm), ap: floats(raw.gland.AP_mm), si: floats(raw.gland.SI_mm) },
+    map: raw.map,
     events: raw.events,
     histogram: raw.histogram,
     points: floats(raw.surface.points_mm),

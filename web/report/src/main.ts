@@ -2,6 +2,7 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { decode } from './data';
+import { buildTemplatePictures } from './map/template_pictures';
 import { Moment } from './moment';
 import { buildCurvePlot, type CurveFamily } from './plots/curve_plot';
 import { forceCurves } from './plots/force_curves';
@@ -31,5 +32,7 @@ function buildCurves(name: string, family: CurveFamily): void {
 
 buildCurves('force', forceCurves(data));
 if (data.gland) buildCurves('gland', glandCurves(data, data.gland));
+const { map } = data;
+if (map) build('map-pictures', (b) => buildTemplatePictures(map, b));
 build('step-times', (b) => buildHistogram(data, b));
 build('viewer', (b) => buildViewer(data, moment, b));

@@ -3,6 +3,7 @@
 
 #include "report/narrative.hpp"
 #include "report/text.hpp"
+#include "stylet/io/hole_map_io.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -223,7 +224,8 @@ double largest_displacement(const std::vector<Frame>& frames, const SurfaceNodes
 
 }  // namespace
 
-std::string report_data(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments) {
+std::string report_data(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
+                        const HoleMap* map) {
   const SurfaceNodes surface(run.mesh, regions);
   const auto chosen = choose_frames(run.frames, surface.nodes.size());
   constexpr double kLargestInteger = 32767;
@@ -232,6 +234,7 @@ std::string report_data(const RunRecording& run, std::span<const RegionView> reg
   const Json json = {
       {"steps", steps_json(run.steps)},
       {"gland", gland_json(run)},
+      {"map", map ? Json::parse(hole_map_json(*map)) : Json(nullptr)},
       {"events", events_json(run.summary->events)},
       {"histogram", histogram_json(run.steps)},
       {"surface", surface_json(run.mesh, regions, surface)},

@@ -4,6 +4,7 @@
 #include "fixed_number.hpp"
 #include "report/assets.hpp"
 #include "report/gland_section.hpp"
+#include "report/map_section.hpp"
 #include "report/narrative.hpp"
 #include "report/page_template.hpp"
 #include "report/parameter_tables.hpp"
@@ -140,7 +141,7 @@ std::string versions(const RunRecording& run) {
 }  // namespace
 
 Result<std::string> report_html(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
-                                const Pictures& pictures) {
+                                const Pictures& pictures, const HoleMap* map) {
   std::string story, supports;
   for (const std::string& paragraph : tell_what_happened(run, moments)) story += "<p>" + html_prose(paragraph) + "</p>";
   for (const std::string& support : run.info.supports) supports += item(support);
@@ -158,6 +159,7 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"tiles", tiles(run, run.frames[moments.deepest])},
       {"warnings", warning_box(warnings)},
       {"gland", gland_section(run)},
+      {"map", map ? map_section(*map) : ""},
       {"pictures", picture_section(run, regions, moments, pictures)},
       {"events", event_rows(run.summary->events)},
       {"step_times", html_prose(tell_step_times(*run.summary))},
@@ -166,7 +168,7 @@ Result<std::string> report_html(const RunRecording& run, std::span<const RegionV
       {"parameters", parameter_tables(run.info.parameters)},
       {"scenario", html_escaped(run.info.scenario_text)},
       {"versions", versions(run)},
-      {"data", json_script_safe(report_data(run, regions, moments))},
+      {"data", json_script_safe(report_data(run, regions, moments, map))},
       {"js", script_safe(report_js())},
   };
   return fill_page(report_template(), slots, "report.html");

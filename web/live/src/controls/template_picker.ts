@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The guide template as one sees it from the feet: a click on a hole puts the needle there. Arrows move among the holes.
 import { element } from '../../../shared/dom';
+import { svg } from '../../../shared/svg';
 import { holes, type Hole, type Scene } from '../scene';
 import type { Session } from '../session';
 import type { HandControl } from '../hand';
-
-const SVG = 'http://www.w3.org/2000/svg';
-
-function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
-  const e = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) e.setAttribute(name, String(value));
-  return e;
-}
+import { TemplateMap } from './template_map';
 
 export class TemplatePicker {
   private readonly title = element('div', 'picker-title');
   private readonly grid = element('div', 'picker-grid');
+  private readonly map: TemplateMap;
   private list: { hole: Hole; mark: SVGGElement }[] = [];
   private columns = 0;
   private focused = 0;
@@ -29,7 +24,9 @@ export class TemplatePicker {
     }
     const hint = element('p', 'picker-hint',
       'Wheel over the 3D view or hold ↑ to push. Click a hole for another way in. ? lists all keys.');
-    root.append(this.title, this.grid, key, hint);
+    const colors = element('div', 'picker-map');
+    this.map = new TemplateMap(colors, session);
+    root.append(this.title, this.grid, key, colors, hint);
     session.on('scene', (scene) => this.build(scene));
     session.on('status', () => {
       hint.hidden = session.guest !== '';  // pushing would only be refused
@@ -44,6 +41,7 @@ export class TemplatePicker {
     const { template } = scene;
     if (!template) {
       this.grid.append(element('p', 'quiet', 'This case has no template.'));
+      this.map.setHoles(new Map());
       return;
     }
     const { columns, rows } = template;
@@ -63,6 +61,7 @@ export class TemplatePicker {
       label.textContent = name;
       picture.append(label);
     });
+    const marks = new Map<string, { group: SVGGElement; title: SVGTitleElement; name: string }>();
     const planned = new Map(scene.insertions.map((insertion) => [insertion.hole, insertion.name]));
     for (const hole of holes(template)) {
       const mark = svg('g', { class: 'hole', role: 'gridcell', tabindex: -1, transform: `translate(${x(hole.column)} ${y(hole.row)})` });
@@ -75,6 +74,7 @@ export class TemplatePicker {
       const title = svg('title', {});
       title.textContent = hole.name + (isPlanned ? ', planned' : '');
       mark.append(title);
+      marks.set(hole.name, { group: mark, title, name: title.textContent });
       const number = this.list.length;
       mark.addEventListener('click', () => this.choose(number));
       mark.addEventListener('keydown', (e) => this.key(e));
@@ -82,6 +82,7 @@ export class TemplatePicker {
       picture.append(mark);
     }
     this.grid.append(picture);
+    this.map.setHoles(marks);
     this.mark();
   }
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/hole_map.hpp"
+
+#include <string>
+
+namespace stylet::cli {
+
+/// What `stylet insert --map` prints: a table with a line for each hole, what the numbers mean, and what has to be said
+/// of single holes. Without the last line end.
+std::string map_text(const HoleMap& map);
+
+}  // namespace stylet::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/io/hole_map_io.hpp"
+
+#include "fixed_number.hpp"
+#include "gland_json.hpp"
+#include "output_folder.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace stylet {
+using namespace results;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kMapDigits = 6;  // mm: a nanometre
+
+std::string field(const std::optional<double>& value) { return value ? fixed(*value, kMapDigits) : ""; }
+
+std::string length_field(const std::optional<Vec3>& v) {
+  return v && v->allFinite() ? fixed(v->norm(), kMapDigits) : "";
+}
+
+/// Why there are no figures, or what is to be said of them.
+std::string remark_of(const HoleRow& row) {
+  if (!row.failed.empty()) return row.failed;
+  return row.prediction ? fmt::format("{}", fmt::join(row.prediction->remarks, " ")) : "";
+}
+
+Json hole_json(const HoleRow& row) {
+  Json clearance;
+  for (std::size_t i = 0; i < kSpared.size(); ++i)
+    clearance[to_string(kSpared[i])] = row.clearance_mm[i] ? Json(*row.clearance_mm[i]) : Json(nullptr);
+  const Prediction prediction = row.prediction.value_or(Prediction{});
+  return {{"hole", row.hole},
+          {"left_mm", row.left_mm},
+          {"anterior_mm", row.anterior_mm},
+          {"depth_mm", row.depth_mm},
+          {"in_target_mm", row.in_target_mm},
+          {"clearance_mm", clearance},
+          {"shift_at_break_mm", vector_json(prediction.shift_at_break_mm)},
+          {"shift_max_mm", vector_json(prediction.shift_max_mm)},
+          {"tip_error_mm", vector_json(prediction.tip_error_mm)},
+          {"predicted", row.prediction.has_value()},
+          {"remark", remark_of(row)}};
+}
+
+}  // namespace
+
+std::string hole_map_csv(const HoleMap& map) {
+  std::string text = "hole,left_mm,anterior_mm,depth_mm,in_target_mm";
+  for (const Spared structure : kSpared) text += fmt::format(",clearance_{}_mm", to_string(structure));
+  text += ",shift_at_break_mm,shift_max_mm,tip_error_mm,remark\n";
+  for (const HoleRow& row : map.holes) {
+    text += row.hole;
+    for (const double value : {row.left_mm, row.anterior_mm, row.depth_mm, row.in_target_mm})
+      text += "," + fixed(value, kMapDigits);
+    for (const auto& clearance : row.clearance_mm) text += "," + field(clearance);
+    const Prediction prediction = row.prediction.value_or(Prediction{});
+    for (const auto& vector : {prediction.shift_at_break_mm, prediction.shift_max_mm, prediction.tip_error_mm})
+      text += "," + length_field(vector);
+    text += "," + csv_text(remark_of(row)) + "\n";
+  }
+  return text;
+}
+
+std::string hole_map_json(const HoleMap& map) {
+  Json holes = Json::array();
+  for (const HoleRow& row : map.holes) holes.push_back(hole_json(row));
+  const Json json{{"columns", map.columns}, {"rows", map.rows},       {"pitch_mm", map.pitch_mm},
+                  {"planned", map.planned}, {"missing", map.missing}, {"holes", std::move(holes)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace stylet

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/map_section.hpp"
+
+#include "fixed_number.hpp"
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::results {
+namespace {
+
+std::string map_cell(const std::optional<double>& mm, int digits) {
+  return "<td class=\"number\">" + (mm ? fixed(*mm, digits) : "–") + "</td>";
+}
+
+std::optional<double> length(const std::optional<Vec3>& v) { return v ? std::optional(v->norm()) : std::nullopt; }
+
+std::string rows(const HoleMap& map) {
+  constexpr int kWayDigits = 1;    // mm: of straight ways
+  constexpr int kShiftDigits = 2;  // mm: of what is predicted
+  std::string html;
+  for (const HoleRow& row : map.holes) {
+    const bool has_way = row.depth_mm > 0.0;
+    const Prediction prediction = row.prediction.value_or(Prediction{});
+    std::vector<std::string> remarks = prediction.remarks;
+    if (!row.failed.empty()) remarks.push_back(row.failed);
+    html += fmt::format("<tr{}><td>{}</td>", row.hole == map.planned ? " class=\"planned\"" : "",
+                        html_escaped(row.hole) + (row.hole == map.planned ? " (planned)" : ""));
+    html += map_cell(has_way ? std::optional(row.depth_mm) : std::nullopt, kWayDigits);
+    html += map_cell(has_way ? std::optional(row.in_target_mm) : std::nullopt, kWayDigits);
+    for (const auto& clearance : row.clearance_mm) html += map_cell(clearance, kWayDigits);
+    for (const auto& vector : {prediction.shift_at_break_mm, prediction.shift_max_mm, prediction.tip_error_mm})
+      html += map_cell(length(vector), kShiftDigits);
+    html += "<td>" + html_prose(fmt::format("{}", fmt::join(remarks, " "))) + "</td></tr>";
+  }
+  return html;
+}
+
+std::string tell_missing(const HoleMap& map) {
+  std::string text;
+  for (const Spared structure : missing_structures(map))
+    text += fmt::format(" There is no {} in this model.", to_string(structure));
+  return text;
+}
+
+}  // namespace
+
+std::string map_section(const HoleMap& map) {
+  return "<section aria-labelledby=\"map\"><h2 id=\"map\">A map before the needle</h2><p>" +
+         html_prose(fmt::format(
+             "What a needle through each hole of the template comes near to on its straight way, and what it does: the "
+             "same needle was inserted through each of the {} holes that lead into the gland. The straight way of the "
+             "other {} misses the gland; they are small dots. In every picture dark is what to beware of, and the "
+             "number is the value in millimetres.",
+             map.holes.size(), map.missing)) +
+         html_escaped(tell_missing(map)) +
+         "</p><p>Seen from the patient’s feet: the patient’s right is on the left, anterior is up. The planned hole "
+         "has a frame. Hold the pointer over a hole for all that is known of it.</p>"
+         "<div class=\"templates needs-script\" id=\"map-pictures\"></div>"
+         "<details open><summary>All numbers</summary><div class=\"scroll tall-table\"><table class=\"parameters "
+         "map\"><thead>"
+         "<tr><th rowspan=\"2\">Hole</th><th class=\"number\" rowspan=\"2\">Depth [mm]</th>"
+         "<th class=\"number\" rowspan=\"2\">In the gland [mm]</th><th colspan=\"3\">Clearance [mm] to</th>"
+         "<th colspan=\"2\">Shift of the gland [mm]</th><th class=\"number\" rowspan=\"2\">Tip error [mm]</th>"
+         "<th rowspan=\"2\">Remark</th></tr><tr><th class=\"number\">bone</th><th class=\"number\">urethra</th>"
+         "<th class=\"number\">rectum</th><th class=\"number\">at break</th><th class=\"number\">at most</th></tr>"
+         "</thead><tbody>" +
+         rows(map) +
+         "</tbody></table></div></details><p><em>Clearance</em> is between the needle’s surface and the structure, "
+         "along the whole straight way from the skin to the planned tip; 0 is through it. <em>Shift</em> is that of "
+         "the "
+         "gland as a whole just before its capsule breaks, and at most on the way in. <em>Tip error</em> is the "
+         "distance "
+         "in the tissue from where the tip was to be at its deepest to where it is. A dash: there is no such figure. "
+         "The "
+         "same numbers are in <code>map.csv</code>. Do not plan or judge a treatment by this map.</p></section>";
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map_maker.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <new>
+#include <utility>
+
+namespace stylet::serve {
+
+namespace {
+
+/// The loop, the pictures, the field of displacements and a browser beside it come first.
+constexpr int kNiceOfMaps = 15;
+
+/// Nobody wants what is being made.
+struct Unwanted {};
+
+}  // namespace
+
+MapMaker::MapMaker(const std::shared_ptr<const Model>& model, PlanOfHole plan_of)
+    : plan_of_(std::move(plan_of)),
+      scenario_(model->scenario()),
+      mesh_(model->mesh()),
+      thread_([this, model = model]() mutable {
+        (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceOfMaps);  // threads that it starts inherit it
+        make(model);
+        model.reset();  // its compliance takes room that only the needle that moves needs
+        while (const auto hole = next_hole()) predict(*hole);
+        done_.store(true, std::memory_order_release);
+      }) {}
+
+MapMaker::~MapMaker() { give_up(); }
+
+void MapMaker::want_predictions(bool wanted) {
+  {
+    const std::scoped_lock lock(mutex_);
+    wanted_ = wanted;
+    state_.predicting = wanted && state_.map && state_.predicted < static_cast<int>(state_.map->holes.size());
+    changed_ = true;
+  }
+  woken_.notify_all();
+}
+
+void MapMaker::give_up() {
+  {
+    const std::scoped_lock lock(mutex_);
+    given_up_ = true;
+  }
+  woken_.notify_all();
+}
+
+std::optional<LiveMap> MapMaker::news() {
+  const std::scoped_lock lock(mutex_);
+  if (!std::exchange(changed_, false)) return std::nullopt;
+  return state_;
+}
+
+void MapMaker::make(const std::shared_ptr<const Model>& model) {
+  auto ways = map_ways(*model, plan_of_, "the template");
+  const std::scoped_lock lock(mutex_);
+  if (ways) {
+    state_.map = std::move(*ways);
+    for (const HoleRow& row : state_.map->holes) state_.predicted += row.failed.empty() ? 0 : 1;
+    state_.predicting = wanted_;
+  } else {
+    state_.why_not = ways.error().what;
+  }
+  changed_ = true;
+}
+
+/// Waits until a hole is to be predicted. Empty: none ever will.
+std::optional<std::size_t> MapMaker::next_hole() {
+  std::unique_lock lock(mutex_);
+  woken_.wait(lock, [this] { return given_up_ || wanted_; });
+  if (given_up_ || !state_.map) return std::nullopt;
+  const auto& holes = state_.map->holes;
+  // The planned hole is what somebody looks at first.
+  std::optional<std::size_t> next;
+  for (std::size_t i = 0; i < holes.size(); ++i) {
+    if (holes[i].prediction || !holes[i].failed.empty()) continue;
+    if (holes[i].hole == state_.map->planned) return i;
+    if (!next) next = i;
+  }
+  return next;
+}
+
+void MapMaker::predict(std::size_t hole) {
+  const auto plan = [this, hole] {
+    const std::scoped_lock lock(mutex_);
+    return plan_of_(state_.map->holes[hole].hole);
+  }();
+  const Progress progress = [this](std::string_view /*stage*/, double /*fraction*/) {
+    if (given_up_ || !wanted_) throw Unwanted();
+  };
+  std::optional<Result<Prediction>> predicted;
+  try {
+    predicted = predict_hole(scenario_, mesh_, plan, targets_, progress);
+  } catch (const Unwanted&) {
+    return;
+  } catch (const std::bad_alloc&) {
+    predicted = failure("hole " + plan.hole.value_or(""), "there is too little memory to insert a needle", "");
+  }
+  const std::scoped_lock lock(mutex_);
+  HoleRow& row = state_.map->holes[hole];
+  if (*predicted) {
+    row.prediction = std::move(**predicted);
+  } else {
+    row.failed = predicted->error().what;
+  }
+  ++state_.predicted;
+  state_.predicting = wanted_ && state_.predicted < static_cast<int>(state_.map->holes.size());
+  changed_ = true;
+}
+
+}  // namespace stylet::serve

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/sim/prediction.hpp"
+
+#include "base_steps.hpp"
+#include "stylet/core/flush_denormals.hpp"
+#include "stylet/sim/gland_watch.hpp"
+#include "stylet/sim/harms.hpp"
+#include "stylet/sim/simulation.hpp"
+#include "stylet/sim/unbroken_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+
+constexpr long kReportEvery = 64;     // steps
+constexpr std::size_t kMostKept = 3;  // motions of targets, each with its model
+
+std::vector<std::string> names_of_target(const Model& model) {
+  std::vector<std::string> names;
+  for (const int region : model.target_regions())
+    names.push_back(model.mesh().regions[static_cast<std::size_t>(region)]);
+  return names;
+}
+
+/// Whether the same region has been entered before: once is enough to be told.
+bool has_entered(const std::vector<Event>& events, const Event& event) {
+  return std::any_of(events.begin(), events.end(), [&](const Event& before) {
+    return before.kind == event.kind && before.kind == EventKind::region_entered && before.region == event.region;
+  });
+}
+
+}  // namespace
+
+Result<TargetMotion> KnownTargets::of(const std::shared_ptr<const Model>& model, const Progress& progress) {
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const Known& known : known_) {
+      if (auto shared = known.motion.shared_with(*model)) return std::move(*shared);
+    }
+  }
+  auto motion = TargetMotion::of(*model, progress);
+  if (!motion) return motion;
+  const std::scoped_lock lock(mutex_);
+  if (known_.size() < kMostKept && motion->shared_with(*model)) known_.push_back({model, *motion});
+  return motion;
+}
+
+Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTargets& targets, const Progress& progress) {
+  const FlushDenormals flush;  // as run() does
+  const PlannedInsertion& insertion = model->insertions().front();
+  const BaseSteps motion = planned_steps(*model, insertion);
+  const long deepest = deepest_step(*model, insertion, motion);
+
+  std::optional<TargetMotion> target;
+  std::optional<GlandWatch> gland;
+  if (!model->target_regions().empty()) {
+    auto response = targets.of(model, progress);
+    if (!response) return response.error();
+    target = std::move(*response);
+    gland.emplace(names_of_target(*model));
+  }
+
+  Simulation simulation(model);
+  UnbrokenSurface unbroken;
+  std::vector<Event> events;
+  long without_balance = 0;
+  for (long k = 1; k <= deepest; ++k) {
+    simulation.prepare();
+    const Step& step = simulation.step(motion.base(k), motion.dt_s(k));
+    if ((step.flags & Step::kDistrusted) != 0) ++without_balance;
+    unbroken.add(simulation);
+    for (const Event& event : simulation.new_events()) {
+      if (!has_entered(events, event)) events.push_back(event);
+    }
+    if (gland) {
+      const TargetMotion::Moment now = target->now(simulation.insertion());
+      gland->add(step, simulation.new_events(), now.motion, now.at_rest, k == deepest);
+    }
+    if (k % kReportEvery == 0)
+      report(progress, "inserting " + insertion.name, static_cast<double>(k) / static_cast<double>(deepest));
+  }
+
+  Prediction result;
+  if (gland) {
+    const GlandMotion moved = gland->result();
+    result.shift_at_break_mm = moved.shift_at_break_mm;
+    result.shift_max_mm = moved.shift_max_mm;
+  }
+  result.tip_error_mm = tip_error_mm(simulation.insertion(), simulation.last_step());
+  result.remarks = harms(events);
+  if (auto warning = unbroken.warning()) result.remarks.push_back(std::move(*warning));
+  if (without_balance > 0) {
+    result.remarks.push_back(fmt::format(
+        "In {} of {} steps needle and tissue found no balance; a smaller run.dt_ms helps.", without_balance, deepest));
+  }
+  return result;
+}
+
+}  // namespace stylet

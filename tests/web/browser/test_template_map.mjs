@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The template's colours: how near a needle would come to what it is to spare, at once; what it would do, on request.
+import assert from 'node:assert/strict';
+import { after, before } from 'node:test';
+import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, until, waitUntilReady } from './browser.mjs';
+import { makeFolder, SMALL, startServer } from './server.mjs';
+
+skipWithoutChromium();
+const test = inOrder();
+const { folder, remove } = makeFolder();
+let server, browser, page, problems;
+
+before(async () => {
+  server = await startServer(folder, { options: SMALL });
+  browser = await openBrowser({ webgl: false });
+  ({ page, problems } = await openVisitor(browser, server.url));
+  await waitUntilReady(page);
+});
+after(async () => {
+  await browser?.close();
+  await server?.kill();
+  remove();
+});
+
+const choice = () => page.getByLabel('What the colours of the holes mean');
+const mapped = () => page.locator('.hole .mapped:not(.unknown):not(.through)').count();
+/** What the pointer over a hole tells. */
+const told = (name) => page.evaluate((hole) => [...document.querySelectorAll('.hole title')].map((t) => t.textContent)
+  .find((text) => new RegExp(`^(Hole )?${hole.replace('.', '\\.')}(\\n|,|$)`).test(text)), name);
+
+test('clearances are there without being asked for', async () => {
+  await choice().waitFor();
+  await until('coloured holes', mapped, (count) => count > 20);
+  assert.match(await told('e3.5'), /mm deep, .* in the gland\nClearance to bone: .* mm\nClearance to the urethra: .*\nClearance to the rectum: /);
+  assert.match(await told('A1'), /misses the gland/);
+  const ends = await page.locator('.map-scale .ticks span').allTextContents();
+  assert.deepEqual(ends, ['✕ 0 mm: through it', '20 mm or more']);
+  assert.ok(await page.locator('.hole .through').count() > 0, 'ways through a structure have a cross');
+  await keepPicture(page, 'template-clearance');
+});
+
+test('the colours can be changed and taken away', async () => {
+  const fills = () => page.locator('.hole .mapped:not(.through)').evaluateAll((all) => all.map((e) => e.getAttribute('fill')).join());
+  const nearest = await fills();
+  await choice().selectOption('bone');
+  assert.notEqual(await fills(), nearest);
+  await choice().selectOption('');
+  assert.equal(await page.locator('.hole .mapped').count(), 0);
+  await choice().selectOption('tip');
+  assert.equal(await mapped(), 0, 'nothing is predicted yet');
+  assert.ok(await page.locator('.hole .unknown').count() > 20);
+  assert.equal(await page.locator('.map-state').textContent(), 'Not predicted yet.');
+});
+
+test('predictions come one by one, the planned hole first, and can be stopped', async () => {
+  await page.getByRole('button', { name: 'Predict shift' }).click();
+  await until('a first prediction', mapped, (count) => count > 0);
+  assert.match(await told('e3.5'), /Largest gland shift: [\d.]+ mm\nTip error: [\d.]+ mm/);
+  assert.match(await page.locator('.map-state').textContent(), /^Hole \d+ of \d+ …$/);
+  await keepPicture(page, 'template-predicted');
+  await page.getByRole('button', { name: 'Stop', exact: true }).click();
+  await page.getByRole('button', { name: 'Predict shift' }).waitFor();
+  const count = await mapped();
+  await page.waitForTimeout(3000);
+  assert.ok((await mapped()) <= count + 1, 'no more than the one that was being made');
+});
+
+test('a replay has no map, and the live needle has it back', async () => {
+  await page.locator('.hole', { has: page.locator('title', { hasText: /^Hole d3\.5\n/ }) }).click();
+  await page.locator('.picker-title', { hasText: 'needle in d3.5' }).waitFor();
+  assert.ok((await mapped()) > 0, 'another hole is the same patient');
+  await page.getByRole('button', { name: 'Recordings' }).click();
+  await page.getByRole('button', { name: 'Replay' }).last().click();
+  await until('no colours', () => page.locator('.hole .mapped').count(), (count) => count === 0);
+  await page.getByRole('button', { name: 'Back to the live needle' }).click();
+  await until('colours again', mapped, (count) => count > 0);
+  assert.deepEqual(problems, []);
+});

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The guide template as one sees it from the patient's feet, once for each quantity of the map, with its numbers.
+import { element } from '../../../shared/dom';
+import { colorsOf, isKnown, MEASURES, scaleEnd, scaleGradient, scaleWords, shortText, tellOf, type HoleMap, type Measure } from '../../../shared/hole_map';
+import { svg } from '../../../shared/svg';
+
+function title(text: string): SVGTitleElement {
+  const t = svg('title', {});
+  t.textContent = text;
+  return t;
+}
+
+function draw(map: HoleMap, measure: Measure): SVGSVGElement {
+  const { columns, rows } = map;
+  const picture = svg('svg', {
+    viewBox: `0 0 ${columns.length + 1.2} ${rows.length + 1.2}`, class: 'template', role: 'img',
+    'aria-label': `${measure.label} at each hole of the template; the table below has the numbers`,
+  });
+  const x = (i: number) => i + 1.5;
+  const y = (j: number) => rows.length - 1 - j + 0.6;
+  const label = (text: string, at: [number, number]) => {
+    const t = svg('text', { x: at[0], y: at[1] + 0.2, class: 'name' });
+    t.textContent = text;
+    picture.append(t);
+  };
+  columns.forEach((name, i) => label(name, [x(i), rows.length + 0.45]));
+  rows.forEach((name, j) => label(name, [0.5, y(j)]));
+  const end = scaleEnd(measure, map);
+  const byName = new Map(map.holes.map((h) => [h.hole, h]));
+  rows.forEach((row, j) => columns.forEach((column, i) => {
+    const mapped = byName.get(column + row);
+    if (!mapped) {
+      const dot = svg('circle', { cx: x(i), cy: y(j), r: 0.09, class: 'missing' });
+      dot.append(title(`Hole ${column + row}: its straight way misses the gland`));
+      picture.append(dot);
+      return;
+    }
+    const mm = measure.of(mapped);
+    const hole = svg('g', { transform: `translate(${x(i)} ${y(j)})` });
+    const colors = mm === null ? { fill: 'none', text: '' } : colorsOf(measure, end, mm);
+    hole.append(svg('circle', { r: 0.46, fill: colors.fill, class: mm === null ? 'unknown' : 'known' }));
+    if (mapped.hole === map.planned) hole.append(svg('rect', { x: -0.5, y: -0.5, width: 1, height: 1, class: 'planned' }));
+    const number = svg('text', { y: 0.13, fill: colors.text, class: 'value' });
+    number.textContent = mm === null ? '–' : shortText(mm);
+    if (mm === null) number.setAttribute('class', 'value unknown');
+    hole.append(number, title(tellOf(mapped)));
+    picture.append(hole);
+  }));
+  return picture;
+}
+
+function scale(map: HoleMap, measure: Measure): HTMLElement {
+  const box = element('div', 'colorbar');
+  const strip = element('div', 'strip');
+  strip.style.background = scaleGradient(measure);
+  const ticks = element('div', 'ticks');
+  for (const words of scaleWords(measure, scaleEnd(measure, map))) ticks.append(element('span', '', words));
+  box.append(strip, ticks);
+  return box;
+}
+
+/** Fills the box with a picture for each quantity that the map knows something of. */
+export function buildTemplatePictures(map: HoleMap, box: HTMLElement): void {
+  for (const measure of MEASURES) {
+    const figure = element('figure');
+    figure.append(element('figcaption', '', `${measure.label} [mm]`));
+    if (isKnown(measure, map)) figure.append(draw(map, measure), scale(map, measure));
+    else figure.append(element('p', 'note', measure.clearance ? 'This model does not have the structure.' : 'There is no such figure for any hole.'));
+    box.append(figure);
+  }
+}
