@@ -53,7 +53,7 @@ void NearFieldCompliance::reset() {
   softness_.assign(1, 1.0);
   points_ = 1;
   ++version_;
-  wide_is_old_ = true;
+  wide_at_.reset();
   tip_tet_ = -1;
   tip_element_.reset();
   A_.setZero();
@@ -123,7 +123,6 @@ void NearFieldCompliance::write_wide_of_tip() {
   write_symmetric(wide_, kTip, kTip, far + softness_.front() * tip_wide_correction(*kernel_, tip, tip.mesh_kernel));
   for (int d = 1; d < points_; ++d) write_wide_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   wide_at_ = tip.piece.centre;
-  wide_is_old_ = false;
 }
 
 ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const Vec3& x, Placement /*placement*/,
@@ -168,8 +167,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   }
   write_symmetric(A_, kTip, kTip, (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, tip.mesh_kernel));
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
-  if (knows_wide() && (wide_is_old_ || (x - wide_at_).squaredNorm() > kWideReach_mm * kWideReach_mm))
-    write_wide_of_tip();
+  if (knows_wide() && (!wide_at_ || (x - *wide_at_).squaredNorm() > kWideReach_mm * kWideReach_mm)) write_wide_of_tip();
   stiffening_MPa_ = 0.0;
   if (!region_stiffening_MPa_.empty())
     stiffening_MPa_ =

@@ -7,6 +7,7 @@
 #include "stylet/fem/tissue.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace stylet {
@@ -31,7 +32,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
-  void begin_sub_step() override { wide_is_old_ = true; }
+  void begin_sub_step() override { wide_at_.reset(); }
   void enter_by(double force, const Vec3& direction) override {
     press_N_ = force;
     entry_ = direction;
@@ -78,8 +79,7 @@ class NearFieldCompliance final : public ContactCompliance {
   std::vector<NearPlace> places_;              ///< (points)
   std::vector<double> softness_;               ///< (points) softness_in_mesh(), where wide() is kept
   int capacity_;                               ///< of points, tip included
-  bool wide_is_old_ = true;                    ///< the tip's part of it, with the next place
-  Vec3 wide_at_ = Vec3::Zero();                ///< [mm] place of the tip for which it was made
+  std::optional<Vec3> wide_at_;                ///< [mm] the tip that wide() is of; empty: its next place is
   int tip_tet_ = -1;
   TipElement tip_element_;
   // g between the nodes of the tip's element and the points, for E = 1 MPa, as it is asked for.
