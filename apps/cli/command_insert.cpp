@@ -209,7 +209,7 @@ Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress
   return run;
 }
 
-/// What --json prints: the summary, and the map where there is one.
+/// The JSON document that --json prints: the summary, and the map where there is one.
 Result<Json> result_json(const std::filesystem::path& folder, const std::optional<HoleMap>& map) {
   Result<Json> json = written_summary(folder);
   if (json && map) (*json)["map"] = Json::parse(hole_map_json(*map));

@@ -27,7 +27,7 @@ struct VolumeMotion {
   double dilation = 0.0;                                                   ///< (1/V) ∫ div u dV
 };
 
-/// What a turn by a finite angle adds to the linear displacement ω × r, which stretches what it turns:
+/// The displacement that a turn by a finite angle adds to the linear displacement ω × r, which stretches what it turns:
 ///   (R − I) r − ω × r = ω × (ω × r) / (1 + cos θ),  |ω| = sin θ,
 /// R being the rotation about ω by θ (Rodrigues). @param omega sine of the angle along the axis, at most 1 long
 /// @param r [mm] from the centre of the turn @return [mm]

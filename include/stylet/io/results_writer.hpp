@@ -24,7 +24,7 @@ class ResultsWriter {
 
   Result<> add_step(const Step& step);
   Result<> add_frame(const Frame& frame);
-  /// What is known of the other holes of the template; finish() writes it as map.csv.
+  /// Keeps the map of the template's holes; finish() writes it as map.csv.
   void add_map(HoleMap map);
   /// Writes all files. Progress covers the pictures.
   /// @param pictures still pictures in the report; without them it has its interactive view only

@@ -50,7 +50,7 @@ struct LiveEvent {
   std::string region;
 };
 
-/// What is known by now of the holes of the case's template.
+/// The map of the case's template, as far as it has been made.
 struct LiveMap {
   std::optional<HoleMap> map{};  ///< empty until the clearances are there, and where there can be none
   std::string why_not{};         ///< why there can be none; empty: there can

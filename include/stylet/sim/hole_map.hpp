@@ -30,7 +30,7 @@ struct HoleRow {
   std::string failed;                    ///< why there can be no way or no prediction; empty: nothing has failed
 };
 
-/// What is known before a needle goes in: the holes of a template from which a needle reaches the target, and what it
+/// The map before a needle goes in: the holes of a template from which a needle reaches the target, and what it
 /// would do there.
 struct HoleMap {
   std::vector<std::string> columns;  ///< of the template, from the patient's right to the left
@@ -70,7 +70,7 @@ Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const In
 void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& plan_of, HoleMap& map,
                    const Progress& progress = {});
 
-/// What stands against a map for a scenario, as an input error that names the key: it has to plan exactly one needle,
+/// The reason why a scenario can have no map, as an input error that names the key: it has to plan exactly one needle,
 /// through a hole of the template, and no recorded motion.
 /// @param where what to call the scenario in messages
 Result<> check_mappable(const Scenario& scenario, const std::string& where);

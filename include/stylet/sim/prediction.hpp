@@ -11,7 +11,7 @@
 
 namespace stylet {
 
-/// What a needle will do on its way in: the same numbers as those of a Summary.
+/// The figures of a needle's way in: the same numbers as those of a Summary.
 struct Prediction {
   std::optional<Vec3> shift_at_break_mm;  ///< GlandMotion::shift_at_break_mm; empty without a target, too
   std::optional<Vec3> shift_max_mm;       ///< GlandMotion::shift_max_mm; empty without a target

@@ -12,7 +12,7 @@ namespace stylet::results {
 /// LR, AP, SI and norm of a vector [mm]; null where there is none or it is not finite.
 nlohmann::ordered_json vector_json(const std::optional<Vec3>& v);
 
-/// What vector_json() made. Throws nlohmann's exceptions where it is something else.
+/// The vector that vector_json() wrote. Throws nlohmann's exceptions where it is something else.
 std::optional<Vec3> vector_of(const nlohmann::ordered_json& json);
 
 /// The key `gland` of summary.json (docs/results.md); null without a target.
