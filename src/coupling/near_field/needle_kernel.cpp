@@ -177,7 +177,7 @@ Mat3 NeedleKernel::dent(const NearSurface& surface, double press, const Medium& 
 
 Mat3 point_kernel(const Vec3& r, const NearSurface& skin_at, const NearSurface& skin_on, double epsilon,
                   const Medium& medium) {
-  const Mat3 G = kelvinlet(r, epsilon, medium);
+  Mat3 G = kelvinlet(r, epsilon, medium);
   if (skin_at.share + skin_on.share == 0.0) return G;
   return G + surface_image(r, skin_at, skin_on, epsilon, medium);
 }
