@@ -205,7 +205,7 @@ double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const 
     return g - (1.0 - least) *
                    point_kernel(Vec3::Zero(), place.skin, place.skin, NeedleKernel::kScale_mm, kernel.medium(own));
   });
-  return std::min(least_share(place.borders, place.blur, kernel.medium(place.medium).poisson),
+  return std::min(least_share_below(place.skin, place.borders, place.blur, kernel.medium(place.medium).poisson),
                   largest_share(far, taken));
 }
 

@@ -132,7 +132,9 @@ Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& bor
   return 0.5 * (both + both.transpose());
 }
 
-double least_share(const NearBorders& borders, double epsilon, double poisson) {
+namespace {
+
+double least_share_of(std::span<const NearBorder> borders, double epsilon, double poisson) {
   double softer = 1.0;
   double harder = 0.0;
   for (const NearBorder& border : borders) {
@@ -145,6 +147,17 @@ double least_share(const NearBorders& borders, double epsilon, double poisson) {
     }
   }
   return 1.0 / (1.0 / softer + harder);
+}
+
+}  // namespace
+
+double least_share(const NearBorders& borders, double epsilon, double poisson) {
+  return least_share_of(borders, epsilon, poisson);
+}
+
+double least_share_below(const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson) {
+  const auto all = all_borders(skin, borders);
+  return least_share_of(all, epsilon, poisson) / least_share_of(std::span(all).first(1), epsilon, poisson);
 }
 
 Mat3 NeedleKernel::tip_self(const NearSurface& surface, const Medium& medium) const {

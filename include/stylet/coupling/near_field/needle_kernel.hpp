@@ -72,6 +72,10 @@ Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& bor
 /// direction in which that is least; on a border as far as it moves the tissue beyond.
 double least_share(const NearBorders& borders, double epsilon, double poisson);
 
+/// least_share() of a kernel that has the image of a free surface already: with both, over that with the surface alone.
+/// A surface that lies beyond softer tissue adds less than it would in one medium.
+double least_share_below(const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson);
+
 /// The medium's kernel between two points, of a force spread over epsilon [mm], with the image of a free surface near
 /// them [mm/N]. @param r [mm] from the force to the point that it moves @param skin_at surface nearest to that point
 Mat3 point_kernel(const Vec3& r, const NearSurface& skin_at, const NearSurface& skin_on, double epsilon,
