@@ -66,7 +66,7 @@ export class KeyFigures {
     this.peak.set(this.largest.toFixed(2), 'Largest axial force since the needle was put to its start');
     if (!this.gland) return;
     const { shift: [lr, ap, si], rotation: [sagittal, coronal, transverse] } = this.gland;
-    this.shift.set(length([lr, ap, si]).toFixed(2), 'Mean shift of the gland’s surface: ' +
+    this.shift.set(length([lr, ap, si]).toFixed(2), 'Mean shift of the gland’s surface as it is drawn (a report has the shift of its volume, up to a fifth more): ' +
       [part(si, 2, ' mm', 'superior', 'inferior'), part(ap, 2, ' mm', 'posterior', 'anterior'), part(lr, 2, ' mm', 'left', 'right')].join(', '));
     this.turn.set(length([sagittal, coronal, transverse]).toFixed(1), 'Rigid rotation of the gland’s surface: ' +
       [part(coronal, 2, '° coronal, base to the', 'left', 'right'), part(sagittal, 2, '° sagittal, base to', 'anterior', 'posterior'),
