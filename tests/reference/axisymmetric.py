@@ -102,3 +102,13 @@ def pushed(lines, way_mm, step):
         sys.exit("CalculiX failed:\n" + done.stdout[-2000:] + done.stderr[-2000:])
     # CalculiX computes a wedge of two degrees.
     return [(float(share), -180.0 * float(force)) for share, force in found]
+
+
+def material(solid, young_MPa, poisson):
+    """Lines of a material: linear, neo-Hookean, or Yeoh's with C20 = C10; of both C10 = μ/2 and D1 = 2/K."""
+    c10 = 0.25 * young_MPa / (1.0 + poisson)
+    d1 = 6.0 * (1.0 - 2.0 * poisson) / young_MPa
+    none = 1e12  # a volume's higher terms
+    return {"linear": ["*ELASTIC", f"{young_MPa}, {poisson}"],
+            "neo-hooke": ["*HYPERELASTIC, NEO HOOKE", f"{c10}, {d1}"],
+            "yeoh": ["*HYPERELASTIC, YEOH", f"{c10}, {c10}, 0, {d1}, {none}, {none}"]}[solid]

@@ -27,7 +27,7 @@ import pathlib
 import re
 import sys
 
-from axisymmetric import RADIUS_MM, Mesh, away, pushed, radii
+from axisymmetric import RADIUS_MM, Mesh, away, material, pushed, radii
 
 FAT_MM = 12.0
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
@@ -43,15 +43,6 @@ STRENGTHS_N = (1.0, 2.0, 3.0, 4.0, 4.5)
 TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "capsule_behind_fat.inc"
 
 
-def material(solid, young_MPa):
-    c10 = 0.25 * young_MPa / (1.0 + POISSON)
-    d1 = 6.0 * (1.0 - 2.0 * POISSON) / young_MPa
-    none = 1e12  # a volume's higher terms
-    return {"linear": ["*ELASTIC", f"{young_MPa}, {POISSON}"],
-            "neo-hooke": ["*HYPERELASTIC, NEO HOOKE", f"{c10}, {d1}"],
-            "yeoh": ["*HYPERELASTIC, YEOH", f"{c10}, {c10}, 0, {d1}, {none}, {none}"]}[solid]
-
-
 def forces(solid, way_mm, held=BLOCK, grid=None, fat=None, slides=True):
     """[(depth mm, N)] on the way down. held: distances of side and bottom. grid: smallest element and growth. fat: its solid,
     where it is another. slides: the hole's wall stays at the rod, else it bears nothing at all."""
@@ -59,7 +50,7 @@ def forces(solid, way_mm, held=BLOCK, grid=None, fat=None, slides=True):
     side_mm, below_mm = held
     heights = sorted({*away(0.0, -below_mm, smallest, growth), *away(0.0, FAT_MM, smallest, growth)})
     mesh = Mesh(radii(side_mm, smallest, growth), heights, lambda height: "GLAND" if height < 0.0 else "FAT")
-    lines = mesh.deck({"GLAND": material(solid, GLAND_MPA), "FAT": material(fat or solid, FAT_MPA)})
+    lines = mesh.deck({"GLAND": material(solid, GLAND_MPA, POISSON), "FAT": material(fat or solid, FAT_MPA, POISSON)})
     lines += ["*BOUNDARY"] + [f"{n}, 1, 2" for n in mesh.rim]
     lines += [f"{n}, 1, 1" for n in mesh.axis + mesh.end + (mesh.wall if slides else [])]
     step = ["*STEP", "*STATIC, SOLVER=SPOOLES"]

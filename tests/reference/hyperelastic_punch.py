@@ -25,7 +25,7 @@ import pathlib
 import re
 import sys
 
-from axisymmetric import RADIUS_MM, Mesh, away, pushed, radii
+from axisymmetric import RADIUS_MM, Mesh, away, material, pushed, radii
 
 YOUNG_MPA = 30e-3
 HELD_MM = 60.0
@@ -39,15 +39,6 @@ CASES = [(place, solid, poisson)
          for place, solid in (("inside", "yeoh"), ("surface", "yeoh"), ("inside", "neo-hooke")) for poisson in (0.45, 0.49)]
 
 
-def material(solid, poisson):
-    c10 = 0.25 * YOUNG_MPA / (1.0 + poisson)
-    d1 = 6.0 * (1.0 - 2.0 * poisson) / YOUNG_MPA
-    none = 1e12  # a volume's higher terms
-    return {"linear": ["*ELASTIC", f"{YOUNG_MPA}, {poisson}"],
-            "neo-hooke": ["*HYPERELASTIC, NEO HOOKE", f"{c10}, {d1}"],
-            "yeoh": ["*HYPERELASTIC, YEOH", f"{c10}, {c10}, 0, {d1}, {none}, {none}"]}[solid]
-
-
 def forces(place, solid, poisson, way_mm, held_mm):
     """[(depth mm, N)] on the way down."""
     inside = place == "inside"
@@ -58,7 +49,7 @@ def forces(place, solid, poisson, way_mm, held_mm):
     heights = {*along(0.0, -held_mm, -HELD_MM), *(along(0.0, held_mm, HELD_MM) if inside else [0.0])}
     mesh = Mesh(radii(held_mm, SMALLEST_MM, GROWTH, [HELD_MM] if held_mm > HELD_MM else []), sorted(heights), lambda height: "TISSUE")
     held = mesh.rim + (mesh.top if inside else [])
-    lines = mesh.deck({"TISSUE": material(solid, poisson)})
+    lines = mesh.deck({"TISSUE": material(solid, YOUNG_MPA, poisson)})
     lines += ["*BOUNDARY"] + [f"{n}, 1, 2" for n in held] + [f"{n}, 1, 1" for n in mesh.axis + mesh.end + mesh.wall]
     step = ["*STEP", "*STATIC"]
     if solid != "linear":

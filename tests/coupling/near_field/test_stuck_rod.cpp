@@ -89,7 +89,7 @@ TEST(StuckRod, a_shaft_held_over_its_whole_length_is_as_stiff_as_one_that_is_mes
       auto built = Tissue::build(std::move(mesh), {{kYoung_MPa, poisson}}, fixed, {}, Element::nodal_pressure);
       ASSERT_TRUE(built) << built.error().message();
       const auto tissue = std::make_shared<const Tissue>(std::move(*built));
-      // What the patches of the mesh's kernel leave out grows with Poisson's ratio.
+      // The patches of the mesh's kernel end after three rings, and the error of that grows with Poisson's ratio.
       const double allowed = poisson < 0.47 ? 0.025 : 0.045;
       for (const StuckRod& rod : kRods) {
         if (rod.poisson != poisson) continue;
