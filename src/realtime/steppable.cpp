@@ -29,6 +29,7 @@ Pose SimulationSteppable::base() const noexcept { return simulation_.insertion()
 StepOutcome SimulationSteppable::step(const Pose& base, double dt) noexcept {
   const Step& step = simulation_.step(base, dt);
   regions_.follow(simulation_.insertion());
+  tip_.follow(simulation_.insertion(), step);
   return {{step.hand_force_N, step.torque_Nmm}, (step.flags & Step::kDistrusted) == 0};
 }
 
@@ -60,6 +61,7 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   out.forces_left_out = static_cast<int>(forces - kept);
   out.region_count = static_cast<int>(
       regions_.now(simulation_.insertion(), out.step.tip_state, std::span(contacts_).first(found), out.regions));
+  out.tip_error = tip_.deepest();
 }
 
 bool SimulationSteppable::record(Step& out) noexcept {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "runner_parts.hpp"
+#include "sim/base_steps.hpp"
 #include "sim/box_patient.hpp"
 #include "stylet/realtime/scripted_device.hpp"
 
@@ -141,6 +142,42 @@ TEST(SimulationSteppable, shows_what_the_simulation_says) {
   Pose none;
   none.origin.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(body.step(none, 4e-3).trusted);
+}
+
+TEST(SimulationSteppable, has_the_tip_error_that_a_report_has_and_keeps_it_while_the_needle_is_drawn_back) {
+  const std::shared_ptr<const Model> model = one_second();
+  SimulationSteppable body(model);
+  const PlannedInsertion& plan = model->insertions()[0];
+  const BaseSteps motion = planned_steps(*model, plan);
+  const long deepest = deepest_step(*model, plan, motion);
+  std::optional<TipError> at_deepest;
+  int grew = 0;
+  int kept = 0;
+  Snapshot shown;
+  for (long k = 1; k <= motion.count; ++k) {
+    body.step(motion.base(k), motion.dt_s(k));
+    body.describe(shown);
+    const Step& step = body.simulation().last_step();
+    const auto now = tip_error_mm(body.simulation().insertion(), step);
+    ASSERT_EQ(shown.tip_error.has_value(), now.has_value()) << "step " << k << ", " << to_string(step.tip_state);
+    if (!now) continue;
+    if (k <= deepest) {
+      ASSERT_EQ(shown.tip_error->mm, *now) << "step " << k;
+      ASSERT_EQ(shown.tip_error->base_depth_mm, step.base_depth_mm);
+      at_deepest = shown.tip_error;
+      ++grew;
+    } else if (step.base_depth_mm < at_deepest->base_depth_mm - 0.1) {
+      ASSERT_EQ(shown.tip_error->mm, at_deepest->mm) << "step " << k;
+      ++kept;
+    }
+  }
+  EXPECT_GT(grew, 100);
+  EXPECT_GT(kept, 50);
+  EXPECT_FALSE(shown.tip_error) << "the needle is out";
+  const Finished finished(model);
+  ASSERT_TRUE(finished.summary.tip_error_mm && at_deepest);
+  EXPECT_LT((at_deepest->mm - *finished.summary.tip_error_mm).norm(), 1e-9);
+  EXPECT_LT(at_deepest->mm.z(), -0.1) << "the tissue gave way";
 }
 
 TEST(ScriptedDevice, follows_simulated_time_and_stamps_with_the_clock) {

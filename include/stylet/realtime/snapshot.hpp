@@ -4,9 +4,11 @@
 #include "stylet/realtime/device.hpp"
 #include "stylet/realtime/force_guard.hpp"
 #include "stylet/sim/recording.hpp"
+#include "stylet/sim/tip_watch.hpp"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace stylet {
 
@@ -58,6 +60,7 @@ struct Snapshot {
   std::array<ForceSnapshot, kForces> forces{};   ///< all that displaces the tissue: with them a DisplayField has it
   int region_count = 0;                          ///< used entries of `regions`
   std::array<std::int16_t, kRegions> regions{};  ///< of the mesh, that the needle is in; the tip's first
+  std::optional<TipError> tip_error;             ///< TipWatch::deepest()
   bool trusted = false;                          ///< the force may go to a device
   bool paused = false;                           ///< nothing moves until resume() or single_step()
   LoopCounters counters;

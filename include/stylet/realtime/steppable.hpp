@@ -5,6 +5,7 @@
 #include "stylet/realtime/needle_regions.hpp"
 #include "stylet/realtime/snapshot.hpp"
 #include "stylet/sim/simulation.hpp"
+#include "stylet/sim/tip_watch.hpp"
 
 #include <span>
 
@@ -61,6 +62,7 @@ class SimulationSteppable final : public Steppable {
   std::vector<ContactState> contacts_;  ///< room
   std::vector<TissueForce> forces_;     ///< room
   NeedleRegions regions_;
+  TipWatch tip_;
 };
 
 }  // namespace stylet
