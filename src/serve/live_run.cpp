@@ -211,6 +211,7 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   frame->tilt_anterior_deg = hand.tilt_anterior_deg;
   for (const Triple& point : s.centreline)
     for (const double value : point) frame->centreline.push_back(static_cast<float>(value));
+  frame->tip_error = s.tip_error;
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
   if (due) compute_displacement();
   if (load_) frame->left_out_N = std::max(load_->left_out_N(), near_.left_out_N());  // of the same forces

@@ -7,6 +7,7 @@
 #include "stylet/geom/topology.hpp"
 #include "stylet/io/region_views.hpp"
 #include "stylet/sim/harms.hpp"
+#include "wire.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -156,7 +157,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
   const auto centre = template_centre(mesh, targets, scenario.grid);
   const HandLimits limits = hand_limits(scenario);
   const Json text{
-      {"protocol", 1},
+      {"protocol", wire::kProtocol},
       {"version", version()},
       {"name", scenario.name},
       {"case", cases.open},

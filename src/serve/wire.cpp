@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 
 namespace stylet::serve::wire {
@@ -143,6 +144,9 @@ Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, 
   const Eigen::Quaterniond& q = step.base.rotation;
   out.put_floats(q.w(), q.x(), q.y(), q.z());
   out.put_floats(f.roll_deg, f.tilt_left_deg, f.tilt_anterior_deg, f.left_out_N, f.unit_mm);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const TipError tip = f.tip_error.value_or(TipError{Vec3::Constant(kNone), kNone});
+  out.put_floats(tip.mm.x(), tip.mm.y(), tip.mm.z(), tip.base_depth_mm);
   out.put_counts({f.centreline.size() / 3, f.contacts.size(), curve.size(), f.displacement.size() / 3});
   out.put_all(std::span<const float>(f.centreline));
   for (const ContactSnapshot& c : f.contacts) {

@@ -17,7 +17,8 @@
 /// The messages of docs/live_protocol.md, to bytes and back.
 namespace stylet::serve::wire {
 
-inline constexpr const char* kSubprotocol = "stylet-live-1";
+inline constexpr int kProtocol = 2;  ///< its version
+inline constexpr const char* kSubprotocol = "stylet-live-2";
 inline constexpr std::size_t kLongestMessage = 1024;  ///< of a page [bytes]
 
 enum class Kind : std::uint32_t {

@@ -61,7 +61,7 @@ class Viewer {
     beast::error_code error;
     beast::get_lowest_layer(socket).connect({boost::asio::ip::address_v4::loopback(), port}, error);
     socket.set_option(beast::websocket::stream_base::decorator([](beast::websocket::request_type& request) {
-      request.set(beast::http::field::sec_websocket_protocol, "stylet-live-1");
+      request.set(beast::http::field::sec_websocket_protocol, "stylet-live-2");
     }));
     if (!error) socket.handshake("localhost:" + std::to_string(port), "/live", error);
     if (error)

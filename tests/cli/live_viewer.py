@@ -18,7 +18,7 @@ class LiveViewer:
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall(f"GET /live?{at.query} HTTP/1.1\r\nHost: {at.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
-                            "Sec-WebSocket-Protocol: stylet-live-1\r\n\r\n".encode())
+                            "Sec-WebSocket-Protocol: stylet-live-2\r\n\r\n".encode())
         answer = self.socket.recv(1024).decode(errors="replace")
         if " 101 " not in answer.split("\r\n", 1)[0]:
             self.socket.close()

@@ -99,8 +99,8 @@ class LiveClient {
       depth_mm = at<float>(bytes, 44);
       force_N = at<float>(bytes, 48);
       most_N = std::max(most_N, force_N);
-      samples = at<std::uint32_t>(bytes, 140);
-      displaced_nodes = at<std::uint32_t>(bytes, 144);
+      samples = at<std::uint32_t>(bytes, 156);
+      displaced_nodes = at<std::uint32_t>(bytes, 160);
       ++frames;
     } else if (kind == 3) {
       status = nlohmann::json::parse(bytes + 8, bytes + size);

@@ -92,3 +92,14 @@ TEST(LiveRun, everybody_who_joins_during_a_pause_is_shown_the_displacement) {
     EXPECT_GT(largest_mm(*frame), 0.01);
   }
 }
+
+TEST(LiveRun, a_picture_has_the_tip_error_of_the_loop) {
+  const Paused paused(false);
+  const auto frame = paused.next(true);
+  ASSERT_TRUE(frame);
+  const auto& error = paused.run->runner().snapshot().tip_error;
+  ASSERT_TRUE(error && frame->tip_error);
+  EXPECT_EQ(frame->tip_error->mm, error->mm);
+  EXPECT_EQ(frame->tip_error->base_depth_mm, frame->step.base_depth_mm) << "the needle is deepest";
+  EXPECT_LT(error->mm.z(), -0.05) << "the tissue before the tip has given way";
+}

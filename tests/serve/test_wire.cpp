@@ -83,6 +83,7 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
   f.tilt_left_deg = 11;
   f.tilt_anterior_deg = 12;
   f.left_out_N = 0.75;
+  f.tip_error = TipError{{-0.5, 0.25, -3.5}, 66.5};
   f.centreline = {1, 1, 1, 2, 2, 2};
   f.contacts.push_back({{1, 2, 3}, {4, 5, 6}, 7.0, true, true});
   Eigen::Matrix3Xf u(3, 2);
@@ -110,6 +111,7 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
                             8.F,   9.F,  0.5F,   -0.5F,  0.5F, -0.5F, 10.F, 11.F, 12.F, 0.75F})
     EXPECT_EQ(r.number(), value);
   const float unit = r.number();
+  for (const float value : {-0.5F, 0.25F, -3.5F, 66.5F}) EXPECT_EQ(r.number(), value);
   for (const std::uint32_t value : {2U, 1U, 1U, 2U}) EXPECT_EQ(r.count(), value);
   for (const float value : {1.F, 1.F, 1.F, 2.F, 2.F, 2.F}) EXPECT_EQ(r.number(), value);
   for (const float value : {1.F, 2.F, 3.F, 4.F, 5.F, 6.F, 7.F}) EXPECT_EQ(r.number(), value);
@@ -118,6 +120,14 @@ TEST(Wire, a_frame_has_everything_where_the_protocol_says) {
   for (Eigen::Index k = 0; k < 2; ++k)
     for (Eigen::Index c = 0; c < 3; ++c)
       EXPECT_NEAR(unit * static_cast<float>(r.take<std::int16_t>()), u(c, k), 0.5F * unit);
+  EXPECT_TRUE(r.at_end());
+}
+
+TEST(Wire, a_tip_that_is_not_in_the_tissue_has_an_error_that_is_not_a_number) {
+  const wire::Bytes bytes = wire::encode(LiveFrame{}, {}, false, 1);
+  Reader r{bytes, 132};  // docs/live_protocol.md
+  for (int k = 0; k < 4; ++k) EXPECT_TRUE(std::isnan(r.number()));
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(r.count(), 0U);
   EXPECT_TRUE(r.at_end());
 }
 

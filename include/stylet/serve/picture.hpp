@@ -30,6 +30,7 @@ struct LiveFrame {
   std::uint32_t missed = 0;                                             ///< deadlines
   double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< of the hand
   double left_out_N = 0.0;                                              ///< far or near field is not shown, the larger
+  std::optional<TipError> tip_error;                                    ///< empty in a replay: not recorded
   std::vector<float> centreline;                                        ///< (3 p) [mm] LPS, base to tip
   std::vector<ContactSnapshot> contacts;
   std::vector<Step> curve;                 ///< steps since the last frame; with whole_curve all

@@ -21,7 +21,7 @@ function watchDisplacement(page, newest) {
   page.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => {
     if (payload.readUInt32LE(0) !== FRAME) return;
     newest.paused = (payload.readUInt32LE(16) & PAUSED) !== 0;
-    const nodes = payload.readUInt32LE(144);
+    const nodes = payload.readUInt32LE(160);
     if (nodes === 0) return;
     const unit = payload.readFloatLE(128);
     const u = (i) => payload.readInt16LE(payload.length - 6 * nodes + 2 * i) * unit;

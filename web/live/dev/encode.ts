@@ -3,6 +3,8 @@
 import { SAMPLE_WORDS, type Frame } from '../src/wire';
 import type { FakePatient } from './fake_patient';
 
+const FRAME_HEADER = 164;
+
 export function encodeText(kind: number, what: unknown): ArrayBuffer {
   const text = new TextEncoder().encode(JSON.stringify(what));
   const buffer = new ArrayBuffer(8 + text.length);
@@ -27,25 +29,25 @@ export function encodeScene({ text, points, corners }: FakePatient): ArrayBuffer
 /** `contacts` (4 × contacts) as the page has them decoded. */
 export function encodeFrame(f: Frame): ArrayBuffer {
   const [p, c, s, n] = [f.line.length / 3, f.contacts.length / 4, f.samples.length / SAMPLE_WORDS, f.displacement.length / 3];
-  const buffer = new ArrayBuffer(148 + 12 * p + 32 * c + 32 * s + 6 * n);
+  const buffer = new ArrayBuffer(FRAME_HEADER + 12 * p + 32 * c + 32 * s + 6 * n);
   const view = new DataView(buffer);
   view.setUint32(0, 2, true);
   view.setFloat64(8, f.time, true);
   const bits = [f.paused, f.replayed, f.trusted, f.shown, f.whole].reduce((sum, bit, i) => sum + (bit ? 1 << i : 0), 0);
   [bits, f.flags, f.tipState, f.sticking, f.iterations, f.steps, f.missed].forEach((v, i) => view.setUint32(16 + 4 * i, v, true));
-  const floats = [f.depth, ...f.force, ...f.torque, ...f.tip, ...f.base, ...f.orientation, ...f.hand, f.hidden, f.unit];
+  const floats = [f.depth, ...f.force, ...f.torque, ...f.tip, ...f.base, ...f.orientation, ...f.hand, f.hidden, f.unit, ...f.tipError, f.tipErrorDepth];
   floats.forEach((v, i) => view.setFloat32(44 + 4 * i, v, true));
-  [p, c, s, n].forEach((v, i) => view.setUint32(132 + 4 * i, v, true));
-  new Float32Array(buffer, 148, 3 * p).set(f.line);
+  [p, c, s, n].forEach((v, i) => view.setUint32(148 + 4 * i, v, true));
+  new Float32Array(buffer, FRAME_HEADER, 3 * p).set(f.line);
   for (let i = 0; i < c; i++) {
-    const at = 148 + 12 * p + 32 * i;
+    const at = FRAME_HEADER + 12 * p + 32 * i;
     for (let k = 0; k < 3; k++) {
       view.setFloat32(at + 4 * k, f.contacts[4 * i + k], true);
       view.setFloat32(at + 12 + 4 * k, f.contactForces[3 * i + k], true);
     }
     view.setUint32(at + 28, f.contacts[4 * i + 3], true);
   }
-  new Float32Array(buffer, 148 + 12 * p + 32 * c, 8 * s).set(f.samples);
-  new Int16Array(buffer, 148 + 12 * p + 32 * c + 32 * s, 3 * n).set(f.displacement);
+  new Float32Array(buffer, FRAME_HEADER + 12 * p + 32 * c, 8 * s).set(f.samples);
+  new Int16Array(buffer, FRAME_HEADER + 12 * p + 32 * c + 32 * s, 3 * n).set(f.displacement);
   return buffer;
 }

@@ -190,7 +190,9 @@ export class FakeServer implements Transport {
       tipState: this.depth > 0 ? 2 : 0, sticking: contacts.length / 4, iterations: 1, steps: this.steps, missed: this.options.has('late') ? 3 : 0,
       depth: this.depth, force: Float32Array.of(this.force, 0.15 * this.force, -0.08 * this.force), torque: new Float32Array(3),
       tip: Float32Array.from(tip), base: Float32Array.of(this.entry[0], this.entry[1], tip[2] - 200), orientation: Float32Array.of(1, 0, 0, 0),
-      hand: Float32Array.of(this.hand.roll, this.hand.tiltLeft, this.hand.tiltAnterior), hidden: 0, unit: UNIT, line,
+      hand: Float32Array.of(this.hand.roll, this.hand.tiltLeft, this.hand.tiltAnterior), hidden: 0, unit: UNIT,
+      tipError: this.depth > 0 && !this.replay ? Float32Array.of(tip[0] - this.entry[0] - 0.15 * pull, -0.1 * pull, -pull) : new Float32Array(3).fill(NaN),
+      tipErrorDepth: this.depth > 0 && !this.replay ? this.depth : NaN, line,
       contacts: Float32Array.from(contacts), contactForces: new Float32Array((3 * contacts.length) / 4), samples, displacement,
     };
   }

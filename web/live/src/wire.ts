@@ -3,8 +3,8 @@
 import type { HoleMap } from '../../shared/hole_map';
 import type { Scene, SceneText } from './scene';
 
-export const SUBPROTOCOL = 'stylet-live-1';
-export const PROTOCOL = 1;
+export const SUBPROTOCOL = 'stylet-live-2';
+export const PROTOCOL = 2;
 
 export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, hand = 16, command = 17 }
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
@@ -35,6 +35,8 @@ export interface Frame {
   hand: Float32Array;        // [degrees] roll, tilt to the left, tilt to anterior
   hidden: number;            // [N] whose displacement is not shown
   unit: number;              // [mm] of a unit of displacement
+  tipError: Float32Array;    // [mm] LPS, at the deepest step so far: where the tip was in the tissue less where it was to be; NaN: the tip is not in the tissue
+  tipErrorDepth: number;     // [mm] of the base in that step
   line: Float32Array;        // (3 × points) base to tip
   contacts: Float32Array;    // (4 × contacts) x y z, state 0 slipping, 1 sticking, 2 tip
   contactForces: Float32Array;  // (3 × contacts) on the tissue
@@ -75,7 +77,7 @@ export class WireError extends Error {}
 const COMPLIANCE_MISSING = 1 << 2;  // of Step::Flag
 const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
-const FRAME_HEADER = 148;
+const FRAME_HEADER = 164;
 const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000 };
 
 function must(holds: boolean, what: string): asserts holds {
@@ -115,7 +117,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
   const u = (word: number) => view.getUint32(16 + 4 * word, true);
   const floats = (offset: number, count: number) => new Float32Array(buffer, offset, count);
   const bits = u(0);
-  const [p, c, s, n] = [132, 136, 140, 144].map((offset) => view.getUint32(offset, true));
+  const [p, c, s, n] = [148, 152, 156, 160].map((offset) => view.getUint32(offset, true));
   must(p <= LIMITS.points && c <= LIMITS.contacts && s <= LIMITS.samples && n <= LIMITS.nodes, 'a frame of impossible size');
   const atContacts = FRAME_HEADER + 12 * p;
   const atSamples = atContacts + 32 * c;
@@ -139,6 +141,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
     depth: view.getFloat32(44, true),
     force: floats(48, 3), torque: floats(60, 3), tip: floats(72, 3), base: floats(84, 3), orientation: floats(96, 4), hand: floats(112, 3),
     hidden: view.getFloat32(124, true), unit: view.getFloat32(128, true),
+    tipError: floats(132, 3), tipErrorDepth: view.getFloat32(144, true),
     line: floats(FRAME_HEADER, 3 * p),
     contacts, contactForces,
     samples: floats(atSamples, SAMPLE_WORDS * s),
