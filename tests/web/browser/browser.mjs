@@ -78,6 +78,11 @@ export async function readout(page, label) {
   return Number(text.replace('−', '-'));
 }
 
+/** A large number by its name: "Peak force", "Tip error", …; NaN where there is none. */
+export async function figure(page, name) {
+  return Number(await page.locator('.figure').filter({ hasText: name }).locator('b').textContent());
+}
+
 /** Waits until what `ask` brings satisfies `good`, and returns it; fails with what it was last. */
 export async function until(what, ask, good, timeout = PATIENCE_MS) {
   const end = Date.now() + timeout;

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before } from 'node:test';
 import {
-  inOrder, keepPicture, listenToEvents, marked, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
+  figure, inOrder, keepPicture, listenToEvents, marked, openBrowser, openVisitor, readout, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
 } from './browser.mjs';
 import { shadesOf } from './png.mjs';
 import { makeFolder, startServer } from './server.mjs';
@@ -46,6 +46,7 @@ test('the page opens with the needle before the skin', async () => {
   await waitUntilReady(page);
   assert.equal(await readout(page, 'Axial'), 0);
   assert.ok((await readout(page, 'Depth')) < 0, 'the needle is before the skin');
+  assert.equal(await figure(page, 'Tip error'), NaN, 'the tip is not in the tissue');
   heard = await listenToEvents(page);
   await marked(page, '3D view');
   await keepPicture(page, 'start');
@@ -68,6 +69,9 @@ test('the wheel pushes the needle: skin and capsule resist, then give way', asyn
 
 test('the gland moves with the needle', async () => {
   await turnUntil(3, 'the tip within the gland', async () => (await readout(page, 'Depth')) > 55);
+  const error = await figure(page, 'Tip error');
+  assert.ok(error > 1 && error < 20, `tip error ${error} mm`);
+  assert.match(await page.locator('.figure').filter({ hasText: 'Tip error' }).getAttribute('title'), /mm inferior, .* mm (left|right)\. A seed/);
   await keepPicture(page, 'inserted');
   await page.getByText('View', { exact: true }).click();
   await page.getByLabel('Displacement').check();
@@ -129,6 +133,7 @@ test('the insertion can be replayed, its time slider dragged, and its curve save
   await drag(0.7);
   await untilReadout(page, 'Depth', (depth) => depth > 10);
   await page.mouse.up();
+  assert.equal(await page.locator('.figure').filter({ hasText: 'Tip error' }).isVisible(), false, 'a recording does not have it');
   await keepPicture(page, 'replay');
 
   const { name, bytes } = await download(() => page.locator('#replay').getByText('CSV').click());

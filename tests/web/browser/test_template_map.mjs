@@ -2,7 +2,9 @@
 // The template's colours: how near a needle would come to what it is to spare, at once; what it would do, on request.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
-import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, until, waitUntilReady } from './browser.mjs';
+import {
+  figure, inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady,
+} from './browser.mjs';
 import { makeFolder, SMALL, startServer } from './server.mjs';
 
 skipWithoutChromium();
@@ -63,6 +65,15 @@ test('predictions come one by one, the planned hole first, and can be stopped', 
   const count = await mapped();
   await page.waitForTimeout(3000);
   assert.ok((await mapped()) <= count + 1, 'no more than the one that was being made');
+});
+
+test('a needle that goes where one was predicted has the tip error that was predicted', async () => {
+  const predicted = Number(/Tip error: ([\d.]+) mm/.exec(await told('e3.5'))[1]);
+  const depth = Number(/([\d.]+) mm deep/.exec(await told('e3.5'))[1]);
+  await turnWheel(page, Math.round(depth) + 3);
+  await untilReadout(page, 'Depth', (now) => now === Math.round(depth));
+  const error = await until('an error as predicted', () => figure(page, 'Tip error'), (now) => Math.abs(now / predicted - 1) < 0.1);
+  assert.ok(predicted > 1, `${predicted} mm predicted, ${error} mm found`);
 });
 
 test('a replay has no map, and the live needle has it back', async () => {

@@ -28,7 +28,7 @@ export function makeHelp(session: Session): () => void {
   const reading = element('div', 'reading');
   for (const text of [
     'Drag the blue handle at the bottom, turn the wheel over the 3D view, or hold ↑.',
-    'Solid outlines are the organs as the needle moves them, dashed ones where they were. Over a section the wheel moves its plane, a drag the plane of the other section.',
+    'Solid outlines are the organs as the needle moves them, dashed ones where they were. A cross marks where the tip was to be, a ring the tissue it is in, both in the patient at rest: from one to the other is the tip error. Over a section the wheel moves its plane, a drag the plane of the other section.',
     'Transverse: the patient’s right is at the left of the picture. Sagittal: superior (the base of the gland) is at the left, as a transrectal probe shows it.',
     'A gamepad works too: left stick or triggers push, right stick tilts, shoulders turn the bevel.',
   ]) reading.append(element('p', '', text));

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clinics report, in large numbers: the largest force since the needle was put to its start, and where the gland is.
+// What clinics report, in large numbers: the largest force since the needle was put to its start, where the gland is, and by
+// how much the tip misses.
 import { element } from '../../../shared/dom';
 import { GlandFit, length } from '../gland_fit';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
+import { hasTipError, isDrawnBack } from '../tip_error';
 import { SAMPLE_WORDS, type Frame } from '../wire';
 
 const WRITE_EVERY_MS = 100;
@@ -36,15 +38,27 @@ function part(value: number, digits: number, unit: string, positive: string, neg
   return `${Math.abs(value).toFixed(digits)}${unit} ${value < 0 ? negative : positive}`;
 }
 
+/** The error of the tip [mm] to write, and in words what it is. */
+export function tipErrorText(frame: Frame): { text: string; title: string } {
+  if (!hasTipError(frame)) return { text: '–', title: 'The tip is not in the tissue' };
+  const [lr, ap, si] = frame.tipError;
+  const miss = 'Where the tip is in the tissue, less where a rigid straight needle would have put it in a patient that nothing has moved: ' +
+    [part(si, 2, ' mm', 'superior', 'inferior'), part(ap, 2, ' mm', 'posterior', 'anterior'), part(lr, 2, ' mm', 'left', 'right')].join(', ');
+  const when = isDrawnBack(frame) ? `Of the deepest point, at a depth of ${frame.tipErrorDepth.toFixed(1)} mm: the needle has been drawn back since`
+                                  : 'A seed dropped now would miss its place in the tissue by about as much';
+  return { text: length([lr, ap, si]).toFixed(2), title: `${miss}. ${when}.` };
+}
+
 export class KeyFigures {
   private readonly peak = new Figure('Peak force', 'N');
   private readonly shift = new Figure('Gland shift', 'mm');
   private readonly turn = new Figure('Gland turn', '°');
+  private readonly tip = new Figure('Tip error', 'mm');
   private largest = 0;  // [N]
   private gland: GlandFit | null = null;
 
-  constructor(root: HTMLElement, session: Session) {
-    root.append(this.peak.box, this.shift.box, this.turn.box);
+  constructor(root: HTMLElement, private readonly session: Session) {
+    root.append(this.peak.box, this.shift.box, this.turn.box, this.tip.box);
     const write = onRepaintEvery(WRITE_EVERY_MS, () => this.write());
     session.on('scene', (scene) => {
       this.gland = GlandFit.of(scene);
@@ -64,6 +78,12 @@ export class KeyFigures {
 
   private write(): void {
     this.peak.set(this.largest.toFixed(2), 'Largest axial force since the needle was put to its start');
+    const { frame } = this.session;
+    this.tip.box.hidden = frame?.replayed ?? false;  // recordings do not have it
+    if (frame) {
+      const { text, title } = tipErrorText(frame);
+      this.tip.set(text, title);
+    }
     if (!this.gland) return;
     const { shift: [lr, ap, si], rotation: [sagittal, coronal, transverse] } = this.gland;
     this.shift.set(length([lr, ap, si]).toFixed(2), 'Mean shift of the gland’s surface as it is drawn (a report has the shift of its volume, up to a fifth more): ' +

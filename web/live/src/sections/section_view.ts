@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One section, drawn as planning systems do: anterior up; transverse with the patient's right at the left of the picture,
 // sagittal with the base (superior) at the left, as a transrectal probe shows it. Letters at the edges say so.
-import { INK, SOFT } from '../../../shared/plot_style';
+import { INK, lineScale, SOFT } from '../../../shared/plot_style';
 import { roundDown } from '../../../shared/colors';
 import type { Anatomy } from '../anatomy';
 import { CanvasBox } from '../canvas_box';
 import { focusBounds, holes, regionTriangles, samePatient, type Hole, type Scene } from '../scene';
 import type { Session } from '../session';
+import type { Frame } from '../wire';
+import { makeEnds, tipErrorEnds } from '../tip_error';
+import { drawCross, drawLine, drawRing } from '../tip_error_shapes';
 import { ContourCutter } from './contour_cutter';
 import { crossing, tipOf } from './needle_crossing';
 import type { Plane } from './plane';
@@ -21,6 +24,7 @@ interface Section {
 const TIP_ROOM_MM = 3;
 const HIT = new Float32Array(3);
 const TIP = new Float32Array(3);
+const ENDS = makeEnds();
 
 export class SectionView {
   readonly box: CanvasBox;
@@ -234,6 +238,7 @@ export class SectionView {
       context.fill();
       context.stroke();
     } else {
+      this.drawTipError(frame, scene, r);
       context.beginPath();
       context.arc(this.u(tip[0], tip[2]), this.v(tip[1]), r, 0, 2 * Math.PI);
       context.fillStyle = '#f0e442';
@@ -243,6 +248,16 @@ export class SectionView {
       context.stroke();
     }
     context.restore();
+  }
+
+  /** In the undeformed patient, like the dashed outlines. */
+  private drawTipError(frame: Frame, scene: Scene, radius: number): void {
+    if (!tipErrorEnds(frame, scene.needle.length_mm, ENDS)) return;
+    const { context } = this.box;
+    const [planned, reached] = [ENDS.planned, ENDS.reached].map(([x, y, z]) => [this.u(x, z), this.v(y)] as const);
+    drawLine(context, planned, reached, lineScale());
+    drawRing(context, reached, 1.1 * radius);
+    drawCross(context, planned, 2 * radius, radius);
   }
 
   private drawLetters(): void {

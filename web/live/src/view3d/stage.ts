@@ -17,6 +17,7 @@ import { GlandGhost } from './gland_ghost';
 import { Pace } from './pace';
 import { RegionSurface } from './region_surface';
 import { TemplatePlate } from './template_plate';
+import { TipErrorMark } from './tip_error_mark';
 
 export class Stage {
   surfaces: RegionSurface[] = [];
@@ -24,6 +25,7 @@ export class Stage {
   readonly cut = new CutPlane();
   readonly template = new TemplatePlate();
   readonly ghost = new GlandGhost(this.cut.clipping);
+  readonly tipError = new TipErrorMark();
   readonly canvas: HTMLCanvasElement;
   onFirstPicture: () => void = () => {};
   private needle = new NeedleMesh(1.27);
@@ -48,7 +50,7 @@ export class Stage {
     this.renderer.localClippingEnabled = true;
     this.canvas = this.renderer.domElement;
     box.append(this.canvas);
-    this.scene.add(this.needle.object, this.contacts.object, this.cut.object, this.template.object, this.ghost.object);
+    this.scene.add(this.needle.object, this.contacts.object, this.cut.object, this.template.object, this.ghost.object, this.tipError.object);
     this.scene.add(new THREE.HemisphereLight('#ffffff', '#c8ccd2', 1.7));
     const lamp = new THREE.DirectionalLight('#ffffff', 1.6);
     lamp.position.set(-0.4, 0.7, 1);
@@ -83,6 +85,7 @@ export class Stage {
     this.cut.setSurfaces(this.surfaces, 20 * this.halfSize);
     this.template.setTemplate(scene.template);
     this.ghost.setScene(scene);
+    this.tipError.needleLength = scene.needle.length_mm;
     if (!again) this.look(VIEWS[0].from);
     this.resize();
     void this.renderer.compileAsync(this.scene, this.camera).then(() => {
@@ -100,6 +103,7 @@ export class Stage {
   showNeedle(frame: Frame): void {
     this.needle.show(frame.line);
     this.contacts.show(frame.line, frame.contacts);
+    this.tipError.show(frame);
     this.draw();
   }
 
@@ -125,6 +129,8 @@ export class Stage {
     if (width === 0 || height === 0 || !this.compiled) return;
     this.renderer.setViewport(0, 0, width, height);
     this.sortSurfaces();
+    const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
+    this.tipError.fit(pixelsPerMm, this.pace.ratio);
     this.renderer.render(this.scene, this.camera);
     if (!this.drawn) {
       this.drawn = true;
@@ -132,7 +138,6 @@ export class Stage {
       this.onFirstPicture();
     }
     this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
-    const pixelsPerMm = (height * this.camera.zoom) / (2 * this.halfSize);
     const mm = roundDown((0.16 * width) / pixelsPerMm);
     this.scaleBar(mm, mm * pixelsPerMm);
   }

@@ -11,6 +11,7 @@ import { samePatient } from '../scene';
 import { wheelNotches } from '../wheel';
 import type { Frame } from '../wire';
 import { CutControl } from './cut_control';
+import { tipErrorKey } from './tip_error_key';
 import type { RegionSurface } from './region_surface';
 import { Stage } from './stage';
 
@@ -195,10 +196,11 @@ export class ViewPanel {
     }
     const contacts = visibilityBox(stage, stage.contacts, 'Contact points');
     const ghost = visibilityBox(stage, stage.ghost, 'Gland before the insertion');
+    const tipError = visibilityBox(stage, stage.tipError, 'Tip error, in the patient at rest');
     this.cutControl = new CutControl(stage);
     const body = element('div', 'settings-body');
     body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,
-                element('h3', '', 'Shown'), this.list, ghost, contacts, contactKey());
+                element('h3', '', 'Shown'), this.list, ghost, tipError, tipErrorKey(), contacts, contactKey());
     this.settings.append(summary, body);
     const views = element('div', 'views');
     const names = ['Oblique', 'Left', 'Front', 'Feet'];
