@@ -66,7 +66,8 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
     for (const RegionLaws& laws : tissue.laws) stiffening_MPa.push_back(laws.stiffening_MPa);
   }
   return std::make_unique<NearFieldCompliance>(std::move(engine), tissue.store->shared_tissue(), tissue.kernel, needle,
-                                               capacity, std::move(stiffening_MPa), settings.creep.is_any());
+                                               capacity, std::move(stiffening_MPa), settings.creep.is_any(),
+                                               tissue.spread);
 }
 }  // namespace
 

@@ -162,6 +162,22 @@ Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& i
   return find_corridor(mesh, ways, coupling.corridor_mm, coupling.corridor_nodes);
 }
 
+/// As far as compliance is stored.
+std::vector<NeedleWay> ways_of(const std::vector<PlannedInsertion>& insertions) {
+  std::vector<NeedleWay> ways;
+  ways.reserve(insertions.size());
+  for (const PlannedInsertion& insertion : insertions)
+    ways.push_back({insertion.entry, insertion.direction, insertion.depth_mm + kBeyond_mm});
+  return ways;
+}
+
+/// Whether something asks which part of the tissue's answer is wider than a needle.
+bool knows_wide(const CouplingSettings& coupling, const std::vector<RegionLaws>& laws) {
+  if (coupling.method != CouplingSettings::Method::near_field) return false;
+  const auto stiffens = [](const RegionLaws& region) { return region.stiffening_MPa > 0.0; };
+  return coupling.creep.is_any() || (knows_stiffening(coupling) && std::any_of(laws.begin(), laws.end(), stiffens));
+}
+
 /// How far a tip moves tissue under a force: what is of the organs' scale follows it, what is of the needle's stiffens.
 double pressed_mm(const TissueParameters& t, double force_N, double needle_diameter_mm, const NearSurface& skin) {
   const Material material{t.young_kPa * 1e-3, t.poisson};
@@ -354,7 +370,20 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     } else if (!kernel->add_nodes(nodes, known->kernel)) {
       return input_error(where, "the near field that comes with it is not that of the corridor", kPrepareAgain);
     }
-    model->kernel_ = std::move(kernel);
+    model->near_field_.kernel = std::move(kernel);
+  }
+  if (knows_wide(model->coupling_, model->laws_)) {
+    const std::vector<NeedleWay> ways = ways_of(model->insertions_);
+    if (known && known->spread.size() > 0) {
+      model->near_field_.spread = SpreadCompliance::of(ways, std::move(known->spread));
+      if (!model->near_field_.spread)
+        return input_error(where, "the compliance along the needles' ways that comes with it is not theirs",
+                           kPrepareAgain);
+    } else {
+      auto spread = SpreadCompliance::solve(*model->tissue_, ways, progress);
+      if (!spread) return named(spread.error(), where);
+      model->near_field_.spread = std::make_shared<const SpreadCompliance>(std::move(*spread));
+    }
   }
   return std::shared_ptr<const Model>(std::move(model));
 }

@@ -17,8 +17,12 @@ constexpr int kNeedleSamples = 81;
 
 /// Compliance in copies, which share what the model has and grow on their own.
 InsertionTissue tissue_of(const Model& model) {
-  return {std::make_shared<ComplianceStore>(*model.store()), &model.locator(), model.laws(), model.inverse(),
-          model.kernel() ? std::make_shared<MeshKernel>(*model.kernel()) : nullptr};
+  return {std::make_shared<ComplianceStore>(*model.store()),
+          &model.locator(),
+          model.laws(),
+          model.inverse(),
+          model.kernel() ? std::make_shared<MeshKernel>(*model.kernel()) : nullptr,
+          model.spread()};
 }
 
 }  // namespace

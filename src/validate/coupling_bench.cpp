@@ -136,6 +136,7 @@ Result<CouplingRow> carry_out(const Case& one, const MeshedAnatomy& anatomy, dou
     row.offline_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     Offline made{{(*model)->store()->blocks(), {}}, row.offline_s};
     if ((*model)->kernel()) made.compliance.kernel = (*model)->kernel()->numbers();
+    if ((*model)->spread()) made.compliance.spread = (*model)->spread()->matrix();
     known[{one.method, one.element}] = std::move(made);
   }
   const auto run = record_run(*model, progress);

@@ -53,6 +53,11 @@ Result<MediumBlock> MediumBlock::build(const Options& options) {
   block.locator = std::make_unique<Locator>(block.tissue->mesh(), *block.topology);
   block.store = std::make_shared<ComplianceStore>(block.tissue);
   block.kernel = std::make_shared<MeshKernel>(block.tissue, *block.topology);
+  if (!options.ways.empty()) {
+    auto spread = SpreadCompliance::solve(*block.tissue, options.ways);
+    if (!spread) return spread.error();
+    block.spread = std::make_shared<const SpreadCompliance>(std::move(*spread));
+  }
   block.medium = {block.tissue->material(0).mu(), block.tissue->material(0).poisson};
   return block;
 }
@@ -75,7 +80,14 @@ void MediumBlock::prepare(const std::vector<Vec3>& points) {
 }
 
 NearFieldCompliance MediumBlock::compliance(const NeedleKernel& needle, int capacity) const {
-  return {std::make_unique<TrackCompliance>(store, *locator, capacity), tissue, kernel, needle, capacity};
+  return {std::make_unique<TrackCompliance>(store, *locator, capacity),
+          tissue,
+          kernel,
+          needle,
+          capacity,
+          {},
+          false,
+          spread};
 }
 
 MatX MediumBlock::reactions(const Vec3& x) const {

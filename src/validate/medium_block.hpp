@@ -25,6 +25,7 @@ struct MediumBlock {
         faces_at_z{};  ///< [mm] planes onto which the nearest layers of nodes are moved, for an interface
     std::function<bool(const Vec3&)> also_held = [](const Vec3&) { return false; };
     Element element = Element::p1;
+    std::vector<NeedleWay> ways{};  ///< along which the wide part is that of spread forces; none: nowhere
   };
   static constexpr double kHalf_mm = 50.0;
   static constexpr double kYoung_MPa = 0.01;
@@ -62,7 +63,8 @@ struct MediumBlock {
   std::unique_ptr<Locator> locator;
   std::shared_ptr<ComplianceStore> store;
   std::shared_ptr<MeshKernel> kernel;
-  Medium medium;  ///< of the first region
+  std::shared_ptr<const SpreadCompliance> spread;  ///< null without ways
+  Medium medium;                                   ///< of the first region
 
  private:
   [[nodiscard]] std::vector<Index> corners_around(const std::vector<Vec3>& points) const;

@@ -40,6 +40,7 @@ struct BlockOptions {
   CouplingSettings coupling;
   double needle_length = 150.0;
   std::function<std::unique_ptr<Needle>(int load_capacity)> needle;  ///< instead of the usual beam
+  std::vector<NeedleWay> ways;  ///< along which the wide part of the near field is that of spread forces
 };
 
 struct Happened {
@@ -81,8 +82,12 @@ class NeedleInBlock {
     std::shared_ptr<const MatX> inverse;
     if (options.coupling.engine != CouplingSettings::Engine::condensed)
       inverse = std::make_shared<const MatX>(paper::full_inverse(*tissue));
-    insertion = std::make_unique<Insertion>(InsertionTissue{store, locator.get(), options.laws, inverse},
-                                            std::move(needle), options.coupling);
+    std::shared_ptr<const SpreadCompliance> spread;
+    if (!options.ways.empty())
+      spread = std::make_shared<const SpreadCompliance>(SpreadCompliance::solve(*tissue, options.ways).value());
+    insertion =
+        std::make_unique<Insertion>(InsertionTissue{store, locator.get(), options.laws, inverse, nullptr, spread},
+                                    std::move(needle), options.coupling);
     length = options.needle_length;
   }
 

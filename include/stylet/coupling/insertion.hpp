@@ -11,6 +11,7 @@
 #include "stylet/coupling/step_phases.hpp"
 #include "stylet/coupling/track.hpp"
 #include "stylet/fem/compliance_store.hpp"
+#include "stylet/fem/spread_compliance.hpp"
 #include "stylet/needle/needle.hpp"
 
 #include <limits>
@@ -46,6 +47,7 @@ struct InsertionTissue {
   std::vector<RegionLaws> laws;           ///< one per region of the mesh
   std::shared_ptr<const MatX> inverse{};  ///< the full K⁻¹ (paper::full_inverse), for engines that keep it
   std::shared_ptr<MeshKernel> kernel{};   ///< of the mesh, for the near-field method
+  std::shared_ptr<const SpreadCompliance> spread{};  ///< along the needle's ways, for tissue that stiffens or creeps
 };
 
 /// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,

@@ -27,6 +27,7 @@ struct PlannedInsertion {
 struct ModelCompliance {
   MatX store;                  ///< [mm/N] (3c × 3c) K⁻¹ among the nodes of Tissue::corridor()
   std::vector<double> kernel;  ///< MeshKernel::numbers() of the corridor; empty without a near field
+  MatX spread;                 ///< SpreadCompliance::matrix(); empty where nothing stiffens or creeps
 };
 
 /// A scenario compiled: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable:
@@ -55,7 +56,10 @@ class Model {
   /// The full K⁻¹, for engines that keep it; else empty.
   [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
   /// Kernel of the mesh near the needles' ways, where coupling.method = "near-field"; empty otherwise.
-  [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return kernel_; }
+  [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return near_field_.kernel; }
+  /// What spread forces do along the needles' ways, where there is a near field in tissue that stiffens or creeps;
+  /// empty otherwise.
+  [[nodiscard]] const std::shared_ptr<const SpreadCompliance>& spread() const { return near_field_.spread; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
@@ -81,7 +85,10 @@ class Model {
   std::unique_ptr<Locator> locator_;
   std::shared_ptr<const ComplianceStore> store_;
   std::shared_ptr<const MatX> inverse_;
-  std::shared_ptr<const MeshKernel> kernel_;
+  struct {
+    std::shared_ptr<const MeshKernel> kernel;
+    std::shared_ptr<const SpreadCompliance> spread;
+  } near_field_;
   std::vector<RegionLaws> laws_;
   std::vector<TissueParameters> tissue_parameters_;  ///< by region
   CouplingSettings coupling_;

@@ -26,10 +26,10 @@ void write_symmetric(MatX& matrix, int point, int other, Mat3 block) {
 
 NearFieldCompliance::NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                                          std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle,
-                                         int capacity, std::vector<double> stiffening_MPa, bool creeps)
+                                         int capacity, std::vector<double> stiffening_MPa, bool creeps,
+                                         std::shared_ptr<const SpreadCompliance> spread)
     : far_(std::move(far)),
-      tissue_(std::move(tissue)),
-      kernel_(std::move(kernel)),
+      ground_{std::move(tissue), std::move(kernel), std::move(spread), -1},
       needle_(needle),
       region_stiffening_MPa_(std::move(stiffening_MPa)),
       capacity_(capacity + 1) {
@@ -54,6 +54,7 @@ void NearFieldCompliance::reset() {
   points_ = 1;
   ++version_;
   wide_at_.reset();
+  ground_.way = -1;
   tip_tet_ = -1;
   tip_element_.reset();
   A_.setZero();
@@ -67,10 +68,16 @@ void NearFieldCompliance::write_needle_scale() {
   needle_scale_.topRows(rows) = A_.topLeftCorner(rows, 3) - wide_.topLeftCorner(rows, 3);
 }
 
+SpreadCompliance::Place NearFieldCompliance::spread_place(const Vec3& x) {
+  if (!ground_.spread) return {};
+  if (ground_.way < 0) ground_.way = ground_.spread->way_near(x);
+  return ground_.spread->place(x, ground_.way);
+}
+
 bool NearFieldCompliance::available(Index base_tet) const {
-  const auto nodes = tissue_->nodes_of(base_tet);
+  const auto nodes = ground_.tissue->nodes_of(base_tet);
   return far_->available(base_tet) &&
-         std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return kernel_->has(node); });
+         std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return ground_.kernel->has(node); });
 }
 
 /// g between tip and another point: what the element's nodes have to do with the point stays while the tip goes
@@ -84,7 +91,7 @@ Mat3 NearFieldCompliance::of_mesh_at_tip(int point, int medium) {
     const std::size_t entry = tip_node_entry(number, point, medium);
     if (tip_node_known_[entry] == 0) {
       const Shape node{.count = 1, .node = {tip_element_.node(number)}, .weight = {1.0}};
-      tip_node_g_[entry] = mesh_kernel_between(*kernel_, node, on, medium);
+      tip_node_g_[entry] = mesh_kernel_between(*ground_.kernel, node, on, medium);
       tip_node_known_[entry] = 1;
     }
     sum += tip.weight[static_cast<std::size_t>(i)] * tip_node_g_[entry];
@@ -103,24 +110,39 @@ template <class OfMesh>
 void NearFieldCompliance::write_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
   const NearPlace& on = places_[static_cast<std::size_t>(other)];
-  write_symmetric(A_, point, other, (*far_)(point, other) + near_correction(*kernel_, at, on, g));
+  const double share = spread_share(at, on);
+  Mat3 block = Mat3::Zero();
+  if (share < 1.0) block += (1.0 - share) * ((*far_)(point, other) + near_correction(*ground_.kernel, at, on, g));
+  if (share > 0.0) block += share * ((*ground_.spread)(at.spread, on.spread) + narrow_part(*ground_.kernel, at, on));
+  write_symmetric(A_, point, other, block);
 }
 
 template <class OfMesh>
 void NearFieldCompliance::write_wide_block(int point, int other, const OfMesh& g) {
   const NearPlace& at = places_[static_cast<std::size_t>(point)];
   const NearPlace& on = places_[static_cast<std::size_t>(other)];
-  // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
-  const double soft =
-      std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
-  write_symmetric(wide_, point, other, (*far_)(point, other) + soft * wide_correction(*kernel_, at, on, g));
+  const double share = spread_share(at, on);
+  Mat3 block = Mat3::Zero();
+  if (share < 1.0) {
+    // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
+    const double soft =
+        std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
+    block += (1.0 - share) * ((*far_)(point, other) + soft * wide_correction(*ground_.kernel, at, on, g));
+  }
+  if (share > 0.0) block += share * (*ground_.spread)(at.spread, on.spread);
+  write_symmetric(wide_, point, other, block);
 }
 
 void NearFieldCompliance::write_wide_of_tip() {
   const NearPlace& tip = places_[kTip];
   const Mat3 far = (*far_)(kTip, kTip);
-  softness_.front() = softness_in_mesh(*kernel_, tip, far, tip.mesh_kernel);
-  write_symmetric(wide_, kTip, kTip, far + softness_.front() * tip_wide_correction(*kernel_, tip, tip.mesh_kernel));
+  softness_.front() = softness_in_mesh(*ground_.kernel, tip, far, tip.mesh_kernel);
+  const double share = spread_share(tip, tip);
+  Mat3 own = Mat3::Zero();
+  if (share < 1.0)
+    own += (1.0 - share) * (far + softness_.front() * tip_wide_correction(*ground_.kernel, tip, tip.mesh_kernel));
+  if (share > 0.0) own += share * (*ground_.spread)(tip.spread, tip.spread);
+  write_symmetric(wide_, kTip, kTip, own);
   for (int d = 1; d < points_; ++d) write_wide_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   wide_at_ = tip.piece.centre;
 }
@@ -130,23 +152,27 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   if (!available(at.tet)) return {-1, Refusal::missing};
   const Added added = far_->add(at, x, Placement::embedded);
   if (added.point < 0) return added;
-  NearPlace place = near_place(*tissue_, *kernel_, at, x);
+  NearPlace place = near_place(*ground_.tissue, *ground_.kernel, at, x);
   if (travel.squaredNorm() > 0.0) {
     place.piece.direction = travel.normalized();
     place.piece.length = needle_.segment_mm;
   }
   place.epsilon = needle_.shaft_epsilon();
-  place.share = least_share(place.borders, place.epsilon, kernel_->medium(place.medium).poisson);
+  const double poisson = ground_.kernel->medium(place.medium).poisson;
+  place.share = least_share(place.borders, place.epsilon, poisson);
+  place.wide_share = least_share(place.borders, NeedleKernel::kScale_mm, poisson);
+  place.spread = spread_place(x);
   places_.push_back(place);
   softness_.push_back(
-      knows_wide() ? softness_in_mesh(*kernel_, place, (*far_)(added.point, added.point), place.mesh_kernel) : 1.0);
+      knows_wide() ? softness_in_mesh(*ground_.kernel, place, (*far_)(added.point, added.point), place.mesh_kernel)
+                   : 1.0);
   ++points_;
   ++version_;
   for (int number = 0; number < kMostElementNodes; ++number) forget_tip_node(number, added.point, added.point + 1);
   for (int d = 0; d < points_; ++d) {
     const auto g = [&](int medium) -> Mat3 {
       if (d == kTip) return of_mesh_at_tip(added.point, medium).transpose();
-      return mesh_kernel_between(*kernel_, place.shape, places_[static_cast<std::size_t>(d)].shape, medium);
+      return mesh_kernel_between(*ground_.kernel, place.shape, places_[static_cast<std::size_t>(d)].shape, medium);
     };
     write_block(added.point, d, g);
     if (knows_wide()) write_wide_block(added.point, d, g);
@@ -159,13 +185,18 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   if (!available(at.tet)) return false;
   far_->move_tip(at, x);
   NearPlace& tip = places_[kTip];
-  tip = near_place(*tissue_, *kernel_, at, x);
-  take_tip_radii(needle_, *kernel_, tip);
+  tip = near_place(*ground_.tissue, *ground_.kernel, at, x);
+  take_tip_radii(needle_, *ground_.kernel, tip);
+  tip.spread = spread_place(x);
   if (at.tet != tip_tet_) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;
   }
-  write_symmetric(A_, kTip, kTip, (*far_)(kTip, kTip) + tip_correction(*kernel_, tip, tip.mesh_kernel));
+  const double share = spread_share(tip, tip);
+  Mat3 own = Mat3::Zero();
+  if (share < 1.0) own += (1.0 - share) * ((*far_)(kTip, kTip) + tip_correction(*ground_.kernel, tip, tip.mesh_kernel));
+  if (share > 0.0) own += share * ((*ground_.spread)(tip.spread, tip.spread) + tip_narrow_part(*ground_.kernel, tip));
+  write_symmetric(A_, kTip, kTip, own);
   for (int d = 1; d < points_; ++d) write_block(kTip, d, [&](int medium) { return of_mesh_at_tip(d, medium); });
   if (knows_wide() && (!wide_at_ || (x - *wide_at_).squaredNorm() > kWideReach_mm * kWideReach_mm)) write_wide_of_tip();
   stiffening_MPa_ = 0.0;
@@ -174,8 +205,9 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
         stiffening_of(tip, [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; });
   if (stiffens()) write_needle_scale();
   if (tip.skin.inwards.dot(entry_) > 0.0) {  // not the far surface, from inside
-    const Mat3 more = tip.moves * needle_.dent(tip.skin, press_N_, scaled(kernel_->medium(tip.medium), tip.young_MPa),
-                                               stiffening_MPa_);
+    const Mat3 more =
+        tip.moves *
+        needle_.dent(tip.skin, press_N_, scaled(ground_.kernel->medium(tip.medium), tip.young_MPa), stiffening_MPa_);
     A_.topLeftCorner<3, 3>() += more;
     if (stiffens()) needle_scale_.topRows<3>() += more;
   }
@@ -207,15 +239,15 @@ Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) 
 template <class Correction>
 VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const {
   VecX u = far_->displacement(forces);
-  for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
-    if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
+  for (Index node = 0; node < ground_.tissue->mesh().node_count(); ++node) {
+    if (ground_.tissue->is_fixed(node) || !ground_.kernel->has(node)) continue;
     const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
-    const NearPlace here = passive_place(*tissue_, *kernel_, own, tissue_->node_position(node));
+    const NearPlace here = passive_place(*ground_.tissue, *ground_.kernel, own, ground_.tissue->node_position(node));
     Vec3 sum = Vec3::Zero();
     for (int d = 0; d < points_; ++d) {
       if (forces.col(d).isZero(0.0)) continue;
       const NearPlace& on = places_[static_cast<std::size_t>(d)];
-      const auto g = [&](int medium) { return mesh_kernel_between(*kernel_, here.shape, on.shape, medium); };
+      const auto g = [&](int medium) { return mesh_kernel_between(*ground_.kernel, here.shape, on.shape, medium); };
       const NearPlace at = acted_on_by(here, on);
       sum += correction(at, d, g) * forces.col(d);
     }
@@ -226,20 +258,21 @@ VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces,
 
 VecX NearFieldCompliance::displacement(const Eigen::Ref<const MatX>& forces) const {
   VecX u = with_corrections(forces, [&](const NearPlace& at, int point, const auto& g) {
-    return near_correction(*kernel_, at, places_[static_cast<std::size_t>(point)], g);
+    return near_correction(*ground_.kernel, at, places_[static_cast<std::size_t>(point)], g);
   });
   if (!stiffens()) return u;
   const Vec3 press = forces.col(kTip);
   const Vec3 spared = press - tip_dent().under(press).linear;
-  for (Index node = 0; node < tissue_->mesh().node_count(); ++node) {
-    if (tissue_->is_fixed(node) || !kernel_->has(node)) continue;
+  for (Index node = 0; node < ground_.tissue->mesh().node_count(); ++node) {
+    if (ground_.tissue->is_fixed(node) || !ground_.kernel->has(node)) continue;
     const Shape own{.count = 1, .node = {node}, .weight = {1.0}};
-    const NearPlace here = passive_place(*tissue_, *kernel_, own, tissue_->node_position(node));
+    const NearPlace here = passive_place(*ground_.tissue, *ground_.kernel, own, ground_.tissue->node_position(node));
     const NearPlace& tip = places_[kTip];
     const NearPlace at = acted_on_by(here, tip);
-    const auto g = [&](int medium) { return mesh_kernel_between(*kernel_, here.shape, tip.shape, medium); };
-    u.segment<3>(3 * Eigen::Index{node}) -=
-        (near_correction(*kernel_, at, tip, g) - softness_.front() * wide_correction(*kernel_, at, tip, g)) * spared;
+    const auto g = [&](int medium) { return mesh_kernel_between(*ground_.kernel, here.shape, tip.shape, medium); };
+    u.segment<3>(3 * Eigen::Index{node}) -= (near_correction(*ground_.kernel, at, tip, g) -
+                                             softness_.front() * wide_correction(*ground_.kernel, at, tip, g)) *
+                                            spared;
   }
   return u;
 }
@@ -248,7 +281,7 @@ VecX NearFieldCompliance::wide_displacement(const Eigen::Ref<const MatX>& forces
   if (!knows_wide()) return displacement(forces);
   return with_corrections(forces, [&](const NearPlace& at, int point, const auto& g) -> Mat3 {
     const auto p = static_cast<std::size_t>(point);
-    return softness_[p] * wide_correction(*kernel_, at, places_[p], g);
+    return softness_[p] * wide_correction(*ground_.kernel, at, places_[p], g);
   });
 }
 

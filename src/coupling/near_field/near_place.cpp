@@ -139,6 +139,7 @@ void take_tip_radii(const NeedleKernel& needle, const MeshKernel& kernel, NearPl
   tip.epsilon = std::max(needle.tip_epsilon(tip.skin, poisson), needle.own_tip_epsilon({}, tip.borders, poisson));
   tip.own_epsilon = needle.own_tip_epsilon(tip.skin, tip.borders, poisson);
   tip.share = least_share(tip.borders, tip.epsilon, poisson);
+  tip.wide_share = least_share(tip.borders, NeedleKernel::kScale_mm, poisson);
 }
 
 NearPlace passive_place(const Tissue& tissue, const MeshKernel& kernel, const Shape& between, const Vec3& x) {
@@ -161,12 +162,19 @@ NearPlace acted_on_by(NearPlace here, const NearPlace& on) {
   return here;
 }
 
-bool needs_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on) {
+namespace {
+
+bool across_a_gap(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on) {
   const double edge = 0.5 * (at.edge + on.edge);
-  const double distance2 = (at.piece.centre - on.piece.centre).squaredNorm();
-  if (distance2 > kMostEdges * kMostEdges * edge * edge) return false;
-  if (at.moves * on.moves == 0.0) return false;
-  return distance2 >= edge * edge || touch(kernel, at.shape, on.shape);
+  return (at.piece.centre - on.piece.centre).squaredNorm() < edge * edge && !touch(kernel, at.shape, on.shape);
+}
+
+}  // namespace
+
+bool needs_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on) {
+  const double far = kMostEdges * 0.5 * (at.edge + on.edge);
+  if ((at.piece.centre - on.piece.centre).squaredNorm() > far * far) return false;
+  return at.moves * on.moves != 0.0 && !across_a_gap(kernel, at, on);
 }
 
 Mat3 mesh_kernel_between(const MeshKernel& kernel, const Shape& at, const Shape& on, int medium) {
@@ -194,6 +202,28 @@ Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& 
 Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g) {
   return between_media(tip, tip, [&](int medium) -> Mat3 {
     return tip_kernel(tip.skin, {}, NeedleKernel::kScale_mm, kernel.medium(medium)) - g;
+  });
+}
+
+Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on) {
+  if (across_a_gap(kernel, at, on)) return Mat3::Zero();
+  const bool together = at.region == on.region;
+  const double share = together ? std::sqrt(at.share * on.share) : 1.0;
+  const double wide_share = together ? std::sqrt(at.wide_share * on.wide_share) : 1.0;
+  const double epsilon = std::sqrt(at.epsilon * on.epsilon);
+  return between_media(at, on, [&](int number) -> Mat3 {
+    const Medium medium = kernel.medium(number);
+    return share * needle_kernel(at.piece, at.skin, on.piece, on.skin, epsilon, medium) -
+           wide_share *
+               point_kernel(at.piece.centre - on.piece.centre, at.skin, on.skin, NeedleKernel::kScale_mm, medium);
+  });
+}
+
+Mat3 tip_narrow_part(const MeshKernel& kernel, const NearPlace& tip) {
+  return between_media(tip, tip, [&](int number) -> Mat3 {
+    const Medium medium = kernel.medium(number);
+    return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, medium) -
+           tip_kernel(tip.skin, tip.borders, NeedleKernel::kScale_mm, medium);
   });
 }
 

@@ -6,7 +6,7 @@
 /// What a model file looks like inside (docs/models.md): shared by its writer and its reader.
 namespace stylet::detail {
 
-inline constexpr int kModelFileVersion = 2;
+inline constexpr int kModelFileVersion = 3;
 inline constexpr const char* kModelFileFormat = "stylet-model";
 inline constexpr const char* kModelExtension = ".stylet";
 /// Columns of the compliance that are written and read together.

@@ -80,6 +80,13 @@ class Reader {
     return mesh;
   }
 
+  /// As many rows as columns.
+  [[nodiscard]] MatX square(const std::string& name) const {
+    const std::uint64_t rows = of(name).shape.at(0);
+    const auto values = numbers<double>(name, {rows, rows});
+    return Eigen::Map<const MatX>(values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
+  }
+
   /// A symmetric matrix of which the lower triangle is in the file, column by column.
   [[nodiscard]] MatX symmetric(const std::string& name, Eigen::Index size, const Progress& progress) const {
     const Place place = of(name);
@@ -134,6 +141,7 @@ ModelFile content_of(const Json& index, const Reader& reader, const Progress& pr
     file.motions.push_back(motion_of(reader.numbers<double>(fmt::format("/motions/{}", i), {0, kMotionNumbers})));
   file.corridor = reader.numbers<Index>("/compliance/corridor", {0});
   file.compliance.kernel = reader.numbers<double>("/compliance/near_field_mm_per_N", {0});
+  file.compliance.spread = reader.square("/compliance/spread_mm_per_N");
   file.compliance.store =
       reader.symmetric("/compliance/blocks_mm_per_N", static_cast<Eigen::Index>(3 * file.corridor.size()), progress);
   return file;

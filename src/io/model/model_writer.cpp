@@ -47,7 +47,8 @@ std::string index_of(hid_t file, const ModelFile& content) {
                                  "/mesh/regions",
                                  "/compliance/corridor",
                                  "/compliance/blocks_mm_per_N",
-                                 "/compliance/near_field_mm_per_N"};
+                                 "/compliance/near_field_mm_per_N",
+                                 "/compliance/spread_mm_per_N"};
   for (std::size_t i = 0; i < content.motions.size(); ++i) names.push_back(fmt::format("/motions/{}", i));
   nlohmann::ordered_json arrays;
   for (const std::string& name : names) {
@@ -84,6 +85,9 @@ void write(const fs::path& path, const ModelFile& content, const Progress& progr
     h5::write_array(group, "corridor", H5T_NATIVE_INT, {&corridor, 1}, content.corridor.data());
     const hsize_t kernel = content.compliance.kernel.size();
     h5::write_array(group, "near_field_mm_per_N", H5T_NATIVE_DOUBLE, {&kernel, 1}, content.compliance.kernel.data());
+    const auto samples = static_cast<hsize_t>(content.compliance.spread.rows());
+    const std::array<hsize_t, 2> square{samples, samples};
+    h5::write_array(group, "spread_mm_per_N", H5T_NATIVE_DOUBLE, square, content.compliance.spread.data());
     write_store(group, content.compliance.store, progress);
   }
   const std::string index = index_of(file, content);
@@ -114,6 +118,7 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
   file.corridor = tissue.corridor();
   file.compliance.store = model.store()->blocks();
   if (model.kernel()) file.compliance.kernel = model.kernel()->numbers();
+  if (model.spread()) file.compliance.spread = model.spread()->matrix();
   file.belongs_to = compliance_origin(tissue);
   return write_whole(path, [&](const fs::path& temporary) -> Result<> {
     const h5::LibraryTurn turn;

@@ -4,6 +4,8 @@
 #include "coupling/needle_in_block.hpp"
 
 #include <iostream>
+#include <string>
+#include <tuple>
 
 namespace stylet {
 namespace {
@@ -70,7 +72,9 @@ BlockOptions fat_on_gland(int cells, double wide_mm, double capsule_N, double st
 }
 
 /// Pushes a needle straight in until the capsule breaks.
-NeedleInBlock until_it_breaks(const BlockOptions& options, const Vec3& entry = {2.0, 3.0, 0.0}) {
+/// @param planned whether the near field was told of its way
+NeedleInBlock until_it_breaks(BlockOptions options, bool planned, const Vec3& entry = {2.0, 3.0, 0.0}) {
+  if (planned) options.ways = {{entry, Vec3::UnitZ(), 50.0}};
   NeedleInBlock run(options);
   run.aim(entry, Vec3::UnitZ(), 0.0);
   while (run.count(EventKind::puncture, 1) == 0 && run.depth < 50.0) run.go(run.depth + 0.05, 10.0, 5e-3);
@@ -87,45 +91,57 @@ double depth_at(const NeedleInBlock& run, double force_N) {
   return run.depth;  // the step in which the capsule broke
 }
 
-class CapsuleBehindFat : public testing::TestWithParam<int> {};
+/// Cells along each side of the block, and whether the near field knows of the needle's way.
+using Mesh = std::tuple<int, bool>;
+class CapsuleBehindFat : public testing::TestWithParam<Mesh> {};
+
+std::string name(const Mesh& mesh) {
+  return std::to_string(std::get<0>(mesh)) + " cells, " + (std::get<1>(mesh) ? "on its way" : "without a way");
+}
 
 TEST_P(CapsuleBehindFat, of_linear_tissue_breaks_as_deep_as_finite_elements_say) {
+  const auto [cells, planned] = GetParam();
   constexpr double kCapsule_N = 0.6;  // of the preset `linear`
-  const NeedleInBlock run = until_it_breaks(fat_on_gland(GetParam(), kWide_mm, kCapsule_N, 0.0));
+  const NeedleInBlock run = until_it_breaks(fat_on_gland(cells, kWide_mm, kCapsule_N, 0.0), planned);
   for (const double strength : {0.3, kCapsule_N}) {
     const double expected = kFat_mm + kLinearDent[0] * strength;
     const double ours = depth_at(run, strength);
     EXPECT_NEAR(ours, expected, kLinearWithin_mm) << strength << " N";
-    std::cout << GetParam() << " cells, linear, " << strength << " N: " << ours << " mm, finite elements " << expected
+    std::cout << name(GetParam()) << ", linear, " << strength << " N: " << ours << " mm, finite elements " << expected
               << '\n';
   }
 }
 
 TEST_P(CapsuleBehindFat, that_stiffens_breaks_as_deep_as_finite_elements_of_a_yeoh_solid_say) {
+  const auto [cells, planned] = GetParam();
   constexpr double kCapsule_N = 4.5;
   // κ that goes with a Yeoh solid whose C20 is its C10 (docs/theory/stiffening.md, section 1).
-  const NeedleInBlock run = until_it_breaks(fat_on_gland(GetParam(), kWide_mm, kCapsule_N, 2.0));
+  const NeedleInBlock run = until_it_breaks(fat_on_gland(cells, kWide_mm, kCapsule_N, 2.0), planned);
   for (const double strength : {1.0, 2.0, 3.0, 4.0, kCapsule_N}) {
     const double ours = depth_at(run, strength);
     EXPECT_NEAR(ours, of_elements(strength), kWithin_mm) << strength << " N";
-    std::cout << GetParam() << " cells, stiffening, " << strength << " N: " << ours << " mm, finite elements "
+    std::cout << name(GetParam()) << ", stiffening, " << strength << " N: " << ours << " mm, finite elements "
               << of_elements(strength) << '\n';
   }
 }
 
 /// Wherever in an element the needle goes in.
 TEST_P(CapsuleBehindFat, on_a_half_space_breaks_as_deep_as_finite_elements_say) {
+  const auto [cells, planned] = GetParam();
+  // Spread forces are not corrected for the elements: those of 33 and 20 mm of the coarser blocks are too large for
+  // them.
+  if (planned && cells < 16) GTEST_SKIP() << "elements larger than the radius of the spread forces";
   constexpr double kCapsule_N = 4.5;
   const double expected = of_elements(kCapsule_N) + (kLinearDent[1] - kLinearDent[0]) * kCapsule_N;
-  const BlockOptions options = fat_on_gland(GetParam(), 2.0 * kWide_mm, kCapsule_N, 2.0);
+  const BlockOptions options = fat_on_gland(cells, 2.0 * kWide_mm, kCapsule_N, 2.0);
   for (const Vec3& entry : {Vec3(2.0, 3.0, 0.0), Vec3(-4.1, 7.7, 0.0), Vec3(0.3, -0.2, 0.0)}) {
-    const NeedleInBlock run = until_it_breaks(options, entry);
-    EXPECT_NEAR(run.depth, expected, kWideWithin_mm) << entry.transpose();
-    std::cout << GetParam() << " cells, twice as wide, in at " << entry.x() << " and " << entry.y() << ", "
+    const NeedleInBlock run = until_it_breaks(options, planned, entry);
+    EXPECT_NEAR(run.depth, expected, planned ? kWithin_mm : kWideWithin_mm) << entry.transpose();
+    std::cout << name(GetParam()) << ", twice as wide, in at " << entry.x() << " and " << entry.y() << ", "
               << kCapsule_N << " N: " << run.depth << " mm, finite elements " << expected << '\n';
   }
 }
-INSTANTIATE_TEST_SUITE_P(Meshes, CapsuleBehindFat, testing::Values(6, 10, 16));
+INSTANTIATE_TEST_SUITE_P(Meshes, CapsuleBehindFat, testing::Combine(testing::Values(6, 10, 16), testing::Bool()));
 
 }  // namespace
 }  // namespace stylet

@@ -275,8 +275,8 @@ TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
   const detail::SealedFile sealed(folder / "box.stylet", {});
   test::write_file(folder / "newer.stylet", test::content_of(folder / "box.stylet").substr(0, sealed.size()));
   detail::SealedFile::seal(folder / "newer.stylet",
-                           test::replaced(sealed.index(), "\"format_version\": 2", "\"format_version\": 3"));
-  EXPECT_SAYS(refusal(folder / "newer.stylet"), "version 3 of the format");
+                           test::replaced(sealed.index(), "\"format_version\": 3", "\"format_version\": 4"));
+  EXPECT_SAYS(refusal(folder / "newer.stylet"), "version 4 of the format");
 }
 
 TEST(SavedModel, ADamagedOneIsKnownByItsName) {

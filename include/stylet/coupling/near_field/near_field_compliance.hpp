@@ -16,7 +16,12 @@ namespace stylet {
 /// needle thinner than they are. So what the mesh makes of that field is taken out of K⁻¹, and the field itself put in:
 ///   A(c,d) = Λ_c (K⁻¹ − g) Λ_dᵀ + ⟨G⟩(c,d),
 /// g being the mesh's own kernel (MeshKernel) and ⟨G⟩ the medium's, averaged over the needle's pieces. K⁻¹ − g is
-/// smooth, any mesh represents it; ⟨G⟩ does not know the mesh. docs/theory/near_field.md derives it.
+/// smooth, any mesh represents it; ⟨G⟩ does not know the mesh.
+///
+/// Near the ways that a needle was planned to go, in tissue that stiffens or creeps, it is instead
+///   A(c,d) = F(c,d) + ⟨G⟩(c,d) − G₁₀(c,d),
+/// F being what forces that are spread over 10 mm do (SpreadCompliance), which has nothing of the elements in it, and
+/// G₁₀ the medium's kernel for such forces. docs/theory/near_field.md derives both.
 ///
 /// Points are interpolated, whatever placement is asked for; the mesh does not change.
 class NearFieldCompliance final : public ContactCompliance {
@@ -25,9 +30,11 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param kernel of the tissue's mesh
   /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
   /// @param creeps whether wide() is kept even if nothing stiffens
+  /// @param spread along the ways of the needle, what its wide part is there; null: that is made of K⁻¹ everywhere
   NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                       std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity,
-                      std::vector<double> stiffening_MPa = {}, bool creeps = false);
+                      std::vector<double> stiffening_MPa = {}, bool creeps = false,
+                      std::shared_ptr<const SpreadCompliance> spread = nullptr);
 
   /// @param travel direction of the piece of needle there; zero = a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
@@ -61,17 +68,26 @@ class NearFieldCompliance final : public ContactCompliance {
   void write_block(int point, int other, const OfMesh& g);
   template <class OfMesh>
   void write_wide_block(int point, int other, const OfMesh& g);
+  /// How much of the compliance between two places is that of spread forces and the needle's narrow part.
+  [[nodiscard]] double spread_share(const NearPlace& at, const NearPlace& on) const {
+    return ground_.spread ? at.spread.known * on.spread.known : 0.0;
+  }
   void write_wide_of_tip();
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {
-    return static_cast<std::size_t>((number * capacity_ + point) * kernel_->media() + medium);
+    return static_cast<std::size_t>((number * capacity_ + point) * ground_.kernel->media() + medium);
   }
   void forget_tip_node(int number, int first_point, int last_point);
   void write_needle_scale();
+  [[nodiscard]] SpreadCompliance::Place spread_place(const Vec3& x);
   [[nodiscard]] bool knows_wide() const { return wide_.size() > 0; }
 
   std::unique_ptr<ContactCompliance> far_;
-  std::shared_ptr<const Tissue> tissue_;
-  std::shared_ptr<const MeshKernel> kernel_;
+  struct {
+    std::shared_ptr<const Tissue> tissue;
+    std::shared_ptr<const MeshKernel> kernel;
+    std::shared_ptr<const SpreadCompliance> spread;
+    int way = -1;  ///< of spread, that the needle goes; −1 before it comes
+  } ground_;
   NeedleKernel needle_;
   std::vector<double> region_stiffening_MPa_;  ///< (regions) or none
   double press_N_ = 0.0;                       ///< what the surface the needle went in by took before it broke …

@@ -3,6 +3,7 @@
 
 #include "stylet/coupling/near_field/mesh_kernel.hpp"
 #include "stylet/coupling/near_field/needle_kernel.hpp"
+#include "stylet/fem/spread_compliance.hpp"
 #include "stylet/fem/tissue.hpp"
 #include "stylet/geom/locator.hpp"
 
@@ -20,6 +21,8 @@ struct NearPlace {
   Mat3 mesh_kernel = Mat3::Zero();  ///< [mm/N] g of the mesh there with itself, for E = 1 MPa
   double blur = 0.0;                ///< [mm] over which the mesh spreads a force there, by that
   double share = 1.0;               ///< least_share() of the needle there
+  double wide_share = 1.0;          ///< the same of a force that is spread over NeedleKernel::kScale_mm
+  SpreadCompliance::Place spread;   ///< among the samples of the ways, where there are such
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place belongs to no medium of its own
   NearSurface skin;
@@ -107,6 +110,13 @@ Mat3 wide_correction(const MeshKernel& kernel, const NearPlace& at, const NearPl
 
 /// wide_correction() of the tip's own force. @param g as tip_correction()
 Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);
+
+/// What a force on a piece of the needle does beyond the same force spread over NeedleKernel::kScale_mm: all in closed
+/// form, as between places in the same medium or in two [mm/N]. With SpreadCompliance it makes up the compliance.
+Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on);
+
+/// narrow_part() of the tip's own force.
+Mat3 tip_narrow_part(const MeshKernel& kernel, const NearPlace& tip);
 
 /// How many times softer than its own medium the mesh has a place, as far as it can tell: 1 away from borders. On a
 /// border between organs both sides are as soft as a medium of the mean of their moduli, by equation (4a) of

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/fem/spread_compliance.hpp"
+
+#include "stylet/core/parallel.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace stylet {
+
+namespace {
+
+/// [mm] Between two samples of a way. Less changes nothing that can be seen; twice as much would miss layers of fat.
+constexpr double kEvery_mm = 6.0;
+/// [mm] From the line of a way: as far as this its samples are what a place is like, …
+constexpr double kNear_mm = 10.0;
+/// … and from here on they are not.
+constexpr double kFar_mm = 20.0;
+/// Nodes of a mesh up to which elements near the ways are made quadratic: beyond, they are small beside the density.
+constexpr Index kMostQuadratic = 45000;
+/// [mm] From the ways: elements that reach nearer than this are made so. More than nine tenths of a force lie there.
+constexpr double kQuadratic_mm = 20.0;
+
+/// [mm] ε of the density about each place.
+constexpr double kDensity_mm = SpreadCompliance::kSpread_mm * 105.0 * std::numbers::pi / 512.0;
+/// In those: what lies further off is less than a thousandth of the force.
+constexpr double kReach = 5.0;
+
+/// Points of a tetrahedron, all alike: the centres of smaller ones that stand as it does, `parts` along each edge.
+std::vector<Vec4> points_within(int parts) {
+  std::vector<Vec4> points;
+  for (int i = 0; i < parts; ++i) {
+    for (int j = 0; i + j < parts; ++j) {
+      for (int k = 0; i + j + k < parts; ++k)
+        points.emplace_back((Vec4(i, j, k, parts - 1 - i - j - k).array() + 0.25) / parts);
+    }
+  }
+  return points;
+}
+
+/// A point of an element with its share of a unit force.
+struct SpreadPoint {
+  Index tet;
+  Vec4 weights;
+  double share;
+};
+
+/// A unit force that is spread about x: by the density of a Kelvinlet times the modulus of the tissue there, so that on
+/// a border it is the stiffer side that bears it, as it bears a needle. What lies outside the tissue, or is held, gets
+/// nothing of it.
+std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
+  const TetMesh& mesh = tissue.mesh();
+  static const std::vector<Vec4> many = points_within(8);  // where the density is steep
+  static const std::vector<Vec4> some = points_within(2);
+  std::vector<SpreadPoint> spread;
+  double sum = 0.0;
+  for (Index tet = 0; tet < mesh.tet_count(); ++tet) {
+    Eigen::Matrix<double, 3, 4> corners;
+    for (int i = 0; i < 4; ++i)
+      corners.col(i) =
+          mesh.nodes[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(i)])];
+    const Eigen::AlignedBox3d box(corners.rowwise().minCoeff(), corners.rowwise().maxCoeff());
+    const double off = box.exteriorDistance(x);
+    if (off > kReach * kDensity_mm) continue;
+    const auto& nodes = mesh.tets[static_cast<std::size_t>(tet)];
+    if (std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return tissue.is_fixed(node); })) continue;
+    const double young_MPa = tissue.material(mesh.tet_region[static_cast<std::size_t>(tet)]).young_MPa;
+    const std::vector<Vec4>& points = off < kDensity_mm ? many : some;
+    const double volume = tet_volume(mesh, tet) / static_cast<double>(points.size());
+    for (const Vec4& weights : points) {
+      const double distance2 = (corners * weights - x).squaredNorm();
+      spread.push_back(
+          {tet, weights, young_MPa * volume * std::pow(distance2 / (kDensity_mm * kDensity_mm) + 1.0, -3.5)});
+      sum += spread.back().share;
+    }
+  }
+  for (SpreadPoint& point : spread) point.share /= sum;
+  return spread;
+}
+
+/// The elements near the ways, made quadratic, and held where they meet the others.
+struct Surroundings {
+  std::vector<Index> number;  ///< (elements of the whole) in these, or −1
+  std::vector<Index> node;    ///< (nodes of these) in the whole
+  std::unique_ptr<Tissue> tissue;
+};
+
+/// @param near whether a place belongs to them
+template <class Near>
+Result<Surroundings> surroundings(const Tissue& whole, const Near& near_way) {
+  const TetMesh& mesh = whole.mesh();
+  std::vector<char> near(mesh.nodes.size(), 0);
+  for (std::size_t k = 0; k < near.size(); ++k) near[k] = near_way(mesh.nodes[k]) ? 1 : 0;
+  Surroundings result;
+  result.number.assign(mesh.tets.size(), -1);
+  TetMesh part;
+  part.regions = mesh.regions;
+  std::vector<Index> part_node(mesh.nodes.size(), -1);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& corners = mesh.tets[t];
+    if (std::none_of(corners.begin(), corners.end(), [&](Index k) { return near[static_cast<std::size_t>(k)] != 0; }))
+      continue;
+    result.number[t] = part.tet_count();
+    part.tet_region.push_back(mesh.tet_region[t]);
+    auto& own = part.tets.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) {
+      Index& at = part_node[static_cast<std::size_t>(corners[i])];
+      if (at < 0) {
+        at = part.node_count();
+        part.nodes.push_back(mesh.nodes[static_cast<std::size_t>(corners[i])]);
+        result.node.push_back(corners[i]);
+      }
+      own[i] = at;
+    }
+  }
+  std::vector<char> held(part.nodes.size(), 0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (result.number[t] >= 0) continue;
+    for (const Index corner : mesh.tets[t]) {
+      const Index at = part_node[static_cast<std::size_t>(corner)];
+      if (at >= 0) held[static_cast<std::size_t>(at)] = 1;
+    }
+  }
+  std::vector<Index> fixed;
+  for (Index k = 0; k < part.node_count(); ++k) {
+    if (held[static_cast<std::size_t>(k)] != 0 || whole.is_fixed(result.node[static_cast<std::size_t>(k)]))
+      fixed.push_back(k);
+  }
+  auto tissue = Tissue::build(std::move(part), whole.materials(), fixed, {}, Element::p2);
+  if (!tissue) return tissue.error();
+  result.tissue = std::make_unique<Tissue>(std::move(*tissue));
+  return result;
+}
+
+}  // namespace
+
+std::vector<SpreadCompliance::Line> SpreadCompliance::lines_of(const std::vector<NeedleWay>& ways) {
+  std::vector<Line> lines;
+  int first = 0;
+  for (const NeedleWay& way : ways) {
+    const int count = 2 + static_cast<int>(std::max(0.0, way.length_mm) / kEvery_mm);
+    lines.push_back({way, first, count});
+    first += count;
+  }
+  return lines;
+}
+
+double SpreadCompliance::Line::along(const Vec3& x) const {
+  return std::clamp((x - way.entry).dot(way.direction), 0.0, kEvery_mm * static_cast<double>(count - 1));
+}
+
+double SpreadCompliance::Line::distance(const Vec3& x) const {
+  return (x - way.entry - along(x) * way.direction).norm();
+}
+
+Result<MatX> SpreadCompliance::solve(const Tissue& tissue, const Line& line) {
+  const Eigen::Index columns = 3 * Eigen::Index{line.count};
+  std::optional<Surroundings> near;
+  if (tissue.element() != Element::p2 && tissue.mesh().node_count() <= kMostQuadratic) {
+    auto made = surroundings(tissue, [&](const Vec3& x) { return line.distance(x) < kQuadratic_mm; });
+    if (!made) return made.error();
+    near = std::move(*made);
+  }
+  MatX on_mesh = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, columns);
+  MatX on_near = MatX::Zero(near ? 3 * Eigen::Index{near->tissue->displacement_nodes()} : 0, columns);
+  for_each_in_parallel(static_cast<std::size_t>(line.count), [&](std::size_t k) {
+    const Vec3 x = line.way.entry + kEvery_mm * static_cast<double>(k) * line.way.direction;
+    for (const SpreadPoint& point : spread_about(x, tissue)) {
+      const Index inner = near ? near->number[static_cast<std::size_t>(point.tet)] : -1;
+      const Shape shape =
+          inner < 0 ? tissue.shape(point.tet, point.weights) : near->tissue->shape(inner, point.weights);
+      MatX& load = inner < 0 ? on_mesh : on_near;
+      for (int i = 0; i < shape.count; ++i) {
+        const auto n = static_cast<std::size_t>(i);
+        load.block<3, 3>(3 * Eigen::Index{shape.node[n]}, 3 * static_cast<Eigen::Index>(k)).diagonal().array() +=
+            point.share * shape.weight[n];
+      }
+    }
+  });
+  MatX M = MatX::Zero(columns, columns);
+  if (near) {
+    // K⁻¹ by blocks: of what lies within the rim with the rim held, and of the rim with what then presses on it.
+    const MatX u = near->tissue->solve(on_near);
+    M.noalias() += on_near.transpose() * u;
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      const VecX presses = on_near.col(c) - near->tissue->support_forces(u.col(c));
+      for (const Index node : near->tissue->fixed_nodes()) {
+        for (const Index end : near->tissue->ends_of(node))
+          on_mesh.col(c).segment<3>(3 * Eigen::Index{near->node[static_cast<std::size_t>(end)]}) +=
+              0.5 * presses.segment<3>(3 * Eigen::Index{node});
+      }
+    }
+  }
+  M.noalias() += on_mesh.transpose() * tissue.solve(on_mesh);
+  return MatX(0.5 * (M + M.transpose()));
+}
+
+Result<SpreadCompliance> SpreadCompliance::solve(const Tissue& tissue, const std::vector<NeedleWay>& ways,
+                                                 const Progress& progress) {
+  SpreadCompliance result;
+  result.lines_ = lines_of(ways);
+  const Eigen::Index rows = 3 * Eigen::Index{result.lines_.back().first + result.lines_.back().count};
+  result.matrix_ = MatX::Zero(rows, rows);
+  double done = 0.0;
+  for (const Line& line : result.lines_) {
+    report(progress, "wide part of the near field", done++ / static_cast<double>(ways.size()));
+    auto M = solve(tissue, line);
+    if (!M) return M.error();
+    result.matrix_.block(3 * line.first, 3 * line.first, M->rows(), M->cols()) = *M;
+  }
+  return result;
+}
+
+std::shared_ptr<const SpreadCompliance> SpreadCompliance::of(const std::vector<NeedleWay>& ways, MatX matrix) {
+  auto result = std::make_shared<SpreadCompliance>();
+  result->lines_ = lines_of(ways);
+  const Eigen::Index rows = 3 * Eigen::Index{result->lines_.back().first + result->lines_.back().count};
+  if (matrix.rows() != rows || matrix.cols() != rows) return nullptr;
+  result->matrix_ = std::move(matrix);
+  return result;
+}
+
+int SpreadCompliance::way_near(const Vec3& x) const {
+  const auto nearer = [&](const Line& a, const Line& b) { return a.distance(x) < b.distance(x); };
+  return static_cast<int>(std::min_element(lines_.begin(), lines_.end(), nearer) - lines_.begin());
+}
+
+SpreadCompliance::Place SpreadCompliance::place(const Vec3& x, int way) const {
+  const Line& line = lines_[static_cast<std::size_t>(way)];
+  const double depth = line.along(x) / kEvery_mm;
+  Place place;
+  const int before = std::min(static_cast<int>(depth), line.count - 2);
+  const double t = depth - before;
+  place.weight = {((1.0 - 0.5 * t) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1.0, ((2.0 - 1.5 * t) * t + 0.5) * t,
+                  (0.5 * t - 0.5) * t * t};
+  for (int k = 0; k < 4; ++k)
+    place.sample[static_cast<std::size_t>(k)] = line.first + std::clamp(before - 1 + k, 0, line.count - 1);
+  const double left = std::clamp((kFar_mm - line.distance(x)) / (kFar_mm - kNear_mm), 0.0, 1.0);
+  place.known = left * left * (3.0 - 2.0 * left);
+  return place;
+}
+
+Mat3 SpreadCompliance::operator()(const Place& at, const Place& on) const {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t l = 0; l < 4; ++l)
+      sum += at.weight[k] * on.weight[l] * matrix_.block<3, 3>(3 * at.sample[k], 3 * on.sample[l]);
+  }
+  return sum;
+}
+
+}  // namespace stylet

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coupling/near_field/medium_block.hpp"
+#include "validate/bonded_cylinder.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <iostream>
+#include <random>
+#include <tuple>
+
+namespace stylet {
+namespace {
+
+using test::MediumBlock;
+using test::NeedleLine;
+
+/// From below to above the middle of the block.
+const NeedleWay kThrough{{1.3, 0.7, -48.0}, Vec3::UnitZ(), 96.0};
+
+/// F along a way, as if the block went on for ever: its held faces move with the field of the same force.
+Mat3 unbounded(const MediumBlock& block, const Vec3& x, const Vec3& on) {
+  std::vector<Mat3> field;
+  for (const Index node : block.fixed)
+    field.push_back(kelvinlet(block.tissue->node_position(node) - on, SpreadCompliance::kSpread_mm, block.medium));
+  return (*block.spread)(block.spread->place(x), block.spread->place(on)) + block.lift(x, field);
+}
+
+class SpreadForces : public testing::TestWithParam<std::tuple<int, double>> {};
+
+TEST_P(SpreadForces, move_an_unbounded_medium_as_a_kelvinlet_of_ten_millimetres_does) {
+  const auto [cells, poisson] = GetParam();
+  const MediumBlock block({.cells = cells, .poisson = poisson, .element = Element::nodal_pressure, .ways = {kThrough}});
+  // The rim of the quadratic elements has the compliance of the mesh's own, which are less good next to 0.5.
+  const double allowed = poisson > 0.47 ? 0.13 : 0.1;
+  for (const double apart : {0.0, 4.0, 9.0, 15.0, 25.0}) {
+    const Vec3 on(1.3, 0.7, -11.0);
+    const Vec3 x = on + apart * Vec3::UnitZ();
+    const Mat3 expected = kelvinlet(x - on, SpreadCompliance::kSpread_mm, block.medium);
+    EXPECT_LT((unbounded(block, x, on) - expected).norm(), allowed * expected.norm()) << apart << " mm apart";
+  }
+}
+INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, SpreadForces,
+                         testing::Combine(testing::Values(10, 14), testing::Values(0.3, 0.45, 0.49)));
+
+TEST(SpreadCompliance, is_positive_for_any_places_on_a_way) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> along(-60.0, 60.0), aside(-15.0, 15.0);
+  const MediumBlock block({.cells = 8,
+                           .regions = {"fat", "gland"},
+                           .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : 1; },
+                           .materials = {{0.002, 0.45}, {0.03, 0.45}},
+                           .ways = {kThrough, {{-20.0, 5.0, -48.0}, Vec3(0.3, 0.0, 1.0).normalized(), 60.0}}});
+  EXPECT_EQ(block.spread->way_near({-15.0, 4.0, -40.0}), 1);
+  for (int trial = 0; trial < 20; ++trial) {
+    constexpr int count = 12;
+    std::vector<SpreadCompliance::Place> places;
+    for (int k = 0; k < count; ++k)
+      places.push_back(block.spread->place({aside(random), aside(random), along(random)}, trial % 2));
+    MatX F(3 * count, 3 * count);
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j)
+        F.block<3, 3>(3 * i, 3 * j) =
+            (*block.spread)(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
+    }
+    const Eigen::SelfAdjointEigenSolver<MatX> eigen(F);
+    EXPECT_LT((F - F.transpose()).norm(), 1e-12 * F.norm());
+    EXPECT_GT(eigen.eigenvalues()[0], -1e-12 * F.norm());
+  }
+}
+
+TEST(SpreadCompliance, ends_gradually_beside_its_ways) {
+  const MediumBlock block({.cells = 6, .ways = {kThrough}});
+  double before = 1.0;
+  for (double off = 0.0; off < 30.0; off += 0.1) {
+    const double known = block.spread->place({1.3 + off, 0.7, 3.0}).known;
+    EXPECT_LE(known, before);
+    EXPECT_NEAR(known, before, 0.02);
+    before = known;
+  }
+  EXPECT_DOUBLE_EQ(block.spread->place({1.3 + 9.9, 0.7, 3.0}).known, 1.0);
+  EXPECT_DOUBLE_EQ(block.spread->place({1.3 + 20.1, 0.7, 3.0}).known, 0.0);
+}
+
+TEST(SpreadCompliance, of_the_same_ways_has_as_many_rows) {
+  const MediumBlock block({.cells = 6, .ways = {kThrough}});
+  EXPECT_TRUE(SpreadCompliance::of({kThrough}, block.spread->matrix()));
+  EXPECT_FALSE(SpreadCompliance::of({{kThrough.entry, kThrough.direction, 30.0}}, block.spread->matrix()));
+  EXPECT_FALSE(SpreadCompliance::of({kThrough}, {}));
+}
+
+class NeedleOnItsWay : public testing::TestWithParam<std::tuple<int, double>> {};
+
+TEST_P(NeedleOnItsWay, needs_the_force_of_a_bonded_rigid_cylinder) {
+  const auto [cells, poisson] = GetParam();
+  MediumBlock block({.cells = cells, .poisson = poisson, .element = Element::nodal_pressure, .ways = {kThrough}});
+  const NeedleLine line(block, 4.0, Vec3::UnitZ(), true);
+  const auto thick = validate::bonded_cylinder(NeedleLine::kLength_mm, 0.635, NeedleLine::kWay_mm, block.medium);
+  EXPECT_NEAR(line.lateral() / thick.lateral_N, 1.0, 0.04);
+  EXPECT_NEAR(line.axial() / thick.axial_N, 1.0, 0.04);
+}
+// Elements of 14, 10 and 7 mm. As without ways pieces of constant force make the needle 1 % too soft along its axis.
+INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleOnItsWay,
+                         testing::Combine(testing::Values(7, 10, 14), testing::Values(0.3, 0.45)));
+
+TEST(TipOnItsWay, gives_way_like_a_flat_punch_on_the_skin_and_as_mindlin_says_below_it) {
+  for (const int cells : {7, 12}) {
+    MediumBlock block({.cells = cells, .skin = true, .ways = {{{1.3, 0.7, -50.0}, Vec3::UnitZ(), 60.0}}});
+    const NeedleKernel needle;
+    const double punch = (1.0 - 0.45 * 0.45) / (2.0 * needle.radius_mm * 0.01);
+    for (const double depth : {0.0, 1.0, 2.0, 4.0, 7.0, 10.0, 20.0}) {
+      const Vec3 x(1.3, 0.7, depth - 50.0);
+      std::vector<Mat3> field;
+      for (const Index node : block.fixed) {
+        const Vec3 y = block.tissue->node_position(node);
+        field.emplace_back(kelvinlet(y - x, 1e-6, block.medium) +
+                           free_surface_image(y - x, {Vec3::UnitZ(), y.z() + 50.0, depth}, 1e-6, block.medium));
+      }
+      const Mat3 ours = block.tip(needle, x) + block.lift(x, field);
+      if (depth == 0.0) {
+        EXPECT_NEAR(ours(2, 2) / punch, 1.0, 0.03) << cells << " cells";
+        continue;
+      }
+      const double epsilon = needle.own_tip_epsilon({depth, Vec3::UnitZ(), 1.0}, {}, block.medium.poisson);
+      const Mat3 expected = kelvinlet(Vec3::Zero(), epsilon, block.medium) +
+                            free_surface_image(Vec3::Zero(), {Vec3::UnitZ(), depth, depth}, epsilon, block.medium);
+      EXPECT_LT((ours - expected).norm(), 0.03 * expected.norm()) << cells << " cells, " << depth << " mm";
+    }
+  }
+}
+
+struct RodEnd {
+  double above;
+  double stiffness;
+};
+constexpr RodEnd kBetweenFatAndGland[] = {
+#include "rod_end.inc"
+};
+
+TEST(TipOnItsWay, gives_way_between_two_tissues_as_finite_elements_around_a_rod_say) {
+  for (const int cells : {6, 8, 14}) {
+    MediumBlock block({.cells = cells,
+                       .jitter = 0.0,
+                       .regions = {"fat", "gland"},
+                       .region_at = [](const Vec3& x) { return x.z() < 0.0 ? 0 : 1; },
+                       .materials = {{0.002, 0.45}, {0.03, 0.45}},
+                       .ways = {kThrough}});
+    for (const RodEnd& end : kBetweenFatAndGland) {
+      for (const double side : {-1e-6, 1e-6}) {
+        const double product = block.tip({}, {1.3, 0.7, side - end.above})(2, 2) * end.stiffness;
+        EXPECT_NEAR(product, 1.0, 0.15) << cells << " cells, " << end.above << " mm above";
+        if (side > 0.0) std::cout << cells << " cells, " << end.above << " mm above: " << product << '\n';
+      }
+    }
+  }
+}
+
+/// Fat of 6 mm between muscle and gland, whose elements have two media at every node.
+MediumBlock thin_layer(int cells) {
+  return MediumBlock({.cells = cells,
+                      .jitter = 0.0,
+                      .regions = {"muscle", "fat", "gland"},
+                      .region_at = [](const Vec3& x) { return x.z() < 0.0   ? 0
+                                                              : x.z() < 6.0 ? 1
+                                                                            : 2; },
+                      .materials = {{0.025, 0.45}, {0.002, 0.45}, {0.03, 0.45}},
+                      .faces_at_z = {0.0, 6.0},
+                      .element = Element::nodal_pressure,
+                      .ways = {kThrough}});
+}
+
+TEST(SpreadCompliance, through_a_thin_layer_hardly_depends_on_the_mesh) {
+  const MediumBlock coarse = thin_layer(12), fine = thin_layer(18);
+  for (double z = -12.0; z <= 18.0; z += 1.5) {
+    const Vec3 x(1.3, 0.7, z);
+    const auto F = [&](const MediumBlock& block) -> Mat3 {
+      return (*block.spread)(block.spread->place(x), block.spread->place(x));
+    };
+    EXPECT_LT((F(coarse) - F(fine)).norm(), 0.1 * F(fine).norm()) << z;
+  }
+}
+
+TEST(NeedleThroughAThinLayer, and_its_narrow_part_have_a_positive_compliance_on_any_mesh) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> aside(-3.0, 3.0);
+  for (const int cells : {8, 12}) {
+    MediumBlock block = thin_layer(cells);
+    for (const double spacing : {1.6, 2.5, 4.0}) {
+      const bool upwards = spacing == 2.5;
+      const Vec3 axis = Vec3(0.1 * aside(random), 0.1 * aside(random), upwards ? 1.0 : -1.0).normalized();
+      const Vec3 start(aside(random), aside(random), upwards ? -12.0 : 18.0);
+      std::vector<Vec3> line;
+      for (double way = 0.0; way < 30.0; way += 0.25 * spacing) line.emplace_back(start + way * axis);
+      block.prepare(line);
+      // Creeping, so that the wide part is kept beside the whole.
+      NearFieldCompliance A(std::make_unique<TrackCompliance>(block.store, *block.locator, 40), block.tissue,
+                            block.kernel, {.segment_mm = spacing}, 40, {}, true, block.spread);
+      for (std::size_t k = 0; k < line.size(); ++k) {
+        const MaterialPoint at = block.at(line[k]);
+        ASSERT_TRUE(A.move_tip(at, line[k]));
+        A.begin_sub_step();
+        ASSERT_TRUE(A.move_tip(at, line[k]));
+        if (k % 4 == 0) {
+          ASSERT_GT(A.add(at, line[k], Placement::embedded, axis).point, 0);
+        }
+        const Eigen::Index size = 3 * Eigen::Index{A.points()};
+        const MatX whole = A.matrix().topLeftCorner(size, size);
+        const MatX wide = A.wide().topLeftCorner(size, size);
+        EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(whole).eigenvalues()[0], 0.0) << cells << ", " << line[k].z();
+        EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(whole - wide).eigenvalues()[0], 0.0)
+            << cells << ", " << line[k].z();
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stylet
