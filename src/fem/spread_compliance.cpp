@@ -3,8 +3,6 @@
 
 #include "stylet/core/parallel.hpp"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -64,8 +62,9 @@ std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
     for (int i = 0; i < 4; ++i)
       corners.col(i) =
           mesh.nodes[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(i)])];
-    const Eigen::AlignedBox3d box(corners.rowwise().minCoeff(), corners.rowwise().maxCoeff());
-    const double off = box.exteriorDistance(x);
+    const Vec3 middle = corners.rowwise().mean();
+    const double radius = std::sqrt((corners.colwise() - middle).colwise().squaredNorm().maxCoeff());
+    const double off = (middle - x).norm() - radius;  // or less: the same however the scene is turned
     if (off > kReach * kDensity_mm) continue;
     const auto& nodes = mesh.tets[static_cast<std::size_t>(tet)];
     if (std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return tissue.is_fixed(node); })) continue;

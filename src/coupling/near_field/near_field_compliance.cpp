@@ -16,6 +16,11 @@ Medium scaled(Medium medium, double young_MPa) {
 /// [mm] The wide part of the compliance hardly changes over less than this, a tenth of its radius at the most.
 constexpr double kWideReach_mm = 0.5;
 
+/// [mm] Elements of up to this size follow forces that are spread over 10 mm, …
+constexpr double kFine_mm = 12.0;
+/// … and from here on they do not: K⁻¹ less the mesh's own kernel is better then.
+constexpr double kCoarse_mm = 18.0;
+
 void write_symmetric(MatX& matrix, int point, int other, Mat3 block) {
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
   matrix.block<3, 3>(3 * point, 3 * other) = block;
@@ -68,10 +73,14 @@ void NearFieldCompliance::write_needle_scale() {
   needle_scale_.topRows(rows) = A_.topLeftCorner(rows, 3) - wide_.topLeftCorner(rows, 3);
 }
 
-SpreadCompliance::Place NearFieldCompliance::spread_place(const Vec3& x) {
+/// @param edge_mm size of the elements at x
+SpreadCompliance::Place NearFieldCompliance::spread_place(const Vec3& x, double edge_mm) {
   if (!ground_.spread) return {};
   if (ground_.way < 0) ground_.way = ground_.spread->way_near(x);
-  return ground_.spread->place(x, ground_.way);
+  SpreadCompliance::Place place = ground_.spread->place(x, ground_.way);
+  const double fine = std::clamp((kCoarse_mm - edge_mm) / (kCoarse_mm - kFine_mm), 0.0, 1.0);
+  place.known *= fine * fine * (3.0 - 2.0 * fine);
+  return place;
 }
 
 bool NearFieldCompliance::available(Index base_tet) const {
@@ -161,7 +170,7 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   const double poisson = ground_.kernel->medium(place.medium).poisson;
   place.share = least_share(place.borders, place.epsilon, poisson);
   place.wide_share = least_share(place.borders, NeedleKernel::kScale_mm, poisson);
-  place.spread = spread_place(x);
+  place.spread = spread_place(x, place.edge);
   places_.push_back(place);
   softness_.push_back(
       knows_wide() ? softness_in_mesh(*ground_.kernel, place, (*far_)(added.point, added.point), place.mesh_kernel)
@@ -187,7 +196,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   NearPlace& tip = places_[kTip];
   tip = near_place(*ground_.tissue, *ground_.kernel, at, x);
   take_tip_radii(needle_, *ground_.kernel, tip);
-  tip.spread = spread_place(x);
+  tip.spread = spread_place(x, tip.edge);
   if (at.tet != tip_tet_) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;

@@ -78,7 +78,7 @@ class NearFieldCompliance final : public ContactCompliance {
   }
   void forget_tip_node(int number, int first_point, int last_point);
   void write_needle_scale();
-  [[nodiscard]] SpreadCompliance::Place spread_place(const Vec3& x);
+  [[nodiscard]] SpreadCompliance::Place spread_place(const Vec3& x, double edge_mm);
   [[nodiscard]] bool knows_wide() const { return wide_.size() > 0; }
 
   std::unique_ptr<ContactCompliance> far_;
