@@ -19,7 +19,7 @@ constexpr double kWideReach_mm = 0.5;
 /// [mm] Elements of up to this size follow forces that are spread over 10 mm, …
 constexpr double kFine_mm = 12.0;
 /// … and from here on they do not: K⁻¹ less the mesh's own kernel is better then.
-constexpr double kCoarse_mm = 18.0;
+constexpr double kCoarse_mm = 15.0;
 
 void write_symmetric(MatX& matrix, int point, int other, Mat3 block) {
   if (point == other) block = 0.5 * (block + block.transpose()).eval();
