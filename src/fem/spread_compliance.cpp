@@ -82,14 +82,14 @@ std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
   return spread;
 }
 
-/// The elements near the ways, made quadratic, and held where they meet the others.
+/// The elements near a way, made quadratic, and held where they meet the others.
 struct Surroundings {
   std::vector<Index> number;  ///< (elements of the whole) in these, or −1
   std::vector<Index> node;    ///< (nodes of these) in the whole
   std::unique_ptr<Tissue> tissue;
 };
 
-/// @param near whether a place belongs to them
+/// @param near_way whether a place belongs to them
 template <class Near>
 Result<Surroundings> surroundings(const Tissue& whole, const Near& near_way) {
   const TetMesh& mesh = whole.mesh();

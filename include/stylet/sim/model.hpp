@@ -57,8 +57,8 @@ class Model {
   [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
   /// Kernel of the mesh near the needles' ways, where coupling.method = "near-field"; empty otherwise.
   [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return near_field_.kernel; }
-  /// What spread forces do along the needles' ways, where there is a near field in tissue that stiffens or creeps;
-  /// empty otherwise.
+  /// The compliance to spread forces along the needles' ways, where there is a near field in tissue that stiffens or
+  /// creeps; empty otherwise.
   [[nodiscard]] const std::shared_ptr<const SpreadCompliance>& spread() const { return near_field_.spread; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the error of the tip looks like, in sections and in 3D: marks in ink on a white rim, which are seen before tissue and
+// The shapes that show the error of the tip, in sections and in 3D: marks in ink on a white rim, which are seen before tissue and
 // needle, and between them a white line with edges of ink, which leaves the needle whole where it lies upon it.
 import { INK } from '../../shared/plot_style';
 

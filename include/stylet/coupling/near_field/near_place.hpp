@@ -111,8 +111,8 @@ Mat3 wide_correction(const MeshKernel& kernel, const NearPlace& at, const NearPl
 /// wide_correction() of the tip's own force. @param g as tip_correction()
 Mat3 tip_wide_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g);
 
-/// What a force on a piece of the needle does beyond the same force spread over NeedleKernel::kScale_mm: all in closed
-/// form, as between places in the same medium or in two [mm/N]. With SpreadCompliance it makes up the compliance.
+/// The displacement by a force on a piece of the needle less that by the same force spread over NeedleKernel::kScale_mm
+/// [mm/N], in closed form, between places in one medium or in two. Added to SpreadCompliance it gives the compliance.
 Mat3 narrow_part(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on);
 
 /// narrow_part() of the tip's own force.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clinics report, in large numbers: the largest force since the needle was put to its start, where the gland is, and by
+// The figures that clinics report, in large numbers: the largest force since the needle was put to its start, where the gland is, and by
 // how much the tip misses.
 import { element } from '../../../shared/dom';
 import { GlandFit, length } from '../gland_fit';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the marks of the tip's error mean.
+// The key to the marks of the tip's error.
 import { element } from '../../../shared/dom';
 import { drawCross, drawRing } from '../tip_error_shapes';
 
