@@ -20,9 +20,9 @@ namespace stylet {
 namespace {
 /// Sub-steps of a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
-/// A sub-step in which the tip cuts, and that has no balance, is taken again in so many parts: against its viscosity
-/// the tip then goes that much less far at a time. Raised, a tip that snaps through a surface is followed more surely,
-/// and such a step takes longer.
+/// A sub-step in which the tip cuts, and for which no balance is found, is taken again in so many parts, with a part of
+/// the base's motion in each. Raised, a tip that snaps through a surface and a needle that is about to buckle are
+/// followed more surely, and such a step takes longer.
 constexpr int kParts = 4;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
@@ -108,6 +108,14 @@ struct Insertion::Parts {
 };
 
 namespace {
+/// Where the base is after some of several equal parts of a motion; after the last, `to` itself to the last bit.
+Pose between(const Pose& from, const Pose& to, int part, int parts) {
+  if (part == parts) return to;
+  const double fraction = static_cast<double>(part) / parts;
+  return {.origin = from.origin + fraction * (to.origin - from.origin),
+          .rotation = from.rotation.slerp(fraction, to.rotation)};
+}
+
 std::unique_ptr<BalanceSolver> make_balance(const BalanceParts& parts) {
   if (parts.settings.solver == CouplingSettings::Solver::staggered)
     return std::make_unique<paper::StaggeredBalance>(parts);
@@ -240,7 +248,13 @@ void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
   if (path.in_air() && !enter(step)) return;
   const bool may_give_up = damping.balanced();
   if (!move_on(before, pose, h, may_give_up, step)) {
-    for (int part = 0; part < kParts; ++part) move_on(pose, pose, h / kParts, false, step);
+    Pose from = before;
+    for (int part = 1; part <= kParts; ++part) {
+      base = between(before, pose, part, kParts);
+      needle->set_base(base);
+      move_on(from, base, h / kParts, false, step);
+      from = base;
+    }
   }
   const bool drawn_out = (pose.origin - before.origin).dot(pose.rotation * Vec3::UnitZ()) < 0.0;
   if (shaft.empty() && path.has_left(drawn_out)) finish_insertion(step);
@@ -267,14 +281,8 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
     step.flags |= Step::too_fast;
   }
   for (int k = 1; k <= count; ++k) {
-    const double fraction = static_cast<double>(k) / count;
-    Pose between = pose;
-    if (k < count) {
-      between.origin = from.origin + fraction * (pose.origin - from.origin);
-      between.rotation = from.rotation.slerp(fraction, pose.rotation);
-    }
     const std::size_t before = tissue.compliance().remeshing().size();
-    sub_step(between, dt / count, step);
+    sub_step(between(from, pose, k, count), dt / count, step);
     // Withdrawal forgets all changes; a sub-step that withdraws lays no contact.
     const std::size_t after = tissue.compliance().remeshing().size();
     step.remeshings = after >= before ? step.remeshings + static_cast<int>(after - before) : 0;

@@ -61,6 +61,10 @@ constexpr double kLeastTurn_mm = 1.0;
 /// Where compliance changes fast with the cut (next to held tissue) the cut would jump to and fro: it is followed the
 /// more slowly the longer that lasts.
 constexpr int kSmoothCut = 6;
+/// [mm] Where compliance jumps, between two elements, there may be no cut at all that balances: in front of the border
+/// it would have to be shorter, behind it longer. When it is followed slowly, a step of it that is no longer than this
+/// and comes into another element ends it for this sub-step. Raised, a cut may be longer by that much.
+constexpr double kShortCut_mm = 0.05;
 double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : iteration < 2 * kSmoothCut ? 0.5 : 0.25; }
 }  // namespace
 
@@ -267,14 +271,21 @@ void CoupledBalance::take_solution() {
   for (int c = 1; c < parts_.contacts.count(); ++c) slide(c);
 }
 
-/// The cut goes on as the present solution says. @return whether it met a surface: the tip is held there
+/// The cut goes on as the present solution says. @return whether it ended at a surface or between two elements: the tip
+/// is held there
 bool CoupledBalance::cut_on(double h, int iteration) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return false;
   const double proposed = std::max(0.0, tip.cutting_law(h).way(system_.lambda[2]));
-  march(tip.cut.advance() + damping_of_cut(iteration) * (proposed - tip.cut.advance()));
-  if (tip.cut.is_blocked()) tip.set_state(TipContact::State::stick);
-  return tip.cut.is_blocked();
+  const double before = tip.cut.advance();
+  const Index tet = tip.cut.at().tet;
+  march(before + damping_of_cut(iteration) * (proposed - before));
+  const double way = tip.cut.advance() - before;
+  const bool ends = iteration >= kSmoothCut && way > 0.0 && way < kShortCut_mm && tip.cut.at().tet != tet;
+  if (!ends && !tip.cut.is_blocked()) return false;
+  if (ends) tip.toggles = kMaxToggles + 1;  // it keeps its state
+  tip.set_state(TipContact::State::stick);
+  return true;
 }
 
 /// Whether an iterate is so far from where the sub-step began that it is no guide to the balance that was not found.

@@ -241,16 +241,17 @@ TEST(ResultFolder, a_run_killed_at_any_moment_has_nothing_of_an_earlier_one_besi
   later.info.scenario_name = later.summary.scenario = "later";
   for (Step& step : later.steps) step.force_axial_N += 1.0;
   std::mt19937 random(20051026);
-  std::uniform_real_distribution<double> moment(0.0, 0.25);  // such a run takes a fifth of a second
+  std::uniform_real_distribution<double> share(0.0, 1.0);
   int killed = 0;
   int begun = 0;
   for (int k = 0; k < 25; ++k) {
     const TemporaryFolder folder;
+    const auto start = std::chrono::steady_clock::now();
     ASSERT_TRUE(write_run(folder.path(), run).ok());
-    const std::string forces = file_text(folder.path() / "forces.csv");
+    const auto lasted = std::chrono::steady_clock::now() - start;  // so long the later one takes as well
     const pid_t child = fork();
     if (child == 0) _exit(write_run(folder.path(), later).ok() ? 0 : 1);
-    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+    std::this_thread::sleep_for(share(random) * std::chrono::duration<double>(lasted));
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
