@@ -188,6 +188,16 @@ TEST(Report, text_from_the_user_cannot_break_the_page) {
   EXPECT_EQ(data["surface"]["regions"][0]["name"], evil);
 }
 
+TEST(Report, the_first_thing_that_is_punctured_is_the_skin_whatever_lies_under_it) {
+  for (const char* region : {"body", "subcutaneous_fat"}) {
+    auto run = synthetic_run();
+    for (auto& event : run.summary.events) {
+      if (event.kind == EventKind::puncture) event.region = region;
+    }
+    EXPECT_EQ(data_of(recording_of(run))["events"][1]["label"], "Skin punctured") << region;
+  }
+}
+
 TEST(Report, its_data_are_those_of_the_run) {
   const auto run = synthetic_run();
   const auto data = data_of(recording_of(run));

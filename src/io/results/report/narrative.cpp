@@ -31,8 +31,10 @@ std::string spoken(const std::string& region) {
   return text;
 }
 
-/// What the tip pierces: the surface of the body is the skin.
-std::string surface(const std::string& region) { return region == "body" ? "skin" : region; }
+/// What the tip pierces: the surface of the body, or of the fat that lies under the skin, is the skin.
+std::string surface(const std::string& region) {
+  return region == "body" || region == "subcutaneous_fat" ? "skin" : region;
+}
 
 /// "0.42 N"; small forces without false digits.
 std::string newtons(double force) {
