@@ -62,8 +62,8 @@ constexpr double kLeastTurn_mm = 1.0;
 /// more slowly the longer that lasts.
 constexpr int kSmoothCut = 6;
 /// [mm] Where compliance jumps, between two elements, there may be no cut at all that balances: in front of the border
-/// it would have to be shorter, behind it longer. When it is followed slowly, a step of it that is no longer than this
-/// and comes into another element ends it for this sub-step. Raised, a cut may be longer by that much.
+/// it would have to be shorter, behind it longer. A step of it that is no longer than this and comes into the element
+/// that it went back out of before ends it for this sub-step. Raised, a cut may be longer by that much.
 constexpr double kShortCut_mm = 0.05;
 double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : iteration < 2 * kSmoothCut ? 0.5 : 0.25; }
 }  // namespace
@@ -281,7 +281,9 @@ bool CoupledBalance::cut_on(double h, int iteration) {
   const Index tet = tip.cut.at().tet;
   march(before + damping_of_cut(iteration) * (proposed - before));
   const double way = tip.cut.advance() - before;
-  const bool ends = iteration >= kSmoothCut && way > 0.0 && way < kShortCut_mm && tip.cut.at().tet != tet;
+  const Index now = tip.cut.at().tet;
+  const bool ends = now != tet && now == left_tet_ && way > 0.0 && way < kShortCut_mm;
+  if (now != tet && way < 0.0) left_tet_ = tet;
   if (!ends && !tip.cut.is_blocked()) return false;
   if (ends) tip.toggles = kMaxToggles + 1;  // it keeps its state
   tip.set_state(TipContact::State::stick);
@@ -311,6 +313,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   }
   if (const auto points = tangent_.take_prepared(parts_.contacts); !points.empty()) tissue_.take_points(points);
   const double largest_at_start = parts_.contacts.largest_force();
+  left_tet_ = -1;
   bool from_start = !predictor.expects_forces();
   predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
 

@@ -51,6 +51,7 @@ class CoupledBalance : public BalanceSolver {
   NeedleTangent tangent_;
   Iterate kept_;
   bool foresees_cut_ = true;  ///< the equations know that compliance changes as the cut goes on
+  Index left_tet_ = -1;       ///< element that the cut went back out of in this balance
 };
 
 }  // namespace stylet
