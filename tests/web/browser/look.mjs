@@ -28,6 +28,7 @@ for (const [width, height] of [[1366, 768], [1920, 1080], [3840, 2160]]) {
   await page.screenshot({ path: path.join(out, `${width}-start.png`) });
   await predictShift(page);
   await page.getByRole('button', { name: 'Start again' }).click();  // a curve that begins with the push
+  await page.waitForTimeout(1000);  // a needle that stood before the skin already shows so at once
   await untilReadout(page, 'Depth', (depth) => depth < 0);
   await turnWheel(page, 77);
   await page.waitForTimeout(6000);
