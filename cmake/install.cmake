@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the library (core…realtime) with its headers for find_package(stylet), the library for C (stylet_rt) with its
-# header, a pkg-config file and an example, and the stylet program.
+# Installs the library (core…realtime) with its headers for find_package(stylet), what reads and writes files for
+# find_package(stylet COMPONENTS files), the library for C (stylet_rt) with its header, a pkg-config file and an example, and
+# the stylet program.
 include(CMakePackageConfigHelpers)
 set(STYLET_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/stylet)
 
@@ -8,6 +9,17 @@ install(TARGETS stylet EXPORT stylet-targets)
 foreach(module core geom fem needle coupling sim realtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/stylet/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
 endforeach()
+# The component `files`: from a patient's file to a result folder. Its libraries are static, so who links them needs
+# the libraries of the formats (VTK, DCMTK, CGAL, HDF5, …) as well; stylet-config.cmake finds them.
+if(TARGET stylet_patient)
+  install(TARGETS stylet_patient stylet_io stylet_model_file stylet_mesher stylet_phantom stylet_report_assets
+          EXPORT stylet-files-targets)
+  foreach(module io mesher patient phantom)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/stylet/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
+  endforeach()
+  install(EXPORT stylet-files-targets NAMESPACE stylet:: DESTINATION ${STYLET_CMAKE_DIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/examples/first_insertion.cpp DESTINATION ${CMAKE_INSTALL_DATADIR}/stylet/examples)
+endif()
 if(TARGET stylet_rt)
   install(TARGETS stylet_rt EXPORT stylet-targets)
   install(FILES ${PROJECT_SOURCE_DIR}/include/stylet/stylet_rt.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)

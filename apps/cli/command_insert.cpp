@@ -2,19 +2,16 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "map_text.hpp"
-#include "mesh_report.hpp"
 #include "output_path.hpp"
-#include "prepared_model.hpp"
 #include "recorded_run.hpp"
 #include "table.hpp"
 
 #include "stylet/io/hole_map_io.hpp"
 #include "stylet/io/model_file.hpp"
-#include "stylet/io/results_writer.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/patient/insert.hpp"
 #include "stylet/sim/cutting_lag.hpp"
 #include "stylet/sim/hole_map.hpp"
-#include "stylet/sim/run.hpp"
 
 #include <fmt/format.h>
 
@@ -74,23 +71,6 @@ std::string mesh_changes_text(const Summary& summary) {
   if (condition > 0.0) parts.push_back(fmt::format("condition of the small matrix at most {:.0f}", condition));
   return fmt::format("{}", fmt::join(parts, "; "));
 }
-
-/// Passes what the run produces on to the result files.
-class Recorder final : public RunObserver {
- public:
-  explicit Recorder(ResultsWriter& writer) : writer_(writer) {}
-  Result<> on_step(const Step& step) override {
-    steps_.push_back(step);
-    return writer_.add_step(step);
-  }
-  Result<> on_frame(const Frame& frame) override { return writer_.add_frame(frame); }
-
-  [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
-
- private:
-  ResultsWriter& writer_;
-  std::vector<Step> steps_;
-};
 
 std::string title(EventKind kind, const std::string& region) {
   std::string text = to_string(kind);
@@ -202,7 +182,7 @@ bool is_recording(const std::string& file) { return is_hdf5_file(file) && !is_me
 /// A recording with its steps, or a scenario or saved model without any.
 Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress& progress) {
   if (is_recording(arguments.scenario)) return recorded_run(arguments.scenario, arguments.settings, progress);
-  auto prepared = prepared_model(arguments.scenario, arguments.settings, progress);
+  auto prepared = prepare_model_file(arguments.scenario, arguments.settings, progress);
   if (!prepared) return prepared.error();
   RecordedRun run;
   run.prepared = std::move(*prepared);
@@ -252,49 +232,22 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (repeats && same_file(folder / "run.h5", arguments.scenario))
     return input_error(folder.string(), "the recording would be replaced by its repetition",
                        "Name another folder (-o)");
-  const std::shared_ptr<const Model>& model = prepared.model;
-  const Scenario& scenario = model->scenario();
-  const PlanOfHole plan_of = [&scenario](const std::string& hole) {
-    return plan_through(scenario.insertions.front(), hole);
-  };
-  std::optional<HoleMap> map;
-  if (arguments.map) {
-    if (Result<> possible = check_mappable(scenario, arguments.scenario); !possible) return possible;
-    auto ways = map_ways(*model, plan_of, arguments.scenario);
-    if (!ways) return ways.error();
-    map = std::move(*ways);
-  }
   const std::vector<std::string> warnings = prepared.warnings();
   for (const std::string& warning : warnings) console.warn(warning);
+  const Result<InsertResult> result =
+      insert(prepared, folder, {.map = arguments.map, .recorded = source->steps, .where = arguments.scenario},
+             console.progress());
+  if (!result) return result.error();
 
-  RunInfo info = model->info();
-  info.scenario_text = to_toml(scenario);
-  info.warnings = warnings;
-  const Tissue& tissue = model->tissue();
-  Result<std::unique_ptr<ResultsWriter>> writer =
-      ResultsWriter::open(folder, info, model->mesh(), [&tissue](const VecX& u) { return tissue.stress(u); });
-  if (!writer) return writer.error();
-  const Progress progress = console.progress();
-  Recorder recorder(**writer);
-  Result<Summary> summary =
-      repeats ? run_recorded(model, source->steps, recorder, progress) : run(model, recorder, progress);
-  if (!summary) return summary.error();
-  // The run knows of the model's warnings and of its own.
-  summary->warnings.insert(summary->warnings.begin(), prepared.notes.begin(), prepared.notes.end());
-  if (map) {
-    predict_holes(model, plan_of, *map, progress);
-    (*writer)->add_map(*map);
-  }
-  if (Result<> finished = (*writer)->finish(*summary, progress, scenario.output.pictures); !finished) return finished;
-
-  for (std::size_t i = warnings.size(); i < summary->warnings.size(); ++i) console.warn(summary->warnings[i]);
-  console.say(
-      fmt::format("{}: {} nodes, {} tetrahedra, {}", scenario.name, summary->nodes, summary->tets, info.method));
-  console.say(summary_text(*summary));
-  if (map) console.say("\n" + map_text(*map));
-  if (repeats) console.say("Repeated: " + compare_forces(source->steps, recorder.steps()) + ".");
+  const Summary& summary = result->summary;
+  for (std::size_t i = warnings.size(); i < summary.warnings.size(); ++i) console.warn(summary.warnings[i]);
+  console.say(fmt::format("{}: {} nodes, {} tetrahedra, {}", prepared.model->scenario().name, summary.nodes,
+                          summary.tets, prepared.model->info().method));
+  console.say(summary_text(summary));
+  if (result->map) console.say("\n" + map_text(*result->map));
+  if (repeats) console.say("Repeated: " + compare_forces(source->steps, result->steps) + ".");
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
-  const Result<Json> json = result_json(folder, map);
+  const Result<Json> json = result_json(folder, result->map);
   return json ? console.write_json(*json) : Result<>(json.error());
 }
 

@@ -3,11 +3,11 @@
 #include "describe.hpp"
 #include "mesh_report.hpp"
 #include "output_path.hpp"
-#include "patient_input.hpp"
-#include "patient_model.hpp"
 #include "validators.hpp"
 
 #include "stylet/geom/flat_tets.hpp"
+#include "stylet/patient/patient_file.hpp"
+#include "stylet/patient/patient_mesh.hpp"
 #include "stylet/sim/choices.hpp"
 
 #include <fmt/format.h>
@@ -93,10 +93,8 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (arguments.no_band) return pointless(arguments, "--no-band", kind);
   if (!arguments.skip.empty()) return pointless(arguments, "--skip", kind);
 
-  MeshedAnatomy out{.mesh = mesh, .report = {}};
-  if (Result<> named = rename_regions(out.mesh, options.regions, arguments.input); !named) return named.error();
-  out.report = report_as_is(out.mesh);
-  out.report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
+  auto out = take_mesh(mesh, options.regions, arguments.input);
+  if (out) out->report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
   return out;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "output_path.hpp"
-#include "prepared_model.hpp"
 #include "table.hpp"
 
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/patient/prepared_model.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -55,7 +55,7 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   if (!file) return file.error();
   const std::filesystem::path& output = *file;
   if (Result<> writable = check_output_file(output); !writable) return writable;
-  const Result<PreparedModel> prepared = prepared_model(arguments.scenario, arguments.settings, console.progress());
+  const Result<PreparedModel> prepared = prepare_model_file(arguments.scenario, arguments.settings, console.progress());
   if (!prepared) return prepared.error();
   const Model& model = *prepared->model;
   const auto start = std::chrono::steady_clock::now();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "igtl_companion.hpp"
-#include "prepared_model.hpp"
 #include "validators.hpp"
 
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/patient/prepared_model.hpp"
 #include "stylet/serve/server.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
       title,
       [file, &console, settings = arguments.settings, cache = ModelCache(arguments.models, {models_beside_program()})](
           const Progress& progress) -> Result<serve::LoadedCase> {
-        auto prepared = prepared_model(file.string(), settings, progress, &cache);
+        auto prepared = prepare_model_file(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
         if (!prepared->not_kept.empty())
           console.warn("The model was not kept for the next time: " + prepared->not_kept);

@@ -8,18 +8,6 @@
 
 namespace stylet::cli {
 
-MeshReport report_as_is(const TetMesh& mesh) {
-  MeshReport report;
-  report.quality = mesh_quality(mesh);
-  for (std::size_t region = 0; region < mesh.regions.size(); ++region) {
-    report.regions.push_back({.name = mesh.regions[region],
-                              .tets = report.quality.region_tets[region],
-                              .volume_cc = report.quality.region_volume_cc[region],
-                              .input_volume_cc = report.quality.region_volume_cc[region]});
-  }
-  return report;
-}
-
 std::string report_text(const MeshReport& report) {
   const MeshQuality& quality = report.quality;
   Facts facts;

@@ -7,9 +7,6 @@
 
 namespace stylet::cli {
 
-/// Report of a mesh that was not made here: its volumes are the input's, its surfaces coincide with the input's.
-MeshReport report_as_is(const TetMesh& mesh);
-
 /// What `stylet mesh` prints for people.
 std::string report_text(const MeshReport& report);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "prepared_model.hpp"
-
 #include "stylet/io/recording_io.hpp"
+#include "stylet/patient/prepared_model.hpp"
 
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the library to a fresh folder, builds the project beside this file against it, runs it.
-# Takes: BUILD (the library's build folder), SOURCE (this folder), WORK (a folder to use), GENERATOR, CXX.
+# Takes: STYLET (the library's sources), BUILD (its build folder), SOURCE (this folder), WORK (a folder to use), GENERATOR, CXX.
 file(REMOVE_RECURSE ${WORK})
 
 function(run)
@@ -24,8 +24,32 @@ foreach(program rt_loop rt_loop_cmake)
   endif()
 endforeach()
 
-foreach(private io mesher phantom)
+# The example's own words come from a patient's file; the demo patient is written to one first.
+run(${WORK}/prefix/bin/stylet --quiet phantom -o ${WORK}/case)
+execute_process(COMMAND ${WORK}/build/first_insertion ${WORK}/case/phantom.dcm WORKING_DIRECTORY ${WORK}
+                RESULT_VARIABLE status OUTPUT_VARIABLE said)
+if(NOT status EQUAL 0 OR NOT said MATCHES "largest force [4-9]")
+  message(FATAL_ERROR "first_insertion: exit status ${status}: ${said}")
+endif()
+foreach(file report.html forces.csv summary.json run.h5)
+  if(NOT EXISTS ${WORK}/out/first/${file})
+    message(FATAL_ERROR "first_insertion wrote no ${file}")
+  endif()
+endforeach()
+execute_process(COMMAND ${WORK}/build/first_insertion none.dcm WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status
+                ERROR_VARIABLE said)
+if(NOT status EQUAL 2 OR NOT said MATCHES "none.dcm: no such file")
+  message(FATAL_ERROR "first_insertion: exit status ${status}: ${said}")
+endif()
+
+foreach(private reproduce serve validate)
   if(EXISTS ${WORK}/prefix/include/stylet/${private})
     message(FATAL_ERROR "headers of ${private} are installed, but not its library")
   endif()
 endforeach()
+
+# The same library as a part of another project: no tests, no programs, and no setting of that project changes.
+run(${CMAKE_COMMAND} -S ${SOURCE}/subproject -B ${WORK}/subproject -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX}
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE=-O0 -D STYLET=${STYLET})  # quick to compile
+run(${CMAKE_COMMAND} --build ${WORK}/subproject)
+run(${WORK}/subproject/consumer)

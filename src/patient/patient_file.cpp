@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "patient_input.hpp"
+#include "stylet/patient/patient_file.hpp"
 
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/structure_names.hpp"
@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace stylet::cli {
+namespace stylet {
 
 namespace {
 
@@ -67,4 +67,4 @@ Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshRe
   return file;
 }
 
-}  // namespace stylet::cli
+}  // namespace stylet

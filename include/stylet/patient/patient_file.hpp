@@ -4,9 +4,9 @@
 #include "stylet/io/input.hpp"
 #include "stylet/mesher/mesher.hpp"
 
-namespace stylet::cli {
+namespace stylet {
 
-/// A patient's file as it was read.
+/// The content of a patient's file, and what was noticed while it was read.
 struct PatientFile {
   PatientInput content;
   std::vector<std::string> notes;  ///< for the user: what was passed over, put right or looks odd
@@ -17,4 +17,4 @@ struct PatientFile {
 Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
                                  const MeshOptions& mesh_options, const MaskReadOptions& mask_options = {});
 
-}  // namespace stylet::cli
+}  // namespace stylet

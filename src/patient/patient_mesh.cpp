@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "patient_model.hpp"
-
-#include "mesh_report.hpp"
-#include "patient_input.hpp"
+#include "stylet/patient/patient_mesh.hpp"
 
 #include "stylet/core/nearest_name.hpp"
+#include "stylet/geom/quality.hpp"
 #include "stylet/geom/structure_names.hpp"
 #include "stylet/io/input.hpp"
+#include "stylet/patient/patient_file.hpp"
 #include "stylet/phantom/phantom.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace stylet::cli {
+namespace stylet {
+
+namespace {
 
 Result<> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>& names, const std::string& where) {
   const std::vector<std::string> in_file = mesh.regions;
@@ -35,7 +36,17 @@ Result<> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>&
   return Ok{};
 }
 
-namespace {
+MeshReport report_as_is(const TetMesh& mesh) {
+  MeshReport report;
+  report.quality = mesh_quality(mesh);
+  for (std::size_t region = 0; region < mesh.regions.size(); ++region) {
+    report.regions.push_back({.name = mesh.regions[region],
+                              .tets = report.quality.region_tets[region],
+                              .volume_cc = report.quality.region_volume_cc[region],
+                              .input_volume_cc = report.quality.region_volume_cc[region]});
+  }
+  return report;
+}
 
 /// Whether a model has a region whose motion is told: the gland, its zones, a planning volume or an unnamed label.
 bool has_target(const TetMesh& mesh) {
@@ -60,14 +71,12 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshOptions& options, 
                        "patient.skip has no meaning for a tetrahedral mesh, all of which is used",
                        "Remove it; [patient.regions] gives regions other names");
   }
-  MeshedAnatomy out{.mesh = mesh, .report = {}};
-  if (Result<> named = rename_regions(out.mesh, options.regions, scenario.patient.source); !named) return named.error();
-  out.report = report_as_is(out.mesh);
-  if (!has_target(out.mesh)) {
-    out.report.notes.push_back(
+  auto out = take_mesh(mesh, options.regions, scenario.patient.source);
+  if (out && !has_target(out->mesh)) {
+    out->report.notes.push_back(
         fmt::format("no region of the mesh ({}) is the target: its motion is not told, and the template stands before "
                     "the middle of the mesh; [patient.regions] says which region is the prostate",
-                    fmt::join(out.mesh.regions, ", ")));
+                    fmt::join(out->mesh.regions, ", ")));
   }
   return out;
 }
@@ -81,7 +90,14 @@ Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshO
 
 }  // namespace
 
-Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&, const Progress& progress) {
+Result<MeshedAnatomy> take_mesh(TetMesh mesh, const std::map<std::string, std::string>& names,
+                                const std::string& where) {
+  if (Result<> named = rename_regions(mesh, names, where); !named) return named.error();
+  MeshReport report = report_as_is(mesh);
+  return MeshedAnatomy{.mesh = std::move(mesh), .report = std::move(report)};
+}
+
+Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& progress) {
   MeshOptions options;
   options.preset = scenario.mesh.preset;
   options.nodes = scenario.mesh.nodes;
@@ -102,4 +118,4 @@ Result<MeshedAnatomy> patient_model(const Scenario& scenario, const std::string&
   return patient;
 }
 
-}  // namespace stylet::cli
+}  // namespace stylet

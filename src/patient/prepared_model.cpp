@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "prepared_model.hpp"
-
-#include "patient_model.hpp"
+#include "stylet/patient/prepared_model.hpp"
 
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/patient/patient_mesh.hpp"
 
 #include <chrono>
 
-namespace stylet::cli {
+namespace stylet {
 
 namespace {
 
@@ -28,8 +27,15 @@ Result<PreparedModel> saved(const std::string& file, const std::vector<std::stri
   return prepared;
 }
 
-/// A scenario, meshed and compiled.
-Result<PreparedModel> compiled(const std::string& file, const Scenario& scenario, const Progress& progress) {
+}  // namespace
+
+std::vector<std::string> PreparedModel::warnings() const {
+  std::vector<std::string> all = notes;
+  all.insert(all.end(), model->warnings().begin(), model->warnings().end());
+  return all;
+}
+
+Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& progress, const std::string& where) {
   std::vector<std::vector<MotionSample>> motions;
   for (const InsertionPlan& plan : scenario.insertions) {
     motions.emplace_back();
@@ -40,39 +46,31 @@ Result<PreparedModel> compiled(const std::string& file, const Scenario& scenario
   }
   PreparedModel prepared;
   const double start = now_s();
-  Result<MeshedAnatomy> patient = patient_model(scenario, file, progress);
+  Result<MeshedAnatomy> patient = mesh_patient(scenario, progress);
   if (!patient) return patient.error();
   prepared.notes = patient->report.notes;
   const double meshed = now_s();
   prepared.mesh_s = meshed - start;
-  auto model = Model::compile(scenario, std::move(patient->mesh), file, motions, progress);
+  auto model = Model::compile(scenario, std::move(patient->mesh), where, motions, progress);
   if (!model) return model.error();
   prepared.model = std::move(*model);
   prepared.model_s = now_s() - meshed;
   return prepared;
 }
 
-}  // namespace
-
-std::vector<std::string> PreparedModel::warnings() const {
-  std::vector<std::string> all = notes;
-  all.insert(all.end(), model->warnings().begin(), model->warnings().end());
-  return all;
-}
-
-Result<PreparedModel> prepared_model(const std::string& file, const std::vector<std::string>& settings,
-                                     const Progress& progress, const ModelCache* cache) {
+Result<PreparedModel> prepare_model_file(const std::string& file, const std::vector<std::string>& settings,
+                                         const Progress& progress, const ModelCache* cache) {
   if (is_hdf5_file(file) || is_meant_as_model(file)) return saved(file, settings, progress);
   const Result<Scenario> scenario = read_scenario(file, settings);
   if (!scenario) return scenario.error();
-  if (cache == nullptr) return compiled(file, *scenario, progress);
+  if (cache == nullptr) return prepare_model(*scenario, progress, file);
   report(progress, "looking for a model kept before", -1.0);
   const Result<std::string> key = model_key(*scenario);
-  if (!key) return compiled(file, *scenario, progress);  // which says better what is wrong with a patient's file
+  if (!key) return prepare_model(*scenario, progress, file);  // which says better what is wrong with a patient's file
   if (const auto kept = cache->find(*key)) {
     if (auto prepared = saved(kept->string(), {}, progress)) return prepared;
   }
-  auto prepared = compiled(file, *scenario, progress);
+  auto prepared = prepare_model(*scenario, progress, file);
   if (!prepared) return prepared;
   const Result<std::string> now = model_key(*scenario);
   if (!now || *now != *key) return prepared;  // somebody has changed a file meanwhile
@@ -81,4 +79,4 @@ Result<PreparedModel> prepared_model(const std::string& file, const std::vector<
   return prepared;
 }
 
-}  // namespace stylet::cli
+}  // namespace stylet

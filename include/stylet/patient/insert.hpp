@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/patient/prepared_model.hpp"
+#include "stylet/sim/hole_map.hpp"
+#include "stylet/sim/recording.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stylet {
+
+struct InsertSettings {
+  bool map = false;                ///< also predict the gland's shift for a needle through each hole of the template
+  std::span<const Step> recorded;  ///< steps of a recording whose base motion is repeated; empty: the scenario's plans
+  std::string where = "scenario";  ///< name of the scenario in error messages
+};
+
+struct InsertResult {
+  Summary summary;             ///< forces, events, the gland's motion and warnings of the whole run
+  std::vector<Step> steps;     ///< all of them, in order of time
+  std::optional<HoleMap> map;  ///< if it was asked for
+};
+
+/// Carries out all insertions of a model and writes the result folder: report, pictures, tables and the recording
+/// (docs/results.md). It takes seconds to minutes.
+/// @param folder is made if it is missing; files of an earlier run in it are replaced
+/// Errors: a folder that cannot be written, a scenario without a template where a map is asked for, and those of run().
+Result<InsertResult> insert(const PreparedModel& prepared, const std::filesystem::path& folder,
+                            const InsertSettings& settings = {}, const Progress& progress = {});
+
+}  // namespace stylet

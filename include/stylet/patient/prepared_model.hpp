@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/progress.hpp"
+#include "stylet/io/model_cache.hpp"
+#include "stylet/sim/model.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stylet {
+
+/// A model ready for its first step.
+struct PreparedModel {
+  std::shared_ptr<const Model> model;
+  std::vector<std::string> notes;  ///< what the reader and the mesher left out, added or put right
+  std::string not_kept;            ///< why the cache could not keep the model; empty if it did or there is no cache
+  double mesh_s = 0.0;             ///< contours, mask or file to mesh
+  double model_s = 0.0;            ///< mesh to model, or a saved model to model
+
+  /// Everything that a user should know before the first step: the notes, then the model's warnings.
+  [[nodiscard]] std::vector<std::string> warnings() const;
+};
+
+/// Meshes the patient of a scenario and compiles the model. This takes seconds to minutes.
+/// @param scenario paths in it are relative to the current folder
+/// @param where name of the scenario in error messages
+/// Errors: those of mesh_patient(), of reading a recorded motion, and of Model::compile().
+Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& progress = {},
+                                    const std::string& where = "scenario");
+
+/// The same for a scenario file, or for a model that was saved with write_model_file(), which takes less than a second.
+/// @param file SCENARIO.toml or MODEL.stylet
+/// @param settings keys of the scenario to change, as "KEY=VALUE"
+/// @param cache folder in which the model of an unchanged scenario is looked for first, and kept; may be null. A folder
+///   that cannot be written is no error (PreparedModel::not_kept).
+Result<PreparedModel> prepare_model_file(const std::string& file, const std::vector<std::string>& settings = {},
+                                         const Progress& progress = {}, const ModelCache* cache = nullptr);
+
+}  // namespace stylet
