@@ -121,6 +121,13 @@ std::string summary_text(const Summary& summary) {
                                           "most {:.2f} mm, at the deepest point",
                                           shift.norm(), shift.x(), shift.y(), shift.z(), summary.target_shift_max_mm));
   }
+  if (summary.tip_error_mm) {
+    const Vec3& error = *summary.tip_error_mm;
+    facts.add("tip error",
+              fmt::format("{:.2f} mm in the tissue (left {:.2f}, posterior {:.2f}, superior {:.2f}), at the "
+                          "deepest point",
+                          error.norm(), error.x(), error.y(), error.z()));
+  }
   facts.add("tip off its line", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));
   facts.add("balance", fmt::format("force {:.1e}, torque {:.1e} (relative)", summary.residual_force_balance,
                                    summary.residual_torque_balance));

@@ -317,9 +317,9 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   const bool condensed = model->coupling_.engine == CouplingSettings::Engine::condensed;
   if (condensed && corridor.radius_mm < scenario.coupling.corridor_mm) {
     model->warnings_.push_back(fmt::format(
-        "Compliance is prepared within {:.1f} mm of the planned path instead of coupling.corridor_mm = {:g}: more "
-        "would be that of over {} nodes. Beyond, it takes a solve when the needle comes; coupling.corridor_nodes "
-        "raises the limit.",
+        "Compliance is prepared within {:.1f} mm of the planned path only: coupling.corridor_mm = {:g} would take more "
+        "than coupling.corridor_nodes = {} nodes. Outside of that corridor the program solves for it when the needle "
+        "comes near, and pauses or flags the step. Raise coupling.corridor_nodes for a wider corridor.",
         model->corridor_mm_, scenario.coupling.corridor_mm, scenario.coupling.corridor_nodes));
   }
   const Element element = element_of(scenario, mesh.node_count());

@@ -65,38 +65,39 @@ class Needle {
   virtual bool linearise(std::span<const PointLoad> loads, Eigen::Ref<MatX> compliance, Eigen::Ref<VecX> free,
                          std::span<const Mat3> springs = {}, Indefinite otherwise = Indefinite::shift) = 0;
 
-  /// The same problem at the shape of now under these loads, with the tangent and the springs of the last linearise():
-  /// a step that converges linearly, at a small part of the cost. The compliance is that of then.
-  /// @param loads (w) those of then, wherever they are now, or the first of them; the others are forgotten
-  /// @param free [mm] (3w), written: motion of the load points by that step with unchanged loads
-  /// @return false, and nothing done, where that tangent is not the needle's any more: linearise() again
+  /// A step from the present shape with the tangent, the springs and the compliance of the last linearise(). It costs a
+  /// small part of linearise(), and repeated steps converge linearly instead of quadratically.
+  /// @param loads (w) the loads of the last linearise() at their present arc lengths; a shorter list drops the loads at
+  ///   the end of the earlier one
+  /// @param free [mm] (3w), written: motion of the load points by this step with unchanged loads
+  /// @return false if the needle has no tangent that fits: nothing was done, and linearise() has to be called
   virtual bool relax(std::span<const PointLoad> loads, Eigen::Ref<VecX> free) = 0;
 
-  /// Adds a load to the problem of the last linearise(), after the first ones of then: its part of the compliance, the
-  /// rest of which stays as it is. No spring is lent to it. To be followed by relax().
-  /// @param loads (w) those of then, or the first of them, and the new one last
+  /// Adds one load to the problem of the last linearise(). Only the rows of the new load are computed; the rest of the
+  /// compliance stays as it is. The new load gets no spring. A call of relax() has to follow.
+  /// @param loads (w) the loads of the last linearise(), or the first of them, followed by the new load
   /// @param compliance [mm/N] (3 × 3w), written: motion of the new load point by each load
-  /// @return false, and nothing done, where that takes a linearise()
+  /// @return false if this needle model cannot add a load: nothing was done, and linearise() has to be called
   // NOLINTNEXTLINE(performance-unnecessary-value-param): others write through the view
   virtual bool append(std::span<const PointLoad> /*loads*/, Eigen::Ref<MatX> /*compliance*/) { return false; }
 
   /// Whether a tangent can be made beside the one in use.
   [[nodiscard]] virtual bool prepares() const { return false; }
 
-  /// The first piece of linearise(), beside the tangent in use, which stays. The others are in prepared_compliance();
-  /// all may come in different steps. Nothing is in use before take_prepared().
-  /// @return true when that tangent was positive definite as it is; with Indefinite::give_up there is none otherwise
+  /// Begins the next tangent at the present shape. The tangent in use stays in use until take_prepared(). The work is
+  /// split into pieces that may be done in different steps: this one, then calls of prepared_compliance().
+  /// @return true if the new tangent is positive definite as it is; if it is not, Indefinite::give_up makes none
   virtual bool prepare(std::span<const PointLoad> /*loads*/, std::span<const Mat3> /*springs*/,
                        Indefinite /*otherwise*/) {
     return false;
   }
-  /// The next piece. @param compliance [mm/N] (3w × 3w) of the tangent that is prepared, written by several: the same
-  /// place each time, whole after the last one
+  /// Computes the next piece of the new tangent's compliance.
+  /// @param compliance [mm/N] (3w × 3w), written piece by piece: the same matrix in each call, complete after the last
   /// @return whether this was the last piece
   // NOLINTNEXTLINE(performance-unnecessary-value-param): others write through the view
   virtual bool prepared_compliance(Eigen::Ref<MatX> /*compliance*/) { return true; }
-  /// That tangent, once complete, is from now on the one of the last linearise(). To be followed by relax() or
-  /// append().
+  /// Puts the new tangent, which must be complete, in the place of that of the last linearise(). A call of relax() or
+  /// append() has to follow.
   virtual void take_prepared() {}
 
   /// Takes the step of the last linearise() or relax() with these loads in place of those given there (same s, same

@@ -47,8 +47,8 @@ Result<Finding> force(Context& context) {
   finding.note += fmt::format(
       "With node addition (its finest dashed) RMS from its own finest and skin: {}. 500 nodes are shown and not "
       "judged: "
-      "no layer is an element thick there. stylet bench coupling goes on to 40,000 nodes, where the capsule breaks "
-      "some millimetres earlier again.",
+      "no layer is an element thick there. stylet bench coupling goes on to 40,000 nodes "
+      "(docs/theory/near_field.md §8).",
       others);
   finding.why_missed =
       "The capsule breaks at the same force, but deeper or less deep: on the border of fat and gland the tip’s own "

@@ -128,6 +128,16 @@ TEST(Report, directions_are_words_of_the_patient_frame) {
   EXPECT_EQ(describe_shift({0.01, 0, -0.02}), "less than 0.05 mm in any direction");
 }
 
+TEST(Report, tells_how_far_the_tip_lies_from_its_planned_place) {
+  auto run = synthetic_run();
+  const auto says = [&](const char* text) { return page_of(recording_of(run)).find(text) != std::string::npos; };
+  EXPECT_TRUE(
+      says("the tip lay in tissue 2.2 mm away from where it was planned (2.1 mm towards the feet, 0.4 mm to "
+           "the patient"));
+  run.summary.tip_error_mm.reset();
+  EXPECT_FALSE(says("from where it was planned"));
+}
+
 TEST(Report, tells_how_the_gland_moved_in_anatomical_words) {
   auto run = synthetic_run();
   const std::string page = page_of(recording_of(run));

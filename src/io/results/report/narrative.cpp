@@ -133,6 +133,16 @@ std::string tell_target(const RunRecording& run) {
       s.target_shift_max_mm);
 }
 
+/// Where the tip came to lie in the tissue, beside where it was planned to be.
+std::string tell_tip_error(const RunRecording& run) {
+  const auto& error = run.summary->tip_error_mm;
+  if (!error) return {};
+  return fmt::format(
+      "At the deepest point the tip lay in tissue {:.1f} mm away from where it was planned ({}): a seed dropped there "
+      "would miss its place by about as much.",
+      error->norm(), describe_shift(*error));
+}
+
 std::string tell_retraction(const RunRecording& run, const Frame& after) {
   const auto& events = run.summary->events;
   const Event* back = find(events, EventKind::retraction_start);
@@ -230,7 +240,7 @@ std::vector<std::string> tell_what_happened(const RunRecording& run, const Momen
     if (!paragraph.empty()) paragraphs.push_back(paragraph);
   };
   add({tell_motion(run, deepest), tell_events(s.events)});
-  add({tell_forces(run), tell_target(run),
+  add({tell_forces(run), tell_target(run), tell_tip_error(run),
        fmt::format("The tip came to lie at most {:.1f} mm beside the straight line it was aimed along.",
                    s.tip_deflection_mm)});
   add({tell_retraction(run, run.frames[moments.after])});
