@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 
 case "${1:-}" in
-  "") steps=(packages format module_order machine_paths build tests instrumented_build sanitizers threads lint) ;;
+  "") steps=(packages format module_order machine_paths documents build tests instrumented_build sanitizers threads lint) ;;
   --quick) steps=(packages build unit_tests) ;;
   *) echo "usage: ./test.sh [--quick]" >&2; exit 2 ;;
 esac
@@ -24,6 +24,7 @@ packages()      { scripts/install_packages; }
 format()        { scripts/check_format; }
 module_order()  { scripts/check_module_order; }
 machine_paths() { scripts/check_machine_paths; }
+documents()     { scripts/check_documents; }
 build()         { scripts/build release; }
 unit_tests()    { run_tests release --parallel "$(nproc)" --label-regex unit; }
 sanitizers()    { run_tests sanitize --parallel "$(nproc)" --label-regex 'unit|long'; }
@@ -50,6 +51,7 @@ declare -A about=(
   [format]="code is formatted as .clang-format says"
   [module_order]="modules include only what lies left of them"
   [machine_paths]="no path of one machine in the sources"
+  [documents]="lines of documents, links, and phrases that lack their noun"
   [build]="release build into build/"
   [unit_tests]="unit tests"
   [tests]="all tests: unit, long, command line, browser, real data, slow, installed library"

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/check_documents sees long lines, links that lead nowhere, pages that nothing leads to, and phrases without a noun."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "check_documents"
+SOUND = {"README.md": "# A\n", "CONTRIBUTING.md": "# B\n", "CHANGELOG.md": "# C\n",
+         "docs/index.md": "# Index\n[one](one.md#a-first-heading)\n",
+         "docs/one.md": "# One\n## A `first` heading\n| " + "wide " * 40 + "|\n\n    code\n[two](sub/two.md)\n",
+         "docs/sub/two.md": "# Two\n```\n" + "long " * 40 + "\n```\n[back](../index.md)\n"}
+
+
+class Documents(unittest.TestCase):
+    def complaints(self, changes):
+        """Exit status and output of the script on the sound documents with some others."""
+        with tempfile.TemporaryDirectory() as folder:
+            for path, text in {**SOUND, **changes}.items():
+                file = Path(folder) / path
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text, encoding="utf-8")
+            done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
+            return done.returncode, done.stdout
+
+    def refused(self, changes, *texts):
+        status, said = self.complaints(changes)
+        self.assertEqual(status, 1, said)
+        for text in texts:
+            self.assertIn(text, said)
+
+    def test_sound_documents_pass(self):
+        self.assertEqual(self.complaints({})[0], 0)
+
+    def test_a_long_line_is_named_with_its_length(self):
+        self.refused({"README.md": "# A\n" + "word " * 24 + "x\n"}, "README.md:2: 121 columns")
+
+    def test_a_link_to_no_file_or_no_heading_is_named(self):
+        self.refused({"README.md": "# A\n[x](docs/none.md) and [y](docs/one.md#another)\n"},
+                     "README.md:2: the link docs/none.md leads to no file",
+                     "the link docs/one.md#another leads to no heading of one.md")
+
+    def test_a_page_that_is_three_links_away_is_named(self):
+        self.refused({"docs/sub/two.md": "# Two\n[three](three.md)\n", "docs/sub/three.md": "# Three\n"},
+                     "docs/sub/three.md:1: no two links lead here")
+
+    def test_a_phrase_without_its_noun_is_named_wherever_it_stands(self):
+        self.refused({"include/a.hpp": "/// @param loads those of " + "then\n"}, 'include/a.hpp:1: "those of then"')
+
+
+if __name__ == "__main__":
+    unittest.main()
