@@ -240,10 +240,12 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
     return input_error(folder.string(), "the recording would be replaced by its repetition",
                        "Name another folder (-o)");
   const std::vector<std::string> warnings = prepared.warnings();
-  for (const std::string& warning : warnings) console.warn(warning);
-  const Result<InsertResult> result =
-      insert(prepared, folder, {.map = arguments.map, .recorded = source->steps, .where = arguments.scenario},
-             console.progress());
+  const auto warn = [&] {
+    for (const std::string& warning : warnings) console.warn(warning);
+  };
+  const Result<InsertResult> result = insert(
+      prepared, folder, {.map = arguments.map, .recorded = source->steps, .where = arguments.scenario, .begin = warn},
+      console.progress());
   if (!result) return result.error();
 
   const Summary& summary = result->summary;

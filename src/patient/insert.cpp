@@ -40,6 +40,7 @@ Result<InsertResult> insert(const PreparedModel& prepared, const std::filesystem
     if (!ways) return ways.error();
     result.map = std::move(*ways);
   }
+  if (settings.begin) settings.begin();
   RunInfo info = model->info();
   info.scenario_text = to_toml(scenario);
   info.warnings = prepared.warnings();

@@ -6,6 +6,7 @@
 #include "stylet/sim/recording.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,7 @@ struct InsertSettings {
   bool map = false;                ///< also predict the gland's shift for a needle through each hole of the template
   std::span<const Step> recorded;  ///< steps of a recording whose base motion is repeated; empty: the scenario's plans
   std::string where = "scenario";  ///< name of the scenario in error messages
+  std::function<void()> begin;     ///< called once, when nothing is wrong with the settings and before the first step
 };
 
 struct InsertResult {
