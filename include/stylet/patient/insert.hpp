@@ -14,6 +14,7 @@
 
 namespace stylet {
 
+/// Choices of insert(); the default carries out the plans of the scenario and makes no map.
 struct InsertSettings {
   bool map = false;                ///< also predict the gland's shift for a needle through each hole of the template
   std::span<const Step> recorded;  ///< steps of a recording whose base motion is repeated; empty: the scenario's plans
@@ -21,6 +22,7 @@ struct InsertSettings {
   std::function<void()> begin;     ///< called once, when nothing is wrong with the settings and before the first step
 };
 
+/// The result of insert(), beside the files that it wrote.
 struct InsertResult {
   Summary summary;             ///< forces, events, the gland's motion and warnings of the whole run
   std::vector<Step> steps;     ///< all of them, in order of time

@@ -30,7 +30,7 @@ struct PreparedModel {
 Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& progress = {},
                                     const std::string& where = "scenario");
 
-/// The same for a scenario file, or for a model that was saved with write_model_file(), which takes less than a second.
+/// The same for a scenario file, or for a model that was saved with save_model(), which is read in place of being made.
 /// @param file SCENARIO.toml or MODEL.stylet
 /// @param settings keys of the scenario to change, as "KEY=VALUE"
 /// @param cache folder in which the model of an unchanged scenario is looked for first, and kept; may be null. A folder

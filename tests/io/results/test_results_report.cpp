@@ -199,7 +199,7 @@ TEST(Report, text_from_the_user_cannot_break_the_page) {
 }
 
 TEST(Report, the_first_thing_that_is_punctured_is_the_skin_whatever_lies_under_it) {
-  for (const char* region : {"body", "subcutaneous_fat"}) {
+  for (const char* region : {"body", "subcutaneous_fat", "levator"}) {
     auto run = synthetic_run();
     for (auto& event : run.summary.events) {
       if (event.kind == EventKind::puncture) event.region = region;

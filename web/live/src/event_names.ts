@@ -8,7 +8,8 @@ const NAMES: Record<string, string> = {
 const BONE_OR_OUT = new Set(['bone_contact', 'exited']);
 let spared = new Set<string>();
 const WITH_REGION = new Set(['puncture', 'region_entered']);
-const UNDER_THE_SKIN = new Set(['body', 'subcutaneous_fat']);
+/** Whether a region fills the space between the organs: what breaks at its surface is the skin (is_surrounding() in C++). */
+const isSurrounding = (region: string): boolean => region === 'body' || region === 'levator' || region.endsWith('_fat');
 let labels = new Map<string, string>();
 
 /** What regions are called in the case that is shown. */
@@ -23,7 +24,7 @@ export function regionLabel(name: string): string {
 
 export function eventLabel(event: Event): string {
   const name = NAMES[event.kind] ?? event.kind.replaceAll('_', ' ');
-  if (event.kind === 'puncture' && UNDER_THE_SKIN.has(event.region)) return `${name} skin`;
+  if (event.kind === 'puncture' && isSurrounding(event.region)) return `${name} skin`;
   return WITH_REGION.has(event.kind) && event.region ? `${name} ${regionLabel(event.region)}` : name;
 }
 

@@ -2,6 +2,7 @@
 #include "report/narrative.hpp"
 
 #include "stylet/io/region_views.hpp"
+#include "stylet/sim/scenario.hpp"
 
 #include <fmt/format.h>
 
@@ -31,10 +32,9 @@ std::string spoken(const std::string& region) {
   return text;
 }
 
-/// What the tip pierces: the surface of the body, or of the fat that lies under the skin, is the skin.
-std::string surface(const std::string& region) {
-  return region == "body" || region == "subcutaneous_fat" ? "skin" : region;
-}
+/// Name of the surface that the tip pierces. Fat and muscle between the organs have no membrane, so a surface that
+/// breaks there is the skin.
+std::string surface(const std::string& region) { return is_surrounding(region) ? "skin" : region; }
 
 /// "0.42 N"; small forces without false digits.
 std::string newtons(double force) {
