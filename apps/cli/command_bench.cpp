@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "benches.hpp"
+#include "bench/benches.hpp"
 #include "command.hpp"
 #include "table.hpp"
 #include "validators.hpp"
 
-#include "stylet/reproduce/measure.hpp"
-#include "stylet/reproduce/needle_bench.hpp"
-#include "stylet/validate/coupling_bench.hpp"
-#include "stylet/validate/scale_bench.hpp"
-#include "stylet/validate/step_bench.hpp"
+#include "stylet/measure/coupling_bench.hpp"
+#include "stylet/measure/needle_bench.hpp"
+#include "stylet/measure/scale_bench.hpp"
+#include "stylet/measure/step_bench.hpp"
+#include "stylet/measure/timing.hpp"
 
 #include <fmt/format.h>
 
@@ -24,15 +24,15 @@ namespace {
 std::string percent(double share) { return fmt::format("{:.3f}", 100.0 * share); }
 
 Result<> run_needle(Console& console) {
-  const auto rows = reproduce::bench_needles();
+  const auto rows = measure::bench_needles();
   if (!rows) return rows.error();
-  constexpr auto slopes = reproduce::NeedleRow::kTipSlopes_deg;
+  constexpr auto slopes = measure::NeedleRow::kTipSlopes_deg;
   std::vector<std::string> header{"model", "elements", "at L/3", "at L"};
   for (const double slope : slopes) header.push_back(fmt::format("{:.0f} deg", slope));
   header.insert(header.end(), {"axial [N/mm]", "solve [µs]"});
   Table table(header);
   Json json{{"tip_slopes_deg", slopes}, {"rows", Json::array()}};
-  for (const reproduce::NeedleRow& row : *rows) {
+  for (const measure::NeedleRow& row : *rows) {
     std::vector<std::string> cells{row.model, fmt::format("{}{}", row.elements, row.is_default ? " *" : ""),
                                    percent(row.small_inner), percent(row.small_tip)};
     for (const double error : row.elastica) cells.push_back(percent(error));
@@ -61,7 +61,7 @@ Result<> run_needle(Console& console) {
   return console.write_json(json);
 }
 
-Json coupling_json(const validate::CouplingRow& row) {
+Json coupling_json(const measure::CouplingRow& row) {
   constexpr double every_s = 0.01;  // of the curve, for a picture
   Json curve = Json::array();
   const auto every = static_cast<std::size_t>(std::max(1L, std::lround(every_s / row.curve.dt_s)));
@@ -86,7 +86,7 @@ Json coupling_json(const validate::CouplingRow& row) {
           {"curve_force_axial_N", curve}};
 }
 
-std::vector<std::string> coupling_cells(const validate::CouplingRow& row) {
+std::vector<std::string> coupling_cells(const measure::CouplingRow& row) {
   return {to_string(row.study),
           row.method,
           row.element,
@@ -105,18 +105,18 @@ std::vector<std::string> coupling_cells(const validate::CouplingRow& row) {
 }
 
 Result<> run_coupling(const BenchArguments& arguments, Console& console) {
-  validate::CouplingBenchOptions options;
+  measure::CouplingBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
   if (auto checked =
           check_nodes("coupling", options.largest, 500, "500 nodes is the coarsest mesh of the demo patient");
       !checked)
     return checked;
-  const auto rows = validate::bench_coupling(options, console.progress());
+  const auto rows = measure::bench_coupling(options, console.progress());
   if (!rows) return rows.error();
   Table table({"over", "method", "element", "nodes", "spacing [mm]", "dt [ms]", "peak [N]", "RMS [%]", "shift [mm]",
                "skin [mm]", "capsule [mm]", "gland [mm]", "off by [mm]", "step [µs]", "before [s]"});
   Json json{{"depth_mm", options.depth_mm}, {"rows", Json::array()}};
-  for (const validate::CouplingRow& row : *rows) {
+  for (const measure::CouplingRow& row : *rows) {
     table.row(coupling_cells(row));
     json["rows"].push_back(coupling_json(row));
   }
@@ -176,7 +176,7 @@ Result<> check_nodes(const std::string& benchmark, int nodes, int fewest, const 
 }
 
 Json machine_json() {
-  const reproduce::Machine machine = reproduce::this_machine();
+  const measure::Machine machine = measure::this_machine();
   return {{"processor", machine.processor},
           {"cores", machine.cores},
           {"blas", machine.blas},
@@ -190,7 +190,7 @@ std::string number(double value, int digits) {
 
 Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json times_json(const validate::StepTimes& times) {
+Json times_json(const measure::StepTimes& times) {
   return {{"p50", times.p50}, {"p99", times.p99}, {"p999", times.p999}, {"max", times.max}};
 }
 
@@ -214,14 +214,14 @@ Command add_bench_command(CLI::App& program) {
                   fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
                               "scale, supply and display: 570 or more (default {}); the mesh; step, loop and viewers: "
                               "500 or more (default {})",
-                              kRemeshNodes, validate::CouplingBenchOptions{}.largest,
-                              validate::ScaleBenchOptions{}.largest, validate::StepBenchOptions{}.nodes))
+                              kRemeshNodes, measure::CouplingBenchOptions{}.largest,
+                              measure::ScaleBenchOptions{}.largest, measure::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
   app->add_option("--contacts", arguments->contacts,
                   "With about so many; scale: only (default 20, 40 and 60), loop and viewers (default 40)")
       ->type_name("N")
-      ->check(whole_number_between(5, validate::most_driven_contacts()));
+      ->check(whole_number_between(5, measure::most_driven_contacts()));
   app->add_option("--steps", arguments->steps,
                   "scale: repeat insertion and withdrawal until there are so many steps in each row (default: once)")
       ->type_name("N")

@@ -3,7 +3,7 @@
 #include "output_path.hpp"
 #include "table.hpp"
 
-#include "stylet/reproduce/reproduction.hpp"
+#include "stylet/evidence/reproduce/reproduction.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "output_path.hpp"
 #include "table.hpp"
 
-#include "stylet/validate/validation.hpp"
+#include "stylet/evidence/validate/validation.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "evidence/validate/solids.hpp"
 #include "stylet/fem/tissue.hpp"
 #include "stylet/geom/box_mesh.hpp"
 #include "stylet/geom/topology.hpp"
-#include "validate/solids.hpp"
 
 #include <gtest/gtest.h>
 

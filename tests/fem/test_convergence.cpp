@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bodies.hpp"
-#include "validate/quadrature.hpp"
+#include "evidence/validate/quadrature.hpp"
 
 #include <cstdio>
 #include <numbers>

@@ -2,8 +2,8 @@
 #include "stylet/fem/volume_motion.hpp"
 
 #include "bodies.hpp"
+#include "evidence/validate/quadrature.hpp"
 #include "stylet/geom/locator.hpp"
-#include "validate/quadrature.hpp"
 
 #include <Eigen/QR>
 

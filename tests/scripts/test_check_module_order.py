@@ -69,13 +69,13 @@ class ModuleOrder(unittest.TestCase):
         self.assertIn("sys/socket.h", text)
         self.assertIn("sim must not include realtime", text)
 
-    def test_reproduce_sees_all_and_is_seen_by_none(self):
-        status, text = self.check({"src/reproduce/a.cpp": '#include "stylet/mesher/mesher.hpp"\n#include "io/inside.hpp"\n',
+    def test_evidence_sees_all_and_is_seen_by_none(self):
+        status, text = self.check({"src/evidence/a.cpp": '#include "stylet/mesher/mesher.hpp"\n#include "io/inside.hpp"\n',
                                    "src/io/inside.hpp": ""})
         self.assertEqual((status, text), (0, ""))
-        status, text = self.check({"src/io/a.cpp": '#include "stylet/reproduce/figure5.hpp"\n'})
+        status, text = self.check({"src/io/a.cpp": '#include "stylet/evidence/reproduce/figure5.hpp"\n'})
         self.assertEqual(status, 1)
-        self.assertIn("io must not include reproduce", text)
+        self.assertIn("io must not include evidence", text)
 
     def test_formats_and_sockets_stay_out_of_the_engine(self):
         for header in ("vtkCell.h", "CGAL/Mesh_3/config.h", "dcmtk/dcmrt/drtstrct.h", "nlohmann/json.hpp",

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "evidence/validate/medium_block.hpp"
 #include "stylet/coupling/near_field/half_space.hpp"
-#include "validate/medium_block.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the near field is checked against, checked itself.
 #include "coupling/near_field/navier.hpp"
+#include "evidence/validate/bonded_cylinder.hpp"
+#include "evidence/validate/surface_load.hpp"
 #include "stylet/coupling/near_field/half_space.hpp"
-#include "validate/bonded_cylinder.hpp"
-#include "validate/surface_load.hpp"
 
 #include <gtest/gtest.h>
 

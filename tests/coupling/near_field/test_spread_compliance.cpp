@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/near_field/medium_block.hpp"
-#include "validate/bonded_cylinder.hpp"
+#include "evidence/validate/bonded_cylinder.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The axial stiffness of a needle whose contacts all stick, against a rod meshed explicitly with quadratic elements.
 #include "coupling/needle_in_block.hpp"
+#include "evidence/validate/solids.hpp"
 #include "stylet/coupling/near_field/near_field_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
-#include "validate/solids.hpp"
 
 #include <Eigen/Cholesky>
 

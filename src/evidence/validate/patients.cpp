@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "patients.hpp"
+
+#include "stylet/io/label_image_io.hpp"
+#include "stylet/mesher/mesher.hpp"
+
+#include <algorithm>
+
+namespace stylet::validate {
+
+bool Patients::is_there(const Context& context, PatientCase patient) {
+  return patient == PatientCase::demo || context.data(kMask).has_value();
+}
+
+Result<TetMesh> Patients::mesh(Context& context, PatientCase patient) {
+  if (patient == PatientCase::demo) return context.demo_mesh();
+  if (!mask_) {
+    const auto image = read_label_image(*context.data(kMask));
+    if (!image) return image.error();
+    const Scenario standard = measure::demo_scenario();
+    MeshOptions options;
+    options.nodes = standard.mesh.nodes;
+    options.layers = standard.anatomy;
+    auto meshed = mesh_labels(*image, options, context.progress());
+    if (!meshed) return meshed.error();
+    mask_ = std::move(meshed->mesh);
+  }
+  return *mask_;
+}
+
+Result<std::shared_ptr<const measure::RecordedRun>> Patients::run(Context& context, PatientCase patient,
+                                                                  const PatientRun& how) {
+  auto& kept = runs_[{patient, how}];
+  if (kept) return kept;
+  Scenario scenario = measure::demo_scenario();
+  scenario.output.frames_per_s = 0.0;
+  scenario.needle.bevel_deg = how.bevel_deg;
+  if (!how.creeps) scenario.tissue_model.creep = 1.0;
+  InsertionPlan& plan = scenario.insertions.front();
+  if (patient == PatientCase::mask) {
+    scenario.patient.source = kMask;
+    plan.hole = "e4";
+  }
+  if (!how.hole.empty()) plan.hole = how.hole;
+  plan.speed_mm_per_s = how.speed_mm_per_s;
+  plan.dwell_s = 0.0;
+  plan.retract = false;
+  if (how.depth_mm) plan.depth_mm = *how.depth_mm;
+  constexpr double step_mm = 0.04;
+  scenario.run.dt_ms = std::clamp(1e3 * step_mm / how.speed_mm_per_s, 0.25, 8.0);
+  const auto own_mesh = mesh(context, patient);
+  if (!own_mesh) return own_mesh.error();
+  const auto model = Model::compile(scenario, *own_mesh, "the patient", {}, context.progress());
+  if (!model) return model.error();
+  auto recorded = measure::record_run(*model, context.progress());
+  if (!recorded) return recorded.error();
+  kept = std::make_shared<const measure::RecordedRun>(std::move(*recorded));
+  return kept;
+}
+
+double seat_N_per_mm(const Model& model) {
+  const TetMesh& mesh = model.mesh();
+  const std::vector<int>& target = model.target_regions();
+  MatX force = MatX::Zero(3 * model.tissue().displacement_nodes(), 1);
+  double volume = 0.0;
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const auto k = static_cast<std::size_t>(t);
+    if (std::find(target.begin(), target.end(), mesh.tet_region[k]) == target.end()) continue;
+    const double share = 0.25 * tet_volume(mesh, t);
+    volume += 4.0 * share;
+    for (const Index node : mesh.tets[k]) force(3 * Eigen::Index{node} + 2, 0) += share;
+  }
+  force /= volume;  // 1 N, and the weights of the mean at once
+  return 1.0 / force.col(0).dot(model.tissue().solve(force).col(0));
+}
+
+}  // namespace stylet::validate

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/evidence/validate/context.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+
+namespace stylet::validate {
+
+enum class PatientCase { demo, mask };
+
+/// The settings in which one insertion into a patient differs from the demo.
+struct PatientRun {
+  double speed_mm_per_s = 20.0;
+  bool creeps = true;                ///< false: elastic tissue, the null model of the speed
+  std::optional<double> depth_mm{};  ///< unset: to the far end of the gland
+  double bevel_deg = 20.0;
+  std::string hole{};  ///< empty: the one 15 mm to the left
+
+  bool operator<(const PatientRun& other) const { return key() < other.key(); }
+  [[nodiscard]] std::tuple<double, bool, std::optional<double>, double, std::string> key() const {
+    return {speed_mm_per_s, creeps, depth_mm, bevel_deg, hole};
+  }
+};
+
+/// Insertions into patients with all defaults, each carried out once. A needle goes in 15 mm to the left of the gland's
+/// axis and stays.
+class Patients {
+ public:
+  static constexpr const char* kMask = "msd_prostate_masks/prostate_00.nii.gz";
+
+  /// Whether the data for it are there.
+  static bool is_there(const Context& context, PatientCase patient);
+  Result<std::shared_ptr<const measure::RecordedRun>> run(Context& context, PatientCase patient, const PatientRun& how);
+
+ private:
+  Result<TetMesh> mesh(Context& context, PatientCase patient);
+
+  std::optional<TetMesh> mask_;
+  std::map<std::pair<PatientCase, PatientRun>, std::shared_ptr<const measure::RecordedRun>> runs_;
+};
+
+/// A force along the patient's axis, spread evenly over the gland, over the gland's mean displacement along it [N/mm],
+/// before anything creeps.
+double seat_N_per_mm(const Model& model);
+
+}  // namespace stylet::validate

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the demo patient's prostate moves, against what was seen in patients and phantoms.
+#include "../rows.hpp"
+#include "published_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stylet::validate {
+
+namespace {
+
+using namespace published;
+
+Result<measure::RecordedRun> run_demo(Context& context, const Scenario& scenario) {
+  const auto mesh = context.demo_mesh();
+  if (!mesh) return mesh.error();
+  Scenario complete = scenario;
+  complete.output.frames_per_s = 0.0;
+  const auto model = Model::compile(complete, *mesh, "the demo", {}, context.progress());
+  if (!model) return model.error();
+  return measure::record_run(*model, context.progress());
+}
+
+/// Needles through holes on all sides of the gland, one after the other.
+struct TemplateRun {
+  std::vector<std::string> holes;
+  std::vector<Vec3> centroid_mm;   ///< shift of the gland's centroid at each needle's deepest point
+  Vec3 largest_mm = Vec3::Zero();  ///< of any node of the gland, by axis
+};
+
+Result<TemplateRun> through_template(Context& context) {
+  TemplateRun out;
+  out.holes = {"c3.5", "e3.5", "c4.5", "e4.5", "D3", "d5"};
+  Scenario scenario = measure::demo_scenario();
+  const InsertionPlan plan = scenario.insertions.front();
+  scenario.insertions.clear();
+  for (const std::string& hole : out.holes) {
+    scenario.insertions.push_back(plan);
+    scenario.insertions.back().hole = hole;
+    scenario.insertions.back().dwell_s = 0.1;
+  }
+  scenario.run.dt_ms = 2.0;
+  const auto run = run_demo(context, scenario);
+  if (!run) return run.error();
+  const TetMesh& mesh = run->model->mesh();
+  const std::vector<int>& target = run->model->target_regions();
+  std::vector<Index> nodes;
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    const auto k = static_cast<std::size_t>(t);
+    if (std::find(target.begin(), target.end(), mesh.tet_region[k]) == target.end()) continue;
+    nodes.insert(nodes.end(), mesh.tets[k].begin(), mesh.tets[k].end());
+  }
+  for (const Frame& frame : run->events) {
+    if (frame.label != "deepest") continue;
+    for (const Index node : nodes)
+      out.largest_mm = out.largest_mm.cwiseMax(frame.displacement.segment<3>(3 * node).cwiseAbs());
+  }
+  for (const TargetShift& shift : run->summary.target_shifts) out.centroid_mm.push_back(shift.centroid_mm);
+  if (out.centroid_mm.size() != out.holes.size())
+    return failure("template", "a needle has no deepest point", "Run the same holes with stylet insert to see why");
+  return out;
+}
+
+Result<Finding> markers(Context& context) {
+  const auto run = through_template(context);
+  if (!run) return run.error();
+  const Vec3 seen(prostate::kMarkerLateral_mm, prostate::kMarkerSagittal_mm, prostate::kMarkerAxial_mm);
+  Finding finding;
+  finding.value = run->largest_mm.cwiseQuotient(seen).maxCoeff();
+  finding.note = fmt::format(
+      "Largest displacement in the gland over six needles, one at a time: lateral {:.2f}, sagittal {:.2f}, axial "
+      "{:.2f} mm; gold markers were displaced by up to {:g}, {:g} and {:g} mm, which is what an implant of many "
+      "needles "
+      "and two weeks leave behind, relative to the gland, and not its motion under a needle. Null model, a rigid "
+      "gland: 0, below what is accepted.",
+      run->largest_mm.x(), run->largest_mm.y(), run->largest_mm.z(), seen.x(), seen.y(), seen.z());
+  return finding;
+}
+
+}  // namespace
+
+std::vector<RowSpec> prostate_motion_rows() {
+  return {
+      {"motion_markers", Group::measurements,
+       "Points of the gland move as far as markers were displaced in patients, and no further",
+       "gold markers before and after an implant, 18 patients, Radiat. Oncol. 7 (2012) 24", "",
+       Accepted::between(0.2, 1.0), false, markers},
+  };
+}
+
+}  // namespace stylet::validate
