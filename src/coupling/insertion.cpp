@@ -211,6 +211,7 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
     return false;
   }
   const double cut = tip.touches() ? tip.cut.advance() : 0.0;
+  tip.cut_mm_per_s = cut / h;
   {
     const InPhase in_phase(phases, StepPhase::tip);
     path.commit(step);

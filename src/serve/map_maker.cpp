@@ -23,6 +23,7 @@ MapMaker::MapMaker(const std::shared_ptr<const Model>& model, PlanOfHole plan_of
     : plan_of_(std::move(plan_of)),
       scenario_(model->scenario()),
       mesh_(model->mesh()),
+      own_(model->own_parts()),
       thread_([this, model = model]() mutable {
         (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceOfMaps);  // threads that it starts inherit it
         make(model);
@@ -96,7 +97,7 @@ void MapMaker::predict(std::size_t hole) {
   };
   std::optional<Result<Prediction>> predicted;
   try {
-    predicted = predict_hole(scenario_, mesh_, plan, targets_, progress);
+    predicted = predict_hole(scenario_, mesh_, plan, targets_, progress, own_);
   } catch (const Unwanted&) {
     return;
   } catch (const std::bad_alloc&) {

@@ -42,6 +42,7 @@ class MapMaker {
   PlanOfHole plan_of_;
   Scenario scenario_;
   TetMesh mesh_;
+  OwnParts own_;
   KnownTargets targets_;  ///< the thread's own
   std::atomic<bool> given_up_ = false;
   std::atomic<bool> wanted_ = false;

@@ -419,6 +419,7 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
   if (auto good = plan_insertion(*open.model, plan, where); !good) return refuse(request, good.error());
   open_model(request, open_case, [this, &scenario, &where](const Progress& progress) -> Result<LoadedCase> {
     auto model = Model::compile(scenario, open.model->mesh(), where, {}, progress);
+    if (model && open.model->own_parts().is_any()) model = (*model)->with(open.model->own_parts());
     if (!model) return model.error();
     return LoadedCase{*model, open.notes};
   });

@@ -16,9 +16,10 @@ constexpr Index kNodesAtOnce = 40000;
 }  // namespace
 
 Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const InsertionPlan& plan,
-                                KnownTargets& targets, const Progress& progress) {
+                                KnownTargets& targets, const Progress& progress, const OwnParts& own) {
   scenario.insertions = {plan};
-  const auto compiled = Model::compile(scenario, mesh, "hole " + plan.hole.value_or(""), {}, progress);
+  auto compiled = Model::compile(scenario, mesh, "hole " + plan.hole.value_or(""), {}, progress);
+  if (compiled && own.is_any()) compiled = (*compiled)->with(own);
   if (!compiled) return compiled.error();
   return predict(*compiled, targets, progress);
 }
@@ -40,7 +41,8 @@ void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& 
       if (row.failed.empty()) {
         const InsertionPlan plan = plan_of(row.hole);
         const bool is_the_models = scenario.insertions.size() == 1 && scenario.insertions.front() == plan;
-        auto predicted = is_the_models ? predict(model, targets) : predict_hole(scenario, model->mesh(), plan, targets);
+        auto predicted = is_the_models ? predict(model, targets)
+                                       : predict_hole(scenario, model->mesh(), plan, targets, {}, model->own_parts());
         if (predicted) {
           row.prediction = std::move(*predicted);
         } else {

@@ -93,10 +93,13 @@ Element element_of(const Scenario& s, Index nodes) {
   return element_named(word(s.tissue_model.element)).value_or(p1 ? Element::p1 : Element::nodal_pressure);
 }
 
+/// Loads on a needle with so many contacts: the tip and a guide come on top.
+int needle_loads(int capacity) { return capacity + 2; }
+
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
   const auto section = needle_section(n);
   if (!section) return section.error();
-  return make_needle(word(n.model), *section, n.elements, capacity + 2);  // the tip, and a guide
+  return make_needle(word(n.model), *section, n.elements, needle_loads(capacity));
 }
 
 constexpr const char* kPrepareAgain = "Prepare the model again (stylet prepare)";
@@ -344,8 +347,8 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
                                    known->store.rows() / 3, corridor_dofs / 3),
                        kPrepareAgain);
   }
-  model->topology_ = std::make_unique<Topology>(std::move(topology));
-  model->locator_ = std::make_unique<Locator>(model->tissue_->mesh(), *model->topology_);
+  model->topology_ = std::make_shared<const Topology>(std::move(topology));
+  model->locator_ = std::make_shared<const Locator>(model->tissue_->mesh(), *model->topology_);
   report(progress, "compliance", 0.0);
   model->store_ = std::make_shared<ComplianceStore>(
       model->tissue_, known ? std::exchange(known->store, {}) : model->tissue_->compliance_of_corridor(progress));
@@ -388,8 +391,36 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   return std::shared_ptr<const Model>(std::move(model));
 }
 
+Result<std::shared_ptr<const Model>> Model::with(OwnParts parts) const {
+  std::shared_ptr<Model> model(new Model(*this));
+  const auto warn = [&](const char* what, const std::string& name) {
+    model->warnings_.push_back(fmt::format(
+        "{} \"{}\" is a part of the program that made this model. The scenario does not describe it, so the "
+        "stylet program computes something else from this scenario.",
+        what, name));
+  };
+  if (parts.needle) {
+    const auto section = needle_section(scenario_.needle);
+    if (!section) return section.error();
+    const auto needle = parts.needle(*section, needle_loads(coupling_.capacity));
+    if (!needle) return needle.error();
+    if (*needle == nullptr) return failure("own needle", "there is none", "Return a needle or an error");
+    if (const double length = (*needle)->length(); std::abs(length - section->length_mm) > 1e-9 * section->length_mm) {
+      return input_error("own needle \"" + (*needle)->model() + "\"",
+                         fmt::format("it is {:g} mm long, and needle.length_mm is {:g}", length, section->length_mm),
+                         "Give both the same length");
+    }
+    warn("The needle", (*needle)->model());
+  }
+  if (parts.cutting) warn("The law of cutting", parts.cutting->name());
+  model->coupling_.cutting = parts.cutting;
+  model->own_ = std::move(parts);
+  return std::shared_ptr<const Model>(std::move(model));
+}
+
 std::unique_ptr<Needle> Model::make_needle() const {
-  auto needle = build_needle(scenario_.needle, coupling_.capacity);  // compile() has seen it succeed
+  auto needle = own_.needle ? own_.needle(*needle_section(scenario_.needle), needle_loads(coupling_.capacity))
+                            : build_needle(scenario_.needle, coupling_.capacity);  // both were seen to succeed
   if (!needle) return nullptr;
   if (!scenario_.grid.guide) return std::move(*needle);
   GuideHole hole;

@@ -16,6 +16,7 @@ namespace stylet {
 namespace {
 
 constexpr const char* kFromScenario = "scenario";
+constexpr const char* kFromProgram = "a part of the program that made the model";
 constexpr std::string_view kElements = "needle.elements";
 
 /// A key whose value a report shows, and why its default is what it is.
@@ -192,13 +193,19 @@ RunInfo Model::info(std::size_t insertion) const {
     if (!value) continue;
     std::string text = as_shown(*value);
     const bool is_default = text == as_shown(*scenario_value(standard, shown.path));
+    if (own_.needle && shown.path == std::string_view("needle.model")) {
+      info.parameters.push_back({shown.path, make_needle()->model(), "", kFromProgram});
+      continue;
+    }
+    if (own_.needle && shown.path == kElements) continue;
     if (shown.path == kElements && scenario_.needle.elements == 0)
       text = std::to_string(default_needle_elements(word(scenario_.needle.model)).value());
     info.parameters.push_back({shown.path, text, unit_of(shown.path), is_default ? shown.source : kFromScenario});
   }
   if (scenario_.grid.guide) add_guide(info.parameters, scenario_.grid);
   add_section(info.parameters, scenario_.needle);
-  if (scenario_.needle.model == NeedleModel::tet) add_tet(info.parameters, scenario_.needle);
+  if (own_.cutting) info.parameters.push_back({"law of cutting", own_.cutting->name(), "", kFromProgram});
+  if (scenario_.needle.model == NeedleModel::tet && !own_.needle) add_tet(info.parameters, scenario_.needle);
   return info;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "stylet/coupling/bevel.hpp"
+#include "stylet/coupling/cutting_model.hpp"
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace stylet {
@@ -89,11 +91,12 @@ struct CouplingSettings {
   double grazing_cos = 0.17;  ///< the tip slides off where |axis · surface normal| is smaller (80° from the normal)
   double max_advance_mm = 0.25;             ///< of the base in one sub-step
   double axial_compliance_mm_per_N = 2e-3;  ///< of the steel shaft, L / (E A)
-  double join_mm = 1.27;    ///< a new entry this near to an old track joins it: twice the needle's radius
-  Bevel bevel;              ///< of the tip
-  Creep creep;              ///< of the tissue
-  int capacity = 96;        ///< largest number of contacts
-  int spare_nodes = 1500;   ///< whose compliance is kept beyond what was there before
+  double join_mm = 1.27;  ///< a new entry this near to an old track joins it: twice the needle's radius
+  Bevel bevel;            ///< of the tip
+  std::shared_ptr<const CuttingModel> cutting;  ///< a program's own law of cutting; null = the built-in law
+  Creep creep;                                  ///< of the tissue
+  int capacity = 96;                            ///< largest number of contacts
+  int spare_nodes = 1500;                       ///< whose compliance is kept beyond what was there before
   double tolerance = 1e-8;  ///< coupled solver: error of a balance, as a force over the largest one or 1 N
   double damping = 1.0;     ///< of the staggered solver: springs on the needle, over the tissue's own stiffness there
   double needle_node_mm = 0.0;  ///< staggered: forces go to the nearest multiple of this along the needle; 0 = where

@@ -60,9 +60,10 @@ Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const st
 /// that a scenario with this plan gives.
 /// @param scenario whose insertions the plan replaces @param mesh of its patient
 /// @param targets of this scenario and mesh
+/// @param own parts that replace those of the scenario
 /// @param progress may throw, to give up
 Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const InsertionPlan& plan,
-                                KnownTargets& targets, const Progress& progress = {});
+                                KnownTargets& targets, const Progress& progress = {}, const OwnParts& own = {});
 
 /// Inserts a needle through each of the map's holes, several at a time. An insertion that fails is said in its row.
 /// @param model whose patient and scenario the needles are for

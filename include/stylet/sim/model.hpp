@@ -4,6 +4,7 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/coupling/insertion.hpp"
 #include "stylet/sim/motion.hpp"
+#include "stylet/sim/own_parts.hpp"
 #include "stylet/sim/recording.hpp"
 #include "stylet/sim/scenario.hpp"
 #include "stylet/sim/supports.hpp"
@@ -46,6 +47,13 @@ class Model {
                                                       const Progress& progress = {},
                                                       std::optional<ModelCompliance> known = {});
 
+  /// The same model with parts of the program's own: a needle model, a law of cutting. Everything that took long to
+  /// compute is shared with this model. The scenario does not describe these parts, so the warnings name them, and the
+  /// model cannot be saved.
+  /// Errors: a needle that cannot be made, or whose length is not needle.length_mm.
+  [[nodiscard]] Result<std::shared_ptr<const Model>> with(OwnParts parts) const;
+
+  [[nodiscard]] const OwnParts& own_parts() const { return own_; }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const TetMesh& mesh() const { return tissue_->mesh(); }
   [[nodiscard]] const Tissue& tissue() const { return *tissue_; }
@@ -79,10 +87,11 @@ class Model {
 
  private:
   Model() = default;
+  Model(const Model&) = default;
   Scenario scenario_;
   std::shared_ptr<const Tissue> tissue_;
-  std::unique_ptr<Topology> topology_;
-  std::unique_ptr<Locator> locator_;
+  std::shared_ptr<const Topology> topology_;
+  std::shared_ptr<const Locator> locator_;
   std::shared_ptr<const ComplianceStore> store_;
   std::shared_ptr<const MatX> inverse_;
   struct {
@@ -97,6 +106,7 @@ class Model {
   std::vector<int> target_;
   Supports supports_;
   std::vector<std::string> warnings_;
+  OwnParts own_;
 };
 
 /// Depth [mm] by which the surface of tissue of these parameters tents under a force [N] on a flat punch of the

@@ -15,23 +15,34 @@ class Resistance {
   [[nodiscard]] double limit() const { return limit_; }
   /// [N] Axial force that keeps the cut going.
   [[nodiscard]] double cutting() const { return cutting_; }
+  /// The region that is cut; −1 before the first one is met.
+  [[nodiscard]] int region() const { return region_; }
+  /// [N] The same force by the built-in law: the region's own.
+  [[nodiscard]] double built_in_cutting() const { return built_in_cutting_; }
   /// Whether a surface that has not been broken is ahead.
   [[nodiscard]] bool is_surface() const { return surface_; }
   [[nodiscard]] bool is_bone() const { return std::isinf(limit_); }
   /// Element behind the surface that was met last, −1 = the outside of the patient.
   [[nodiscard]] Index behind() const { return behind_; }
 
-  /// Tissue is ahead.
-  void be_tissue(double cutting_N) {
+  /// Tissue of a region is ahead.
+  void be_tissue(int region, double cutting_N) {
     surface_ = false;
-    limit_ = cutting_ = cutting_N;
+    region_ = region;
+    limit_ = cutting_ = built_in_cutting_ = cutting_N;
+  }
+  /// Another law of cutting applies from here on.
+  void set_cutting(double cutting_N) {
+    cutting_ = cutting_N;
+    if (!surface_) limit_ = cutting_N;
   }
   /// The patient's surface is ahead, seen from outside. @param inwards unit normal, LPS @param break_N force that
   /// breaks it
-  void be_outer_surface(Index behind, const Vec3& inwards, double break_N, double cutting_N) {
+  void be_outer_surface(Index behind, int region, const Vec3& inwards, double break_N, double cutting_N) {
     be_surface(behind, break_N);
+    region_ = region;
     inwards_ = inwards;
-    cutting_ = cutting_N;
+    cutting_ = built_in_cutting_ = cutting_N;
     limit_ = std::max(break_N, cutting_N);
   }
   /// A surface within the patient is ahead; before it the force that keeps a cut going is what it was.
@@ -59,7 +70,9 @@ class Resistance {
  private:
   double limit_ = 0.0;
   double cutting_ = 0.0;
+  double built_in_cutting_ = 0.0;
   bool surface_ = false;
+  int region_ = -1;
   Index behind_ = -1;
   Vec3 inwards_ = Vec3::Zero();  ///< normal of the patient's surface, zero for a surface within the patient
 };

@@ -25,8 +25,21 @@ constexpr double kLeastViscosity = 1e-12;
 }  // namespace
 
 CuttingLaw TipContact::cutting_law(double h) const {
-  return {.start_N = ahead.cutting(),
-          .slip_mm_per_N = h / std::max(settings_.tip_viscosity_Ns_per_mm, kLeastViscosity)};
+  return {.start_N = ahead.cutting(), .slip_mm_per_N = h / std::max(viscosity_, kLeastViscosity)};
+}
+
+void TipContact::ask_own_law() {
+  if (!settings_.cutting || !touches_ || ahead.is_bone()) return;
+  const double built_in_N = ahead.built_in_cutting();
+  const auto usable = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  const CuttingModel::Law law = settings_.cutting->law({.region = ahead.region(),
+                                                        .at_mm = cut.x(),
+                                                        .cut_mm_per_s = cut_mm_per_s,
+                                                        .cutting_N = built_in_N,
+                                                        .viscosity_Ns_per_mm = settings_.tip_viscosity_Ns_per_mm});
+  refuses_own_law_ = !usable(law.cutting_N) || !usable(law.viscosity_Ns_per_mm);
+  ahead.set_cutting(refuses_own_law_ ? built_in_N : law.cutting_N);
+  viscosity_ = refuses_own_law_ ? settings_.tip_viscosity_Ns_per_mm : law.viscosity_Ns_per_mm;
 }
 
 void TipContact::put(const Vec3& x, const MaterialPoint& at, bool touches, State state) {
@@ -42,6 +55,9 @@ void TipContact::forget() {
   force.setZero();
   history = {};
   toggles = 0;
+  cut_mm_per_s = 0.0;
+  viscosity_ = settings_.tip_viscosity_Ns_per_mm;
+  refuses_own_law_ = false;
   state_ = State::open;
   touches_ = false;
   lateral_hold_ = 0.0;
@@ -56,6 +72,7 @@ void TipContact::exit() {
 void TipContact::begin(const ContactForces& forces) {
   if (waits()) cut.take_compliance();
   cut.begin();
+  ask_own_law();
   if (touches_) aim(forces);
 }
 

@@ -16,13 +16,19 @@ class TipContact {
   /// All outlive the contact. @param base pose of the needle's base as the hand gives it: which way the bevel looks
   TipContact(const CouplingSettings& settings, const Locator& locator, const Pose& base, const Needle& needle,
              TissueResponse& tissue)
-      : cut(locator, tissue), settings_(settings), base_(base), needle_(needle), tissue_(tissue) {}
+      : cut(locator, tissue),
+        settings_(settings),
+        base_(base),
+        needle_(needle),
+        tissue_(tissue),
+        viscosity_(settings.tip_viscosity_Ns_per_mm) {}
 
   Cut cut;
   Resistance ahead;
   Vec3 force = Vec3::Zero();  ///< [N] LPS, on the tissue
   ForceHistory history;
-  int toggles = 0;  ///< changes of state in this sub-step
+  int toggles = 0;            ///< changes of state in this sub-step
+  double cut_mm_per_s = 0.0;  ///< [mm/s] speed of cutting in the last sub-step, for a program's own law
 
   /// Whether there is an end of a track to push against.
   [[nodiscard]] bool touches() const { return touches_; }
@@ -33,6 +39,10 @@ class TipContact {
   [[nodiscard]] bool is_on_bone() const { return touches_ && state_ == State::stick && ahead.is_bone(); }
   /// The law of a tip that cuts here, in a sub-step of h seconds.
   [[nodiscard]] CuttingLaw cutting_law(double h) const;
+  /// Asks a program's own law of cutting, if there is one, what resists the tip from here on.
+  void ask_own_law();
+  /// Whether that law gave numbers that cannot be used, so that the built-in law stands in for it.
+  [[nodiscard]] bool refuses_own_law() const { return refuses_own_law_; }
   /// Whether it waits for compliance that is not there yet.
   [[nodiscard]] bool waits() const { return touches_ && cut.is_stale(); }
 
@@ -76,6 +86,8 @@ class TipContact {
   State state_ = State::open;
   bool touches_ = false;
   double lateral_hold_ = 0.0;
+  double viscosity_;  ///< [N s/mm] of the law of cutting
+  bool refuses_own_law_ = false;
 };
 
 }  // namespace stylet

@@ -105,13 +105,14 @@ void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind k
   tissue_.begin_tip(track.end_xi);
   if (joins) {
     tip.put(track.end, track.end_at, !track.open, TipContact::State::open);
-    tip.ahead.be_tissue(laws(region_of(mesh_, track.end_at.tet)).cutting_N);
+    const int inside = region_of(mesh_, track.end_at.tet);
+    tip.ahead.be_tissue(inside, laws(inside).cutting_N);
     phase_ = TipState::in_track;
   } else {
     tip.put(x, at, true, TipContact::State::stick);
     const double membrane = membrane_force(mesh_.laws, -1, region);
-    tip.ahead.be_outer_surface(crossing.tet, -mesh_.locator->face_normal(crossing.tet, crossing.local), membrane,
-                               laws(region).cutting_N);
+    tip.ahead.be_outer_surface(crossing.tet, region, -mesh_.locator->face_normal(crossing.tet, crossing.local),
+                               membrane, laws(region).cutting_N);
     phase_ = std::isinf(membrane) ? TipState::bone : TipState::pressing;
     if (std::isinf(membrane)) add_event(EventKind::bone_contact, region);
     track.end = x;
@@ -144,7 +145,8 @@ void TipPath::cross_surface() {
   }
   const int region = region_of(mesh_, behind);
   tip.cut.enter(behind);
-  tip.ahead.be_tissue(laws(region).cutting_N);
+  tip.ahead.be_tissue(region, laws(region).cutting_N);
+  tip.ask_own_law();
   add_event(EventKind::region_entered, region);
 }
 
@@ -178,6 +180,7 @@ void TipPath::commit(Step& step) {
   }
   if (!tip.touches()) return;
   if (tip.waits()) step.flags |= Step::compliance_missing;
+  if (tip.refuses_own_law()) step.flags |= Step::invalid_input;
   switch (tip.state()) {
     case TipContact::State::open:
       phase_ = TipState::in_track;

@@ -106,6 +106,10 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
                                    word(model.scenario().coupling.engine)),
                        "Use coupling.engine = \"condensed\"");
   }
+  if (model.own_parts().is_any()) {
+    return input_error(where, "the needle or the law of cutting is a part of the program, which is not saved",
+                       "Save the model before Model::with(), and add the parts again after it has been read");
+  }
   const Tissue& tissue = model.tissue();
   ModelFile file;
   file.version = version();

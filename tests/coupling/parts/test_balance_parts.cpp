@@ -40,7 +40,7 @@ struct NeedleInTissue {
     shaft.wake_and_drop(track, marks, Vec3::Zero(), report);
     shaft.share_length(track);
     tip.put(track.end, track.end_at, true, TipContact::State::cut);
-    tip.ahead.be_tissue(0.3);
+    tip.ahead.be_tissue(0, 0.3);
     tip.begin(contacts.forces());
   }
   ShaftContact& contact(int load) { return contacts.of_shaft(load); }

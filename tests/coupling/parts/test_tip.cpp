@@ -66,19 +66,19 @@ TEST(CuttingLaw, ItsForceAndItsWayAreInversesAndNothingIsCutAtItsStart) {
 
 TEST(Resistance, OfTheSkinGivesAboveItsLimitToATipThatIsNotFlat) {
   Resistance ahead;
-  ahead.be_outer_surface(3, Vec3::UnitZ(), 1.0, 0.3);
+  ahead.be_outer_surface(3, 1, Vec3::UnitZ(), 1.0, 0.3);
   EXPECT_FALSE(ahead.gives(0.99, Vec3::UnitZ(), 0.17));
   EXPECT_TRUE(ahead.gives(1.01, Vec3::UnitZ(), 0.17));
   EXPECT_FALSE(ahead.gives(5.0, Vec3(1.0, 0.0, 0.1).normalized(), 0.17)) << "flat to the skin";
   ahead.be_surface(4, 1.0);
   EXPECT_TRUE(ahead.gives(1.01, Vec3(1.0, 0.0, 0.1).normalized(), 0.17)) << "a wall within the patient";
-  ahead.be_tissue(0.2);
+  ahead.be_tissue(1, 0.2);
   EXPECT_FALSE(ahead.gives(5.0, Vec3::UnitZ(), 0.17)) << "tissue is cut, it does not break";
 }
 
 TEST(Resistance, OfSkinThatIsWeakerThanTheTissueBehindItIsThatOfTheTissue) {
   Resistance ahead;
-  ahead.be_outer_surface(3, Vec3::UnitZ(), 0.1, 0.3);
+  ahead.be_outer_surface(3, 1, Vec3::UnitZ(), 0.1, 0.3);
   EXPECT_EQ(ahead.limit(), 0.3);
 }
 

@@ -89,6 +89,20 @@ TEST_P(SavedModels, StepAsTheCompiledOneToTheLastBitWithoutAFactor) {
   EXPECT_TRUE(compiled->tissue().has_factor());
 }
 
+class OtherLaw final : public CuttingModel {
+  [[nodiscard]] std::string name() const override { return "other"; }
+  [[nodiscard]] Law law(const Tip& tip) const override { return {tip.cutting_N, tip.viscosity_Ns_per_mm}; }
+};
+
+TEST(SavedModel, cannot_hold_a_part_of_the_program) {
+  const Folder folder;
+  const auto model = loaded(saved_box())->with({.cutting = std::make_shared<OtherLaw>()}).value();
+  const auto saved = save_model(*model, folder.path() / "own.stylet");
+  ASSERT_FALSE(saved.ok());
+  EXPECT_NE(saved.error().message().find("law of cutting"), std::string::npos) << saved.error().message();
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "own.stylet"));
+}
+
 TEST(SavedModel, MakesTheFactorForWhatIsNotInIt) {
   const Folder folder;
   Scenario scenario = saved_box();
