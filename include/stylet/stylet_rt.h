@@ -178,6 +178,7 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_planned_base(const stylet_rt_sim* s
 #define STYLET_RT_TOO_FAST UINT32_C(0x10)        /* the base moved too far for one step: smaller dt, or slower */
 #define STYLET_RT_INVALID_INPUT UINT32_C(0x20)   /* the step was not taken: pose or dt are no good */
 #define STYLET_RT_NO_CONTACT_INSIDE UINT32_C(0x40) /* the tip is inside, but nothing holds it: draw it out */
+#define STYLET_RT_UNUSABLE_LAW UINT32_C(0x80) /* never of a saved model: a C++ program's own law of cutting failed */
 /* With any of these the force must not reach a hand. */
 #define STYLET_RT_DISTRUSTED (STYLET_RT_NOT_CONVERGED | STYLET_RT_INVALID_INPUT)
 

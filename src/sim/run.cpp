@@ -246,7 +246,9 @@ class Runner {
         "the pose of the base was not finite and the step was not taken",
         "the tip was inside the tissue and no force acted on it: it started there, went in flat to the skin, slipped "
         "off it, or had gone through the far side; start the needle outside of the tissue, and enter it less flat to "
-        "the skin"};
+        "the skin",
+        "the program's own law of cutting gave a number that is negative or not finite, and the built-in law stood in "
+        "for it; correct the law"};
     for (std::size_t bit = 0; bit < texts.size(); ++bit) {
       if (flag_counts_[bit] > 0)
         summary_.warnings.push_back(
@@ -263,7 +265,7 @@ class Runner {
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
-  static constexpr std::size_t kFlags = 7;  ///< of Step
+  static constexpr std::size_t kFlags = 8;  ///< of Step
   std::array<long, kFlags> flag_counts_{};
   Summary summary_;
 };

@@ -21,6 +21,7 @@ static_assert(STYLET_RT_OUT_OF_CONTACTS == Step::out_of_contacts);
 static_assert(STYLET_RT_TOO_FAST == Step::too_fast);
 static_assert(STYLET_RT_INVALID_INPUT == Step::invalid_input);
 static_assert(STYLET_RT_NO_CONTACT_INSIDE == Step::no_contact_inside);
+static_assert(STYLET_RT_UNUSABLE_LAW == Step::unusable_law);
 
 static_assert(STYLET_RT_TIP_AIR == static_cast<int>(TipState::air));
 static_assert(STYLET_RT_TIP_PRESSING == static_cast<int>(TipState::pressing));

@@ -32,7 +32,7 @@ class CuttingModel {
   [[nodiscard]] virtual std::string name() const = 0;
   /// The law of the coming sub-step. It is called from within a step, in the thread that steps: it must not allocate,
   /// lock or throw, and the same arguments must give the same result. A law that is not finite, or negative, is not
-  /// used: the built-in one stands in for it, and the step is flagged Step::invalid_input.
+  /// used: the built-in one stands in for it, and the step is flagged Step::unusable_law.
   [[nodiscard]] virtual Law law(const Tip& tip) const = 0;
 };
 

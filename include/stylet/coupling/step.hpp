@@ -35,10 +35,12 @@ struct Step {
     out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
     too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
     invalid_input = 1u << 5,       ///< a pose that is not finite, or dt ≤ 0: the step was not taken
-    no_contact_inside = 1u << 6    ///< no contact, tip in the air or exited, and yet inside the tissue: it was put
+    no_contact_inside = 1u << 6,   ///< no contact, tip in the air or exited, and yet inside the tissue: it was put
                                    ///< there, went in flat to the surface, slipped off it, or had gone through; nothing
                                    ///< resists it, and it is to be drawn out. Where compliance_missing says so already
                                    ///< it is not said twice
+    unusable_law = 1u << 7         ///< a program's own law of cutting gave a number that is negative or not finite; the
+                                   ///< built-in law stood in for it
   };
   static constexpr unsigned kDistrusted = not_converged | invalid_input;  ///< with one of them: not the model's force
 

@@ -180,7 +180,7 @@ void TipPath::commit(Step& step) {
   }
   if (!tip.touches()) return;
   if (tip.waits()) step.flags |= Step::compliance_missing;
-  if (tip.refuses_own_law()) step.flags |= Step::invalid_input;
+  if (tip.refuses_own_law()) step.flags |= Step::unusable_law;
   switch (tip.state()) {
     case TipContact::State::open:
       phase_ = TipState::in_track;
