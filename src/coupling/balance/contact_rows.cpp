@@ -14,8 +14,8 @@ constexpr double kNoViscosity = 1e-12;
 /// [N s/mm²] Least viscosity of friction; without any, the place of a sliding contact would be undetermined. At 100
 /// mm/s this adds 1e-7 N/mm; raised, it adds more.
 constexpr double kLeastViscosity = 1e-9;
-/// Part of friction's growth with speed that is kept beyond the speed where growth ends: enough to tell how far a
-/// contact slides. Raised, fast contacts carry more friction than their law says.
+/// Part of the viscosity that is kept above the speed where friction stops growing, which suffices to determine how far
+/// a contact slides. Raised, fast contacts carry more friction than their law says.
 constexpr double kFlat = 1e-3;
 }  // namespace
 

@@ -10,13 +10,14 @@ namespace stylet {
 
 /// Terms of the equations by which the tip's own motion enters.
 struct TipMotion {
-  /// [mm/mm] (3 contacts) By how much the gaps change as the cut goes on, beyond what the tip's yield says of it: the
-  /// cut takes the tip to where the tissue's compliance is another one.
+  /// [mm/mm] (3 contacts) Change of the gaps per length of cut, beyond the tip's own yield, because the tissue has
+  /// another compliance at the new place of the tip.
   VecX drift;
   double cut_per_N = 0.0;  ///< [mm/N] length of cut per axial force of the tip; 0: the tip does not cut
   double cut_due = 0.0;    ///< [mm] length by which the cut is behind the present force
-  /// A tip that is held along the needle only: its direction, and so its force, turns as the needle does, by so much as
-  /// the tip moves aside of a contact behind it, over the way between them. 0 = no such contact, the direction stays.
+  /// Number of a contact behind the tip; 0: none. Where the tip is held along the needle only, its force turns with the
+  /// needle's direction: by the lateral motion of the tip relative to this contact, over the distance between them.
+  /// Without such a contact the direction is kept.
   int behind = 0;
   double behind_mm = 0.0;  ///< [mm] that distance along the shaft
 

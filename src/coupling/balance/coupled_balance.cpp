@@ -21,7 +21,8 @@ constexpr int kAllAtOnce = 4;
 /// kMaxToggles: a contact that changes its state more often than this in a sub-step keeps it. Raised, cycling costs
 /// more.
 constexpr int kMaxToggles = 6;
-/// An old matrix is made anew before the next step after more iterations than this. Raised, matrices are kept longer.
+/// kManyIterations: refactorise before the next step if a balance took more iterations than this, and kSlow or kSlowish
+/// agree. Raised, matrices are kept longer.
 constexpr int kManyIterations = 5;
 /// kManyQuiet: the same limit for a balance in which no contact changed its state.
 constexpr int kManyQuiet = 3;

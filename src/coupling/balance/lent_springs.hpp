@@ -16,8 +16,9 @@ struct LentSpring {
   [[nodiscard]] Mat3 matrix() const { return stiffness * (Mat3::Identity() - along * along.transpose()); }
 };
 
-/// The springs that are lent at contacts of the shaft, each in two directions E across the needle: G = k E Eᵀ. They are
-/// counted from the base contact on; contacts without a spring take no place. Nothing allocates after construction.
+/// The springs that are lent to the needle at its shaft contacts, each in two directions E across the needle:
+/// G = k E Eᵀ. They are numbered from the base on; contacts without a spring have no number. Nothing allocates after
+/// construction.
 class LentSprings {
  public:
   /// @param most_grips largest number of contacts, and so of springs
