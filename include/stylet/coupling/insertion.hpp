@@ -53,7 +53,7 @@ struct InsertionTissue {
   std::shared_ptr<const SpreadCompliance> spread{};
 };
 
-/// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
+/// A flexible needle in tissue: moves the base, finds the balance of needle and tissue under friction and cutting,
 /// and keeps the track. The model is quasi-static; time enters through viscosity and damping. step() does not allocate,
 /// throw, lock or log, except that engines with the full inverse allocate when the mesh changes.
 /// docs/theory/coupling.md describes the model.

@@ -14,7 +14,7 @@ enum class StepPhase {
   solve,           ///< solutions with that matrix, the border of the tip, changes of contact states
   balance,         ///< residual of the iterate
   tip,             ///< the cut: search, surfaces, compliance between the tip and all contacts, near field included
-  contacts         ///< contacts created, woken and dropped
+  contacts         ///< contacts created and removed
 };
 inline constexpr int kStepPhases = 10;
 

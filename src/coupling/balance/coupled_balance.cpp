@@ -64,8 +64,9 @@ constexpr double kMostMotion = 0.1;
 /// Raised, it is computed from one further back.
 constexpr double kLeastTurn_mm = 1.0;
 
-/// kSmoothCut: iterations after which the motion of the cut is damped. Where compliance changes fast with the cut (next
-/// to held tissue) the cut would alternate; the longer that lasts, the more the motion is damped.
+/// kSmoothCut: from this iteration on, the motion of the cut is damped, and the equations ignore that compliance
+/// changes with it. Where compliance changes fast with the cut (next to held tissue) the cut would alternate; the
+/// longer that lasts, the more the motion is damped.
 constexpr int kSmoothCut = 6;
 /// kShortCut_mm [mm]: compliance may jump between two elements, so that no place of the cut balances: in the first
 /// element the cut would have to be longer, in the second shorter. If the cut enters an element that it has gone back

@@ -51,8 +51,8 @@ class TipPath {
   /// Updates the track after a sub-step's balance: it grows by the length of the cut. A surface that the cut has met
   /// becomes a membrane, bone, or the exit.
   void commit(Step& step);
-  /// Handles the end of an open track, which is a hole in the far surface: behind the hole the tip is in the track,
-  /// beyond it in the air.
+  /// Handles the end of an open track at the far surface: behind that end the tip is in the track, beyond it in the
+  /// air.
   void pass_open_end(const ContactForces& forces, Step& step);
 
   /// Whether the tip has come back out of the tissue, or was moved sideways out of the mouth of its track. To be called

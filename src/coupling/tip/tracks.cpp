@@ -37,8 +37,7 @@ void Tracks::finish() {
   if (now.end_xi > 0.0) {
     std::size_t place = static_cast<std::size_t>(joined_);
     if (has_joined()) {
-      // The earlier entry is kept: otherwise needle after needle, each beside the last, would move the hole across the
-      // skin.
+      // The earlier entry is kept: otherwise needle after needle, each beside the last, would move it across the skin.
       move_entry(earlier_[place].entry);
     } else {
       if (count_ < earlier_.size()) {
