@@ -20,7 +20,6 @@ struct Border {
 ///
 /// Splits are numbered in the order of begin(). A split must be complete before the next one begins, and never changes
 /// afterwards. No call after construction allocates.
-/// of it changes afterwards. No call after construction allocates.
 class SplitBorders {
  public:
   static constexpr int kMostVertices = 5;  ///< largest number of vertices of a border: two elements that share a face
