@@ -12,18 +12,18 @@
 namespace stylet {
 namespace {
 
-/// Nodes solved for together where nobody waits for the first. If raised, each costs less and memory grows.
+/// Nodes solved for at once when a caller waits for all of them. Raised, each node costs less and memory grows.
 constexpr std::size_t kAtOnce = 64;
-/// Time between two looks for a worker's answer. If raised, prepare() goes on later after it.
+/// Time between two checks for a worker's answer. Raised, prepare() returns later after the answer.
 constexpr auto kLook = std::chrono::microseconds(200);
 
 }  // namespace
 
-/// Each side touches only what is its own, and the parcel in the hand-over only while it has that.
+/// Each side uses only its own members, and the parcel in `hand_over` only while it has the parcel.
 struct ComplianceSupply::Parts {
   SupplyHandOver hand_over;
-  RowReceiver receiver;  ///< the step's
-  RowMaker maker;        ///< the worker's
+  RowReceiver receiver;  ///< for the step's side
+  RowMaker maker;        ///< for the worker's side
 };
 
 ComplianceSupply::ComplianceSupply(std::shared_ptr<const Tissue> tissue, std::shared_ptr<ComplianceStore> store,
@@ -48,7 +48,7 @@ ComplianceSupply::Work ComplianceSupply::work(std::size_t most) noexcept {
   Work done = Work::failed;
   try {
     done = p.maker.make(p.hand_over.parcel(), most, p.hand_over.is_open());
-  } catch (...) {  // memory, or threads, ran out
+  } catch (...) {  // memory or threads ran out
     p.hand_over.parcel().clear();
   }
   p.hand_over.give_to_step(done);
@@ -67,7 +67,7 @@ void ComplianceSupply::work_through(const ContactCompliance& user, const NeedleW
     if (hand_over.failed()) throw std::bad_alloc();
     return;
   }
-  serve(user, needle);  // so that nothing stays under way
+  serve(user, needle);  // so that the parcel's rows are not lost
   parts_->maker.begin(settings, hand_over.parcel(), hand_over.with_worker());
   while (true) {
     hand_over.parcel().needle = needle;

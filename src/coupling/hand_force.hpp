@@ -6,27 +6,28 @@
 
 namespace stylet {
 
-/// What the hand exerts on the needle's base: it bears what the contacts and the guide leave.
+/// The force that the hand exerts on the needle's base: it balances the forces of the contacts and of the guide.
 class HandForce {
  public:
-  /// Both outlive this. @param base pose of the needle's base as the hand gives it
+  /// Both arguments outlive this object. @param base pose of the needle's base as the hand gives it
   HandForce(const Pose& base, const Needle& needle) : base_(base), needle_(needle) {}
 
-  /// The force of the hand now [N] LPS.
+  /// The present force of the hand [N] LPS.
   [[nodiscard]] Vec3 now(const ContactForces& contacts) const {
     Vec3 force = contacts.tip - needle_.guide_load().force;
     for (const ShaftContact& contact : contacts.shaft) force += contact.force;
     return force;
   }
 
-  /// A sub-step begins. @param balanced whether the one before ended in a balance
+  /// Begins a sub-step. @param balanced whether the sub-step before ended in a balance
   void begin(const ContactForces& contacts, bool balanced) {
     start_ = now(contacts);
     balanced_ = balanced;
   }
 
-  /// Axial force of the hand [N] when the axial force of the tip on the tissue reached a limit [N]: on the way from the
-  /// balance before to the present one, or the present force where there was no balance before.
+  /// Axial force of the hand [N] at the moment when the axial force of the tip on the tissue reached `limit` [N], by
+  /// linear interpolation between the balance before and the present one; the present force where there was no balance
+  /// before.
   /// @param tip_start [N] LPS, force of the tip in the balance before
   [[nodiscard]] double when_tip_reached(double limit, const Vec3& tip_start, const ContactForces& contacts) const {
     const Vec3 t = needle_.tangent(needle_.length());

@@ -18,18 +18,18 @@
 namespace stylet {
 
 namespace {
-/// Sub-steps of a step. Raised, faster motions are followed and the longest step takes longer.
+/// Largest number of sub-steps in a step. Raised, faster motions are followed and the longest step takes longer.
 constexpr int kMaxSubSteps = 64;
-/// A sub-step in which the tip cuts, and for which no balance is found, is taken again in so many parts, with a part of
-/// the base's motion in each. Raised, a tip that snaps through a surface and a needle that is about to buckle are
-/// followed more surely, and such a step takes longer.
+/// A sub-step in which the tip cuts and no balance is found is repeated in this many parts, each with its part of the
+/// base's motion. Raised, a tip that snaps through a surface and a needle near its buckling load are followed more
+/// reliably, and such a step takes longer.
 constexpr int kParts = 4;
 /// [mm] Distance of a bent shaft from its axis that is rarely exceeded. Raised, a needle that is rolled takes more
 /// sub-steps.
 constexpr double kBent_mm = 10.0;
-/// Newton steps of a needle in the air. Raised, one that does not settle costs more.
+/// Largest number of Newton steps for a needle in the air. Raised, a needle that does not settle costs more.
 constexpr int kMostInAir = 50;
-/// [N] Out-of-balance moment over the needle's length that counts as settled in the air.
+/// [N] Out-of-balance moment over the needle's length below which a needle in the air has settled.
 constexpr double kSettled_N = 1e-10;
 
 std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, const CouplingSettings& settings,
@@ -44,12 +44,13 @@ std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, cons
                                                     engine, move_nodes, capacity);
 }
 
-/// Points the tissue may be held at or remember: an insertion may begin before the tissue has forgotten the one before.
+/// Largest number of points with a contact or a memory: an insertion may begin while the tissue still has the memory of
+/// the one before.
 int most_points(const CouplingSettings& settings) {
   return settings.creep.is_any() ? 2 * settings.capacity : settings.capacity;
 }
 
-/// Without a kernel of the mesh the near field starts with an empty one, which prepare() fills.
+/// Without a mesh kernel, the near-field method starts with an empty one, which prepare() fills.
 InsertionTissue with_kernel(InsertionTissue tissue, const CouplingSettings& settings) {
   if (settings.method == CouplingSettings::Method::near_field && !tissue.kernel)
     tissue.kernel = std::make_shared<MeshKernel>(tissue.store->shared_tissue(), tissue.locator->topology());
@@ -71,7 +72,7 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
 }
 }  // namespace
 
-/// The parts of an insertion, and what they do one after the other in a sub-step. docs/architecture.md draws them.
+/// The parts of an insertion, and the order in which they act in a sub-step. docs/architecture.md draws them.
 struct Insertion::Parts {
   Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_);
 
@@ -108,7 +109,7 @@ struct Insertion::Parts {
 };
 
 namespace {
-/// Where the base is after some of several equal parts of a motion; after the last, `to` itself to the last bit.
+/// Pose of the base after `part` of `parts` equal parts of a motion; after the last part it is `to`, bit for bit.
 Pose between(const Pose& from, const Pose& to, int part, int parts) {
   if (part == parts) return to;
   const double fraction = static_cast<double>(part) / parts;
@@ -139,7 +140,7 @@ Insertion::Parts::Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, 
       balance(make_balance({settings, {*needle, tissue, path.tip, shaft}, path, hand, predictor, phases})),
       room(settings, *mesh.store) {}
 
-/// Nothing but a guide bends the needle in the air.
+/// Solves for the needle's shape in the air, where only the guide bends it.
 void Insertion::Parts::settle_in_air(Step& step) {
   MatX no_compliance(0, 0);
   VecX no_motion(0);
@@ -154,8 +155,7 @@ void Insertion::Parts::settle_in_air(Step& step) {
   }
 }
 
-/// The needle is out: the tissue model is what it was before the first contact, or goes back to it as it relaxes. The
-/// tracks stay known.
+/// The needle is out: the tissue is reset, or recovers from creep over time. The tracks are kept.
 void Insertion::Parts::finish_insertion(Step& step) {
   path.finish();
   shaft.clear();
@@ -182,7 +182,7 @@ void Insertion::Parts::place(const Pose& pose) {
   path.forget_events();
 }
 
-/// The needle is in the air and its base has moved: does it meet the patient?
+/// Moves a needle in the air, and tests whether it meets the patient.
 bool Insertion::Parts::enter(Step& step) {
   predictor.interrupt();
   settle_in_air(step);
@@ -196,8 +196,9 @@ bool Insertion::Parts::enter(Step& step) {
   return false;
 }
 
-/// The balance of a sub-step, and how the track grows by it.
-/// @return false where there is none, the tip cuts and the sub-step may be given up: all is as it was when it began
+/// Finds the balance of a sub-step, and lets the track grow by its cut.
+/// @return false where there is no balance, the tip cuts and the sub-step may be given up; everything is then restored
+/// to the start of the sub-step
 bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   Effort effort(1 + static_cast<int>(shaft.count()));
   TipContact& tip = path.tip;
@@ -222,7 +223,7 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   return true;
 }
 
-/// The base has gone from one pose to another: h seconds of all that follows. @return as find_balance()
+/// Carries out h seconds after the base has moved from one pose to another. @return as find_balance()
 bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, bool may_give_up, Step& step) {
   tissue.begin(h);
   balance->damp(damping.begin(h, path.tip.is_on_bone()) / h);
@@ -271,7 +272,7 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
   }
   if (supply.awaits_step()) supply.serve(tissue.compliance(), whereabouts());
   const Pose from = base;
-  // How far the shaft's points go: tilting swings the whole needle, rolling only what is bent.
+  // Motion of the shaft's points: tilting moves the whole needle, rolling moves only a bent needle.
   const double turn = 2.0 * std::acos(std::min(1.0, std::abs(from.rotation.dot(pose.rotation))));
   const double tilt = (pose.rotation * Vec3::UnitZ() - from.rotation * Vec3::UnitZ()).norm();
   const double way = (pose.origin - from.origin).norm() + tilt * needle->length() + turn * kBent_mm;
@@ -284,7 +285,7 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
   for (int k = 1; k <= count; ++k) {
     const std::size_t before = tissue.compliance().remeshing().size();
     sub_step(between(from, pose, k, count), dt / count, step);
-    // Withdrawal forgets all changes; a sub-step that withdraws lays no contact.
+    // Withdrawal resets all changes; a sub-step with a withdrawal creates no contact.
     const std::size_t after = tissue.compliance().remeshing().size();
     step.remeshings = after >= before ? step.remeshings + static_cast<int>(after - before) : 0;
   }
@@ -330,7 +331,7 @@ void Insertion::Parts::summarise(Step& step) const {
   }
 }
 
-/// The contact that comes next cannot be laid before its compliance has come.
+/// Whether the next contact waits for its compliance.
 bool Insertion::Parts::contact_waits() const {
   const std::vector<Track::Mark>& marks = path.tracks.now.marks;
   if (shaft.count() >= marks.size()) return false;
@@ -338,7 +339,7 @@ bool Insertion::Parts::contact_waits() const {
   return next.point < 0 && !tissue.compliance().available(next.at.tet);
 }
 
-/// Where compliance is needed next: at the tip, then at contacts that wait for it behind the tip.
+/// Place where compliance is needed next: at the tip, then at the contact that waits behind the tip.
 NeedleWhereabouts Insertion::Parts::whereabouts() const {
   if (path.tip.waits() || !contact_waits()) return path.whereabouts();
   const Track::Mark& next = path.tracks.now.marks[shaft.count()];

@@ -6,7 +6,7 @@
 namespace stylet {
 namespace {
 
-/// A node this far beside the way is as urgent as one twice as far along it.
+/// A node at a distance beside the way counts as this many times that distance along the way.
 constexpr double kBeside = 2.0;
 
 }  // namespace
@@ -36,7 +36,7 @@ const std::vector<Index>& NodesAhead::find(const NeedleWhereabouts& needle, doub
   for (std::size_t head = 0; head < tets_.size(); ++head) {
     for (const Index next : locator_.topology().neighbour[static_cast<std::size_t>(tets_[head].tet)]) {
       if (next < 0 || tet_seen_[static_cast<std::size_t>(next)] == round_) continue;
-      // An element counts when its bounding ball meets the way's surroundings.
+      // An element counts when its bounding sphere meets the surroundings of the way.
       const auto& corners = mesh.tets[static_cast<std::size_t>(next)];
       Vec3 middle = Vec3::Zero();
       for (const Index node : corners) middle += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];

@@ -8,7 +8,7 @@
 
 namespace stylet {
 
-/// How much of the room that is set aside has been in use, and where the compliance around the tip is complete.
+/// Records how much of each capacity was in use, and where the compliance around the tip is complete.
 class RoomWatch {
  public:
   RoomWatch(const CouplingSettings& settings, const ComplianceStore& store)
@@ -26,12 +26,13 @@ class RoomWatch {
   void note_events(std::size_t events) { uses_.events.note(static_cast<int>(events)); }
   [[nodiscard]] const CapacityUses& uses() const { return uses_; }
 
-  /// All compliance around the tip is there now.
+  /// Records that the compliance around the tip is complete.
   void complete_at(const Vec3& tip) {
     complete_at_ = tip;
     arrived_ = store_.arrived();
   }
-  /// Whether it was complete around a place nearer than `way_mm` to this one, and has not changed since.
+  /// Whether the compliance was complete around a place nearer than `way_mm` to this one, and the store has not changed
+  /// since.
   [[nodiscard]] bool is_complete_near(const Vec3& tip, double way_mm) const {
     return store_.arrived() == arrived_ && (tip - complete_at_).norm() < way_mm;
   }

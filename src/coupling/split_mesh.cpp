@@ -7,11 +7,11 @@
 namespace stylet {
 
 namespace {
-/// How far from a face, by the weight of the node opposite, a point may be that is given as on it.
+/// Largest weight of the opposite node with which a point still counts as on a face.
 constexpr double kOnFace = 1e-4;
 
-/// Lays x on the face of a leaf that it is nearest to.
-/// @return whether it was next to nothing away from that face
+/// Moves the node's place in a leaf to the nearest face.
+/// @return whether it was within kOnFace of that face
 bool put_on_face(SplitMesh::Part& part) {
   const double off = part.weights.cwiseAbs().minCoeff(&part.opposite);
   part.weights[part.opposite] = 0.0;
@@ -19,7 +19,7 @@ bool put_on_face(SplitMesh::Part& part) {
   return off <= kOnFace;
 }
 
-/// Whether two leaves have the same vertices on their faces.
+/// Whether the faces of the two parts have the same vertices.
 bool share_face(const SplitMesh::Part& one, const SplitMesh::Part& two) {
   for (int q = 0; q < 4; ++q) {
     if (q == two.opposite) continue;
@@ -77,7 +77,7 @@ SplitMesh::Leaf SplitMesh::leaf_at(Index base_tet, const Vec3& x) const {
     const Cell& cell = cells_[static_cast<std::size_t>(leaf.cell)];
     leaf.vertices = cell.vertices;
     if (cell.children == 0) break;
-    // The child that contains x is the one in which the smallest weight is largest: right also on shared faces.
+    // The child that contains x is the one whose smallest weight of x is largest, which is also right on shared faces.
     Index best = -1;
     double best_weight = -std::numeric_limits<double>::infinity();
     for (Index child = cell.first_child; child < cell.first_child + cell.children; ++child) {
@@ -114,7 +114,7 @@ std::optional<SplitMesh::Place> SplitMesh::place_on_face(Index base_tet, const V
   }
   if (place.count == 0) return std::nullopt;
   const auto& [one, two] = place.part;
-  // Of a path along the face both leaves are the same, and do not share it.
+  // A path along a face has the same leaf on both sides.
   if (place.count == 2 && (two.leaf.vertices == one.leaf.vertices || !share_face(one, two))) return std::nullopt;
   for (int q = 0; q < 4; ++q) {
     if (q != one.opposite && one.weights[q] < smallest) return std::nullopt;
@@ -135,7 +135,7 @@ void SplitMesh::split_cell(Index parent, Index vertex, int skip) {
   const Cell whole = cells_[static_cast<std::size_t>(parent)];
   cells_[static_cast<std::size_t>(parent)].first_child = static_cast<Index>(cells_.size());
   for (int q = 0; q < 4; ++q) {
-    if (q == skip) continue;  // the point lies on the face opposite q: that child would be flat
+    if (q == skip) continue;  // the node lies on the face opposite q, and that child would be flat
     Cell child{whole.vertices, whole.base_tet};
     child.vertices[static_cast<std::size_t>(q)] = vertex;
     cells_.push_back(child);

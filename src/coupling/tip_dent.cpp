@@ -17,7 +17,7 @@ double DentLaw::depth(double force) const { return 2.0 * compliance * force / (1
 double DentLaw::slope(double force) const { return compliance / root(*this, force); }
 
 double DentLaw::complementary_energy(double force) const {
-  // F z less the energy in the dent, with F written as k₁ z + k₂ z².
+  // F z minus the energy in the dent, with F written as k₁ z + k₂ z².
   const double z = depth(force);
   return compliance > 0.0 ? z * z * (0.5 / compliance + 2.0 / 3.0 * stiffening_MPa * z) : 0.0;
 }
@@ -33,7 +33,7 @@ TipDent::Under TipDent::under(const Vec3& force) const {
   result.complementary_energy_Nmm = 0.5 * twice_energy;
   if (stiffening_MPa <= 0.0 || !(twice_energy > 0.0)) return result;
   const DentLaw law{compliance.trace() / 3.0, stiffening_MPa};
-  const double q = std::sqrt(twice_energy / law.compliance);  // [N] the force itself where C is the same all round
+  const double q = std::sqrt(twice_energy / law.compliance);  // [N] the magnitude of the force where C is isotropic
   const double share = law.depth(q) / (law.compliance * q);
   const double along = (law.slope(q) / law.compliance - share) / twice_energy;
   result.linear = share * force;

@@ -7,14 +7,15 @@
 
 namespace stylet {
 
-/// By how much less than A g the tissue gives way because it stiffens under the tip. With C the needle's scale of A
-/// (ContactCompliance::needle_scale()), g_c the forces on the other points, g the one on the tip, φ(g) the force that
-/// would make the same dent in linear tissue and σ = g − φ,
+/// The relief: the displacement that the stiffening of the tissue under the tip takes off the linear displacement A g.
+/// With C the needle's scale of A (ContactCompliance::needle_scale()), g_c the forces on the other points, g the force
+/// on the tip, φ(g) the force that would make the same dent in linear tissue, and σ = g − φ, it is
 ///   of a point c:  C_c σ,      of the tip:  C σ + (I − φ′)ᵀ Σ_c C_cᵀ g_c.
-/// The second term is there because the whole is elastic: the derivative of one energy with respect to the forces.
+/// The second term makes the law elastic: the displacements are the derivative of one energy with respect to the
+/// forces.
 class TipRelief {
  public:
-  /// Of tissue that does not stiffen: nothing.
+  /// The relief of linear tissue: zero.
   TipRelief() = default;
 
   /// @param compliance outlives this @param force g [N] @param of_others Σ_c C_cᵀ g_c [mm]
@@ -27,17 +28,17 @@ class TipRelief {
   }
 
   [[nodiscard]] bool is_any() const { return scale_ != nullptr; }
-  /// [mm] LPS
+  /// [mm] LPS, the relief of a point.
   [[nodiscard]] Vec3 of(int point) const {
     if (!is_any()) return Vec3::Zero();
     return point == ContactCompliance::kTip ? at_tip_ : Vec3(scale_->middleRows<3>(3 * point) * spared());
   }
-  /// By how much less than A the point gives way to a little more force on the tip [mm/N]; its transpose is that of the
-  /// tip by a little more force on the point.
+  /// [mm/N] Derivative of a point's relief with respect to the force on the tip; its transpose is the derivative of the
+  /// tip's relief with respect to the force on the point.
   [[nodiscard]] Mat3 slope(int point) const {
     return point == ContactCompliance::kTip ? at_tip_slope_ : Mat3(scale_->middleRows<3>(3 * point) * kept());
   }
-  /// By how much more than half of the sum of all forces times their displacements is stored in the tissue [N mm].
+  /// [N mm] Energy stored in the tissue, minus half of the sum of all forces times their displacements.
   [[nodiscard]] double energy_Nmm() const { return energy_Nmm_; }
   /// φ [N]
   [[nodiscard]] const Vec3& linear() const { return dent_.linear; }
@@ -48,8 +49,8 @@ class TipRelief {
   [[nodiscard]] Vec3 spared() const { return force_ - dent_.linear; }
   [[nodiscard]] Mat3 kept() const { return Mat3::Identity() - dent_.slope; }
 
-  /// ∂(φ′ᵀ w)/∂g [mm/N], the second derivative of φ · w. With e = gᵀ C g, φ = s(e) g and S = 2 ds/de it is
-  /// S (w (Cg)ᵀ + (Cg) wᵀ + (w·g) C) + 2 dS/de (w·g) (Cg)(Cg)ᵀ. At no force it has no limit, but stays bounded.
+  /// ∂(φ′ᵀ w)/∂g [mm/N], the second derivative of φ · w. With e = gᵀ C g, φ = s(e) g and S = 2 ds/de it is S (w (Cg)ᵀ +
+  /// (Cg) wᵀ + (w·g) C) + 2 dS/de (w·g) (Cg)(Cg)ᵀ. At g = 0 it has no limit, but is bounded.
   [[nodiscard]] static Mat3 change_of_share(const TipDent& dent, const Vec3& g, const Vec3& w) {
     const Vec3 Cg = dent.compliance * g;
     const double e = g.dot(Cg);

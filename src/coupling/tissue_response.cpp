@@ -8,8 +8,8 @@
 namespace stylet {
 
 namespace {
-/// Needle radii that the tip cuts on while the track takes over what is remembered at the tip. Raised, the tip takes
-/// more along with it; lowered, the tissue moves more abruptly where the first point of a track takes over.
+/// Length of cut, in needle radii, over which the track takes over the tip's memory. Raised, the tip carries more
+/// memory along; lowered, the tissue moves more abruptly where the first point of a track takes over.
 constexpr double kHandOver = 2.5;
 }  // namespace
 
@@ -84,8 +84,8 @@ Vec3 TissueResponse::lasting_force(int point, const ContactForces& contacts) con
   return memory_.share() * present_force(point, contacts) + memory_.past(point);
 }
 
-/// That of the spring that gives way at once, and that of the spring beside the damper: of its displacement F p the
-/// latter has stored ½ pᵀ F p / (r − 1).
+/// The energy of the spring that yields at once, and of the spring beside the damper, which has stored ½ pᵀ F p / (r −
+/// 1) of its displacement F p.
 double TissueResponse::energy(const ContactForces& contacts) const {
   double energy = compliance_->stiffens() ? relief(contacts).energy_Nmm() : 0.0;
   const auto crept = [&](int point) -> Vec3 {
@@ -108,9 +108,9 @@ void TissueResponse::begin_tip(double xi) {
   relaxing_ = false;
 }
 
-/// The tip is a new material point wherever it has cut to, and what is remembered stays with the material: as the tip
-/// cuts on, the last point of the track takes it over. Both points move nearly alike by it, since only the wide part of
-/// the compliance creeps. Before there is such a point it stays at the tip.
+/// The tip is another material point after each cut, but memory stays with the material: as the tip cuts on, the last
+/// point of the track takes over its memory. This moves both points nearly alike, since only the wide part of the
+/// compliance creeps. Before the track has a point, the memory stays at the tip.
 void TissueResponse::end(const ContactForces& contacts, const Track& track) {
   if (!memory_.on()) return;
   auto forces = forces_.leftCols(compliance_->points());

@@ -11,59 +11,61 @@
 
 namespace stylet {
 
-/// How the tissue gives way to the needle: by its compliance among the contacts, where it stiffens under the tip by
-/// less than that, and where it creeps by more, the longer it bears a force. Nothing allocates after construction
-/// unless a comment says so.
+/// The displacement of the tissue under the forces of the contacts: by its compliance, less where it stiffens under the
+/// tip, and more where it creeps, the longer a force lasts. Nothing allocates after construction except where a comment
+/// says so.
 class TissueResponse {
  public:
-  /// @param needle_radius_mm as the tissue near the needle feels it
-  /// @param points most points that are held or remembered at the same time, without the tip
+  /// @param needle_radius_mm outer radius of the needle
+  /// @param points largest number of points with a contact or a memory at the same time, without the tip
   TissueResponse(std::unique_ptr<ContactCompliance> compliance, const Creep& creep, double needle_radius_mm,
                  int points);
 
   [[nodiscard]] ContactCompliance& compliance() { return *compliance_; }
   [[nodiscard]] const ContactCompliance& compliance() const { return *compliance_; }
 
-  /// A sub-step of h seconds begins.
+  /// Begins a sub-step of h seconds.
   void begin(double h) {
     memory_.begin(h);
     compliance_->begin_sub_step();
   }
-  /// How much of this sub-step's forces is lasting when it ends; 0 for elastic tissue.
+  /// The part of this sub-step's forces that is lasting at its end; 0 for elastic tissue.
   [[nodiscard]] double creep_share() const { return memory_.share(); }
-  /// [mm/N] Displacement of a point by a force on another one that acts in this sub-step: A, and what creeps meanwhile.
+  /// [mm/N] Displacement of a point by a force on another point during this sub-step: A, and the creep in this
+  /// sub-step.
   [[nodiscard]] Mat3 compliance_now(int point, int other) const {
     Mat3 now = (*compliance_)(point, other);
     if (const double share = memory_.share(); share > 0.0) now += share * compliance_->wide(point, other);
     return now;
   }
-  /// Before past_displacement() is asked for of many points.
+  /// Prepares past_displacement() for calls with many points.
   void gather_past() { memory_.gather(*compliance_); }
-  /// [mm] LPS, displacement of a point by what lasts of earlier forces.
+  /// [mm] LPS, displacement of a point by the lasting forces of earlier sub-steps.
   [[nodiscard]] Vec3 past_displacement(int point) const { return memory_.displacement(*compliance_, point); }
   /// [mm] LPS, displacement of a point by all forces.
   [[nodiscard]] Vec3 displacement(int point, const ContactForces& contacts) const;
-  /// The displacement that stiffening under the tip takes off the linear one; displacement() is without it.
+  /// The relief, by which stiffening under the tip reduces the linear displacement; it is already subtracted in
+  /// displacement().
   [[nodiscard]] TipRelief relief(const ContactForces& contacts) const;
-  /// [mm/N] mean over the directions of how far a point gives way to a force on itself.
+  /// [mm/N] Displacement of a point per force on itself, mean over the directions.
   [[nodiscard]] double own_yield(int point) const { return (*compliance_)(point, point).trace() / 3.0; }
 
-  /// Present and lasting forces on the points together [N] (3 × points): the mesh is displaced by these. In room of its
-  /// own, good until the next call.
+  /// The sum of present and lasting forces on the points [N] (3 × points), which displaces the mesh. A view of work
+  /// space, valid until the next call.
   Eigen::Ref<const MatX> all_forces(const ContactForces& contacts);
-  /// The force of the present contact on a point [N]; zero where none is.
+  /// The force of the present contact on a point [N]; zero without a contact.
   [[nodiscard]] Vec3 present_force(int point, const ContactForces& contacts) const;
-  /// The lasting force on a point [N]: the tissue has crept as far as such forces move it through the wide part of the
-  /// compliance. Zero for elastic tissue.
+  /// The lasting force on a point [N]: the creep displacement is the wide part of the compliance times the lasting
+  /// forces. Zero for elastic tissue.
   [[nodiscard]] Vec3 lasting_force(int point, const ContactForces& contacts) const;
-  /// The same of all points (3 × points). Allocate.
+  /// The same for all points (3 × points). Both allocate.
   [[nodiscard]] MatX present_forces(const ContactForces& contacts) const;
   [[nodiscard]] MatX lasting_forces(const ContactForces& contacts) const;
-  /// Energy stored in the tissue [N mm]: ½ fᵀ A f where it is elastic and linear.
+  /// Energy stored in the tissue [N mm]; ½ fᵀ A f for elastic, linear tissue.
   [[nodiscard]] double energy(const ContactForces& contacts) const;
 
-  /// Where a point of the compliance is, and which way the piece of shaft runs that its force is spread over (LPS;
-  /// zero: the force acts at a point).
+  /// The place of a point of the compliance, and the direction of the piece of shaft over which its force is spread
+  /// (unit vector LPS; zero: the force acts at a point).
   struct Place {
     MaterialPoint at;
     Vec3 along = Vec3::Zero();
@@ -71,24 +73,24 @@ class TissueResponse {
   [[nodiscard]] const Place& place(int point) const { return places_[static_cast<std::size_t>(point)]; }
   void set_place(int point, const Place& place) { places_[static_cast<std::size_t>(point)] = place; }
 
-  /// The tip is at another place in the same material. @return whether compliance is there for that place; where not,
-  /// that of the last place stands in for it
+  /// Moves the tip to another place in the same material. @return whether the compliance there has been computed; if
+  /// not, the compliance of the last place is used
   bool move_tip(const MaterialPoint& at, const Vec3& x) { return compliance_->move_tip(at, x); }
-  /// The tip touches material that it has not touched before, at the end of a track of length xi [mm].
+  /// Begins the memory of a tip that touches new material, at the end of a track of length xi [mm].
   void begin_tip(double xi);
 
-  /// A sub-step is over. What the tip has left behind, it hands over to the track.
+  /// Ends a sub-step. The track takes over the memory of the material that the tip has passed.
   void end(const ContactForces& contacts, const Track& track);
-  /// The last point of the track takes over a part of what is remembered at the tip.
+  /// Moves a part of the tip's memory to the last point of the track.
   void leave_behind(const Track& track, double part);
 
-  /// The needle is out: what has crept goes back in time, elastic tissue is at once what it was at first.
+  /// The needle is out of the tissue: creep recovers over time; elastic tissue is reset at once.
   void let_go();
-  /// After a sub-step without contact. Once the tissue is still, it is what it was at first.
+  /// Lets creep recover over a sub-step without contact. Once the tissue is at rest, it is reset.
   void relax(const ContactForces& none);
-  /// Whether the needle is out and the tissue not yet at rest.
+  /// Whether the needle is out and the creep has not recovered yet.
   [[nodiscard]] bool is_relaxing() const { return relaxing_; }
-  /// The tissue becomes what it was before the first contact.
+  /// Restores the state before the first contact.
   void reset();
 
  private:
@@ -96,11 +98,11 @@ class TissueResponse {
 
   std::unique_ptr<ContactCompliance> compliance_;
   TissueMemory memory_;
-  double reach_mm_;      ///< of the cut, over which the track takes over what is remembered at the tip
-  double tip_xi_ = 0.0;  ///< [mm] along the track, where the tip's share of the memory is
+  double reach_mm_;      ///< [mm] length of cut over which the track takes over the tip's memory
+  double tip_xi_ = 0.0;  ///< [mm] arc length on the track of the tip's memory
   bool relaxing_ = false;
-  MatX forces_;                ///< [N] (3 × points) room
-  std::vector<Place> places_;  ///< (points); the tip's is where it was held last
+  MatX forces_;                ///< [N] (3 × points) work space
+  std::vector<Place> places_;  ///< (points); the tip's is the place where it was last held
 };
 
 }  // namespace stylet

@@ -13,16 +13,16 @@ namespace {
 constexpr int kTipPlace = TrackObservables::kTip;
 constexpr int kTipNodes = TrackObservables::kTipNodes;
 
-/// Each point is an observable, and may bring the vertices of a border.
+/// Each point is an observable, and may add the vertices of a border.
 constexpr int kObservablesPerPoint = 1 + SplitBorders::kMostVertices;
 
-/// Weights of this size are rounding errors of 0. If raised, nodes off a face count as on it.
+/// Weights below this are rounding errors of 0. Raised, nodes off a face count as on it.
 constexpr double kNoWeight = 1e-12;
 
-/// Rounding must not make a block of the diagonal unsymmetric.
+/// Removes the asymmetry that rounding gives to a diagonal block.
 Mat3 symmetric_part(const Mat3& block) { return 0.5 * (block + block.transpose()); }
 
-/// The displacement of a node itself.
+/// The shape of a node itself.
 Shape single_node(Index node) { return {.count = 1, .node = {node}, .weight = {1.0}}; }
 }  // namespace
 
@@ -78,7 +78,7 @@ int TrackCompliance::new_observable(const Shape& shape, Index vertex) {
   return number;
 }
 
-/// Number of a vertex of the split mesh among the observables, which it joins if it is not one of them yet.
+/// Number of a vertex of the split mesh among the observables; adds the vertex if it is not among them.
 int TrackCompliance::vertex_observable(Index vertex) {
   if (mesh_.is_added(vertex)) return observable_of(node_point_[static_cast<std::size_t>(mesh_.added(vertex))]);
   const int found = observables_->find(vertex);
@@ -91,22 +91,22 @@ int TrackCompliance::vertex_observable(Index vertex) {
   return number;
 }
 
-/// Brings z of an observable up to date for all splits.
+/// Computes z of an observable for all splits for which it is not known yet.
 void TrackCompliance::extend(int observable) {
   for (int p = hats_->known(observable); p < hats_->count(); ++p)
     hats_->extend_z(observable,
                     hats_->inside(p) ? Mat3::Zero() : observables_->moved_by(borders_->loads(p), observable));
 }
 
-/// Brings z of all points and of the nodes of the tip's element up to date for all splits.
+/// Computes z of all points and of the nodes of the tip's element for all splits.
 void TrackCompliance::extend_all() {
   for (int c = 1; c < points_; ++c) extend(observable_of(c));
   const TipElement& element = tip_rows_->element();
   for (int i = 0; i < element.count(); ++i) extend(kTipNodes + element.number(i));
 }
 
-/// The hats of earlier nodes are linear in the leaf where an observable is, so its hats follow from the leaf's
-/// vertices.
+/// Computes the hats at an observable from those at its leaf's vertices, because the hats of earlier nodes are linear
+/// in the leaf.
 void TrackCompliance::interpolate_hats(int observable, const SplitMesh::Part& part) {
   for (int v = 0; v < 4; ++v) {
     const Index vertex = part.leaf.vertices[static_cast<std::size_t>(v)];
@@ -137,19 +137,19 @@ int TrackCompliance::add_on_face(const SplitMesh::Place& place, const Shape& sha
   return finish_point(observable);
 }
 
-/// Splits the elements at a new node, on which the next point is going to sit.
+/// Splits the elements at a new node, which the next point will use.
 void TrackCompliance::split_elements(const SplitMesh::Place& place) {
   const Index node = mesh_.split(place);
   node_point_.push_back(points_);
   const auto kind = place.inside() ? RemeshEvent::Kind::added_inside : RemeshEvent::Kind::added_on_face;
-  const int vertices = 4 + place.count;  // of the elements together, the new one among them
+  const int vertices = 4 + place.count;  // of the split elements together, the new vertex included
   const int children = place.inside() ? 4 : 3;
   changes_.push_back(
       {.kind = kind, .point = points_, .node = node, .dimension = 3 * vertices, .elements = place.count * children});
 }
 
-/// Adds the split by a node on a face, and finds z of its border's vertices. Leaves the field of the observables loaded
-/// by the split.
+/// Adds the split by a node on a face, and computes z of its border's vertices. The observables are then loaded by the
+/// split.
 void TrackCompliance::add_bordered_split(const SplitMesh::Place& place) {
   borders_->begin();
   Mat3 stiffness = Mat3::Zero();
@@ -172,8 +172,8 @@ void TrackCompliance::add_bordered_split(const SplitMesh::Place& place) {
   hats_->complete(border, stiffness);
 }
 
-/// Finds the hats and z of the node of the last split, which is on a face: what was linear in the element that is split
-/// is interpolated.
+/// Computes the hats and z of the node of the last split, which is on a face, by interpolation from the face's
+/// vertices, because earlier fields are linear in the element that is split.
 void TrackCompliance::interpolate_from_face(int observable, const SplitMesh::Part& part) {
   const int p = hats_->count() - 1;
   interpolate_hats(observable, part);
@@ -189,11 +189,11 @@ void TrackCompliance::interpolate_from_face(int observable, const SplitMesh::Par
   for (int q = 0; q <= p; ++q) hats_->interpolate_z(observable, q, q == p ? 1.0 : 0.0, corner, weight);
 }
 
-/// The hat of split p, by which the field of the observables is loaded, lets the points move more: A += z s⁻¹ zᵀ.
+/// Adds the hat of split p, A += z s⁻¹ zᵀ. The observables must be loaded by the split.
 void TrackCompliance::loosen_points(int p) {
   for (int c = 1; c < points_; ++c) {
     const int of = observable_of(c);
-    if (hats_->known(of) == p) hats_->extend_z(of, observables_->at(of));  // it is no vertex of this border
+    if (hats_->known(of) == p) hats_->extend_z(of, observables_->at(of));  // not a vertex of this border
     by_points_[static_cast<std::size_t>(c)] = hats_->amplitude(of, p);
   }
   for (int c = 1; c < points_; ++c) {
@@ -216,8 +216,8 @@ void TrackCompliance::loosen_points(int p) {
   A_.topLeftCorner<3, 3>() += symmetric_part(hats_->z(kTipPlace, p) * hats_->amplitude(kTipPlace, p));
 }
 
-/// Makes an observable the next point and writes its rows. A point in the tip's element has its row from the rows of
-/// the element's nodes, so that nothing of the store is needed.
+/// Makes an observable the next point and writes its rows. In the tip's element the row of the point is interpolated
+/// from the rows of the element's nodes, so that the store is not read.
 /// @return number of the point
 int TrackCompliance::finish_point(int observable) {
   ++version_;
@@ -233,7 +233,7 @@ int TrackCompliance::finish_point(int observable) {
     std::array<double, kMostElementNodes> weight{};
     for (std::size_t i = 0; i < nodes.size(); ++i)
       weight[i] = (*weights)[static_cast<std::size_t>(nodes[i] - kTipNodes)];
-    // The rows of the nodes have their share of the hats of splits with a border. The rest is the point's own.
+    // The rows of the nodes contain the hats of splits with a border; the rest belongs to the point only.
     hats_->load_beyond(observable, nodes, std::span(weight).first(nodes.size()));
     const auto row = tip_rows_->combine(*weights, points_ - 1);
     write_row(points_ - 1, [&](int point, int /*of*/) -> Mat3 {
@@ -247,8 +247,8 @@ int TrackCompliance::finish_point(int observable) {
   return points_ - 1;
 }
 
-/// Writes A of a point and all points but the tip: what the hats move them, and the rest.
-/// @param rest (point, its observable) → the part of A that the hats do not add [mm/N]
+/// Writes A between a point and all points but the tip: the displacement by the hats, and the rest.
+/// @param rest function: (point, its observable) → the part of A without the hats [mm/N]
 template <class Rest>
 void TrackCompliance::write_row(int point, const Rest& rest) {
   for (int d = 1; d < points_; ++d) {
@@ -261,7 +261,8 @@ void TrackCompliance::write_row(int point, const Rest& rest) {
   A_.block<3, 3>(3 * point, 3 * point) = symmetric_part(own);
 }
 
-/// The nodes of the tip's element among the observables, in the element's order; as many are in use as it has nodes.
+/// The nodes of the tip's element among the observables, in the element's order; only the first element().count() are
+/// valid.
 std::array<int, kMostElementNodes> TrackCompliance::tip_nodes() const {
   const TipElement& element = tip_rows_->element();
   std::array<int, kMostElementNodes> nodes{};
@@ -269,7 +270,7 @@ std::array<int, kMostElementNodes> TrackCompliance::tip_nodes() const {
   return nodes;
 }
 
-/// Finds z of a node that is new to the tip's element, and A of it and all points.
+/// Computes z of a node that is new to the tip's element, and A between it and all points.
 void TrackCompliance::know_tip_node(int number) {
   const int observable = kTipNodes + number;
   const Index node = tip_rows_->element().node(number);
@@ -285,7 +286,7 @@ void TrackCompliance::know_tip_node(int number) {
   }
 }
 
-/// Finds z of the tip, which is interpolated from the nodes of its element, for split `from` and all after it.
+/// Computes z of the tip for split `from` and all later ones, by interpolation from the nodes of its element.
 void TrackCompliance::interpolate_tip(int from) {
   const Shape& tip = observables_->shape(kTipPlace);
   const auto count = static_cast<std::size_t>(tip.count);
@@ -296,10 +297,10 @@ void TrackCompliance::interpolate_tip(int from) {
   }
 }
 
-/// Writes A of the tip and all other points.
+/// Writes A between the tip and all other points.
 void TrackCompliance::write_tip_row() {
   const auto weights = tip_rows_->element().weights(observables_->shape(kTipPlace));
-  if (!weights) return;  // the tip is nowhere yet
+  if (!weights) return;  // the tip has no place yet
   const auto row = tip_rows_->combine(*weights, points_ - 1);
   A_.block(0, 3, 3, row.cols()) = row;
   A_.block(3, 0, row.cols(), 3) = A_.block(0, 3, 3, row.cols()).transpose();
@@ -326,7 +327,8 @@ TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3&
   return {inside ? add_inside(*inside, shape) : finish_point(new_observable(shape, -1)), Refusal::none};
 }
 
-/// On a face of the base mesh the node opposite has no part, and the element beyond, where the tip is, has all others.
+/// Shape of a place on a face of the base mesh: without the opposite node, so that the element beyond, where the tip
+/// is, has all its nodes.
 Shape TrackCompliance::shape_on_face(Index base_tet, const Vec3& x) const {
   Vec4 weights = mesh_.locator().weights(base_tet, x);
   weights = (weights.array().abs() < kNoWeight).select(0.0, weights);
@@ -390,7 +392,7 @@ Mat3 TrackCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) cons
 VecX TrackCompliance::base_load(const Eigen::Ref<const MatX>& forces) const {
   MatX load = MatX::Zero(3, observables_->count());
   for (int c = 0; c < points_; ++c) load.col(observable_of(c)) += forces.col(c);
-  // Condense the hats, last first: a hat's amplitude w loads the vertices of its border by −k_jp w.
+  // Condense the hats, last first: a hat of amplitude w loads the vertices of its border by −k_jp w.
   for (int p = hats_->count() - 1; p >= 0; --p) {
     if (hats_->inside(p)) continue;
     Vec3 work = Vec3::Zero();

@@ -8,9 +8,9 @@
 
 namespace stylet::test {
 
-/// Makes a block of x ≥ 0, z = 0 … 100 mm its own mirror image in x = 0. Upside down, so that the surface's triangles
-/// along the plane belong to elements with a face in it: those that touch it with an edge have a gradient of their own
-/// side only.
+/// Makes a block of x ≥ 0, z = 0 … 100 mm its own mirror image in x = 0. It is mirrored upside down as well, so that
+/// the surface's triangles along the plane belong to elements with a face in the plane; elements that touch the plane
+/// with an edge have a displacement gradient of their own side only.
 inline void mirror(TetMesh& mesh) {
   for (Vec3& x : mesh.nodes) x.z() = 100.0 - x.z();
   const std::size_t nodes = mesh.nodes.size();

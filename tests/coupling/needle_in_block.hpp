@@ -18,7 +18,7 @@
 
 namespace stylet::test {
 
-/// The usual step; under sanitizers, which look at what a step does and not at its numbers, one twice as long.
+/// The usual step; twice as long under sanitizers, which check the execution of a step and not its results.
 inline constexpr double kStep_s = kSanitized ? 2e-3 : 1e-3;
 
 /// A block of tissue 100 mm wide and deep, skin at z = 0, held at its sides and bottom, and a needle along z.
@@ -35,19 +35,19 @@ struct BlockOptions {
   std::function<bool(const Vec3&)> held = [](const Vec3& x) {
     return std::abs(x.x()) > 49.9 || std::abs(x.y()) > 49.9 || x.z() > 99.9;
   };
-  std::function<void(TetMesh&)> edit;  ///< last change to the mesh before it is built
+  std::function<void(TetMesh&)> edit;  ///< called to change the mesh before the tissue is built
   Element element = Element::p1;
   CouplingSettings coupling;
   double needle_length = 150.0;
-  std::function<std::unique_ptr<Needle>(int load_capacity)> needle;  ///< instead of the usual beam
-  std::vector<NeedleWay> ways;  ///< along which the wide part of the near field is that of spread forces
+  std::function<std::unique_ptr<Needle>(int load_capacity)> needle;  ///< makes the needle; empty: the usual beam
+  std::vector<NeedleWay> ways;  ///< ways along which the wide part of the compliance is precomputed
 };
 
 struct Happened {
   EventKind kind;
   int region;
   double depth;
-  double force;  ///< along the motion's axis, before the step
+  double force;  ///< [N] along the motion's axis, before the step
 };
 
 class NeedleInBlock {
@@ -91,7 +91,7 @@ class NeedleInBlock {
     length = options.needle_length;
   }
 
-  /// Puts the needle in front of the skin: its straight tip passes `through` when the depth is 0, along `axis`.
+  /// Puts the needle in front of the skin: at depth 0 its straight tip is at `through`. Its direction is `axis`.
   void aim(const Vec3& through, const Vec3& axis_ = Vec3::UnitZ(), double start = -1.0) {
     point = through;
     axis = axis_.normalized();
@@ -104,7 +104,7 @@ class NeedleInBlock {
             Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis) * Eigen::AngleAxisd(roll, Vec3::UnitZ())};
   }
 
-  /// Moves the base along the axis to a depth at a speed; records.
+  /// Moves the base along the axis to a depth at a speed, and records forces and events.
   void go(double to, double speed = 20.0, double dt = kStep_s) {
     const double way = to - depth;
     const auto steps = std::max<long>(1, std::lround(std::abs(way) / (speed * dt)));
@@ -124,7 +124,7 @@ class NeedleInBlock {
     const Vec3 base_before = last_base;
     report = insertion->step(pose(), dt);
     last_base = pose().origin;
-    // The base is only translated in these tests: the hand's work is force times way.
+    // The base is only translated in these tests, so the hand's work is force times distance.
     if (!forces.empty()) work += 0.5 * (report.hand_force_N + last_force).dot(last_base - base_before);
     last_force = report.hand_force_N;
     forces.push_back(report.hand_force_N.dot(axis));
@@ -164,7 +164,7 @@ class NeedleInBlock {
   Vec3 axis = Vec3::UnitZ();
   Vec3 sideways = Vec3::Zero();
   double depth = 0.0;
-  double roll = 0.0;  ///< [rad] of the base about the axis
+  double roll = 0.0;  ///< [rad] rotation of the base about the axis
   Step report;
   unsigned flags = 0;
   double work = 0.0;
@@ -172,7 +172,7 @@ class NeedleInBlock {
   Vec3 last_base = Vec3::Zero();
   std::vector<double> forces;
   std::vector<double> depths;
-  std::vector<int> contact_counts;  ///< on the shaft
+  std::vector<int> contact_counts;  ///< number of shaft contacts
   std::vector<Happened> happened;
 };
 

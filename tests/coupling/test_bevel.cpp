@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a bevelled tip does to a needle's way through tissue.
+// How a bevelled tip changes the needle's path through tissue.
 #include "mirrored_block.hpp"
 #include "needle_in_block.hpp"
 
@@ -14,7 +14,7 @@ using test::NeedleInBlock;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDepth = 60.0;
 
-/// One soft tissue, so that nothing but the tip turns the needle.
+/// Tissue of one soft medium, so that only the tip turns the needle.
 BlockOptions tissue(double bevel_deg, Bevel::Law law = Bevel::Law::offset) {
   BlockOptions options;
   options.cells = {5, 5, 6};
@@ -29,7 +29,7 @@ BlockOptions tissue(double bevel_deg, Bevel::Law law = Bevel::Law::offset) {
   return options;
 }
 
-/// The tip's way off the axis [mm] at every step.
+/// Distance of the tip from the axis [mm] at every step.
 std::vector<Vec3> way(const BlockOptions& options, double roll_deg = 0.0, double dt = 2e-3, double turned_at = 1e9) {
   NeedleInBlock run(options);
   run.roll = roll_deg * kDegree;
@@ -56,7 +56,7 @@ std::vector<Vec3> way(const BlockOptions& options, double roll_deg = 0.0, double
   return offsets;
 }
 
-/// Where the bevel alone takes the tip: less what mesh and friction do to a symmetric tip.
+/// Deflection of the tip by the bevel alone: the deflection of a symmetric tip, by mesh and friction, is subtracted.
 Vec3 drawn(const BlockOptions& options, double roll_deg = 0.0, double dt = 2e-3) {
   BlockOptions symmetric = options;
   symmetric.coupling.bevel.angle_rad = 0.0;
@@ -81,7 +81,8 @@ TEST_P(BevelledTip, AHalfTurnHalfWayMakesAnS) {
   const auto symmetric = way(tissue(0.0, GetParam()));
   const std::size_t half = s.size() / 2;
   const auto bent = [&](const std::vector<Vec3>& w, std::size_t k) { return w[k].x() - symmetric[k].x(); };
-  // Before the turn the same; after it the course bends back: less slope at the end than half way.
+  // Before the turn both paths are the same. After it the path bends back: its slope at the end is smaller than half
+  // way.
   EXPECT_NEAR(bent(s, half - 1), bent(straight_on, half - 1), 1e-9);
   const std::size_t last = s.size() - 1;
   const std::size_t stretch = half / 4;
@@ -99,7 +100,7 @@ TEST_P(BevelledTip, DoesNotDependOnTheTimeStep) {
 }
 
 TEST_P(BevelledTip, HardlyDependsOnTheSpacingOfContacts) {
-  // With elements of the spacing's own size, and a node for every contact.
+  // Elements as large as the spacing, and a node for every contact.
   const auto at_spacing = [](double spacing) {
     BlockOptions options = tissue(25.0, GetParam());
     options.cells = {12, 12, 12};
@@ -146,7 +147,7 @@ TEST(BevelOffset, MoreBevelDrawsMore) {
     EXPECT_GT(now, 1.5 * last);
     last = now;
   }
-  // Small angles draw in proportion: nothing jumps in at zero.
+  // At small angles the deflection is proportional to the angle, without a jump at zero.
   EXPECT_NEAR(drawn(tissue(1.0)).x() / drawn(tissue(2.0)).x(), 0.5, 0.05);
 }
 

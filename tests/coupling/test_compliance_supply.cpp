@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compliance that comes while the needle moves: the same numbers, in bounded memory, and what is done without it.
+// Compliance that is computed while the needle moves: the same values, bounded memory, and the behaviour without it.
 #include "needle_in_block.hpp"
 #include "support/count_allocations.hpp"
 
@@ -14,7 +14,7 @@ constexpr std::size_t kAtOnce = 8;
 
 ComplianceSupply::Settings near_the_tip() { return {.radius_mm = 8.0, .ahead_mm = 4.0}; }
 
-/// So few nodes that a needle in another place takes them.
+/// Room for so few nodes that a needle at another place takes over the slots of the first.
 constexpr Index kLittle = 150;
 ComplianceSupply::Settings little_room() { return {.radius_mm = 3.0, .ahead_mm = 4.0, .spare_nodes = kLittle}; }
 BlockOptions fine_block() {
@@ -23,7 +23,7 @@ BlockOptions fine_block() {
   return options;
 }
 
-/// Steps without prepare(); a worker of our own has a round after each `rounds_every`-th.
+/// Steps without prepare(); the worker's side has a round after every `rounds_every`-th step.
 struct WithWorker : NeedleInBlock {
   int rounds_every = 1;
   int flagged = 0;
@@ -55,11 +55,11 @@ struct WithWorker : NeedleInBlock {
     if (rounds_every > 0 && ++taken % rounds_every == 0) insertion->supply().work(kAtOnce);
   }
 
-  /// Rounds until nothing is wanted; the needle stays where it is.
+  /// Has rounds until no compliance is missing, while the needle stays at its place.
   void rest() {
     const int as_before = std::exchange(rounds_every, 0);
     Work last = Work::done;
-    int idle = 0;  // after the step that took the last rows it may look elsewhere
+    int idle = 0;  // after the step that took the last rows, the wanted place may be another one
     for (int k = 0; k < 1000 && idle < 2; ++k) {
       one_step();
       last = insertion->supply().work(kAtOnce);
@@ -113,7 +113,7 @@ TEST(ComplianceSupply, a_worker_that_keeps_ahead_gives_the_same_forces) {
 
 TEST(ComplianceSupply, memory_is_bounded_and_no_contact_loses_its_compliance) {
   WithWorker run(fine_block(), little_room());
-  // In and out at places far from each other: far more nodes than there is room for.
+  // In and out at places far from each other, which together need far more nodes than there is room for.
   for (const Vec3& through : {Vec3(3, 2, 0), Vec3(-25, 20, 0), Vec3(24, -22, 0)}) {
     run.aim(through);
     run.rest();
@@ -145,7 +145,7 @@ TEST(ComplianceSupply, what_was_forgotten_comes_back_with_the_same_numbers) {
   insertion_at({-25, 20, 0});
   insertion_at({24, -22, 0});
   EXPECT_TRUE(std::any_of(of_the_first.begin(), of_the_first.end(), [&](Index node) { return !run.store->has(node); }));
-  // Beside the first track, so as not to run in it, and then once more in a block that never forgot.
+  // Beside the first track, so that the needle does not join it; and the same in a block that has given up no rows.
   const double again = insertion_at({3, 6, 0});
   WithWorker fresh(fine_block());
   fresh.aim({3, 6, 0});
@@ -168,13 +168,13 @@ TEST(ComplianceSupply, an_outrun_needle_goes_on_with_the_last_row_is_flagged_and
     run.rest();
     run.go_on(20);
     EXPECT_EQ(run.flags, 0u);
-    run.rounds_every = 0;  // the worker stands still
+    run.rounds_every = 0;  // the worker stops
     run.go_on(60);
     EXPECT_EQ(run.flags, static_cast<unsigned>(Step::compliance_missing));
     EXPECT_NE(run.report.flags, 0u);
     EXPECT_EQ(run.report.tip_state, TipState::cutting) << "it is not held";
     EXPECT_GT(run.insertion->track().end_xi, 50.0);
-    // Neither jump nor wall: the last contact carries the friction of those that wait.
+    // The force neither jumps nor rises like at a wall: the last contact carries the friction of those that wait.
     const auto largest_jump = [](const std::vector<double>& forces) {
       double largest = 0.0;
       for (std::size_t k = 1; k < forces.size(); ++k) largest = std::max(largest, std::abs(forces[k] - forces[k - 1]));
@@ -187,7 +187,7 @@ TEST(ComplianceSupply, an_outrun_needle_goes_on_with_the_last_row_is_flagged_and
     run.flags = 0;
     run.rest();
     EXPECT_EQ(run.report.flags, 0u);
-    // One that could have no node where it was marked, and follows from its neighbours, is left to them.
+    // A waiting contact that could have no node at its mark, and depends linearly on its neighbours, is dropped.
     EXPECT_GE(run.insertion->contacts().size() + 1, prepared.insertion->contacts().size());
     run.flags = 0;
     run.rounds_every = 1;
@@ -207,7 +207,7 @@ TEST(ComplianceSupply, an_outrun_needle_at_rest_gets_what_it_lacks_from_prepare)
     run.report = run.insertion->step(run.pose(), 1e-3);
   }
   ASSERT_EQ(run.report.flags, static_cast<unsigned>(Step::compliance_missing));
-  for (int k = 0; k < 50 && run.report.flags != 0; ++k) run.step(1e-3);  // prepares, then steps
+  for (int k = 0; k < 50 && run.report.flags != 0; ++k) run.step(1e-3);  // prepare(), then a step
   EXPECT_EQ(run.report.flags, 0u);
   EXPECT_GT(run.insertion->contacts().size(), 12u);
 }
@@ -247,7 +247,7 @@ TEST(ComplianceSupply, an_old_track_that_was_forgotten_is_joined_all_the_same) {
   run.aim({3, 2, 0});
   run.rest();
   run.rounds_every = 0;
-  run.go_on(50.0, 20.0, 2 * kStep_s);  // through the old track and on
+  run.go_on(50.0, 20.0, 2 * kStep_s);  // through the old track and beyond its end
   EXPECT_EQ(run.flags, static_cast<unsigned>(Step::compliance_missing));
   for (const double force : run.forces) ASSERT_TRUE(std::isfinite(force));
   run.rest();
@@ -275,7 +275,7 @@ TEST(ComplianceSupply, a_surface_met_without_compliance_is_entered_when_it_has_c
 }
 
 TEST(ComplianceSupply, a_needle_far_inside_when_the_first_compliance_comes_is_to_be_drawn_out) {
-  // Pressed on the skin from there it would get the force of a dent tens of millimetres deep.
+  // If it pressed on the skin from that depth, its force would be that of a dent tens of millimetres deep.
   WithWorker run;
   run.rounds_every = 0;
   run.aim({3, 2, 0});
@@ -305,7 +305,7 @@ TEST(ComplianceSupply, a_needle_that_went_past_the_skin_may_leave_sideways_and_e
   run.aim({3, 2, 0});
   run.go_on(30.0);
   run.rounds_every = 1;
-  while (run.sideways.x() < 80.0) {  // out through the block's side
+  while (run.sideways.x() < 80.0) {  // out through the side of the block
     run.sideways.x() += 0.1;
     run.one_step();
     if (run.sideways.x() < 45.0) {

@@ -13,7 +13,7 @@ using stylet::paper::CondensedSystem;
 
 namespace {
 
-/// Compliance of w points, positive definite, and what is done to it, kept beside K_W.
+/// The compliance of w points, positive definite, with the same changes as K_W.
 class Reference {
  public:
   explicit Reference(int points) : frames(static_cast<std::size_t>(points), Mat3::Identity()) {
@@ -38,7 +38,7 @@ class Reference {
     return K;
   }
 
-  /// Largest error of x = K_W y, over the largest x, for random y against a solution of the mixed problem.
+  /// Largest error of x = K_W y for random y against a solution of the mixed problem, over the largest x.
   double error(const CondensedSystem& system, const std::vector<int>& points) {
     const MatX K = local(points);
     const Eigen::Index size = K.rows();
@@ -59,7 +59,7 @@ class Reference {
     return system.add(K.topRightCorner(K.rows() - 3, 3), K.bottomRightCorner<3, 3>());
   }
 
-  /// Lets points 0 … count − 1 enter.
+  /// Adds points 0 … count − 1.
   std::vector<int> fill(CondensedSystem& system, int count) const {
     std::vector<int> points;
     for (int p = 0; p < count; ++p) {

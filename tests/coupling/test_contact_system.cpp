@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear equations of an iteration, against the same equations written down whole.
+// The linear equations of one iteration against the same equations assembled as one matrix.
 #include "coupling/balance/contact_system.hpp"
 
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@ namespace {
 
 using TipRows = ContactSystem::TipRows;
 
-/// Where the needle is lent springs.
+/// The contacts at which springs are lent to the needle.
 enum class Springs { none, at_grips, everywhere };
 
-/// Contacts along a curved needle in a medium whose compliance falls off with distance.
+/// Contacts along a curved needle, in a medium whose compliance decreases with distance.
 struct Equations {
   explicit Equations(int contacts, Springs springs) : rows(settings, contacts), system(rows, contacts) {
     const bool lend_springs = springs != Springs::none;
@@ -34,7 +34,7 @@ struct Equations {
       Yield& yield = rows.yield[static_cast<std::size_t>(c)];
       const double softness = c % 4 == 1 ? 0.1 : 0.0;
       yield = {rows.frame[static_cast<std::size_t>(c)].col(2), softness, c % 3 == 0 ? 4.0 : softness};
-      // Lent a while ago, so a little off the contact's direction of now.
+      // The spring is some steps old, so its direction differs a little from the contact's present direction.
       if (lend_springs && (c > 0 || contacts == 1) && c % 5 != 2)
         system.needle.spring[static_cast<std::size_t>(c)] = {(yield.along + Vec3(0.01, -0.02, 0.0)).normalized(), 0.4};
       if (c == 0 && springs == Springs::everywhere) system.needle.spring.front() = {Vec3::Zero(), 0.7};
@@ -51,7 +51,7 @@ struct Equations {
     size = n;
   }
 
-  /// What solve() is to find: λ in the frames and p, from all equations at once.
+  /// The expected result of solve(): λ in the frames and p, from all equations in one system.
   [[nodiscard]] std::pair<VecX, VecX> whole(TipRows held) const {
     MatX Q = MatX::Zero(size, size);
     MatX D = MatX::Zero(size, size);
@@ -65,7 +65,7 @@ struct Equations {
     const MatX A = system.A.topLeftCorner(size, size);
     const MatX N = system.needle.N.topLeftCorner(size, size);
     const VecX now = rows.now.head(size);
-    // Unknown λ and p: λ − p − G (free − N (p − now)) = 0, and in the frames either the row or λ = 0.
+    // Unknowns λ and p: λ − p − G (free − N (p − now)) = 0, and in the frames either the row or λ = 0.
     MatX left = MatX::Zero(2 * size, 2 * size);
     VecX right = VecX::Zero(2 * size);
     left.topLeftCorner(size, size).setIdentity();
@@ -75,13 +75,14 @@ struct Equations {
     left.bottomRightCorner(size, size) = Q.transpose() * N;
     right.tail(size) = Q.transpose() * (A * now + N * now + system.needle.free.head(size) - rows.gap.head(size)) +
                        rows.shift.head(size);
-    // As the cut goes on with the tip's axial force the gaps change.
+    // The gaps change with the cut, whose length depends on the tip's axial force.
     const VecX drift = Q.transpose() * rows.tip.drift.head(size);
     const Vec3 t = rows.frame[0].col(2);
     left.bottomLeftCorner(size, 3) += rows.tip.cut_per_N * drift * t.transpose();
     right.tail(size) -=
         (rows.tip.cut_per_N > 0.0 ? rows.tip.cut_due - rows.tip.cut_per_N * t.dot(now.head<3>()) : 0.0) * drift;
-    // The direction of a tip held along the needle only: t + w, w = ((r − r_now) of the tip − that behind it)/way.
+    // Direction of a tip that is held along the needle only: t + w, where w is (r − r_now) of the tip minus that of the
+    // contact behind it, over the distance between them.
     const bool turns = held == TipRows::axial && rows.tip.behind > 0;
     MatX w_of_p = MatX::Zero(3, size);
     Vec3 w = Vec3::Zero();
@@ -92,7 +93,7 @@ struct Equations {
     }
     for (int k = 0; k < 3; ++k) {
       const bool is_held = held == TipRows::all || (held == TipRows::axial && k == 2);
-      if (is_held) {  // how far it is aside now comes to be along t + w
+      if (is_held) {  // a part of the present lateral gap lies along t + w
         const Vec3 aside = rows.error(0)[0] * Q.block<3, 1>(0, 0) + rows.error(0)[1] * Q.block<3, 1>(0, 1);
         if (turns) {
           left.row(size + k).tail(size) += aside.transpose() * w_of_p;
@@ -100,7 +101,7 @@ struct Equations {
         }
         continue;
       }
-      // n·λ = 0, n turning with t: n·λ = (n·w) (t·λ_now).
+      // n·λ = 0 with n turning like t: n·λ = (n·w) (t·λ_now).
       const Vec3 across = Q.block<3, 1>(0, k);
       const double pressed = t.dot(now.head<3>());
       left.row(size + k).setZero();
@@ -247,7 +248,7 @@ TEST_P(ContactEquations, are_solved_with_contacts_that_came_alive_since_the_matr
     ASSERT_TRUE(system.factorise());
     for (int c = before; c < before + 3; ++c) {
       system.needle.count = c + 1;
-      rows.yield.back().lateral = 1e4;  // the youngest
+      rows.yield.back().lateral = 1e4;  // the youngest contact
       ASSERT_TRUE(system.append()) << before;
       system.add_tip();
       equations.size = 3 * system.needle.count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interpolated contacts in every kind of element, against solves of their own.
+// Interpolated contacts in every kind of element, against separate solves.
 #include "stylet/coupling/track_compliance.hpp"
 
 #include "two_region_block.hpp"
@@ -23,7 +23,7 @@ class EmbeddedPoints : public testing::TestWithParam<Element> {
     forces.col(2) << -0.3, 0.1, 0.2;
   }
 
-  /// Displacement of all displacement nodes under the points' forces.
+  /// Displacement of all displacement nodes by forces on the points.
   [[nodiscard]] VecX solved() const {
     const Tissue& tissue = *block.tissue;
     VecX f = VecX::Zero(3 * tissue.displacement_nodes());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A balance is solved from where the sub-step will probably end (src/coupling/balance/predictor.hpp).
+// The prediction: a balance is solved from the probable end of the sub-step (src/coupling/balance/predictor.hpp).
 #include "needle_in_block.hpp"
 
 #include <random>
@@ -26,7 +26,7 @@ TEST(Expectation, a_needle_that_goes_on_as_before_takes_little_more_than_one_ite
   EXPECT_EQ(run.flags, 0u);
 }
 
-/// Iterations of a hundred steps in which the base goes 0.02 mm sideways each.
+/// Iterations in a hundred steps, in each of which the base moves 0.02 mm sideways.
 int iterations_sideways(bool steadily) {
   NeedleInBlock run;
   run.aim({1.3, 0.7, 0.0}, {0.2, 0.1, 1.0});
@@ -48,7 +48,7 @@ TEST(Expectation, a_hand_that_goes_on_sideways_takes_fewer_iterations_than_one_t
 }
 
 TEST(Expectation, what_is_expected_wrongly_does_not_change_the_balance) {
-  // The staggered solver starts each sub-step from the forces and the shape that the last one ended with.
+  // The staggered solver starts each sub-step from the forces and the shape at the end of the last one.
   BlockOptions options;
   NeedleInBlock coupled(options);
   options.coupling.solver = CouplingSettings::Solver::staggered;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matrix of the shaft's contacts is factorised once, and takes in what changes: against a dense solution.
+// The matrix of the shaft contacts, which is factorised once and then updated, against a dense solution.
 #include "coupling/balance/grip_matrix.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCapacity = 40;
 
-/// Contacts of a needle in tissue, as far as the matrix knows them; those of age have no D across.
+/// Contacts of a needle in tissue, with the values that the matrix reads; mature contacts have no lateral D.
 class Contacts {
  public:
   explicit Contacts(int grips) : grips_(grips), matrix_(kCapacity) {
@@ -38,7 +38,7 @@ class Contacts {
     return matrix_.keep_first(grips) && change();
   }
 
-  /// By how much its solution misses the right-hand side, over the latter.
+  /// Residual of the matrix's solution, over the right-hand side.
   double error() {
     MatX P = A() + N();
     for (int g = 0; g < grips_; ++g) {
@@ -105,8 +105,8 @@ TEST(GripMatrix, takes_in_contacts_that_come_and_go) {
 TEST(GripMatrix, is_right_again_after_what_it_could_not_take) {
   Contacts contacts(34);
   ASSERT_TRUE(contacts.factorise());
-  contacts.yields()[1].axial *= 5.0;    // taken in, …
-  contacts.yields()[10].lateral = 0.4;  // … and a row that was to have none: not
+  contacts.yields()[1].axial *= 5.0;    // this change is possible without a new factorisation, …
+  contacts.yields()[10].lateral = 0.4;  // … and this one is not: a settled row gets a D
   ASSERT_FALSE(contacts.change());
   contacts.yields()[10].lateral = 0.0;
   ASSERT_TRUE(contacts.change());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions and order of the rows of the contacts' matrix, by themselves.
+// Directions and order of the rows of the shaft contacts' matrix.
 #include "coupling/balance/grip_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Eigen::Index kSpringRows = 4;
 
-/// Contacts along a bent needle, of which one in the middle yields across it.
+/// Contacts along a bent needle; one in the middle yields laterally.
 std::vector<Yield> yields(int grips, int yielding) {
   std::vector<Yield> result;
   for (int g = 0; g < grips; ++g)

@@ -33,7 +33,7 @@ const GuidedNeedle& needle_of(const NeedleInBlock& run) {
   return dynamic_cast<const GuidedNeedle&>(run.insertion->needle());
 }
 
-/// Action and reaction: the hand and the guide together are what the contacts are.
+/// Action and reaction: the forces of hand and guide together equal those of the contacts.
 void expect_balance(const NeedleInBlock& run) {
   Vec3 force = run.report.hand_force_N + run.report.guide_force_N;
   Vec3 torque = run.report.torque_Nmm;
@@ -62,7 +62,7 @@ TEST(Guide, HoldsTheShaftInAnInsertionAndItsForceIsTheHandsToo) {
   }
   EXPECT_LT(iterations / 200.0, 6.0);
   EXPECT_GT(run.report.guide_force_N.norm(), 0.05);
-  EXPECT_LT(run.report.guide_force_N.x(), 0.0);  // back towards its hole
+  EXPECT_LT(run.report.guide_force_N.x(), 0.0);  // towards the hole
   EXPECT_NEAR(run.report.guide_force_N.dot(needle_of(run).tangent(needle_of(run).guide_load().s)), 0.0, 1e-9);
   EXPECT_EQ(run.flags, 0u);
 }
@@ -98,7 +98,8 @@ TEST(Guide, HoldsAShaftThatRunsRoundTheEdgeOfItsHole) {
 }
 
 TEST(Guide, KeepsTheShaftStraightWhereTheHandsPushWouldBendIt) {
-  // Pushed by more than it bears freely, a little out of line: with the template only 10 mm before the skin are free.
+  // The needle is pushed by more than a free needle bears, slightly out of line. With the template, only the 10 mm in
+  // front of the skin are free.
   const auto deflection = [](BlockOptions options) {
     NeedleInBlock run(options);
     aim_through_template(run);

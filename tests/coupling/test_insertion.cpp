@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole insertion: what happens, in which order, and what the forces obey.
+// A whole insertion: the events, their order, and the laws that the forces obey.
 #include "needle_in_block.hpp"
 
 using namespace stylet;
@@ -18,7 +18,7 @@ TEST(Insertion, skin_contact_puncture_capsule_and_withdrawal_happen_in_order) {
                                                    {Kind::region_entered, 0}, {Kind::puncture, 1},
                                                    {Kind::region_entered, 1}, {Kind::withdrawn, -1}};
   EXPECT_EQ(kinds, expected);
-  // The skin breaks at its own threshold: nothing else holds the needle then.
+  // The skin breaks at its own threshold, because nothing else holds the needle then.
   EXPECT_NEAR(run.first(Kind::puncture, 0)->force, 1.0, 0.06);
 }
 
@@ -27,7 +27,7 @@ TEST(Insertion, steady_cutting_force_is_cutting_plus_friction_along_the_shaft) {
   run.aim({3, 2, 0});
   run.go(20, 10.0);
   // Cutting 0.35 N + (11 N/m + 250 N s/m² × 10 mm/s) × 20 mm + tip viscosity 2 N s/m × 10 mm/s. The tip lags behind the
-  // base by what it pushes the tissue ahead, so the inserted length is a little less than the depth.
+  // base by the distance that it pushes the tissue ahead, so the inserted length is a little less than the depth.
   EXPECT_NEAR(run.report.inserted_mm, 20.0, 5.0);
   const double friction = (11e-3 + 250e-6 * 10.0) * run.report.inserted_mm;
   EXPECT_NEAR(run.forces.back(), 0.35 + 0.02 + friction, 0.01);
@@ -59,7 +59,7 @@ TEST(Insertion, no_cutting_on_the_track_until_the_deepest_point_is_passed) {
   run.go(35, 10.0);
   EXPECT_EQ(run.report.tip_state, TipState::in_track);
   EXPECT_EQ(run.insertion->track().end_xi, deepest);
-  // Friction of 35 mm at 10 mm/s and nothing for the tip.
+  // Friction over 35 mm at 10 mm/s, and no force of the tip.
   EXPECT_NEAR(run.forces.back(), (11e-3 + 2.5e-3) * 35.0, 0.03);
   run.go(40, 10.0);
   run.go(42, 10.0);
@@ -80,7 +80,7 @@ TEST(Insertion, full_withdrawal_resets_the_tissue_exactly) {
   EXPECT_EQ(run.insertion->compliance().points(), 1);
   EXPECT_EQ(run.forces.back(), 0.0);
 
-  // A second insertion elsewhere goes as if it were the first.
+  // A second insertion at another place is like the first.
   NeedleInBlock fresh;
   for (NeedleInBlock* r : {&run, &fresh}) {
     r->forces.clear();
@@ -112,7 +112,7 @@ TEST(Insertion, hand_force_and_torque_balance_the_contacts_and_the_supports) {
     }
     EXPECT_LT((force - run.report.hand_force_N).norm(), 1e-9 * force.norm());
     EXPECT_LT((torque - run.report.torque_Nmm).norm(), 1e-9 * torque.norm());
-    // The supports know of the needle only through the tissue.
+    // The supports feel the needle only through the tissue.
     const VecX u = run.insertion->displacement();
     const VecX support = run.tissue->support_forces(u);
     Vec3 held = Vec3::Zero();
@@ -142,11 +142,11 @@ TEST(Insertion, laying_and_dropping_contacts_moves_the_base_force_by_less_than_a
     BlockOptions options;
     options.coupling.method = method;
     options.laws[0].stiffening_MPa = stiffening_MPa;
-    options.region_at = [](const Vec3&) { return 0; };  // no capsule: its puncture is a jump of its own
+    options.region_at = [](const Vec3&) { return 0; };  // no capsule: its puncture would add a jump
     NeedleInBlock run(options);
     run.aim({3, 2, 0}, Vec3(0.1, 0.05, 1.0));
     run.go(30);
-    run.sideways = Vec3(0.6, 0.3, 0.0);  // lateral force as well
+    run.sideways = Vec3(0.6, 0.3, 0.0);  // for lateral forces as well
     run.wait(0.01);
     run.go(60);
     run.wait(0.02);
@@ -212,7 +212,7 @@ TEST(Insertion, moved_turned_and_mirrored_scene_gives_the_same_forces_in_its_fra
 }
 
 TEST(Insertion, force_does_not_depend_on_the_time_step) {
-  // Stick and slip: in, pause, out, in again. Compared where the base is at the same place.
+  // Stick and slip: in, pause, out, in again. Compared at the same places of the base.
   const auto curve = [](double dt) {
     NeedleInBlock run;
     run.aim({3, 2, 0});
@@ -292,7 +292,7 @@ TEST(Insertion, friction_turns_round_with_the_motion_at_any_speed_and_without_vi
         run.go(20, 40, 4e-3);
         EXPECT_GT(run.forces.back(), 0.3);
         run.go(16, speed, 0.08 / speed);
-        // All of the shaft that is still in slides out: Coulomb friction on some 16 mm of it, and a little more.
+        // All of the shaft that is still in the tissue slides out: Coulomb friction on about 16 mm, and a little more.
         EXPECT_LT(run.forces.back(), -0.9 * 11e-3 * 16.0);
         EXPECT_GT(run.forces.back(), -0.4);
         EXPECT_EQ(run.flags, 0u);

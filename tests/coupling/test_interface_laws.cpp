@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws between needle and tissue, read off the force of the hand with the default coupling: friction over speed, region
-// and rest, membranes, the way back along a track, the bevel.
+// Laws between needle and tissue, read from the force of the hand with the default coupling: friction over speed, per
+// region and at rest; membranes; withdrawal along a track; the bevel.
 #include "mirrored_block.hpp"
 #include "needle_in_block.hpp"
 
@@ -20,9 +20,9 @@ double sliding_N_per_mm(const FrictionLaw& law, double speed) {
   return law.coulomb_N_per_mm + law.viscous_Ns_per_mm2 * std::min(speed, law.viscous_to_mm_per_s);
 }
 
-// A slab with both faces free, and a needle all the way through it. Nothing is cut and as much shaft comes in as goes
-// out, so at a steady speed tissue is at rest, every contact slides at the speed of the hand, and the hand bears
-// friction alone.
+// A slab whose two faces are free, and a needle that passes all the way through it. Nothing is cut, and equal lengths
+// of shaft enter and leave, so at a steady speed the tissue is at rest, every contact slides at the speed of the hand,
+// and the hand bears friction alone.
 
 BlockOptions slab(double thickness, int layers, double spacing) {
   BlockOptions options;
@@ -38,7 +38,7 @@ BlockOptions slab(double thickness, int layers, double spacing) {
   return options;
 }
 
-/// The same with another region from `interface_mm` on.
+/// The same with another region below `interface_mm`.
 BlockOptions layered_slab(double thickness, int layers, double spacing, double interface_mm, const FrictionLaw& deep) {
   BlockOptions options = slab(thickness, layers, spacing);
   options.regions = {"body", "deep"};
@@ -54,7 +54,7 @@ void pierce(NeedleInBlock& run, double depth) {
   ASSERT_EQ(run.report.tip_state, TipState::exited);
 }
 
-/// Moves on (or back) by `way` in steps that are sub-steps of their own.
+/// Moves the base by `way` (negative: back), with one sub-step per step.
 void move(NeedleInBlock& run, double way, double speed) { run.go(run.depth + way, speed, 0.25 / speed); }
 
 TEST(Friction, IsCoulombAndViscousPerLengthUpToASpeedAndConstantBeyond) {
@@ -62,10 +62,11 @@ TEST(Friction, IsCoulombAndViscousPerLengthUpToASpeedAndConstantBeyond) {
   pierce(run, 50.0);
   for (const double speed : {0.5, 5.0, 20.0, 49.0, 60.0, 100.0, 200.0}) {
     for (const double sign : {1.0, -1.0}) {
-      // Tissue comes to rest within some b ℓ A = 10 ms, and gets a quarter of a second.
+      // The tissue comes to rest within about b ℓ A = 10 ms; it has a quarter of a second.
       move(run, sign * std::max(2.0, 0.25 * speed), speed);
       const double law = 40.0 * sliding_N_per_mm(kFriction, speed);
-      // Beyond its end viscosity goes on with a thousandth of itself, so that speeds stay determined.
+      // Above the speed where friction stops growing, a thousandth of the viscosity is kept, so that speeds stay
+      // determined.
       const double beyond = 40.0 * 1e-3 * kFriction.viscous_Ns_per_mm2 * std::max(0.0, speed - 50.0);
       EXPECT_NEAR(sign * run.forces.back(), law + beyond, 2e-4 * law) << sign * speed << " mm/s";
       EXPECT_EQ(run.report.sliding_share, 1.0);
@@ -94,7 +95,7 @@ TEST(Friction, IsThatOfEachRegionOverTheLengthInIt) {
     }
     EXPECT_NEAR(force[0], length[0] * sliding_N_per_mm(kFriction, 10.0), 2e-4 * force[0]);
     EXPECT_NEAR(force[1], length[1] * sliding_N_per_mm(deep, 10.0), 2e-4 * force[1]);
-    // A contact is as long as the spacing and has the law of its middle: half of it may lie beyond the interface.
+    // A contact is as long as the spacing and has the law of its middle, so half of it may lie beyond the interface.
     const double astride = 0.5 * spacing;
     EXPECT_NEAR(length[0], interface_mm, astride);
     EXPECT_NEAR(length[1], 40.0 - interface_mm, astride);
@@ -106,7 +107,7 @@ TEST(Friction, IsThatOfEachRegionOverTheLengthInIt) {
 
 TEST(Friction, HoldsANeedleAtRestUpToTheStaticLimitAndThenComesDownToCoulombs) {
   const double length = 16.0;
-  NeedleInBlock run(slab(length, 4, length));  // one contact: it has all of the length
+  NeedleInBlock run(slab(length, 4, length));  // one contact, which has the whole length
   pierce(run, 45.0);
   const double step_mm = 2e-3;
   const double speed = 0.5;
@@ -117,7 +118,8 @@ TEST(Friction, HoldsANeedleAtRestUpToTheStaticLimitAndThenComesDownToCoulombs) {
     const double rise = step_mm / run.insertion->compliance()(1, 1)(2, 2);
     const double limit = kFriction.static_N_per_mm * run.report.inserted_mm;
     double peak = 0.0;
-    for (int k = 0; k < 1000; ++k) {  // from Coulomb's one way to the static limit the other way and on
+    for (int k = 0; k < 1000; ++k) {  // from Coulomb friction in one direction to the static limit in the other, and
+                                      // beyond
       run.depth += sign * step_mm;
       run.step(step_mm / speed);
       peak = std::max(peak, sign * run.forces.back());
@@ -139,8 +141,8 @@ TEST(Friction, HasTheStaticLimitOfEachRegion) {
   ASSERT_EQ(run.report.contacts, 2);
   ASSERT_EQ(run.report.sticking, 2);
   const double step_mm = 2e-3;
-  std::array<double, 2> most{};  // while sticking, per length
-  std::array<double, 2> rise{};  // of it in one step
+  std::array<double, 2> most{};  // [N/mm] largest force per length while sticking
+  std::array<double, 2> rise{};  // [N/mm] rise of this force in one step
   for (int k = 0; k < 600; ++k) {
     run.depth += step_mm;
     run.step(step_mm / 0.5);
@@ -160,7 +162,8 @@ TEST(Friction, HasTheStaticLimitOfEachRegion) {
 }
 
 TEST(Friction, OfManyContactsLetsGoBetweenCoulombsAndTheStaticLimit) {
-  // Tissue shares a load unevenly: some contacts reach their limit, and come down from it, before the others.
+  // The tissue distributes a load unevenly: some contacts reach the static limit, and then fall to Coulomb friction,
+  // before the others.
   NeedleInBlock run(slab(40.0, 4, 4.0));
   pierce(run, 60.0);
   run.wait(1.0, 0.05);
@@ -188,14 +191,15 @@ TEST(ZeroBand, ANeedleAtRestIsHeldAndItsForceStays) {
   run.wait(1.0, 0.05);
   EXPECT_EQ(run.report.sticking, run.report.contacts);
   const double force = run.forces.back();
-  // What has stopped pushing still bears sliding friction, less than what the band's speed adds to it.
+  // After a push, the contacts still bear sliding friction, and less than the viscous part at the zero band's speed in
+  // addition.
   const double coulomb = 40.0 * kFriction.coulomb_N_per_mm;
   EXPECT_NEAR(force, coulomb, 2e-4 * coulomb + 40.0 * kFriction.viscous_Ns_per_mm2 * 0.005);
   run.wait(100.0, 1.0);
   EXPECT_NEAR(run.forces.back(), force, 1e-9);
 }
 
-/// After sliding at 0.5 mm/s, goes on by `way` at `speed`.
+/// Slides at 0.5 mm/s first, and then moves by `way` at `speed`.
 std::vector<double> creep(NeedleInBlock& run, double way, double speed, double dt) {
   pierce(run, 50.0);
   run.go(50.5, 0.5, 0.05);
@@ -228,7 +232,7 @@ TEST(ZeroBand, BelowItAContactSticksAndSlipsBetweenStaticLimitAndCoulombAtAnyTim
     const auto top = std::max_element(force.begin(), force.end());
     EXPECT_LE(*top, kFriction.static_N_per_mm * length + 1e-6);
     EXPECT_GE(*top, kFriction.static_N_per_mm * length - 1.1 * rise);
-    // It is held again where it slides forward still, yet more slowly than the band.
+    // It sticks again while it still slides forward, but more slowly than the zero band.
     const double bottom = *std::min_element(top, force.end());
     EXPECT_GE(bottom, kFriction.coulomb_N_per_mm * length - 1e-6);
     EXPECT_LE(bottom, sliding_N_per_mm(kFriction, defaults.zero_band_mm_per_s) * length + 1e-6);
@@ -246,7 +250,7 @@ TEST(ZeroBand, WithoutOneTheSlidingLawGoesOn) {
   EXPECT_EQ(run.report.sticking, 0);
 }
 
-/// Skin, and from a depth on an organ.
+/// Skin, and below `depth_mm` an organ.
 BlockOptions organ_under_skin(double depth_mm = 20.0) {
   BlockOptions options;
   options.element = Element::nodal_pressure;
@@ -255,14 +259,14 @@ BlockOptions organ_under_skin(double depth_mm = 20.0) {
   return options;
 }
 
-/// What a membrane's puncture does to the force of the hand.
+/// The force of the hand before and after a membrane breaks.
 struct Drop {
-  double before_N = 0.0;                                      ///< at the very moment it breaks
+  double before_N = 0.0;                                      ///< at the moment when it breaks
   double lowest_N = std::numeric_limits<double>::infinity();  ///< within 5 mm
-  double inserted_mm = 0.0;                                   ///< there
+  double inserted_mm = 0.0;                                   ///< inserted length at the lowest force
 };
 
-/// Of skin and capsule.
+/// The drops of skin and capsule.
 std::vector<Drop> drops(double speed, double dt) {
   constexpr double within_mm = 5.0;
   NeedleInBlock run(organ_under_skin());
@@ -293,7 +297,7 @@ TEST(Membrane, ForceOfTheHandDropsToCuttingAndFrictionWhenSkinAndCapsuleBreakThe
   const double peak = std::max(fine[0].before_N, fine[1].before_N);
   EXPECT_NEAR(fine[0].before_N, options.laws[0].puncture_N, 1e-3);
   for (std::size_t m = 0; m < 2; ++m) {
-    // The tip shoots forward, and tissue springs back along the shaft: contacts slide as fast as the hand or faster.
+    // The tip jumps forward and tissue springs back along the shaft, so contacts slide at least as fast as the hand.
     const double cutting = options.laws[m].cutting_N;
     const double tip = options.coupling.tip_viscosity_Ns_per_mm * speed;
     EXPECT_GT(fine[m].lowest_N, cutting + kFriction.coulomb_N_per_mm * fine[m].inserted_mm);
@@ -313,7 +317,7 @@ TEST(Membrane, ForceOfTheHandDropsToCuttingAndFrictionWhenSkinAndCapsuleBreakThe
 class OrganWithoutMembrane : public testing::TestWithParam<double> {};
 
 TEST_P(OrganWithoutMembrane, OfTheSameTissueMightAsWellNotBeThere) {
-  // In the dent of the skin and below it.
+  // In the dent of the skin, and below it.
   const double depth_mm = GetParam();
   BlockOptions options = organ_under_skin(depth_mm);
   options.materials[1] = options.materials[0];
@@ -333,7 +337,7 @@ TEST_P(OrganWithoutMembrane, OfTheSameTissueMightAsWellNotBeThere) {
   }
   EXPECT_EQ(with.count(Kind::region_entered, 1), 1);
   EXPECT_EQ(with.count(Kind::puncture), 1) << "the skin's only";
-  // The cut ends its sub-step at the surface: the tip is at most one step late.
+  // The cut ends at the surface for one sub-step, so the tip is late by one step at most.
   const double late_N = speed * dt / with.insertion->compliance()(0, 0)(2, 2);
   double worst = 0.0;
   double fall = 0.0;
@@ -361,7 +365,7 @@ TEST(Membrane, ASecondPassAlongTheTrackNeedsFrictionOnly) {
     run.go(depth, 20.0, 5e-3);
     EXPECT_EQ(run.report.tip_state, TipState::in_track);
     EXPECT_FALSE(run.insertion->contacts().front().tip);
-    // Friction grows with the length and drags the tissue along: the shaft slides more slowly than the hand moves.
+    // Friction grows with the length and drags the tissue along, so the shaft slides more slowly than the hand moves.
     EXPECT_GT(run.forces.back(), kFriction.coulomb_N_per_mm * run.report.inserted_mm) << depth;
     EXPECT_LT(run.forces.back(), sliding_N_per_mm(kFriction, 20.0) * run.report.inserted_mm) << depth;
   }
@@ -370,7 +374,7 @@ TEST(Membrane, ASecondPassAlongTheTrackNeedsFrictionOnly) {
   EXPECT_EQ(run.flags, 0u);
 }
 
-/// How far a tip of 0 or 20° goes off the plane of a block that is its own mirror image.
+/// Sideways motion of a tip of 0 or 20° in a block that is its own mirror image.
 double sideways(bool bevelled, Bevel::Law law, double roll, double spacing_mm = 4.0) {
   BlockOptions options;
   options.element = Element::nodal_pressure;
@@ -397,7 +401,7 @@ class TipInTheNearField : public testing::TestWithParam<Bevel::Law> {};
 TEST_P(TipInTheNearField, IsDrawnToTheSideRollSaysAndNowhereWithoutABevel) {
   const double bevel = sideways(true, GetParam(), 0.0);
   EXPECT_GT(bevel, 0.1);
-  // What differs is on which side of the plane the elements around the entry are taken to be.
+  // The two differ only by the side of the plane to which the elements around the entry are assigned.
   EXPECT_NEAR(sideways(true, GetParam(), std::numbers::pi), -bevel, 0.01 * bevel);
   EXPECT_NEAR(sideways(true, GetParam(), 0.5 * std::numbers::pi), 0.0, 1e-9 * bevel);
   EXPECT_NEAR(sideways(false, GetParam(), 1.0), 0.0, 1e-9 * bevel);

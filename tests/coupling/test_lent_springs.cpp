@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The springs lent at contacts of the shaft, by themselves.
+// The springs that are lent at the shaft contacts.
 #include "coupling/balance/lent_springs.hpp"
 
 #include <gtest/gtest.h>

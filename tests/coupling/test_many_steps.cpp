@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must hold for as long as a session may last.
+// Properties that have to hold however long a session lasts.
 #include "needle_in_block.hpp"
 #include "support/count_allocations.hpp"
 
@@ -10,8 +10,8 @@ using Kind = EventKind;
 TEST(Step, neither_takes_nor_gives_back_memory_in_a_hundred_thousand) {
   if (!AllocationCount::available()) GTEST_SKIP() << "the memory functions cannot be replaced under sanitizers";
   NeedleInBlock run;
-  // In and out, beside where it was each time but every eighth, which goes into the track before: more tracks than are
-  // remembered.
+  // In and out many times, each time beside the last place, and every eighth time into the last track: more tracks than
+  // there is room for.
   constexpr double kDeep_mm = 40.0, kOut_mm = -2.0, kWay_mm = 0.08;
   constexpr int kSteps = 100'000;
   int insertions = 0, places = 0;
@@ -37,7 +37,7 @@ TEST(Step, neither_takes_nor_gives_back_memory_in_a_hundred_thousand) {
     const AllocationCount counter;
     const Step report = run.insertion->step(pose, 1e-3);
     heap_calls += counter.count();
-    flags |= report.flags & ~Step::too_fast;  // aside, in the air
+    flags |= report.flags & ~Step::too_fast;  // sideways, in the air
     most_contacts = std::max(most_contacts, report.contacts);
     for (const InsertionEvent& event : run.insertion->events()) {
       punctures += event.kind == Kind::puncture && event.region == 0 ? 1 : 0;

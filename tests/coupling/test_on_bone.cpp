@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle whose tip stands on bone: it cannot go on, bows out, and snaps.
+// A needle whose tip stands on bone: it is stopped, bows out, and snaps.
 #include "needle_in_block.hpp"
 #include "stylet/needle/guided.hpp"
 #include "stylet/needle/make_needle.hpp"
@@ -10,7 +10,7 @@ using Kind = EventKind;
 
 namespace {
 
-/// A slab of bone across the needle's way at z = 40…60.
+/// A slab of bone across the needle's path at z = 40 … 60 mm.
 BlockOptions with_bone() {
   BlockOptions options;
   options.cells = {10, 10, 10};
@@ -42,17 +42,17 @@ TEST(OnBone, bone_cannot_be_cut_and_the_force_rises) {
 
 namespace {
 
-/// Presses a needle that enters obliquely 20 mm further on bone, where it bows out between hand and skin.
+/// Presses an oblique needle 20 mm further onto bone, where it bows out between hand and skin.
 struct PressedOnBone : NeedleInBlock {
   explicit PressedOnBone(double needle_length_mm, double damping_s = CouplingSettings{}.bone_damping_s,
                          double spacing_mm = 4.0)
       : PressedOnBone(options(needle_length_mm, damping_s, spacing_mm)) {}
-  /// @param ways [mm] of the base in a step on bone, in turn; at 20 mm/s
+  /// @param ways [mm] motions of the base in the steps on bone, in turn; at 20 mm/s
   explicit PressedOnBone(const BlockOptions& options, const std::vector<double>& ways = {0.02})
       : NeedleInBlock(options) {
     const Vec3 entry(3, 2, 0);
     const Vec3 along = Vec3(0.05, 0.02, 1.0).normalized();
-    insertion->place_guide(entry - 10.0 * along, along);  // of a needle that has one
+    insertion->place_guide(entry - 10.0 * along, along);  // of a needle with a guide
     aim(entry, along);
     go(39.0);
     while (depth < 60.0 - 1e-9) {
@@ -78,20 +78,20 @@ struct PressedOnBone : NeedleInBlock {
     result.coupling.spacing_mm = spacing_mm;
     return result;
   }
-  /// [mm] how far the tip is beside the needle's line.
+  /// [mm] Distance of the tip from the needle's line.
   [[nodiscard]] double bow() const { return axis.cross(report.tip_mm - point).norm(); }
   int iterations = 0;
-  int most = 0;          ///< in a step
-  int unbalanced = 0;    ///< steps
+  int most = 0;          ///< largest number in a step
+  int unbalanced = 0;    ///< number of steps without balance
   double largest = 1.0;  ///< [N] force of a contact in the last step, at least 1 N
-  double grown = 0.0;    ///< times so much as before was it in a step without balance
+  double grown = 0.0;    ///< largest growth factor of that force in a step without balance
   int steps = 0;
 };
 
 }  // namespace
 
 TEST(OnBone, a_needle_bows_between_hand_and_bone_in_a_few_iterations_a_step) {
-  // Its end is held along the needle only: its direction, and so the force, turns as the needle bows.
+  // The tip is held along the needle only: its direction, and so its force, turns as the needle bows.
   const PressedOnBone run(220.0);
   EXPECT_EQ(run.report.tip_state, TipState::bone);
   EXPECT_GT(run.peak(), 10.0);
@@ -101,8 +101,8 @@ TEST(OnBone, a_needle_bows_between_hand_and_bone_in_a_few_iterations_a_step) {
 }
 
 TEST(OnBone, a_needle_that_snaps_off_bone_is_balanced_in_nearly_every_step) {
-  // A short needle bears more than its end does. Its damping makes the snap a motion, and after a balance that was not
-  // found there is one in the next step.
+  // A short needle bears more than its tip does. Damping turns the snap into a motion, and a step without balance is
+  // followed by one with a balance.
   for (const double spacing : {1.4, 4.0}) {
     const PressedOnBone run(150.0, CouplingSettings{}.bone_damping_s, spacing);
     EXPECT_LE(run.unbalanced, 1) << "where it strikes the bone";
@@ -117,7 +117,7 @@ TEST(OnBone, needles_of_every_model_snap_off_bone_into_the_same_shape) {
   EXPECT_GT(beam.peak(), 1.2 * beam.forces.back()) << "it has not snapped";
   for (const std::string& model : needle_models()) {
     SCOPED_TRACE(model);
-    if (kSanitized && model == "tet") continue;  // minutes; tests/needle look at its memory
+    if (kSanitized && model == "tet") continue;  // takes minutes; tests/needle check its memory use
     BlockOptions options = PressedOnBone::options(150.0);
     options.needle = [&](int capacity) {
       const NeedleSection section{150.0, 1.27, 15700, 12100};
@@ -137,7 +137,8 @@ TEST(OnBone, steps_of_changing_length_bend_a_needle_alike) {
   for (const std::vector<double>& ways : {std::vector<double>{0.01, 0.04}, {0.02, 0.1}}) {
     PressedOnBone uneven(PressedOnBone::options(220.0), ways);
     EXPECT_EQ(uneven.unbalanced, 0);
-    // On the way, where damping moves the force by tens of millinewtons, at depths that both come by.
+    // Compared during the motion, where damping changes the force by tens of millinewtons, at depths that both runs
+    // reach.
     int compared = 0;
     for (std::size_t k = 0, j = 0; k < uneven.depths.size(); ++k) {
       while (j + 1 < even.depths.size() && even.depths[j] < uneven.depths[k] - 1e-6) ++j;
@@ -175,12 +176,12 @@ TEST(OnBone, damping_on_bone_leaves_a_needle_at_rest_where_it_would_be_without) 
   damped.wait(0.2);
   undamped.wait(0.2);
   EXPECT_NEAR(damped.forces.back(), undamped.forces.back(), 1e-4 * undamped.forces.back());
-  // Which way it bows is decided by next to nothing, and creeps; not how far.
+  // The direction of the bow is decided by very small forces and creeps; its size is not.
   EXPECT_NEAR(damped.bow(), undamped.bow(), 0.01 * undamped.bow());
 }
 
 TEST(OnBone, a_balance_that_is_not_found_is_broken_off_and_leaves_no_force_beyond_those_that_were) {
-  // Without damping there is none on the way to the next shape.
+  // Without damping there is no balance on the way to the next shape.
   const PressedOnBone run(150.0, 0.0);
   EXPECT_TRUE(run.flags & Step::not_converged) << "the situation this is about has not come about";
   EXPECT_LT(run.most, 25) << "it was not broken off";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole insertions by the methods of Goksel et al. 2005 beside ours.
+// Whole insertions by the methods of Goksel et al. 2005, compared with the default methods.
 #include "needle_in_block.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -23,7 +23,7 @@ struct Course {
   double peak = 0.0;
 };
 
-/// @param gland an organ in the way: the nodes of its surface must stay where they are
+/// @param gland an organ on the path; nodes of its surface must not be moved
 Course insertion_and_retraction(const Settings& coupling, bool gland = true) {
   BlockOptions options;
   if (!gland) options.region_at = [](const Vec3&) { return 0; };
@@ -44,7 +44,7 @@ Course insertion_and_retraction(const Settings& coupling, bool gland = true) {
   run.go(40.0);
   note();
   run.go(-3.0, 40.0);
-  EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);  // out: the tissue is what it was
+  EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);  // after withdrawal the tissue is reset
   EXPECT_TRUE(run.insertion->compliance().remeshing().empty());
   course.force = run.forces;
   course.flags = run.flags;
@@ -110,7 +110,7 @@ TEST(PaperInsertion, repositioning_moves_nodes_to_the_needle_and_leaves_its_cont
       for (const ContactState& contact : run.insertion->contacts()) largest = std::max(largest, contact.force.norm());
     }
     EXPECT_EQ(run.flags, 0u);
-    EXPECT_LT(largest, 1.2 * run.peak());  // neighbours that follow from each other would push with tens of newtons
+    EXPECT_LT(largest, 1.2 * run.peak());  // linearly dependent neighbours would push with tens of newtons
     const ContactCompliance& compliance = run.insertion->compliance();
     const Eigen::Index held = 3 * (compliance.points() - 1);
     const MatX A = compliance.matrix().block(3, 3, held, held);
@@ -118,7 +118,7 @@ TEST(PaperInsertion, repositioning_moves_nodes_to_the_needle_and_leaves_its_cont
     for (const RemeshEvent& event : compliance.remeshing()) {
       if (event.kind != RemeshEvent::Kind::repositioned) continue;
       ++moved;
-      EXPECT_LT(event.moved_mm, soft ? 14.3 : 8.4);  // nearest: less than an edge
+      EXPECT_LT(event.moved_mm, soft ? 14.3 : 8.4);  // the nearest node is closer than an edge
     }
   }
   EXPECT_GT(moved, 1);
@@ -134,7 +134,7 @@ TEST(PaperInsertion, repositioning_gives_the_same_forces_with_either_engine) {
   EXPECT_LT(largest_difference(bcs, woodbury), 1e-6 * bcs.peak);
   EXPECT_TRUE(std::any_of(bcs.remeshing.begin(), bcs.remeshing.end(),
                           [](const RemeshEvent& e) { return e.kind == RemeshEvent::Kind::repositioned; }));
-  // A needle that goes as deep feels forces of the same kind, whatever becomes of the mesh.
+  // A needle at the same depth has forces of the same size, whatever changes of the mesh were made.
   const Course addition = insertion_and_retraction({}, false);
   EXPECT_GT(bcs.peak, 0.5 * addition.peak);
   EXPECT_LT(bcs.peak, 2.0 * addition.peak);
@@ -144,7 +144,7 @@ TEST(PaperInsertion, needle_and_tissue_in_turn_come_to_the_same_forces_as_the_co
   Settings settings;
   const Course coupled = insertion_and_retraction(settings);
   EXPECT_EQ(coupled.flags, 0u);
-  EXPECT_GT(coupled.peak, 0.97);  // pressed beyond the load under which the needle alone would buckle
+  EXPECT_GT(coupled.peak, 0.97);  // pressed beyond the buckling load of the needle alone
   settings.solver = Settings::Solver::staggered;
   const Course staggered = insertion_and_retraction(settings);
   EXPECT_EQ(staggered.flags, 0u);

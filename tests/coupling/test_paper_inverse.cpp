@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The full inverse of Goksel et al. 2005, changed in place: right numbers, and what they cost.
+// The full inverse of Goksel et al. 2005, updated in place: correct values, and the costs of the updates.
 #include "stylet/coupling/paper/inverse_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
 
@@ -16,7 +16,7 @@ using stylet::test::Block;
 
 namespace {
 
-/// A stiffness of N unknowns, a symmetric change of it on k of them, and both inverses.
+/// A stiffness matrix of N unknowns, a symmetric change of it on k of them, and both inverses.
 struct Example {
   Example(Eigen::Index N, Eigen::Index k) {
     std::mt19937_64 random(5);
@@ -46,7 +46,7 @@ struct Example {
 
 double relative(const MatX& a, const MatX& b) { return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff(); }
 
-/// The mesh as the needle left it, inverted from scratch, in the order of the inverse that was changed in place.
+/// The present mesh, inverted from scratch, in the order of the inverse that was updated in place.
 MatX fresh_inverse(const Block& block, const InverseCompliance& changed) {
   const TetMesh mesh = changed.mesh().materialise();
   EXPECT_TRUE(check_mesh(mesh, "changed mesh").ok());
@@ -84,7 +84,7 @@ Vec3 somewhere(std::mt19937_64& random) {
   return {place(random), place(random), place(random)};
 }
 
-/// A point anywhere in the block, or on a face of the element there.
+/// A point anywhere in the block, or on a face of its element.
 struct Place {
   MaterialPoint at;
   Vec3 x;
@@ -131,7 +131,7 @@ TEST(PaperInverse, a_switch_there_and_back_changes_nothing_and_one_way_solves_th
   std::vector<double> right(20);
   switch_axis<double>(M, 4, left, right);
   switch_axis<double>(M, 11, left, right);
-  // Forces where displacements are given, displacements where forces are given.
+  // Forces at displacement-controlled rows, displacements at force-controlled rows.
   VecX force = VecX::LinSpaced(20, -1.0, 1.0);
   const VecX u = e.before_inverse * force;
   VecX known = force;
@@ -216,7 +216,7 @@ TEST_P(BothEngines, hundred_repositioned_or_added_nodes_equal_a_fresh_inverse) {
     }
   }
   EXPECT_GT(moved, 15);
-  // It depends on how many elements meet at the node.
+  // The size of ΔK depends on the number of elements that meet at the node.
   EXPECT_NE(*std::min_element(dimensions.begin(), dimensions.end()),
             *std::max_element(dimensions.begin(), dimensions.end()));
   EXPECT_LT(difference_to_fresh(block, changed), 1e-8);
@@ -250,7 +250,7 @@ TEST_P(BothEngines, the_condensed_engine_gives_the_same_compliances) {
     MatX forces = MatX::Random(3, whole.points());
     EXPECT_LT(relative(whole.displacement(forces), condensed.displacement(forces)), 1e-10);
     EXPECT_LT(relative(whole.gradient_at_tip(forces), condensed.gradient_at_tip(forces)), 1e-10);
-    // What the supports bear in the end; loads on held nodes never deform anything.
+    // The forces that the supports bear; loads on held nodes cause no deformation.
     const auto reaction = [&](const ContactCompliance::Nodes& nodes) {
       VecX r = VecX::Zero(3 * block.tissue->mesh().node_count());
       for (const Index node : block.fixed)
@@ -285,8 +285,8 @@ INSTANTIATE_TEST_SUITE_P(PaperInverse, BothEngines,
                          });
 
 TEST(PaperInverse, springs_of_the_size_of_the_tissue_keep_the_small_matrix_well_conditioned) {
-  // The paper gives new rows a very large diagonal and watches the condition number; taking the springs' stiffness out
-  // again makes any diagonal exact, so none need be large.
+  // The paper gives new rows a very large diagonal entry and watches the condition number. Removing the springs'
+  // stiffness again makes any diagonal entry exact, so none has to be large.
   const Block block;
   const auto initial = std::make_shared<const MatX>(full_inverse(*block.tissue));
   double error[2] = {0.0, 0.0};
@@ -294,7 +294,7 @@ TEST(PaperInverse, springs_of_the_size_of_the_tissue_keep_the_small_matrix_well_
   for (int k = 0; k < 2; ++k) {
     DenseInverse inverse(DenseInverse::Engine::woodbury, initial, 1);
     inverse.set_springs(k == 0 ? 1.0 : 1e9);
-    // A node inside an element by hand: its own stiffness only, as if its neighbours were fixed.
+    // A node inside an element, by hand: its own stiffness only, as if its neighbours were fixed.
     const Index first = inverse.append_node();
     const std::vector<Index> dofs{first, first + 1, first + 2};
     const MatX stiffness = 0.37 * MatX::Identity(3, 3);
@@ -302,7 +302,7 @@ TEST(PaperInverse, springs_of_the_size_of_the_tissue_keep_the_small_matrix_well_
     error[k] = std::abs(inverse(first, first) * 0.37 - 1.0);
   }
   EXPECT_LT(error[0], 1e-14);
-  EXPECT_GT(error[1], 1e-10);  // nine digits of sixteen
+  EXPECT_GT(error[1], 1e-10);  // only nine of sixteen digits are correct
   EXPECT_LT(error[1], 1e-6);
 
   InverseCompliance good = full(block, DenseInverse::Engine::woodbury, false);

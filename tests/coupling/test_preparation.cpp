@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The next tangent is made in pieces beside the one in use (src/coupling/balance/needle_tangent.hpp).
+// The next tangent is made in pieces beside the present one (src/coupling/balance/needle_tangent.hpp).
 #include "needle_in_block.hpp"
 
 namespace stylet {
@@ -8,7 +8,7 @@ namespace {
 using test::BlockOptions;
 using test::NeedleInBlock;
 
-/// A needle that makes each tangent at once.
+/// A needle that makes each tangent in one piece.
 class UnpreparedNeedle final : public Needle {
  public:
   explicit UnpreparedNeedle(std::unique_ptr<Needle> inner) : inner_(std::move(inner)) {}
@@ -39,7 +39,7 @@ class UnpreparedNeedle final : public Needle {
   std::unique_ptr<Needle> inner_;
 };
 
-/// Pieces of tangents and matrices in each step.
+/// Counts the pieces of tangents made in a step.
 class Pieces final : public PhaseObserver {
  public:
   void enter(StepPhase phase) noexcept override {
@@ -57,7 +57,8 @@ struct Driven {
   int most_tangents = 0;
 };
 
-/// In and out in two places, forth and back in both, the second time begun before all of the needle is out.
+/// In and out at two places, each with a back-and-forth motion; the second insertion begins before the needle
+/// is all out of the first.
 Driven drive(bool prepares) {
   BlockOptions options;
   if (!prepares) {

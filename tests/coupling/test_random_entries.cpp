@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A second needle beside the track of a first one, drawn at random: on flat, tilted and curved skin, with a hand that
-// trembles. STYLET_RANDOM_CASES=1000 build/bin/test_random_needles --gtest_filter=RandomEntries.* tries a thousand.
+// A second needle beside the track of a first one, drawn at random: on flat, tilted and curved skin, with a trembling
+// hand. STYLET_RANDOM_CASES=1000 build/bin/test_random_needles --gtest_filter=RandomEntries.* tries a thousand cases.
 #include "needle_in_block.hpp"
 #include "random_cases.hpp"
 
@@ -14,7 +14,7 @@ using Kind = EventKind;
 constexpr double kDiameter_mm = 1.27;
 constexpr double kDt_s = 4e-3;
 
-/// The block's skin at z = 0 becomes z = rise(x, y).
+/// Changes the block's skin from z = 0 to z = rise(x, y).
 NeedleInBlock skin(const std::function<double(double, double)>& rise, int cells) {
   BlockOptions options;
   options.cells = {cells, cells, cells};
@@ -24,7 +24,7 @@ NeedleInBlock skin(const std::function<double(double, double)>& rise, int cells)
   return NeedleInBlock(options);
 }
 
-/// Where a hand's tremor has the needle.
+/// The displacement of the needle by the tremor of a hand.
 struct Tremor {
   Vec3 size_mm = Vec3::Zero();
   Vec3 per_s = Vec3::Zero();  ///< [rad/s]
@@ -41,7 +41,7 @@ struct Tremor {
   [[nodiscard]] Vec3 at(double t) const { return size_mm.cwiseProduct(((per_s * t + phase).array().sin()).matrix()); }
 };
 
-/// A needle that goes in along `axis`, and out again, and what was wrong with it.
+/// A needle that goes in along `axis` and out again, and a description of what went wrong.
 class Entry {
  public:
   Entry(NeedleInBlock& block, const Vec3& through, const Vec3& axis, const Tremor& tremor)
@@ -83,7 +83,7 @@ class Entry {
       if (kind == Kind::withdrawn && inside()) note("the insertion ends with the tip in the tissue");
     }
     joined_ = joined_ || (report.tip_state == TipState::in_track && !punctured_);
-    // Before the first contact of a joined track there may be some millimetres without a force.
+    // Before the first contact, a needle in a joined track may move some millimetres without a force.
     const double deep = block_.axis.dot(report.tip_mm - surface_);
     const bool unheld = report.hand_force_N.norm() < 1e-6 && (report.tip_state == TipState::air || deep > 7.0);
     if (!unheld || !inside()) return;
@@ -105,14 +105,14 @@ class Entry {
   Tremor tremor_;
   Vec3 surface_;
   double time_s_ = 0.0;
-  bool grazed_ = false;     ///< went in flat to the skin
-  bool punctured_ = false;  ///< broke skin
-  bool joined_ = false;     ///< went into a hole that was there
+  bool grazed_ = false;     ///< met the skin flat
+  bool punctured_ = false;  ///< broke the skin
+  bool joined_ = false;     ///< joined an earlier track
   std::string wrong_;
 };
 
-/// @param joined counts second needles that went into the hole of the first
-/// @return what was wrong with the second of two needles, or the first; nothing where all is well
+/// @param joined incremented if the second needle joins the track of the first
+/// @return what went wrong with either needle; empty if nothing did
 std::string second_needle_beside_a_first(NeedleInBlock& block, Draw& draw, int& joined) {
   const Vec3 place{draw.between(-22.0, 22.0), draw.between(-22.0, 22.0), 0.0};
   const Vec3 axis = draw.near(Vec3::UnitZ(), 45.0);
@@ -134,7 +134,7 @@ std::string second_needle_beside_a_first(NeedleInBlock& block, Draw& draw, int& 
 TEST(RandomEntries, a_needle_in_tissue_is_never_without_force_whatever_lies_beside_it) {
   std::vector<NeedleInBlock> skins;
   skins.push_back(skin([](double, double) { return 0.0; }, 8));
-  skins.push_back(skin([](double x, double y) { return (x * x + y * y) / 100.0; }, 10));          // a ball's
+  skins.push_back(skin([](double x, double y) { return (x * x + y * y) / 100.0; }, 10));          // a sphere
   skins.push_back(skin([](double x, double) { return 6.0 * std::sin(x / 6.0) - x / 3.0; }, 12));  // folds
   const int cases = random_cases(36);
   int wrong = 0, joined = 0;
@@ -147,7 +147,7 @@ TEST(RandomEntries, a_needle_in_tissue_is_never_without_force_whatever_lies_besi
   }
   std::cout << wrong << " of " << cases << " needles went wrong\n";
   EXPECT_EQ(wrong, 0);
-  EXPECT_GE(joined, cases / 20);  // most first needles do not break the skin, or lie too far from the second
+  EXPECT_GE(joined, cases / 20);  // most first needles do not break the skin, or are too far from the second one
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Needles of 25 and 30 gauge bow under less than skin bears. Pressed on it, and levered at random, they do not break
-// it. STYLET_RANDOM_CASES=1000 build/bin/test_random_needles --gtest_filter=RandomLeverings.* tries a thousand.
+// Needles of 25 and 30 gauge bow under less force than breaks the skin. Pressed on the skin, and levered at random,
+// they do not break it. STYLET_RANDOM_CASES=1000 build/bin/test_random_needles --gtest_filter=RandomLeverings.* tries a
+// thousand cases.
 #include "needle_in_block.hpp"
 #include "random_cases.hpp"
 
@@ -12,14 +13,14 @@ namespace {
 using Kind = EventKind;
 
 constexpr double kSkin_N = 1.0;
-constexpr double kRise_N = 0.05;  ///< of the force in a step
+constexpr double kRise_N = 0.05;  ///< largest rise of the force in a step
 
 NeedleSection thin(double length_mm, double outer_mm, double inner_mm) {
   const double inertia = std::numbers::pi / 64.0 * (std::pow(outer_mm, 4) - std::pow(inner_mm, 4));
   return {length_mm, outer_mm, 200e3 * inertia, 2.0 * 77e3 * inertia};
 }
 
-/// A hand that presses the needle on the skin and goes to random poses, one after the other.
+/// A hand that presses the needle on the skin and moves to random poses, one after the other.
 class Levering {
  public:
   Levering(NeedleInBlock& block, Draw& draw) : block_(block), draw_(draw) {
@@ -28,7 +29,7 @@ class Levering {
     from_ = to_ = {block.depth, Vec3::Zero(), Vec3::Zero()};
   }
 
-  /// @return what was wrong
+  /// @return a description of what went wrong; empty if nothing did
   std::string run() {
     go({draw_.between(1.0, 8.0), Vec3::Zero(), Vec3::Zero()});
     for (int k = 0; k < 4 && !punctured_; ++k) {
@@ -69,7 +70,7 @@ class Levering {
     for (const InsertionEvent& event : block_.insertion->events()) {
       if (event.kind != Kind::puncture) continue;
       punctured_ = true;
-      // Nothing but the tip holds the needle, so the hand's force is that of the tip.
+      // Only the tip holds the needle, so the hand's force is the tip's.
       if (before < kSkin_N - kRise_N || event.force_N < 0.5 * kSkin_N)
         wrong_ = "punctured at " + std::to_string(event.force_N) + " N along the hand's axis, the step before with " +
                  std::to_string(before) + " N";

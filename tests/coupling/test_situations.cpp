@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Situations that need a decision: each test states what was decided.
+// Situations that need a decision; each test states the decision.
 #include "needle_in_block.hpp"
 #include "support/count_allocations.hpp"
 
@@ -15,7 +15,7 @@ TEST(Situation, an_element_with_only_held_nodes_is_passed_without_a_singular_sys
     BlockOptions options;
     options.coupling.method = method;
     const auto sides = options.held;
-    // Everything within 15 mm of a point on the path is held, yet is soft tissue that can be cut.
+    // All nodes within 15 mm of a point on the path are held, and yet this is soft tissue that can be cut.
     options.held = [sides](const Vec3& x) { return sides(x) || (x - Vec3(3, 2, 50)).norm() < 15.0; };
     NeedleInBlock run(options);
     run.aim({3, 2, 0}, Vec3(0.03, 0.02, 1.0));
@@ -74,7 +74,7 @@ TEST(Situation, a_needle_leaves_through_the_far_side_and_comes_back) {
   run.go(60);
   ASSERT_EQ(run.count(Kind::exited), 1);
   EXPECT_EQ(run.report.tip_state, TipState::exited);
-  // Outside nothing is cut: only friction of the 40 mm inside is left, shaft contacts stay.
+  // Outside nothing is cut: only friction over the 40 mm inside remains, and the shaft contacts stay.
   EXPECT_NEAR(run.forces.back(), (11e-3 + 5e-3) * 40.0, 0.06);
   EXPECT_LT(run.forces.back(), inside + 0.05);
   EXPECT_NEAR(run.report.inserted_mm, 40.0, 1.5);
@@ -97,11 +97,11 @@ TEST(Situation, an_entry_near_an_old_track_joins_it_and_one_further_off_does_not
   run.happened.clear();
   run.forces.clear();
   run.aim({3.8, 2.3, 0});  // 0.85 mm beside: within the needle's diameter
-  run.go(34);              // the track ends where the tip cut, behind where it was pushed to
+  run.go(34);              // the track ends where the tip has cut, which is behind the base depth
   EXPECT_EQ(run.count(Kind::puncture), 0) << "the old track needs no puncture";
   EXPECT_EQ(run.report.tip_state, TipState::in_track);
   EXPECT_GT(run.report.contacts, 4);
-  EXPECT_LT(run.peak(), 0.9);  // friction alone
+  EXPECT_LT(run.peak(), 0.9);  // friction only
   run.go(45);
   EXPECT_EQ(run.report.tip_state, TipState::cutting);
   run.go(-1);
@@ -119,7 +119,7 @@ TEST(Situation, a_track_joined_on_tilted_skin_begins_where_the_needle_met_the_sk
     SCOPED_TRACE(testing::Message() << tilt_deg << "° from the skin's normal");
     const double tilt = tilt_deg * std::numbers::pi / 180.0;
     const Vec3 axis(std::sin(tilt), 0.0, std::cos(tilt));
-    for (const double beside : {0.6, -0.6}) {  // the old entry is behind the new one, and ahead of it
+    for (const double beside : {0.6, -0.6}) {  // the old entry is behind the new one, or ahead of it
       NeedleInBlock run;
       run.aim({-10, 2, 0}, axis);
       run.go(25);
@@ -162,7 +162,7 @@ TEST(Situation, a_concave_organ_is_left_and_entered_again) {
   BlockOptions options;
   options.cells = {10, 10, 10};
   options.jitter = 0.0;
-  // Two lobes on the path, one organ.
+  // One organ with two lobes on the path.
   options.region_at = [](const Vec3& x) {
     return (x.z() > 20 && x.z() < 40) || (x.z() > 50 && x.z() < 70) || (x.x() > 20 && x.z() > 20 && x.z() < 70) ? 1 : 0;
   };
@@ -181,7 +181,8 @@ TEST(Situation, a_wall_within_the_patient_is_broken_by_a_needle_nearly_along_it)
   options.jitter = 0.0;
   options.region_at = [](const Vec3& x) { return x.x() > 0 ? 1 : 0; };
   NeedleInBlock run(options);
-  run.aim({-1.5, 2, 0}, Vec3(std::sin(0.07), 0, std::cos(0.07)));  // 4° to the wall: flatter than skin lets a needle in
+  run.aim({-1.5, 2, 0}, Vec3(std::sin(0.07), 0, std::cos(0.07)));  // 4° to the wall, which is flatter than skin lets a
+                                                                   // needle in
   run.go(60);
   EXPECT_EQ(run.count(Kind::puncture, 1), 1);
   EXPECT_EQ(run.count(Kind::region_entered, 1), 1);
@@ -194,7 +195,7 @@ TEST(Situation, a_fold_of_skin_is_left_through_the_air_and_the_body_entered_agai
   options.jitter = 0.0;
   options.region_at = [](const Vec3&) { return 0; };
   options.held = [](const Vec3& x) { return x.x() < -49.9; };
-  options.edit = [](TetMesh& mesh) {  // cut a notch: nothing at x > −20 between z = 20 and z = 40
+  options.edit = [](TetMesh& mesh) {  // cuts a notch: no tissue at x > −20 between z = 20 and z = 40
     TetMesh kept = mesh;
     kept.tets.clear();
     kept.tet_region.clear();
@@ -239,7 +240,7 @@ TEST(Situation, elements_smaller_than_the_needle_do_not_break_the_step) {
   options.hi = Vec3(2, 2, 10);
   options.cells = {8, 8, 20};  // 0.5 mm, the needle's radius is 0.635 mm
   options.region_at = [](const Vec3&) { return 0; };
-  options.laws[0].puncture_N = 0.1;  // so small a piece yields ten millimetres under a newton
+  options.laws[0].puncture_N = 0.1;  // this small block yields ten millimetres per newton
   options.laws[0].cutting_N = 0.05;
   options.held = [](const Vec3& x) { return std::abs(x.x()) > 1.9 || std::abs(x.y()) > 1.9 || x.z() > 9.9; };
   NeedleInBlock run(options);
@@ -266,7 +267,8 @@ TEST(Situation, two_contacts_in_one_element_are_held_apart) {
     std::sort(elements.begin(), elements.end());
     cases += std::adjacent_find(elements.begin(), elements.end()) != elements.end() ? 1 : 0;
     EXPECT_EQ(run.flags, 0u);
-    // Cutting 0.25…0.35 N and friction of at most 18 mN per mm of what a contact stands for: none fights its neighbour.
+    // Cutting takes 0.25 … 0.35 N, and friction at most 18 mN per mm of tributary length: no contact works against its
+    // neighbour.
     for (const ContactState& c : run.insertion->contacts()) EXPECT_LT(c.force.norm(), 0.4 + 18e-3 * c.length);
   }
   EXPECT_GT(cases, 0) << "no path had two contacts in one element";
@@ -281,7 +283,7 @@ TEST(Situation, a_base_moved_sideways_while_stuck_bends_the_needle_and_drags_the
   run.sideways = Vec3(3, 0, 0);
   run.wait(0.01);
   EXPECT_GT(run.report.hand_force_N.x(), 0.01);
-  const double free = 110.0;  // clamped base to skin
+  const double free = 110.0;  // free length, from the clamped base to the skin
   EXPECT_LT(run.report.hand_force_N.x(), 12.0 * 15700 * 3.0 / (free * free * free) * 1.1)
       << "no stiffer than a clamped beam";
   EXPECT_GT(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.02);

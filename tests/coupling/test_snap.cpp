@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A strong surface breaks, and all at once the tip is held by a quarter of what it was.
+// A strong surface breaks, and the tip is then held by a quarter of the force.
 #include "needle_in_block.hpp"
 
 namespace stylet {
@@ -12,7 +12,7 @@ class Snap : public testing::TestWithParam<int> {};
 
 TEST_P(Snap, after_a_surface_breaks_no_step_is_without_a_balance) {
   const int cells = GetParam();
-  const double interface = 100.0 / cells * std::round(0.14 * cells);  // on faces of elements
+  const double interface = 100.0 / cells * std::round(0.14 * cells);  // on element faces
   BlockOptions options;
   options.cells = {cells, cells, cells};
   options.jitter = 0.0;

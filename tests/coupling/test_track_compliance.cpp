@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Node addition against the same mesh, refactorised.
+// Node addition against a new factorisation of the split mesh.
 #include "stylet/coupling/track_compliance.hpp"
 
 #include "two_region_block.hpp"
@@ -15,8 +15,8 @@ using stylet::test::Block;
 
 namespace {
 
-/// Largest difference, over the largest entry, between the compliances among the added nodes and those of a fresh
-/// factorisation of the split mesh.
+/// Largest difference between the compliances among the added nodes and those of a new factorisation of the split mesh,
+/// over the largest entry.
 double difference_to_refactorised(const Block& block, const TrackCompliance& track) {
   const TetMesh split = track.mesh().materialise();
   EXPECT_TRUE(check_mesh(split, "split mesh").ok());
@@ -41,7 +41,7 @@ class LineThroughFaces {
   [[nodiscard]] MaterialPoint at() const { return {tet_, block_.locator->weights(tet_, x_)}; }
   [[nodiscard]] const Vec3& direction() const { return direction_; }
 
-  /// Goes on through the element beyond. @return false where there is none
+  /// Moves through the next element. @return false where there is none
   bool next() {
     const Index beyond = block_.topology->neighbour[static_cast<std::size_t>(tet_)][static_cast<std::size_t>(local_)];
     if (beyond < 0) return false;
@@ -80,7 +80,7 @@ TEST(NodeAddition, hundred_interior_nodes_by_the_shortcut_equal_a_refactorised_m
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(2.0, 38.0);
   int added = 0;
-  // Half of the nodes in one corner, so that many fall into elements that are split already.
+  // Half of the nodes are in one corner, so that many are in elements that are split already.
   while (added < 100) {
     const double shrink = added % 2 ? 1.0 : 0.25;
     const Vec3 x = shrink * Vec3(place(random), place(random), place(random)) + Vec3::Constant(1.0);
@@ -132,13 +132,13 @@ TEST(NodeAddition, a_needle_track_of_face_nodes_equals_a_refactorised_mesh) {
   EXPECT_LT(difference_to_refactorised(block, track), 1e-8);
 }
 
-/// Lays nodes and interpolated points along the line with the tip among them.
-/// @param placements of the nodes, by turns
-/// @return largest difference from the split mesh, refactorised, over the largest entry
+/// Adds nodes and interpolated points along the line while the tip moves among them.
+/// @param placements placements of the nodes, in turn
+/// @return largest difference from a new factorisation of the split mesh, over the largest entry
 double difference_along_a_line(const Block& block, TrackCompliance& track, const std::vector<Placement>& placements) {
   LineThroughFaces line(block);
-  std::vector<MaterialPoint> place(1);  // of the tip and the points
-  std::vector<Index> node(1, -1);       // that a point has for its own
+  std::vector<MaterialPoint> place(1);  // places of the tip and the points
+  std::vector<Index> node(1, -1);       // each point's own node; −1: none
   int nodes = 0;
   const auto lay = [&](const MaterialPoint& at, const Vec3& x, Placement placement) {
     if (track.add(at, x, placement, line.direction()).point < 0) return;
@@ -153,7 +153,7 @@ double difference_along_a_line(const Block& block, TrackCompliance& track, const
   };
   std::size_t face = 0;
   do {
-    // The tip is behind the face, at it, or beyond it when the node is laid.
+    // The tip is before the face, at it, or beyond it when the node is added.
     put_tip(line.x() + (static_cast<double>(face % 3) - 1.0) * 1.3 * line.direction());
     const Index tet = line.at().tet;
     const auto inside = [&](const Vec4& weights) {
@@ -199,8 +199,8 @@ double difference_along_a_line(const Block& block, TrackCompliance& track, const
   return (ours - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 }
 
-// What is known of the tip's element and of the vertices of split ones is passed from one to the other, kept from
-// element to element, and changed by every node; nothing of it may be left from the insertion before.
+// Values at the nodes of the tip's element and at the vertices of split elements are copied from each other, kept from
+// element to element, and changed by every node. Nothing of them may remain after reset().
 TEST(NodeAddition, tracks_with_their_tip_and_interpolated_points_among_nodes_equal_refactorised_meshes) {
   const Block block(6);
   TrackCompliance track(block.store, *block.locator, 60);
@@ -283,7 +283,7 @@ TEST(NodeAddition, nodal_load_of_contact_forces_gives_the_displacement_of_the_re
     for (int i = 0; i < 60 && track.points() < 4; ++i) {
       x = Vec3(17.3 + 0.2 * i, 18.1 + 0.1 * i, 6.0 + 0.45 * i);
       auto at = *block.locator->find(x);
-      if (placement == Placement::face) {  // slide to the nearest face along z
+      if (placement == Placement::face) {  // moved to the nearest face along z
         const Vec4 here = at.weights;
         const Vec4 there = block.locator->weights(at.tet, x + 40.0 * direction);
         double first = 2.0;
@@ -333,7 +333,7 @@ TEST(NodeAddition, refuses_what_it_cannot_do_and_says_why) {
   EXPECT_EQ(add(without, on_face, Placement::face), Refusal::missing);
   EXPECT_FALSE(without.move_tip({tet, inside}, Vec3::Zero()));
 
-  // What cannot be split is refused as that, whether or not compliance is there.
+  // A place that cannot be split is refused for its geometry, whether its compliance is missing or not.
   TrackCompliance track(block.store, *block.locator, 3);
   for (TrackCompliance* either : {&without, &track}) {
     EXPECT_EQ(add(*either, on_face, Placement::interior), Refusal::geometry);

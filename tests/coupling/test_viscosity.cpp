@@ -11,7 +11,7 @@ namespace {
 using test::BlockOptions;
 using test::NeedleInBlock;
 
-// A tissue point of compliance A by itself: enough to test the filter against closed forms.
+// A single tissue point of compliance A, which is enough to compare the memory with closed forms.
 class TwoPoints final : public ContactCompliance {
  public:
   TwoPoints() {
@@ -33,7 +33,7 @@ class TwoPoints final : public ContactCompliance {
 constexpr double kTau_s = 0.2;
 constexpr Creep kCreep{3.0, kTau_s};
 
-// The forces act for `time` in steps of h.
+// Lets the forces act for `time` in steps of h.
 void act(TissueMemory& memory, const MatX& forces, double time, double h) {
   for (int k = 0; k < std::lround(time / h); ++k) {
     memory.begin(h);
@@ -41,7 +41,7 @@ void act(TissueMemory& memory, const MatX& forces, double time, double h) {
   }
 }
 
-// How far point 0 has crept after `time` under a constant force of 1 N along x on point 1, in steps of h.
+// Creep displacement of point 0 after `time` under a constant force of 1 N along x on point 1, in steps of h.
 double creep(double time, double h) {
   const TwoPoints compliance;
   TissueMemory memory(kCreep, 2);
@@ -62,7 +62,7 @@ TEST(TissueMemory, CreepsUnderAConstantForceAsAStandardLinearSolidDoesToFirstOrd
 }
 
 TEST(TissueMemory, RelaxesUnderAConstantDisplacementWithTheTimeConstantOverTheFactor) {
-  // u = A (f + p) with p from the law, solved for f: G(t) = [1 + (r − 1) exp(−r t/τ)] / (r A).
+  // u = A (f + p), with p by the law, solved for f: G(t) = [1 + (r − 1) exp(−r t/τ)] / (r A).
   const TwoPoints compliance;
   const double own = compliance.matrix()(0, 0);
   const double r = kCreep.factor;
@@ -135,7 +135,7 @@ BlockOptions creeping(const Creep& creep, CouplingSettings::Method method = Coup
   return options;
 }
 
-// The needle pushed 30 mm in, or far enough to be stuck there, and then held.
+// The needle pushed in to 30 mm, where it sticks, and then held.
 NeedleInBlock pushed_in(const Creep& creep, double dt,
                         CouplingSettings::Method method = CouplingSettings::Method::embedded) {
   NeedleInBlock run(creeping(creep, method));
@@ -144,7 +144,7 @@ NeedleInBlock pushed_in(const Creep& creep, double dt,
   return run;
 }
 
-/// A block of one tissue of Young's modulus 0.06 MPa over `softer`, the needle pressed `deep` into its skin at a speed.
+/// A block of one tissue of Young's modulus 0.06 MPa over `softer`, with the needle pressed `deep` into its skin.
 NeedleInBlock pressed(const Creep& creep, double softer, double deep, double speed, double dt) {
   BlockOptions options = creeping(creep);
   options.region_at = [](const Vec3&) { return 0; };
@@ -168,7 +168,7 @@ TEST(ViscousTissue, AHeldDentRelaxesAsAStandardLinearSolidDoes) {
   constexpr double deep = 4.0;
   NeedleInBlock held = pressed({3.0, kQuick_s}, 1.0, deep, 4000.0, 1e-3);
   const double at_once = deep / held.insertion->compliance().matrix()(2, 2);
-  double time = 0.5e-3;  // since the middle of the quick motion
+  double time = 0.5e-3;  // since the middle of the fast motion
   for (const double wait : {0.01, 0.02, 0.05}) {
     held.wait(wait, 0.1e-3);
     time += wait;
@@ -178,9 +178,9 @@ TEST(ViscousTissue, AHeldDentRelaxesAsAStandardLinearSolidDoes) {
 }
 
 TEST(ViscousTissue, AStuckNeedleMovedSidewaysRelaxes) {
-  // Sideways all is bilateral and linear: what the tissue resists at once is that of elastic tissue, and up to r times
-  // less in the end, less so for a needle that bends. The tracks are not quite the same: the tip that pushed tissue
-  // before it while that crept has cut less far.
+  // Sideways, contacts are bilateral and the problem is linear: the tissue's first response is that of elastic tissue,
+  // and the final one is up to r times softer, less so because the needle bends. The two tracks differ a little,
+  // because a tip that pushed creeping tissue ahead of it has cut less far.
   NeedleInBlock run = pushed_in({3.0, kQuick_s}, 1e-3);
   NeedleInBlock elastic = pushed_in({}, 1e-3);
   run.wait(6.0 * kQuick_s);
@@ -237,7 +237,7 @@ TEST(ViscousTissue, CurvesOfDifferentTimeStepsApproachEachOtherToFirstOrder) {
     options.region_at = [](const Vec3&) { return 0; };
     NeedleInBlock run(options);
     run.aim({2.0, 3.0, 0.0});
-    run.go(31.0, 20.0, dt);  // from −1 mm: whole numbers of steps
+    run.go(31.0, 20.0, dt);  // from −1 mm: a whole number of steps
     run.wait(0.08, dt);
     std::vector<double> forces;
     const auto stride = static_cast<std::size_t>(std::lround(8e-3 / dt));
@@ -262,7 +262,7 @@ TEST(ViscousTissue, CurvesOfDifferentTimeStepsApproachEachOtherToFirstOrder) {
   EXPECT_NEAR(coarse / fine, (4.0 - 0.5) / (2.0 - 0.5), 0.5);  // the distance is c (dt − 0.5 ms)
 }
 
-// The needle in through both organs, near field and all.
+// The needle pushed in through both organs, with the near field.
 NeedleInBlock near_field_in(const Creep& creep, double dt, double stiffening_MPa) {
   BlockOptions options = creeping(creep, CouplingSettings::Method::near_field);
   for (RegionLaws& laws : options.laws) laws.stiffening_MPa = stiffening_MPa;
@@ -273,7 +273,7 @@ NeedleInBlock near_field_in(const Creep& creep, double dt, double stiffening_MPa
 }
 
 TEST(ViscousTissue, WithTheNearFieldNoStepShowsAForceThatIsNotThere) {
-  // Between 5 ms and 200 ms of creep a dent is gone before, while and long after the tip passes it.
+  // With creep times of 5 to 200 ms, a dent recovers before, while, and long after the tip passes it.
   for (const double stiffening_MPa : {0.0, 0.06}) {
     const double elastic = near_field_in({}, 2e-3, stiffening_MPa).peak();
     for (const double creep_s : {0.005, 0.05, 0.2}) {
@@ -328,7 +328,7 @@ TEST(ViscousTissue, CanBeEnteredAgainBeforeItHasRelaxed) {
 
 TEST(ViscousTissue, StaggeredAndCoupledSolversAgree) {
   BlockOptions options = creeping({3.0, kQuick_s}, CouplingSettings::Method::node_addition);
-  options.coupling.tolerance = 1e-9;  // what the staggered solver's slow iterations leave is many times that
+  options.coupling.tolerance = 1e-9;  // the staggered solver leaves an error many times larger than this
   NeedleInBlock coupled(options);
   options.coupling.solver = CouplingSettings::Solver::staggered;
   NeedleInBlock staggered(options);
@@ -345,7 +345,7 @@ TEST(ViscousTissue, StaggeredAndCoupledSolversAgree) {
   EXPECT_LT(difference, 1e-7 * coupled.peak());
 }
 
-/// What the forces that hold the tissue displace it by, by the mesh alone.
+/// Displacement of the mesh by the forces that hold the tissue.
 VecX displaced_by_forces(const NeedleInBlock& run) {
   VecX load = VecX::Zero(3 * run.tissue->displacement_nodes());
   for (const TissueForce& force : run.insertion->tissue_forces()) {

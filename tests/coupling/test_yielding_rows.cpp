@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows of the contacts' matrix that change, by themselves: against a dense solution.
+// The factorisation of the yielding rows against a dense solution.
 #include "coupling/balance/yielding_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr Eigen::Index kMostSpringRows = 20;
 constexpr Eigen::Index kMostColumns = 5;
 constexpr double kRounding = 1e-11;
 
-/// A random matrix of contacts' rows and springs' rows, whole and as YieldingRows takes it.
+/// A random matrix of contacts' rows and springs' rows, as one dense matrix and as YieldingRows.
 class Rows {
  public:
   Rows(Eigen::Index contacts, Eigen::Index springs)
@@ -47,7 +47,7 @@ class Rows {
     yielding.keep_first(rows);
   }
 
-  /// By how much the solution misses the right-hand side, relative to the latter.
+  /// Residual of the solution, over the right-hand side.
   double error() {
     MatX T = MatX::Zero(contacts_, springs_ + contacts_);
     T.leftCols(springs_) = F_.topRows(contacts_);

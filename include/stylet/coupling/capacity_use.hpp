@@ -5,7 +5,7 @@
 
 namespace stylet {
 
-/// Room that is set aside before the first step, since no step allocates, and the most of it that was ever in use.
+/// Room that is allocated before the first step, because no step allocates, and the largest part of it ever in use.
 struct CapacityUse {
   int most = 0;
   int room = 0;
@@ -13,12 +13,13 @@ struct CapacityUse {
   void note(int used) { most = std::max(most, used); }
 };
 
-/// Of an Insertion, since it was made.
+/// Capacities of an Insertion, with their use since it was constructed.
 struct CapacityUses {
-  CapacityUse contacts;     ///< on the shaft; one more is flagged, out_of_contacts
-  CapacityUse spare_nodes;  ///< whose compliance came beyond what was there before; for more the furthest go
-  CapacityUse tracks;       ///< of earlier insertions; for one more the oldest is forgotten
-  CapacityUse events;       ///< of one step; further ones are not told
+  CapacityUse contacts;     ///< shaft contacts; one more sets the flag out_of_contacts
+  CapacityUse spare_nodes;  ///< nodes whose compliance was added after the start; one more replaces the node furthest
+                            ///< from the tip
+  CapacityUse tracks;       ///< tracks of earlier insertions; one more replaces the oldest
+  CapacityUse events;       ///< events of one step; further events are dropped
 };
 
 }  // namespace stylet

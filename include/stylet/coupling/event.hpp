@@ -5,8 +5,8 @@
 
 namespace stylet {
 
-/// Things that happen to a needle. Where the hand turns back and where the shaft begins to slide out is noticed by the
-/// simulation, all else by the coupling.
+/// Kinds of events during an insertion. The simulation detects retraction_start and slip_start, the coupling detects
+/// all others.
 enum class EventKind {
   skin_contact,
   puncture,
@@ -21,11 +21,13 @@ enum class EventKind {
 };
 const char* to_string(EventKind kind);
 
-/// Something that happened in a step of the coupling.
+/// An event in one step of the coupling.
 struct InsertionEvent {
   EventKind kind{};
-  int region = -1;                                            ///< of the mesh, −1 where it has no meaning
-  double force_N = std::numeric_limits<double>::quiet_NaN();  ///< axial force of the hand at a puncture's very moment
+  int region = -1;  ///< number of the mesh's region, −1 where an event has
+                    ///< none
+  /// Axial force of the hand at the moment of a puncture; NaN for all other events.
+  double force_N = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace stylet

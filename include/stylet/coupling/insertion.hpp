@@ -20,9 +20,9 @@
 
 namespace stylet {
 
-/// Contact as seen from outside.
+/// The state of a contact, for reports and pictures.
 struct ContactState {
-  Vec3 position = Vec3::Zero();  ///< [mm] LPS, of the tissue point, deformed
+  Vec3 position = Vec3::Zero();  ///< [mm] LPS, deformed place of the tissue point
   Vec3 force = Vec3::Zero();     ///< [N] on the tissue
   double s = 0.0;                ///< [mm] arc length on the needle
   double length = 0.0;           ///< [mm] tributary length
@@ -30,29 +30,33 @@ struct ContactState {
   bool tip = false;
 };
 
-/// Force on a point of the tissue.
+/// A force on a point of the tissue.
 struct TissueForce {
   MaterialPoint at;
-  Vec3 force = Vec3::Zero();  ///< [N] LPS, `lasting` included
-  Vec3 along = Vec3::Zero();  ///< unit vector LPS, of the piece of shaft it is spread over; zero: the tip's, at a point
-  /// [N] LPS, the part of `force` by which the tissue has crept: it acts spread over NeedleKernel::kScale_mm.
+  Vec3 force = Vec3::Zero();  ///< [N] LPS, with `lasting` included
+  /// Unit vector LPS along the piece of shaft over which the force is spread; zero for the tip, whose force acts at a
+  /// point.
+  Vec3 along = Vec3::Zero();
+  /// [N] LPS, the part of `force` under which the tissue has crept; it acts spread over NeedleKernel::kScale_mm.
   Vec3 lasting = Vec3::Zero();
   double softness = 1.0;  ///< ContactCompliance::softness() of the point
 };
 
-/// What the tissue contributes; everything outlives the Insertion.
+/// The tissue of an insertion. Everything it points to must outlive the Insertion.
 struct InsertionTissue {
   std::shared_ptr<ComplianceStore> store;
   const Locator* locator = nullptr;
-  std::vector<RegionLaws> laws;           ///< one per region of the mesh
-  std::shared_ptr<const MatX> inverse{};  ///< the full K⁻¹ (paper::full_inverse), for engines that keep it
-  std::shared_ptr<MeshKernel> kernel{};   ///< of the mesh, for the near-field method
-  std::shared_ptr<const SpreadCompliance> spread{};  ///< along the needle's ways, for tissue that stiffens or creeps
+  std::vector<RegionLaws> laws;           ///< one for each region of the mesh
+  std::shared_ptr<const MatX> inverse{};  ///< the full K⁻¹ (paper::full_inverse), for the engines that keep it
+  std::shared_ptr<MeshKernel> kernel{};   ///< kernel of the mesh, for the near-field method
+  /// Compliance along the planned ways of the needle, for tissue that stiffens or creeps.
+  std::shared_ptr<const SpreadCompliance> spread{};
 };
 
-/// A flexible needle in tissue: moves the base, finds the equilibrium of needle and tissue under friction and cutting,
-/// and keeps the track. Quasi-static; time enters by viscosity and damping. step() does not allocate, throw, lock
-/// or log (engines that keep the full inverse allocate when the mesh changes). docs/theory/coupling.md has the model.
+/// A flexible needle in tissue: moves the base, finds the balance of needle and tissue under friction and cutting,
+/// and keeps the track. The model is quasi-static; time enters through viscosity and damping. step() does not allocate,
+/// throw, lock or log, except that engines with the full inverse allocate when the mesh changes.
+/// docs/theory/coupling.md describes the model.
 class Insertion {
  public:
   Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings);
@@ -60,67 +64,69 @@ class Insertion {
   Insertion(Insertion&&) noexcept;
   Insertion& operator=(Insertion&&) noexcept;
 
-  /// Places the needle without touching tissue; the first call before any step. A needle that is still in is taken out
-  /// first, as if withdrawn.
+  /// Places the needle without touching tissue; must be called before the first step. A needle that is still in the
+  /// tissue is withdrawn first.
   void place(const Pose& base);
 
-  /// Puts the guide template's hole, if the needle has one, at `hole` [mm] LPS. @param axis LPS, towards the patient
+  /// Puts the hole of the guide template, if the needle has one, at `hole` [mm] LPS.
+  /// @param axis unit vector LPS, towards the patient
   void place_guide(const Vec3& hole, const Vec3& axis);
 
-  /// Moves the base from where it is to `base` in dt seconds. The step's time, dt and depth are the caller's to fill
-  /// in.
+  /// Moves the base to the pose `base` in dt seconds.
+  /// @return the step; its fields time_s, dt_s, base_depth_mm and the three parts of the force are left for the caller
   Step step(const Pose& base, double dt);
 
-  /// The events of the last step, as far as there was room for them.
+  /// The events of the last step; CapacityUses::events tells whether some found no room.
   [[nodiscard]] std::span<const InsertionEvent> events() const;
 
-  /// Makes the compliance of all elements within `radius` of the tip available. Call between steps; returns at once
-  /// when the tip has not moved far. Allocates and solves, or waits for the worker that does.
+  /// Computes the compliance of all elements within `radius_mm` of the tip. Must be called between steps; returns at
+  /// once where the tip has not moved far since the last call. Allocates and solves, or waits for the worker that does.
   void prepare(double radius_mm);
 
-  /// The compliance there is now.
+  /// The compliance that has been computed so far.
   [[nodiscard]] const ComplianceStore& store() const;
 
-  /// What brings compliance to the needle; a worker's side of it may be another thread's.
+  /// The supply of compliance around the needle; its worker's side may run on another thread.
   [[nodiscard]] ComplianceSupply& supply();
 
   [[nodiscard]] const Needle& needle() const;
   [[nodiscard]] const ContactCompliance& compliance() const;
   [[nodiscard]] const CouplingSettings& settings() const;
-  /// What there is room for, and the most that was ever in use.
+  /// The capacities, with the largest use so far.
   [[nodiscard]] const CapacityUses& capacities() const;
 
-  /// Contacts now, the tip first when it touches. Allocates.
+  /// The present contacts, the tip first when it touches. Allocates.
   [[nodiscard]] std::vector<ContactState> contacts() const;
-  /// The same into room provided; does not allocate. @return how many were written; capacity + 1 always fit
+  /// The same, written to `out`; does not allocate. @return number of contacts written; capacity + 1 elements are
+  /// enough
   std::size_t contacts(std::span<ContactState> out) const;
 
-  /// Displacement of the material at the mesh's nodes [mm] (3n). Solves for it, allocates; for pictures,
-  /// never in the loop.
+  /// Displacement of the material at the mesh's nodes [mm] (3n). Solves and allocates; for pictures, never in the
+  /// real-time loop.
   [[nodiscard]] VecX displacement() const;
 
-  /// The same without the near field of the needle: what the mesh represents, and so alike for all of its nodes, near
-  /// the needle or not.
+  /// The same without the near field of the needle: the displacement that the mesh represents, which has the same
+  /// meaning at all nodes, near the needle or not.
   [[nodiscard]] VecX mesh_displacement() const;
 
-  /// Forces that hold the tissue where it is, on material points: contacts, and in viscous tissue what it remembers of
-  /// them. Allocates.
+  /// Forces on material points that hold the tissue in its present shape: those of the contacts, and in viscous tissue
+  /// the lasting forces of earlier contacts. Allocates.
   [[nodiscard]] std::vector<TissueForce> tissue_forces() const;
-  /// The same into room provided; does not allocate. @return how many there are, those that found no room included
+  /// The same, written to `out`; does not allocate. @return number of forces, including those that did not fit
   std::size_t tissue_forces(std::span<TissueForce> out) const;
-  /// Condition number of A among the contacts and the tip where it touches; 1 without any. Allocates.
+  /// Condition number of A among the contacts, the tip included where it touches; 1 without contacts. Allocates.
   [[nodiscard]] double compliance_condition() const;
 
-  /// What contacts and supports exert on the nodes of the mesh as it is now. Allocates.
+  /// Forces of contacts and supports on the nodes of the present mesh. Allocates.
   [[nodiscard]] ContactCompliance::Nodes nodes() const;
 
-  /// ½ fᵀ A f, elastic energy in the tissue [N mm]; of viscous tissue what it has stored.
+  /// Elastic energy in the tissue, ½ fᵀ A f [N mm]; for viscous tissue, the stored energy.
   [[nodiscard]] double tissue_energy() const;
 
-  /// Who is told what a step is at (it must outlive the steps); null, the default, is nobody.
+  /// Sets the observer of the phases of each step; null, the default, for none. It must outlive the steps.
   void observe_phases(PhaseObserver* observer);
 
-  /// The current track, and those of earlier insertions.
+  /// The current track, and the tracks of earlier insertions.
   [[nodiscard]] const Track& track() const;
   [[nodiscard]] std::span<const Track> old_tracks() const;
 

@@ -9,70 +9,77 @@ namespace stylet {
 
 /// The state of the needle's tip.
 enum class TipState {
-  air,       ///< outside the patient, before or after
-  pressing,  ///< touches tissue that it does not cut yet
-  cutting,   ///< moves the cut forward
-  in_track,  ///< behind the deepest point reached, in tissue already cut
-  bone,      ///< against a rigid region
-  exited     ///< through the far side
+  air,       ///< outside the patient: before the first contact, or after the needle has been drawn out
+  pressing,  ///< touches tissue and does not cut yet
+  cutting,   ///< lengthens the track
+  in_track,  ///< behind the deepest point reached, in tissue that is already cut
+  bone,      ///< presses against a rigid region
+  exited     ///< has left the tissue through the far side
 };
 const char* to_string(TipState state);
 
-/// A step: what went into it and what came out. The one value that goes from the coupling through the simulation to
-/// recordings, to the loop with a clock, and to those who watch; what a file or a protocol has of it is written down
-/// there. It owns nothing: copying one never allocates.
+/// One step: its inputs and its results. This one type goes from the coupling through the simulation to recordings, to
+/// the real-time loop and to the live view; file formats and protocols document which of its fields they carry. It owns
+/// no memory: copying a Step never allocates.
 ///
-/// Force and torque are what the hand exerts on the needle's base: axial along the base's axis, positive when pushing
-/// in; lateral towards the patient's left, sagittal = axial × lateral (towards posterior for a needle going superior).
+/// Force and torque are those that the hand exerts on the needle's base: axial along the base's axis, positive when
+/// pushing in; lateral towards the patient's left; sagittal = axial × lateral (towards posterior for a needle that goes
+/// to superior).
 struct Step {
-  /// Warnings about a step, each with what to do about it: nothing is repaired in silence.
+  /// Warnings about a step. No fallback is used without one.
   enum Flag : unsigned {
-    not_converged = 1u << 0,       ///< the balance was broken off, the last iterate kept; use a smaller time step
-    contact_cycling = 1u << 1,     ///< a stick/slip state was frozen for one sub-step
-    compliance_missing = 1u << 2,  ///< not there yet where the needle is: that of the tip's last place stood in, and
-                                   ///< contacts wait; prepare() between steps, or let a worker (supply()) keep ahead.
-                                   ///< A tip in the air: it went in before there was any, and is to be drawn out
-    out_of_contacts = 1u << 3,     ///< raise CouplingSettings::capacity
-    too_fast = 1u << 4,            ///< the base moved further in one step than the sub-steps can follow
-    invalid_input = 1u << 5,       ///< a pose that is not finite, or dt ≤ 0: the step was not taken
-    no_contact_inside = 1u << 6,   ///< no contact, tip in the air or exited, and yet inside the tissue: it was put
-                                   ///< there, went in flat to the surface, slipped off it, or had gone through; nothing
-                                   ///< resists it, and it is to be drawn out. Where compliance_missing says so already
-                                   ///< it is not said twice
-    unusable_law = 1u << 7         ///< a program's own law of cutting gave a number that is negative or not finite; the
-                                   ///< built-in law stood in for it
+    /// The balance was broken off and the last iterate kept. Cure: a smaller time step.
+    not_converged = 1u << 0,
+    contact_cycling = 1u << 1,  ///< the stick/slip state of a contact was frozen for one sub-step
+    /// The compliance at the needle's place has not been computed yet. The compliance of the tip's last place stands in
+    /// for it, and new contacts wait. Cure: call prepare() between steps, or let a worker (supply()) keep ahead. With
+    /// the tip in the air: the needle entered the tissue before any compliance was there, and has to be drawn out.
+    compliance_missing = 1u << 2,
+    out_of_contacts = 1u << 3,  ///< no room for another contact; raise CouplingSettings::capacity
+    too_fast = 1u << 4,         ///< the base moved further in one step than the sub-steps can follow
+    invalid_input = 1u << 5,    ///< the pose is not finite, or dt ≤ 0: the step was not taken
+    /// The needle is inside the tissue without a contact, its tip in the air or exited: it was placed there, went in
+    /// flat to the surface, slipped off the surface, or had passed through. No force resists it; it has to be drawn
+    /// out. Not set where compliance_missing reports the same.
+    no_contact_inside = 1u << 6,
+    /// A program's own law of cutting gave a number that is negative or not finite; the built-in law stood in for it.
+    unusable_law = 1u << 7
   };
-  static constexpr unsigned kDistrusted = not_converged | invalid_input;  ///< with one of them: not the model's force
+  /// With one of these flags the force is not the model's.
+  static constexpr unsigned kDistrusted = not_converged | invalid_input;
 
-  // Of the simulation: zero in what Insertion::step() returns.
-  double time_s = 0.0;  ///< simulated, at the end of the step
-  double dt_s = 0.0;    ///< as it was given: steps of the same dt and base from the same start give the same bits
-  double base_depth_mm = 0.0;  ///< how far a rigid straight needle's tip would be beyond the entry point
+  // Filled in by the simulation; zero in a Step that Insertion::step() returns.
+  double time_s = 0.0;  ///< simulated time at the end of the step
+  /// Duration of the step as passed in. Equal dt and base poses from the same start give bitwise equal results.
+  double dt_s = 0.0;
+  /// Base depth: how far the tip of a rigid straight needle on this base would be beyond the entry point.
+  double base_depth_mm = 0.0;
   double force_axial_N = 0.0;
   double force_sagittal_N = 0.0;
   double force_lateral_N = 0.0;
 
-  // Of the coupling.
-  Pose base;                          ///< [mm] LPS, where the hand brought the needle's base
-  Vec3 hand_force_N = Vec3::Zero();   ///< LPS
-  Vec3 torque_Nmm = Vec3::Zero();     ///< LPS, about the base
-  Vec3 guide_force_N = Vec3::Zero();  ///< LPS, exerted by the guide template on the shaft
-  Vec3 tip_mm = Vec3::Zero();         ///< LPS
+  // Filled in by the coupling.
+  Pose base;                          ///< [mm] LPS, pose to which the hand brought the needle's base
+  Vec3 hand_force_N = Vec3::Zero();   ///< LPS, force of the hand on the base
+  Vec3 torque_Nmm = Vec3::Zero();     ///< LPS, torque of the hand about the base
+  Vec3 guide_force_N = Vec3::Zero();  ///< LPS, force of the guide template on the shaft
+  Vec3 tip_mm = Vec3::Zero();         ///< LPS, the needle's tip
   TipState tip_state = TipState::air;
-  int contacts = 0;                ///< tip included when it touches
-  int sticking = 0;                ///< of the contacts
-  int iterations = 0;              ///< of the solver, summed over sub-steps
-  int pivots = 0;                  ///< changes of contact state
-  int remeshings = 0;              ///< changes of the mesh: ContactCompliance::remeshing() has them
-  double inserted_mm = 0.0;        ///< length of shaft in tissue
+  int contacts = 0;                ///< number of contacts, the tip included when it touches
+  int sticking = 0;                ///< number of contacts that stick
+  int iterations = 0;              ///< iterations of the solver, summed over the sub-steps
+  int pivots = 0;                  ///< changes of contact states
+  int remeshings = 0;              ///< changes of the mesh, which ContactCompliance::remeshing() lists
+  double inserted_mm = 0.0;        ///< length of shaft inside the tissue
   double sliding_share = 0.0;      ///< share of the inserted length that slides
   double sliding_out_share = 0.0;  ///< share of the inserted length that slides out of the tissue
-  unsigned flags = 0;              ///< of Flag; 0 = all is well, or a recording that does not have them
+  unsigned flags = 0;              ///< bits of Flag; 0: no warning, or a recording without flags
 
-  // Of whoever runs the steps.
-  double step_us = 0.0;  ///< thread CPU time of the step [µs]; the only number that differs between two runs
-  /// Steps at rest between the one recorded before and this one: with its dt and base, and results as near as
-  /// is_at_rest().
+  // Filled in by the program that runs the steps.
+  /// Thread CPU time of the step [µs]: the only field that differs between two runs of the same steps.
+  double step_us = 0.0;
+  /// Number of unrecorded steps at rest between the previous record and this one: they repeat the dt and base of the
+  /// previous record, and their results equal its results within the tolerance of is_at_rest().
   std::int64_t rest_steps = 0;
 };
 

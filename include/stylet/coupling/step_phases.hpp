@@ -3,33 +3,33 @@
 
 namespace stylet {
 
-/// What a step spends its time on.
+/// Phases of a step, for time measurements.
 enum class StepPhase {
-  other,           ///< none of those below: friction, states, reports
-  needle_tangent,  ///< the needle's compliance at its present shape
-  needle_relax,    ///< the needle's motion with the tangent of before
+  other,           ///< everything else: friction, states, reports
+  needle_tangent,  ///< the needle's tangent compliance at its present shape
+  needle_relax,    ///< the needle's Newton step with the tangent that is kept
   needle_advance,  ///< the needle's new shape
   gather,          ///< frames, yields, compliances and gaps of the contacts
-  factorise,       ///< matrix of the shaft's contacts
-  solve,           ///< its solutions, the tip's border, changes of state
-  balance,         ///< how far from balance the iterate is
-  tip,             ///< the cut: search, surfaces, compliance of the tip with all contacts, near field included
-  contacts         ///< contacts laid, woken and dropped
+  factorise,       ///< factorisation of the matrix of the shaft's contacts
+  solve,           ///< solutions with that matrix, the border of the tip, changes of contact states
+  balance,         ///< residual of the iterate
+  tip,             ///< the cut: search, surfaces, compliance between the tip and all contacts, near field included
+  contacts         ///< contacts created and removed
 };
 inline constexpr int kStepPhases = 10;
 
 const char* to_string(StepPhase phase);
 
-/// Told when a step goes over from one phase to another; for measurements. Must not throw.
+/// Receives the phase changes of a step, for measurements. Its functions must not throw.
 class PhaseObserver {
  public:
   virtual ~PhaseObserver() = default;
   virtual void enter(StepPhase phase) noexcept = 0;
-  /// Back to what was before the last enter().
+  /// Returns to the phase that was active before the last enter().
   virtual void leave() noexcept = 0;
 };
 
-/// A phase for as long as it lives; nothing where nobody observes.
+/// Reports a phase during its own lifetime; does nothing without an observer.
 class InPhase {
  public:
   InPhase(PhaseObserver* observer, StepPhase phase) : observer_(observer) {

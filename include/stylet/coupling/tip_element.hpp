@@ -9,9 +9,9 @@
 
 namespace stylet {
 
-/// The element the needle's tip is in. What is known of its nodes depends on the element alone, not on where in it the
-/// tip is, and the next element has most of them as well: so each node has a number, 0 … kMostElementNodes − 1, under
-/// which things can be kept, and keeps it while the tip goes from element to element that have it.
+/// The element that contains the needle's tip, with a slot number 0 … kMostElementNodes − 1 for each of its nodes. Data
+/// of a node can be kept under its number: a node keeps the number while the tip goes through elements that share this
+/// node, and consecutive elements share most of their nodes.
 class TipElement {
  public:
   TipElement() { reset(); }
@@ -21,7 +21,7 @@ class TipElement {
     count_ = 0;
   }
 
-  /// Goes over to the element of this shape. @return the numbers of the nodes that were not in the one before
+  /// Changes to the element of this shape. @return numbers of the nodes that the element before did not have
   std::span<const int> enter(const Shape& shape) {
     std::array<bool, kMostElementNodes> taken{};
     int fresh = 0;
@@ -45,9 +45,10 @@ class TipElement {
   [[nodiscard]] int count() const { return count_; }
   /// Number of the i-th node of the element.
   [[nodiscard]] int number(int i) const { return number_[static_cast<std::size_t>(i)]; }
-  /// By the numbers of the nodes.
+  /// One weight for each number.
   using Weights = std::array<double, kMostElementNodes>;
-  /// What a shape has of each node; nothing where it has others as well, or the tip is nowhere.
+  /// Weights of a shape's nodes by number; empty where the shape has nodes outside this element, or there is no
+  /// element.
   [[nodiscard]] std::optional<Weights> weights(const Shape& shape) const {
     if (count_ == 0) return std::nullopt;
     Weights result{};
@@ -62,7 +63,7 @@ class TipElement {
     return result;
   }
 
-  /// Displacement node of a number.
+  /// The displacement node that has a number.
   [[nodiscard]] Index node(int number) const { return node_[static_cast<std::size_t>(number)]; }
 
  private:

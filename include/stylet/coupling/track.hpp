@@ -7,25 +7,27 @@
 
 namespace stylet {
 
-/// The path a needle has cut, in material coordinates, and the places on it where needle and tissue hold each other.
+/// The path that a needle has cut, in undeformed coordinates, and the marks on it at which the shaft can have contacts.
 struct Track {
-  /// A tissue point the shaft can hold.
+  /// A place on the track at which the shaft has, or can have, a contact.
   struct Mark {
-    double xi = 0.0;        ///< [mm] distance from the entry along the track
-    Vec3 x = Vec3::Zero();  ///< [mm] LPS, undeformed
+    double xi = 0.0;        ///< [mm] arc length along the track from the entry
+    Vec3 x = Vec3::Zero();  ///< [mm] LPS, undeformed place
     MaterialPoint at;
     int region = -1;
-    int point = -1;  ///< number in TrackCompliance, -1 while not represented there
+    int point = -1;  ///< number of the point in ContactCompliance; −1 while it has none
   };
 
-  Vec3 entry = Vec3::Zero();  ///< where the tip first touched [mm] LPS, undeformed
+  Vec3 entry = Vec3::Zero();  ///< [mm] LPS, undeformed place where the tip first touched the tissue
   Vec3 entry_direction = Vec3::UnitZ();
-  std::vector<Mark> marks;  ///< ordered by xi
-  Vec3 end = Vec3::Zero();  ///< deepest point reached, undeformed
-  MaterialPoint end_at;     ///< its place; the tetrahedron before the far surface where the track is open
+  std::vector<Mark> marks;  ///< in ascending order of xi
+  Vec3 end = Vec3::Zero();  ///< [mm] LPS, undeformed; the deepest point reached
+  /// Element and weights of `end`; of an open track, the last element before the far surface.
+  MaterialPoint end_at;
   double end_xi = 0.0;
-  bool open = false;         ///< the track leaves the tissue through the far side: nothing to push against
-  double air_from_xi = 0.0;  ///< where it left
+  bool open = false;         ///< whether the track leaves the tissue through the far side, where the tip has nothing to
+                             ///< push against
+  double air_from_xi = 0.0;  ///< [mm] arc length at which an open track leaves the tissue
 };
 
 }  // namespace stylet

@@ -14,7 +14,7 @@ class SplitBorders;
 class TipElementRows;
 class TrackObservables;
 
-/// Compliance among the tissue points that the needle holds, A(c,d) [mm/N]: displacement of c per force on d.
+/// Compliance among the contact points, A(c,d) [mm/N]: displacement of c per force on d, with nodes added to the mesh.
 ///
 /// Added nodes are hierarchical: node p brings a hat b_p (1 at p, 0 on the boundary of the elements it splits) with
 /// amplitude q_p, so u(x) = Λ_x u_base + Σ_p b_p(x) q_p and the base stiffness never changes. With the border
@@ -25,16 +25,17 @@ class TrackObservables;
 /// A(p,p) = Λ A Λᵀ + k_pp⁻¹, and old compliances do not change. On a face k_jp = −K^T_{j o} summed over the one or two
 /// elements T, o being the vertex opposite the face. docs/theory/coupling.md derives both.
 ///
-/// Point 0 is the needle's tip: always embedded, moved at will. After construction nothing allocates except where a
-/// comment says so.
+/// Point 0 is the needle's tip, which is always embedded and can be moved. After construction nothing allocates except
+/// where a comment says so.
 ///
-/// Four parts, each in a file of its own in src/coupling/track/, keep what the formulas need: TrackObservables where x
-/// may be and K⁻¹ there, SplitBorders the k_jp, AddedHats the b_p, z_p and s_p⁻¹, and TipElementRows what the tip's
-/// element has to do with the points. This class says when which of them is brought up to date, and keeps A.
+/// Four parts, each in its own file in src/coupling/track/, hold the terms of these formulas: TrackObservables the
+/// places x and K⁻¹ among them, SplitBorders the k_jp, AddedHats the b_p, z_p and s_p⁻¹, and TipElementRows the
+/// compliance between the nodes of the tip's element and the points. This class decides when each part is updated, and
+/// holds A.
 class TrackCompliance final : public ContactCompliance {
  public:
-  /// @param store compliance of base nodes; must hold every node asked for
-  /// @param locator the tissue's mesh
+  /// @param store compliance of base nodes; must hold every node that is read
+  /// @param locator of the tissue's mesh
   /// @param capacity largest number of points, the tip not counted
   TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity);
   TrackCompliance(const TrackCompliance&) = delete;
@@ -53,8 +54,8 @@ class TrackCompliance final : public ContactCompliance {
   [[nodiscard]] Nodes nodes(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] std::span<const RemeshEvent> remeshing() const override { return changes_; }
 
-  /// Forces on the base nodes that are equivalent to forces on the points, hats condensed: K u_base = load [N] (3n).
-  /// Allocates; for pictures and checks, not for the step.
+  /// Forces on the base nodes that are equivalent to forces on the points, with the hats condensed: K u_base = load [N]
+  /// (3n). Allocates; for pictures and checks, not for the step.
   /// @param forces [N] LPS (3 × points())
   [[nodiscard]] VecX base_load(const Eigen::Ref<const MatX>& forces) const;
 
@@ -95,10 +96,10 @@ class TrackCompliance final : public ContactCompliance {
   std::unique_ptr<SplitBorders> borders_;
   std::unique_ptr<AddedHats> hats_;
   std::unique_ptr<TipElementRows> tip_rows_;
-  std::vector<int> point_observable_;  ///< (points) number of a point among the observables
-  std::vector<int> node_point_;        ///< (added nodes) point that sits on the node
+  std::vector<int> point_observable_;  ///< (points) number of each point among the observables
+  std::vector<int> node_point_;        ///< (added nodes) number of the point at each node
   std::vector<Mat3> by_points_;        ///< (points) [mm/N] amplitude of a new hat per force on each point
-  std::vector<RemeshEvent> changes_;   ///< of the mesh since reset()
+  std::vector<RemeshEvent> changes_;   ///< changes of the mesh since reset()
 };
 
 }  // namespace stylet

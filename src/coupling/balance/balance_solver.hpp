@@ -10,32 +10,33 @@
 
 namespace stylet {
 
-/// The parts of an insertion that a solver of the balance reads and changes. All outlive the solver.
+/// The parts of an insertion that a balance solver reads and changes. All of them outlive the solver.
 struct BalanceParts {
   const CouplingSettings& settings;
   Contacts contacts;
-  TipPath& path;          ///< breaks the surfaces that a balance says break
-  const HandForce& hand;  ///< what the hand bore when they did
-  Predictor& predictor;   ///< where a sub-step probably ends
+  TipPath& path;          ///< breaks the surfaces whose strength a balance exceeds
+  const HandForce& hand;  ///< gives the hand's force at that moment
+  Predictor& predictor;   ///< predicts the end of a sub-step
   PhaseObserver* const& phases;
 };
 
-/// Finds one sub-step's balance of needle, tissue, friction and cutting. No call allocates.
+/// Finds the balance of needle, tissue, friction and cutting at the end of a sub-step. No call allocates.
 class BalanceSolver {
  public:
   virtual ~BalanceSolver() = default;
 
-  /// Finds the balance after a sub-step of h seconds. Where there is none the step has a flag.
-  /// @return whether it was found soon, the tip having kept its state: the next sub-step will be like this one
+  /// Finds the balance after a sub-step of h seconds. Sets a flag in `step` where there is none.
+  /// @return whether the balance was found in few iterations and the tip kept its state, so that the next sub-step can
+  /// be predicted from this one
   virtual bool solve(double h, Effort& effort, Step& step) = 0;
 
-  /// The needle is damped in the sub-step that begins (Needle::damp()).
+  /// Sets the needle's damping for the next sub-step (Needle::damp()).
   virtual void damp(double /*ratio*/) {}
-  /// The base has moved by so much [mm].
+  /// Reports a motion of the base [mm].
   virtual void base_moved(double /*way_mm*/) {}
-  /// The needle's shape was changed by somebody else.
+  /// Reports that the needle's shape was changed from outside.
   virtual void forget_tangent() {}
-  /// The needle is out of the tissue.
+  /// Reports that the needle has left the tissue.
   virtual void release() {}
 };
 

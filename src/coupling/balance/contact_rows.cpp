@@ -8,14 +8,14 @@
 namespace stylet {
 
 namespace {
-/// [N s/mm] Stands for no viscosity in a division and is far below any that a balance could be found with. Raised, a
-/// contact without viscosity slides less freely.
+/// [N s/mm] Smallest viscosity in a division, far below any with which a balance could be found. Raised, a contact
+/// without viscosity slides less freely.
 constexpr double kNoViscosity = 1e-12;
-/// [N s/mm²] Friction without viscosity would leave a sliding contact's place undetermined. At 100 mm/s this adds 1e-7
-/// N/mm; raised, it adds more.
+/// [N s/mm²] Least viscosity of friction; without any, the place of a sliding contact would be undetermined. At 100
+/// mm/s this adds 1e-7 N/mm; raised, it adds more.
 constexpr double kLeastViscosity = 1e-9;
-/// Part of friction's growth with speed that is kept beyond the speed where growth ends: enough to tell how far a
-/// contact slides. Raised, fast contacts carry more friction than their law says.
+/// Part of the viscosity that is kept above the speed where friction stops growing, which suffices to determine how far
+/// a contact slides. Raised, fast contacts carry more friction than their law says.
 constexpr double kFlat = 1e-3;
 }  // namespace
 
@@ -40,7 +40,7 @@ void ContactRows::take_places(const Contacts& contacts) {
     const AxisPlace at = contacts.needle.place(s);
     const Vec3& t = at.tangent;
     needle_[static_cast<std::size_t>(c)] = at.point + beyond * t;
-    // Any pair of normals will do: both lateral directions are treated alike.
+    // Any pair of normals is valid, because both lateral directions are treated alike.
     const Vec3 helper = std::abs(t.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
     const Vec3 n1 = t.cross(helper).normalized();
     Mat3& Q = frame[static_cast<std::size_t>(c)];

@@ -8,62 +8,62 @@
 
 namespace stylet {
 
-/// How the tip's own motion changes the equations.
+/// Terms of the equations by which the tip's own motion enters.
 struct TipMotion {
-  /// [mm/mm] (3 contacts) By how much the gaps change as the cut goes on, beyond what the tip's yield says of it: the
-  /// cut takes the tip to where the tissue's compliance is another one.
+  /// [mm/mm] (3 contacts) Change of the gaps per length of cut, beyond the tip's own yield, because the tissue has
+  /// another compliance at the new place of the tip.
   VecX drift;
-  double cut_per_N = 0.0;  ///< [mm/N] way that the cut goes on with the tip's axial force; 0: it does not
-  double cut_due = 0.0;    ///< [mm] by which the cut is behind the present force
-  /// A tip that is held along the needle only: its direction, and so its force, turns as the needle does, by so much as
-  /// the tip moves aside of a contact behind it, over the way between them. 0 = no such contact, the direction stays.
+  double cut_per_N = 0.0;  ///< [mm/N] length of cut per axial force of the tip; 0: the tip does not cut
+  double cut_due = 0.0;    ///< [mm] length by which the cut is behind the present force
+  /// Number of a contact behind the tip; 0: none. Where the tip is held along the needle only, its force turns with the
+  /// needle's direction: by the lateral motion of the tip relative to this contact, over the distance between them.
+  /// Without such a contact the direction is kept.
   int behind = 0;
-  double behind_mm = 0.0;  ///< [mm] that way, along the shaft
+  double behind_mm = 0.0;  ///< [mm] that distance along the shaft
 
   [[nodiscard]] bool drifts() const { return cut_per_N > 0.0; }
 };
 
-/// The rows of the contact equations, three a contact, the tip first: where needle and tissue are at each contact, what
-/// each contact yields by itself in its present state, and its force. Nothing allocates after construction.
+/// The rows of the contact equations, three for each contact, the tip first: the places of needle and tissue at each
+/// contact, the contact's own yield in its present state, and its force. Nothing allocates after construction.
 class ContactRows {
  public:
-  /// @param most contacts, tip included
+  /// @param most largest number of contacts, tip included
   ContactRows(const CouplingSettings& settings, int most);
 
-  std::vector<Mat3> frame;   ///< columns n1, n2, t of each contact: across the needle and along it, LPS
-  std::vector<Yield> yield;  ///< D: what each contact gives way by itself
-  VecX shift;                ///< [mm] in the frames: what that adds to the right-hand side
+  std::vector<Mat3> frame;   ///< columns n1, n2 (lateral) and t (along the needle) of each contact, LPS
+  std::vector<Yield> yield;  ///< D: the own yield of each contact
+  VecX shift;                ///< [mm] in the contacts' frames: term of the right-hand side that belongs to D
   VecX now;                  ///< [N] LPS, λ_now: the present forces on the tissue
-  VecX gap;                  ///< [mm] LPS, how far the tissue's points are beyond the needle's under these forces
+  VecX gap;                  ///< [mm] LPS, position of the tissue point minus that of the needle point, under the
+                             ///< present forces
   TipMotion tip;
 
-  /// By how much a contact's equations are not fulfilled at the present forces [mm], in its frame: gap + D λ_now −
-  /// shift.
+  /// Error of a contact's equations at the present forces [mm], in its frame: gap + D λ_now − shift.
   [[nodiscard]] Vec3 error(int contact) const {
     const auto c = static_cast<std::size_t>(contact);
     const Vec3 off = gap.segment<3>(3 * contact) + yield[c].of(now.segment<3>(3 * contact));
     return frame[c].transpose() * off - shift.segment<3>(3 * contact);
   }
 
-  /// Takes the places of all contacts: their frames, the needle's points there, and what earlier forces do to the
-  /// tissue.
+  /// Updates the geometry at all contacts: the frames, the needle's points, and the displacement of the tissue by
+  /// earlier forces.
   void take_places(const Contacts& contacts);
-  /// The loads on the needle under the present forces.
+  /// Updates the loads on the needle from the present forces.
   void take_loads(const Contacts& contacts);
   [[nodiscard]] std::span<PointLoad> loads() { return loads_; }
   [[nodiscard]] std::span<const PointLoad> loads() const { return loads_; }
-  /// [N] Largest of the loads, at least 1.
+  /// [N] The largest load, at least 1 N.
   [[nodiscard]] double largest_load() const;
 
-  /// Writes the yield of each contact in a sub-step of h seconds, in the contact's present state, and the shift that
-  /// this state adds to the right-hand side; and in each contact of the shaft the numbers of its friction: `coulomb`,
-  /// `slip` and `reach`.
-  /// @param foresees_cut whether the equations know that compliance changes as the cut goes on
+  /// Updates the yield D of each contact and its shift for a sub-step of h seconds, in the contact's present state.
+  /// Also updates the friction terms `coulomb`, `slip` and `reach` of each shaft contact.
+  /// @param foresees_cut whether the equations include the change of compliance with the cut
   void soften(const Contacts& contacts, double h, bool foresees_cut);
 
-  /// [mm] LPS, the needle at a contact, straight on past its ends; as of take_places().
+  /// [mm] LPS, the needle's point at a contact, extended straight beyond the needle's ends; as of take_places().
   [[nodiscard]] const Vec3& needle_at(int load) const { return needle_[static_cast<std::size_t>(load)]; }
-  /// [mm] LPS, where the tissue at a contact would be without the present forces.
+  /// [mm] LPS, position of a contact's tissue point without the present forces.
   [[nodiscard]] Vec3 unloaded(const Contacts& contacts, int load) const {
     return contacts.material(load) + past_[static_cast<std::size_t>(load)];
   }
@@ -73,7 +73,7 @@ class ContactRows {
   void soften_shaft(ShaftContact& contact, int load, double h);
 
   const CouplingSettings& settings_;
-  std::vector<PointLoad> loads_;  ///< tip first: minus the forces on the tissue
+  std::vector<PointLoad> loads_;  ///< the loads on the needle, tip first: minus the forces on the tissue
   std::vector<Vec3> needle_;      ///< [mm] LPS
   std::vector<Vec3> past_;        ///< [mm] LPS, displacement of the tissue by earlier forces
 };

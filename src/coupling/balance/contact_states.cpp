@@ -7,12 +7,13 @@
 namespace stylet {
 
 namespace {
-/// [mm] A contact with less length carries no friction. Raised, contacts next to the tip come to hold later.
+/// [mm] A contact that stands for less length carries no friction. Raised, contacts next to the tip start to hold
+/// later.
 constexpr double kNoLength_mm = 1e-6;
-/// [mm] Less is not sliding. Raised, a contact may be taken to slide the wrong way by that much.
+/// [mm] Smaller motions are rounding, not sliding. Raised, a contact may slide the wrong way by this much.
 constexpr double kStill_mm = 1e-9;
-/// [mm] On either side of the speed where friction stops growing its two laws agree; a way so near to it says nothing
-/// about the side. Raised, friction is off by more next to that speed.
+/// [mm] Tolerance on the way at the speed where friction stops growing: there the laws for slow and fast sliding agree,
+/// and rounding decides the side. Raised, the friction near that speed is less exact.
 constexpr double kSameSpeed_mm = 1e-6;
 }  // namespace
 
@@ -29,8 +30,9 @@ double ContactStates::contradiction(int load, const Trial& trial) const {
   const ShaftContact& contact = contacts_.of_shaft(load);
   if (contact.toggles > most_toggles_ || is_frictionless(contact)) return 0.0;
   if (contact.sticks()) return std::abs(trial.axial) - contact.law.static_N_per_mm * contact.length;
-  // Sliding the other way than its state says, or faster or slower. A length is what tells, since forces hardly differ
-  // where friction does not depend on speed; it counts as the force that pushes the tissue so far.
+  // The contact slides against the sense of its state, or faster or slower than its state allows. The way decides,
+  // because forces hardly differ where friction does not depend on speed; it is converted to the force that displaces
+  // the tissue by this way.
   const double slides = trial.slides;
   const double wrong =
       contact.fast ? contact.reach - slides - kSameSpeed_mm : std::max(-slides, slides - contact.reach - kSameSpeed_mm);
@@ -39,7 +41,7 @@ double ContactStates::contradiction(int load, const Trial& trial) const {
   return 3.0 * wrong / tissue.compliance()(contact.point, contact.point).trace();
 }
 
-/// A surface ahead breaks on a balance only, so it contradicts nothing here (TipContact::breaks_surface).
+/// A surface ahead is broken by a balance only (TipContact::breaks_surface), so it is no contradiction here.
 double ContactStates::contradiction_of_tip(const Trial& trial) const {
   const TipContact& tip = contacts_.tip;
   if (!tip.touches() || tip.toggles > most_toggles_) return 0.0;
@@ -72,7 +74,7 @@ void ContactStates::change(int load, const Trial& trial, Step& step) {
     contact.fast = !contact.fast;
   } else {
     contact.state = ShaftContact::State::stick;
-    contact.s = contact.s_start;  // back to where it was held
+    contact.s = contact.s_start;  // the place at which it was held
   }
 }
 

@@ -73,7 +73,8 @@ Vec3 ContactSystem::own_yield(int contact) const {
   return result;
 }
 
-/// The grips and springs by themselves: B⁻¹ of the tip's columns, of the right-hand side and of the drift.
+/// Solves the rows of shaft contacts and springs without the tip: B⁻¹ of the tip's columns, of the right-hand side and
+/// of the drift.
 bool ContactSystem::solve_grips() {
   const Eigen::Index n = grip_rows();
   if (n > 0 && !grips_.change(yields_of(needle)) && !(factorise() && grips_.change(yields_of(needle)))) return false;
@@ -97,7 +98,7 @@ bool ContactSystem::solve_grips() {
   return true;
 }
 
-/// The tip: its three rows with the others taken out.
+/// Solves the tip's three rows, after elimination of the others.
 /// @return π of the tip, and the force φ of the spring there
 std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
   const Eigen::Index n = grip_rows();
@@ -114,7 +115,7 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
   const Vec3 t = Q.col(2);
   const Mat3 N_tip = N.topLeftCorner<3, 3>();
 
-  // The tissue's and the contact's compliance, by which π and φ move the tip, and the error of the tip's rows.
+  // The compliance of tissue and contact, by which π and φ move the tip, and the error of the tip's rows.
   const Yield& tip = rows_.yield.front();
   Mat3 own = A.topLeftCorner<3, 3>();
   own += (tip.axial - tip.lateral) * tip.along * tip.along.transpose() + tip.lateral * Mat3::Identity();
@@ -150,7 +151,7 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
     rest.noalias() -= own * lent.at;
   }
 
-  // Rows that are not held carry nothing any more: λ = 0.
+  // In a row that is not held, the force becomes zero: λ = 0.
   Mat3 left = Q.transpose() * corner * Q;
   Vec3 given = Q.transpose() * rest;
   const Mat3 free_row = Q.transpose() * (Mat3::Identity() - lent.per) * Q;
@@ -161,7 +162,7 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
     given[k] = -carried[k];
   }
   if (turns(held)) {
-    // The force turns with the direction, and more or less of how far the tip is aside is along it.
+    // The force turns with the tip's direction, and so does the part of the lateral gap that lies along it.
     const Eigen::Index g = 3 * static_cast<Eigen::Index>(motion.behind);
     Along turn = {free.head<3>() - free.segment<3>(g), N_tip - N.block<3, 3>(g, 0)};
     beyond_.topRows(n) = N.block(3, 0, n, 3) - N.block(3, g, n, 3);
@@ -179,9 +180,9 @@ std::pair<Vec3, Vec3> ContactSystem::solve_tip(TipRows held) {
   return {change, lent.at - lent.per * change};
 }
 
-/// Takes off what of a motion at − per π_0 is due to the grips' pushes.
-/// @param columns of N that give the motion of those pushes
-/// @return what the motion has of the tip's spring by way of the grips: − (…) φ
+/// Subtracts the part of a motion, at − per π_0, that the pushes of the shaft contacts cause.
+/// @param columns columns of N that give the motion by those pushes
+/// @return matrix M of the motion −M φ that the tip's spring causes through the shaft contacts
 Mat3 ContactSystem::subtract_grips(const Eigen::Ref<const MatX>& columns, Along& moves) const {
   const Eigen::Index n = grip_rows();
   const auto row = columns.transpose();

@@ -9,8 +9,8 @@
 
 namespace stylet {
 
-/// All contacts between a needle and tissue, numbered as the needle's loads are: 0 is the tip, 1 the shaft's first
-/// contact. A view: it keeps nothing.
+/// All contacts between one needle and the tissue, numbered like the needle's loads: 0 is the tip, 1 is the shaft
+/// contact nearest to the base. A view without data of its own.
 struct Contacts {
   Needle& needle;
   TissueResponse& tissue;
@@ -23,16 +23,16 @@ struct Contacts {
   [[nodiscard]] int point(int load) const { return load == 0 ? ContactCompliance::kTip : of_shaft(load).point; }
   /// [N] LPS, on the tissue.
   [[nodiscard]] Vec3& force(int load) const { return load == 0 ? tip.force : of_shaft(load).force; }
-  /// [mm] LPS, undeformed place of the tissue's point.
+  /// [mm] LPS, undeformed place of the contact's tissue point.
   [[nodiscard]] const Vec3& material(int load) const { return load == 0 ? tip.cut.x() : of_shaft(load).x; }
-  /// [mm] Place along the needle, within its length.
+  /// [mm] Arc length of the contact on the needle, clamped to the needle's length.
   [[nodiscard]] double arc(int load) const {
     return load == 0 ? needle.length() : std::clamp(of_shaft(load).s, 0.0, needle.length());
   }
   [[nodiscard]] ContactForces forces() const { return {tip.force, shaft.all()}; }
-  /// [mm] LPS, displacement of a point by all forces.
+  /// [mm] LPS, displacement of a point of ContactCompliance by all forces.
   [[nodiscard]] Vec3 displacement(int point) const { return tissue.displacement(point, forces()); }
-  /// [N] of all contacts, at least 1; not a number where one is none.
+  /// [N] The largest force of a contact, at least 1 N; NaN where a force is NaN.
   [[nodiscard]] double largest_force() const {
     double largest = larger_or_nan(1.0, tip.force.norm());
     for (const ShaftContact& contact : shaft.all()) largest = larger_or_nan(largest, contact.force.norm());

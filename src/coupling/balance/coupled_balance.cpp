@@ -11,74 +11,83 @@
 namespace stylet {
 
 namespace {
-/// Iterations before a balance is given up. Raised, hopeless balances cost more.
+/// kMaxNewton: iterations before a balance is given up. Raised, balances that do not converge cost more.
 constexpr int kMaxNewton = 30;
-/// Rounds of changing states before a balance is taken as cycling. Raised, cycling costs more.
+/// kMaxPivots: rounds of state changes before the states are taken as cycling. Raised, cycling costs more.
 constexpr int kMaxPivots = 60;
-/// Rounds in which all contradictions are lifted together; then they are lifted one by one. Raised, states may go to
-/// and fro for longer.
+/// kAllAtOnce: rounds in which all contradictions are resolved together; after them only the worst one is. Raised,
+/// states may alternate for longer.
 constexpr int kAllAtOnce = 4;
-/// Changes of state in a sub-step, then a contact keeps its state. Raised, cycling costs more.
+/// kMaxToggles: a contact that changes its state more often than this in a sub-step keeps it. Raised, cycling costs
+/// more.
 constexpr int kMaxToggles = 6;
-/// An old matrix is made anew before the next step after more iterations than this. Raised, matrices are kept longer.
+/// kManyIterations: refactorise before the next step if a balance took more iterations than this, and kSlow or kSlowish
+/// agree. Raised, matrices are kept longer.
 constexpr int kManyIterations = 5;
-/// The same where no state changed.
+/// kManyQuiet: the same limit for a balance in which no contact changed its state.
 constexpr int kManyQuiet = 3;
-/// Both ask for that only if the last iteration left more than this part of the error, which is the matrix's fault.
-/// Raised, matrices are kept longer.
+/// kSlow: refactorise only if the last iteration left more than this part of the error, because then the matrix is to
+/// blame. Raised, matrices are kept longer.
 constexpr double kSlow = 0.08;
-/// The same where many iterations were taken and no state changed.
+/// kSlowish: replaces kSlow where no state changed and more than kManyIterations were taken.
 constexpr double kSlowish = 0.02;
-/// Where iterations leave more than this part of the error the next tangent is begun. Raised, it is begun later.
+/// kWorn: begin the next tangent if the last iteration left more than this part of the error. Raised, it is begun
+/// later.
 constexpr double kWorn = 0.01;
-/// Most iterations of a balance that leaves time for a piece of the next tangent; a cut takes the time of one. Raised,
-/// the longest steps grow longer.
+/// kTimeLeft: a balance of at most this many iterations leaves time for a piece of the next tangent; for a tip that
+/// cuts, one iteration less. Raised, the longest steps take longer.
 constexpr int kTimeLeft = 2;
-/// Further iterations that are waited for before a new tangent is made, which costs as much as some of them. Raised,
-/// tangents are kept longer and more iterations taken.
+/// kWorthATangent: keep the present tangent if this many more iterations would converge at the present rate; a new
+/// tangent costs as much as some iterations. Raised, tangents are kept longer and more iterations are taken.
 constexpr int kWorthATangent = 6;
-/// [of the largest force] From nearer than this to the balance, the first iteration's success says nothing about the
-/// matrix: a contact that changes its state or a cut that goes a little further may outweigh all the error there was.
+/// kNear [error over the largest force]: if the first error is smaller than this, the rate of the first iteration is
+/// judged as if the error had been this large. So near to the balance, a contact that changes its state or a cut that
+/// goes a little further outweighs the initial error, whatever the matrix.
 constexpr double kNear = 1e-4;
-/// Where states have changed, a tangent of this balance serves on while no more than this part of the error is left
-/// each time. Raised, fewer tangents are made in a balance.
+/// kFalls: where states have changed, keep a tangent that was made in this balance while each iteration leaves less
+/// than this part of the error. Raised, fewer tangents are made in one balance.
 constexpr double kFalls = 0.3;
-/// Part of the tolerance that the needle is held to, as out-of-balance moment over the largest force × the length.
-/// Raised, the needle's shape is less exact.
+/// kNeedleShare: tolerance of the needle's out-of-balance moment, over the largest force × the needle's length, as a
+/// part of the tolerance. Raised, the needle's shape is less exact.
 constexpr double kNeedleShare = 0.1;
-/// [N] Smaller contradictions are rounding, and a smaller yield counts as this in a division.
+/// kTiny [N]: contradictions below this are rounding. Also the least yield [mm/N] in a division.
 constexpr double kTiny = 1e-12;
-/// Error over the tolerance that is still no failure when iterations have ended. Raised, fewer steps are flagged.
+/// kPoor: when the iterations have ended, an error of up to this many times the tolerance is no failure. Raised, fewer
+/// steps are flagged.
 constexpr double kPoor = 1e3;
-/// Growth of the largest force, without a balance, that comes from iterations that went astray. Raised, forces may jump
-/// further in a flagged step.
+/// kMostGrowth: without a balance, an iterate whose largest force has grown by more than this factor is discarded.
+/// Raised, forces may jump further in a flagged step.
 constexpr double kMostGrowth = 2.0;
-/// The same of the tip's way over the needle's length.
+/// kMostMotion: the same for the motion of the tip, over the needle's length.
 constexpr double kMostMotion = 0.1;
-/// [mm] From a contact nearer than this to the tip its direction is not told. Raised, it is told by one further back.
+/// kLeastTurn_mm [mm]: the tip's direction is computed from the last contact that is further than this behind the tip.
+/// Raised, it is computed from one further back.
 constexpr double kLeastTurn_mm = 1.0;
 
-/// Where compliance changes fast with the cut (next to held tissue) the cut would jump to and fro: it is followed the
-/// more slowly the longer that lasts.
+/// kSmoothCut: from this iteration on, the motion of the cut is damped, and the equations ignore that compliance
+/// changes with it. Where compliance changes fast with the cut (next to held tissue) the cut would alternate; the
+/// longer that lasts, the more the motion is damped.
 constexpr int kSmoothCut = 6;
-/// [mm] Where compliance jumps, between two elements, there may be no cut at all that balances: in front of the border
-/// it would have to be shorter, behind it longer. A step of it that is no longer than this and comes into the element
-/// that it went back out of before ends it for this sub-step. Raised, a cut may be longer by that much.
+/// kShortCut_mm [mm]: compliance may jump between two elements, so that no place of the cut balances: in the first
+/// element the cut would have to be longer, in the second shorter. If the cut enters an element that it has gone back
+/// out of in this balance, by a step shorter than this, it ends there for this sub-step. Raised, a cut may be longer by
+/// this.
 constexpr double kShortCut_mm = 0.05;
 double damping_of_cut(int iteration) { return iteration < kSmoothCut ? 1.0 : iteration < 2 * kSmoothCut ? 0.5 : 0.25; }
 }  // namespace
 
-/// State of a solve between its iterations.
+/// The state of a solve between its iterations.
 struct CoupledBalance::Progress {
-  double before = std::numeric_limits<double>::infinity();  ///< error over the tolerance in the iteration before
+  double before = std::numeric_limits<double>::infinity();  ///< error over the tolerance, in the previous iteration
   bool changed = true;                                      ///< a state changed in the last iteration
-  bool quiet = true;                                        ///< none has changed so far
-  bool old_matrix = false;         ///< the last iteration was with a matrix of an earlier shape
-  bool old_matrix_failed = false;  ///< the last iteration was so, and found no solution
+  bool quiet = true;                                        ///< no state has changed in this balance
+  bool old_matrix = false;                                  ///< the last iteration used a tangent of an earlier shape
+  bool old_matrix_failed = false;  ///< the last iteration used an old matrix and found no solution
   bool new_tangent = false;        ///< a tangent was made in this balance
   bool steady = true;              ///< what solve() returns
 
-  /// Whether an iteration with an error [over the tolerance] after `iteration` others needs a new tangent.
+  /// Whether a new tangent is worth its cost. @param error over the tolerance @param iteration number of iterations so
+  /// far
   [[nodiscard]] bool needs_tangent(double error, int iteration) const {
     const double rate = error / before;
     const auto done_after = [&](int more) { return rate < 1.0 && error * std::pow(rate, more) < 1.0; };
@@ -101,8 +110,8 @@ void CoupledBalance::march(double advance) {
   parts_.contacts.tip.cut.march(advance);
 }
 
-/// Gathers the numbers of the linear equations: the tissue's compliance among the contacts, the contacts' forces, and
-/// the gaps between tissue and needle.
+/// Gathers the terms of the linear equations: the tissue's compliance among the contacts, the forces of the contacts,
+/// and the gaps between tissue and needle.
 void CoupledBalance::gather() {
   const InPhase in_phase(parts_.phases, StepPhase::gather);
   const int count = parts_.contacts.count();
@@ -111,7 +120,7 @@ void CoupledBalance::gather() {
   if (same < std::min(tissue_.before(), count)) {
     tangent_.outdate();
     system_.outdate();
-  } else if (count < tissue_.before()) {  // the last ones slid off the tip
+  } else if (count < tissue_.before()) {  // the last contacts slid off the tip
     system_.keep_first(count);
   }
   tissue_.gather(parts_.contacts, same);
@@ -137,7 +146,7 @@ void CoupledBalance::gather() {
   }
 }
 
-/// Takes everything as it is now. @return how far needle, tissue and laws are from balance: 1 is the tolerance
+/// Evaluates all terms at the present iterate. @return the largest error of needle, tissue and laws, over the tolerance
 double CoupledBalance::look(double h) {
   rows_.take_loads(parts_.contacts);
   {
@@ -157,7 +166,7 @@ ContactSystem::TipRows CoupledBalance::tip_rows() const {
   return parts_.contacts.tip.has_lateral_rows() ? ContactSystem::TipRows::all : ContactSystem::TipRows::axial;
 }
 
-/// Largest error of a held row at the present shape, as a force: error over what the row yields.
+/// The largest error of a held row at the present shape, as a force: the error divided by the row's own yield.
 double CoupledBalance::equation_error() const {
   double error = 0.0;
   const auto held = tip_rows();
@@ -166,13 +175,13 @@ double CoupledBalance::equation_error() const {
     const Vec3 off = rows_.error(c).cwiseAbs().cwiseQuotient(system_.own_yield(c));
     for (int k = c == 0 ? tip_from : 0; k < 3; ++k) error = larger_or_nan(error, off[k]);
   }
-  // A contact that is not held in a direction must carry nothing there.
+  // In a direction in which the tip is not held, its force must be zero.
   if (held == ContactSystem::TipRows::axial)
     error = larger_or_nan(error, (rows_.frame[0].leftCols<2>().transpose() * parts_.contacts.tip.force).norm());
   return error;
 }
 
-/// Force and motion of a contact in the present solution of the system.
+/// Force and motion of a contact in the present solution.
 ContactStates::Trial CoupledBalance::trial(int load) const {
   ContactStates::Trial result{.axial = system_.lambda[3 * load + 2]};
   if (load > 0) {
@@ -185,7 +194,8 @@ ContactStates::Trial CoupledBalance::trial(int load) const {
   return result;
 }
 
-/// A contact that is held again went back along the shaft; the right-hand side must know at once.
+/// Changes the state of a contact. A contact that sticks again returns to its place at the start of the sub-step, and
+/// the right-hand side has to follow at once.
 void CoupledBalance::change_and_tell(int load, Step& step) {
   const double s = load == 0 ? 0.0 : parts_.contacts.of_shaft(load).s;
   states_.change(load, trial(load), step);
@@ -194,9 +204,9 @@ void CoupledBalance::change_and_tell(int load, Step& step) {
       (parts_.contacts.of_shaft(load).s - s) * rows_.frame[static_cast<std::size_t>(load)].col(2);
 }
 
-/// Solves the held rows, then lets every state that contradicts its own law change, until none does.
-/// @param changed whether a state has
-/// @param effort has ended where it was broken off
+/// Solves the held rows, and changes the states that contradict their laws, until no state does.
+/// @param effort ended where the solution was broken off
+/// @param changed set to whether a state has changed
 /// @return false when the matrix is singular
 bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) {
   const InPhase in_phase(parts_.phases, StepPhase::solve);
@@ -214,11 +224,11 @@ bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) 
       const InPhase gathering(parts_.phases, StepPhase::gather);
       rows_.soften(parts_.contacts, h, foresees_cut_);
     }
-    // The error of an old matrix may make states go to and fro.
+    // The error of an old matrix may make states alternate.
     if (round == kAllAtOnce && !system_.factorise()) return false;
     if (!system_.solve(tip_rows())) return false;
 
-    // Find the worst contradiction; while there are many, change all of them at once.
+    // Find the worst contradiction. In the first rounds change all states that contradict their laws.
     double worst = kTiny;
     int worst_load = -1;
     for (int c = 0; c < parts_.contacts.count(); ++c) {
@@ -245,7 +255,7 @@ bool CoupledBalance::pivot(double h, Effort& effort, Step& step, bool& changed) 
   return true;
 }
 
-/// Moves a sliding contact along the needle by what the present solution says.
+/// Moves a sliding contact along the needle to its place in the present solution.
 void CoupledBalance::slide(int load) {
   ShaftContact& contact = parts_.contacts.of_shaft(load);
   if (contact.sticks()) return;
@@ -258,7 +268,7 @@ void CoupledBalance::slide(int load) {
   contact.s = s + rows_.frame[static_cast<std::size_t>(load)].col(2).dot(gap);
 }
 
-/// Forces, shape and slides of the present solution.
+/// Takes over the forces, the shape and the slides of the present solution.
 void CoupledBalance::take_solution() {
   for (int c = 0; c < parts_.contacts.count(); ++c) {
     rows_.loads()[static_cast<std::size_t>(c)].force = -system_.push.segment<3>(3 * c);
@@ -271,8 +281,8 @@ void CoupledBalance::take_solution() {
   for (int c = 1; c < parts_.contacts.count(); ++c) slide(c);
 }
 
-/// The cut goes on as the present solution says. @return whether it ended at a surface or between two elements: the tip
-/// is held there
+/// Moves the cut to its place in the present solution. @return whether the cut ended at a surface or between two
+/// elements, where the tip is now held
 bool CoupledBalance::cut_on(double h, int iteration) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return false;
@@ -285,19 +295,19 @@ bool CoupledBalance::cut_on(double h, int iteration) {
   const bool ends = now != tet && now == left_tet_ && way > 0.0 && way < kShortCut_mm;
   if (now != tet && way < 0.0) left_tet_ = tet;
   if (!ends && !tip.cut.is_blocked()) return false;
-  if (ends) tip.toggles = kMaxToggles + 1;  // it keeps its state
+  if (ends) tip.toggles = kMaxToggles + 1;  // the tip keeps this state for the sub-step
   tip.set_state(TipContact::State::stick);
   return true;
 }
 
-/// Whether an iterate is so far from where the sub-step began that it is no guide to the balance that was not found.
+/// Whether an iterate without a balance is so far from the start of the sub-step that it is not kept.
 bool CoupledBalance::is_astray(double largest_at_start) const {
   const Needle& needle = parts_.contacts.needle;
   return !(parts_.contacts.largest_force() < kMostGrowth * largest_at_start &&
            (needle.point(needle.length()) - parts_.predictor.tip_start()).norm() < kMostMotion * needle.length());
 }
 
-/// Needle and tissue have no balance nearby: they stay as they were.
+/// Restores needle and tissue to the start of the sub-step.
 void CoupledBalance::give_way() {
   const InPhase in_phase(parts_.phases, StepPhase::tip);
   parts_.predictor.go_back(parts_.contacts.needle, parts_.contacts.tip, parts_.contacts.shaft.all());
@@ -318,8 +328,8 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
   predictor.go_on(parts_.contacts.needle, tip, parts_.contacts.shaft.all());
 
   Progress progress;
-  Index border_tet = -1;  // where the tip was when it was added to the matrix
-  int before_break = 0;   // iterations that went into the balance in which a surface broke
+  Index border_tet = -1;  // element of the tip when it was last added to the matrix
+  int before_break = 0;   // iterations up to the balance in which a surface broke
   for (int all = 0; all < kMaxNewton; ++all) {
     int iteration = all - before_break;
     foresees_cut_ = iteration < kSmoothCut;
@@ -331,7 +341,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
           parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces());
       parts_.path.break_surface(hand_N, step);
       before_break = all;
-      iteration = 0;  // another balance is looked for from here
+      iteration = 0;  // the search for the next balance starts here
       foresees_cut_ = true;
       error = look(h);
     } else if (found) {
@@ -341,15 +351,15 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       if (iteration > 1 && error > kWorn * before) tangent_.wear_out();
       if (iteration <= (tip.state() == TipContact::State::cut ? kTimeLeft - 1 : kTimeLeft))
         tangent_.prepare(parts_.contacts);
-      // On bone a balance that took long is one of a snap and says little about the next. Elsewhere the matrix was old:
-      // a sub-step that began where the last one ended, and not where this one will end, would take as long again.
+      // On bone, a balance that took long belongs to a snap and does not predict the next one. Elsewhere the matrix was
+      // old; without the predictor the next sub-step would take as long again.
       return progress.steady && (iteration <= kManyIterations || !tip.is_on_bone());
     }
     bool exact = progress.old_matrix_failed;
     progress.old_matrix_failed = false;
     if (iteration > 0 && !exact) {
       exact = progress.needs_tangent(error, iteration);
-      // It led away: from where it began, with a new one.
+      // The old tangent led away: restore the iterate before, and use a new tangent from there.
       if (exact && progress.old_matrix && !progress.changed && !(error < progress.before)) {
         kept_.restore(parts_.contacts);
         error = look(h);
@@ -389,7 +399,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
       progress.old_matrix_failed = true;
       continue;
     }
-    if (effort.ended()) break;  // the states are not those of the solution
+    if (effort.ended()) break;  // the states do not belong to the solution
     progress.quiet = progress.quiet && !progress.changed;
     progress.steady = progress.steady && tip.toggles == 0;
 

@@ -10,11 +10,11 @@
 
 namespace stylet {
 
-/// Needle, tissue and laws in one system: Newton's iteration over the needle's shape, the frames of the contacts and
-/// the place of the cut, with the linear equations of ContactSystem. Their matrix is dear and changes little from step
-/// to step, so it is kept, and errors are taken as they are: an iteration with an old matrix converges to the same
-/// balance, linearly. Sliding and cutting stay in the system as soft rows (viscous friction is a compliance h/(bℓ)), so
-/// a change of state changes D alone.
+/// Solves needle, tissue and laws in one system: Newton's iteration over the needle's shape, the frames of the contacts
+/// and the place of the cut, with the linear equations of ContactSystem. Their matrix is expensive and changes little
+/// from step to step, so it is kept, while the errors are exact: an iteration with an old matrix converges to the same
+/// balance, linearly. Sliding and cutting are soft rows of the system (viscous friction is a compliance h/(bℓ)), so a
+/// change of state changes D only.
 class CoupledBalance : public BalanceSolver {
  public:
   explicit CoupledBalance(const BalanceParts& parts);
@@ -26,7 +26,7 @@ class CoupledBalance : public BalanceSolver {
   void release() override { tangent_.release(); }
 
  private:
-  /// State of a solve between its iterations.
+  /// The state of a solve between its iterations.
   struct Progress;
 
   double look(double h);
@@ -50,8 +50,8 @@ class CoupledBalance : public BalanceSolver {
   TissueBlock tissue_;
   NeedleTangent tangent_;
   Iterate kept_;
-  bool foresees_cut_ = true;  ///< the equations know that compliance changes as the cut goes on
-  Index left_tet_ = -1;       ///< element that the cut went back out of in this balance
+  bool foresees_cut_ = true;  ///< whether the equations include the change of compliance with the cut
+  Index left_tet_ = -1;       ///< element that the cut has gone back out of in this balance
 };
 
 }  // namespace stylet

@@ -5,10 +5,10 @@
 
 namespace stylet {
 
-/// What a balance of a sub-step may take before it is broken off, flagged; the next one goes on from there. So a step
-/// of up to 40 contacts takes about a millisecond at the most, whatever becomes of it; with more it takes longer. It is
-/// counted by what was done and not by a clock: a step is the same on every machine. The unit is about a microsecond of
-/// the machine of docs/realtime.md, for needles of rods; docs/theory/coupling.md §4 has more.
+/// The effort that a balance may take before it is broken off and flagged; the next balance continues from there. A
+/// step with up to 40 contacts takes at most about a millisecond, whatever happens in it; with more contacts it takes
+/// longer. Operations are counted instead of timed, so that a step is the same on every machine. The unit is about a
+/// microsecond on the machine of docs/realtime.md, for needles of rods; docs/theory/coupling.md §4 gives the counts.
 class Effort {
  public:
   /// @param contacts tip included
@@ -16,16 +16,16 @@ class Effort {
       : square_(contacts * static_cast<double>(contacts)),
         left_(std::max(kLeast, 3.0 * tangent() + 6.0 * iteration())) {}
 
-  /// An iteration with a tangent that is there already.
+  /// Effort of an iteration with an existing tangent.
   [[nodiscard]] double iteration() const { return 10.0 + 0.015 * square_; }
-  /// The effort that a new tangent of the needle, and the matrix made of it, add to an iteration.
+  /// Additional effort of an iteration that makes a new tangent of the needle and its matrix.
   [[nodiscard]] double tangent() const { return needle() + matrix(); }
-  /// The effort of each further solution, after states of contacts have changed.
+  /// Effort of each further solution after contacts have changed their states.
   [[nodiscard]] double solution() const { return 2.0 + 0.02 * square_; }
-  /// The parts of a tangent, each of which may be wanted more than once.
+  /// Effort of the two parts of a tangent, each of which may be needed more than once.
   [[nodiscard]] double needle() const { return 20.0 + 0.04 * square_; }
   [[nodiscard]] double matrix() const { return 5.0 + 0.045 * square_; }
-  /// The matrix with springs at all contacts.
+  /// Effort of the matrix with springs at all contacts.
   [[nodiscard]] double matrix_on_all_springs() const { return 3.0 * matrix(); }
 
   [[nodiscard]] bool allows(double more) const { return more <= left_; }
@@ -34,8 +34,8 @@ class Effort {
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
-  /// Effort that balances of up to some 40 contacts may take. Three tangents always: with fewer a needle that bows or
-  /// snaps is not followed.
+  /// Least allowance, for balances with up to about 40 contacts. Three tangents are always allowed: with fewer, the
+  /// solver cannot follow a needle that bows or snaps.
   static constexpr double kLeast = 700.0;
 
   double square_;

@@ -4,7 +4,7 @@
 namespace stylet {
 
 GripColumns::GripColumns(int most) {
-  const Eigen::Index rows = 5 * static_cast<Eigen::Index>(most);  // three a contact, two a spring
+  const Eigen::Index rows = 5 * static_cast<Eigen::Index>(most);  // three for each contact, two for each spring
   column_ = begun_ = MatX::Zero(rows, kRight);
   solved_ = MatX::Zero(rows, kDrift + 1);
 }
@@ -14,7 +14,7 @@ void GripColumns::take_tip(const MatX& A, const NeedleSide& needle, GripMatrix& 
   solved_for_ = 0;
   const Eigen::Index n = needle.rows() - 3;
   if (n == 0) return;
-  // The columns of a push at the tip, and of a force of its spring, which moves the tissue alone.
+  // Columns of a push at the tip, and of a force of the tip's spring, which acts on the tissue only.
   auto column = column_.topRows(grips.rows());
   for (int k = 0; k < 3; ++k) {
     auto of_spring = column.col(k);

@@ -12,16 +12,16 @@ namespace stylet {
 
 namespace {
 
-/// A relative change of D below this is left to the error of the next iteration. Larger: the matrix is factorised less
-/// often, and iterations converge more slowly.
+/// A relative change of D below this is ignored; it adds to the error of the next iteration. Raised, the matrix is
+/// factorised less often, and iterations converge more slowly.
 constexpr double kNoChange = 1e-3;
 
-/// Yield that D may have in a wrong direction because the contact has turned since, relative to what the contact gives
-/// way there. Larger: the matrix is made anew less often, and iterations converge more slowly.
+/// D that an old matrix may have in a wrong direction, because the contact has turned, relative to the contact's
+/// compliance. Raised, the matrix is made anew less often, and iterations converge more slowly.
 constexpr double kTurned = 0.1;
 
-/// Contacts that may be added before the matrix is made anew. All rows of added contacts are yielding rows. More: the
-/// matrix is made anew less often, and the part that is factorised in every iteration grows larger.
+/// Contacts that may be appended before the matrix is made anew. All rows of appended contacts are yielding rows.
+/// Raised, the matrix is made anew less often, and the part that is factorised in every iteration is larger.
 constexpr int kMostAppended = 8;
 
 bool differs(double now, double then) { return std::abs(now - then) > kNoChange * std::max(now, then); }
@@ -79,7 +79,7 @@ void GripMatrix::fill_springs(const Eigen::Ref<const MatX>& A) {
   }
 }
 
-/// Gives the yielding rows their D and the springs' directions.
+/// Passes the yielding rows their D and the springs' directions.
 void GripMatrix::begin_yielding() {
   yielding_.begin(rows_.spring_rows());
   for (int g = 0; g < rows_.grips(); ++g) {
@@ -129,7 +129,8 @@ bool GripMatrix::append(const Eigen::Ref<const MatX>& A, const Eigen::Ref<const 
   yields_[l] = yield;
   for (int k = 0; k < 3; ++k) yielding_.add_row(yield.component(k));
 
-  // The contact's columns of B: in the order of elimination; then those of L in the settled rows; then what is left.
+  // The contact's columns of B in the order of elimination; then its rows of L in the settled columns; then its Schur
+  // complement.
   const Eigen::Index settled = rows_.settled();
   const Eigen::Index unsettled = rows_.unsettled();
   const Eigen::Index at = rows() - 3;

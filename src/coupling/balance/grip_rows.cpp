@@ -7,8 +7,9 @@ namespace stylet {
 
 namespace {
 
-/// The last contacts, next to the tip, whose tissue still hardens, or softens again when the needle is withdrawn. More
-/// of them: the matrix need be made anew less often, and the part that is factorised in every iteration is larger.
+/// Number of contacts next to the tip whose lateral rows are yielding rows, because these contacts harden while the
+/// needle goes in and soften when it is withdrawn. Raised, the matrix is made anew less often, and the part that is
+/// factorised in every iteration is larger.
 constexpr int kNextToTip = 3;
 
 }  // namespace

@@ -8,12 +8,12 @@
 
 namespace stylet {
 
-/// The rows of GripMatrix: the direction that each of a contact's three rows stands for, and the order in which all
-/// rows are eliminated. A contact's rows stand for the columns of its frame: two across the needle, then one along it.
+/// The rows of GripMatrix: their directions, and the order in which they are eliminated. The three rows of a contact
+/// stand for the columns of its frame: two across the needle, then one along it.
 ///
 /// The order has three parts:
-///   1. settled rows: those across the needle at contacts that have no yield there and will have none,
-///   2. the springs' rows, two per spring,
+///   1. settled rows: the lateral rows of contacts whose lateral yield is zero and stays zero,
+///   2. the springs' rows, two for each spring,
 ///   3. yielding rows: all other rows of contacts, whose yield changes between iterations.
 /// Nothing allocates after construction.
 class GripRows {
@@ -21,12 +21,12 @@ class GripRows {
   /// @param most_grips largest number of contacts
   explicit GripRows(int most_grips);
 
-  /// Gives every contact its frame and every row its place.
-  /// @param yields one per contact, from the base to the tip @param spring_rows two per spring
+  /// Sets the frame of every contact and the place of every row.
+  /// @param yields one for each contact, from the base to the tip @param spring_rows two for each spring
   void arrange(std::span<const Yield> yields, Eigen::Index spring_rows);
   /// Adds a contact, whose three rows come last. @param along unit vector in LPS, third column of its frame
   void append(const Vec3& along);
-  /// Forgets all contacts but the first; the others must have yielding rows only.
+  /// Removes all contacts but the first `grips`; the removed ones must have yielding rows only.
   void keep_first(int grips);
 
   [[nodiscard]] int grips() const { return grips_; }
@@ -43,11 +43,11 @@ class GripRows {
     return place_[3 * static_cast<std::size_t>(grip) + static_cast<std::size_t>(k)];
   }
   [[nodiscard]] bool settled(int grip, int k) const { return place(grip, k) < settled_; }
-  /// A contact's directions in LPS as columns, row by row.
+  /// A contact's directions in LPS as columns.
   [[nodiscard]] const Mat3& frame(int grip) const { return frames_[static_cast<std::size_t>(grip)]; }
 
-  /// Brings columns from contact by contact into the order of elimination.
-  /// @param Y (count × k) three rows per contact in LPS, then the springs' rows @param ordered (count × k) written
+  /// Sorts columns from contact order into the order of elimination.
+  /// @param Y (count × k) three rows for each contact in LPS, then the springs' rows @param ordered (count × k) written
   void order(const Eigen::Ref<const MatX>& Y, Eigen::Ref<MatX> ordered) const;
   /// The inverse of order(). @param Y (count × k) written
   void restore(const Eigen::Ref<const MatX>& ordered, Eigen::Ref<MatX> Y) const;
@@ -60,8 +60,8 @@ class GripRows {
   int grips_ = 0;
   Eigen::Index spring_rows_ = 0;
   Eigen::Index settled_ = 0;
-  std::vector<Eigen::Index> place_;  ///< (3 per contact)
-  std::vector<Mat3> frames_;         ///< (one per contact)
+  std::vector<Eigen::Index> place_;  ///< (3 for each contact)
+  std::vector<Mat3> frames_;         ///< (one for each contact)
 };
 
 }  // namespace stylet

@@ -7,10 +7,10 @@
 
 namespace stylet {
 
-/// An iterate of a balance, kept to go back to if the next one leads away. Nothing allocates after construction.
+/// A saved iterate of a balance, to be restored if the next one leads away. Nothing allocates after construction.
 class Iterate {
  public:
-  /// @param shape_size of Needle::state() @param most_contacts of the shaft
+  /// @param shape_size size of Needle::state() @param most_contacts largest number of shaft contacts
   Iterate(Eigen::Index shape_size, int most_contacts)
       : shape_(VecX::Zero(shape_size)), shaft_(static_cast<std::size_t>(most_contacts)) {}
 
@@ -22,7 +22,7 @@ class Iterate {
       shaft_[k] = {contacts.shaft.all()[k].force, contacts.shaft.all()[k].s};
   }
 
-  /// No state may have changed since it was kept.
+  /// Restores the iterate. No contact may have changed its state since keep().
   void restore(const Contacts& contacts) const {
     contacts.needle.set_state(shape_);
     contacts.tip.force = tip_force_;

@@ -6,17 +6,17 @@
 namespace stylet {
 
 namespace {
-/// Damping over the time that the tip has stood on bone. Raised, the needle follows a strike later; lowered, a snap
-/// soon after a strike is damped less.
+/// Damping over the time since the tip struck bone. Raised, the needle follows a strike later; lowered, a snap soon
+/// after a strike is damped less.
 constexpr double kDampedShare = 0.1;
-/// Factor on the damping after a balance that was not found. Raised, fewer sub-steps are flagged and more of the
-/// needle's motion is lost.
+/// Factor on the damping after a balance that was not found. Raised, fewer sub-steps are flagged, and the needle moves
+/// less in them.
 constexpr double kMoreDamping = 4.0;
 /// Factor on the damping after a balance that was found. Raised, the needle is slowed down for longer.
 constexpr double kWearsOff = 0.8;
-/// Damping over that on bone below which it ends. Raised, it ends sooner.
+/// The damping is set to zero below this part of the damping on bone. Raised, it ends sooner.
 constexpr double kNoDamping = 0.05;
-/// Damping over that on bone that is never exceeded. Raised, a needle without a balance stands still for longer.
+/// Largest damping, over the damping on bone. Raised, a needle without a balance stands still for longer.
 constexpr double kMostDamping = 1e3;
 }  // namespace
 

@@ -8,15 +8,17 @@
 namespace stylet {
 
 namespace {
-/// Tangents on springs, then one is tried without. Raised, a needle that no longer needs springs keeps them for longer.
+/// After this many tangents on springs, one without springs is tried. Raised, a needle that has become stable keeps its
+/// springs longer.
 constexpr int kTryWithout = 16;
-/// Springs that are enough as a rule. Raised, each matrix costs more and fewer are made twice.
+/// Number of springs that is usually enough. Raised, each matrix costs more, and fewer matrices have to be made twice.
 constexpr int kFewSprings = 6;
-/// [mm/N] Tissue at a spring counts as no harder than this. Lowered, springs on bone spoil the matrix.
+/// [mm/N] Least compliance of the tissue in a spring's stiffness. Lowered, springs on bone make the matrix
+/// ill-conditioned.
 constexpr double kHardest_mm_per_N = 1e-3;
-/// [mm] Way of the base after which the next tangent is begun. Raised, tangents are older and iterations more.
+/// [mm] Motion of the base after which the next tangent is begun. Raised, tangents are older and iterations more.
 constexpr double kWornOut_mm = 2.0;
-/// More or less damping, over all that is elastic, that asks for another tangent. Raised, a damped needle takes more
+/// Change of the damping ratio, over 1 + the ratio, that needs another tangent. Raised, a damped needle takes more
 /// iterations.
 constexpr double kOtherDamping = 0.25;
 }  // namespace
@@ -42,7 +44,7 @@ void NeedleTangent::release() {
   stage_ = Stage::none;
 }
 
-/// Whether a tangent is made on springs from the start, as the last one was; now and then it is tried without.
+/// Whether a tangent is made on springs from the start, like the last one; from time to time it is tried without.
 bool NeedleTangent::expects_springs() { return system_.needle.supported && ++on_springs_for_ < kTryWithout; }
 
 void NeedleTangent::linearise(const Contacts& contacts, bool advances, Effort& effort) {
@@ -58,7 +60,7 @@ void NeedleTangent::linearise(const Contacts& contacts, bool advances, Effort& e
   side.supported = expected || !linearise_on({}, Indefinite::give_up);
   if (!expected) on_springs_for_ = 0;
   if (side.supported) {
-    // Springs at a few contacts are enough as a rule, and cheaper; springs at all of them always are.
+    // Springs at a few contacts are usually enough, and cheaper; springs at all contacts always are.
     const std::span<const Mat3> lent(springs_.data(), static_cast<std::size_t>(count));
     lend_springs(contacts, kFewSprings, side.spring);
     effort.spend(effort.needle());
@@ -93,7 +95,7 @@ void NeedleTangent::damp(double ratio) {
   if (ratio == 0.0 && damping_ == 0.0) return;
   damping_ = ratio;
   needle_.damp(ratio);
-  // A tangent of another damping converges, the more slowly the more it is another one.
+  // With a tangent for another damping, iterations converge more slowly, the more the dampings differ.
   if (std::abs(ratio - tangent_damping_) <= kOtherDamping * (1.0 + tangent_damping_)) return;
   tangent_damping_ = ratio;
   forget();
@@ -101,11 +103,11 @@ void NeedleTangent::damp(double ratio) {
 
 void NeedleTangent::wear_out() { worn_mm_ = std::numeric_limits<double>::infinity(); }
 
-/// Lateral springs as stiff as the tissue is at each contact by itself: stiffer together than the tissue as a whole, so
-/// the needle on them does not buckle where needle and tissue together do not. A few stand for all, each for so many
-/// contacts and as stiff as the springs of those together. The tip has one, too, as much stiffer, where it is held: the
-/// shaft's contacts alone do not keep a needle that has bowed out between hand and bone.
-/// @param most of them, evenly spread, the last contact's among them @param lent written, at each contact
+/// Writes the springs: lateral springs, each as stiff as the tissue is at that contact alone. Together they are stiffer
+/// than the tissue, so the needle on them does not buckle where needle and tissue together do not. A few springs stand
+/// for all: each is as stiff as the springs of all contacts that it stands for. A tip that is held has a spring of this
+/// stiffness, too, because shaft contacts alone do not stabilise a needle that has bowed out between hand and bone.
+/// @param most largest number of springs, evenly spaced and including the last contact @param lent (contacts) written
 void NeedleTangent::lend_springs(const Contacts& contacts, int most, std::vector<LentSpring>& lent) {
   const int count = contacts.count();
   const int every = (std::max(count - 1, 1) + most - 1) / most;
@@ -162,8 +164,8 @@ void NeedleTangent::prepare(const Contacts& contacts) {
   }
 }
 
-/// The tangent at the present shape, on as many springs as it may need. False where it needs more: they are lent next
-/// time.
+/// Begins the next tangent at the present shape, on the expected number of springs. Returns false where it needs more
+/// springs; the next attempt uses them.
 bool NeedleTangent::prepare_on_springs(const Contacts& contacts) {
   const InPhase in_phase(phases_, StepPhase::needle_tangent);
   const int count = contacts.count();
@@ -184,7 +186,7 @@ bool NeedleTangent::prepare_on_springs(const Contacts& contacts) {
   return true;
 }
 
-/// Whether the contacts that the next tangent is of are still there, the first of the present ones.
+/// Whether the contacts that the next tangent belongs to are still the first of the present contacts.
 bool NeedleTangent::prepared_contacts_are_there(const Contacts& contacts) const {
   const auto count = static_cast<int>(points_.size());
   if (count > contacts.count()) return false;

@@ -10,48 +10,49 @@
 
 namespace stylet {
 
-/// The needle's tangent that the equations are made with, and the next one. A tangent and the matrix made of it cost as
-/// much as many iterations, but a balance can do without new ones: an iteration with an old tangent converges to the
-/// same balance, linearly. So it is kept over many steps; meanwhile the next one is made beside it, one piece after
-/// each balance that left time for it, and then takes its place. All pieces but the first are of a shape some steps
-/// old, which is as good: the tangent that they replace is of a much older one.
+/// The needle's tangent that the equations use, and the next one. A tangent and its matrix cost as much as many
+/// iterations, but a balance does not need a new one: an iteration with an old tangent converges to the same balance,
+/// linearly. So a tangent is kept over many steps. Meanwhile the next one is made in pieces, one after each balance
+/// that left time for it, and then replaces the present one. By then the next tangent belongs to a shape some steps
+/// old, which does no harm: the tangent that it replaces belongs to a much older one.
 ///
-/// A needle that is pressed harder than it can bear on its own has no definite tangent. It is lent springs at its
+/// A needle under more load than it can bear by itself has no positive definite tangent. It is then lent springs at its
 /// contacts (docs/theory/coupling.md §4).
 class NeedleTangent {
  public:
-  /// All outlive the tangent. @param system its part of the needle is written @param rows loads on the needle
+  /// All arguments outlive the tangent. @param system its needle's side is written @param rows loads on the needle
   NeedleTangent(Needle& needle, ContactSystem& system, const ContactRows& rows, int most_contacts,
                 PhaseObserver* const& phases);
 
-  /// Whether the tangent is of the present contacts.
+  /// Whether the tangent belongs to the present contacts.
   [[nodiscard]] bool fits() const { return fits_; }
-  /// It is to be made anew at the next occasion.
+  /// Marks the tangent as outdated: it will be made anew in the next balance.
   void outdate() { fits_ = false; }
-  /// It is to be made anew, and what was prepared is of no use.
+  /// Discards the tangent and the prepared pieces of the next one.
   void forget();
-  /// The needle is out of the tissue: in air it needs no springs.
+  /// The needle has left the tissue; in the air it needs no springs.
   void release();
 
   /// Makes the tangent at the present shape; the system's matrix no longer fits it.
-  /// @param advances whether the hand pushes the needle on: one that needed springs will need them again
+  /// @param advances whether the hand pushes the needle forward; a needle that needed springs will then need them again
   void linearise(const Contacts& contacts, bool advances, Effort& effort);
-  /// Takes the needle's step with the tangent that is there. @return false where that is of other contacts
+  /// Takes a Newton step of the needle with the present tangent. @return false where the tangent belongs to other
+  /// contacts
   [[nodiscard]] bool relax();
-  /// Adds a contact that has come alive, which follows those there, to tangent and matrix where they fit.
+  /// Appends a new contact after the present ones to the tangent and the matrix, where they fit.
   void append(int load);
 
-  /// Damps the needle in this sub-step (Needle::damp()).
+  /// Sets the needle's damping in this sub-step (Needle::damp()).
   void damp(double ratio);
-  /// The base has moved by so much [mm], which wears the tangent.
+  /// Adds a motion of the base [mm], after which the tangent fits less well.
   void wear(double way_mm) { worn_mm_ += way_mm; }
-  /// An iteration with the tangent left so much of the error that the next one is to be begun.
+  /// Has the next tangent begun, because an iteration with the present one left too much of the error.
   void wear_out();
 
   /// At the end of a balance: makes the next piece of the next tangent, if the present one is worn.
   void prepare(const Contacts& contacts);
-  /// At the start of a balance: a tangent that is complete is in use from now on.
-  /// @return the contacts' points that it is of; none where nothing was taken
+  /// At the start of a balance: puts a complete next tangent in the place of the present one.
+  /// @return points of the contacts that it belongs to; empty where nothing was replaced
   [[nodiscard]] std::span<const int> take_prepared(const Contacts& contacts);
 
  private:
@@ -67,14 +68,14 @@ class NeedleTangent {
   const ContactRows& rows_;
   PhaseObserver* const& phases_;
   bool fits_ = false;
-  int on_springs_for_ = 0;        ///< tangents on springs since one without was tried
-  double damping_ = 0.0;          ///< ratio of this sub-step
-  double tangent_damping_ = 0.0;  ///< ratio of the sub-step that the tangent is of
-  double worn_mm_ = 0.0;          ///< way of the base since the tangent was made
+  int on_springs_for_ = 0;        ///< tangents with springs since a tangent without was tried
+  double damping_ = 0.0;          ///< Needle::damp() ratio of this sub-step
+  double tangent_damping_ = 0.0;  ///< Needle::damp() ratio for which the tangent was made
+  double worn_mm_ = 0.0;          ///< motion of the base since the tangent was made
   std::vector<Mat3> springs_;     ///< [N/mm] lent at each load
-  Stage stage_ = Stage::none;     ///< how far the next tangent has come
-  int lent_ = 0;                  ///< most springs of the next tangent, 0 = none
-  std::vector<int> points_;       ///< of the contacts that the next tangent is of
+  Stage stage_ = Stage::none;     ///< progress of the next tangent
+  int lent_ = 0;                  ///< largest number of springs of the next tangent; 0: none
+  std::vector<int> points_;       ///< points of the contacts that the next tangent belongs to
 };
 
 }  // namespace stylet

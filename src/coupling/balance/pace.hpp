@@ -5,18 +5,18 @@
 
 namespace stylet {
 
-/// How a quantity is expected to change in a sub-step, given its changes in the two sub-steps before: by
-/// share × (last change) + trend × (the part of the last change that was not in proportion to the one before).
+/// Predictor of a quantity q in a sub-step: q ← q + share·Δq + trend·Δ²q, where Δq is the change in the last sub-step
+/// and Δ²q is the part of Δq that was not in proportion to the change before it.
 struct Pace {
-  double share = 0.0;  ///< 0 = nothing is known: no change is expected
+  double share = 0.0;  ///< 0: no change is predicted
   double trend = 0.0;
 };
 
-/// How the force of a contact on the tissue has changed in the last sub-steps. All in newtons, LPS.
+/// The change of a contact's force on the tissue in the last sub-steps. In newtons, LPS.
 struct ForceHistory {
   Vec3 start = Vec3::Zero();   ///< the force at the start of the sub-step
   Vec3 gained = Vec3::Zero();  ///< its change in the last sub-step
-  Vec3 more = Vec3::Zero();    ///< the part of that change that was not in proportion to the change before
+  Vec3 more = Vec3::Zero();    ///< the part of that change that was not in proportion to the previous change
 
   [[nodiscard]] Vec3 expected(const Pace& pace) const { return pace.share * gained + pace.trend * more; }
 };

@@ -7,26 +7,26 @@ namespace stylet {
 
 namespace {
 
-/// [mm] A base that moves less in a sub-step stands still. Raised, slow motions are not predicted.
+/// [mm] A base that moves less than this in a sub-step counts as at rest. Raised, slow motions are not predicted.
 constexpr double kBaseStill_mm = 1e-6;
-/// Most times as far as before that slides and cuts are expected to go. Raised, a hand that speeds up is followed
+/// Largest factor from the last slides and cut to the predicted ones. Raised, a hand that speeds up is followed
 /// further, and a tremor may send contacts astray.
 constexpr double kMostFurther = 4.0;
-/// Most times as much as before that forces and shape are expected to change. Raised, the same.
+/// Largest factor from the last changes of forces and shape to the predicted ones. Raised, the same.
 constexpr double kMostShare = 2.0;
-/// Part of the base's motion that may be in a new direction while forces are still predicted. Raised, they are
-/// predicted through turns, where they change otherwise.
+/// Forces are predicted while less than this part of the base's motion is in a new direction. Raised, they are also
+/// predicted through turns, where they change in other ways.
 constexpr double kMostUnlike = 0.5;
 
 Eigen::Vector<double, 6> motion(const Pose& from, const Pose& to, double length) {
   const Eigen::Quaterniond turn = to.rotation * from.rotation.conjugate();
-  const double sign = turn.w() < 0.0 ? -1.0 : 1.0;  // one turn is two quaternions
+  const double sign = turn.w() < 0.0 ? -1.0 : 1.0;  // q and −q are the same rotation
   Eigen::Vector<double, 6> result;
   result << to.origin - from.origin, 2.0 * sign * length * turn.vec();
   return result;
 }
 
-/// A way, and more of it as long as that does not turn it round.
+/// way + more, or `way` where the sum would have the other sign.
 double further(double way, double more) { return (way + more) * way > 0.0 ? way + more : way; }
 
 }  // namespace
@@ -106,7 +106,7 @@ void Predictor::end(double cut, bool steady, const Needle& needle, TipContact& t
   for (ShaftContact& contact : shaft) {
     const double slid = contact.s - contact.s_start;
     const Vec3 gained = contact.force - contact.history.start;
-    // A contact that is new, or has just come to slide or to hold, has no pace yet.
+    // A contact that is new, or has just begun to slide or to stick, cannot be extrapolated.
     const bool paced = contact.toggles == 0 && !contact.history.gained.isZero(0.0);
     contact.slid_more = paced && contact.slid != 0.0 ? slid - way_.share * contact.slid : 0.0;
     contact.slid = slid;

@@ -7,14 +7,14 @@
 namespace stylet {
 
 namespace {
-/// [mm] A shorter cut does not tell how compliance changes. Raised, the change is older; lowered, it loses digits.
+/// [mm] From a shorter cut no derivative is computed. Raised, the derivative is older; lowered, it loses digits.
 constexpr double kLeastCut_mm = 1e-4;
-/// [mm] A longer way of the tip is no cut but another place. Raised, a change may be believed that is not there.
+/// [mm] A larger motion of the tip is a change of place, not a cut. Raised, a derivative may be used that is not valid.
 constexpr double kMostCut_mm = 1.0;
-/// Part of the tip's way that has to be along the cut for it to tell. Raised, fewer cuts tell.
+/// Part of the tip's motion that has to be along the cut for a derivative. Raised, fewer cuts give one.
 constexpr double kAlong = 0.9;
-/// Gaps that change by as much as the tip goes on could close of themselves, and the tip's rows would be singular.
-/// Raised nearer to 1, they come nearer to that.
+/// Largest drift. If the gaps changed by as much as the tip moves, they would close by themselves, and the tip's rows
+/// would be singular. Raised nearer to 1, the rows come nearer to that.
 constexpr double kMostDrift = 0.5;
 }  // namespace
 
@@ -35,7 +35,7 @@ int TissueBlock::renew(const Contacts& contacts) {
 
 void TissueBlock::take_points(std::span<const int> points) { points_.assign(points.begin(), points.end()); }
 
-/// A's columns and rows of the tip, number by number: they change with every cut. How much, the last cut tells.
+/// Updates the tip's columns and rows of A, which change with every cut, and their derivative from the last cut.
 void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
   const TipContact& tip = contacts.tip;
   const Vec3 way = tip.cut.x() - tip_;
@@ -45,7 +45,7 @@ void TissueBlock::gather_tip(const Contacts& contacts, double share, int same) {
   tip_ = tip.cut.x();
   stale_ = tip.cut.is_stale();
   if (told) slope_at_ = tip_;
-  if ((tip_ - slope_at_).norm() > kMostCut_mm) slope_.setZero();  // that was another place
+  if ((tip_ - slope_at_).norm() > kMostCut_mm) slope_.setZero();  // slope_ belongs to another place
   const ContactCompliance& compliance = contacts.tissue.compliance();
   const auto count = static_cast<int>(points_.size());
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -82,7 +82,7 @@ void TissueBlock::gather(const Contacts& contacts, int same) {
     for (int d = whole ? c : std::max(c, same); d < count; ++d) {
       const int point = points_[static_cast<std::size_t>(c)];
       const Mat3 block = contacts.tissue.compliance_now(point, points_[static_cast<std::size_t>(d)]);
-      // A contact laid ahead of the shaft changes nothing among those there, unless it changes the mesh.
+      // A contact created ahead of the shaft changes no compliance among the present ones, unless it changes the mesh.
       if (d < same && block != system_.A.block<3, 3>(3 * c, 3 * d)) system_.outdate();
       system_.A.block<3, 3>(3 * c, 3 * d) = block;
       system_.A.block<3, 3>(3 * d, 3 * c) = block.transpose();
@@ -102,8 +102,8 @@ void TissueBlock::stiffen(const TipRelief& relief) {
   }
 }
 
-/// The part of A that changes with the cut is of the needle's own scale. By this part the contacts move as they would
-/// under φ, the force that makes the same dent in linear tissue, and the tip moves φ′ times as far as in linear tissue.
+/// The part of A that changes along the cut has the needle's own scale. Through this part the contacts move as under φ,
+/// the force that makes the same dent in linear tissue, and the tip moves φ′ times as far as in linear tissue.
 void TissueBlock::gather_drift(const Contacts& contacts, const TipRelief& relief, ContactRows& rows) const {
   const auto size = 3 * static_cast<Eigen::Index>(contacts.count());
   const auto slope = slope_.topRows(size);

@@ -7,9 +7,9 @@
 
 namespace stylet {
 
-/// What a contact gives way by itself: D = lateral I + (axial − lateral) t tᵀ.
+/// The own yield of a contact: D = lateral I + (axial − lateral) t tᵀ.
 struct Yield {
-  Vec3 along = Vec3::UnitZ();  ///< t, unit vector in LPS; zero means the same in all directions, at the tip only
+  Vec3 along = Vec3::UnitZ();  ///< t, unit vector in LPS; zero: the same in all directions, at the tip only
   double lateral = 0.0;        ///< [mm/N] across t
   double axial = 0.0;          ///< [mm/N] along t
 
@@ -21,7 +21,7 @@ struct Yield {
   [[nodiscard]] double component(int k) const { return k == 2 ? axial : lateral; }
 };
 
-/// Frame with two directions square to t and t itself as columns. @param t unit vector
+/// Frame with two unit vectors perpendicular to t, and t itself, as columns. @param t unit vector
 [[nodiscard]] inline Mat3 frame_along(const Vec3& t) {
   const Vec3 helper = std::abs(t.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   Mat3 frame;

@@ -9,16 +9,17 @@
 namespace stylet {
 
 namespace {
-/// Where a mark cannot be laid, the next place is tried after this part of the spacing. Raised, marks come nearer to
-/// their regular places and the search takes longer.
+/// Where no mark can be laid, the next place is tried after 1/16 of the spacing. Raised, marks are nearer to their
+/// regular places and the search takes longer.
 constexpr double kTriesPerSpacing = 16.0;
-/// Spacings without a node before an interpolated mark will do. Raised, fewer marks are interpolated and gaps grow.
+/// Distance from the last mark, in spacings, after which an interpolated mark is accepted. Raised, fewer marks are
+/// interpolated and gaps grow.
 constexpr double kPatience = 1.5;
-/// Elements that one sub-step may pass through; raised, a longer search that no track has needed.
+/// Largest number of elements that one sub-step may pass through; no track has needed more.
 constexpr int kMostElements = 64;
 }  // namespace
 
-/// Where nodes for contacts go. A node that is moved may go anywhere, so faces concern added ones only.
+/// Placement of the points of contacts. A node that is moved may be moved anywhere, so faces are for added nodes only.
 Placement Marks::placement() const {
   using Method = CouplingSettings::Method;
   if (settings_.method == Method::embedded || settings_.method == Method::near_field) return Placement::embedded;
@@ -26,9 +27,9 @@ Placement Marks::placement() const {
   return adds && settings_.rule == CouplingSettings::Rule::paper ? Placement::face : Placement::interior;
 }
 
-/// Interpolated contacts in one element follow from each other as soon as there are more than the element can tell
-/// apart: such a contact is not laid, and its neighbours share its length.
-/// @param marks so many of the track come before it
+/// Whether a point is a linear combination of its neighbours, because there are more interpolated contacts in an
+/// element than the element can tell apart. No contact is made for it, and its neighbours share its length.
+/// @param marks number of marks on the track before it
 bool Marks::follows_from(int point, const Track& track, std::size_t marks) const {
   std::array<int, ContactCompliance::kNeighbours> neighbours{};
   std::size_t count = 0;
@@ -48,7 +49,8 @@ bool Marks::lay_one(Track& track, double xi, const Vec3& x, const MaterialPoint&
   if (added.refusal == ContactCompliance::Refusal::geometry) return false;
   if (added.refusal == ContactCompliance::Refusal::missing) {
     step.flags |= Step::compliance_missing;
-    track.marks.push_back({xi, x, at, region_of(mesh_, at.tet), -1});  // represent() gives it a point when it can
+    track.marks.push_back({xi, x, at, region_of(mesh_, at.tet), -1});  // represent() adds a point once the compliance
+                                                                       // is there
     return true;
   }
   if (added.refusal == ContactCompliance::Refusal::capacity) step.flags |= Step::out_of_contacts;
@@ -75,7 +77,7 @@ void Marks::lay(Track& track, const Vec3& from, double from_xi, Index from_tet, 
     const auto at = mesh_.locator->find(x, track.end_at.tet, -direction);
     bool laid = false;
     if (at && nodes) laid = lay_one(track, next_xi_, x, *at, Placement::interior, direction, step);
-    // A track that runs along a face or an edge leaves no room for a node: interpolate there.
+    // A track along a face or an edge leaves no room for a node; use an interpolated point there.
     const double last = track.marks.empty() ? 0.0 : track.marks.back().xi;
     if (at && !laid && (!nodes || next_xi_ - last >= kPatience * settings_.spacing_mm)) {
       laid = lay_one(track, next_xi_, x, *at, Placement::embedded, direction, step);
@@ -91,7 +93,7 @@ void Marks::lay_on_faces(Track& track, const Vec3& from, double from_xi, Index t
   const double piece = (to - from).norm();
   if (piece <= 0.0) return;
   const Vec3 direction = (to - from) / piece;
-  if (from_xi == 0.0 && track.marks.empty()) {  // the skin: a face with one element
+  if (from_xi == 0.0 && track.marks.empty()) {  // the skin: a face of one element
     lay_one(track, 0.0, from, {tet, locator.weights(tet, from)}, Placement::face, direction, step);
   }
   double done = 0.0;

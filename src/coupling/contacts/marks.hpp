@@ -6,23 +6,26 @@
 
 namespace stylet {
 
-/// Lays marks on a track: places where the shaft will hold the tissue. Each stands for a point of ContactCompliance.
+/// Lays marks on a track: places at which the shaft can have contacts. Each mark belongs to a point of
+/// ContactCompliance.
 class Marks {
  public:
-  /// All outlive the marks.
+  /// All arguments outlive the marks.
   Marks(const InsertionTissue& mesh, const CouplingSettings& settings, TissueResponse& tissue)
       : mesh_(mesh), settings_(settings), tissue_(tissue) {}
 
-  /// The next mark comes `ahead` [mm] beyond the end of the track.
+  /// Sets the next mark `ahead` [mm] beyond the end of the track.
   void go_on_from(const Track& track, double ahead) { next_xi_ = track.end_xi + ahead; }
 
-  /// Lays marks along the piece of track just cut, from `from` [mm] LPS in element `from_tet`, at from_xi, to its end.
+  /// Lays marks along the piece of track that was just cut, from `from` [mm] LPS in element `from_tet`, at arc length
+  /// from_xi, to the track's end.
   void lay(Track& track, const Vec3& from, double from_xi, Index from_tet, Step& step);
 
   enum class Outcome { there, dropped, refused };
-  /// Gives a point to a mark that has none: it is on an earlier track, whose points the tissue model has forgotten, or
-  /// there was no compliance yet when it was laid. A mark that follows from those before it is dropped from the track.
-  /// @param number of the mark on the track @param along unit vector LPS along the shaft
+  /// Adds a point for a mark without one: the mark is on an earlier track, whose points were reset, or its compliance
+  /// was missing when it was laid. A mark whose point is a linear combination of those before it is removed from the
+  /// track.
+  /// @param number number of the mark on the track @param along unit vector LPS along the shaft
   Outcome represent(Track& track, std::size_t number, const Vec3& along, Step& step);
 
  private:
@@ -35,7 +38,7 @@ class Marks {
   const InsertionTissue& mesh_;
   const CouplingSettings& settings_;
   TissueResponse& tissue_;
-  double next_xi_ = 0.0;  ///< [mm] next place on the track where a mark may be laid
+  double next_xi_ = 0.0;  ///< [mm] arc length at which the next mark may be laid
 };
 
 }  // namespace stylet

@@ -8,36 +8,38 @@
 
 namespace stylet {
 
-/// A place where shaft and tissue hold each other.
+/// A contact between the shaft and a tissue point.
 struct ShaftContact {
   enum class State {
     stick,
-    forward,  ///< the needle slides into the tissue and friction pushes the tissue along
-    backward  ///< the needle slides out of the tissue
+    forward,  ///< the needle slides into the tissue, and friction pushes the tissue along
+    backward  ///< the needle slides out of the tissue, and friction pulls the tissue along
   };
 
-  // Where it is.
-  int point = -1;         ///< its number in ContactCompliance
-  double xi = 0.0;        ///< [mm] along the track
-  Vec3 x = Vec3::Zero();  ///< [mm] LPS, tissue point, undeformed
-  double s = 0.0;         ///< [mm] its present place along the needle, from the base
-  double length = 0.0;    ///< [mm] length of shaft that it stands for
+  // The place of the contact.
+  int point = -1;         ///< number of its point in ContactCompliance
+  double xi = 0.0;        ///< [mm] arc length along the track
+  Vec3 x = Vec3::Zero();  ///< [mm] LPS, undeformed tissue point
+  double s = 0.0;         ///< [mm] present arc length on the needle, from the base
+  double length = 0.0;    ///< [mm] tributary length: the length of shaft that it stands for
 
-  // How it holds.
+  // Its state and force.
   FrictionLaw law;
   State state = State::stick;
-  bool fast = false;          ///< it slides faster than the speed up to which friction grows
-  double softness = 0.0;      ///< [mm/N] yield of a young contact, so that contacts come and go without a jump
-  double coulomb = 0.0;       ///< [N] sliding friction, continued to speed 0 from the present speed
-  double slip = 0.0;          ///< [mm/N] way it slides in this sub-step for each newton beyond `coulomb`
-  double reach = 0.0;         ///< [mm] way it slides in this sub-step at the speed where friction stops growing
+  bool fast = false;          ///< whether it slides faster than FrictionLaw::viscous_to_mm_per_s
+  double softness = 0.0;      ///< [mm/N] own yield of a young contact, by which contacts come and go without a jump
+  double coulomb = 0.0;       ///< [N] sliding friction extrapolated to zero speed, from the branch (slow or fast) of
+                              ///< the present speed
+  double slip = 0.0;          ///< [mm/N] distance that it slides in this sub-step per force beyond `coulomb`
+  double reach = 0.0;         ///< [mm] distance that it slides in this sub-step at the speed where friction stops
+                              ///< growing
   int toggles = 0;            ///< changes of state in this sub-step
   Vec3 force = Vec3::Zero();  ///< [N] LPS, on the tissue
 
-  // What the predictor knows of it.
+  // Values for the predictor.
   double s_start = 0.0;    ///< [mm] s at the start of the sub-step
   double slid = 0.0;       ///< [mm] change of s in the last sub-step
-  double slid_more = 0.0;  ///< [mm] the part of that change that was not in proportion to the change before
+  double slid_more = 0.0;  ///< [mm] the part of that change that was not in proportion to the previous change
   ForceHistory history;
 
   [[nodiscard]] bool sticks() const { return state == State::stick; }

@@ -6,10 +6,11 @@
 namespace stylet {
 
 namespace {
-/// Needle radii behind the tip over which a contact takes hold. Raised, the tip holds the needle sideways for longer,
-/// and a bevel deflects it later.
+/// Distance behind the tip, in needle radii, over which a young contact hardens. Raised, the tip holds the needle
+/// sideways for longer, and a bevel deflects it later.
 constexpr double kHandOver = 6.0;
-/// Smallest age ρ, and how near to 1 it counts as 1. Raised, a contact is born with a force that is not zero.
+/// Smallest age ρ, and the tolerance within which ρ counts as 1. Raised, a contact begins with a force that is not
+/// zero.
 constexpr double kYoungest = 1e-6;
 }  // namespace
 
@@ -46,8 +47,8 @@ void ShaftContacts::wake_and_drop(Track& track, Marks& marks, const Vec3& tip_fo
   }
 }
 
-/// How far the tip is beyond a contact [mm]: along the shaft, or along the track while that is less. Tissue that the
-/// tip has just passed springs back along the shaft at once; the track grows with the cut only.
+/// Distance of the tip beyond a contact [mm]: along the shaft, or along the track where that is less. Tissue that the
+/// tip has just passed springs back along the shaft at once, while the track grows with the cut only.
 double ShaftContacts::passed_by(const ShaftContact& contact, const Track& track) const {
   const double along_shaft = needle_.length() - contact.s;
   if (track.open) return std::max(0.0, along_shaft);

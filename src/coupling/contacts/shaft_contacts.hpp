@@ -8,15 +8,16 @@
 
 namespace stylet {
 
-/// The contacts between shaft and tissue, in the order of the track: contact k sits on mark k. They come alive as the
-/// tip passes their marks, and go when they slide off the tip.
+/// The shaft contacts, in the order of the track: contact k is at mark k. A contact is created when the tip passes its
+/// mark, and removed when it slides off the tip.
 ///
-/// A contact that is nearer to the tip than three diameters of the needle is young and yields: its softness is c₀(1/ρ −
-/// 1), ρ being its distance from the tip over three diameters and c₀ what the tissue yields there by itself, and its
-/// share of the friction grows with ρ. It is born and dies with zero force, so neither moves the force on the hand.
+/// A contact that is less than three needle diameters behind the tip is young and yields by a softness c₀(1/ρ − 1). Its
+/// age ρ is its distance from the tip over three diameters, and c₀ is the tissue's own compliance there; its share of
+/// the friction grows with ρ. A contact is created and removed with zero force, so neither changes the force on the
+/// hand.
 class ShaftContacts {
  public:
-  /// All outlive the contacts.
+  /// All arguments outlive the contacts.
   ShaftContacts(const InsertionTissue& mesh, const CouplingSettings& settings, const Needle& needle,
                 const TissueResponse& tissue);
 
@@ -25,12 +26,12 @@ class ShaftContacts {
   [[nodiscard]] std::size_t count() const { return contacts_.size(); }
   [[nodiscard]] bool empty() const { return contacts_.empty(); }
 
-  /// Contacts that the tip has passed come alive; contacts that slid off the tip are dropped.
+  /// Creates contacts at the marks that the tip has passed, and removes contacts that slid off the tip.
   void wake_and_drop(Track& track, Marks& marks, const Vec3& tip_force, Step& step);
-  /// Gives each contact its length of shaft and the softness of its age.
+  /// Updates the tributary length and the softness of each contact.
   /// @return share of the tip's lateral hold that the shaft has taken over, 0…1
   double share_length(const Track& track);
-  /// The needle is out.
+  /// Removes all contacts: the needle is out of the tissue.
   void clear() { contacts_.clear(); }
 
  private:

@@ -27,7 +27,7 @@ Mat3 free_surface_image(const Vec3& r, const SurfacePair& surface, double epsilo
   // Force along the surface.
   const double tangential = inverse + twice + m * inverse_sum;
   const double dyad = k * cube - sixfold - near * inverse_sum;
-  // Displacement along the normal of a force along the surface, and the other way round.
+  // Displacement along the normal by a force along the surface, and the reverse.
   const double down = k * (z - c) * cube - sixfold * sum + near;
   const double out = k * (z - c) * cube + sixfold * sum - near;
   // Force along the normal.
@@ -44,8 +44,8 @@ Mat3 free_surface_image(const Vec3& r, const SurfacePair& surface, double epsilo
 
 namespace {
 
-/// 1 where both points see the same plane, 0 where their nearest surfaces are two, as on both sides of a fold: then the
-/// difference of their depths is not that of their places.
+/// 1 where both points see the same plane; 0 where their nearest surfaces are two different ones, as on both sides of a
+/// fold. In that case the difference of the depths is not the distance along the normal.
 double one_plane(const Vec3& r, const SurfacePair& surface) {
   constexpr double same = 0.25;
   constexpr double different = 0.5;

@@ -8,7 +8,7 @@ namespace stylet {
 
 namespace {
 
-/// The kernel's two constants [mm²/N].
+/// The two constants of the kernel [mm²/N].
 struct Constants {
   double a;
   double b;
@@ -18,7 +18,7 @@ Constants constants(const Medium& medium) {
   return {a, a / (4.0 * (1.0 - medium.poisson))};
 }
 
-/// Four integrals over the lag τ, with r = √(τ² + m²): of 1/r, 1/r³, τ/r³, τ²/r³.
+/// Integrals of 1/r, 1/r³, τ/r³ and τ²/r³ over the lag τ, with r = √(τ² + m²).
 struct Lags {
   double inverse = 0.0;
   double cube = 0.0;
@@ -34,11 +34,11 @@ struct Lags {
   }
 };
 
-/// Integrals from one τ to a larger one.
+/// The integrals from one τ to a larger one.
 Lags from_to(double from, double to, double m) {
   const double r_from = std::sqrt(from * from + m * m);
   const double r_to = std::sqrt(to * to + m * m);
-  // asinh(to / m) - asinh(from / m) as one logarithm, of sums and not of differences: (r - τ)(r + τ) = m².
+  // asinh(to / m) − asinh(from / m) as one logarithm of sums, which avoids cancellation: (r − τ)(r + τ) = m².
   const double above = from >= 0.0 ? (to + r_to) / (from + r_from)
                        : to <= 0.0 ? (r_from - from) / (r_to - to)
                                    : (to + r_to) * (r_from - from) / (m * m);
@@ -47,14 +47,14 @@ Lags from_to(double from, double to, double m) {
   return {arc, slope / (m * m), 1.0 / r_from - 1.0 / r_to, arc - slope};
 }
 
-/// Antiderivatives, twice.
+/// The second antiderivatives.
 Lags twice(double tau, double m) {
   const double r = std::sqrt(tau * tau + m * m);
   const double arc = std::asinh(tau / m);
   return {tau * arc - r, r / (m * m), -arc, tau * arc - 2.0 * r};
 }
 
-/// Means over two parallel pieces of lengths one ≥ two whose centres lie τ apart along them.
+/// Means over two parallel pieces, of lengths one ≥ two, whose centres are τ apart along them.
 Lags mean(double tau, double m, double one, double two) {
   Lags sum;
   if (one == 0.0) {

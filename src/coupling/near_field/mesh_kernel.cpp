@@ -14,13 +14,13 @@ namespace stylet {
 namespace {
 
 constexpr double kUnit_MPa = 1.0;
-/// Rings of elements in a patch. Quadratic elements have eight times the nodes in each.
+/// Rings of elements in a patch. Quadratic elements have eight times as many nodes in each ring.
 constexpr int kRings = 3;
 constexpr int kRingsOfQuadratic = 2;
-/// A point force, as far as the rim can tell.
+/// ε that stands for a point force, negligible at the distance of the rim.
 constexpr double kPoint_mm = 1e-6;
 
-/// The outer faces that can move.
+/// The outer faces with at least one node that can move.
 std::vector<std::array<Index, 3>> free_faces(const Tissue& tissue, const Topology& topology) {
   std::vector<std::array<Index, 3>> result;
   for (const Face& face : topology.boundary) {
@@ -30,8 +30,8 @@ std::vector<std::array<Index, 3>> free_faces(const Tissue& tissue, const Topolog
   return result;
 }
 
-/// Edges from a free surface up to which its image counts whole, and from which on not at all: whole as far as a patch
-/// reaches, since nothing else tells the kernel that the patch ends there.
+/// Weight of a free surface's image, by the distance in edges. It is whole as far as a patch reaches, because only the
+/// image tells the kernel that the patch ends there.
 double fading(double edges) {
   constexpr double whole = 3.0;
   constexpr double none = 5.0;
@@ -86,7 +86,7 @@ MeshKernel::Rings MeshKernel::rings_around(Index node) const {
   Rings rings;
   rings.nodes = {node};
   has_node[static_cast<std::size_t>(node)] = 1;
-  std::size_t begin = 0;  // of the nodes that the last ring brought
+  std::size_t begin = 0;  // first node that the last ring added
   for (int ring = 0; ring < count; ++ring) {
     const std::size_t end = rings.nodes.size();
     for (; begin < end; ++begin) {
@@ -101,7 +101,7 @@ MeshKernel::Rings MeshKernel::rings_around(Index node) const {
   }
   std::sort(rings.tets.begin(), rings.tets.end());
   std::sort(rings.nodes.begin(), rings.nodes.end());
-  // Nodes with all their elements in the patch move; the others, and held ones, follow the kernel.
+  // Nodes with all their elements in the patch move; other nodes, and held nodes, follow the kernel.
   for (const Index at : rings.nodes) {
     const bool inside = std::all_of(around(at).begin(), around(at).end(),
                                     [&](Index tet) { return has_tet[static_cast<std::size_t>(tet)] != 0; });
@@ -134,7 +134,7 @@ MeshKernel::Row MeshKernel::unsolved_row(Index node, const Rings& rings) const {
       row.interfaces.emplace_back(region, ground_->interfaces.nearest(region, x));
   }
   row.blocks.resize(ground_->poisson.size());
-  if (tissue.is_fixed(node)) return row;  // nothing to solve for: the kernel will do
+  if (tissue.is_fixed(node)) return row;  // a held node needs no solution: the kernel is used
   for (std::size_t k = 0; k < rings.nodes.size(); ++k) {
     if (rings.moves[k] != 0) row.near.push_back(rings.nodes[k]);
   }
@@ -155,7 +155,7 @@ void MeshKernel::solve(Row& row, const Rings& rings, const SkinAt& skin_at) cons
     if (rings.moves[k] != 0) continue;
     rim.push_back(rings.nodes[k]);
     at_rim.push_back(skin_at(rings.nodes[k]));
-    at_rim.back().share = row.skin.share;  // all around one source alike
+    at_rim.back().share = row.skin.share;  // the same for the whole rim of one source
   }
   for (int m = 0; m < media(); ++m) {
     auto& blocks = row.blocks[static_cast<std::size_t>(m)];
@@ -204,7 +204,8 @@ std::shared_ptr<const MeshKernel::Row> MeshKernel::make_row(Index node) const {
 void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progress) {
   const std::vector<Index> wanted = missing(nodes);
   std::vector<Rings> rings(wanted.size());
-  std::vector<std::shared_ptr<Row>> fresh(wanted.size());  // taken only when all are done: progress may throw
+  std::vector<std::shared_ptr<Row>> fresh(wanted.size());  // put into rows_ only when all are complete, because
+                                                           // progress may throw
   constexpr std::size_t together = 16;
   const std::size_t pieces = (wanted.size() + together - 1) / together;
   const auto each_of_piece = [&](std::size_t piece, const auto& work) {
@@ -217,7 +218,7 @@ void MeshKernel::add_nodes(std::span<const Index> nodes, const Progress& progres
       fresh[k] = std::make_shared<Row>(unsolved_row(wanted[k], rings[k]));
     });
   });
-  // Patches overlap: the surface near a node is looked for once.
+  // Patches overlap, so the nearest surface of each node is computed only once.
   std::vector<NearSurface> skin(rows_.size());
   std::vector<Index> seen;
   for (const Rings& patch : rings) seen.insert(seen.end(), patch.nodes.begin(), patch.nodes.end());
@@ -276,7 +277,7 @@ Mat3 MeshKernel::operator()(Index p, Index q, int medium_number) const {
     const Mat3* back = find(row(p), q, medium_number);
     return back != nullptr ? Mat3(0.5 * (*there + back->transpose())) : *there;  // p's patch may end before q
   }
-  if (p == q) return Mat3::Zero();  // held
+  if (p == q) return Mat3::Zero();  // the node is held
   const Vec3 r = tissue_->node_position(p) - tissue_->node_position(q);
   const Medium unit = medium(medium_number);
   return kelvinlet(r, kPoint_mm, unit) + surface_image(r, skin(p), on.skin, kPoint_mm, unit);
@@ -286,7 +287,7 @@ MeshKernel::Blur MeshKernel::blur() const {
   std::vector<double> radii;
   for (const Index node : added_) {
     const Row& own = row(node);
-    if (own.near.empty() || own.skin.share > 0.0) continue;  // held, or not the medium's alone
+    if (own.near.empty() || own.skin.share > 0.0) continue;  // held, or with the image of a surface
     int of = 0;
     while (own.blocks[static_cast<std::size_t>(of)].empty()) ++of;
     radii.push_back(3.0 * kelvinlet_self(medium(of)) / find(own, node, of)->trace());

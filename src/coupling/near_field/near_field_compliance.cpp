@@ -13,12 +13,14 @@ Medium scaled(Medium medium, double young_MPa) {
   return medium;
 }
 
-/// [mm] The wide part of the compliance hardly changes over less than this, a tenth of its radius at the most.
+/// [mm] The wide part of the compliance is updated when the tip has moved this far. This is small beside its radius of
+/// 10 mm, so the wide part hardly changes over it.
 constexpr double kWideReach_mm = 0.5;
 
-/// [mm] Elements of up to this size follow forces that are spread over 10 mm, …
+/// [mm] Elements up to this size represent forces that are spread over 10 mm.
 constexpr double kFine_mm = 12.0;
-/// … and from here on they do not: K⁻¹ less the mesh's own kernel is better then.
+/// [mm] Elements from this size on do not, and K⁻¹ minus the mesh's own kernel is used there. In between, the change is
+/// gradual.
 constexpr double kCoarse_mm = 15.0;
 
 void write_symmetric(MatX& matrix, int point, int other, Mat3 block) {
@@ -89,8 +91,8 @@ bool NearFieldCompliance::available(Index base_tet) const {
          std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return ground_.kernel->has(node); });
 }
 
-/// g between tip and another point: what the element's nodes have to do with the point stays while the tip goes
-/// through the element.
+/// g between the tip and another point, interpolated from g at the nodes of the tip's element, which is cached as long
+/// as the tip stays in the element.
 Mat3 NearFieldCompliance::of_mesh_at_tip(int point, int medium) {
   const Shape& tip = places_[kTip].shape;
   const Shape& on = places_[static_cast<std::size_t>(point)].shape;
@@ -133,7 +135,8 @@ void NearFieldCompliance::write_wide_block(int point, int other, const OfMesh& g
   const double share = spread_share(at, on);
   Mat3 block = Mat3::Zero();
   if (share < 1.0) {
-    // Unscaled, a remainder of the mesh's own near field would exceed the wide field at a border between organs.
+    // Without this factor, a remainder of the mesh's own near field would exceed the wide field at a border between
+    // organs.
     const double soft =
         std::sqrt(softness_[static_cast<std::size_t>(point)] * softness_[static_cast<std::size_t>(other)]);
     block += (1.0 - share) * ((*far_)(point, other) + soft * wide_correction(*ground_.kernel, at, on, g));
@@ -213,7 +216,7 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
     stiffening_MPa_ =
         stiffening_of(tip, [&](int region) { return region_stiffening_MPa_[static_cast<std::size_t>(region)]; });
   if (stiffens()) write_needle_scale();
-  if (tip.skin.inwards.dot(entry_) > 0.0) {  // not the far surface, from inside
+  if (tip.skin.inwards.dot(entry_) > 0.0) {  // this excludes the far surface, seen from inside
     const Mat3 more =
         tip.moves *
         needle_.dent(tip.skin, press_N_, scaled(ground_.kernel->medium(tip.medium), tip.young_MPa), stiffening_MPa_);
@@ -243,8 +246,8 @@ Mat3 NearFieldCompliance::gradient_at_tip(const Eigen::Ref<const MatX>& forces) 
   return far_->gradient_at_tip(forces);
 }
 
-/// Displacement of the mesh's nodes under forces on the points, with what the mesh lacks where the kernel knows a node.
-/// @param correction of a node's place, per force on a point, from g between them [mm/N]
+/// Displacement of the mesh's nodes under forces on the points, corrected at the nodes that the kernel has.
+/// @param correction function: displacement of a node's place per force on a point, from g between the two [mm/N]
 template <class Correction>
 VecX NearFieldCompliance::with_corrections(const Eigen::Ref<const MatX>& forces, const Correction& correction) const {
   VecX u = far_->displacement(forces);

@@ -12,11 +12,11 @@ namespace stylet {
 
 namespace {
 
-/// Beyond so many edges the mesh represents the field as it is: what is left is its error of interpolation, of relative
-/// size (edge / distance)² / 8.
+/// Beyond this many edges the mesh represents the field well enough: what remains is the error of interpolation, of the
+/// relative size (edge / distance)² / 4.
 constexpr double kMostEdges = 5.0;
 
-/// Size of the elements, the free surface and the share that is not held, as the nodes have them.
+/// Sets the size of the elements, the free surface and the share that is not held, interpolated from the nodes.
 template <class NodeAt>
 void describe_surroundings(const Tissue& tissue, const MeshKernel& kernel, int count, const NodeAt& node_at,
                            NearPlace& place) {
@@ -39,18 +39,18 @@ void describe_surroundings(const Tissue& tissue, const MeshKernel& kernel, int c
   if (!has_skin) place.skin = {};
 }
 
-/// A border that a corner does not have, where others have it [mm].
+/// [mm] Distance that stands for a missing border at a corner, where other corners have a border.
 constexpr double kNoBorder_mm = 100.0;
 
-/// Of an element that reaches through a thin layer some corners lie on one face, which is the nearest to them, and
-/// others on the other. Whether two corners are such: each much nearer to its own face than to what faces it.
+/// Whether two corners of an element that reaches through a thin layer lie on the two faces of that layer: each corner
+/// is much nearer to its own face than to the facing one. The nearest face of one is then the facing one of the other.
 bool on_two_faces(const NearInterfaces& a, const NearInterfaces& b) {
   constexpr double much = 4.0;
   return a[0].inwards.dot(b[0].inwards) < -0.5 && much * (a[0].depth + b[0].depth) < std::min(a[1].depth, b[1].depth) &&
          a[1].beyond >= 0 && b[1].beyond >= 0;
 }
 
-/// The interfaces near a place of a region, as the corners of its element have them.
+/// The interfaces near a place of a region, interpolated from the corners of its element.
 NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, const std::array<Index, 4>& corners,
                        const Vec4& weights) {
   std::array<const NearInterfaces*, 4> of{};
@@ -87,7 +87,8 @@ NearBorders borders_at(const MeshKernel& kernel, int region, double young_MPa, c
   return borders;
 }
 
-/// [mm] Radius over which the mesh spreads a force. @param g of the mesh at the force itself, for E = 1 MPa
+/// [mm] Radius over which the mesh spreads a force. @param g of the mesh between the place of the force and itself, for
+/// E = 1 MPa
 double mesh_blur(const Medium& medium, const Mat3& g) { return 3.0 * kelvinlet_self(medium) / g.trace(); }
 
 /// The largest s for which `whole` − s `part` has no negative eigenvalue. @param whole symmetric
@@ -193,7 +194,7 @@ Mat3 mesh_kernel_between(const MeshKernel& kernel, const Shape& at, const Shape&
 Mat3 tip_correction(const MeshKernel& kernel, const NearPlace& tip, const Mat3& g) {
   const Medium medium = kernel.medium(tip.medium);
   return between_media(tip, tip, [&](int /*medium*/) -> Mat3 {
-    // The mesh knows of the interface, as far as it can tell a force that it spreads over its elements from one on it.
+    // The mesh represents the interface too, but only with the radius over which its elements spread a force.
     return tip_kernel(tip.skin, tip.borders, tip.own_epsilon, medium) -
            with_borders(g, tip.skin, tip.borders, std::max(tip.blur, tip.own_epsilon), medium.poisson);
   });
@@ -228,8 +229,8 @@ Mat3 tip_narrow_part(const MeshKernel& kernel, const NearPlace& tip) {
 }
 
 double softness_in_mesh(const MeshKernel& kernel, const NearPlace& place, const Mat3& far, const Mat3& g) {
-  // The wide part of the compliance of a place with itself is at least this share of the compliance that a force spread
-  // over 10 mm has in a medium of the same softness.
+  // Least share that the wide part of a place's own compliance keeps, of the compliance of a force spread over 10 mm in
+  // a medium of the same softness.
   constexpr double least = 0.3;
   const Mat3 taken = between_media(place, place, [&](int own) -> Mat3 {
     return g - (1.0 - least) *

@@ -15,7 +15,7 @@ namespace stylet {
 
 namespace {
 
-/// A Gauss–Legendre rule on −½…½.
+/// A Gauss–Legendre rule on [−½, ½].
 struct Rule {
   int count;
   std::array<double, 4> point;
@@ -26,20 +26,21 @@ constexpr Rule kFour{4,
                      {-0.4305681557970263, -0.1699905217924282, 0.1699905217924282, 0.4305681557970263},
                      {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269}};
 
-/// An image is as smooth as its source is far: beyond this many lengths of a piece its middle will do.
+/// An image is smooth where its source is far away: beyond this many lengths of a piece, one point of the piece
+/// suffices.
 constexpr double kSmooth = 2.0;
 
-/// Radius, in those of the needle, of the regularised force that moves a medium as far as the flat end of a rod which
-/// slides in its hole without friction: by finite elements 0.87 at ν = 0.45 and 0.90 at 0.49
-/// (docs/theory/near_field.md, section 2). Raised, the tip is stiffer deep inside.
+/// ε of the tip deep inside a medium, in needle radii: the regularised force that moves the medium as far as the flat
+/// end of a rod which slides in its hole without friction. By finite elements 0.87 at ν = 0.45 and 0.90 at ν = 0.49
+/// (docs/theory/near_field.md §2). Raised, the tip is stiffer deep inside.
 constexpr double kRodEnd = 0.88;
 
-/// Needle radii over which the flat end of a rod comes to feel a border. Raised, the tip is softer in front of harder
-/// tissue and behind softer.
+/// Distance from a border, in needle radii, within which ε changes to that of a tip on the border. Raised, the tip is
+/// softer in front of harder tissue and behind softer tissue.
 constexpr double kBorderReach = 1.5;
 
-/// Displacement under the tip falls over depth at this many times less than would make tissue overtake the tip. At 1 a
-/// cut would not unload the tip at all.
+/// The dent under the tip falls with depth this many times less steeply than would make the tissue overtake the tip. At
+/// 1 a cut would not unload the tip at all.
 constexpr double kDentMargin = 1.5;
 
 NearSurface moved(const NearSurface& skin, const Vec3& way) {
@@ -60,8 +61,8 @@ double NearBorder::weight(double epsilon) const {
 
 namespace {
 
-/// By how many times more than without it a border lets a force move the place where it acts, less one: far from the
-/// border the image of Mindlin's half space, on it the force's own field again.
+/// Relative change of the displacement of the loaded place by a border: far from the border the image of Mindlin's half
+/// space, on the border once more the force's own field, both times the contrast.
 struct BorderImage {
   double normal, tangential;
 
@@ -80,8 +81,9 @@ Mat3 along_and_across(const Vec3& n, double along, double across) {
   return across * Mat3::Identity() + (along - across) * n * n.transpose();
 }
 
-/// The stiffness with all borders, over that without. Harder tissue beyond a border adds as much to it as it would
-/// alone; softer tissue, and air, add their images to the displacement, so that some stiffness is always left.
+/// The stiffness with all borders over the stiffness without them. Harder tissue beyond a border adds the stiffness
+/// that it would add alone. Softer tissue, and air, add their images to the displacement, so that the stiffness stays
+/// positive.
 Mat3 stiffness_with(std::span<const NearBorder> borders, double epsilon, double nu) {
   Mat3 softer = Mat3::Identity();
   Mat3 harder = Mat3::Zero();
@@ -110,9 +112,9 @@ double NeedleKernel::tip_epsilon(const NearSurface& skin, double poisson) const 
 }
 
 double NeedleKernel::own_tip_epsilon(const NearSurface& skin, const NearBorders& borders, double poisson) const {
-  // On a free surface the force and its image move it as far as each other, together as far as a flat punch.
+  // On a free surface the force and its image move it equally, together as far as a flat punch.
   const double on_border = (5.0 - 6.0 * poisson) / (2.0 * std::numbers::pi * (1.0 - poisson) * (1.0 - poisson));
-  // Level on the border itself: the tip's compliance must not rise on its way in.
+  // The derivative is zero on the border, so that the tip's compliance does not rise as the tip goes in.
   const auto near = [&](double depth) { return std::exp(-std::pow(depth / (kBorderReach * radius_mm), 2)); };
   double felt = near(skin.depth);
   for (const NearBorder& border : borders) felt = std::max(felt, std::abs(border.contrast) * near(border.depth));

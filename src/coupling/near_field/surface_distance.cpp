@@ -12,7 +12,8 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Weights of the point of a triangle that is nearest to x. @cite Ericson2005 section 5.1.5, by Voronoi regions
+/// Barycentric weights of the point of a triangle that is nearest to x. @cite Ericson2005 section 5.1.5, by Voronoi
+/// regions
 Vec3 nearest_weights(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a;
   const Vec3 ac = c - a;
@@ -43,8 +44,8 @@ Vec3 nearest_weights(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c)
 struct SurfaceDistance::Tree {
   const std::vector<Vec3>* nodes = nullptr;
   std::vector<std::array<Index, 3>> triangles;
-  std::vector<Vec3> normal;   ///< (n) at the nodes, the triangles' means weighted by area
-  std::vector<double> value;  ///< (n) the same of the quantity, or none
+  std::vector<Vec3> normal;   ///< (n) at the nodes: mean of the triangles' normals, weighted by area
+  std::vector<double> value;  ///< (n) mean of the quantity in the same way; or empty
   Eigen::KdBVH<double, 3, int> boxes;
 
   [[nodiscard]] Vec3 corner(int triangle, int k) const {
@@ -75,7 +76,7 @@ struct SurfaceDistance::Tree {
 
 namespace {
 
-/// The search that Eigen::BVMinimize carries out: for the least squared distance.
+/// Search by Eigen::BVMinimize for the triangle with the least squared distance.
 template <class Tree>
 struct Nearest {
   using Scalar = double;
@@ -95,7 +96,8 @@ struct Nearest {
   }
 };
 
-/// The same of what faces a direction: over the squared cosine between it and the normal.
+/// The same for surfaces that face `direction`: minimises the squared distance over the squared cosine between the
+/// direction and the normal.
 template <class Tree>
 struct NearestFacing {
   using Scalar = double;

@@ -34,7 +34,7 @@ void AdaptedMesh::shape(Element& element) const {
   Mat3 edges;
   edges << x(1) - x(0), x(2) - x(0), x(3) - x(0);
   element.volume = edges.determinant() / 6.0;
-  // Rows of the inverse are the gradients of weights 1…3.
+  // Rows of the inverse are the gradients of weights 1 … 3.
   const Vec3 a = edges.col(1).cross(edges.col(2));
   const Vec3 b = edges.col(2).cross(edges.col(0));
   const Vec3 c = edges.col(0).cross(edges.col(1));
@@ -113,7 +113,7 @@ void AdaptedMesh::take(Index e, Change& change) {
   std::erase(parts_[static_cast<std::size_t>(element.base_tet)], e);
 }
 
-/// Replaces each vertex of an element in turn, but vertex `skip`, by the new node.
+/// Makes one child for each vertex of an element, except vertex `skip`, with the new node in the vertex's place.
 void AdaptedMesh::split(Index e, int skip, Change& change) {
   const Element whole = element(e);
   take(e, change);

@@ -83,7 +83,7 @@ void CondensedSystem::remove(int point) {
       softness_[to] = softness_[from];
       displacement_[static_cast<std::size_t>(to)] = displacement_[static_cast<std::size_t>(from)];
     }
-    // Between the point's own three rows the two copies above have mixed old and new.
+    // For the point's own three rows the two copies above mix old and new values.
     K_.block<3, 3>(3 * point, 3 * point) = K_.block<3, 3>(3 * last, 3 * last);
   }
   --points_;

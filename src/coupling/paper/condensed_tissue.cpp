@@ -6,7 +6,7 @@
 namespace stylet::paper {
 
 namespace {
-/// Switches of rows after which K_W is made anew. Raised, more rounding adds up in it.
+/// Number of switches after which K_W is made anew. Raised, more rounding errors accumulate in it.
 constexpr long kSwitchesToRebuild = 20000;
 }  // namespace
 
@@ -53,7 +53,7 @@ void CondensedTissue::take(const Contacts& contacts, std::span<const Mat3> frame
   } else if (tip_ != contacts.tip.cut.x()) {
     const int k = slot_of_[0];
     system_.remove(k);
-    const int moved = load_of_[static_cast<std::size_t>(system_.points())];  // the last one took the tip's number
+    const int moved = load_of_[static_cast<std::size_t>(system_.points())];  // the last point took the tip's number
     slot_of_[static_cast<std::size_t>(moved)] = k;
     load_of_[static_cast<std::size_t>(k)] = moved;
     enter(contacts, 0, frames[0]);

@@ -8,27 +8,27 @@
 
 namespace stylet::paper {
 
-/// Bends a needle under given loads, step by step: each load's point is held where it is by a spring, and the shape is
-/// accelerated over the steps. At the end the springs carry nothing. Nothing allocates after construction.
+/// Bends a needle under given loads, step by step: a spring holds each loaded point at its present place, and the shape
+/// is accelerated over the steps. At the end the springs carry no force. Nothing allocates after construction.
 class DampedNeedle {
  public:
-  /// @param shape_size of Needle::state()
+  /// @param shape_size size of Needle::state()
   DampedNeedle(Eigen::Index shape_size, int most_loads);
 
-  /// The loads follow another rule from now on: earlier steps say nothing about the next.
+  /// Discards earlier steps: the loads follow another rule from now on.
   void restart() { acceleration_.restart(); }
-  /// The spring that damps the needle at a load [N/mm] LPS, to be written.
+  /// The spring [N/mm] LPS that damps the needle at a load; to be written.
   [[nodiscard]] Mat3& spring(int load) { return springs_[static_cast<std::size_t>(load)]; }
-  /// One Newton step of the needle on its springs. @param loads (w) as the springs are numbered
+  /// Takes one Newton step of the needle on its springs. @param loads (w) in the order of the springs
   void bend(Needle& needle, std::span<const PointLoad> loads);
 
  private:
   Anderson acceleration_;
-  VecX before_;                ///< needle's state before the step
-  VecX after_;                 ///< the same after it
+  VecX before_;                ///< Needle::state() before the step
+  VecX after_;                 ///< Needle::state() after the step
   std::vector<Mat3> springs_;  ///< [N/mm]
-  MatX compliance_;            ///< [mm/N] (3w × 3w) room
-  VecX motion_;                ///< [mm] (3w) room
+  MatX compliance_;            ///< [mm/N] (3w × 3w) work space
+  VecX motion_;                ///< [mm] (3w) work space
 };
 
 }  // namespace stylet::paper

@@ -10,7 +10,7 @@ MatX full_inverse(const Tissue& tissue, const Progress& progress) {
   constexpr Index batch = 192;
   const Index N = tissue.free_dofs();
   const Index nodes = tissue.mesh().node_count();
-  std::vector<Eigen::Index> row_of(static_cast<std::size_t>(N));  // degree of freedom → row over all nodes
+  std::vector<Eigen::Index> row_of(static_cast<std::size_t>(N));  // row over all nodes of each degree of freedom
   for (Index node = 0; node < nodes; ++node) {
     const Index first = tissue.first_dof(node);
     if (first < 0) continue;

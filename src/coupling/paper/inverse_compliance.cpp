@@ -80,8 +80,8 @@ InverseCompliance::Point InverseCompliance::interpolate(const MaterialPoint& at,
   return point;
 }
 
-/// ΔK of a change, into the inverse. All elements have positive volumes before and after, so K stays positive definite
-/// and neither the small matrix nor a pivot can be singular.
+/// Applies ΔK of a change to the inverse. All elements have positive volumes before and after, so K stays positive
+/// definite and neither the small matrix nor a pivot can be singular.
 void InverseCompliance::apply(const AdaptedMesh::Change& change, RemeshEvent& event) {
   std::vector<Index> nodes;
   for (const auto* elements : {&change.before, &change.after})
@@ -213,8 +213,8 @@ ContactCompliance::Added InverseCompliance::add(const MaterialPoint& at, const V
   }
   events_.push_back(event);
   held_.push_back(event.node);
-  // The elements around the tip have changed. Interpolated contacts keep their nodes, which have not moved: read in the
-  // smaller elements they would follow from the nodes added beside them.
+  // The elements around the tip have changed. Interpolated contacts keep their nodes, which have not moved:
+  // interpolated in the smaller elements, they would become linear combinations of the nodes added beside them.
   if (Point& tip = points_of_[kTip]; move_nodes_ && tip.base_tet >= 0)
     tip = interpolate({tip.base_tet, locator_->weights(tip.base_tet, tip.x)}, tip.x);
   Point point;
@@ -292,7 +292,7 @@ VecX InverseCompliance::displacement(const Eigen::Ref<const MatX>& forces) const
   VecX result = u.head(3 * base.node_count());
   for (Index node = 0; node < base.node_count(); ++node) {
     const Vec3& x = base.nodes[static_cast<std::size_t>(node)];
-    if (mesh_.position(node) == x) continue;  // the node is elsewhere now: interpolate what is where it was
+    if (mesh_.position(node) == x) continue;  // the node has moved away: interpolate at its former place
     const Index e = mesh_.find(x, locator_->topology().node_tets[static_cast<std::size_t>(node)].front());
     if (e < 0) continue;
     const Vec4 weights = mesh_.element(e).weights(x);

@@ -73,7 +73,8 @@ void subtract_product<double>(MatrixRef<double> C, const Matrix<double>& A, cons
                         static_cast<int>(B.outerStride()), static_cast<int>(A.cols()));
 }
 
-/// Inverse by Gauss–Jordan elimination with row exchanges: k³ multiplications. False when singular.
+/// Inverse by Gauss–Jordan elimination with row exchanges: k³ multiplications. @return false when the matrix is
+/// singular
 template <class Scalar>
 bool eliminate(Matrix<Scalar>& A) {
   const Eigen::Index k = A.rows();
@@ -115,7 +116,7 @@ double one_norm(const Matrix<Scalar>& A) {
   return largest;
 }
 
-/// The parts of the lemma that do not depend on how the large matrix is written back.
+/// The terms of the lemma that do not depend on how the large matrix is written back.
 template <class Scalar>
 struct Correction {
   Matrix<Scalar> columns;  ///< K⁻¹V (N × k)

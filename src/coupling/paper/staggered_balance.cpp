@@ -22,26 +22,27 @@
 ///   │            │ no
 ///   └── bend the needle, damped                                                 bend_needle
 ///
-/// What is ours: rows with a softness (young contacts), viscous friction, and how the needle is damped. A factor on the
-/// needle's motion, as in the paper, fails once the forces on the needle exceed what it bears on its own (about 1 N for
-/// 200 mm): it has no stable shape under them. Springs do what the factor was to do: each holds a point of the needle
-/// where it is now, as hard as the tissue would if all other points stood still, so the iteration is Jacobi's with
-/// blocks. At the end the springs carry nothing. docs/theory/paper.md has the derivation.
+/// Three things differ from the paper: rows with a softness (young contacts), viscous friction, and the damping of the
+/// needle. The paper multiplies the needle's motion by a factor. This fails once the forces on the needle exceed its
+/// buckling load (about 1 N for 200 mm), because the needle then has no stable shape under them. Springs replace the
+/// factor: each holds a point of the needle at its present place, as stiffly as the tissue would if all other points
+/// stood still, so the iteration is a block Jacobi iteration. At the end the springs carry no force.
+/// docs/theory/paper.md has the derivation.
 namespace stylet::paper {
 
 namespace {
-/// Iterations before a balance is given up. Raised, hopeless balances cost more.
+/// Iterations before a balance is given up. Raised, balances that do not converge cost more.
 constexpr int kMaxIterations = 500;
-/// Changes of state in a sub-step, then a contact keeps its state. Raised, cycling costs more.
+/// A contact that changes its state more often than this in a sub-step keeps it. Raised, cycling costs more.
 constexpr int kMostToggles = 100;
-/// The balance is found where imbalance() is smaller than this. Raised, forces are less exact.
+/// The balance is found when imbalance() is below this. Raised, forces are less exact.
 constexpr double kTolerance = 1e-10;
-/// Contacts may change their state where imbalance() is smaller than this, not on a passing shape. Raised, they change
-/// it to and fro.
+/// Contacts may change their state only while imbalance() is below this, not on a passing shape. Raised, states
+/// alternate more often.
 constexpr double kNearly = 1e-8;
-/// [N] A contact contradicts its state by more than what is still uncertain. Raised, states change later.
+/// [N] Least contradiction that changes a contact's state; smaller ones are uncertain. Raised, states change later.
 constexpr double kClear_N = 1e-7;
-/// Weight of friction and cutting forces that still change, in imbalance(). Raised, they settle further.
+/// Weight in imbalance() of the last change of friction and cutting forces. Raised, they converge further.
 constexpr double kSettled = 1e-2;
 /// Smallest divisor.
 constexpr double kSmallest = 1e-12;
@@ -62,7 +63,7 @@ StaggeredBalance::StaggeredBalance(const BalanceParts& parts)
       x_(y_),
       force_(y_) {}
 
-/// Frames turn with the needle; then each row is given what its contact's state asks for.
+/// Turns the frames with the needle, and prescribes the value of each row by its contact's state.
 void StaggeredBalance::impose_needle_on_tissue(double h) {
   CondensedSystem& condensed = tissue_.system();
   const TipContact& tip = parts_.contacts.tip;
@@ -90,12 +91,12 @@ void StaggeredBalance::impose_needle_on_tissue(double h) {
     if (lateral) y.head<2>() = gap.head<2>() + rows_.shift.segment<2>(3 * c);
     if (c == 0 && held && !lateral) y.head<2>() = Q.leftCols<2>().transpose() * tip.bevel_force();
     if (axial) y[2] = gap[2];
-    if (!axial && held) y[2] = force_[3 * c + 2];  // friction or cutting force, from the last iteration
+    if (!axial && held) y[2] = force_[3 * c + 2];  // friction or cutting force of the last iteration
   }
 }
 
-/// x = K_W y, then friction and cutting forces follow their laws at the displacements that come out (Gauss–Seidel over
-/// the sliding rows: viscous forces depend on how far the needle slides).
+/// Computes x = K_W y; then friction and cutting forces follow their laws at the resulting displacements, by
+/// Gauss–Seidel iteration over the sliding rows, because viscous forces depend on how far the needle slides.
 void StaggeredBalance::solve_tissue(double h) {
   const CondensedSystem& condensed = tissue_.system();
   const TipContact& tip = parts_.contacts.tip;
@@ -112,7 +113,7 @@ void StaggeredBalance::solve_tissue(double h) {
     double force = 0.0;
     if (c == 0) {
       if (!tip.cuts()) continue;
-      // The tip cuts as far as the needle is beyond the tissue; a force below its law's start: the needle goes back.
+      // The tip cuts as far as the needle is beyond the tissue; below the law's initial force the needle is going back.
       const CuttingLaw law = tip.cutting_law(h);
       advance_ = tip.cut.advance() + (way - x[row]) / (t.dot(tip.cut.direction()) + own / law.slip_mm_per_N);
       force = law.force(advance_);
@@ -139,8 +140,9 @@ void StaggeredBalance::solve_tissue(double h) {
   }
 }
 
-/// Stick to slip where friction exceeds its limit, slip to stick where the motion turns round; the tip likewise.
-/// @return true when a boundary condition was switched
+/// Switches contacts from stick to slip where friction exceeds its limit, and from slip to stick where the motion
+/// reverses; the tip likewise.
+/// @return whether a boundary condition was switched
 bool StaggeredBalance::switch_contacts(Step& step) {
   const int tip_row = tissue_.row(0) + 2;
   const double opening =
@@ -158,14 +160,14 @@ bool StaggeredBalance::switch_contacts(Step& step) {
   return changed;
 }
 
-/// Contact forces go to the needle where they act, or to its nearest node as in the paper.
+/// Applies the contact forces to the needle, at the contact or, as in the paper, at the needle's nearest node.
 void StaggeredBalance::load_needle() {
   rows_.take_loads(parts_.contacts);
   for (PointLoad& load : rows_.loads()) load.s = loaded_arc(parts_.settings, parts_.contacts.needle.length(), load.s);
 }
 
-/// One Newton step of the needle under the tissue's forces, damped by springs as hard as the tissue around each contact
-/// while all other contacts stand still.
+/// Takes one Newton step of the needle under the tissue's forces, damped by springs as stiff as the tissue around each
+/// contact while all other contacts stand still.
 void StaggeredBalance::bend_needle() {
   const CondensedSystem& condensed = tissue_.system();
   const int count = parts_.contacts.count();
@@ -180,16 +182,16 @@ void StaggeredBalance::bend_needle() {
   bent_.bend(parts_.contacts.needle, rows_.loads());
 }
 
-/// How far needle and tissue are from balance, over the largest force or 1 N: out-of-balance moment of the needle over
-/// its length, and what friction and cutting forces still change by.
+/// Distance from balance, over the largest force or 1 N: the out-of-balance moment of the needle over its length, and
+/// the last change of friction and cutting forces.
 double StaggeredBalance::imbalance() const {
   Needle& needle = parts_.contacts.needle;
   return std::max(needle.residual(rows_.loads()) / needle.length(), kSettled * change_) / rows_.largest_load();
 }
 
-/// Moves the end of the track to where the cut has come to.
-/// @param nearly the balance is near enough to believe that a surface is in the way; the tip sticks there then
-/// @return false when it does
+/// Moves the end of the track by the length of cut.
+/// @param nearly whether the balance is near enough to trust that a surface has been met; the tip then sticks there
+/// @return false when the tip sticks at a surface
 bool StaggeredBalance::cut(bool nearly) {
   TipContact& tip = parts_.contacts.tip;
   if (!tip.cuts()) return true;

@@ -9,7 +9,7 @@
 
 namespace stylet::paper {
 
-/// The balance as Goksel et al. 2005 find it: needle and tissue in turn.
+/// The balance by the method of Goksel et al. 2005: needle and tissue are solved in turn.
 class StaggeredBalance : public BalanceSolver {
  public:
   explicit StaggeredBalance(const BalanceParts& parts);
@@ -30,14 +30,15 @@ class StaggeredBalance : public BalanceSolver {
   ContactStates states_;
   CondensedTissue tissue_;
   DampedNeedle bent_;
-  VecX y_;                ///< (rows of K_W) displacement [mm] or force [N], as each row is controlled
-  VecX x_;                ///< (rows of K_W) the other one
-  VecX force_;            ///< [N] (3 contacts) on the tissue, in the frames
-  double advance_ = 0.0;  ///< [mm] of the cut in this sub-step
-  double change_ = 0.0;   ///< [N] by which friction and cutting forces still change from one iteration to the next
+  VecX y_;                ///< (rows of K_W) the controlled quantity of each row: displacement [mm] or force [N]
+  VecX x_;                ///< (rows of K_W) the other quantity of each row
+  VecX force_;            ///< [N] (3 contacts) on the tissue, in the contacts' frames
+  double advance_ = 0.0;  ///< [mm] length of cut in this sub-step
+  double change_ = 0.0;   ///< [N] last change of friction and cutting forces from one iteration to the next
 };
 
-/// Where on the needle a force at arc length s is put [mm]: the nearest node as in the paper, or where it acts.
+/// Arc length [mm] at which a contact's force acts on the needle: the nearest node as in the paper, or the contact
+/// itself.
 [[nodiscard]] double loaded_arc(const CouplingSettings& settings, double length, double s);
 
 }  // namespace stylet::paper

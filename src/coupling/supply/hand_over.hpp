@@ -7,29 +7,30 @@
 
 namespace stylet {
 
-/// Who has the parcel, and what else the threads of step and worker tell each other. The parcel is with one side at a
-/// time, only that side may read or change it, and only that side can give it away. Nothing here waits, and nothing but
-/// the parcel's own lists allocates.
+/// The hand-over of the parcel between the threads of step and worker, and the messages that go with it. One side has
+/// the parcel at a time; only that side may read or change it, and only that side can give it to the other. Nothing
+/// here waits, and nothing allocates except the parcel's own lists.
 ///
-/// Calls for work: a thread that cannot go on without rows makes a call, gives the parcel to the worker as often as it
-/// comes back, and waits until the call is answered: nothing more was to be done when the worker last had the parcel.
+/// A call is a request to work until no compliance is missing. A thread that cannot continue without rows makes a call,
+/// gives the parcel to the worker each time it comes back, and waits until the call is answered, which means that
+/// nothing was missing when the worker last had the parcel.
 class SupplyHandOver {
  public:
   using Work = ComplianceSupply::Work;
 
-  /// To be used by the side that has the parcel, and by no other.
+  /// Only for the side that has the parcel.
   [[nodiscard]] SupplyParcel& parcel() noexcept { return parcel_; }
 
   // --- The step's side.
 
   [[nodiscard]] bool with_step() const noexcept { return !with_worker(); }
-  /// Gives the parcel to the worker, with the place of the needle.
+  /// Gives the parcel to the worker, together with the place of the needle.
   void give_to_worker(const NeedleWhereabouts& needle) noexcept {
     parcel_.needle = needle;
     parcel_.call = call_;
     with_worker_.store(true, std::memory_order_release);
   }
-  /// Makes a call for work. It does not count as answered by what was done before.
+  /// Makes a call. Work that was finished before does not answer it.
   void call() noexcept { ++call_; }
   [[nodiscard]] bool answered() const noexcept { return answered_.load(std::memory_order_acquire) == call_; }
   /// Whether the last round of the worker failed.
@@ -38,7 +39,7 @@ class SupplyHandOver {
   // --- The worker's side.
 
   [[nodiscard]] bool with_worker() const noexcept { return with_worker_.load(std::memory_order_acquire); }
-  /// Gives the parcel to the step, after a round of work that came to `done`.
+  /// Gives the parcel to the step after a round of work with the result `done`.
   void give_to_step(Work done) noexcept {
     const unsigned call = parcel_.call;
     failed_.store(done == Work::failed, std::memory_order_relaxed);
@@ -46,11 +47,11 @@ class SupplyHandOver {
     with_worker_.store(false, std::memory_order_release);
   }
 
-  // --- A worker on a thread of its own begins, or ends, while no step is under way.
+  // --- A worker on a thread of its own begins and ends; not to be called while a step is running.
 
   void open() noexcept { open_.store(true, std::memory_order_release); }
   void close() noexcept { open_.store(false, std::memory_order_release); }
-  /// Whether there is such a worker.
+  /// Whether a worker is running on a thread of its own.
   [[nodiscard]] bool is_open() const noexcept { return open_.load(std::memory_order_acquire); }
 
  private:
@@ -59,7 +60,7 @@ class SupplyHandOver {
   std::atomic<bool> open_ = false;
   std::atomic<bool> failed_ = false;
   std::atomic<unsigned> answered_ = 0;  ///< number of the last call that was answered
-  unsigned call_ = 0;                   ///< the step's: number of the last call
+  unsigned call_ = 0;                   ///< of the step's side: number of the last call
 };
 
 }  // namespace stylet

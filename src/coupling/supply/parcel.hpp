@@ -7,29 +7,30 @@
 
 namespace stylet {
 
-/// What step and worker of a ComplianceSupply pass to and fro. Whatever one side does not need any more travels to the
-/// other in it, so that the step frees no memory.
+/// The parcel that the two sides of a ComplianceSupply pass back and forth. Each side puts into it the memory that it
+/// no longer needs, so that the step frees none.
 struct SupplyParcel {
-  /// A slot of the store that the worker would like to have.
+  /// A slot of the store that the worker requests.
   struct Leaver {
     Index node = -1;
     Index slot = -1;
-    bool left = false;                              ///< the step's answer: whether it gave the slot up
-    ComplianceRow row;                              ///< what was in the slot, to be freed
-    std::shared_ptr<const MeshKernel::Row> kernel;  ///< what the near field had of the node, to be freed
+    bool left = false;                              ///< the step's answer: whether the slot was given up
+    ComplianceRow row;                              ///< previous contents of the slot, to be freed by the worker
+    std::shared_ptr<const MeshKernel::Row> kernel;  ///< previous row of the node in the mesh kernel, to be freed by the
+                                                    ///< worker
   };
-  /// What the near field is to have of a node.
+  /// A new row for a node in the mesh kernel.
   struct KernelRow {
     Index node = -1;
     std::shared_ptr<const MeshKernel::Row> row;
   };
   NeedleWhereabouts needle;            ///< written by the step
-  unsigned call = 0;                   ///< number of the last call for work that the step knew of
-  std::vector<Leaver> leavers;         ///< written by the worker, answered by the step
-  std::vector<ComplianceRow> rows;     ///< made by the worker, for the store
-  std::vector<KernelRow> kernel_rows;  ///< made by the worker, for the near field
+  unsigned call = 0;                   ///< number of the last call that the step had made
+  std::vector<Leaver> leavers;         ///< requested by the worker, answered by the step
+  std::vector<ComplianceRow> rows;     ///< rows for the store, made by the worker
+  std::vector<KernelRow> kernel_rows;  ///< rows for the mesh kernel, made by the worker
 
-  /// Takes everything out that one side made for the other.
+  /// Empties the lists of both sides.
   void clear() {
     leavers.clear();
     rows.clear();

@@ -6,8 +6,8 @@
 namespace stylet {
 namespace {
 
-/// Rounds for which a slot is not asked for after it was refused. If raised, parcels carry fewer vain questions, and a
-/// slot that contacts have left is found later.
+/// Number of rounds for which a refused slot is not requested again. Raised, parcels carry fewer requests in vain, and
+/// a slot that contacts have left is found later.
 constexpr unsigned kRefusedRounds = 100;
 
 }  // namespace
@@ -62,7 +62,7 @@ std::vector<Index> RowLedger::dispensable(std::span<const Index> wanted) const {
 }
 
 void RowLedger::record(std::span<const ComplianceRow> rows, std::span<const Index> kernel_nodes) {
-  own_.reserve(own_.size() + rows.size());  // after this nothing can fail
+  own_.reserve(own_.size() + rows.size());  // nothing below can fail
   for (const ComplianceRow& row : rows) {
     slots_.occupy(row.slot, row.node);
     own_.push_back(row.slot);

@@ -32,7 +32,7 @@ void RowMaker::note_answers(SupplyParcel& parcel) {
   parcel.clear();
 }
 
-/// Asks for slots whose nodes are furthest from the tip.
+/// Requests the slots whose nodes are furthest from the tip.
 void RowMaker::ask_for_slots(SupplyParcel& parcel, std::size_t count, std::span<const Index> wanted) const {
   const NodeSlots& slots = ledger_.slots();
   std::vector<std::pair<double, Index>> far;  // −(distance from the tip)² [mm²], slot

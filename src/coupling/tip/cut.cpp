@@ -6,7 +6,7 @@
 namespace stylet {
 
 namespace {
-/// [mm] Longest way of a sub-step; the next surface is looked for within this. Raised, the search takes longer.
+/// [mm] Longest cut in a sub-step, and the range of the search for the next surface. Raised, the search takes longer.
 constexpr double kReach_mm = 4.0;
 }  // namespace
 

@@ -8,36 +8,36 @@
 
 namespace stylet {
 
-/// What is ahead of the tip and resists it: tissue that it cuts, or a surface that has to break first.
+/// The resistance ahead of the tip: tissue that it cuts, or a surface that has to break first.
 class Resistance {
  public:
-  /// [N] Axial force on the tissue that starts the cut; infinite before bone.
+  /// [N] Axial force on the tissue at which the cut begins; infinite at bone.
   [[nodiscard]] double limit() const { return limit_; }
-  /// [N] Axial force that keeps the cut going.
+  /// [N] Axial force of a cut that continues slowly.
   [[nodiscard]] double cutting() const { return cutting_; }
   /// The region that is cut; −1 before the first one is met.
   [[nodiscard]] int region() const { return region_; }
-  /// [N] The same force by the built-in law: the region's own.
+  /// [N] cutting() by the built-in law: the region's own cutting force.
   [[nodiscard]] double built_in_cutting() const { return built_in_cutting_; }
-  /// Whether a surface that has not been broken is ahead.
+  /// Whether an unbroken surface is ahead.
   [[nodiscard]] bool is_surface() const { return surface_; }
   [[nodiscard]] bool is_bone() const { return std::isinf(limit_); }
-  /// Element behind the surface that was met last, −1 = the outside of the patient.
+  /// Element behind the surface that was met last, −1: the outside of the patient.
   [[nodiscard]] Index behind() const { return behind_; }
 
-  /// Tissue of a region is ahead.
+  /// Sets tissue of a region ahead.
   void be_tissue(int region, double cutting_N) {
     surface_ = false;
     region_ = region;
     limit_ = cutting_ = built_in_cutting_ = cutting_N;
   }
-  /// Another law of cutting applies from here on.
+  /// Replaces the cutting force of the region by that of another law.
   void set_cutting(double cutting_N) {
     cutting_ = cutting_N;
     if (!surface_) limit_ = cutting_N;
   }
-  /// The patient's surface is ahead, seen from outside. @param inwards unit normal, LPS @param break_N force that
-  /// breaks it
+  /// Sets the patient's outer surface ahead, seen from outside. @param inwards unit normal, LPS @param break_N force
+  /// that breaks it
   void be_outer_surface(Index behind, int region, const Vec3& inwards, double break_N, double cutting_N) {
     be_surface(behind, break_N);
     region_ = region;
@@ -45,22 +45,22 @@ class Resistance {
     cutting_ = built_in_cutting_ = cutting_N;
     limit_ = std::max(break_N, cutting_N);
   }
-  /// A surface within the patient is ahead; before it the force that keeps a cut going is what it was.
+  /// Sets a surface within the patient ahead; cutting() stays that of the tissue before it.
   void be_surface(Index behind, double break_N) {
     surface_ = true;
     behind_ = behind;
     inwards_.setZero();
     limit_ = break_N;
   }
-  /// The surface that was met is behind the tip.
+  /// Sets the surface that was met behind the tip.
   void pass(Index behind) {
     surface_ = false;
     behind_ = behind;
   }
 
-  /// Whether a surface is ahead that bears less than an axial force [N] of a tip with the unit tangent t. A tip that
-  /// has come to lie flat to the patient's surface does not enter, as one that meets it flat does not.
-  /// @param grazing_cos cosine of the angle between tangent and normal from which on the tip lies flat
+  /// Whether a surface is ahead that breaks under an axial force [N] of a tip with the unit tangent t. A tip that lies
+  /// flat to the patient's surface does not break it, just as a tip that meets it flat does not enter.
+  /// @param grazing_cos cosine of the angle between tangent and normal below which the tip lies flat
   [[nodiscard]] bool gives(double axial, const Vec3& t, double grazing_cos) const {
     if (!surface_) return false;
     const bool flat = !inwards_.isZero() && inwards_.dot(t) < grazing_cos;
@@ -74,7 +74,7 @@ class Resistance {
   bool surface_ = false;
   int region_ = -1;
   Index behind_ = -1;
-  Vec3 inwards_ = Vec3::Zero();  ///< normal of the patient's surface, zero for a surface within the patient
+  Vec3 inwards_ = Vec3::Zero();  ///< normal of the patient's outer surface; zero for a surface within the patient
 };
 
 }  // namespace stylet

@@ -10,17 +10,17 @@
 namespace stylet {
 
 namespace {
-/// Slope of the cut back to the needle's axis. Raised, the track follows a needle that is moved sideways sooner, with
-/// sharper bends.
+/// Largest slope of the cut back to the needle's axis. Raised, the track of a needle that is moved sideways returns to
+/// the axis sooner, with sharper bends.
 constexpr double kSteepest = 0.5;
-/// det(I + ∇u) of tissue around the tip. Below this its deformation is beyond the linear model, and the cut does not
-/// follow it.
+/// Least det(I + ∇u) of the tissue around the tip. Below this, its deformation is beyond the linear model, and the cut
+/// ignores it.
 constexpr double kLeastVolume = 0.2;
-/// A lateral row so many times softer than the tissue carries its given force and nothing else. Raised much further,
-/// its equation loses digits.
+/// Softness of a lateral row that is not held, over the tissue's own compliance: the row carries its given force and
+/// nothing else. Raised much further, its equation loses digits.
 constexpr double kNotHeld = 1e6;
-/// [N s/mm] Stands for no viscosity in a division and is far below any that a balance could be found with: a scenario
-/// gives at least 1e-5. Raised, a tip without viscosity cuts less freely.
+/// [N s/mm] Smallest viscosity in a division, far below any with which a balance could be found: a scenario gives at
+/// least 1e-5. Raised, a tip without viscosity cuts less freely.
 constexpr double kLeastViscosity = 1e-12;
 }  // namespace
 
@@ -76,10 +76,10 @@ void TipContact::begin(const ContactForces& forces) {
   if (touches_) aim(forces);
 }
 
-/// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; tissue
-/// turned by the deformation gradient F = I + ∇u is cut along F⁻¹ t. Where the track's end has drifted off the axis
-/// (the base moved sideways while the tip did not cut) the cut leads back to the axis. A bevelled tip leads it to a
-/// line beside the axis instead.
+/// Chooses the direction of the cut in undeformed coordinates. A symmetric tip cuts along its own tangent t; with the
+/// deformation gradient F = I + ∇u of the tissue, that is F⁻¹ t. Where the track's end has drifted off the axis,
+/// because the base moved sideways while the tip did not cut, the cut leads back to the axis. A bevelled tip cuts
+/// towards a line beside the axis instead.
 void TipContact::aim(const ContactForces& forces) {
   const Vec3 t = tangent();
   const Mat3 F = Mat3::Identity() + tissue_.compliance().gradient_at_tip(tissue_.all_forces(forces));
@@ -113,30 +113,31 @@ void TipContact::hand_over(double share) {
                                : tissue_.own_yield(ContactCompliance::kTip) * share / (1.0 - share);
 }
 
-// A bevelled tip, by one of two laws.
+// The two laws of a bevelled tip.
 //
-// offset: the tip's wedge cuts under ψ to the axis, h = d tan ψ beside it after a cut of length d. The point that cuts
-// is part of the needle, so the cut cannot leave the shaft: the way back to the axis holds it at g = 2R tan ψ. Shaft
-// contacts come to lie on that line, the tissue draws the shaft towards it, and the needle bends.
+// offset: the tip's wedge cuts at the angle ψ to the axis, so after a cut of length d it is d tan ψ beside the axis.
+// The cutting point belongs to the needle, so the cut cannot leave the shaft: the term that leads back to the axis
+// holds it at g = 2R tan ψ. Shaft contacts then lie on that line, the tissue draws the shaft towards it, and the needle
+// bends.
 //
-// force: the tissue pushes the tip towards its sharp side by a share of the tip's axial force; the opposite acts on the
-// tissue. Where shaft contacts have taken over the tip's lateral hold, its lateral rows stay in the system as soft as
-// rows may be, and carry this force.
+// force: the tissue pushes the tip towards its sharp side by a share of the tip's axial force; the opposite force acts
+// on the tissue. Where shaft contacts have taken over the tip's lateral hold, its lateral rows stay in the system with
+// the largest possible softness, and carry this force.
 
 Vec3 Bevel::sharp_side(const Pose& base, const Vec3& tangent) {
   const Vec3 axis = base.rotation * Vec3::UnitZ();
   return Eigen::Quaterniond::FromTwoVectors(axis, tangent) * (base.rotation * Vec3::UnitX());
 }
 
-/// What a bevel of law `offset` adds to the direction of the cut, so that the cut leaves the axis at ψ and goes over to
-/// the line g beside it.
+/// Term that a bevel of Law::offset adds to the direction of the cut, so that the cut leaves the axis at the angle ψ
+/// and approaches the line at the distance g.
 Vec3 TipContact::lead_of_bevel(const Vec3& tangent) const {
   const double slope = settings_.bevel.slope();
   if (slope == 0.0) return Vec3::Zero();
   const Vec3 side = Bevel::sharp_side(base_, tangent);
-  if (!std::isfinite(lateral_hold_)) return slope * side;  // the way back does the rest
-  // While the tip itself is held sideways the end of its track cannot leave it. How far it would be away were it let go
-  // is told by the force that holds it.
+  if (!std::isfinite(lateral_hold_)) return slope * side;  // the term that leads back to the axis does the rest
+  // While the tip is held sideways, the end of its track cannot leave it. The lateral force tells how far the end would
+  // be away if the tip were released.
   const double own = tissue_.own_yield(ContactCompliance::kTip);
   const double beside = -(lateral_hold_ + own) * force.dot(side);
   return std::clamp(slope - beside / settings_.merge_mm, 0.0, slope) * side;

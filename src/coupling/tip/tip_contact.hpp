@@ -8,12 +8,13 @@
 
 namespace stylet {
 
-/// The needle's tip against the end of its track: whether it is held there, cuts on, or has come away from it.
+/// The contact of the needle's tip with the end of its track: whether it is held there, cuts, or is open.
 class TipContact {
  public:
   enum class State { open, stick, cut };
 
-  /// All outlive the contact. @param base pose of the needle's base as the hand gives it: which way the bevel looks
+  /// All arguments outlive the contact. @param base pose of the needle's base as the hand gives it, for the bevel's
+  /// direction
   TipContact(const CouplingSettings& settings, const Locator& locator, const Pose& base, const Needle& needle,
              TissueResponse& tissue)
       : cut(locator, tissue),
@@ -30,48 +31,48 @@ class TipContact {
   int toggles = 0;            ///< changes of state in this sub-step
   double cut_mm_per_s = 0.0;  ///< [mm/s] speed of cutting in the last sub-step, for a program's own law
 
-  /// Whether there is an end of a track to push against.
+  /// Whether the tip is at the end of a track in tissue.
   [[nodiscard]] bool touches() const { return touches_; }
   [[nodiscard]] State state() const { return state_; }
-  /// Whether what is ahead of the tip acts on it.
+  /// Whether the tissue ahead acts on the tip.
   [[nodiscard]] bool holds() const { return touches_ && state_ != State::open; }
   [[nodiscard]] bool cuts() const { return touches_ && state_ == State::cut; }
   [[nodiscard]] bool is_on_bone() const { return touches_ && state_ == State::stick && ahead.is_bone(); }
-  /// The law of a tip that cuts here, in a sub-step of h seconds.
+  /// The law of cutting at this place, in a sub-step of h seconds.
   [[nodiscard]] CuttingLaw cutting_law(double h) const;
-  /// Asks a program's own law of cutting, if there is one, what resists the tip from here on.
+  /// Asks a program's own law of cutting, if there is one, for the cutting force and viscosity from here on.
   void ask_own_law();
   /// Whether that law gave numbers that cannot be used, so that the built-in law stands in for it.
   [[nodiscard]] bool refuses_own_law() const { return refuses_own_law_; }
-  /// Whether it waits for compliance that is not there yet.
+  /// Whether the tip waits for compliance that has not been computed yet.
   [[nodiscard]] bool waits() const { return touches_ && cut.is_stale(); }
 
-  /// The tip is put to the end of a track: x [mm] LPS, undeformed, in the element of `at`. @param touches whether there
-  /// is tissue ahead @param state what the tip does there
+  /// Places the tip at the end of a track: x [mm] LPS, undeformed, in the element of `at`.
+  /// @param touches whether there is tissue ahead @param state state of the contact there
   void put(const Vec3& x, const MaterialPoint& at, bool touches, State state);
-  /// The needle is out of the tissue.
+  /// Resets the contact: the needle is out of the tissue.
   void forget();
-  /// The tip comes out of the tissue at the far side.
+  /// Opens the contact: the tip leaves the tissue at the far side.
   void exit();
   void set_state(State state) { state_ = state; }
 
-  /// A sub-step's balance begins: remembers where the tip is, and aims the cut.
+  /// Begins a sub-step's balance: stores the place of the tip, and aims the cut.
   void begin(const ContactForces& forces);
-  /// Whether the surface ahead bears less than the present force. To be asked of a balance only: a broken surface does
-  /// not heal, and the forces of an iterate on the way to a balance are not forces on the tissue.
+  /// Whether the present force exceeds the strength of the surface ahead. To be called for a balance only: a broken
+  /// surface does not heal, and the forces of an iterate are not yet forces on the tissue.
   [[nodiscard]] bool breaks_surface() const;
-  /// The tip goes back to where the sub-step, or the cut behind a surface that broke in it, began.
+  /// Returns the tip to the start of the sub-step, or of the cut behind a surface that broke in this sub-step.
   void take_back_cut();
 
-  /// The shaft has taken over a share of the tip's lateral hold, 0…1.
+  /// Sets the share 0 … 1 of the tip's lateral hold that the shaft has taken over.
   void hand_over(double share);
-  /// [mm/N] Softness of the lateral hold; infinite once the shaft has taken it over.
+  /// [mm/N] Softness of the lateral hold; infinite once the shaft has taken over all of it.
   [[nodiscard]] double lateral_hold() const { return lateral_hold_; }
   /// Whether the balance has equations for lateral forces at the tip.
   [[nodiscard]] bool has_lateral_rows() const;
   /// [mm/N] Softness of these equations.
   [[nodiscard]] double lateral_softness() const;
-  /// [N] LPS, force on the tissue of a bevel that is pushed sideways.
+  /// [N] LPS, force on the tissue by a bevel of Law::force.
   [[nodiscard]] Vec3 bevel_force() const;
 
  private:

@@ -9,7 +9,7 @@
 namespace stylet {
 
 namespace {
-/// [mm] A point of the surface is not inside by this much. Raised, a tip that is just inside counts as outside.
+/// [mm] Depth up to which a point counts as on the surface. Raised, a tip that is just inside counts as outside.
 constexpr double kAtSurface_mm = 1e-6;
 }  // namespace
 
@@ -41,8 +41,8 @@ void TipPath::forget_entry() {
 
 bool TipPath::in_tissue(const Vec3& x) const { return mesh_.locator->find(x - kAtSurface_mm * tangent()).has_value(); }
 
-/// Where the way back along a straight needle from a tip inside the tissue comes out of it, if that is no further than
-/// its diameter.
+/// For a tip inside the tissue: the point where a straight line back along the needle leaves the tissue, if it is
+/// within the needle's diameter of the tip.
 std::optional<Vec3> TipPath::surface_behind(const Vec3& x) const {
   if (!in_tissue(x)) return std::nullopt;
   const Vec3 from = needle_.point(0.0);
@@ -81,8 +81,8 @@ bool TipPath::meet_surface(const Vec3& from, const Vec3& to, Step& step) {
   return true;
 }
 
-/// The tip touches the patient's surface from outside: a track starts there, or an earlier one that begins there goes
-/// on, or the present one does behind a gap outside the tissue.
+/// The tip touches the patient's surface from outside. A new track starts there, or the needle joins an earlier track;
+/// or the present track continues after a gap outside the tissue.
 void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind kind) {
   const int region = region_of(mesh_, crossing.tet);
   const Vec3 t = tangent();
@@ -118,7 +118,7 @@ void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind k
     track.end = x;
     track.end_at = at;
   }
-  if (tip.cut.is_stale()) tissue_.move_tip(at, x);  // the compliance at the surface stands in for it
+  if (tip.cut.is_stale()) tissue_.move_tip(at, x);  // the compliance at the surface is used instead
 }
 
 void TipPath::break_surface(double hand_N, Step& step) {
@@ -130,7 +130,7 @@ void TipPath::break_surface(double hand_N, Step& step) {
   cross_surface();
 }
 
-/// Goes over to the element behind the surface that the end of the track lies on.
+/// Moves to the element behind the surface at the end of the track.
 void TipPath::cross_surface() {
   const Index behind = tip.ahead.behind();
   if (behind < 0) {
@@ -211,8 +211,8 @@ void TipPath::pass_open_end(const ContactForces& forces, Step& step) {
   if (phase_ != TipState::exited || meet_surface(air_tip_, now, step)) air_tip_ = now;
 }
 
-/// On curved or tilted skin a tip beside its entry may be behind it and yet in the tissue, and a needle that is drawn
-/// out is in its track until it is out, however far its hand is beside it.
+/// On curved or tilted skin a tip beside its entry may be behind the entry plane and yet in the tissue. A needle that
+/// is drawn out is in its track until it is out, however far the hand has moved sideways.
 bool TipPath::has_left(bool drawn_out) const {
   if (tip.holds()) return false;
   const Vec3 t = tangent();
@@ -231,8 +231,8 @@ void TipPath::finish() {
   tip.forget();
 }
 
-/// A needle that left its track sideways is to meet the surface where its shaft does, unless it is so far inside by now
-/// that this would be a blow. A bowed needle swings that far when it slips off.
+/// A needle that left its track sideways meets the surface again where its shaft does, unless the tip is so far inside
+/// that this would be a blow: a bowed needle may swing that far when it slips off.
 void TipPath::come_out() {
   place_in_air(surface_behind(tip_now()).value_or(tip_now()));
   add_event(EventKind::withdrawn, -1);

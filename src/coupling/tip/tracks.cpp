@@ -7,7 +7,8 @@
 namespace stylet {
 
 namespace {
-constexpr double kSameDirection = 0.98;  ///< cosine between two needles; raised, fewer needles go on in an old track
+constexpr double kSameDirection = 0.98;  ///< cosine of the angle between two needles above which the second may join
+                                         ///< the first one's track; raised, fewer needles join
 }  // namespace
 
 Tracks::Tracks(int capacity, double join_mm) : join_mm_(join_mm), earlier_(kRoom) {
@@ -20,7 +21,7 @@ bool Tracks::begin(const Vec3& x, const Vec3& direction) {
   if (joined_ >= 0) {
     now = earlier_[static_cast<std::size_t>(joined_)];
     for (Track::Mark& mark : now.marks) mark.point = -1;
-    // On curved or tilted skin this needle meets the surface before or behind the entry of the earlier one.
+    // On curved or tilted skin this needle meets the surface before or behind the earlier entry.
     move_entry(x);
     return true;
   }
@@ -36,7 +37,7 @@ void Tracks::finish() {
   if (now.end_xi > 0.0) {
     std::size_t place = static_cast<std::size_t>(joined_);
     if (has_joined()) {
-      // The entry stays where it was: needle after needle beside the one before would lead the hole across the skin.
+      // The earlier entry is kept: otherwise needle after needle, each beside the last, would move it across the skin.
       move_entry(earlier_[place].entry);
     } else {
       if (count_ < earlier_.size()) {
@@ -68,7 +69,7 @@ int Tracks::earlier_at(const Vec3& x, const Vec3& direction) const {
   return found;
 }
 
-/// The current track begins at another place of the surface, and its arc length there.
+/// Moves the start of the current track, and of its arc length, to another place of the surface.
 void Tracks::move_entry(const Vec3& entry) {
   const double later = now.entry_direction.dot(entry - now.entry);
   now.entry = entry;

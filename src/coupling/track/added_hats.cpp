@@ -43,7 +43,7 @@ void AddedHats::complete(std::span<const Border> border, const Mat3& stiffness) 
   Mat3 s = stiffness;
   for (const Border& at_vertex : border) s.noalias() += at_vertex.k.transpose() * z(at_vertex.vertex, count() - 1);
   const Mat3 inverse = s.inverse();
-  splits_.back().flexibility = 0.5 * (inverse + inverse.transpose());  // rounding must not make it unsymmetric
+  splits_.back().flexibility = 0.5 * (inverse + inverse.transpose());  // keeps it symmetric in spite of rounding
 }
 
 void AddedHats::clear(int observable) {

@@ -7,22 +7,24 @@
 
 namespace stylet {
 
-/// A vertex on the border of a split, and how its displacement is coupled to the split's hat.
+/// A vertex on the border of a split, and the coupling of its displacement with the split's hat.
 struct Border {
   int vertex = 0;         ///< number of the vertex among the observables
   Mat3 k = Mat3::Zero();  ///< k_jp = a(φ_j, b_p) [N/mm]
 };
 
-/// The borders of all splits. An added node p has a hat b_p; the vertices j of the elements that the node splits are
-/// its border, where the energy couples the hat to the displacement of the base mesh: k_jp = a(φ_j, b_p). A node inside
-/// an element has no border. Vertices may be interpolated from base nodes, so each border also comes to loads on these.
+/// The borders of all splits. An added node p has a hat b_p. The vertices j of the elements that the node splits are
+/// its border, where the energy couples the hat with the displacement of the base mesh: k_jp = a(φ_j, b_p). A node
+/// inside an element has no border. Vertices may be interpolated from base nodes, so each border also gives loads on
+/// base nodes.
 ///
-/// Splits are numbered in the order in which they begin. A split must be complete before the next one begins; nothing
-/// of it changes afterwards. No call after construction allocates.
+/// Splits are numbered in the order of begin(). A split must be complete before the next one begins, and never changes
+/// afterwards. No call after construction allocates.
 class SplitBorders {
  public:
-  static constexpr int kMostVertices = 5;  ///< of one border: those of two elements that share a face
-  static constexpr int kMostLoads = kMostVertices * kMostElementNodes;  ///< base nodes that one border loads
+  static constexpr int kMostVertices = 5;  ///< largest number of vertices of a border: two elements that share a face
+  static constexpr int kMostLoads = kMostVertices * kMostElementNodes;  ///< largest number of base nodes with loads of
+                                                                        ///< one border
 
   /// @param capacity largest number of splits
   explicit SplitBorders(int capacity);
@@ -32,14 +34,15 @@ class SplitBorders {
 
   /// Begins the next split, which has no border yet.
   void begin();
-  /// Adds k [N/mm] to what couples a vertex to the hat of the last split.
-  /// @param vertex number of the observable
+  /// Adds k [N/mm] to the coupling between a vertex and the hat of the last split.
+  /// @param vertex number of the vertex among the observables
   void add(int vertex, const Mat3& k);
-  /// Adds the load k [N/mm] on a vertex of the last split, distributed over the base nodes that the vertex has.
+  /// Adds the load k [N/mm] on a vertex of the last split, distributed over the base nodes from which the vertex is
+  /// interpolated.
   void add_loads(const Shape& vertex, const Mat3& k);
 
   [[nodiscard]] int count() const { return static_cast<int>(splits_.size()); }
-  /// Border of a split, each vertex once, in the order in which they came.
+  /// Border of a split, each vertex once, in the order of add().
   [[nodiscard]] std::span<const Border> border(int split) const {
     return splits_[static_cast<std::size_t>(split)].border.of(borders_);
   }

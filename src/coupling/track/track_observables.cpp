@@ -27,7 +27,7 @@ void TrackObservables::reset() {
 int TrackObservables::add(const Shape& shape, Index vertex) {
   Observable o{.shape = shape, .nodes_before = nodes_.size()};
   for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i) {
-    // The search goes backwards because the nodes that came last are those of elements nearby.
+    // Backwards, because the nodes that were added last belong to elements nearby.
     const auto found = std::find(nodes_.rbegin(), nodes_.rend(), shape.node[i]);
     o.number[i] = static_cast<int>(nodes_.rend() - found) - 1;
     if (found != nodes_.rend()) continue;

@@ -11,14 +11,14 @@
 
 namespace stylet::test {
 
-/// validate::MediumBlock, built at once.
+/// A validate::MediumBlock that is built by the constructor.
 struct MediumBlock : validate::MediumBlock {
   explicit MediumBlock(const Options& options) : validate::MediumBlock(validate::MediumBlock::build(options).value()) {}
 };
 
-/// validate::NeedleLine, built at once.
+/// A validate::NeedleLine that is built by the constructor.
 struct NeedleLine : validate::NeedleLine {
-  /// @param unbounded the held faces move as they would in an unbounded medium
+  /// @param unbounded whether the held faces move as in an unbounded medium
   NeedleLine(validate::MediumBlock& block, double spacing_mm, const Vec3& along, bool unbounded)
       : validate::NeedleLine(build(block, {.spacing_mm = spacing_mm, .direction = along, .unbounded = unbounded})) {}
 };

@@ -21,7 +21,7 @@ Mat3 stress(const Field& u, const Vec3& x, const Medium& medium) {
   return lambda * F.trace() * Mat3::Identity() + medium.mu * (F + F.transpose());
 }
 
-/// The body force that keeps a displacement field in balance: −div σ [N/mm³].
+/// The body force that balances the stress of a displacement field: −div σ [N/mm³].
 template <class Field>
 Vec3 body_force(const Field& u, const Vec3& x, const Medium& medium) {
   constexpr double h = 1e-2;

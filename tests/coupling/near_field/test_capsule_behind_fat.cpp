@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A capsule behind fat through which the needle has cut its way (docs/theory/near_field.md §4,
+// A capsule behind fat, through which the needle has cut its way (docs/theory/near_field.md §4,
 // docs/theory/stiffening.md §1).
 #include "coupling/needle_in_block.hpp"
 
@@ -13,8 +13,8 @@ namespace {
 using test::BlockOptions;
 using test::NeedleInBlock;
 
-/// A capsule pressed in by the flat end of a rod in its hole through 12 mm of fat of 2 kPa, on gland of 30 kPa: an
-/// axisymmetric finite element model (tests/reference/capsule_behind_fat.py) that knows nothing of Stylet.
+/// The flat end of a rod in its hole presses a capsule through 12 mm of fat of 2 kPa, on gland of 30 kPa: an
+/// independent axisymmetric finite element model (tests/reference/capsule_behind_fat.py).
 struct Dent {
   double depth_mm;
   double force_N;
@@ -22,12 +22,12 @@ struct Dent {
 #include "capsule_behind_fat.inc"
 
 constexpr double kFat_mm = 12.0;
-constexpr double kWide_mm = 100.0;  ///< of the block of the finite element model
+constexpr double kWide_mm = 100.0;  ///< width of the block of the finite element model
 constexpr double kWithin_mm = 1.5;
 constexpr double kWideWithin_mm = 1.0;    ///< in the wide block, whose coarsest elements are 33 mm wide
 constexpr double kLinearWithin_mm = 0.2;  ///< steps are 0.05 mm
 
-/// Base depth at which the finite elements break a capsule of a strength [N], in the block [mm].
+/// Base depth [mm] at which a capsule of a given strength [N] breaks in the finite element model of the block.
 double of_elements(double strength_N) {
   Dent before{0.0, 0.0};
   for (const Dent& dent : kYeohDent) {
@@ -41,9 +41,9 @@ double of_elements(double strength_N) {
   return 0.0;
 }
 
-/// A block with 12 mm of fat on gland, `wide_mm` wide and 100 mm deep with the fat, held
-/// at its sides and bottom. Nothing but the capsule resists the needle: the fat is cut by no force and nothing rubs
-/// along the shaft, so that the hand feels what the capsule does and the needle stands in its hole through fat at rest.
+/// A block with 12 mm of fat on gland, `wide_mm` wide and 100 mm deep including the fat, held at its sides and bottom.
+/// Only the capsule resists the needle: cutting the fat takes no force and there is no friction on the shaft, so that
+/// the hand feels the capsule alone and the needle stands in its hole through fat at rest.
 BlockOptions fat_on_gland(int cells, double wide_mm, double capsule_N, double stiffening) {
   BlockOptions options;
   const double half = 0.5 * wide_mm;
@@ -52,8 +52,8 @@ BlockOptions fat_on_gland(int cells, double wide_mm, double capsule_N, double st
   options.cells = {cells, cells, cells};
   options.jitter = 0.0;
   const double height = kWide_mm / cells;
-  const double face =
-      std::max(1.0, std::round(kFat_mm / height)) * height;  // the layer of nodes that becomes the gland's
+  const double face = std::max(1.0, std::round(kFat_mm / height)) * height;  // the layer of nodes that is moved to the
+                                                                             // interface with the gland
   options.regions = {"fat", "gland"};
   options.region_at = [face](const Vec3& x) { return x.z() < face ? 0 : 1; };
   options.edit = [face, height](TetMesh& mesh) {
@@ -72,7 +72,7 @@ BlockOptions fat_on_gland(int cells, double wide_mm, double capsule_N, double st
 }
 
 /// Pushes a needle straight in until the capsule breaks.
-/// @param planned whether the near field was told of its way
+/// @param planned whether the needle's way is planned, so that its wide part is precomputed
 NeedleInBlock until_it_breaks(BlockOptions options, bool planned, const Vec3& entry = {2.0, 3.0, 0.0}) {
   if (planned) options.ways = {{entry, Vec3::UnitZ(), 50.0}};
   NeedleInBlock run(options);
@@ -83,7 +83,7 @@ NeedleInBlock until_it_breaks(BlockOptions options, bool planned, const Vec3& en
   return run;
 }
 
-/// Base depth at which the hand came to push with a force [mm].
+/// Base depth [mm] at which the hand first pushes with a force.
 double depth_at(const NeedleInBlock& run, double force_N) {
   for (std::size_t i = 0; i < run.forces.size(); ++i) {
     if (run.forces[i] >= force_N) return run.depths[i];
@@ -91,7 +91,7 @@ double depth_at(const NeedleInBlock& run, double force_N) {
   return run.depth;  // the step in which the capsule broke
 }
 
-/// Cells along each side of the block, and whether the near field knows of the needle's way.
+/// Cells along each side of the block, and whether the needle's way is planned.
 using Mesh = std::tuple<int, bool>;
 class CapsuleBehindFat : public testing::TestWithParam<Mesh> {};
 
@@ -115,7 +115,7 @@ TEST_P(CapsuleBehindFat, of_linear_tissue_breaks_as_deep_as_finite_elements_say)
 TEST_P(CapsuleBehindFat, that_stiffens_breaks_as_deep_as_finite_elements_of_a_yeoh_solid_say) {
   const auto [cells, planned] = GetParam();
   constexpr double kCapsule_N = 4.5;
-  // κ that goes with a Yeoh solid whose C20 is its C10 (docs/theory/stiffening.md, section 1).
+  // κ of a Yeoh solid with C20 = C10 (docs/theory/stiffening.md §1).
   const NeedleInBlock run = until_it_breaks(fat_on_gland(cells, kWide_mm, kCapsule_N, 2.0), planned);
   for (const double strength : {1.0, 2.0, 3.0, 4.0, kCapsule_N}) {
     const double ours = depth_at(run, strength);
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, CapsuleBehindFat, testing::Combine(testing::Val
 
 class CapsuleBehindFatInAWideBlock : public CapsuleBehindFat {};
 
-/// Wherever in an element the needle goes in.
+/// At several places of the entry within an element.
 TEST_P(CapsuleBehindFatInAWideBlock, breaks_as_deep_as_finite_elements_say) {
   const auto [cells, planned] = GetParam();
   constexpr double kCapsule_N = 4.5;

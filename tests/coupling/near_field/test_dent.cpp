@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tip that has broken the skin stands in a dent eight times as deep as it is thick (docs/theory/near_field.md §5).
+// A tip that has broken the skin stands in a dent that is eight times as deep as the needle is thick
+// (docs/theory/near_field.md §5).
 #include "coupling/needle_in_block.hpp"
 
 #include <tuple>
@@ -23,7 +24,7 @@ TEST_P(TipInTheDent, meets_a_force_that_only_falls_once_the_skin_is_broken) {
   options.laws[0].stiffening_MPa = stiffening_MPa;
   NeedleInBlock run(options);
   run.aim({2.0, 3.0, 0.0}, Vec3::UnitZ(), 0.0);
-  // Steps so short that the tip's way through the dent, some hundredths of a second, is seen.
+  // Steps short enough to resolve the tip's motion through the dent, which takes some hundredths of a second.
   constexpr double dt = 2e-4;
   while (run.first(EventKind::puncture) == nullptr && run.depth < 30.0) run.go(run.depth + 0.01, 20.0, dt);
   ASSERT_NE(run.first(EventKind::puncture), nullptr);
@@ -31,7 +32,7 @@ TEST_P(TipInTheDent, meets_a_force_that_only_falls_once_the_skin_is_broken) {
   run.go(run.depth + 15.0, 20.0, dt);
 
   constexpr double hardly_N = 1e-3;
-  double least = kPuncture_N;  // so far
+  double least = kPuncture_N;  // smallest force so far
   double rise = 0.0;
   for (std::size_t i = broke; i < run.forces.size(); ++i) {
     rise = std::max(rise, run.forces[i] - least);

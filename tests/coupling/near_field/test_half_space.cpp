@@ -14,7 +14,7 @@ namespace {
 const Medium kHalfSpaceMedium{3.4e-3, 0.45};
 const Vec3 kInwards = Vec3(0.3, -0.2, 0.9).normalized();
 
-/// Field of a force at `source` in the half space x·n ≥ 0 with a free surface.
+/// Displacement field of a force at `source` in the half space x·n ≥ 0 with a free surface.
 Vec3 half_space(const Vec3& x, const Vec3& source, const Vec3& force, double epsilon) {
   const SurfacePair surface{kInwards, kInwards.dot(x), kInwards.dot(source)};
   return (kelvinlet(x - source, epsilon, kHalfSpaceMedium) +
@@ -74,7 +74,7 @@ TEST(FreeSurface, a_tip_pressed_on_it_gives_way_like_a_flat_punch) {
     const NearSurface skin{0.0, Vec3::UnitZ(), 1.0};
     const double punch = (1.0 - poisson * poisson) / (2.0 * needle.radius_mm * young);
     EXPECT_NEAR(tip_kernel(skin, {}, needle.own_tip_epsilon(skin, {}, poisson), medium)(2, 2), punch, 1e-9 * punch);
-    // Places right beside the tip move as far as the punch does.
+    // Places right beside the tip move as far as the punch.
     const double epsilon = needle.tip_epsilon(skin, poisson);
     const Mat3 G = kelvinlet(Vec3::Zero(), epsilon, medium) +
                    free_surface_image(Vec3::Zero(), {Vec3::UnitZ(), 0.0, 0.0}, epsilon, medium);

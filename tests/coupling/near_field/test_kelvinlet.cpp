@@ -39,7 +39,7 @@ TEST(Kelvinlet, self_compliance_is_the_mean_of_its_diagonal) {
   EXPECT_NEAR(kelvinlet_self(kMedium), (5.0 - 6.0 * nu) / (16.0 * std::numbers::pi * kMedium.mu * (1.0 - nu)), 1e-12);
 }
 
-/// The mean over two pieces by the midpoint rule, fine enough for a millionth.
+/// The mean over two pieces by the midpoint rule, accurate to a millionth.
 Mat3 by_quadrature(const Segment& at, const Segment& on, double epsilon) {
   constexpr int fine = 600;
   Mat3 sum = Mat3::Zero();

@@ -11,7 +11,7 @@ namespace {
 
 using test::MediumBlock;
 
-/// Compliance of a tip at x as in a half space without sides: the block's held nodes move with the half space's field.
+/// Compliance of a tip at x in a half space without sides: the block's held nodes move with the half space's field.
 Mat3 tip_in_half_space(MediumBlock& block, const NeedleKernel& needle, const Vec3& x) {
   const double depth = x.z() + 50.0;
   std::vector<Mat3> field;
@@ -92,8 +92,8 @@ TEST(TipNearBone, gives_way_less_the_nearer_it_is_and_not_at_all_on_it) {
 }
 
 /// Stiffness [N/mm] of the flat end of a rod of radius 0.635 mm in its hole, by an axisymmetric finite element model
-/// (tests/reference/rod_end.py): fat of 2 kPa above gland of 30 kPa, ν = 0.45; the end is `above` [mm] the interface,
-/// below it where that is negative.
+/// (tests/reference/rod_end.py): fat of 2 kPa above gland of 30 kPa, ν = 0.45. The end is `above` [mm] above the
+/// interface; negative values are below it.
 struct RodEnd {
   double above;
   double stiffness;
@@ -103,7 +103,7 @@ constexpr RodEnd kBetweenFatAndGland[] = {
 };
 
 TEST(TipBetweenTwoTissues, gives_way_as_finite_elements_around_a_rod_say_on_any_mesh) {
-  for (const int cells : {6, 8, 14}) {  // of these an interface at z = 0 lies on element faces
+  for (const int cells : {6, 8, 14}) {  // with these, an interface at z = 0 lies on element faces
     MediumBlock block({.cells = cells,
                        .jitter = 0.0,
                        .regions = {"fat", "gland"},
@@ -133,7 +133,7 @@ TEST(TipBetweenTwoTissues, is_never_held_by_less_on_its_way_into_the_harder_one)
   }
 }
 
-/// Fat as thick as a few diameters of the needle, often one element, between muscle and gland.
+/// Fat between muscle and gland, as thick as a few needle diameters and often one element thick.
 struct ThinLayer {
   static constexpr double kThickness = 6.0;
   MediumBlock block;
@@ -157,7 +157,7 @@ TEST(TipInAThinLayer, gives_way_alike_on_any_mesh) {
   }
 }
 
-/// The next step in (or out) is never further away than a tip's own field falls off in.
+/// In steps much shorter than the distance over which the tip's own field decays.
 TEST(TipInAThinLayer, feels_both_faces_and_nothing_jumps) {
   ThinLayer layer(10);
   const double in_the_middle = layer.compliance(0.5 * ThinLayer::kThickness);
@@ -172,14 +172,14 @@ TEST(TipInAThinLayer, feels_both_faces_and_nothing_jumps) {
   }
 }
 
-/// Needle and tissue have one balance only where no forces of tip and shaft together move what they act on backwards.
+/// Needle and tissue have a unique balance only if all forces of tip and shaft do positive work on the tissue.
 TEST(TipInAThinLayer, forces_of_tip_and_shaft_through_it_do_work_on_any_mesh) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> aside(-3.0, 3.0);
   for (const int cells : {8, 12, 18}) {
     ThinLayer layer(cells);
     for (const double spacing : {1.6, 2.5, 4.0}) {
-      // In at the muscle's side, or at the gland's.
+      // The needle enters from the muscle's side or from the gland's.
       const bool upwards = spacing == 2.5;
       const Vec3 axis = Vec3(0.1 * aside(random), 0.1 * aside(random), upwards ? 1.0 : -1.0).normalized();
       const Vec3 start(aside(random), aside(random), upwards ? -12.0 : 18.0);

@@ -25,11 +25,11 @@ TEST_P(NeedleInUnboundedMedium, needs_the_force_of_a_bonded_rigid_cylinder) {
   EXPECT_NEAR(line.lateral() / thick.lateral_N, 1.0, 0.03);
   EXPECT_NEAR(line.axial() / thick.axial_N, 1.0, 0.03);
 }
-// At 0.49 linear tetrahedra lock in the far field; the element that does not has its own tests.
+// At ν = 0.49 linear tetrahedra lock in the far field; the element without locking has its own tests.
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleInUnboundedMedium,
                          testing::Combine(testing::Values(7, 10, 14), testing::Values(0.3, 0.45)));
 
-/// Smallest and largest of some forces.
+/// Smallest and largest of a number of forces.
 struct Range {
   double least = 1e9;
   double most = 0.0;
@@ -39,7 +39,7 @@ struct Range {
   }
 };
 
-/// An element, and how far forces may lie apart with it.
+/// An element, and the allowed spread of the forces with it.
 using Allowed = std::pair<Element, double>;
 class NeedleInABox : public testing::TestWithParam<Allowed> {};
 
@@ -59,7 +59,7 @@ TEST_P(NeedleInABox, needs_the_same_force_on_any_mesh_at_any_spacing_in_any_dire
   }
   EXPECT_LT(lateral.most / lateral.least, 1.0 + allowed);
   EXPECT_LT(axial.most / axial.least, 1.0 + allowed);
-  // Boundary elements for the box's walls give 3.62 N and 2.29 N.
+  // Boundary elements that include the box's walls give 3.62 N and 2.29 N.
   EXPECT_NEAR(0.5 * (lateral.least + lateral.most), 3.62, 0.03 * 3.62);
   EXPECT_NEAR(0.5 * (axial.least + axial.most), 2.29, 0.05 * 2.29);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the near field is checked against, checked itself.
+// Checks of the reference solutions that the near field is compared with.
 #include "coupling/near_field/navier.hpp"
 #include "evidence/validate/bonded_cylinder.hpp"
 #include "evidence/validate/surface_load.hpp"
@@ -39,7 +39,7 @@ TEST(BondedCylinder, tends_to_the_slender_body_the_longer_it_is) {
     const auto cylinder = validate::bonded_cylinder(length, 0.635, 1.0, kReferenceMedium);
     const auto slender = validate::slender_cylinder(length, 0.635, 1.0, kReferenceMedium);
     const double off = std::max(cylinder.lateral_N / slender.lateral_N, cylinder.axial_N / slender.axial_N) - 1.0;
-    EXPECT_GT(off, 0.0) << length;  // flat ends hold a little as well
+    EXPECT_GT(off, 0.0) << length;  // flat ends add a little stiffness
     EXPECT_LT(off, before) << length;
     before = off;
   }

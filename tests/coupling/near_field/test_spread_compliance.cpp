@@ -14,10 +14,10 @@ namespace {
 using test::MediumBlock;
 using test::NeedleLine;
 
-/// From below to above the middle of the block.
+/// From below the middle of the block to above it.
 const NeedleWay kThrough{{1.3, 0.7, -48.0}, Vec3::UnitZ(), 96.0};
 
-/// F along a way, as if the block went on for ever: its held faces move with the field of the same force.
+/// F along a way in an unbounded medium: the block's held faces move with the field of the same force.
 Mat3 unbounded(const MediumBlock& block, const Vec3& x, const Vec3& on) {
   std::vector<Mat3> field;
   for (const Index node : block.fixed)
@@ -30,7 +30,8 @@ class SpreadForces : public testing::TestWithParam<std::tuple<int, double>> {};
 TEST_P(SpreadForces, move_an_unbounded_medium_as_a_kelvinlet_of_ten_millimetres_does) {
   const auto [cells, poisson] = GetParam();
   const MediumBlock block({.cells = cells, .poisson = poisson, .element = Element::nodal_pressure, .ways = {kThrough}});
-  // The rim of the quadratic elements has the compliance of the mesh's own, which are less good next to 0.5.
+  // The rim of the quadratic elements has the compliance of the mesh's own elements, which is less accurate for ν
+  // near 0.5.
   const double allowed = poisson > 0.47 ? 0.13 : 0.1;
   for (const double apart : {0.0, 4.0, 9.0, 15.0, 25.0}) {
     const Vec3 on(1.3, 0.7, -11.0);
@@ -98,7 +99,8 @@ TEST_P(NeedleOnItsWay, needs_the_force_of_a_bonded_rigid_cylinder) {
   EXPECT_NEAR(line.lateral() / thick.lateral_N, 1.0, 0.04);
   EXPECT_NEAR(line.axial() / thick.axial_N, 1.0, 0.04);
 }
-// Elements of 14, 10 and 7 mm. As without ways pieces of constant force make the needle 1 % too soft along its axis.
+// Elements of 14, 10 and 7 mm. As without planned ways, pieces of constant force make the needle 1 % too soft along its
+// axis.
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleOnItsWay,
                          testing::Combine(testing::Values(7, 10, 14), testing::Values(0.3, 0.45)));
 
@@ -154,7 +156,7 @@ TEST(TipOnItsWay, gives_way_between_two_tissues_as_finite_elements_around_a_rod_
   }
 }
 
-/// Fat of 6 mm between muscle and gland, whose elements have two media at every node.
+/// Fat of 6 mm between muscle and gland; all nodes of its elements are on one of the two interfaces.
 MediumBlock thin_layer(int cells) {
   return MediumBlock({.cells = cells,
                       .jitter = 0.0,
@@ -191,7 +193,7 @@ TEST(NeedleThroughAThinLayer, and_its_narrow_part_have_a_positive_compliance_on_
       std::vector<Vec3> line;
       for (double way = 0.0; way < 30.0; way += 0.25 * spacing) line.emplace_back(start + way * axis);
       block.prepare(line);
-      // Creeping, so that the wide part is kept beside the whole.
+      // With creep, so that the wide part is computed as well.
       NearFieldCompliance A(std::make_unique<TrackCompliance>(block.store, *block.locator, 40), block.tissue,
                             block.kernel, {.segment_mm = spacing}, 40, {}, true, block.spread);
       for (std::size_t k = 0; k < line.size(); ++k) {

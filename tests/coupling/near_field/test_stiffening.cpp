@@ -69,7 +69,7 @@ TEST(TipDent, is_the_derivative_of_its_energy_in_any_direction) {
   }
 }
 
-/// A tip and three pieces of shaft behind it in tissue of two media that stiffens.
+/// A tip and three pieces of shaft behind it, in stiffening tissue of two media.
 class StiffTissue : public testing::Test {
  protected:
   static constexpr int kPoints = 4;
@@ -83,7 +83,7 @@ class StiffTissue : public testing::Test {
     make({0.03, 0.1}, {});
   }
 
-  /// The tissue with these laws, at rest. @param stiffening_MPa of both media
+  /// Makes the tissue with these laws, at rest. @param stiffening_MPa of the two media
   void make(std::vector<double> stiffening_MPa, const Creep& creep) {
     auto compliance = std::make_unique<NearFieldCompliance>(
         std::make_unique<TrackCompliance>(block_.store, *block_.locator, kPoints), block_.tissue, block_.kernel,
@@ -103,7 +103,7 @@ class StiffTissue : public testing::Test {
             .materials = {{0.01, 0.45}, {0.03, 0.45}}};
   }
 
-  /// Displacements of all points under forces [N] (3 points).
+  /// Displacements of all points by forces [N] (3 points).
   VecX displacement(const VecX& forces) {
     for (std::size_t k = 0; k < shaft_.size(); ++k)
       shaft_[k].force = forces.segment<3>(3 * static_cast<Eigen::Index>(k) + 3);
@@ -132,7 +132,7 @@ TEST_F(StiffTissue, stores_what_is_put_into_it_and_gives_it_back) {
     forces.head<3>() *= 4.0;
     return forces;
   };
-  // From one random state of forces to another and back another way: work done on the tissue, by Simpson's rule.
+  // Work done on the tissue from one random state of forces to another, and back on another path, by Simpson's rule.
   const auto work = [&](const VecX& from, const VecX& to) {
     constexpr int pieces = 400;
     double sum = 0.0;
@@ -183,11 +183,11 @@ TEST_F(StiffTissue, gives_way_to_more_force_by_less_and_less_but_always_by_more)
   }
 }
 
-/// The flat end of a rod pressed into a Yeoh solid of 30 kPa, C20 = C10, deep inside a medium without borders: an
-/// axisymmetric finite element model (tests/reference/hyperelastic_punch.py) that knows nothing of the law.
+/// The flat end of a rod, pressed into a Yeoh solid of 30 kPa with C20 = C10, deep inside an unbounded medium: an
+/// independent axisymmetric finite element model (tests/reference/hyperelastic_punch.py).
 struct Pressed {
   double poisson;
-  double depth_mm;  ///< of the rod's end, the far field with it
+  double depth_mm;  ///< depth of the rod's end, far field included
   double force_N;
 };
 constexpr Pressed kYeohSolid[] = {
@@ -198,7 +198,7 @@ class YeohSolid : public testing::TestWithParam<double> {
  protected:
   static constexpr double kYoung_MPa = 0.03;
 
-  /// Force on a tip inside tissue that moves it by a depth [N], with the law of k₂ = stiffening × E.
+  /// Force [N] on a tip inside tissue by a given depth, with the law of k₂ = stiffening × E.
   static std::function<double(double)> law(int cells, double poisson, double stiffening) {
     MediumBlock block({.cells = cells, .materials = {{kYoung_MPa, poisson}}, .element = Element::nodal_pressure});
     const Vec3 x(1.3, 0.7, -2.1);
@@ -206,7 +206,7 @@ class YeohSolid : public testing::TestWithParam<double> {
     NearFieldCompliance compliance(std::make_unique<TrackCompliance>(block.store, *block.locator, 1), block.tissue,
                                    block.kernel, NeedleKernel{}, 1, std::vector<double>{stiffening * kYoung_MPa});
     compliance.move_tip(block.at(x), x);
-    // The block's faces move as the medium would without them.
+    // The block's faces move as in an unbounded medium.
     std::vector<Mat3> field;
     for (const Index node : block.fixed)
       field.push_back(kelvinlet(block.tissue->node_position(node) - x, 1e-6, block.medium));
@@ -245,13 +245,13 @@ TEST_P(YeohSolid, under_a_rod_is_as_stiff_as_the_law_says_at_every_depth_on_any_
 }
 INSTANTIATE_TEST_SUITE_P(PoissonsRatio, YeohSolid, testing::Values(0.45, 0.49));
 
-/// The same tissue creeping, with a dent that stiffens and without.
+/// The same tissue with creep, with and without a dent that stiffens.
 class CreepingTissue : public StiffTissue {
  protected:
   static constexpr Creep kCreep{3.0, 0.2};
   static inline const std::vector<std::vector<double>> kStiffenings{{}, {0.03, 0.1}};
 
-  /// The forces after h more seconds. @return displacements
+  /// Lets forces act for h seconds more. @return displacements
   VecX act(const VecX& forces, double h) {
     tissue_->begin(h);
     displacement(forces);
@@ -276,7 +276,7 @@ TEST_F(CreepingTissue, loses_work_in_every_closed_way_of_forces_and_never_gives_
       VecX u = displacement(now);
       VecX p = lasting(now);
       double work = 0.0;
-      double lost = 0.0;  // of the damper: τ (r − 1) ṁᵀ F ṁ
+      double lost = 0.0;  // by the damper: τ (r − 1) ṁᵀ F ṁ
       const auto go = [&](const VecX& to, double time, int pieces) {
         const double h = time / pieces;
         const VecX from = now;
@@ -331,7 +331,7 @@ TEST_F(CreepingTissue, creeps_by_a_part_of_its_compliance_that_is_smooth_at_the_
   EXPECT_NEAR(F(2, last + 2), A(2, last + 2), 0.5 * A(2, last + 2)) << "far away all is wide";
 }
 
-/// A block of one tissue with a strong skin, whose dent stiffens.
+/// A block of one tissue with a strong skin, under which the dent stiffens.
 BlockOptions stiff_block(int cells, double puncture_N, double cutting_N) {
   BlockOptions options;
   options.cells = {cells, cells, cells};
@@ -342,8 +342,8 @@ BlockOptions stiff_block(int cells, double puncture_N, double cutting_N) {
 }
 
 TEST(StiffDent, takes_the_force_of_a_flat_punch_that_stiffens_on_any_mesh) {
-  // Of a punch on a half space: k₁ = 2RE/(1−ν²). What of its dent is not of the needle's scale stays linear; it is that
-  // of the same force spread over kScale_mm, which its image moves as far again (docs/theory/near_field.md, section 2).
+  // A punch on a half space has k₁ = 2RE/(1−ν²). The part of its dent without the needle's scale stays linear; it is
+  // the dent of the same force spread over kScale_mm, doubled by its image (docs/theory/near_field.md §2).
   constexpr double k1 = 2.0 * 0.635 * 0.06 / (1.0 - 0.45 * 0.45);
   const double shear_MPa = 0.06 / (2.0 * 1.45);
   const double spread =
@@ -360,7 +360,7 @@ TEST(StiffDent, takes_the_force_of_a_flat_punch_that_stiffens_on_any_mesh) {
       EXPECT_EQ(run.flags, 0u) << cells;
       return std::pair{run.depth, run.forces.back()};
     };
-    // The block's walls take something off a half space's dent, as they do in linear tissue.
+    // The block's walls reduce the dent of a half space, as in linear tissue.
     const auto [linear_mm, linear_N] = press(0.0, 0.3);
     const double walls = 1.0 / k1 - linear_mm / linear_N;
     EXPECT_NEAR(walls * k1, 0.0, 0.05) << cells;
@@ -391,7 +391,8 @@ TEST(StiffDent, an_insertion_goes_on_without_jumps_and_comes_out_again) {
   const auto deep = static_cast<std::size_t>(
       std::find_if(run.depths.begin(), run.depths.end(), [](double depth) { return depth > 25.0; }) -
       run.depths.begin());
-  // A step is 0.02 mm of way or 0.0006 N of friction; contacts are laid and handed over all the time.
+  // A step changes the base depth by 0.02 mm or friction by 0.0006 N; contacts are created and handed over all the
+  // time.
   for (std::size_t i = deep + 1; i < run.forces.size(); ++i)
     EXPECT_LT(std::abs(run.forces[i] - run.forces[i - 1]), 0.005) << run.depths[i];
   run.go(-1.0);

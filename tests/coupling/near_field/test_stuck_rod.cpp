@@ -20,10 +20,10 @@ namespace {
 struct StuckRod {
   double poisson;
   double length_mm;
-  double bonded;           ///< shaft and end
-  double bonded_end_free;  ///< the shaft alone
-  double behind;           ///< the shaft up to three radii behind the end, and the end
-  double behind_end_free;  ///< the shaft up to three radii behind the end
+  double bonded;           ///< rod bonded along its shaft and at its end
+  double bonded_end_free;  ///< rod bonded along its shaft only
+  double behind;           ///< rod bonded up to three radii behind its end, and at its end
+  double behind_end_free;  ///< rod bonded up to three radii behind its end only
 };
 constexpr StuckRod kRods[] = {
 #include "stuck_rod.inc"
@@ -32,10 +32,10 @@ constexpr StuckRod kRods[] = {
 constexpr double kSide_mm = 50.0;
 constexpr double kHeight_mm = 100.0;
 constexpr double kYoung_MPa = 30e-3;
-/// Off the mesh's lines.
+/// A line that does not coincide with lines of the mesh.
 const Vec3 kEntry(1.3, 0.7, 0.0);
 
-/// A box whose horizontal sections are 100 mm wide squares becomes a cylinder as wide.
+/// Turns a box, whose horizontal sections are squares of 100 mm, into a cylinder 100 mm wide.
 void round_off(TetMesh& mesh) {
   for (Vec3& x : mesh.nodes) {
     const double radius = std::hypot(x.x(), x.y());
@@ -89,7 +89,7 @@ TEST(StuckRod, a_shaft_held_over_its_whole_length_is_as_stiff_as_one_that_is_mes
       auto built = Tissue::build(std::move(mesh), {{kYoung_MPa, poisson}}, fixed, {}, Element::nodal_pressure);
       ASSERT_TRUE(built) << built.error().message();
       const auto tissue = std::make_shared<const Tissue>(std::move(*built));
-      // The patches of the mesh's kernel end after three rings, and the error of that grows with Poisson's ratio.
+      // The patches of the mesh kernel end after three rings, and the resulting error grows with Poisson's ratio.
       const double allowed = poisson < 0.47 ? 0.025 : 0.045;
       for (const StuckRod& rod : kRods) {
         if (rod.poisson != poisson) continue;
@@ -108,15 +108,15 @@ TEST(StuckRod, a_shaft_held_over_its_whole_length_is_as_stiff_as_one_that_is_mes
   }
 }
 
-/// Stiffness of a needle that has been pushed in so far and come to rest, when the base is drawn back by next to
-/// nothing: all contacts stick, and the tip presses a little less.
+/// Stiffness of a needle that was pushed in to `length` and has come to rest, for a very small motion of the base
+/// backwards: all contacts stick, and the tip presses a little less.
 double inserted(int cells, double poisson, double length, double spacing) {
   test::BlockOptions options;
   options.cells = {cells, cells, cells};
   options.regions = {"body"};
   options.region_at = [](const Vec3& /*x*/) { return 0; };
   options.materials = {{kYoung_MPa, poisson}};
-  // Next to no friction while it slides, and as much as one likes when it sticks.
+  // Almost no friction while sliding, and an almost unlimited static friction.
   options.laws = {{5e-3, 0.0, {1e3, 1e-7, 1e-9}, false, true, -1}};
   options.edit = round_off;
   options.held = is_held;

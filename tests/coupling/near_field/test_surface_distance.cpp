@@ -45,14 +45,14 @@ TEST(SurfaceDistance, the_opposite_face_of_a_box_is_the_one_that_faces_the_neare
     const double depth = 10.0 - x.cwiseAbs().maxCoeff(&axis);
     const NearSurface nearest = surface.nearest(x);
     const NearSurface opposite = surface.opposite(x, nearest.inwards);
-    // At the box's edges normals are means of two faces', so what faces askew is a little nearer than the face itself.
+    // At the box's edges a normal is the mean of two faces' normals, so a face at an angle counts as a little nearer.
     EXPECT_NEAR(opposite.depth, 20.0 - depth, 0.2) << x.transpose();
     EXPECT_LT(opposite.inwards.dot(nearest.inwards), -0.9) << x.transpose();
   }
 }
 
 TEST(SurfaceDistance, on_a_hollow_surface_its_own_neighbours_are_not_the_opposite_one) {
-  // The inside of a ball: the nearest point lies on the ball itself, wherever the triangles beside it are.
+  // A sphere, seen from points on its own triangles.
   TetMesh mesh = box_mesh(Vec3::Constant(-10), Vec3::Constant(10), {8, 8, 8}, 0.0);
   for (Vec3& x : mesh.nodes) {
     const double out = x.cwiseAbs().maxCoeff();

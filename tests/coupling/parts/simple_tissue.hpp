@@ -8,8 +8,7 @@
 
 namespace stylet::test {
 
-/// Tissue whose points yield to their own force only, so that what a part of the insertion makes of them can be written
-/// down by hand.
+/// Tissue whose points are displaced by their own force only, so that expected results can be computed by hand.
 class SimpleCompliance : public ContactCompliance {
  public:
   static constexpr int kRoom = 40;
@@ -19,8 +18,8 @@ class SimpleCompliance : public ContactCompliance {
     A_.topLeftCorner<3, 3>().diagonal().setConstant(own_);
   }
 
-  bool has_all = true;  ///< whether compliance is there everywhere
-  int forced = 0;       ///< times that a surface's force was told
+  bool has_all = true;  ///< whether no compliance is missing
+  int forced = 0;       ///< number of calls of enter_by()
 
   Added add(const MaterialPoint&, const Vec3&, Placement, const Vec3& = Vec3::Zero()) override {
     if (!has_all) return {-1, Refusal::missing};
@@ -74,8 +73,8 @@ class StraightNeedle : public Needle {
   VecX state_ = VecX::Zero(4);
 };
 
-/// A block of two layers, skin at z = 0: "body" to z = 20 mm, "organ" to z = 40 mm, 40 mm wide; and a straight needle
-/// whose tip is where put_tip() says.
+/// A block of two layers, 40 mm wide: "body" from the skin at z = 0 to z = 20 mm, "organ" to z = 40 mm; and a straight
+/// needle whose tip is placed by put_tip().
 struct SimpleTissue {
   static constexpr double kOwn = 2.0;  ///< [mm/N]
 
@@ -95,7 +94,7 @@ struct SimpleTissue {
                                               SimpleCompliance::kRoom - 1);
   }
 
-  /// The needle along `axis`, its tip at x [mm].
+  /// Places the needle along `axis`, with its tip at x [mm].
   void put_tip(const Vec3& x, const Vec3& axis = Vec3::UnitZ()) {
     Pose pose;
     pose.rotation = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis);

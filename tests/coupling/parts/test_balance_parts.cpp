@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of the balance, without the balance: states of contacts, prediction, damping, what is kept of the tissue.
+// Parts of the balance: states of contacts, prediction, damping, and the kept compliance of the tissue.
 #include "coupling/balance/contact_states.hpp"
 #include "coupling/balance/iterate.hpp"
 #include "coupling/balance/needle_damping.hpp"
@@ -23,7 +23,7 @@ namespace {
 using test::SimpleTissue;
 using State = ShaftContact::State;
 
-/// A tip that cuts at 12 mm and three contacts of the shaft behind it.
+/// A tip that cuts at 12 mm, and three shaft contacts behind it.
 struct NeedleInTissue {
   NeedleInTissue()
       : marks(block.insertion, block.settings, *block.tissue),
@@ -173,7 +173,7 @@ TEST(ContactStates, ASurfaceAheadBreaksOnABalanceOnly) {
   EXPECT_EQ(states.contradiction(0, {.axial = 5.0}), 0.0);
 }
 
-/// One sub-step in which the base moves on by `way` along z and all forces change by `gain`.
+/// One sub-step in which the base moves by `way` along z and all forces change by `gain`.
 void pass(Predictor& predictor, NeedleInTissue& needle, double way, double gain) {
   const Pose before = needle.block.needle.base();
   Pose now = before;
@@ -188,7 +188,7 @@ void pass(Predictor& predictor, NeedleInTissue& needle, double way, double gain)
   predictor.end(0.0, true, needle.block.needle, needle.tip, needle.shaft.all());
 }
 
-/// The force of the tip that is expected in the next sub-step, less the one it has.
+/// Predicted change of the tip's force in the next sub-step.
 double expected_gain(Predictor& predictor, NeedleInTissue& needle, double way) {
   const Pose before = needle.block.needle.base();
   Pose now = before;
@@ -308,7 +308,7 @@ TEST(Iterate, IsComeBackTo) {
   EXPECT_EQ(needle.contact(2).s, s);
 }
 
-/// A random symmetric compliance with so many points.
+/// A random symmetric compliance with a given number of points.
 void fill(MatX& A, int points, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-1.0, 1.0);

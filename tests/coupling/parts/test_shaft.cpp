@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shaft's contacts and what the tissue remembers of them, without the rest of an insertion.
+// The shaft contacts and the tissue's memory of them, without the other parts of an insertion.
 #include "coupling/contacts/shaft_contacts.hpp"
 #include "coupling/parts/simple_tissue.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 
 using test::SimpleTissue;
 
-/// A needle in a straight track from the skin to its tip, with marks every 4 mm from 2 mm on.
+/// A needle in a straight track from the skin to its tip, with a mark every 4 mm from 2 mm on.
 struct ShaftInTrack {
   explicit ShaftInTrack(double depth, const Creep& creep = {})
       : block(creep),
@@ -65,7 +65,7 @@ TEST(ShaftContacts, ComeAliveWhereTheTipHasPassedAndGoWhereItHasGoneBack) {
   needle.wake();
   EXPECT_EQ(needle.shaft.count(), 4u);
   needle.block.put_tip(Vec3(1, 2, 7.0));
-  for (ShaftContact& contact : needle.shaft.all()) contact.s += 8.0;  // the tissue stays, the needle slides back
+  for (ShaftContact& contact : needle.shaft.all()) contact.s += 8.0;  // the tissue stays, and the needle slides back
   needle.wake();
   EXPECT_EQ(needle.shaft.count(), 2u);
 }
@@ -76,7 +76,7 @@ TEST(ShaftContacts, StandForTheWholeShaftInTheTissue) {
     needle.wake();
     double length = 0.0;
     for (const ShaftContact& contact : needle.shaft.all()) length += contact.length;
-    // The first contact's own piece before it grows with its age.
+    // The piece of track before the first contact grows with the contact's age.
     const double young = needle.shaft.count() == 1 ? 2.0 : 1e-9;
     EXPECT_NEAR(length, depth, young) << depth;
     EXPECT_GT(length, depth - 2.0) << depth;

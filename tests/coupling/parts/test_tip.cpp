@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tip and its track, without the rest of an insertion.
+// The tip and its track, without the other parts of an insertion.
 #include "coupling/parts/simple_tissue.hpp"
 #include "coupling/tip/tip_path.hpp"
 
@@ -102,7 +102,7 @@ TEST(Tracks, BeginAJoinedOneAtTheNewCrossingAndKeepTheOldEntry) {
   tracks.now.end_xi = 30.0;
   tracks.now.marks = {{0.5, Vec3(0, 0, 0.5), {}, 0, 1}, {10.0, Vec3(0, 0, 10), {}, 0, 2}};
   tracks.finish();
-  ASSERT_TRUE(tracks.begin(Vec3(0.5, 0, 1.0), Vec3::UnitZ()));  // the skin lies 1 mm deeper there
+  ASSERT_TRUE(tracks.begin(Vec3(0.5, 0, 1.0), Vec3::UnitZ()));  // the skin is 1 mm deeper there
   EXPECT_EQ(tracks.now.end_xi, 29.0);
   ASSERT_EQ(tracks.now.marks.size(), 1u) << "the other one is before the skin";
   EXPECT_EQ(tracks.now.marks[0].xi, 9.0);
@@ -126,7 +126,7 @@ TEST(Tracks, AreForgottenWithoutLengthAndTheOldestWhereThereIsNoRoom) {
   EXPECT_EQ(tracks.earlier().front().entry.x(), 5.0);
 }
 
-/// A tip that is moved by hand: no balance.
+/// A tip that is moved by hand, without a balance.
 class TipOnItsWay : public testing::Test {
  protected:
   TipOnItsWay() : path(block.insertion, block.settings, block.needle.base(), block.needle, *block.tissue) {
@@ -137,7 +137,7 @@ class TipOnItsWay : public testing::Test {
     block.put_tip(Vec3(1, 2, 0.2));
     ASSERT_TRUE(path.move_through_air(report));
   }
-  /// As a balance would leave a tip that cuts.
+  /// Leaves the tip in the state in which a balance leaves a tip that cuts.
   void cut(double mm) {
     path.tip.set_state(TipContact::State::cut);
     path.tip.begin({path.tip.force, {}});

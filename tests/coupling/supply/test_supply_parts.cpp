@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of the compliance supply: what the worker knows, what it makes, what the step takes, and who has the
-// parcel.
+// The parts of the compliance supply: the worker's ledger, the rows it makes, the rows the step takes over, and the
+// hand-over of the parcel.
 #include "coupling/needle_in_block.hpp"
 #include "coupling/supply/hand_over.hpp"
 #include "coupling/supply/row_ledger.hpp"
@@ -38,7 +38,7 @@ struct Block : test::NeedleInBlock {
   std::shared_ptr<ComplianceStore> empty;
 };
 
-/// Rows that stand for nothing, in the slots that the ledger says.
+/// Rows without meaningful values, in the next slots of the ledger.
 std::vector<ComplianceRow> rows_for(const RowLedger& ledger, std::span<const Index> nodes) {
   std::vector<ComplianceRow> rows(nodes.size());
   const auto slots = ledger.next_slots(nodes.size());

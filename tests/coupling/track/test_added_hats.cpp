@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What hats add to the compliance, against the system of base nodes and hats solved at once.
+// The contribution of hats to the compliance, against one system of base nodes and hats.
 #include "coupling/track/added_hats.hpp"
 
 #include <Eigen/Cholesky>
@@ -13,13 +13,13 @@ using namespace stylet;
 namespace {
 
 constexpr double kHatsRounding = 1e-12;
-constexpr int kVertices = 4;  ///< base nodes, each an observable
+constexpr int kVertices = 4;  ///< base nodes, each of which is an observable
 constexpr int kSplits = 3;
-constexpr int kPoint = kVertices;     ///< observable in the middle of vertices 0 and 1
-constexpr int kNode = kVertices + 1;  ///< observable of the node of the last split, which is inside an element
+constexpr int kPoint = kVertices;     ///< observable half way between vertices 0 and 1
+constexpr int kNode = kVertices + 1;  ///< observable at the node of the last split, which is inside an element
 constexpr int kObservables = kNode + 1;
 
-/// Base nodes with a stiffness K, and hats that are coupled to them: two by a border, then one inside an element.
+/// Base nodes with a stiffness K, and hats that are coupled to them: two with a border, then one inside an element.
 class CoupledHats : public testing::Test {
  protected:
   CoupledHats() : hats(kObservables, kSplits) {
@@ -46,7 +46,7 @@ class CoupledHats : public testing::Test {
     return Mat3::NullaryExpr([&] { return number(); });
   }
 
-  /// What the base compliance makes of a split's border at an observable: Σ_j K⁻¹(x,j) k_jp.
+  /// Displacement of an observable by a split's border through the base compliance: Σ_j K⁻¹(x,j) k_jp.
   [[nodiscard]] Mat3 base(int observable, int split) const {
     Mat3 sum = Mat3::Zero();
     for (const Border& border : borders[static_cast<std::size_t>(split)])
@@ -98,7 +98,7 @@ class CoupledHats : public testing::Test {
   std::uniform_real_distribution<double> uniform{-0.5, 0.5};
   MatX K;
   MatX K_inverse;
-  MatX weights;  ///< (n × 3 observables) of the base nodes in each observable
+  MatX weights;  ///< (n × 3 observables) weights of the base nodes in each observable
   std::vector<std::vector<Border>> borders;
   std::vector<Mat3> stiffness;
   AddedHats hats;
@@ -135,7 +135,7 @@ TEST_F(CoupledHats, reach_an_interpolated_observable_as_those_it_is_interpolated
     EXPECT_LE((hats.z(kPoint, p) - before).norm(), kHatsRounding);
   }
   EXPECT_EQ(hats.known(kPoint), kSplits);
-  // So nothing is left of a force there beyond the same force on those.
+  // So a force there does the same as that force distributed over the others.
   hats.load_beyond(kPoint, ends, halves);
   for (int o = 0; o < kObservables; ++o) EXPECT_LE(hats.moved(o).norm(), kHatsRounding);
 }
@@ -154,7 +154,7 @@ TEST_F(CoupledHats, inside_elements_act_on_what_they_reach_and_on_nothing_else) 
   for (int o = 0; o < kObservables; ++o) inside.clear(o);
   inside.set_node(kNode, 0);
   inside.add_inside(2.0 * Mat3::Identity());
-  inside.add_hats(kPoint, kNode, 0.25);  // interpolated from the node, among others
+  inside.add_hats(kPoint, kNode, 0.25);  // interpolated from this node and others
   for (const int o : {0, kPoint, kNode}) inside.extend_z(o, Mat3::Zero());
   const Mat3 base = block();
   EXPECT_EQ(inside.compliance(0, kNode, base), base);

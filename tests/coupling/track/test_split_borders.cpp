@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The borders of splits, and the loads on base nodes that they come to.
+// The borders of splits, and their loads on base nodes.
 #include "coupling/track/split_borders.hpp"
 
 #include <gtest/gtest.h>

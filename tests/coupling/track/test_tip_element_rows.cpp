@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The compliances of the nodes of the tip's element, kept from element to element and interpolated within one.
+// The compliances of the nodes of the tip's element, kept from element to element and interpolated within one element.
 #include "coupling/track/tip_element_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kPoints = 3;
 
-/// The compliance that a node and a point have in these tests: any number that is another for each pair.
+/// A compliance between a node and a point for these tests: a different number for each pair.
 Mat3 of(Index node, int point) { return (100.0 * node + point) * Mat3::Identity() + 0.5 * Mat3::Ones(); }
 
-/// Moves the tip into an element of four nodes and writes the rows of those that are new.
-/// @return displacement nodes that were new
+/// Moves the tip into an element of four nodes and writes the rows of its new nodes.
+/// @return the new displacement nodes
 std::vector<Index> enter(TipElementRows& rows, Index tet, const std::array<Index, 4>& nodes) {
   Shape shape{.count = 4};
   std::copy(nodes.begin(), nodes.end(), shape.node.begin());

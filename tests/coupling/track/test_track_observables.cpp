@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What loads make of a track's observables, against the store's compliance itself.
+// Displacements of a track's observables by loads, against the store's compliance.
 #include "coupling/track/track_observables.hpp"
 
 #include "coupling/two_region_block.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRounding = 1e-13;
 
-/// Two points of the block's elements and one of its nodes.
+/// Two points inside elements of the block and one of its nodes.
 struct ThreeObservables : testing::Test {
   const Block block{2};
   const std::array<Shape, 3> shapes{block.tissue->shape(3, Vec4(0.1, 0.2, 0.3, 0.4)),

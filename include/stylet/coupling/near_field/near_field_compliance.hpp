@@ -12,31 +12,32 @@
 
 namespace stylet {
 
-/// Compliance among held points with the near field of the needle put right. Elements cannot represent the field of a
-/// needle thinner than they are. So what the mesh makes of that field is taken out of K⁻¹, and the field itself put in:
+/// Compliance among contact points with the near field of the needle corrected. Elements cannot represent the field of
+/// a needle that is thinner than they are. So the mesh's approximation of that field is subtracted from K⁻¹, and the
+/// field itself is added in closed form:
 ///   A(c,d) = Λ_c (K⁻¹ − g) Λ_dᵀ + ⟨G⟩(c,d),
-/// g being the mesh's own kernel (MeshKernel) and ⟨G⟩ the medium's, averaged over the needle's pieces. K⁻¹ − g is
-/// smooth, any mesh represents it; ⟨G⟩ does not know the mesh.
+/// with the mesh's own kernel g (MeshKernel) and the medium's kernel ⟨G⟩, averaged over the pieces of the needle. K⁻¹ −
+/// g is smooth, so any mesh represents it; ⟨G⟩ does not depend on the mesh.
 ///
-/// Near the ways that a needle was planned to go, in tissue that stiffens or creeps, it is instead
+/// Near the planned ways of a needle, in tissue that stiffens or creeps, the compliance is instead
 ///   A(c,d) = F(c,d) + ⟨G⟩(c,d) − G₁₀(c,d),
-/// F being what forces that are spread over 10 mm do (SpreadCompliance), which has nothing of the elements in it, and
-/// G₁₀ the medium's kernel for such forces. docs/theory/near_field.md derives both.
+/// where F is the displacement by forces that are spread over 10 mm (SpreadCompliance), which does not depend on the
+/// elements, and G₁₀ is the medium's kernel for such forces. docs/theory/near_field.md derives both.
 ///
-/// Points are interpolated, whatever placement is asked for; the mesh does not change.
+/// Points are interpolated, whatever placement is requested; the mesh does not change.
 class NearFieldCompliance final : public ContactCompliance {
  public:
-  /// @param far Λ K⁻¹ Λᵀ from whatever engine keeps K⁻¹; has no points yet
+  /// @param far Λ K⁻¹ Λᵀ from the engine that holds K⁻¹; without points
   /// @param kernel of the tissue's mesh
   /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
-  /// @param creeps whether wide() is kept even if nothing stiffens
-  /// @param spread along the ways of the needle, what its wide part is there; null: that is made of K⁻¹ everywhere
+  /// @param creeps whether wide() is computed even if no tissue stiffens
+  /// @param spread the wide part along the planned ways of the needle; null: computed from K⁻¹ everywhere
   NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                       std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity,
                       std::vector<double> stiffening_MPa = {}, bool creeps = false,
                       std::shared_ptr<const SpreadCompliance> spread = nullptr);
 
-  /// @param travel direction of the piece of needle there; zero = a point
+  /// @param travel direction of the contact's piece of needle; zero: a point
   Added add(const MaterialPoint& at, const Vec3& x, Placement placement, const Vec3& travel = Vec3::Zero()) override;
   bool move_tip(const MaterialPoint& at, const Vec3& x) override;
   void begin_sub_step() override { wide_at_.reset(); }
@@ -49,10 +50,10 @@ class NearFieldCompliance final : public ContactCompliance {
   void remove_last_embedded() override;
   void reset() override;
 
-  /// Of the far field: what the mesh represents.
+  /// Gradient of the far field only, which the mesh represents.
   [[nodiscard]] Mat3 gradient_at_tip(const Eigen::Ref<const MatX>& forces) const override;
 
-  /// With the near field, wherever a node lies in it, and the dent under the tip as it stiffens.
+  /// Includes the near field at the nodes that lie in it, and the dent under the tip with its stiffening.
   [[nodiscard]] VecX displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX wide_displacement(const Eigen::Ref<const MatX>& forces) const override;
   [[nodiscard]] VecX mesh_displacement(const Eigen::Ref<const MatX>& forces) const override;
@@ -68,7 +69,7 @@ class NearFieldCompliance final : public ContactCompliance {
   void write_block(int point, int other, const OfMesh& g);
   template <class OfMesh>
   void write_wide_block(int point, int other, const OfMesh& g);
-  /// How much of the compliance between two places is that of spread forces and the needle's narrow part.
+  /// Share 0 … 1 of the compliance between two places that is F + ⟨G⟩ − G₁₀; the rest is Λ (K⁻¹ − g) Λᵀ + ⟨G⟩.
   [[nodiscard]] double spread_share(const NearPlace& at, const NearPlace& on) const {
     return ground_.spread ? at.spread.known * on.spread.known : 0.0;
   }
@@ -86,21 +87,22 @@ class NearFieldCompliance final : public ContactCompliance {
     std::shared_ptr<const Tissue> tissue;
     std::shared_ptr<const MeshKernel> kernel;
     std::shared_ptr<const SpreadCompliance> spread;
-    int way = -1;  ///< of spread, that the needle goes; −1 before it comes
+    int way = -1;  ///< number of the way in `spread` that the needle takes; −1 before it arrives
   } ground_;
   NeedleKernel needle_;
-  std::vector<double> region_stiffening_MPa_;  ///< (regions) or none
-  double press_N_ = 0.0;                       ///< what the surface the needle went in by took before it broke …
-  Vec3 entry_ = Vec3::Zero();                  ///< … and which way it went
+  std::vector<double> region_stiffening_MPa_;  ///< (regions), or empty
+  double press_N_ = 0.0;                       ///< force at which the surface of the entry broke
+  Vec3 entry_ = Vec3::Zero();                  ///< direction of the needle at the entry, LPS
   std::vector<NearPlace> places_;              ///< (points)
   std::vector<double> softness_;               ///< (points) softness_in_mesh(), where wide() is kept
-  int capacity_;                               ///< of points, tip included
-  std::optional<Vec3> wide_at_;                ///< [mm] the tip that wide() is of; empty: its next place is
+  int capacity_;                               ///< largest number of points, tip included
+  /// [mm] Place of the tip that wide() was made for; empty: the tip's next place.
+  std::optional<Vec3> wide_at_;
   int tip_tet_ = -1;
   TipElement tip_element_;
-  // g between the nodes of the tip's element and the points, for E = 1 MPa, as it is asked for.
+  // Cache of g between the nodes of the tip's element and the points, for E = 1 MPa.
   std::vector<Mat3> tip_node_g_;      ///< (numbers × points × media) [mm/N]
-  std::vector<char> tip_node_known_;  ///< (the same)
+  std::vector<char> tip_node_known_;  ///< (the same size) whether the entry has been computed
 };
 
 }  // namespace stylet

@@ -8,27 +8,28 @@
 
 namespace stylet::paper {
 
-/// The tissue mesh as the needle leaves it: elements split by added nodes, elements deformed because a node was moved.
-/// Base nodes keep their numbers, added node k has number base nodes + k. Every change is reported as elements taken
-/// away and elements put in their place, from which ΔK follows. Changes allocate.
+/// The tissue mesh with the changes made at the needle: elements split by added nodes, and elements deformed because a
+/// node was moved. Base nodes keep their numbers; added node k has the number base nodes + k. Each change is reported
+/// as elements removed and elements put in their place, from which ΔK follows. Changes allocate.
 class AdaptedMesh {
  public:
   struct Element {
     std::array<Index, 4> nodes{-1, -1, -1, -1};
-    Index base_tet = -1;  ///< tetrahedron of the base mesh it comes from: region and material
+    Index base_tet = -1;  ///< tetrahedron of the base mesh that it comes from, which has its region and material
     bool present = true;
     double volume = 0.0;                                                          ///< [mm³]
-    double first_volume = 0.0;                                                    ///< [mm³] when it came to be
-    Eigen::Matrix<double, 3, 4> gradients = Eigen::Matrix<double, 3, 4>::Zero();  ///< of the weights [1/mm]
+    double first_volume = 0.0;                                                    ///< [mm³] when the element was
+                                                                                  ///< created
+    Eigen::Matrix<double, 3, 4> gradients = Eigen::Matrix<double, 3, 4>::Zero();  ///< of the barycentric weights [1/mm]
     Vec4 offset = Vec4::Zero();  ///< weights(x) = offset + gradientsᵀ x
     [[nodiscard]] Vec4 weights(const Vec3& x) const { return offset + gradients.transpose() * x; }
   };
 
-  /// What a change replaced by what.
+  /// The elements that a change removed, and those that replaced them.
   struct Change {
     std::vector<Element> before;
     std::vector<Element> after;
-    Index node = -1;  ///< moved or added
+    Index node = -1;  ///< number of the node that was moved or added
   };
 
   explicit AdaptedMesh(const Locator& base);
@@ -36,31 +37,32 @@ class AdaptedMesh {
   [[nodiscard]] Index node_count() const { return static_cast<Index>(positions_.size()); }
   [[nodiscard]] const Vec3& position(Index node) const { return positions_[static_cast<std::size_t>(node)]; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
-  [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }  ///< absent ones too
+  [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }  ///< absent elements included
   [[nodiscard]] const Element& element(Index e) const { return elements_[static_cast<std::size_t>(e)]; }
   [[nodiscard]] const std::vector<Index>& elements_around(Index node) const {
     return around_[static_cast<std::size_t>(node)];
   }
 
-  /// The element that contains x, or -1 outside.
-  /// @param hint tetrahedron of the base mesh that contains x as long as no node has moved
+  /// The element that contains x [mm], or −1 outside.
+  /// @param hint the tetrahedron of the base mesh that would contain x if no node had moved
   [[nodiscard]] Index find(const Vec3& x, Index hint) const;
 
-  /// True for nodes whose place makes the shape of an organ or of the patient.
+  /// Whether the node lies on the surface of an organ or of the patient, whose shape it defines.
   [[nodiscard]] bool on_boundary(Index node) const { return on_boundary_[static_cast<std::size_t>(node)]; }
 
-  /// Moves a node, unless an element around it would keep less than kSmallestShare of the volume it had at first.
+  /// Moves a node, unless that leaves an element around it less than kSmallestShare of its first volume.
   static constexpr double kSmallestShare = 0.1;
   std::optional<Change> move_node(Index node, const Vec3& to);
 
-  /// Splits an element into four at an inner point, or the two elements (at the outer surface: one, second = -1) that
-  /// share a face into three each at a point of the face. @param local1, local2 vertex opposite the face
+  /// split_inside() splits an element into four at an inner point. split_face() splits the two elements that share a
+  /// face (at the outer surface: one, second = −1) into three each, at a point of the face.
+  /// @param local1, local2 local number of the vertex opposite the face
   Change split_inside(Index element, const Vec3& x);
   Change split_face(Index first, int local1, Index second, int local2, const Vec3& x);
 
   void reset();
 
-  /// Written out as a mesh of its own (checks against a fresh factorisation).
+  /// The present mesh as a mesh of its own, for checks against a new factorisation.
   [[nodiscard]] TetMesh materialise() const;
 
  private:
@@ -72,8 +74,9 @@ class AdaptedMesh {
   const Locator* base_;
   std::vector<Vec3> positions_;
   std::vector<Element> elements_;
-  std::vector<std::vector<Index>> around_;  ///< (nodes) elements
-  std::vector<std::vector<Index>> parts_;   ///< (base tets) elements they were split into; empty: not split
+  std::vector<std::vector<Index>> around_;  ///< (nodes) elements that have the node
+  std::vector<std::vector<Index>> parts_;   ///< (base tets) elements that the tetrahedron was split into; empty: not
+                                            ///< split
   std::vector<bool> on_boundary_;
 };
 

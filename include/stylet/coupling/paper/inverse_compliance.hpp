@@ -7,18 +7,18 @@
 
 namespace stylet::paper {
 
-/// Contact compliance read from the full inverse of the stiffness, which is changed in place whenever a node is added
-/// or moved (Goksel et al. 2005). Same mesh changes, same numbers as TrackCompliance; the cost grows with the square of
-/// the mesh. Adding points allocates.
+/// Contact compliance read from the full inverse of the stiffness, which is updated in place whenever a node is added
+/// or moved (Goksel et al. 2005). It makes the same changes of the mesh as TrackCompliance and gives the same values;
+/// its cost grows with the square of the mesh size. Adding points allocates.
 ///
-/// Where nodes may be moved, the nearest node of the element that contains the point goes there, unless it makes the
-/// shape of an organ, is fixed, is held by the needle already, has contacts interpolated around it, or would flatten an
-/// element: then a node is added, and the event says why (RemeshEvent::Refused). The tip is then
-/// interpolated in the mesh as it is, a contact in the elements there were when it was laid; otherwise both in the base
-/// mesh.
+/// Where nodes may be moved, the nearest node of the element that contains the point is moved to it, unless that node
+/// defines the shape of an organ, is fixed, is a contact point already, has contacts interpolated around it, or would
+/// flatten an element. In these cases a node is added, and the event has the reason (RemeshEvent::Refused). When nodes
+/// may be moved, the tip is interpolated in the present mesh, and a contact in the elements of the moment when it was
+/// created; otherwise both are interpolated in the base mesh.
 class InverseCompliance final : public ContactCompliance {
  public:
-  /// @param tissue, locator the base mesh; outlive this
+  /// @param tissue, locator of the base mesh; must outlive this object
   /// @param initial full_inverse(tissue)
   InverseCompliance(std::shared_ptr<const Tissue> tissue, const Locator& locator, std::shared_ptr<const MatX> initial,
                     DenseInverse::Engine engine, bool move_nodes, int capacity);
@@ -38,7 +38,7 @@ class InverseCompliance final : public ContactCompliance {
   [[nodiscard]] Index first_dof(Index node) const { return first_dof_[static_cast<std::size_t>(node)]; }
 
  private:
-  /// A material point, as a combination of nodes.
+  /// A material point as a combination of nodes.
   struct Point {
     std::array<Index, 4> node{-1, -1, -1, -1};
     Vec4 weight = Vec4::Zero();
@@ -66,9 +66,9 @@ class InverseCompliance final : public ContactCompliance {
   DenseInverse inverse_;
   bool move_nodes_;
   int capacity_;
-  std::vector<Index> first_dof_;  ///< (nodes), -1 where fixed
+  std::vector<Index> first_dof_;  ///< (nodes) first degree of freedom, −1: fixed
   std::vector<Point> points_of_;  ///< (points), the tip first
-  std::vector<Index> held_;       ///< nodes that are points
+  std::vector<Index> held_;       ///< nodes at which points are
   std::vector<RemeshEvent> events_;
 };
 
