@@ -9,8 +9,9 @@
 namespace stylet {
 namespace {
 
-// A tetrahedron is flat when six times its volume is below this share of its longest edge cubed (0.71 when regular).
-// Node coordinates kept in single precision, the coarsest that files use, leave about this much.
+// A tetrahedron counts as flat when 6 × volume ≤ kFlat × (longest edge)³; for the regular tetrahedron the ratio is
+// 0.71. Rounding of node coordinates to single precision, the coarsest precision of file formats, leaves about this
+// much.
 constexpr double kFlat = 1e-6;
 constexpr double kSmallestExtent_mm = 5.0;
 constexpr double kLargestExtent_mm = 2000.0;
@@ -107,7 +108,7 @@ Result<> check_coordinates(const TetMesh& mesh, const std::string& where) {
   return Ok{};
 }
 
-// A tetrahedron that names a node twice is caught here as well: its nodes coincide, whatever its volume rounds to.
+// This check also catches a tetrahedron that names a node twice and whose volume is not zero because of rounding.
 Result<> check_repeated_nodes(const TetMesh& mesh, const std::string& where) {
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     auto tet = mesh.tets[t];
@@ -189,7 +190,7 @@ Result<> check_faces(const TetMesh& mesh, const std::string& where) {
     return "face of nodes " + std::to_string(key[0]) + ", " + std::to_string(key[1]) + ", " + std::to_string(key[2]) +
            " (numbers start at 0)";
   };
-  // True when the side's outward corner order is an even permutation of the ascending key.
+  // True when the outward order of the side's corners is an even permutation of the sorted key.
   const auto even = [&mesh](const detail::FaceSide& side) {
     const auto& tet = mesh.tets[side.tet];
     const auto& corner = kFaceVertices[side.local];
@@ -237,7 +238,7 @@ Result<> check_references(const TetMesh& mesh, const std::string& where) {
 }  // namespace
 
 Result<> check_mesh(const TetMesh& mesh, const std::string& where) {
-  // Each check may rely on those before it.
+  // Each check relies on the checks before it having passed.
   for (const auto check : {check_sizes, check_numbers, check_coordinates, check_repeated_nodes, check_duplicates,
                            check_volumes, check_faces, check_references}) {
     if (auto result = check(mesh, where); !result) return result;
