@@ -10,7 +10,7 @@ namespace stylet {
 
 namespace {
 
-/// Second moment of area of a disc [mm⁴].
+/// Second moment of area of a disc [mm⁴], diameter in mm.
 double disc(double diameter) { return std::numbers::pi * std::pow(diameter, 4) / 64.0; }
 
 Error wrong(const char* name, const std::string& what, const char* cure) {

@@ -10,8 +10,8 @@ namespace stylet {
 
 namespace {
 
-/// The shape at the start of an iteration, to measure the change of potential energy from it without the rounding that
-/// distant coordinates bring.
+/// The shape at the start of an iteration. Measures the change of potential energy from it, without the rounding error
+/// that large coordinates would cause.
 class Potential {
  public:
   Potential(const Needle& needle, std::span<const PointLoad> loads)
@@ -21,7 +21,7 @@ class Potential {
 
   struct Change {
     double value = 0.0;     ///< [N mm]
-    double rounding = 0.0;  ///< [N mm] smaller changes mean nothing
+    double rounding = 0.0;  ///< [N mm] smaller changes are not significant
   };
   [[nodiscard]] Change to(const Needle& needle) const {
     const double energy = needle.energy();

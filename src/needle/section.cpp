@@ -12,7 +12,7 @@ namespace stylet {
 namespace {
 
 constexpr double kSteelYoung_MPa = 210e3;
-constexpr double kLargestBow = 0.1;  ///< of the length
+constexpr double kLargestBow = 0.1;  ///< largest bow / length
 constexpr int kFewestElements = 4;
 constexpr int kMostElements = 500;
 
