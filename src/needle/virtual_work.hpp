@@ -9,8 +9,8 @@
 
 namespace stylet::beam {
 
-/// The virtual work of point loads per curvature of each element, Σ_c (∂r_c/∂κ_e)ᵀ f_c. The last answer is kept,
-/// because an iteration asks twice for the same shape and loads. Nothing allocates after reserve().
+/// Virtual work of point loads per curvature of each element, Σ_c (∂r_c/∂κ_e)ᵀ f_c. The last result is kept, because an
+/// iteration asks for the same shape and loads twice. Nothing allocates after reserve().
 class VirtualWork {
  public:
   explicit VirtualWork(int elements);

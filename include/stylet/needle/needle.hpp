@@ -24,7 +24,7 @@ enum class Indefinite {
 
 /// Position and direction of the centreline.
 struct AxisPlace {
-  Vec3 point = Vec3::Zero();     ///< [mm] LPS
+  Vec3 point = Vec3::Zero();     ///< [mm] LPS, unless the function that returns it says otherwise
   Vec3 tangent = Vec3::UnitZ();  ///< unit vector towards the tip
 };
 

@@ -31,8 +31,8 @@ class TetNeedle final : public Needle {
   };
 
   /// Builds a needle; errors are those of check_needle().
-  /// @param segments number of segments along the needle, 4…500; with few segments the axial stiffness grows with its
-  ///   square
+  /// @param segments number of segments along the needle, 4…500; with few segments the axial stiffness grows with the
+  ///   square of their number
   /// @param load_capacity largest number of loads in any call
   static Result<std::unique_ptr<TetNeedle>> build(const NeedleSection& section, int segments, int load_capacity,
                                                   Segment segment = Segment::symmetric);
