@@ -10,11 +10,11 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kKept = 100.0;     // [mm] around all other structures
-constexpr double kWorthIt = 50.0;   // [mm] less than this beyond that is kept as well
-constexpr double kRounding = 15.0;  // [mm]
+constexpr double kKept = 100.0;     // [mm] margin around all other structures that is kept
+constexpr double kWorthIt = 50.0;   // [mm] cropping must remove more than this beyond the margin
+constexpr double kRounding = 15.0;  // [mm] radius of rounded edges
 
-/// Keeps the largest piece and those that hold points of other structures.
+/// Keeps the largest piece and pieces that contain points of other structures.
 double drop_limbs(GridShape& body, Anatomy& anatomy) {
   const Islands islands = find_islands(body);
   if (islands.volume.size() < 2) return 1;

@@ -13,9 +13,9 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kWholeGland = 0.85;  // zones that make up this much of the gland divide all of it
+constexpr double kWholeGland = 0.85;  // if zones make up this share of the gland, they replace it
 
-/// The structure of one ROI.
+/// Makes the structure of one ROI.
 Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame, const MeshOptions& options,
                                Anatomy& anatomy) {
   const Roi& roi = *choice.roi;
@@ -46,7 +46,7 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
     return input_error(where, fmt::format("the contours enclose {:.3g} mm³", s.input_volume),
                        "Check the units (mm expected) and the contours." + or_skip(roi.name));
   }
-  // Grid fine enough for the structure, within bounds of memory; smoothing well below its thickness.
+  // The grid must be fine enough for the structure but fit into memory; smoothing must be well below its thickness.
   const double radius = std::sqrt(largest / std::numbers::pi);
   if (s.name == "body") {
     const auto grid = interpolate_slices(slices, frame, std::clamp(radius / 20, 1.0, 4.0), 0);
@@ -68,7 +68,7 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   return s;
 }
 
-/// Puts a second ROI of the same region to the first.
+/// Unites a second ROI of the same region with the first.
 void join(Structure& first, const Structure& second, std::vector<std::string>& notes) {
   const auto united = unite(static_cast<const GridShape&>(*first.shape), static_cast<const GridShape&>(*second.shape));
   const double overlapping = united->volume(0) / (first.shape->volume(0) + second.shape->volume(0));
@@ -78,7 +78,7 @@ void join(Structure& first, const Structure& second, std::vector<std::string>& n
   notes.push_back(fmt::format("more than one ROI is named as {}: meshed as their union", first.name));
 }
 
-/// Zones share the gland without gaps: they become one layer. A prostate that they divide between them is dropped.
+/// Puts the zones into one layer, which they share without gaps. A prostate that consists of them is dropped.
 void join_zones(Anatomy& anatomy) {
   Anatomy joined = anatomy;
   joined.structures.clear();

@@ -12,11 +12,11 @@
 namespace stylet::meshing {
 namespace {
 
-/// The image with its slice axis last: axis order, sizes and frame.
+/// The image with its slice axis last.
 struct Slices {
-  std::array<int, 3> axis{0, 1, 2};  ///< image axes used as u, v, n
-  std::array<int, 3> low{};          ///< first voxel of the part that is not background, with margin
-  std::array<int, 3> size{};         ///< voxels of that part
+  std::array<int, 3> axis{0, 1, 2};  ///< axes of the image used as u, v, n
+  std::array<int, 3> low{};          ///< first voxel of the part that is not background, including a margin
+  std::array<int, 3> size{};         ///< number of voxels of that part
   SliceFrame frame;
   Vec3 spacing;
 };
@@ -31,7 +31,7 @@ Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
     return input_error(where, "the image frame is not orthogonal with positive spacing", "resample the mask");
   }
   Slices s;
-  // The slices lie across the axis of widest spacing; the last one when spacings are equal.
+  // Slices are perpendicular to the axis with the widest spacing, or to the last axis when spacings are equal.
   int n = 2;
   for (const int a : {0, 1}) {
     if (image.spacing[a] > 1.2 * image.spacing[n]) n = a;
@@ -68,7 +68,7 @@ Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
   return s;
 }
 
-/// In-plane distance fields of all voxels for which `inside` holds.
+/// In-plane distance fields of the voxels for which `inside` holds.
 template <class Inside>
 SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside) {
   SliceFields f;
@@ -99,7 +99,7 @@ SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside)
   return f;
 }
 
-/// Where the smoothed surface cuts the pixel rows and columns of the slices.
+/// Points where the smoothed surface crosses pixel rows and columns of the slices.
 std::vector<Vec3> boundary_points(const GridShape& g, double offset, const SliceFields& f) {
   std::vector<Vec3> points;
   for (std::size_t s = 0; s < f.heights.size(); ++s) {
@@ -121,7 +121,7 @@ std::vector<Vec3> boundary_points(const GridShape& g, double offset, const Slice
   return points;
 }
 
-/// Removes the pieces of the common solid that no member has kept.
+/// Removes the pieces of the common solid in which no member has a part.
 void drop_unclaimed_islands(GridShape& solid, const std::vector<Structure>& members) {
   const Islands islands = find_islands(solid);
   std::vector<bool> keep(islands.volume.size(), false);
@@ -180,8 +180,8 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     for (const int l : set) count += voxels[l];
     return static_cast<double>(count) * image.spacing.prod();
   };
-  // All structures together are one solid without gaps, divided among them; the body of the input, if any, is a solid
-  // of its own that holds the others.
+  // All structures together form one solid without gaps, divided among them. If the input has a body, it is a solid of
+  // its own that contains the others.
   std::vector<Structure> members;
   std::set<int> organs;
   std::size_t done = 0;
@@ -211,7 +211,7 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   drop_unclaimed_islands(*solid, members);
   anatomy.add(solid, std::move(members));
   if (labels.contains("body")) {
-    // Labels that are left out are tissue of the body: no part of a patient is empty.
+    // Labels that are left out are tissue of the body, because no part of a patient is empty.
     const SliceFields whole = fields_of(image, s, [](int l) { return l != 0; });
     auto shape = interpolate_fields(whole, std::max(step, 2.0), sigma);
     Structure body;

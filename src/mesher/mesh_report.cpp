@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kVolumeTolerance = 0.08;
 
-/// Points of the structure's own boundary where it is also the region's: not those inside a structure of higher
+/// Points of the structure's boundary that are also on the boundary of its region, not inside a structure of higher
 /// priority.
 std::vector<Vec3> visible_boundary(const Anatomy& a, const Structure& s) {
   std::vector<Vec3> points;

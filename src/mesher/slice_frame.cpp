@@ -10,7 +10,7 @@
 namespace stylet::meshing {
 namespace {
 
-/// Area vector of a closed polygon (Newell): its direction is the plane's normal, its length the area [mm²].
+/// Area vector of a closed polygon (Newell): its direction is the normal of the plane, its length the area [mm²].
 Vec3 area_vector(const Contour& contour) {
   Vec3 sum = Vec3::Zero();
   const std::size_t n = contour.points.size();
@@ -59,7 +59,7 @@ bool same(const Polygon& a, const Polygon& b) {
 }  // namespace
 
 double Slice::area() const {
-  // A polygon at odd nesting depth is a hole. Depth from any of its vertices: the polygons do not cross.
+  // A polygon at an odd nesting depth is a hole. Any vertex gives the depth, because the polygons do not cross.
   double sum = 0;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
     int depth = 0;
@@ -132,9 +132,9 @@ std::vector<Slice> to_slices(const std::vector<Contour>& contours, const SliceFr
   std::stable_sort(flat.begin(), flat.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Slice> slices;
   for (auto& [height, polygon] : flat) {
-    // Heights within 0.1 mm are one slice written with rounding.
+    // Heights within 0.1 mm belong to one slice, written with rounding.
     if (slices.empty() || height - slices.back().height > 0.1) slices.push_back({height, {}});
-    // A contour written twice would cancel itself out.
+    // Under the even-odd rule, a contour that occurs twice would cancel itself out.
     auto& there = slices.back().polygons;
     if (std::none_of(there.begin(), there.end(), [&](const Polygon& p) { return same(p, polygon); })) {
       there.push_back(std::move(polygon));
