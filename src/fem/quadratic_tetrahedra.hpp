@@ -22,8 +22,8 @@ class QuadraticTetrahedra final : public Discretisation {
 
  private:
   const TetMesh& mesh_;
-  std::vector<std::array<Index, 2>>
-      edges_;  ///< ends of each edge, ascending; the node in the middle of edge e has the number n + e
+  /// Ends of each edge, ascending; the node in the middle of edge e has the number n + e.
+  std::vector<std::array<Index, 2>> edges_;
   std::vector<std::array<Index, kMostElementNodes>> nodes_;  ///< (m)
 };
 

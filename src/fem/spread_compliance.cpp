@@ -67,8 +67,8 @@ std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
           mesh.nodes[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(i)])];
     const Vec3 middle = corners.rowwise().mean();
     const double radius = std::sqrt((corners.colwise() - middle).colwise().squaredNorm().maxCoeff());
-    const double off = (middle - x).norm() -
-                       radius;  // lower bound of the distance; it does not depend on the orientation of the scene
+    // Lower bound of the distance; it does not depend on the orientation of the scene.
+    const double off = (middle - x).norm() - radius;
     if (off > kReach * kDensity_mm) continue;
     const auto& nodes = mesh.tets[static_cast<std::size_t>(tet)];
     if (std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return tissue.is_fixed(node); })) continue;

@@ -37,8 +37,8 @@ struct Tissue::Parts {
   void need_factor() {
     std::call_once(factor_made, [this] {
       if (has_factor) return;
-      if (auto made = factorise({}); !made)
-        throw std::bad_alloc();  // it was factorised when its compliance was computed
+      // It was factorised when its compliance was computed.
+      if (auto made = factorise({}); !made) throw std::bad_alloc();
     });
   }
 

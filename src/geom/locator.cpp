@@ -271,8 +271,8 @@ std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) c
       const Vec4 dw = rates(*mesh_, t, d);
       const double scale = dw.cwiseAbs().maxCoeff();
       for (int face = 0; face < 4; ++face) {
-        if (neighbour[face] >= 0 || dw[face] <= 1e-12 * scale)
-          continue;  // an inner face, or one that the path meets from inside
+        // An inner face, or one that the path meets from inside.
+        if (neighbour[face] >= 0 || dw[face] <= 1e-12 * scale) continue;
         double at = -w[face] / dw[face];
         if (at < 0.0 && w[face] <= kTie) at = 0.0;  // `from` lies on the face
         if (at > 1.0 && w[face] + dw[face] >= -kTie) at = 1.0;

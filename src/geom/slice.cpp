@@ -32,8 +32,8 @@ constexpr std::array<Pairs, 6> kPairs{{{0b0011, {0, 1, 2, 3}},
 Slicer::Slicer(const TetMesh& mesh) : tree_(mesh) {
   std::vector<Index> number_of_node(mesh.nodes.size(), -1);
   corners_.reserve(mesh.nodes.size());
-  using Edge =
-      std::array<Index, 4>;  // its two nodes, the number of an element that has it, and its number in that element
+  // Its two nodes, the number of an element that has it, and its number in that element.
+  using Edge = std::array<Index, 4>;
   std::vector<Edge> edges;
   edges.reserve(6 * mesh.tets.size());
   elements_.reserve(mesh.tets.size());

@@ -11,8 +11,8 @@ struct Structure {
   std::string name;  ///< canonical name
   ShapePtr shape;
   double offset = 0;  ///< [mm] its surface is where distance = offset; chosen so that volumes are met
-  double input_volume =
-      0;  ///< [mm³] of the part of the input that no structure of higher priority takes; 0 = generated
+  /// [mm³] of the part of the input that no structure of higher priority takes; 0 = generated.
+  double input_volume = 0;
   std::vector<Vec3> boundary;  ///< [mm] LPS, points on the boundary in the input
   bool target = false;
   bool generated = false;  ///< made by the mesher, not part of the input

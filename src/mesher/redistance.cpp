@@ -81,8 +81,8 @@ void redistance(GridShape& g) {
   // or two sweeps. @cite S. Bak, J. McLaughlin, D. Renzi, "Some improvements for the fast sweeping method", SIAM J Sci
   // Comput 32 (2010) 2853–2874
   std::vector<char> stale(d.size(), 1);
-  for (int sweep = 0; sweep < 8;
-       ++sweep) {  // each of the eight directions once, which suffices for straight characteristics
+  // Each of the eight directions once, which suffices for straight characteristics.
+  for (int sweep = 0; sweep < 8; ++sweep) {
     const bool ri = (sweep & 1) != 0, rj = (sweep & 2) != 0, rk = (sweep & 4) != 0;
     for (int kk = 0; kk < g.size[2]; ++kk) {
       const int k = rk ? g.size[2] - 1 - kk : kk;

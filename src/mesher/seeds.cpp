@@ -59,8 +59,8 @@ std::vector<SurfaceSeed> surface_seeds(const Anatomy& a, const SizeField& size, 
   for (const int s : order) {
     const Structure& structure = a.structures[s];
     Eigen::AlignedBox3d box = structure.shape->box();
-    const double widest =
-        0.4 * box.sizes().maxCoeff();  // gives every structure a few seeds, however large the elements are
+    // Gives every structure a few seeds, however large the elements are.
+    const double widest = 0.4 * box.sizes().maxCoeff();
     const double step = std::clamp(0.5 * structure.shape->inner_radius(), 1.0, 8.0);
     box.min().array() -= 1.5 * step;
     box.max().array() += 1.5 * step;

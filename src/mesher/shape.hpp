@@ -100,8 +100,8 @@ struct SliceFields {
   Eigen::Vector2d spacing = Eigen::Vector2d::Ones();  ///< [mm]
   std::array<int, 2> size{0, 0};
   std::vector<double> heights;  ///< (slices) [mm] along the normal, ascending
-  std::vector<std::vector<float>>
-      fields;      ///< (slices) [mm] size[0]*size[1] values each; empty for a slice without the structure
+  /// (slices) [mm] size[0]*size[1] values each; empty for a slice without the structure.
+  std::vector<std::vector<float>> fields;
   double gap = 0;  ///< [mm] usual distance between slices
 };
 

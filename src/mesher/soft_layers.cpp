@@ -19,8 +19,8 @@ constexpr double kFossaTop = 12.0;         // [mm] top of the ischiorectal fat a
 constexpr double kFossaDepth = 50.0;       // [mm] extent of the ischiorectal fat from front to back
 constexpr double kBehindGland = 15.0;      // [mm] distance of a rectum that the input lacks behind the gland
 constexpr double kRectumHalfWidth = 15.0;  // [mm] half width of such a rectum
-constexpr double kFatEnd =
-    20.0;  // [mm] the layer under the skin ends this far above the lowest skin plus its thickness
+// [mm] the layer under the skin ends this far above the lowest skin plus its thickness.
+constexpr double kFatEnd = 20.0;
 
 using Distance = std::function<double(const Vec3&)>;
 

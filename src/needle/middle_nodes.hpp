@@ -45,12 +45,10 @@ class MiddleNodes {
     Mat3 L;
     std::array<Mat3, kFirstMiddle> coupling;
   };
-  [[nodiscard]] int count() const {
-    return static_cast<int>(neighbours_.size());
-  }  ///< number of middle nodes in one segment
-  [[nodiscard]] Eigen::Index unknowns() const {
-    return 3 * (count() + kLayerNodes);
-  }  ///< number of unknowns of one segment
+  /// Number of middle nodes in one segment.
+  [[nodiscard]] int count() const { return static_cast<int>(neighbours_.size()); }
+  /// Number of unknowns of one segment.
+  [[nodiscard]] Eigen::Index unknowns() const { return 3 * (count() + kLayerNodes); }
   [[nodiscard]] const Eliminated& eliminated(int segment, int m) const {
     return eliminated_[static_cast<std::size_t>(segment * count() + m)];
   }
@@ -59,8 +57,8 @@ class MiddleNodes {
   std::vector<std::vector<int>> neighbours_;  ///< neighbours of each middle node that are not eliminated before it
   std::vector<Eliminated> eliminated_;        ///< ordered by segment
   VecX reduced_;  ///< (3 middle nodes per segment) L⁻¹ of the gradient at the middle nodes
-  Eigen::Matrix<double, 3 * kMostNodes, 3 * kMostNodes>
-      work_;  ///< stiffness of the segment whose nodes are being eliminated
+  /// Stiffness of the segment whose nodes are being eliminated.
+  Eigen::Matrix<double, 3 * kMostNodes, 3 * kMostNodes> work_;
 };
 
 }  // namespace stylet::tet

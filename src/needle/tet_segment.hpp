@@ -29,8 +29,8 @@ struct Element {
 
 /// The piece of the bar that is repeated along the needle's axis (z).
 struct SegmentMesh {
-  std::vector<Vec3>
-      nodes;  ///< [mm] relative to the centre of the layer nearer to the base; at least kFirstMiddle nodes
+  /// [mm] relative to the centre of the layer nearer to the base; at least kFirstMiddle nodes.
+  std::vector<Vec3> nodes;
   std::vector<Element> elements;
 
   [[nodiscard]] int middle_nodes() const { return static_cast<int>(nodes.size()) - kFirstMiddle; }

@@ -19,9 +19,8 @@ namespace stylet::phantom {
 /// - gland volume: 37.4 ± 9.6 cc before implantation (149 patients, BMC Radiation Oncology 2013, 8:177), 49 cc (22–106)
 ///   and length 4.5 cm (3.1–6.0) after it (191 patients, Holmes et al. 2014). The reference patient has 40 cc, the
 ///   others 32–56 cc.
-/// - shape of the sections: width about 1.35 × depth, filling 0.83–0.88 of the box around it, apex and base rounded, as
-///   in
-///   expert-drawn MR contours (Medical Segmentation Decathlon, task 5; Antonelli et al., Nat Commun 2022, 13:4128).
+/// - shape of the sections: width about 1.35 × depth, filling 0.83–0.88 of the box around it; apex and base rounded as
+///   in expert-drawn MR contours (Medical Segmentation Decathlon, task 5; Antonelli et al., Nat Commun 2022, 13:4128).
 /// - urethra: 6–7 mm wide, as contoured with a catheter in place; curved anteriorly below the verumontanum.
 /// - pubic bone: nearest point 4–6 mm (Visible Human Male, Browne & Schlehlein 2022, doi:10.48539/HBM893.QGJK.978) to
 ///   about 1 cm from the gland; subpubic angle of men 50–82° (obstetric textbooks).

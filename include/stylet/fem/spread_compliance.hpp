@@ -70,8 +70,8 @@ class SpreadCompliance {
     NeedleWay way;
     int first = 0;  ///< number of the first sample
     int count = 0;
-    [[nodiscard]] double along(
-        const Vec3& x) const;  ///< [mm] from the entry to the point of the line that is nearest to x
+    /// [mm] from the entry to the point of the line that is nearest to x.
+    [[nodiscard]] double along(const Vec3& x) const;
     [[nodiscard]] double distance(const Vec3& x) const;  ///< [mm] between x and that line
   };
   /// M for the samples of one line.

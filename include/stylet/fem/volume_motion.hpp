@@ -24,9 +24,9 @@ struct VolumeMotion {
   /// a − ω × (X − X̄)|² dV. Its length is the sine of the angle while it is linear in u, and the angle after
   /// VolumeResponse::finite().
   Vec3 rotation_rad = Vec3::Zero();
-  std::array<Vec3, 3> third_mm{Vec3::Zero(), Vec3::Zero(),
-                               Vec3::Zero()};  ///< [mm] LPS, mean displacement of each Third
-  double dilation = 0.0;                       ///< mean relative change of volume (1/V) ∫ div u dV
+  /// [mm] LPS, mean displacement of each Third.
+  std::array<Vec3, 3> third_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  double dilation = 0.0;  ///< mean relative change of volume (1/V) ∫ div u dV
 };
 
 /// The displacement that a rotation by a finite angle has in addition to the linear displacement ω × r, which stretches

@@ -27,8 +27,8 @@ struct Fineness {
 struct FineSurface {
   std::vector<SurfacePoint> points;  ///< the given points come first, with unchanged numbers
   std::vector<Vec3> positions;       ///< (points) [mm] LPS
-  std::vector<std::array<Index, 3>>
-      triangles;           ///< numbers of the corners, in the same sense of rotation as in the given triangle
+  /// Numbers of the corners, in the same sense of rotation as in the given triangle.
+  std::vector<std::array<Index, 3>> triangles;
   std::vector<int> patch;  ///< (triangles) patch number of the given triangle of which this triangle is a part
 };
 

@@ -21,8 +21,8 @@ struct LabelImage {
   Mat3 direction = Mat3::Identity();   ///< columns: unit directions of i, j, k in LPS
   std::vector<std::uint16_t> labels;   ///< (size[0]*size[1]*size[2]) one label per voxel, i varies fastest
   std::map<int, std::string> names;    ///< names of the labels that the file names (.seg.nrrd, DICOM SEG)
-  std::map<int, std::string>
-      meanings;                    ///< meaning of the code that the file gives for a label beside its name (DICOM SEG)
+  /// Meaning of the code that the file gives for a label beside its name (DICOM SEG).
+  std::map<int, std::string> meanings;
   std::vector<std::string> notes;  ///< messages to the user about decisions of the reader
 
   [[nodiscard]] Vec3 voxel_centre(double i, double j, double k) const {

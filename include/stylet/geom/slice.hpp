@@ -58,8 +58,8 @@ class Slicer {
   };
   struct Node {
     Vec3 x;  ///< [mm] LPS
-    double height =
-        0.0;  ///< normal · (x − origin), not divided by the normal's length; set for nodes of elements near the plane
+    /// Normal · (x − origin), not divided by the normal's length; set for nodes of elements near the plane.
+    double height = 0.0;
     Index of_mesh = -1;
     Index slot = -1;    ///< position in nodes_, -1 = none
     Index vertex = -1;  ///< vertex at this node, -1 = none

@@ -10,8 +10,8 @@ namespace stylet {
 /// unchanged.
 struct Subdivision {
   TetMesh mesh;  ///< the original nodes come first; tetrahedra 8 t … 8 t + 7 replace the original tetrahedron t
-  std::vector<std::array<Index, 2>>
-      ends;  ///< (new nodes) both ends of the edge whose middle is the new node, original numbers
+  /// (new nodes) both ends of the edge whose middle is the new node, original numbers.
+  std::vector<std::array<Index, 2>> ends;
 };
 
 /// Regular refinement: each tetrahedron becomes four at its corners, and the octahedron between these is cut along one

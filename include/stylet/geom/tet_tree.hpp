@@ -46,8 +46,8 @@ class TetTree {
  private:
   struct Box {
     Eigen::AlignedBox3d box;
-    Index first,
-        count;  ///< leaf: range in order_; inner box: count = -1, first = left child (the right child is first + 1)
+    /// Leaf: range in order_; inner box: count = -1, first = left child (the right child is first + 1).
+    Index first, count;
   };
   std::vector<Box> boxes_;
   std::vector<Index> order_;

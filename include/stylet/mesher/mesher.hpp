@@ -18,14 +18,14 @@ namespace stylet {
 struct MeshOptions {
   MeshPreset preset = MeshPreset::standard;
   Index nodes = 0;  ///< wanted number of nodes, met within 3 %; 0 = default of the preset (3,000 / 570)
-  double cull_tolerance_mm =
-      0.3;  ///< [mm] contour points closer than this to the polygon without them are dropped; 0 keeps all points
+  /// [mm] contour points closer than this to the polygon without them are dropped; 0 keeps all points.
+  double cull_tolerance_mm = 0.3;
   /// Regions that the user assigns: ROI name, label name, or label number as text → region name. The other structures
   /// are recognised by their names (choose_structures()).
   std::map<std::string, std::string> regions;
   std::vector<std::string> skip;  ///< names of input structures, or numbers of labels as text, to leave out
-  bool stiff_band =
-      true;  ///< whether to add a stiff band from the gland's anterior-inferior end if the input has no pubic arch
+  /// Whether to add a stiff band from the gland's anterior-inferior end if the input has no pubic arch.
+  bool stiff_band = true;
   SoftLayers layers;  ///< thicknesses of layers to add if the input lacks them; MeshPreset::paper adds none
 };
 

@@ -17,8 +17,8 @@ struct StructureUse {
 struct StructureChoice {
   std::vector<StructureUse> uses;   ///< structures with contours, in their order, or labels, ascending
   std::vector<StructureUse> empty;  ///< structures without anything to mesh; all are left out
-  std::vector<std::string>
-      notes;  ///< messages to the user: which structure stands in for another one, and what is left out and why
+  /// Messages to the user: which structure stands in for another one, and what is left out and why.
+  std::vector<std::string> notes;
   bool has_target = false;  ///< whether one of the regions is the target
 };
 

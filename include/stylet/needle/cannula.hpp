@@ -8,8 +8,8 @@ namespace stylet {
 /// Cross-section of a needle: a tube (cannula), with or without a wire (stylet) in its lumen.
 struct Cannula {
   double outer_diameter_mm = 1.27;  ///< [mm], 18 gauge
-  double lumen_diameter_mm =
-      1.0;  ///< [mm], 0 = a solid rod; the default is a thin-walled 18 gauge tube that lets seeds of 0.8 mm pass
+  /// [mm], 0 = a solid rod; the default is a thin-walled 18 gauge tube that lets seeds of 0.8 mm pass.
+  double lumen_diameter_mm = 1.0;
   double young_MPa = 200e3;  ///< Young's modulus of the tube [MPa], stainless steel
   double poisson = 0.3;
   double stylet_diameter_mm = 0.0;  ///< [mm], 0 = no stylet
