@@ -14,7 +14,7 @@ MeshOptions nodes(Index n) {
   return o;
 }
 
-/// A gland alone, meshed once for all claims about it.
+/// A gland alone, meshed once for all tests that use it.
 const Result<MeshedAnatomy>& simple(Index n = 700) {
   static const auto small = mesh_contours(set_of({gland()}), nodes(700));
   static const auto large = mesh_contours(set_of({gland()}), nodes(1500));

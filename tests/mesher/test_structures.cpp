@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What structures and labels are taken as, what is left out, and that it is said.
+// Tests as which regions structures and labels are used, which ones are left out, and that this is reported.
 #include "made_anatomy.hpp"
 #include "stylet/mesher/structures.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 
 using testing::set_of;
 
-/// A structure that has a contour; nobody meshes it here.
+/// A structure with a contour, which is not meshed here.
 Roi roi(const std::string& name, const std::string& type = "") {
   Roi r;
   r.name = name;
@@ -238,7 +238,7 @@ TEST(Structures, ALabelCalledTargetIsTheGland) {
   EXPECT_TRUE(says(*choice, "label 'Target' is taken as the gland"));
 }
 
-/// A box of label `label` in an image; to[a] is the first voxel beyond it.
+/// Fills a box with a label; to[a] is the first voxel beyond the box.
 void fill(LabelImage& image, int label, const std::array<int, 3>& from, const std::array<int, 3>& to) {
   for (int k = from[2]; k < to[2]; ++k) {
     for (int j = from[1]; j < to[1]; ++j) {
@@ -252,7 +252,7 @@ void fill(LabelImage& image, int label, const std::array<int, 3>& from, const st
 
 TEST(Structures, APlanningLabelWithinTheGlandIsPartOfIt) {
   LabelImage image = testing::two_zones();
-  fill(image, 3, {28, 32, 6}, {36, 46, 9});  // most of it in the posterior zone
+  fill(image, 3, {28, 32, 6}, {36, 46, 9});  // most of it is in the posterior zone
   fill(image, 5, {30, 36, 7}, {32, 40, 8});  // within the other planning volume
   fill(image, 4, {54, 20, 5}, {64, 40, 9});  // beside the gland
   image.names = {{1, "PZ"}, {2, "TZ"}, {3, "GTV"}, {4, "PTV"}, {5, "Target"}};
