@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Axisymmetric finite elements in CalculiX around a rod in tissue: common part of the models in this folder. Lengths are
-in mm, forces in N, moduli in MPa. The rod's axis is r = 0 and its end is at height 0."""
+"""Axisymmetric finite elements in CalculiX around a rod in tissue: common part of the models in this folder.
+Lengths are in mm, forces in N, moduli in MPa. The rod's axis is r = 0 and its end is at height 0."""
 
 import os
 import pathlib
@@ -67,7 +67,7 @@ class Mesh:
                 self.wall.append(n)
 
     def deck(self, materials):
-        """Lines of CalculiX's input with nodes, elements and materials. materials: name → lines that follow the name."""
+        """Lines of CalculiX's input with nodes, elements and materials. materials: name → lines after the name."""
 
         def place(values, k):
             return values[k // 2] if k % 2 == 0 else 0.5 * (values[k // 2] + values[k // 2 + 1])
@@ -85,8 +85,8 @@ class Mesh:
 
 
 def pushed(lines, way_mm, step):
-    """Moves the set END down by way_mm in a step whose first lines are given. Returns [(share of the step, force on END in
-    N)], as far as CalculiX gets."""
+    """Moves the set END down by way_mm in a step whose first lines are given. Returns [(share of the step, force on END
+    in N)], as far as CalculiX gets."""
     if shutil.which("ccx") is None:
         print("skipped: the program ccx (CalculiX) is not installed")
         sys.exit(SKIPPED)
@@ -105,7 +105,8 @@ def pushed(lines, way_mm, step):
 
 
 def material(solid, young_MPa, poisson):
-    """Lines of a material: linear, neo-Hookean, or Yeoh's solid with C20 = C10; the last two have C10 = μ/2 and D1 = 2/K."""
+    """Lines of a material: linear, neo-Hookean, or Yeoh's solid with C20 = C10. The last two have C10 = μ/2 and
+    D1 = 2/K."""
     c10 = 0.25 * young_MPa / (1.0 + poisson)
     d1 = 6.0 * (1.0 - 2.0 * poisson) / young_MPa
     none = 1e12  # switches off the higher volumetric terms

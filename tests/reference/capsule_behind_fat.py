@@ -3,7 +3,7 @@
 """How deep a needle that has cut its way through fat presses a capsule in before it breaks, computed by finite elements
 independently of Stylet: axisymmetric, in CalculiX.
 
-    capsule_behind_fat.py           prints curves and how they depend on grid and assumptions; takes a quarter of an hour
+    capsule_behind_fat.py           prints curves and how they depend on grid and assumptions; takes 15 minutes
     capsule_behind_fat.py --write   writes the table capsule_behind_fat.inc; takes three minutes
     capsule_behind_fat.py --check   compares the linear stiffness and the first three millimetres of the curve with that
                                     table: its test
@@ -34,7 +34,7 @@ FAT_MM = 12.0
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
 WIDE_MM, DEEP_MM = 100.0, 100.0  # size of the block
 SIDE_MM = WIDE_MM / math.sqrt(math.pi)  # radius of the cylinder with the block's cross-section
-BLOCK = (SIDE_MM, DEEP_MM - FAT_MM)  # distances at which it is held: radius of its side, and depth below the gland's face
+BLOCK = (SIDE_MM, DEEP_MM - FAT_MM)  # held at this radius, and at this depth below the gland's face
 FINE = (3e-4, 0.2)  # smallest element and growth with the distance, for linear tissue
 COARSE = (0.6 * RADIUS_MM, 0.25)  # the same for Yeoh's solid
 DEEPEST_MM = 14.4
@@ -45,8 +45,9 @@ TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "caps
 
 
 def forces(solid, way_mm, held=BLOCK, grid=None, fat=None, slides=True):
-    """[(depth in mm, force in N)] on the way down. held: distances of side and bottom [mm]. grid: smallest element [mm] and
-    growth. fat: solid of the fat if different. slides: whether the hole's wall slides along the rod; otherwise it is free."""
+    """[(depth in mm, force in N)] on the way down. held: distances of side and bottom [mm]. grid: smallest element [mm]
+    and growth. fat: solid of the fat if different. slides: whether the hole's wall slides along the rod; otherwise it
+    is free."""
     smallest, growth = grid or (FINE if solid == "linear" else COARSE)
     side_mm, below_mm = held
     heights = sorted({*away(0.0, -below_mm, smallest, growth), *away(0.0, FAT_MM, smallest, growth)})

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A rod pressed millimetres deep into hyperelastic tissue, computed by finite elements independently of Stylet.
 
-    hyperelastic_punch.py           prints all curves and the fits to them; takes a quarter of an hour
+    hyperelastic_punch.py           prints all curves and the fits to them; takes 15 minutes
     hyperelastic_punch.py --write   also writes the table hyperelastic_punch.inc
     hyperelastic_punch.py --check   compares the first millimetre and a half of one curve with that table: its test
 

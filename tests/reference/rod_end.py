@@ -39,7 +39,7 @@ def heights(above_mm, far_mm, depth_mm):
 
 
 def stiffness(above_mm, far_mm, poisson, depth_mm):
-    """Stiffness [N/mm] with the block held far_mm away, from a motion of the rod's end by a millionth of a millimetre."""
+    """Stiffness [N/mm] with the block held far_mm away, from a motion of the rod's end by 10⁻⁶ mm."""
     mesh = Mesh(radii(far_mm, SMALLEST_MM, GROWTH), heights(above_mm, far_mm, depth_mm),
                 lambda height: "GLAND" if height < -above_mm else "FAT")
     materials = {"FAT": ["*ELASTIC", f"{FAT_MPA}, {poisson}"], "GLAND": ["*ELASTIC", f"{GLAND_MPA}, {poisson}"]}

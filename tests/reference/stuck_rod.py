@@ -29,7 +29,7 @@ TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "stuc
 
 
 def heights(length_mm, smallest):
-    """Heights of grid lines, fine at the rod's end, at the beginning of the bonded shaft, and at the top of the tissue."""
+    """Heights of grid lines, fine at the rod's end, where the bonded shaft begins, and at the top of the tissue."""
     places = [0.0, SLIDES_MM, length_mm]
     points = {*away(0.0, length_mm - HEIGHT_MM, smallest, GROWTH)}
     for low, high in zip(places, places[1:]):
