@@ -106,9 +106,8 @@ std::string nearly_flat_warning(const TetMesh& mesh) {
   const Vec3 at = 0.25 * (mesh.nodes[tet[0]] + mesh.nodes[tet[1]] + mesh.nodes[tet[2]] + mesh.nodes[tet[3]]);
   return fmt::format(
       "{} of {} tetrahedra {} nearly flat, with a dihedral angle below {:g}°; the worst is tetrahedron {} (numbers "
-      "start "
-      "at 0) with {:.2g}°, at ({:.1f}, {:.1f}, {:.1f}) mm in '{}'. Displacements and forces near such tetrahedra are "
-      "inaccurate. Improve the mesh with the meshing program's optimiser, or mesh the body again.",
+      "start at 0) with {:.2g}°, at ({:.1f}, {:.1f}, {:.1f}) mm in '{}'. Displacements and forces near such "
+      "tetrahedra are inaccurate. Improve the mesh with the meshing program's optimiser, or mesh the body again.",
       flat.count, mesh.tet_count(), flat.count == 1 ? "is" : "are", kNearlyFlat_deg, flat.worst, flat.angle_deg, at.x(),
       at.y(), at.z(), mesh.regions[static_cast<std::size_t>(mesh.tet_region[flat.worst])]);
 }

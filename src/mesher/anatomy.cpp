@@ -232,8 +232,8 @@ void settle_overlaps(Anatomy& a) {
       const double smaller = std::min(a.structures[h].input_volume, layer.solid->volume(layer.offset)) / 1000;
       if (belongs_inside(a.structures[h], a.structures[layer.members[0]])) continue;
       if (!(cc > 0.01 * smaller) || cc < 0.005) continue;
-      a.notes.push_back(fmt::format("'{}' and '{}' overlap by {:.2f} cc; it is meshed as '{}'", a.structures[h].name,
-                                    name, cc, a.structures[h].name));
+      a.notes.push_back(fmt::format("The structures '{}' and '{}' overlap by {:.2f} cc; the overlap is meshed as '{}'.",
+                                    a.structures[h].name, name, cc, a.structures[h].name));
     }
   }
 }

@@ -31,8 +31,9 @@ double drop_limbs(GridShape& body, Anatomy& anatomy) {
   }
   const double fraction = keep_islands(body, islands, keep);
   if (fraction < 1) {
-    anatomy.notes.push_back(fmt::format(
-        "{:.1f} % of the body lies apart from the rest and holds no structure: left out", 100 * (1 - fraction)));
+    anatomy.notes.push_back(
+        fmt::format("{:.1f} % of the body is left out, since it lies apart from the rest and contains no structure.",
+                    100 * (1 - fraction)));
   }
   return fraction;
 }
@@ -83,9 +84,8 @@ double trim_body(GridShape& body, Anatomy& anatomy) {
       redistance(body);
       fraction = body.volume(0) / before;
       anatomy.notes.push_back(
-          fmt::format("the body was cropped to {:.0f} mm around the other structures: {:.0f} % of it is "
-                      "meshed",
-                      kKept, 100 * fraction));
+          fmt::format("The body was cropped to {:.0f} mm around the other structures; {:.0f} % of it is meshed.", kKept,
+                      100 * fraction));
     }
   }
   fraction *= drop_limbs(body, anatomy);

@@ -84,12 +84,12 @@ Result<SizedMesh> find_element_size(const std::function<TetrahedraliserInput(dou
     if (fewest > wanted) {
       return input_error("number of nodes",
                          fmt::format("{} wanted, but this anatomy needs about {:.0f}", wanted, fewest),
-                         fmt::format("ask for {:.0f} or more, or mesh fewer structures", 1.1 * fewest));
+                         fmt::format("Ask for {:.0f} or more, or mesh fewer structures", 1.1 * fewest));
     }
     return failure(
         "mesher",
-        fmt::format("no element size gives {} nodes; the nearest gives {:.1f} % off", wanted, 100 * best_error),
-        "ask for a few more or fewer nodes");
+        fmt::format("no element size gives {} nodes; the nearest number differs by {:.1f} %", wanted, 100 * best_error),
+        "Ask for a few more or fewer nodes");
   }
   return best;
 }

@@ -24,11 +24,14 @@ struct Slices {
 Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
   const std::size_t voxels = static_cast<std::size_t>(image.size[0]) * image.size[1] * image.size[2];
   if (voxels == 0 || image.labels.size() != voxels) {
-    return input_error(where, fmt::format("{} labels for {} voxels", image.labels.size(), voxels), "export it again");
+    return input_error(
+        where, fmt::format("it has {} labels for {} voxels, expected one label per voxel", image.labels.size(), voxels),
+        "Export it again");
   }
   if (!(image.spacing.minCoeff() > 0) || !image.spacing.allFinite() || !image.origin.allFinite() ||
       !((image.direction.transpose() * image.direction - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-3)) {
-    return input_error(where, "the image frame is not orthogonal with positive spacing", "resample the mask");
+    return input_error(where, "the axes of the image are not perpendicular, or its spacing is not positive",
+                       "Resample the mask on a rectangular grid");
   }
   Slices s;
   // Slices are perpendicular to the axis with the widest spacing, or to the last axis when spacings are equal.
@@ -52,9 +55,12 @@ Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
       }
     }
   }
-  if (high[0] < 0) return input_error(where, "every voxel is background", "choose a mask with a labelled structure");
+  if (high[0] < 0)
+    return input_error(where, "every voxel is background, expected a labelled structure",
+                       "Choose a mask with a labelled structure");
   if (high[n] == low[n]) {
-    return input_error(where, "the labels lie in one slice; a solid needs at least two", "segment more slices");
+    return input_error(where, "the labels lie in one slice, expected at least 2",
+                       "Segment the structures on more slices");
   }
   for (int a = 0; a < 3; ++a) {
     const int image_axis = s.axis[a];
@@ -158,11 +164,12 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   const bool named = choice->has_target;
   if (!named) {
     if (!options.regions.empty()) {
-      return input_error(anatomy.source,
-                         "none of the regions named is a target (prostate, a prostate zone, CTV, PTV, GTV)",
-                         "name the label of the gland 'prostate', its zones 'peripheral_zone' and 'transition_zone'");
+      return input_error(
+          anatomy.source, "none of the assigned regions is a target (prostate, a prostate zone, CTV, PTV, GTV)",
+          "Name the label of the gland 'prostate', or its zones 'peripheral_zone' and 'transition_zone'");
     }
-    anatomy.notes.push_back("no label is named as prostate or prostate zone: all labels together count as the target");
+    anatomy.notes.push_back(
+        "No label is named as prostate or prostate zone, so all labels together count as the target.");
   }
   anatomy.notes.insert(anatomy.notes.end(), choice->notes.begin(), choice->notes.end());
 
@@ -172,7 +179,8 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     labels[use.region].insert(use.number);
   }
   if (labels.empty())
-    return input_error(anatomy.source, "every label is left out", "take one of them out of [patient] skip");
+    return input_error(anatomy.source, "every label is left out, expected at least one in the mesh",
+                       "Remove one of them from [patient] skip");
   const double step = std::max(0.8 * std::min(s.spacing[0], s.spacing[1]), std::min(s.spacing[2], 1.0));
   const double sigma = 0.9 * std::max(s.spacing[0], s.spacing[1]);
   const auto volume_of = [&](const std::set<int>& set) {
@@ -193,11 +201,11 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     const bool islands = drop_small_islands(*shape, kSmallIsland) > 0;
     if (!(shape->inner_radius() > 0.5 * step)) {
       anatomy.notes.push_back(
-          fmt::format("region '{}' has only {:.2f} cc and is nowhere thicker than a voxel: passed over", name,
-                      volume_of(set) / 1000));
+          fmt::format("The region '{}' has only {:.2f} cc and is nowhere thicker than a voxel, so it is left out.",
+                      name, volume_of(set) / 1000));
       continue;
     }
-    if (islands) anatomy.notes.push_back(fmt::format("small pieces of '{}' apart from the rest were left out", name));
+    if (islands) anatomy.notes.push_back(fmt::format("Small pieces of '{}' apart from the rest were left out.", name));
     organs.insert(set.begin(), set.end());
     Structure structure;
     structure.name = name;

@@ -108,8 +108,8 @@ void fill_the_gland(std::vector<StructureUse>& uses, const LabelImage& image) {
       const std::string region = region_around(use.number, areas, target);
       if (region.empty()) continue;
       use.region = target[use.number] = region;
-      use.why = fmt::format("taken as part of {}, in which it lies: left out as a planning volume it would be a hole",
-                            region);
+      use.why = fmt::format(
+          "taken as part of {}, in which it lies, since without this planning volume there would be a hole", region);
       undecided.erase(use.number);
     }
   }

@@ -57,8 +57,9 @@ MeshReport report_on(const TetMesh& mesh, const Anatomy& a) {
     }
     const double error = s.input_volume > 0 ? region.volume_cc / region.input_volume_cc - 1 : 0;
     if (std::abs(error) > kVolumeTolerance) {
-      r.notes.push_back(
-          fmt::format("region '{}' has {:+.0f} % of its input's volume: too few nodes for it", s.name, 100 * error));
+      r.notes.push_back(fmt::format(
+          "The volume of the region '{}' differs by {:+.0f} % from its input: the mesh has too few nodes for it.",
+          s.name, 100 * error));
     }
     r.regions.push_back(std::move(region));
   }

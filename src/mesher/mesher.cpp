@@ -67,7 +67,8 @@ Result<Attempt> attempt(const Anatomy& a, const SizeField& size, Index wanted, I
   const int body = 1 + static_cast<int>(a.find("body") - a.structures.data());
   const double dropped = drop_loose_pieces(raw, body);
   if (dropped > kNotedVolume) {
-    out.anatomy.notes.push_back(fmt::format("{:.1f} cc of body apart from the rest left out", dropped / 1000));
+    out.anatomy.notes.push_back(fmt::format(
+        "A part of the body of {:.1f} cc was left out, since it lies apart from the rest.", dropped / 1000));
   }
   EditableMesh editable(std::move(raw));
   improve(editable, out.anatomy, kQualityGoal);
@@ -101,8 +102,9 @@ Result<Attempt> best_attempt(const Anatomy& a, const SizeField& size, Index want
     aim = static_cast<Index>(std::lround(aim * std::clamp(wanted / nodes, 0.9, 1.1) * other_size));
   }
   if (best.node_error > kLargestNodeError) {
-    return failure(a.source, fmt::format("{} nodes wanted, the nearest mesh has {}", wanted, best.mesh.nodes.size()),
-                   "ask for a few more or fewer nodes");
+    return failure(a.source,
+                   fmt::format("{} nodes are wanted, but the nearest mesh has {}", wanted, best.mesh.nodes.size()),
+                   "Ask for a few more or fewer nodes");
   }
   return best;
 }
@@ -122,11 +124,12 @@ Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
       } else if (!structure.generated) {
         return input_error(
             fmt::format("{}, region '{}'", a.source, structure.name),
-            fmt::format("it has {:.3f} cc outside other structures and no element at {} nodes",
+            fmt::format("it has {:.3f} cc outside other structures, but no element in a mesh of {} nodes",
                         structure.input_volume / 1000, raw.nodes.size()),
-            "Ask for more nodes, or leave the structure out (skip below [patient]; stylet mesh: --skip).");
+            "Ask for more nodes, or leave the structure out (skip below [patient]; stylet mesh: --skip)");
       } else {
-        a.notes.push_back(fmt::format("the generated region '{}' found no room", structure.name));
+        a.notes.push_back(fmt::format("The mesh has no element in the region '{}', which was to be added to the input.",
+                                      structure.name));
       }
     }
   }
@@ -139,7 +142,7 @@ Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress
   const Index wanted = options.nodes > 0 ? options.nodes : preset;
   if (options.nodes < 0 || wanted > kMostNodes) {
     return input_error("number of nodes", fmt::format("{}, expected 1 to {}", options.nodes, kMostNodes),
-                       "choose a number between, or 0 for the preset's own");
+                       "Choose a number in this range, or 0 for the default of the preset");
   }
   settle_overlaps(a);
   add_surroundings(a, options);

@@ -51,7 +51,7 @@ Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOpti
     return input_error(
         set.source,
         fmt::format("no target structure: none of {} is recognised as prostate, prostate zone, CTV, PTV or GTV", names),
-        "Say which one is the target: map its name to 'prostate' below [patient.regions].");
+        "Map the name of the target to 'prostate' below [patient.regions]");
   }
   notes.insert(notes.end(), choice->notes.begin(), choice->notes.end());
   std::vector<const Roi*> drawn;  // the ROIs of choice->uses

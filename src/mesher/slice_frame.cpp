@@ -80,7 +80,7 @@ Result<SliceFrame> common_frame(const ContourSet& contours, const std::vector<co
     }
   }
   if (!(normal.norm() > 0)) {
-    return input_error(contours.source, "the contours enclose no area", "export the structures again");
+    return input_error(contours.source, "the contours enclose no area", "Export the structures again");
   }
   normal.normalize();
   Eigen::Index largest = 0;
@@ -105,12 +105,13 @@ Result<SliceFrame> common_frame(const ContourSet& contours, const std::vector<co
         high = std::max(high, p.dot(normal));
       }
       if (high - low > 0.5) {
-        return input_error(fmt::format("{}, ROI '{}', contour near ({:.1f}, {:.1f}, {:.1f}) mm", contours.source,
-                                       roi->name, c.points[0].x(), c.points[0].y(), c.points[0].z()),
-                           fmt::format("the contour leaves the common slice plane by {:.2f} mm; at most 0.5 mm is "
-                                       "expected of parallel planar contours",
-                                       high - low),
-                           "Draw all structures on the same parallel slices." + or_skip(roi->name));
+        return input_error(
+            fmt::format("{}, ROI '{}', contour near ({:.1f}, {:.1f}, {:.1f}) mm", contours.source, roi->name,
+                        c.points[0].x(), c.points[0].y(), c.points[0].z()),
+            fmt::format("the contour leaves the common slice plane by {:.2f} mm, expected at most 0.5 mm "
+                        "(parallel planar contours)",
+                        high - low),
+            "Draw all structures on the same parallel slices" + or_skip(roi->name));
       }
     }
   }

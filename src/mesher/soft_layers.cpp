@@ -87,7 +87,8 @@ class LayerMaker {
     ischiorectal_fat();
     subcutaneous_fat();
     if (!made_.empty()) {
-      a_.notes.push_back(fmt::format("soft tissue that the input does not have was added: {}", fmt::join(made_, ", ")));
+      a_.notes.push_back(
+          fmt::format("Soft tissue that the input does not have was added: {}.", fmt::join(made_, ", ")));
     }
   }
 
@@ -119,7 +120,7 @@ class LayerMaker {
     const double depth = rectum->shape->inner_radius() + rectum->offset;
     if (depth < 1.5 * wall) {
       a_.notes.push_back(fmt::format(
-          "the rectum is {:.1f} mm thick: too thin for a wall of {:g} mm and a lumen, so it is meshed as one",
+          "The rectum is meshed as one region: it is {:.1f} mm thick, too thin for a wall of {:g} mm and a lumen.",
           2 * depth, wall));
       return;
     }
@@ -141,7 +142,7 @@ class LayerMaker {
     const double thickness = layers_.periprostatic_fat_mm;
     if (!wanted("periprostatic_fat", thickness)) return;
     add(
-        "periprostatic_fat", fmt::format("{:g} mm of fat round the gland", thickness),
+        "periprostatic_fat", fmt::format("{:g} mm of fat around the gland", thickness),
         [solid = wrapped_, thickness](const Vec3& p) { return solid.distance(p) - thickness; },
         grown(wrapped_.box(), thickness), thickness);
   }

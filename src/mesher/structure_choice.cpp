@@ -103,7 +103,7 @@ class Decision {
       known.push_back(c.word.empty() || c.word == c.name ? c.name : fmt::format("{} ({})", c.name, c.word));
     const std::string near = nearest_name(word, names_);
     return input_error(source_, fmt::format("{}: there is no {} '{}'; the file has {}", key, kind_, word, known),
-                       near.empty() ? "Name one of these." : fmt::format("Did you mean '{}'?", near));
+                       near.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", near));
   }
 
   void leave(std::size_t i, std::string why) {
@@ -136,9 +136,11 @@ class Decision {
       bool taken = false;
       for (const std::size_t i : *found) {
         if (uses_[i].why == kSkipped) {
-          return input_error(source_,
-                             fmt::format("{} '{}' is named in patient.skip and in patient.regions", kind_, word),
-                             "Remove it from one of the two.");
+          return input_error(
+              source_,
+              fmt::format("{} '{}' is named both in patient.skip and in patient.regions, expected in one of them",
+                          kind_, word),
+              "Remove it from one of the two");
         }
         if (!candidates_[i].nothing.empty()) continue;
         take(i, region_meant(region), "named in [patient.regions]");
@@ -149,8 +151,8 @@ class Decision {
       if (!taken) {
         const std::string& nothing = candidates_[found->front()].nothing;
         return input_error(fmt::format("{}, {} '{}'", source_, kind_, word),
-                           fmt::format("there is nothing in it to be meshed ({})", nothing),
-                           "Leave it out of patient.regions, or name another.");
+                           fmt::format("it has nothing to mesh ({})", nothing),
+                           "Remove it from patient.regions, or name another one");
       }
     }
     return Ok{};
@@ -166,7 +168,7 @@ class Decision {
       } else if (belongs_beside_named(i, region)) {
         take(i, region, fmt::format("taken as {} together with {}", region, names_taken_as(region)));
       } else {
-        leave(i, fmt::format("{} is taken as {}", names_taken_as(region), region));
+        leave(i, fmt::format("the region {1} is assigned to {0}", names_taken_as(region), region));
       }
     }
   }
@@ -237,7 +239,7 @@ class Decision {
     if (has([](const std::string& r) { return r == "body"; })) return;
     for (std::size_t i = 0; i < uses_.size(); ++i) {
       if (!open_[i] || lower(candidates_[i].type) != "external") continue;
-      take(i, "body", fmt::format("taken as the body, since no {} is named so", kind_));
+      take(i, "body", fmt::format("taken as the body, since no {} is named body", kind_));
       return;
     }
   }
@@ -253,7 +255,7 @@ class Decision {
   std::set<std::size_t> named_;  ///< candidates to which it assigns them
 };
 
-/// Notes such as "structures left out (empty): 'CTV', 'PROS'", one for each reason.
+/// Notes such as "The structures are left out (empty): 'CTV', 'PROS'.", one for each reason.
 std::vector<std::string> tell_left_out(const std::vector<StructureUse>& uses, const std::string& kind) {
   std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
   for (const StructureUse& use : uses) {
@@ -264,8 +266,8 @@ std::vector<std::string> tell_left_out(const std::vector<StructureUse>& uses, co
   }
   std::vector<std::string> told;
   for (const auto& [why, names] : reasons) {
-    told.push_back(
-        fmt::format("{}{} left out ({}): {}", kind, names.size() == 1 ? "" : "s", why, fmt::join(names, ", ")));
+    told.push_back(fmt::format("The {}{} left out ({}): {}.", kind, names.size() == 1 ? " is" : "s are", why,
+                               fmt::join(names, ", ")));
   }
   return told;
 }
@@ -288,7 +290,7 @@ StructureChoice told(std::vector<StructureUse> uses, const std::vector<Candidate
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (!uses[i].region.empty() && uses[i].why.starts_with("taken as")) {
       const std::string& type = candidates[i].type;
-      choice.notes.push_back(fmt::format("{} '{}'{} is {}", kind, uses[i].name,
+      choice.notes.push_back(fmt::format("The {} '{}'{} is {}.", kind, uses[i].name,
                                          type.empty() ? "" : fmt::format(" (type {})", type), uses[i].why));
     }
   }

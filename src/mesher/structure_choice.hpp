@@ -34,6 +34,6 @@ inline constexpr const char* kPlanningVolume = "planning volume";
 inline constexpr const char* kEmpty = "empty";
 inline constexpr const char* kSkipped = "named in [patient] skip";
 inline constexpr const char* kNotRecognised = "name not recognised";
-inline constexpr const char* kPaperTakesTheGland = "mesh.preset = \"paper\" takes the gland only";
+inline constexpr const char* kPaperTakesTheGland = "mesh.preset = \"paper\" meshes the gland only";
 
 }  // namespace stylet::meshing

@@ -50,10 +50,10 @@ void add_body(Anatomy& a, bool small) {
   s.generated = true;
   s.shape = std::make_shared<Superquadric>(centre, half);
   a.add(std::move(s));
-  a.notes.push_back(
-      fmt::format("no body contour used: a rounded body of {:.0f} x {:.0f} x {:.0f} mm was added, perineal "
-                  "skin {:.0f} mm inferior to the gland",
-                  2 * half.x(), 2 * half.y(), 2 * half.z(), target.min().z() - (centre.z() - half.z())));
+  a.notes.push_back(fmt::format(
+      "No body contour is used: a rounded body of {:.0f} x {:.0f} x {:.0f} mm was added, with the perineal skin "
+      "{:.0f} mm inferior to the gland.",
+      2 * half.x(), 2 * half.y(), 2 * half.z(), target.min().z() - (centre.z() - half.z())));
 }
 
 /// Adds a rod from inside the gland's anterior-inferior end towards the symphysis: anteriorly and slightly inferiorly.
@@ -92,8 +92,8 @@ void add_band(Anatomy& a) {
   s.generated = true;
   s.shape = std::make_shared<Capsule>(start - 2.0 * direction, start + length * direction, kBandRadius);
   a.notes.push_back(
-      fmt::format("no pubic arch contour: a stiff band of radius {:.1f} mm was added from the gland's "
-                  "anterior-inferior end {}",
+      fmt::format("No pubic arch contour is used: a stiff band of radius {:.1f} mm was added from the gland's "
+                  "anterior-inferior end {}.",
                   kBandRadius, reaches ? "to the anterior boundary" : fmt::format("{:.0f} mm anteriorly", length)));
   // The band precedes the body and follows everything else; it is clipped to the body.
   Layer body_layer = std::move(a.layers.back());

@@ -84,8 +84,8 @@ Result<> Tetrahedraliser::refine() {
                       params::mesh_3_options(params::pointer_to_error_code = &code,
                                              params::maximal_number_of_vertices = p.input.most_nodes));
   if (code != CGAL::CGAL_MESH_3_NO_ERROR) {
-    return failure("mesher", fmt::format("refinement did not end below {} nodes", p.input.most_nodes),
-                   "look for contours that are degenerate or far smaller than the rest, or ask for fewer nodes");
+    return failure("mesher", fmt::format("refinement did not end with fewer than {} nodes", p.input.most_nodes),
+                   "Correct contours that are degenerate or far smaller than the rest, or ask for fewer nodes");
   }
   return Ok{};
 }

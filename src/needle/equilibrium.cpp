@@ -74,7 +74,7 @@ Result<int> find_equilibrium(Needle& needle, std::span<const PointLoad> loads, d
     }
   }
   return failure("needle equilibrium",
-                 "out-of-balance moment " + std::to_string(residual) + " N mm left, expected at most " +
+                 "an out-of-balance moment of " + std::to_string(residual) + " N mm is left, expected at most " +
                      std::to_string(tolerance_Nmm) + " N mm",
                  "Apply the loads in smaller steps, allow more iterations, or loosen the tolerance");
 }

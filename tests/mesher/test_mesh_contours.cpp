@@ -120,7 +120,7 @@ TEST(MeshContours, ABodyOfTheInputIsTheOuterBoundary) {
   ASSERT_TRUE(m.ok()) << m.error().message();
   testing::expect_kept(*m, 900);
   EXPECT_GT(testing::region(*m, "body").input_volume_cc, 500);
-  EXPECT_FALSE(testing::has_note(*m, "no body contour"));
+  EXPECT_FALSE(testing::has_note(*m, "No body contour"));
 }
 
 TEST(MeshContours, AVeryLongBodyIsCroppedAroundTheAnatomyAndSaysSo) {

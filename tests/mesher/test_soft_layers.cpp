@@ -71,7 +71,7 @@ TEST(SoftLayers, AllAreMadeAndTheMeshIsAsGoodAsWithoutThem) {
     EXPECT_TRUE(testing::has_region(*m, name)) << name;
     EXPECT_GT(volume(*m, name), 500.0) << name;
   }
-  EXPECT_TRUE(testing::has_note(*m, "7 mm of fat round the gland")) << "the user is told what was added";
+  EXPECT_TRUE(testing::has_note(*m, "7 mm of fat around the gland")) << "the user is told what was added";
 }
 
 TEST(SoftLayers, EachLiesWhereItBelongs) {

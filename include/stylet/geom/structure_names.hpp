@@ -17,7 +17,8 @@ std::vector<std::size_t> find_named(std::span<const std::string> names, std::str
 /// is never listed.
 bool is_listed(std::string_view name, std::span<const std::string> words);
 
-/// Last part of the cure of an error about a structure that cannot be used: how to leave the structure out.
+/// Last part of the cure of an error about a structure that cannot be used, in parentheses and after a blank: how to
+/// leave the structure out.
 std::string or_skip(std::string_view name);
 
 }  // namespace stylet
