@@ -17,7 +17,7 @@ namespace stylet::detail {
 /// @param materials one per region of the mesh
 /// @param fixed mesh nodes that are held, ascending; they must exclude rigid motion
 /// @param f [N] (3n × loads) over all displacement nodes; rows of held nodes are ignored
-/// @return [mm] (3n × loads), zero at held nodes. Errors: those of Tissue::build()
+/// @return [mm] (3n × loads), zero at held nodes. Errors are those of Tissue::build()
 Result<MatX> solve_quadratic(const Discretisation& quadratic, const TetMesh& mesh,
                              const std::vector<Material>& materials, const std::vector<Index>& fixed, const MatX& f,
                              const Progress& progress = {});

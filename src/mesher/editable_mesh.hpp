@@ -23,6 +23,7 @@ class EditableMesh {
  public:
   explicit EditableMesh(RawMesh mesh);
 
+  /// A tetrahedron with its region.
   struct Tet {
     std::array<Index, 4> nodes;
     int label;  ///< region, 0 = deleted

@@ -17,8 +17,8 @@ struct SizedMesh {
 /// solution is enclosed, then narrows the interval; where a step of the function is in the way, it tries scales around
 /// it.
 /// @param input_for returns the input of the mesh generator for a scale [mm]
-/// @param guess first scale [mm] Errors: fewer nodes wanted than the anatomy needs; the error says about how many it
-///   needs.
+/// @param guess first scale [mm]
+/// @return an error when fewer nodes are wanted than the anatomy needs, with the number that it needs
 Result<SizedMesh> find_element_size(const std::function<TetrahedraliserInput(double scale)>& input_for, Index wanted,
                                     double guess, const Progress& progress);
 

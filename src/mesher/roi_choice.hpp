@@ -12,7 +12,7 @@ struct RoiChoice {
 };
 
 /// The ROIs of the set that are meshed, with their regions, sorted by priority (choose_structures()). Adds notes about
-/// ROIs that are left out. Errors: those of choose_structures(); no target.
+/// ROIs that are left out. Errors: those of choose_structures(), and an input without a target.
 Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOptions& options,
                                            std::vector<std::string>& notes);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The soft layers that contours and masks do not have.
+// Adds the soft layers that contours and masks lack.
 #include "stylet/geom/soft_layers.hpp"
 
 #include "anatomy.hpp"

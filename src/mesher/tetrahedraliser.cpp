@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only unit that includes CGAL's mesh generator, which takes long to compile.
+// The only file that includes CGAL's mesh generator, because that takes long to compile.
 #define CGAL_NO_WARNINGS  // warnings go to the terminal; what matters comes back as an error code
 
 #include "tetrahedraliser.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pubic arch and the band that ties the gland to it.
+// The pubic arch, and the band that ties the gland to it.
 #include "anatomy.hpp"
 
 #include <algorithm>

@@ -35,7 +35,8 @@ class SpreadCompliance {
 
   /// Solves for M. On meshes of up to 45,000 nodes, elements near the ways are made quadratic for this.
   /// @param tissue used only during the call
-  /// @param ways at least one way Errors: those of Tissue::build().
+  /// @param ways at least one way
+  /// @return errors are those of Tissue::build()
   static Result<SpreadCompliance> solve(const Tissue& tissue, const std::vector<NeedleWay>& ways,
                                         const Progress& progress = {});
 

@@ -5,6 +5,7 @@
 
 namespace stylet {
 
+/// Smallest and largest value of a quantity.
 struct Range {
   double min = 0.0;
   double max = 0.0;

@@ -56,6 +56,7 @@ class Slicer {
     Index tet;
     int region;
   };
+  /// A node of the mesh and its state in the current slice.
   struct Node {
     Vec3 x;  ///< [mm] LPS
     /// Normal · (x − origin), not divided by the normal's length; set for nodes of elements near the plane.
