@@ -12,8 +12,7 @@ constexpr double kLargestGrowth = 7.0;  // largest size / size in the target
 constexpr double kLimitGrowth = 0.35;   // [mm/mm] growth of a structure's size limit with the distance from it
 constexpr double kSoftness = 0.5;       // exponent of wanted size / limit beyond the limit
 
-/// Element size that resolves a structure of a given half thickness [mm]: 1.15 × half thickness at 2.5 mm, 0.7 × at 25
-/// mm.
+/// Element size that resolves a structure of a given half thickness R [mm]: 1.15 R at R = 2.5 mm, 0.7 R at 25 mm.
 double resolving_size(double half_thickness) { return 1.4 * std::pow(half_thickness, 0.79); }
 
 /// Soft minimum of size and limit. With a hard one, thin structures could take all nodes of a coarse mesh and the scale

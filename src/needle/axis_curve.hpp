@@ -22,7 +22,8 @@ class AxisCurve {
     std::array<double, kReach> value{};
   };
 
-  /// @param intervals n ≥ 2 @param spacing l [mm]
+  /// @param intervals number n of intervals between nodes, ≥ 2
+  /// @param spacing distance l of neighbouring nodes [mm]
   AxisCurve(int intervals, double spacing) : intervals_(intervals), spacing_(spacing) {}
 
   [[nodiscard]] int intervals() const { return intervals_; }

@@ -102,8 +102,8 @@ class BeamShape {
   [[nodiscard]] const Mat3& frame(int e) const { return frame_[e]; }
   [[nodiscard]] const Vec3& origin(int e) const { return origin_[e]; }
 
-  /// A change δ of κ_e turns everything beyond element e by the spin Ω_e δ; a point r beyond it moves by (D_e - [r]×
-  /// Ω_e) δ.
+  /// A change δ of κ_e turns everything beyond element e by the spin Ω_e δ. A point r beyond it moves by
+  ///   (D_e - [r]× Ω_e) δ.
   [[nodiscard]] const Mat3& spin(int e) const { return spin_[e]; }    ///< Ω_e [mm]
   [[nodiscard]] const Mat3& shift(int e) const { return shift_[e]; }  ///< D_e [mm²]
 

@@ -7,8 +7,8 @@ namespace stylet::beam {
 
 namespace {
 
-/// Number of terms after which the rest of the series of c_6 is below rounding: kTerms for x < 4, and kFewTerms for x <
-/// kSmall, which is an element bent by 0.2 rad.
+/// Number of terms after which the rest of the series of c_6 is below rounding: kTerms if x < 4, and kFewTerms if
+/// x < kSmall, which is an element bent by 0.2 rad.
 constexpr int kTerms = 12;
 constexpr int kFewTerms = 4;
 constexpr double kSmall = 0.04;

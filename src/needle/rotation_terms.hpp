@@ -43,10 +43,10 @@ enum class ElementKind {
   rod,  ///< a joint at the element's start has all of the rotation; a straight rod follows
 };
 
-/// Functions of an element's rotation vector φ [rad] (s κ for an arc up to s) and their derivatives. exp([φ]×) = I +
-/// c_1 [φ]× + c_2 [φ]×²  and  V(φ) = ∫₀¹ exp(σ[φ]×) dσ = I + c_2 [φ]× + c_3 [φ]×². V is also the left Jacobian of
-/// SO(3): exp([φ + δ]×) = exp([V δ]×) exp([φ]×) + O(δ²). The chord of the element / its length, in the frame of its
-/// start, is C(φ) e_z, with C = V for an arc and C = exp for a rod.
+/// Functions of an element's rotation vector φ [rad] (s κ for an arc up to s) and their derivatives:
+///   exp([φ]×) = I + c_1 [φ]× + c_2 [φ]×²,    V(φ) = ∫₀¹ exp(σ[φ]×) dσ = I + c_2 [φ]× + c_3 [φ]×².
+/// V is also the left Jacobian of SO(3): exp([φ + δ]×) = exp([V δ]×) exp([φ]×) + O(δ²). The chord of the element / its
+/// length, in the frame of its start, is C(φ) e_z, with C = V for an arc and C = exp for a rod.
 class RotationTerms {
  public:
   explicit RotationTerms(const Vec3& phi, ElementKind kind = ElementKind::arc)

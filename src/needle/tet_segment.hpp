@@ -24,7 +24,9 @@ struct Element {
   double volume = 0.0;           ///< [mm³]
 };
 
-/// The element between four nodes. @param nodes [mm] of the segment @param node ordered so that the volume is positive
+/// The element between four nodes.
+/// @param nodes [mm] all nodes of the segment
+/// @param node numbers of the four nodes, in an order that makes the volume positive
 [[nodiscard]] Element make_element(const std::vector<Vec3>& nodes, const std::array<int, 4>& node);
 
 /// The piece of the bar that is repeated along the needle's axis (z).
@@ -38,7 +40,9 @@ struct SegmentMesh {
   [[nodiscard]] std::vector<int> neighbours_after(int middle) const;
 };
 
-/// @param width [mm] of the square section @param length [mm] of the segment
+/// Makes a segment of one kind.
+/// @param width width of the square section [mm]
+/// @param length length of the segment [mm]
 [[nodiscard]] SegmentMesh make_segment(TetNeedle::Segment kind, double width, double length);
 
 }  // namespace stylet::tet

@@ -18,9 +18,10 @@ namespace detail {
 class Discretisation;
 }
 
-/// Linear elastic, quasi-static tissue on tetrahedra, held at the nodes of its fundamental displacement constraints. K
-/// u = f, with K symmetric positive definite on the free degrees of freedom and factorised once. Immutable after
-/// build(); several threads may read it at once.
+/// Linear elastic, quasi-static tissue on tetrahedra, held at the nodes of its fundamental displacement constraints:
+///   K u = f,
+/// with K symmetric positive definite on the free degrees of freedom and factorised once. Immutable after build();
+/// several threads may read it at once.
 class Tissue {
  public:
   /// Builds the tissue and factorises its stiffness.
@@ -95,8 +96,8 @@ class Tissue {
   /// these nodes.
   [[nodiscard]] VecX support_forces(const VecX& u) const;
 
-  /// Cauchy stress at the centroid of every element (constant within linear elements): xx yy zz xy yz zx [MPa] (6 ×
-  /// tets).
+  /// Cauchy stress [MPa] (6 × tets) at the centroid of every element (constant within linear elements), in the order
+  /// xx yy zz xy yz zx.
   /// @param u [mm] (3 × displacement nodes), or only (3 × mesh nodes). In the second case the displacements of the
   ///   nodes that quadratic elements add are unknown, and the stress is that of linear elements with averaged pressure.
   [[nodiscard]] MatX stress(const VecX& u) const;

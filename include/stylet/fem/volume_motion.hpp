@@ -20,9 +20,9 @@ struct VolumeMotion {
   enum Third { superior = 0, middle = 1, inferior = 2 };
 
   Vec3 shift_mm = Vec3::Zero();  ///< [mm] LPS, mean displacement (1/V) ∫ u dV
-  /// [rad] LPS rotation vector, right-handed: rotation of the rigid motion that fits u best, i.e. that minimises ∫ |u −
-  /// a − ω × (X − X̄)|² dV. Its length is the sine of the angle while it is linear in u, and the angle after
-  /// VolumeResponse::finite().
+  /// [rad] LPS rotation vector, right-handed: rotation of the rigid motion that fits u best, which minimises
+  ///   ∫ |u − a − ω × (X − X̄)|² dV.
+  /// Its length is the sine of the angle while it is linear in u, and the angle after VolumeResponse::finite().
   Vec3 rotation_rad = Vec3::Zero();
   /// [mm] LPS, mean displacement of each Third.
   std::array<Vec3, 3> third_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};

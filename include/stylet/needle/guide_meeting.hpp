@@ -17,7 +17,9 @@ class GuideMeeting {
  public:
   explicit GuideMeeting(const GuideHole& hole) : hole_(hole) {}
 
-  /// Places the hole. @param centre [mm] LPS @param axis unit vector LPS, towards the tip
+  /// Places the hole.
+  /// @param centre [mm] LPS
+  /// @param axis unit vector LPS, towards the tip
   void place(const Vec3& centre, const Vec3& axis);
   /// Computes crossing, force and stiffness for the current shape of the needle.
   void meet(const Needle& needle);

@@ -125,8 +125,9 @@ class Needle {
   /// Elastic energy stored in the shape [N mm].
   [[nodiscard]] virtual double energy() const = 0;
 
-  /// Places the hole of the guide template, if the needle has one. @param hole its centre [mm] LPS @param axis LPS,
-  /// towards the tip
+  /// Places the hole of the guide template, if the needle has one.
+  /// @param hole centre of the hole [mm] LPS
+  /// @param axis axis of the hole, LPS, towards the tip
   virtual void place_guide(const Vec3& /*hole*/, const Vec3& /*axis*/) {}
   /// Force of the guide on the needle at the current shape, LPS, perpendicular to the shaft. The hand at the base
   /// carries the sum of the loads and this force.
@@ -139,6 +140,7 @@ class Needle {
 
 /// Solves for the equilibrium of a needle under constant loads, without tissue.
 /// @param tolerance_Nmm largest residual() of the solution [N mm]
+/// @param max_iterations largest number of Newton steps
 /// @return number of iterations, or an error when the iteration does not converge
 Result<int> find_equilibrium(Needle& needle, std::span<const PointLoad> loads, double tolerance_Nmm = 1e-10,
                              int max_iterations = 100);
