@@ -40,8 +40,8 @@ class SpreadCompliance {
   static Result<SpreadCompliance> solve(const Tissue& tissue, const std::vector<NeedleWay>& ways,
                                         const Progress& progress = {});
 
-  /// Restores a SpreadCompliance from the matrix() of another one for the same ways. @return null when the size of the
-  /// matrix does not fit the ways
+  /// Restores a SpreadCompliance from the matrix() of another one for the same ways.
+  /// @return null when the size of the matrix does not fit the ways
   static std::shared_ptr<const SpreadCompliance> of(const std::vector<NeedleWay>& ways, MatX matrix);
 
   /// Interpolation weights of a place between the samples of a way.
