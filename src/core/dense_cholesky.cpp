@@ -10,7 +10,8 @@ namespace stylet::dense {
 
 namespace {
 
-/// Columns `first` … `columns` − 1, after those before them.
+/// Factorises the columns first … columns − 1; the columns before them already contain L. The rest gets the Schur
+/// complement.
 bool factorise_columns(Eigen::Ref<MatX>& A, Eigen::Index first, Eigen::Index columns) {
   const Eigen::Index n = A.rows();
   for (Eigen::Index k = first; k < n;) {
@@ -50,7 +51,7 @@ bool factorise_from(Eigen::Ref<MatX> A, Eigen::Index first) {
 
 void solve_lower(const Eigen::Ref<const MatX>& L, Eigen::Index start, Eigen::Ref<MatX> Y) {
   const Eigen::Index n = L.rows();
-  const Eigen::Index first = start / kTile * kTile;  // the tiles are those of the factor
+  const Eigen::Index first = start / kTile * kTile;  // the tiles begin where the factor's tiles begin
   for (Eigen::Index k = first; k < n; k += kTile) {
     const Eigen::Index nk = std::min(kTile, n - k);
     auto tile = Y.middleRows(k, nk);

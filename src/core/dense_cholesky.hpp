@@ -4,19 +4,20 @@
 #include "core/dense_kernels.hpp"
 #include "stylet/core/types.hpp"
 
-/// Dense Cholesky in place, cut into tiles so small that Eigen's products keep their work space on the stack at any
-/// size: nothing here allocates. Of A only the lower triangle is read; above those of the tiles on the diagonal their
-/// inverses are written, with which solve_lower() and solve_upper() are quick. These take a factor of the functions
-/// here, the whole of it or its first columns and rows; their tiles begin at multiples of kTile.
+/// Dense Cholesky factorisation in place. Matrices are processed in tiles so small that Eigen's products keep their
+/// work space on the stack for any matrix size: nothing here allocates. Only the lower triangle of A is read. The
+/// factor overwrites it, and the inverses of the diagonal tiles are written into the upper triangle, which makes
+/// solve_lower() and solve_upper() fast. The solvers accept only factors made by the functions here, whole or cut to
+/// their leading rows and columns; the tiles begin at multiples of kTile.
 namespace stylet::dense {
 
-/// A = L Lᵀ, L over A. @return false if A is not positive definite (A is then spoilt)
+/// Factorises A = L Lᵀ; L overwrites A. @return false if A is not positive definite (A is then destroyed)
 [[nodiscard]] bool factorise(Eigen::Ref<MatX> A);
 
-/// The same where the columns before `first`, a multiple of kTile, are L already.
+/// Continues a factorisation: the columns before `first`, a multiple of kTile, already contain L.
 [[nodiscard]] bool factorise_from(Eigen::Ref<MatX> A, Eigen::Index first);
 
-/// The first columns of that only, down to the last row; what A has left of the other columns is in their place.
+/// Factorises the leading columns only, over all rows. The remaining columns then contain the Schur complement.
 [[nodiscard]] bool factorise_first(Eigen::Ref<MatX> A, Eigen::Index columns);
 
 /// Y ← L⁻¹ Y for a block of columns whose rows before `start` are zero.

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <utility>
 
-// The same code for several processors, chosen when the program is loaded. Sanitizers cannot see through that choice.
+// GCC compiles these functions for several processors and chooses when the program is loaded. Sanitizers do not support
+// this choice.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define STYLET_FOR_PROCESSORS __attribute__((target_clones("fma", "default")))
@@ -21,7 +22,7 @@ namespace {
 
 using Size = Eigen::Index;
 
-/// Four numbers side by side, wherever they lie: one register of AVX, or two of SSE.
+/// Four numbers in one register of AVX, or two of SSE; they may lie at any address.
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 constexpr Size kFour = 4;
 
@@ -49,7 +50,7 @@ STYLET_INLINE void subtract_block(double* c, Size ldc, const double* a, Size lda
   }
 }
 
-/// All rows of so many columns.
+/// Processes all rows of `Columns` columns.
 template <int Columns>
 STYLET_INLINE void subtract_columns(double* c, Size ldc, const double* a, Size lda, const double* b, Size down,
                                     Size across, Size rows, Size depth) {
@@ -77,14 +78,14 @@ STYLET_INLINE void subtract_any(double* c, Size ldc, const double* a, Size lda, 
   if (j < columns) subtract_columns<1>(c + j * ldc, ldc, a, lda, b + j * across, down, across, rows, depth);
 }
 
-/// The sums of four registers' numbers, (0 + 1) + (2 + 3) of each.
+/// sums[i] = (r₀ + r₁) + (r₂ + r₃) for each of the four registers r = a, b, c, d.
 STYLET_INLINE void add_up(const Four& a, const Four& b, const Four& c, const Four& d, double* sums) {
   const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const Four cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
   four(sums) = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 
-/// c(i, j) = Σ_k a(k, i) b(k, j): four sums side by side, then the rest.
+/// c(i, j) = Σ_k a(k, i) b(k, j): four partial sums in one register, then the remaining k.
 template <int Rows, int Columns>
 STYLET_INLINE void dot_block(double* c, Size ldc, const double* a, Size lda, const double* b, Size ldb, Size depth) {
   Four sum[Rows][Columns];
@@ -141,8 +142,8 @@ STYLET_INLINE void subtract_multiple(double* to, const double* from, double fact
   for (; i < count; ++i) to[i] -= from[i] * factor;
 }
 
-/// So many columns side by side: what one waits for, the others use. Fours begin at the same rows for every j, or the
-/// processor would wait for two stores each time it loads one.
+/// Solves for `Columns` columns side by side: while one column waits for a result, the processor works on the others.
+/// Groups of four rows begin at the same rows for every j; otherwise each load would have to wait for two stores.
 template <int Columns>
 STYLET_INLINE void lower_columns(const double* l, Size ldl, Size n, double* y, Size ldy) {
   const Size whole = n - n % kFour;
@@ -183,7 +184,7 @@ void upper(const double* u, Size ldu, Size n, double* y, Size ldy, Size columns)
   }
 }
 
-/// A small upper triangle with all its numbers, zeros below: rows are taken by fours whatever their number.
+/// A small upper triangle with explicit zeros below its diagonal, so that rows can be processed in groups of four.
 struct Triangle {
   static_assert(kTile % (2 * kFour) == 0);
   double at[kTile * kTile] = {};
@@ -191,8 +192,8 @@ struct Triangle {
   STYLET_INLINE double* column(Size j) { return at + j * kTile; }
 };
 
-/// Column i of L⁻ᵀ is −1/L_ii Σ_(m < i) L_im × column m, that of m ending with 1/L_mm. For four columns at a time all
-/// that the columns before these give, then what they give each other.
+/// Column i of L⁻ᵀ is −1/L_ii Σ_(m < i) L_im × column m, where column m ends with 1/L_mm. Four columns are computed at
+/// a time: first the contributions of all columns before them, then their contributions to each other.
 STYLET_FOR_PROCESSORS
 void invert(double* tile, Size ld, Size n) {
   Triangle inverse;
@@ -210,7 +211,7 @@ void invert(double* tile, Size ld, Size n) {
   for (Size i = 1; i < n; ++i) std::copy_n(inverse.column(i), i, tile + i * ld);
 }
 
-/// So many columns. Last rows first: row i needs those above it as they were.
+/// Multiplies `Columns` columns. The last rows come first, because row i needs the unchanged rows above it.
 template <int Columns>
 STYLET_INLINE void inverted_columns(const double* tile, Size ld, Size n, double* y, Size ldy) {
   Size i = n;
@@ -238,10 +239,11 @@ STYLET_INLINE void inverted_columns(const double* tile, Size ld, Size n, double*
   }
 }
 
-/// Many columns: L⁻¹ as a whole, so that its rows are taken eight at a time. Last ones first, as above.
+/// For many columns: stores L⁻¹ as a whole, so that eight of its rows are processed at a time. The last rows come
+/// first, as in inverted_columns().
 STYLET_INLINE void inverted_many(const double* tile, Size ld, Size n, double* y, Size ldy, Size columns) {
   constexpr Size kRows = 2 * kFour;
-  Triangle less;  // −L⁻¹, the triangle below
+  Triangle less;  // −L⁻¹, strict lower triangle and diagonal
   for (Size k = 0; k < n; ++k) {
     less.column(k)[k] = -1.0 / tile[k + k * ld];
     for (Size i = k + 1; i < n; ++i) less.column(k)[i] = -tile[k + i * ld];
@@ -269,8 +271,8 @@ void inverted(const double* tile, Size ld, Size n, double* y, Size ldy, Size col
   if (c < columns) inverted_columns<1>(tile, ld, n, y + c * ldy, ldy);
 }
 
-/// So many columns. First rows first: those above take of a row what it was. Four rows at once, then what they take of
-/// each other.
+/// Multiplies `Columns` columns in place. Rows are taken in ascending order, four at once: their original values first
+/// contribute to all rows above the four, then to each other.
 template <int Columns>
 STYLET_INLINE void inverted_transposed_columns(const double* tile, Size ld, Size n, double* y, Size ldy) {
   for (Size i = 0; i < n; i += kFour) {
@@ -324,7 +326,7 @@ bool cholesky(double* a, Size lda, Size n) {
   return true;
 }
 
-/// Columns first … first + count − 1 of A from row `first` down, each after those before it.
+/// Columns first … first + count − 1 of A from row `first` down, one after the other.
 STYLET_FOR_PROCESSORS
 bool lu_panel(double* a, Size lda, Size n, Size first, Size count, double tiny, int* pivots) {
   for (Size j = first; j < first + count; ++j) {
@@ -347,12 +349,13 @@ bool lu_panel(double* a, Size lda, Size n, Size first, Size count, double tiny, 
   return true;
 }
 
-/// C += Σ_k A_k B_k for blocks of three by three, nine numbers each, one behind the other.
+/// C += Σ_k A_k B_k for 3 × 3 blocks, stored one after the other as nine numbers each.
 STYLET_FOR_PROCESSORS
 void add_products(double* c, const double* a, const double* b, std::size_t count) {
   Four sum[3][3] = {};  // [column of C][column of A]: nine sums that do not wait for each other
   for (std::size_t k = 0; k < count; ++k, a += 9, b += 9) {
-    // A column is three of four numbers; the last is taken from one before it, or the end would be passed.
+    // A column is the first three of four numbers. The last column is loaded one element earlier and rotated; loading
+    // it at its start would read past the end of the block.
     const Four last = four(a + 5);
     const Four column[3] = {four(a), four(a + 3), __builtin_shufflevector(last, last, 1, 2, 3, 0)};
     for (int j = 0; j < 3; ++j) {

@@ -5,7 +5,7 @@
 
 namespace stylet {
 
-/// The larger of two; NaN where either is. std::max drops a NaN in its second argument.
+/// The larger of two numbers, or NaN where either is NaN. std::max would drop a NaN in its second argument.
 [[nodiscard]] inline double larger_or_nan(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
 
 }  // namespace stylet

@@ -17,8 +17,8 @@ bool same(char a, char b) {
 }  // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {
-  // Rows of the table d(i, j), distance between the first i characters of a and the first j of b; a swap looks two
-  // rows back.
+  // Three rows of the table d(i, j), the distance between the first i characters of a and the first j of b. A swap
+  // needs the row d(i − 2, ·).
   std::vector<int> before_last(b.size() + 1);
   std::vector<int> last(b.size() + 1);
   std::vector<int> row(b.size() + 1);

@@ -7,7 +7,7 @@
 namespace stylet::detail {
 namespace {
 
-// Pattern of neighbouring free nodes, diagonal included; rows ascending in each column.
+// Pattern of neighbouring free nodes including the diagonal, with ascending rows in each column.
 Eigen::SparseMatrix<double> compressed(std::vector<std::vector<Index>>& neighbours) {
   const auto free_nodes = static_cast<Index>(neighbours.size());
   Eigen::SparseMatrix<double> pattern(free_nodes, free_nodes);
@@ -30,7 +30,7 @@ Eigen::SparseMatrix<double> compressed(std::vector<std::vector<Index>>& neighbou
   return pattern;
 }
 
-// Zero matrix with a 3 × 3 block for every entry of the pattern.
+// A zero matrix with a 3 × 3 block for every entry of the pattern.
 Eigen::SparseMatrix<double> expanded(const Eigen::SparseMatrix<double>& pattern) {
   const auto* begin = pattern.outerIndexPtr();
   const auto* rows = pattern.innerIndexPtr();
@@ -85,7 +85,7 @@ Assembled assemble(const Discretisation& discretisation, Index tets, const Discr
       for (int i = 0; i < 3; ++i) value[3 * j * count + i] += block(i, j);
     }
   };
-  // Each pair of nodes is summed once and mirrored, so K is symmetric to the last bit.
+  // Each pair of nodes is summed once and then mirrored, so K is symmetric to the last bit.
   discretisation.stiffness(all, material, [&](std::span<const Index> nodes, const MatX& part) {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       const Index row = first_dof[nodes[a]];

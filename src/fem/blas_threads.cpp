@@ -8,7 +8,7 @@
 namespace stylet::detail {
 namespace {
 
-// Looked up at run time: BLAS is chosen by Debian's alternatives, and only OpenBLAS has these.
+// The functions are looked up at run time because Debian's alternatives choose the BLAS, and only OpenBLAS has them.
 struct OpenBlas {
   void (*set)(int) = nullptr;
   int (*get)() = nullptr;

@@ -3,9 +3,9 @@
 
 namespace stylet::detail {
 
-/// Holds OpenBLAS at one thread while it lives, and gives the previous number back when the last holder dies: sums then
-/// do not depend on the number of cores, and no pool of threads disturbs a running loop. Does nothing with another
-/// BLAS.
+/// Limits OpenBLAS to one thread while an object of this class exists; when the last object is destroyed, the previous
+/// number is restored. With one thread, sums do not depend on the number of cores, and no pool of threads disturbs a
+/// running simulation loop. Has no effect on other BLAS libraries.
 class OneBlasThread {
  public:
   OneBlasThread();

@@ -14,11 +14,11 @@
 namespace stylet::detail {
 namespace {
 
-// A pivot is what is left of a diagonal entry after elimination: a rigid motion leaves rounding, some 1e-16 … 1e-14 of
-// it; a bar a thousand times longer than thick still leaves 1e-10.
+// A pivot below this share of its diagonal entry means a motion without stiffness. Rigid motion leaves rounding, some
+// 1e-16 … 1e-14 of the entry; a bar a thousand times longer than thick still leaves 1e-10.
 constexpr double kTinyPivot = 1e-13;
 
-// Right-hand sides taken through the factor together: enough for matrix products to pay, few enough to stay in memory.
+// Number of right-hand sides solved together: enough for efficient matrix products, few enough to limit memory.
 constexpr Eigen::Index kBatch = 192;
 
 void quiet(cholmod_common& common) {
@@ -27,7 +27,7 @@ void quiet(cholmod_common& common) {
   common.error_handler = nullptr;
 }
 
-// First column, in K's numbering, whose pivot is tiny against K's diagonal, or -1.
+// First column (in K's numbering) whose pivot is tiny compared with K's diagonal entry, or -1.
 Index tiny_pivot(const Eigen::SparseMatrix<double>& K, const cholmod_factor& L) {
   const auto* super = static_cast<const int*>(L.super);
   const auto* begin_rows = static_cast<const int*>(L.pi);
@@ -55,7 +55,7 @@ Cholesky::Cholesky() {
   common_.final_ll = 1;
   common_.nmethods = 1;
   common_.method[0].ordering = CHOLMOD_GIVEN;
-  common_.postorder = 0;  // elimination_order() has done it
+  common_.postorder = 0;  // elimination_order() has already applied the postorder
 }
 
 Cholesky::~Cholesky() {
@@ -87,7 +87,7 @@ Cholesky::Failure Cholesky::factorise(const Eigen::SparseMatrix<double>& K, cons
   last_ = 3 * last.size();
 
   cholmod_sparse matrix = view(K, CHOLMOD_REAL);
-  cholmod_free_factor(&factor_, &common_);  // of an attempt that failed
+  cholmod_free_factor(&factor_, &common_);  // left over from an attempt that failed
   factor_ = cholmod_analyze_p(&matrix, order.data(), nullptr, 0, &common_);
   if (factor_ == nullptr) return failure();
 
@@ -105,7 +105,7 @@ Cholesky::Failure Cholesky::factorise(const Eigen::SparseMatrix<double>& K, cons
 
 MatX Cholesky::solve(const MatX& b) const {
   const OneBlasThread one_thread;
-  // Each call brings its own workspace: the factor is only read.
+  // Each call has its own workspace, so the factor is only read.
   struct Workspace {
     cholmod_common common{};
     cholmod_dense* X = nullptr;

@@ -7,7 +7,7 @@
 namespace stylet {
 namespace {
 
-// Nodes solved for at once: three right-hand sides each.
+// Number of nodes for which one batch solves; each has three right-hand sides.
 constexpr std::size_t kBatchNodes = 64;
 
 }  // namespace
@@ -36,12 +36,12 @@ std::vector<ComplianceRow> solve_rows(const Tissue& tissue, const NodeSlots& sto
       length = std::max(length, own + 1);
       auto blocks = std::make_shared<double[]>(9 * static_cast<std::size_t>(length));  // zeros
       for (const auto& [slot, other] : others) {
-        // What a force on this node moves there, a force there moves here.
+        // By symmetry of K⁻¹, the displacement of the other node per force on this one is the transpose of this block.
         const Mat3 there = u.block<3, 3>(3 * Eigen::Index{other}, static_cast<Eigen::Index>(3 * i));
         Eigen::Map<Mat3>(blocks.get() + 9 * std::ptrdiff_t{slot}) = there.transpose();
       }
       Eigen::Map<Mat3> self(blocks.get() + 9 * std::ptrdiff_t{own});
-      self = 0.5 * (self + self.transpose()).eval();  // the factor's columns are symmetric to rounding only
+      self = 0.5 * (self + self.transpose()).eval();  // the solution is symmetric only up to rounding
       rows.push_back({node, own, length, std::move(blocks)});
     }
   }

@@ -20,7 +20,8 @@ ComplianceStore::ComplianceStore(std::shared_ptr<const Tissue> tissue, const Mat
     slots_.occupy(static_cast<Index>(row), nodes[row]);
     rows_[row] = {std::shared_ptr<const double[]>(all, at), static_cast<Index>(row) + 1, ++arrived_};
     for (std::size_t column = 0; column <= row; ++column, at += 9) {
-      // Column by column, as the matrix lies in memory: the block above the diagonal, transposed.
+      // Each row has the blocks up to the diagonal. They are read as transposes of the blocks above it, because that
+      // follows the column-major memory of the matrix.
       Eigen::Map<Mat3>{at} =
           blocks.block<3, 3>(static_cast<Eigen::Index>(3 * column), static_cast<Eigen::Index>(3 * row)).transpose();
     }
@@ -65,7 +66,7 @@ void ComplianceStore::add_nodes(std::span<const Index> nodes, const Progress& pr
   for (const Index node : nodes) {
     if (node >= 0 && node < corners) want(node);
   }
-  // Nodes in the middle of an edge go with its ends.
+  // A node in the middle of an edge is added when both ends of the edge are stored or will be.
   const auto there = [&](Index node) { return has(node) || wanted[static_cast<std::size_t>(node)] != 0; };
   for (Index node = corners; node < tissue_->displacement_nodes(); ++node) {
     const auto [one, other] = tissue_->ends_of(node);

@@ -12,34 +12,34 @@
 
 namespace stylet::detail {
 
-/// A kind of finite element on a tetrahedral mesh: which nodes carry displacements, how points follow them, and the
-/// stiffness as a sum of small matrices. Knows no supports.
+/// A kind of finite element on a tetrahedral mesh: its displacement nodes, its interpolation, and its stiffness as a
+/// sum of small matrices. Supports are not taken into account here.
 class Discretisation {
  public:
   using MaterialOf = std::function<Material(Index tet)>;
-  /// Takes a symmetric matrix [N/mm] (3k × 3k) between k nodes; the lower triangle of blocks is what counts.
+  /// Receives a symmetric matrix [N/mm] (3k × 3k) between k nodes; only the lower triangle of blocks is valid.
   using Add = std::function<void(std::span<const Index> nodes, const MatX& K)>;
 
-  /// @param mesh outlives the discretisation
+  /// @param mesh must outlive the discretisation
   static std::unique_ptr<Discretisation> make(Element element, const TetMesh& mesh);
 
   virtual ~Discretisation() = default;
 
   [[nodiscard]] virtual Index nodes() const = 0;
-  /// Mesh nodes halfway between which a node lies; a node of the mesh lies at itself.
+  /// The two mesh nodes whose middle is a node; for a node of the mesh, twice that node.
   [[nodiscard]] virtual std::array<Index, 2> ends(Index node) const = 0;
   [[nodiscard]] virtual std::span<const Index> nodes_of(Index tet) const = 0;
   [[nodiscard]] virtual Shape shape(Index tet, const Vec4& weights) const = 0;
   [[nodiscard]] virtual ShapeGradients shape_gradients(Index tet, const Vec4& weights) const = 0;
 
-  /// The stiffness of the elements `tets` by themselves, in parts, always in the same order.
+  /// Passes the stiffness of the elements `tets` alone to `add`, in parts, always in the same order.
   virtual void stiffness(std::span<const Index> tets, const MaterialOf& material, const Add& add) const = 0;
 
-  /// Stress in the middle of every element of the mesh: xx yy zz xy yz zx [MPa] (6 × tets).
+  /// Stress at the centroid of every element of the mesh: xx yy zz xy yz zx [MPa] (6 × tets).
   /// @param u [mm] (3 × nodes)
   [[nodiscard]] virtual MatX stress(const MaterialOf& material, const VecX& u) const = 0;
 
-  /// K u of the whole mesh, no node held [N] (3 × nodes), on the rows of nodes that are `wanted` (nodes).
+  /// K u for the whole mesh with no node held [N] (3 × nodes). Only rows of nodes with `wanted` (nodes) are computed.
   [[nodiscard]] virtual VecX forces(const MaterialOf& material, const VecX& u,
                                     const std::vector<char>& wanted) const = 0;
 };

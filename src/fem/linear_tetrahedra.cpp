@@ -62,7 +62,7 @@ MatX LinearTetrahedra::stress(const MaterialOf& material, const VecX& u) const {
 }
 
 VecX LinearTetrahedra::forces(const MaterialOf& material, const VecX& u, const std::vector<char>& wanted) const {
-  // Nodal forces of a linear tetrahedron are V σ g_a.
+  // The nodal forces of a linear tetrahedron are V σ g_a.
   const MatX stresses = stress(material, u);
   VecX forces = VecX::Zero(u.size());
   for (Index t = 0; t < mesh_.tet_count(); ++t) {

@@ -5,7 +5,7 @@
 
 namespace stylet::detail {
 
-/// Linear tetrahedra: constant strain, the mesh's nodes only. @cite Hughes2000 ch. 2
+/// Linear tetrahedra: constant strain, and no nodes besides those of the mesh. @cite Hughes2000 ch. 2
 class LinearTetrahedra : public Discretisation {
  public:
   explicit LinearTetrahedra(const TetMesh& mesh) : mesh_(mesh) {}
@@ -20,7 +20,7 @@ class LinearTetrahedra : public Discretisation {
   [[nodiscard]] VecX forces(const MaterialOf& material, const VecX& u, const std::vector<char>& wanted) const final;
 
  protected:
-  /// ∂u/∂X in an element (3×3).
+  /// Displacement gradient ∂u/∂X in an element (3×3).
   [[nodiscard]] Mat3 gradient(Index tet, const VecX& u) const;
 
   const TetMesh& mesh_;

@@ -6,7 +6,7 @@
 namespace stylet::detail {
 namespace {
 
-// What is left to the element itself: the same μ, λ = 0.
+// The material without the averaged part of the energy: the same μ, λ = 0.
 Material without_volume(const Material& material) { return {2.0 * material.mu(), 0.0}; }
 
 }  // namespace
@@ -46,7 +46,7 @@ void NodalPressure::stiffness(std::span<const Index> tets, const MaterialOf& mat
     for (const Index t : group.tets) nodes.insert(nodes.end(), mesh_.tets[t].begin(), mesh_.tets[t].end());
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    // V_a θ_a = dᵀ u
+    // d is defined by V_a θ_a = dᵀ u.
     VecX d = VecX::Zero(3 * static_cast<Eigen::Index>(nodes.size()));
     for (const Index t : group.tets) {
       const auto gradients = barycentric_gradients(mesh_, t);

@@ -5,9 +5,10 @@
 
 namespace stylet::detail {
 
-/// Linear tetrahedra whose change of volume is averaged around each node: θ_a = Σ_e (V_e/4) div u_e / Σ_e V_e/4 over
-/// the elements e at node a that are of one material, energy Σ_e V_e μ ε:ε + Σ_a V_a ½ λ θ_a². An average never goes
-/// across two materials: there pressure jumps.
+/// Linear tetrahedra whose relative change of volume is averaged around each node a:
+///   θ_a = Σ_e (V_e/4) div u_e / Σ_e V_e/4,    energy Σ_e V_e μ ε:ε + Σ_a V_a ½ λ θ_a²,
+/// summed over the elements e at the node that are of one material. Averages never include two materials, because
+/// pressure jumps between them.
 /// @cite Bonet1998
 class NodalPressure final : public LinearTetrahedra {
  public:

@@ -6,7 +6,7 @@
 namespace stylet::detail {
 namespace {
 
-/// The part of a pattern between some of its nodes, and which those are.
+/// The pattern among some of the nodes, and the numbers of these nodes.
 struct Part {
   Eigen::SparseMatrix<double> pattern;
   std::vector<int> nodes;
@@ -44,10 +44,10 @@ cholmod_sparse view(const Eigen::SparseMatrix<double>& A, int xtype) {
   out.nrow = static_cast<size_t>(A.rows());
   out.ncol = static_cast<size_t>(A.cols());
   out.nzmax = static_cast<size_t>(A.nonZeros());
-  out.p = const_cast<int*>(A.outerIndexPtr());  // CHOLMOD's interface knows no const; it only reads
+  out.p = const_cast<int*>(A.outerIndexPtr());  // CHOLMOD's interface has no const, but it only reads
   out.i = const_cast<int*>(A.innerIndexPtr());
   out.x = xtype == CHOLMOD_PATTERN ? nullptr : const_cast<double*>(A.valuePtr());
-  out.stype = -1;  // symmetric, read the lower triangle
+  out.stype = -1;  // symmetric: read the lower triangle
   out.itype = CHOLMOD_INT;
   out.xtype = xtype;
   out.dtype = CHOLMOD_DOUBLE;
@@ -67,8 +67,8 @@ std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& nodes, std
   }
   order.insert(order.end(), last.begin(), last.end());
 
-  // Every descendant of a node in the elimination tree still comes before it when `last` is moved to the end of the
-  // postorder: its ancestors are all of `last`. So the factor has the same entries, and its columns lie as they should.
+  // The ancestors of a node of `last` are all in `last`, so moving `last` to the end of the postorder still keeps every
+  // descendant before its ancestors. The factor therefore has the same entries.
   const std::size_t size = order.size();
   std::vector<int> parent(size), post(size), count(size), first(size), level(size);
   cholmod_sparse pattern = view(nodes, CHOLMOD_PATTERN);

@@ -10,13 +10,13 @@
 
 namespace stylet::detail {
 
-/// CHOLMOD's view of a symmetric matrix, of which it reads the lower triangle. Refers to A.
+/// CHOLMOD's view of a symmetric matrix, of which CHOLMOD reads the lower triangle. Refers to the memory of A.
 /// @param xtype CHOLMOD_REAL, or CHOLMOD_PATTERN for the pattern alone
 cholmod_sparse view(const Eigen::SparseMatrix<double>& A, int xtype);
 
-/// The order in which nodes are eliminated: METIS' nested dissection of all but `last`, in postorder of the elimination
-/// tree, then `last` in their own order. Dissecting what is left without them, and not the whole, keeps separators
-/// from being wasted on nodes that are one separator already.
+/// Order in which nodes are eliminated: nested dissection (METIS) of all nodes but `last`, in postorder of the
+/// elimination tree, then `last` in the given order. The graph without `last` is dissected, not the whole one, because
+/// `last` already acts as a separator.
 /// @param nodes symmetric pattern with diagonal, compressed (b × b)
 /// @param last columns of `nodes`, each once
 /// @return nodes in the order of elimination (b); empty on failure, with the reason in common.status

@@ -17,7 +17,7 @@ namespace stylet {
 Patch make_patch(const Tissue& tissue, std::span<const Index> tets, std::span<const Index> nodes,
                  const std::vector<char>& moves, const Material& material) {
   Patch patch;
-  std::vector<Eigen::Index> row(nodes.size());  // in K, of a node in the given order
+  std::vector<Eigen::Index> row(nodes.size());  // row in K of each node, in the given order
   for (const bool moving : {true, false}) {
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       if ((moves[k] != 0) != moving) continue;
@@ -38,7 +38,8 @@ Patch make_patch(const Tissue& tissue, std::span<const Index> tets, std::span<co
         });
         for (std::size_t a = 0; a < rows.size(); ++a) {
           for (std::size_t b = 0; b <= a; ++b) {
-            // Of two nodes that move once, below the diagonal; of one that moves, in its row.
+            // Blocks between two moving nodes are added once, below the diagonal; blocks between a moving node and a
+            // held one go into the row of the moving node.
             const auto block = part.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b));
             if (rows[a] < inside && (rows[b] >= inside || rows[b] <= rows[a])) {
               patch.K.block<3, 3>(rows[a], rows[b]) += block;

@@ -13,12 +13,12 @@
 namespace stylet::detail {
 namespace {
 
-/// Largest residual, as a share of the load.
+/// Tolerance: norm of the residual / norm of the load.
 constexpr double kTolerance = 1e-8;
-/// Iterations after which the factor of K is made instead.
+/// After this many iterations the factor of K is made instead.
 constexpr int kMostIterations = 1000;
 
-/// Loads side by side: each has an iteration of its own, with one pass over K for all.
+/// Several loads side by side: each has its own conjugate gradient iteration, and one pass over K serves all of them.
 using Loads = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Scalars = Eigen::Array<double, 1, Eigen::Dynamic>;
 
@@ -39,7 +39,7 @@ class TwoLevels {
     }
   }
 
-  /// An approximation of K⁻¹ r: what linear elements make of r, and each node by itself.
+  /// An approximation of K⁻¹ r: the solution of linear elements for r, plus the inverse diagonal block of each node.
   [[nodiscard]] Loads operator()(const Loads& r) const {
     MatX on_corners = MatX::Zero(3 * Eigen::Index{linear_.displacement_nodes()}, r.cols());
     for_each_free([&](Eigen::Index dof, Eigen::Index one, Eigen::Index other) {
@@ -57,7 +57,8 @@ class TwoLevels {
   }
 
  private:
-  /// A linear field has at every node the mean of what it has at the node's two ends.
+  /// Calls visit(first degree of freedom, first row of one end, first row of the other end) for every free node. A
+  /// linear field at a node is the mean of its values at the node's two ends.
   template <class Visit>
   void for_each_free(const Visit& visit) const {
     for (Index node = 0; node < quadratic_.nodes(); ++node) {
@@ -74,13 +75,13 @@ class TwoLevels {
   std::vector<Mat3> inverse_diagonal_;
 };
 
-/// K is symmetric to the last bit: its columns are its rows.
+/// The same matrix in row-major storage: K is symmetric to the last bit, so its columns are its rows.
 using Rows = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>;
 Rows rows_of(const Eigen::SparseMatrix<double>& K) {
   return {K.rows(), K.cols(), K.nonZeros(), K.outerIndexPtr(), K.innerIndexPtr(), K.valuePtr()};
 }
 
-/// @return whether x came within the tolerance
+/// @return whether x reached the tolerance within kMostIterations
 bool iterate(const Rows& K, const TwoLevels& preconditioned, Loads r, Loads& x, const Progress& progress) {
   const Scalars wanted = kTolerance * kTolerance * products(r, r);
   x = Loads::Zero(r.rows(), r.cols());
@@ -95,7 +96,7 @@ bool iterate(const Rows& K, const TwoLevels& preconditioned, Loads r, Loads& x, 
     report(progress, "motion of the target",
            std::clamp(1.0 + std::log(worst) / (2.0 * std::log(kTolerance)), 0.0, 1.0));
     Kp.noalias() = K * p;
-    // A load that is done, or is none, has nothing left to divide by.
+    // A load of zero, or one that has converged exactly, would divide by zero.
     const auto ratio = [](const Scalars& a, const Scalars& b) -> Scalars { return (b > 0.0).select(a / b, 0.0); };
     const Scalars step = ratio(rz, products(p, Kp));
     x += p * step.matrix().asDiagonal();

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-// Four points, exact for quadratic functions: strain times strain of a quadratic element with straight edges.
+// Four quadrature points, exact for quadratic functions such as products of two strains of a quadratic element with
+// straight edges.
 // @cite Stroud1971
 const std::array<Vec4, 4>& quadrature_points() {
   static const std::array<Vec4, 4> points = [] {
@@ -27,7 +28,8 @@ const std::array<Vec4, 4>& quadrature_points() {
 
 using Gradients = Eigen::Matrix<double, 3, kMostElementNodes>;
 
-// Corner functions l (2l − 1), edge functions 4 l_i l_j; g are the gradients of the barycentric coordinates l.
+// Gradients of the shape functions l_i (2 l_i − 1) of corners and 4 l_i l_j of edges; g are the gradients of the
+// barycentric coordinates l.
 Gradients gradients_at(const Eigen::Matrix<double, 3, 4>& g, const Vec4& l) {
   Gradients out;
   for (int i = 0; i < 4; ++i) out.col(i) = (4.0 * l[i] - 1.0) * g.col(i);

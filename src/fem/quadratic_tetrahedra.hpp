@@ -5,8 +5,8 @@
 
 namespace stylet::detail {
 
-/// Quadratic tetrahedra with straight edges: corners, then the middles of the edges 01 12 20 03 13 23. Strain is linear
-/// in an element. @cite Hughes2000 ch. 3
+/// Quadratic tetrahedra with straight edges. Local nodes are the corners, then the middles of the edges 01 12 20 03 13
+/// 23. Strain is linear within an element. @cite Hughes2000 ch. 3
 class QuadraticTetrahedra final : public Discretisation {
  public:
   explicit QuadraticTetrahedra(const TetMesh& mesh);
@@ -22,7 +22,8 @@ class QuadraticTetrahedra final : public Discretisation {
 
  private:
   const TetMesh& mesh_;
-  std::vector<std::array<Index, 2>> edges_;                  ///< mesh nodes, ascending; edge e carries node n + e
+  /// Ends of each edge, ascending; the node in the middle of edge e has the number n + e.
+  std::vector<std::array<Index, 2>> edges_;
   std::vector<std::array<Index, kMostElementNodes>> nodes_;  ///< (m)
 };
 

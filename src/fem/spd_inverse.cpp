@@ -18,7 +18,7 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
 namespace stylet::detail {
 namespace {
 
-constexpr int kPanel = 192;  // columns; enough for matrix products to pay
+constexpr int kPanel = 192;  // columns per panel; enough for efficient matrix products
 constexpr double kOne = 1.0;
 constexpr double kZero = 0.0;
 
@@ -30,7 +30,7 @@ MatX inverse_from_factor(MatX L, const Progress& progress) {
   const auto panels = static_cast<std::size_t>((n + kPanel - 1) / kPanel);
   const auto at = [n](int row, int column) { return static_cast<std::ptrdiff_t>(column) * n + row; };
 
-  // X = L⁻¹, also lower triangular: a panel of it is L's trailing part solved for a panel of the unit matrix.
+  // X = L⁻¹ is lower triangular too: each panel of it solves the trailing part of L for a panel of the unit matrix.
   MatX X = MatX::Zero(n, n);
   for_each_in_parallel(
       panels,
@@ -44,7 +44,7 @@ MatX inverse_from_factor(MatX L, const Progress& progress) {
       },
       progress, "compliance");
 
-  // Xᵀ X, a panel of rows at a time: what is above row r of X's columns up to r is zero.
+  // Xᵀ X, one panel of rows at a time. Column r of X is zero above row r, so the sums begin at the panel's first row.
   for_each_in_parallel(panels, [&](std::size_t panel) {
     const int first = static_cast<int>(panel) * kPanel;
     const int width = std::min(kPanel, n - first);

@@ -6,9 +6,9 @@
 
 namespace stylet::detail {
 
-/// (L Lᵀ)⁻¹ from a dense Cholesky factor, in panels on several threads. Each panel is one thread's and BLAS has one
-/// thread, so the result does not depend on the number of threads; symmetric to the last bit.
-/// @param L lower triangular, the other triangle zero (n × n); its memory becomes the result's
+/// (L Lᵀ)⁻¹ from a dense Cholesky factor, computed in panels by several threads. One thread computes each panel with
+/// single-threaded BLAS, so the result does not depend on the number of threads. It is symmetric to the last bit.
+/// @param L lower triangular with zeros in the upper triangle (n × n); the result reuses its memory
 MatX inverse_from_factor(MatX L, const Progress& progress = {});
 
 }  // namespace stylet::detail

@@ -13,23 +13,26 @@ namespace stylet {
 
 namespace {
 
-/// [mm] Between two samples of a way. Less changes nothing that can be seen; twice as much would miss layers of fat.
+/// [mm] Distance between two samples of a way. A smaller one has no visible effect; twice as much would miss layers of
+/// fat.
 constexpr double kEvery_mm = 6.0;
-/// [mm] From the line of a way: as far as this its samples are what a place is like, …
+/// [mm] Within this distance from a way, the interpolation between its samples is fully valid (Place::known = 1).
 constexpr double kNear_mm = 10.0;
-/// … and from here on they are not.
+/// [mm] From this distance on it is not used (Place::known = 0).
 constexpr double kFar_mm = 20.0;
-/// Nodes of a mesh up to which elements near the ways are made quadratic: beyond, they are small beside the density.
+/// Largest number of mesh nodes with which elements near the ways are made quadratic; elements of finer meshes are
+/// small compared with the density.
 constexpr Index kMostQuadratic = 45000;
-/// [mm] From the ways: elements that reach nearer than this are made so. More than nine tenths of a force lie there.
+/// [mm] Elements with a node closer to a way than this are made quadratic. More than nine tenths of a spread force act
+/// within this distance.
 constexpr double kQuadratic_mm = 20.0;
 
-/// [mm] ε of the density about each place.
+/// [mm] Radius ε of the density around each place.
 constexpr double kDensity_mm = SpreadCompliance::kSpread_mm * 105.0 * std::numbers::pi / 512.0;
-/// In those: what lies further off is less than a thousandth of the force.
+/// In units of kDensity_mm: the density is cut off there; less than a thousandth of the force lies further out.
 constexpr double kReach = 5.0;
 
-/// Points of a tetrahedron, all alike: the centres of smaller ones that stand as it does, `parts` along each edge.
+/// Equally weighted points of a tetrahedron: centres of smaller, similarly oriented ones, `parts` along each edge.
 std::vector<Vec4> points_within(int parts) {
   std::vector<Vec4> points;
   for (int i = 0; i < parts; ++i) {
@@ -41,16 +44,16 @@ std::vector<Vec4> points_within(int parts) {
   return points;
 }
 
-/// A point of an element with its share of a unit force.
+/// A point of an element and its share of a unit force.
 struct SpreadPoint {
   Index tet;
   Vec4 weights;
   double share;
 };
 
-/// A unit force that is spread about x: by the density of a Kelvinlet times the modulus of the tissue there, so that on
-/// a border it is the stiffer side that bears it, as it bears a needle. What lies outside the tissue, or is held, gets
-/// nothing of it.
+/// Distributes a unit force around x [mm]. The weight of a point is the density of a Kelvinlet times Young's modulus of
+/// the tissue there, so that at a border the stiffer side bears most of the force, as it does for a needle. Places
+/// outside the tissue, and elements whose nodes are all held, bear none of it.
 std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
   const TetMesh& mesh = tissue.mesh();
   static const std::vector<Vec4> many = points_within(8);  // where the density is steep
@@ -64,7 +67,8 @@ std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
           mesh.nodes[static_cast<std::size_t>(mesh.tets[static_cast<std::size_t>(tet)][static_cast<std::size_t>(i)])];
     const Vec3 middle = corners.rowwise().mean();
     const double radius = std::sqrt((corners.colwise() - middle).colwise().squaredNorm().maxCoeff());
-    const double off = (middle - x).norm() - radius;  // or less: the same however the scene is turned
+    // Lower bound of the distance; it does not depend on the orientation of the scene.
+    const double off = (middle - x).norm() - radius;
     if (off > kReach * kDensity_mm) continue;
     const auto& nodes = mesh.tets[static_cast<std::size_t>(tet)];
     if (std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return tissue.is_fixed(node); })) continue;
@@ -82,14 +86,15 @@ std::vector<SpreadPoint> spread_about(const Vec3& x, const Tissue& tissue) {
   return spread;
 }
 
-/// The elements near a way, made quadratic, and held where they meet the others.
+/// The elements near a way as a body of their own: made quadratic, and held at the rim where they meet the other
+/// elements.
 struct Surroundings {
-  std::vector<Index> number;  ///< (elements of the whole) in these, or −1
-  std::vector<Index> node;    ///< (nodes of these) in the whole
+  std::vector<Index> number;  ///< (elements of the whole mesh) number in this body, or −1
+  std::vector<Index> node;    ///< (nodes of this body) number in the whole mesh
   std::unique_ptr<Tissue> tissue;
 };
 
-/// @param near_way whether a place belongs to them
+/// @param near_way whether a place is near the way; elements with such a corner belong to the surroundings
 template <class Near>
 Result<Surroundings> surroundings(const Tissue& whole, const Near& near_way) {
   const TetMesh& mesh = whole.mesh();
@@ -183,7 +188,7 @@ Result<MatX> SpreadCompliance::solve(const Tissue& tissue, const Line& line) {
   });
   MatX M = MatX::Zero(columns, columns);
   if (near) {
-    // K⁻¹ by blocks: of what lies within the rim with the rim held, and of the rim with what then presses on it.
+    // K⁻¹ by static condensation: the inner nodes with the rim held, plus the whole mesh under the forces on the rim.
     const MatX u = near->tissue->solve(on_near);
     M.noalias() += on_near.transpose() * u;
     for (Eigen::Index c = 0; c < columns; ++c) {

@@ -15,7 +15,7 @@ std::string point(const Vec3& x) {
 
 constexpr const char* kCure = "Fix at least three nodes that are not on a line in every connected part of the mesh.";
 
-// Number of the connected part each node belongs to, parts numbered by their lowest node.
+// Number of the connected part to which each node belongs; parts are numbered in the order of their lowest nodes.
 std::vector<Index> connected_parts(const TetMesh& mesh, Index& parts) {
   std::vector<Index> root(mesh.nodes.size());
   std::iota(root.begin(), root.end(), 0);
@@ -27,7 +27,7 @@ std::vector<Index> connected_parts(const TetMesh& mesh, Index& parts) {
     for (int i = 1; i < 4; ++i) {
       const Index a = find(tet[0]);
       const Index b = find(tet[i]);
-      // The lower number stays the root, which orders the parts.
+      // Keeping the lower number as the root orders the parts.
       root[std::max(a, b)] = std::min(a, b);
     }
   }
@@ -40,7 +40,7 @@ std::vector<Index> connected_parts(const TetMesh& mesh, Index& parts) {
   return part;
 }
 
-// Three points off one line among those given, to a millionth of their spread?
+// Whether three of the points are not on a line, to a millionth of their spread.
 bool span_a_plane(const std::vector<Vec3>& points) {
   if (points.size() < 3) return false;
   const auto farthest = [&points](const auto& distance) {

@@ -21,23 +21,24 @@ struct Tissue::Parts {
   Element element = Element::p1;
   std::unique_ptr<detail::Discretisation> discretisation;
   std::vector<Index> fixed;      // sorted
-  std::vector<Index> first_dof;  // (n), -1 fixed
+  std::vector<Index> first_dof;  // (n) first degree of freedom, -1 for a fixed node
   Index free_dofs = 0;
-  std::vector<Index> corridor;  // free displacement nodes
+  std::vector<Index> corridor;  // displacement nodes of the corridor that are free
   Eigen::SparseMatrix<double> K;
   detail::Cholesky factor;
   Statistics statistics;
   std::once_flag factor_made;
   std::atomic<bool> has_factor = false;
 
-  /// Assembles K and factorises it.
+  /// Assembles K and computes its factor.
   Result<> factorise(const Progress& progress);
 
-  /// K and its factor are there afterwards. Several threads may come.
+  /// Ensures that K and its factor exist. May be called by several threads at once.
   void need_factor() {
     std::call_once(factor_made, [this] {
       if (has_factor) return;
-      if (auto made = factorise({}); !made) throw std::bad_alloc();  // anything else was seen when it was first built
+      // It was factorised when its compliance was computed.
+      if (auto made = factorise({}); !made) throw std::bad_alloc();
     });
   }
 
@@ -76,7 +77,7 @@ Result<> check_materials(const TetMesh& mesh, const std::vector<Material>& mater
   return Ok{};
 }
 
-// The little of check_mesh() without which assembly would read out of bounds or divide by zero.
+// The part of check_mesh() without which assembly would read out of bounds or divide by zero.
 Result<> check_usable(const TetMesh& mesh) {
   const auto bad = [](std::string what) {
     return input_error("mesh", std::move(what), "Pass the mesh through check_mesh() first; it names every such fault.");
@@ -137,7 +138,7 @@ Result<Tissue> Tissue::build_later(TetMesh mesh, std::vector<Material> materials
     parts->free_dofs += 3;
   }
 
-  std::vector<char> near = is_fixed;  // held ends count as the store counts them
+  std::vector<char> near = is_fixed;  // ComplianceStore treats fixed nodes as stored, too
   for (const Index a : corridor) {
     if (a < 0 || a >= parts->mesh.node_count() || near[a]) continue;
     near[a] = 1;

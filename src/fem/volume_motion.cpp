@@ -15,10 +15,10 @@ namespace stylet {
 
 namespace {
 
-constexpr int kRotation = 9;   ///< first column of the rotation
-constexpr int kDilation = 12;  ///< column of the change of volume
+constexpr int kRotation = 9;   ///< first column of the rotation in Fields
+constexpr int kDilation = 12;  ///< column of the dilation in Fields
 
-/// Five points of a tetrahedron, exact for cubic functions. @cite Keast1986
+/// Five quadrature points of a tetrahedron, exact for cubic functions. @cite Keast1986
 struct Quadrature {
   std::array<Vec4, 5> points;
   std::array<double, 5> weights{-0.8, 0.45, 0.45, 0.45, 0.45};
@@ -41,20 +41,20 @@ Corners corners_of(const TetMesh& mesh, Index t) {
   return x;
 }
 
-/// [r]×, so that [r]× u = r × u.
+/// The matrix [r]× with [r]× u = r × u.
 Mat3 cross_matrix(const Vec3& r) {
   Mat3 m;
   m << 0.0, -r.z(), r.y(), r.z(), 0.0, -r.x(), -r.y(), r.x(), 0.0;
   return m;
 }
 
-/// Volume, centroid, second moments about it and extent of some elements of a mesh.
+/// Volume, centroid, second moments about the centroid, and extent of some elements of a mesh.
 struct Body {
   std::vector<Index> tets;
   double volume = 0.0;
   Vec3 centroid = Vec3::Zero();
   Mat3 inertia = Mat3::Zero();  ///< ∫ (|r|² − r rᵀ) dV about the centroid [mm⁵]
-  double low = std::numeric_limits<double>::infinity(), high = -low;  ///< [mm] along z
+  double low = std::numeric_limits<double>::infinity(), high = -low;  ///< extent along z [mm]
 
   Body(const TetMesh& mesh, std::span<const int> regions) {
     for (Index t = 0; t < mesh.tet_count(); ++t) {
@@ -71,7 +71,7 @@ struct Body {
     if (tets.empty()) return;
     centroid /= volume;
     for (const Index t : tets) {
-      // ∫ r rᵀ = V/20 (Σ rᵢ rᵢᵀ + Σ rᵢ Σ rᵢᵀ), r being linear.
+      // ∫ r rᵀ = V/20 (Σ rᵢ rᵢᵀ + Σ rᵢ Σ rᵢᵀ), because r is linear in an element.
       const Corners r = corners_of(mesh, t).colwise() - centroid;
       const Vec3 sum = r.rowwise().sum();
       const Mat3 second = tet_volume(mesh, t) / 20.0 * (r * r.transpose() + sum * sum.transpose());
@@ -79,7 +79,7 @@ struct Body {
     }
   }
 
-  /// Where a third lies along z: its lower and upper end [mm]; the outer ones are open.
+  /// Lower and upper end of a third along z [mm]; the outer ends lie beyond the body.
   [[nodiscard]] std::array<double, 2> ends(int third) const {
     const double height = (high - low) / 3.0;
     return {third == VolumeMotion::inferior ? low - height : high - (third + 1) * height,
@@ -125,7 +125,7 @@ VolumeResponse::Fields VolumeResponse::loads(const TetMesh& mesh, std::span<cons
         }
       }
     }
-    // Gradients are at most linear in an element: their mean is that of its middle.
+    // Gradients are at most linear in an element, so their mean is the gradient at the centroid.
     const ShapeGradients gradients = discretisation_->shape_gradients(t, Vec4::Constant(0.25));
     for (int i = 0; i < gradients.count; ++i)
       load.block<3, 1>(3 * Eigen::Index{gradients.node[static_cast<std::size_t>(i)]}, kDilation) +=

@@ -8,8 +8,8 @@
 namespace stylet {
 namespace {
 
-// The six orders in which a path along the cell's edges can take the steps x, y, z; those with a swap mark (an odd
-// permutation) need two corners exchanged to be positive.
+// The six orders in which a path along the edges of a cell can take its steps along x, y and z. An odd permutation
+// gives a tetrahedron of negative volume, so two of its corners are exchanged.
 struct KuhnPath {
   std::array<int, 3> axes;
   bool odd;
@@ -34,7 +34,8 @@ TetMesh box_mesh(const Vec3& lo, const Vec3& hi, std::array<int, 3> cells, doubl
   const auto node = [&](int i, int j, int k) { return static_cast<Index>(i + points[0] * (j + points[1] * k)); };
   const Vec3 cell = (hi - lo).cwiseQuotient(Vec3(cells[0], cells[1], cells[2]));
 
-  // std::mt19937 is fully specified; the library's distributions are not, so map its output by hand.
+  // The standard specifies the output of std::mt19937 but not that of its distributions, so the numbers are mapped
+  // here.
   std::mt19937 random(1960);
   const auto symmetric = [&random] { return 2.0 * (static_cast<double>(random()) + 0.5) / 4294967296.0 - 1.0; };
 
@@ -42,7 +43,7 @@ TetMesh box_mesh(const Vec3& lo, const Vec3& hi, std::array<int, 3> cells, doubl
   for (int k = 0; k < points[2]; ++k) {
     for (int j = 0; j < points[1]; ++j) {
       for (int i = 0; i < points[0]; ++i) {
-        // The last grid plane is `hi` to the last bit, not lo plus a rounded product.
+        // Assigning `hi` makes the last grid plane exact; lo plus a rounded product might differ in the last bit.
         Vec3 x(i == cells[0] ? hi.x() : lo.x() + i * cell.x(), j == cells[1] ? hi.y() : lo.y() + j * cell.y(),
                k == cells[2] ? hi.z() : lo.z() + k * cell.z());
         const bool inside = i > 0 && i < cells[0] && j > 0 && j < cells[1] && k > 0 && k < cells[2];

@@ -9,8 +9,9 @@
 namespace stylet {
 namespace {
 
-// A tetrahedron is flat when six times its volume is below this share of its longest edge cubed (0.71 when regular).
-// Node coordinates kept in single precision, the coarsest that files use, leave about this much.
+// A tetrahedron counts as flat when 6 × volume ≤ kFlat × (longest edge)³; for the regular tetrahedron the ratio is
+// 0.71. Rounding of node coordinates to single precision, the coarsest precision of file formats, leaves about this
+// much.
 constexpr double kFlat = 1e-6;
 constexpr double kSmallestExtent_mm = 5.0;
 constexpr double kLargestExtent_mm = 2000.0;
@@ -52,14 +53,14 @@ Result<> check_sizes(const TetMesh& mesh, const std::string& where) {
     return input_error(where,
                        "the mesh is empty: " + std::to_string(mesh.nodes.size()) + " nodes and " +
                            std::to_string(mesh.tets.size()) + " tetrahedra",
-                       "Give a volume mesh of linear tetrahedra; surface meshes have to be filled first.");
+                       "Give a volume mesh of linear tetrahedra, or fill the surface mesh with tetrahedra first");
   }
   if (mesh.regions.empty() || mesh.tet_region.size() != mesh.tets.size()) {
     return input_error(where,
                        "the mesh names " + std::to_string(mesh.regions.size()) + " regions and gives a region to " +
                            std::to_string(mesh.tet_region.size()) + " of " + std::to_string(mesh.tets.size()) +
                            " tetrahedra",
-                       "Give every tetrahedron the number of a named region.");
+                       "Give every tetrahedron the number of a named region");
   }
   return Ok{};
 }
@@ -71,7 +72,7 @@ Result<> check_numbers(const TetMesh& mesh, const std::string& where) {
         return input_error(where + ", " + tet_name(mesh, t),
                            "node number " + std::to_string(a) + " is out of range, expected 0 to " +
                                std::to_string(mesh.node_count() - 1),
-                           "Check whether the file counts nodes from 0 or from 1, and that it is complete.");
+                           "Check whether the file counts nodes from 0 or from 1, and whether it is complete");
       }
     }
     const int region = mesh.tet_region[t];
@@ -79,7 +80,7 @@ Result<> check_numbers(const TetMesh& mesh, const std::string& where) {
       return input_error(where + ", " + tet_name(mesh, t),
                          "region number " + std::to_string(region) + " is out of range, expected 0 to " +
                              std::to_string(mesh.regions.size() - 1),
-                         "Give every tetrahedron the number of a named region.");
+                         "Give every tetrahedron the number of a named region");
     }
   }
   return Ok{};
@@ -91,7 +92,7 @@ Result<> check_coordinates(const TetMesh& mesh, const std::string& where) {
     if (!mesh.nodes[a].allFinite()) {
       return input_error(where + ", node " + std::to_string(a) + " (numbers start at 0)",
                          "a coordinate is not a finite number: " + point(mesh.nodes[a]),
-                         "Repair or rewrite the file; a failed conversion usually leaves such values.");
+                         "Repair the file or convert it again; such values usually come from a failed conversion");
     }
     box.extend(mesh.nodes[a]);
   }
@@ -102,12 +103,12 @@ Result<> check_coordinates(const TetMesh& mesh, const std::string& where) {
     return input_error(where,
                        "the mesh is " + number(extent) + " mm across, expected " + number(kSmallestExtent_mm) + " to " +
                            number(kLargestExtent_mm) + " mm; its coordinates may be in " + guess,
-                       "Convert the coordinates to millimetres.");
+                       "Convert the coordinates to millimetres");
   }
   return Ok{};
 }
 
-// A tetrahedron that names a node twice is caught here as well: its nodes coincide, whatever its volume rounds to.
+// This check also catches a tetrahedron that names a node twice and whose volume is not zero because of rounding.
 Result<> check_repeated_nodes(const TetMesh& mesh, const std::string& where) {
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     auto tet = mesh.tets[t];
@@ -116,7 +117,7 @@ Result<> check_repeated_nodes(const TetMesh& mesh, const std::string& where) {
     if (twice != tet.end()) {
       return input_error(where + ", " + tet_name(mesh, t),
                          "node " + std::to_string(*twice) + " is named twice, expected four different nodes",
-                         "Remove the degenerate tetrahedron or mesh the body again.");
+                         "Remove the degenerate tetrahedron or mesh the body again");
     }
   }
   return Ok{};
@@ -141,7 +142,7 @@ Result<> check_duplicates(const TetMesh& mesh, const std::string& where) {
   if (count > 0) {
     return input_error(where + ", " + tet_name(mesh, second),
                        "it is a duplicate of tetrahedron " + std::to_string(first) + more(count - 1),
-                       "Remove the duplicate; merging two exports of one mesh leaves such pairs.");
+                       "Remove the duplicate; such pairs usually come from merging two exports of one mesh");
   }
   return Ok{};
 }
@@ -165,20 +166,20 @@ Result<> check_volumes(const TetMesh& mesh, const std::string& where) {
     return input_error(where,
                        "all " + std::to_string(inverted) + " tetrahedra are inverted, the first with a volume of " +
                            number(tet_volume(mesh, 0)) + " mm³: the nodes are listed in the opposite order",
-                       "Swap two nodes of every tetrahedron.");
+                       "Swap two nodes of every tetrahedron");
   }
   if (inverted > 0) {
     return input_error(where + ", " + tet_name(mesh, first_inverted),
                        "it is inverted: its volume is " + number(tet_volume(mesh, first_inverted)) +
                            " mm³, expected above 0" + more(inverted - 1),
-                       "Swap two of its nodes if only their order is wrong; otherwise mesh the body again.");
+                       "Swap two of its nodes if only their order is wrong, or mesh the body again");
   }
   if (flat > 0) {
     return input_error(where + ", " + tet_name(mesh, first_flat),
                        "it is flat: its volume is " + number(tet_volume(mesh, first_flat)) +
                            " mm³ with a longest edge of " + number(longest_edge(mesh, first_flat)) + " mm" +
                            more(flat - 1),
-                       "Remove slivers with the meshing program's optimiser, or mesh the body again.");
+                       "Remove flat tetrahedra with the meshing program's optimiser, or mesh the body again");
   }
   return Ok{};
 }
@@ -189,7 +190,7 @@ Result<> check_faces(const TetMesh& mesh, const std::string& where) {
     return "face of nodes " + std::to_string(key[0]) + ", " + std::to_string(key[1]) + ", " + std::to_string(key[2]) +
            " (numbers start at 0)";
   };
-  // True when the side's outward corner order is an even permutation of the ascending key.
+  // True when the outward order of the side's corners is an even permutation of the sorted key.
   const auto even = [&mesh](const detail::FaceSide& side) {
     const auto& tet = mesh.tets[side.tet];
     const auto& corner = kFaceVertices[side.local];
@@ -206,13 +207,13 @@ Result<> check_faces(const TetMesh& mesh, const std::string& where) {
                          "the face is shared by " + std::to_string(end - i) + " tetrahedra (" +
                              std::to_string(sides[i].tet) + ", " + std::to_string(sides[i + 1].tet) + ", " +
                              std::to_string(sides[i + 2].tet) + (end - i > 3 ? ", …" : "") + "), expected at most 2",
-                         "Remove overlapping tetrahedra or mesh the body again.");
+                         "Remove overlapping tetrahedra or mesh the body again");
     }
     if (end - i == 2 && even(sides[i]) == even(sides[i + 1])) {
       return input_error(where + ", " + face_name(sides[i].key),
                          "tetrahedra " + std::to_string(sides[i].tet) + " and " + std::to_string(sides[i + 1].tet) +
                              " lie on the same side of the face they share: they overlap",
-                         "Remove overlapping tetrahedra or mesh the body again.");
+                         "Remove overlapping tetrahedra or mesh the body again");
     }
     i = end;
   }
@@ -229,7 +230,7 @@ Result<> check_references(const TetMesh& mesh, const std::string& where) {
     const auto a = static_cast<Index>(std::find(used.begin(), used.end(), 0) - used.begin());
     return input_error(where + ", node " + std::to_string(a) + " (numbers start at 0)",
                        "no tetrahedron uses the node at " + point(mesh.nodes[a]) + more(unused - 1),
-                       "Remove unreferenced nodes; many programs call this cleaning or compacting the mesh.");
+                       "Remove unreferenced nodes (many programs call this cleaning or compacting the mesh)");
   }
   return Ok{};
 }
@@ -237,7 +238,7 @@ Result<> check_references(const TetMesh& mesh, const std::string& where) {
 }  // namespace
 
 Result<> check_mesh(const TetMesh& mesh, const std::string& where) {
-  // Each check may rely on those before it.
+  // Each check relies on the checks before it having passed.
   for (const auto check : {check_sizes, check_numbers, check_coordinates, check_repeated_nodes, check_duplicates,
                            check_volumes, check_faces, check_references}) {
     if (auto result = check(mesh, where); !result) return result;

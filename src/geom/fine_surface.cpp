@@ -12,8 +12,8 @@ namespace stylet {
 
 namespace {
 
-constexpr double kSmallestShare = 0.005;  ///< a line's point nearer to an edge than this share of the triangle is on it
-constexpr double kOn = 1e-9;              ///< … and so near outside is still inside
+constexpr double kSmallestShare = 0.005;  ///< a point with a smaller barycentric weight is moved to the edge or corner
+constexpr double kOn = 1e-9;              ///< a point counts as inside with weights down to minus this
 
 double distance_to(const LineSegment& line, const Vec3& x) {
   const Vec3 way = line[1] - line[0];
@@ -21,7 +21,7 @@ double distance_to(const LineSegment& line, const Vec3& x) {
   return (x - line[0] - share * way).norm();
 }
 
-/// Barycentric weights of where a line goes through a triangle.
+/// Barycentric weights of the point where a line passes through a triangle; empty where it does not.
 std::optional<Vec3> crossing(const LineSegment& line, const Vec3& a, const Vec3& b, const Vec3& c) {
   Mat3 system;
   system << b - a, c - a, line[0] - line[1];
@@ -33,7 +33,7 @@ std::optional<Vec3> crossing(const LineSegment& line, const Vec3& a, const Vec3&
   return weights;
 }
 
-/// Splits edges of triangles, all triangles at an edge at once, so that no gap opens.
+/// Splits edges of triangles. All triangles at an edge are split together, so that no gap opens.
 class Refiner {
  public:
   Refiner(FineSurface& surface, std::span<const LineSegment> lines, const Fineness& fineness)
@@ -41,7 +41,7 @@ class Refiner {
     for (std::size_t t = 0; t < s_.triangles.size(); ++t) add_edges(t);
   }
 
-  /// A point wherever a line goes through.
+  /// Adds a point wherever a line passes through a triangle.
   void pierce() {
     for (const LineSegment& line : lines_) {
       for (std::size_t t = 0; t < s_.triangles.size(); ++t) {
@@ -51,7 +51,7 @@ class Refiner {
     }
   }
 
-  /// Halves edges until all are as short as they shall be.
+  /// Halves edges until each is as short as Fineness demands.
   void refine() {
     while (true) {
       std::vector<std::pair<double, std::uint64_t>> long_ones;
@@ -100,8 +100,8 @@ class Refiner {
     }
     return longest.second;
   }
-  /// From an edge to ever longer ones in neighbouring triangles, up to one that is the longest in all of its own.
-  /// Halving that one first keeps triangles as well shaped as they were (Rivara's longest edge propagation path).
+  /// Follows ever longer edges through neighbouring triangles to an edge that is the longest of all its triangles
+  /// (Rivara's longest edge propagation path). Halving that edge first preserves the triangles' shape quality.
   [[nodiscard]] std::uint64_t end_of_path(std::uint64_t edge) const {
     while (true) {
       const auto& triangles = edges_.at(edge);
@@ -145,7 +145,7 @@ class Refiner {
     return static_cast<Index>(s_.points.size()) - 1;
   }
 
-  /// @param share from the edge's lower end to the new point
+  /// @param share position of the new point, 0 at the end of the edge with the lower number, 1 at the other end
   void split(std::uint64_t edge, double share) {
     const auto found = edges_.find(edge);
     if (found == edges_.end()) return;
@@ -167,7 +167,7 @@ class Refiner {
   void pierce(std::size_t t, const Vec3& weights) {
     const std::array<Index, 3> corner = s_.triangles[t];
     Eigen::Index nearest = 0;
-    if (weights.maxCoeff() > 1.0 - kSmallestShare) return;  // a corner is there
+    if (weights.maxCoeff() > 1.0 - kSmallestShare) return;  // the line passes through a corner
     if (weights.minCoeff(&nearest) < kSmallestShare) {
       const auto first = static_cast<std::size_t>((nearest + 1) % 3);
       const auto second = static_cast<std::size_t>((nearest + 2) % 3);
@@ -189,7 +189,7 @@ class Refiner {
   FineSurface& s_;
   std::span<const LineSegment> lines_;
   Fineness fineness_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> edges_;  ///< triangles at each
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> edges_;  ///< numbers of the triangles at each edge
 };
 
 }  // namespace

@@ -8,24 +8,28 @@
 namespace stylet {
 namespace {
 
-// All tolerances are on barycentric weights, so they scale with the element.
-constexpr double kTie = 1e-10;  // a weight this close to 0 lies on the face: rounding of x is far below, 1 nm far above
-constexpr double kRounding = 1e-12;  // returned weights are no lower than minus this
-constexpr double kTangent = 1e-9;    // slope, against the steepest of the element, below which a path runs along a face
+// Tolerances on barycentric weights, which scale with the element.
+// A weight this close to 0 means a point on the face. Rounding of x is far smaller, 1 nm is far larger.
+constexpr double kTie = 1e-10;
+// Returned weights are not below minus this.
+constexpr double kRounding = 1e-12;
+// A path runs along a face when the weight's rate is below this share of the largest rate in the element.
+constexpr double kTangent = 1e-9;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Weights clamped to the element when they were below it by a tie's width; their sum stays 1.
+// Weights of a point that is outside the element only within the tolerance, clamped to the element; their sum stays 1.
 Vec4 inside(Vec4 w) {
   if (w.minCoeff() >= -kRounding) return w;
   w = w.cwiseMax(0.0);
   return w / w.sum();
 }
 
-// Rates of the four weights of tetrahedron t along d.
+// Rates of change of the four weights of tetrahedron t along d.
 Vec4 rates(const TetMesh& mesh, Index t, const Vec3& d) { return barycentric_gradients(mesh, t).transpose() * d; }
 
-// How far the path from a point with weights w, rates dw, is from leaving the element at once: the smallest rate among
-// the weights that are zero, 0 where the path stays in a face. Below zero the element lies beside or behind the path.
+// Tells whether a path that starts with weights w and rates dw stays in the element at first: the smallest rate, over
+// the largest, among the weights that are zero. It is 0 where the path runs within a face, and negative where the path
+// leaves the element at once.
 double headroom(const Vec4& w, const Vec4& dw) {
   const double scale = dw.cwiseAbs().maxCoeff();
   double least = kNever;
@@ -41,8 +45,8 @@ struct Candidate {
   double headroom = -kNever;
 };
 
-// Among the tetrahedra around `node` that contain x, the one that x + 0·d lies in, or else comes closest to. Between
-// equals, and between all that x + 0·d lies in when a region is given, that region wins; then `preferred`, then the
+// Chooses among the tetrahedra around `node` that contain x. The one into which d leads from x has the largest headroom
+// and wins. Where d leads into several tetrahedra and `region` is given, this region wins; then `preferred`, then the
 // lowest number.
 Candidate best_around(const Locator& locator, Index node, const Vec3& x, const Vec3& d, Index preferred,
                       int region = -1) {
@@ -63,7 +67,7 @@ Candidate best_around(const Locator& locator, Index node, const Vec3& x, const V
   return best;
 }
 
-// Node with the greatest weight: every tetrahedron that contains the point has it.
+// The node with the greatest weight. Every tetrahedron that contains the point also has this node.
 Index nearest_node(const TetMesh& mesh, Index t, const Vec4& w) {
   int local = 0;
   w.maxCoeff(&local);
@@ -72,7 +76,7 @@ Index nearest_node(const TetMesh& mesh, Index t, const Vec4& w) {
 
 int ties(const Vec4& w) { return static_cast<int>((w.array() <= kTie).count()); }
 
-// Does the segment a + t d, 0 ≤ t ≤ 1, meet the box?
+// Whether the segment a + t d, 0 ≤ t ≤ 1, intersects the box.
 bool meets(const Eigen::AlignedBox3d& box, const Vec3& a, const Vec3& d) {
   double enter = 0.0;
   double leave = 1.0;
@@ -120,8 +124,8 @@ std::optional<MaterialPoint> Locator::find(const Vec3& x, Index hint, const Vec3
   Index found = -1;
   Vec4 w;
 
-  // Walk through the face that x lies farthest beyond. The walk may run in circles or leave a concave mesh; then, and
-  // without a hint, the tree answers.
+  // Walk through the face beyond which x lies furthest. The walk may run in circles or leave a concave mesh. In these
+  // cases, and without a hint, the tree gives the answer.
   Index t = hint;
   for (int step = 0; step < 100 && t >= 0 && t < mesh_->tet_count(); ++step) {
     w = weights(t, x);
@@ -134,7 +138,7 @@ std::optional<MaterialPoint> Locator::find(const Vec3& x, Index hint, const Vec3
   }
 
   if (found < 0) {
-    // The tetrahedron that contains x best, so that rounding at a face decides nothing.
+    // Take the tetrahedron in which the smallest weight of x is largest, so that rounding at a face does not matter.
     double best = -kTie;
     tree_.visit([&](const Eigen::AlignedBox3d& box) { return box.contains(x); },
                 [&](std::span<const Index> tets) {
@@ -154,7 +158,7 @@ std::optional<MaterialPoint> Locator::find(const Vec3& x, Index hint, const Vec3
 
   if (travel != Vec3::Zero() && ties(w) > 0) {
     const Candidate ahead = best_around(*this, nearest_node(*mesh_, found, w), x, travel, found);
-    // Where travel leads out of the mesh every element ends; then the one at hand is as good as any.
+    // Where travel leads out of the mesh, all elements end at x; the one already found is as good as any other.
     if (ahead.headroom >= 0.0) return MaterialPoint{ahead.tet, inside(ahead.weights)};
   }
   return MaterialPoint{found, inside(w)};
@@ -165,13 +169,13 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
   const Vec3 d = to - from;
   const int region = mesh_->tet_region[start];
   Index t = start;
-  double s = 0.0;   // path parameter where the path entered t
-  int stalled = 0;  // steps without progress
+  double s = 0.0;   // path parameter at which the path entered t
+  int stalled = 0;  // number of steps without progress
 
-  // The face by which the path leaves the region at parameter `at`, where it meets an edge or a node of `around`. Of
-  // the faces there that fit it is the one met most head-on: faces of the region towards the mesh outside (`mesh_ends`)
-  // or towards another region; failing that, any outer face, the other regions having no length on the path; failing
-  // that, any face that leaves the region.
+  // The face through which the path leaves the region at parameter `at`, where it meets an edge or a node of `around`.
+  // Several faces may meet there. They are ranked, and within a rank the path crosses the chosen one at the steepest
+  // angle: 3. faces of this region towards the outside (if `mesh_ends`) or towards another region (otherwise); 2. if
+  // the mesh ends, any outer face, because the path has no length in the other region; 1. any face of this region.
   const auto leaving_face = [&](Index around, double at, int fallback, bool mesh_ends) {
     const Vec3 x = from + at * d;
     Crossing crossing{at, around, fallback};
@@ -197,8 +201,9 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
     return crossing;
   };
 
-  // Every step advances s, or is a tie at an edge or node that ends in a tetrahedron the path truly runs through, so
-  // the number of tetrahedra bounds the walk; what rounding may add on top is cut off by the nudge below.
+  // Each step increases s, or resolves a tie at an edge or node and ends in a tetrahedron through which the path has a
+  // positive length. So the number of tetrahedra bounds the number of steps, apart from rounding, which is handled
+  // below.
   for (std::int64_t step = 0; step < 2 * static_cast<std::int64_t>(mesh_->tet_count()) + 64; ++step) {
     const Vec4 w = weights(t, from);
     const Vec4 dw = rates(*mesh_, t, d);
@@ -207,7 +212,7 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
     int face = -1;
     for (int i = 0; i < 4; ++i) {
       if (dw[i] >= 0.0) continue;
-      // A path within a face does not leave through it, whatever the sign of the rounding.
+      // A path within a face does not leave through this face, whatever the sign of the rounding error.
       if (-dw[i] <= kTangent * scale && std::abs(w[i] + s * dw[i]) <= kTie) continue;
       const double at = -w[i] / dw[i];
       if (at < leave) {
@@ -224,7 +229,7 @@ std::optional<Crossing> Locator::first_crossing(const Vec3& from, Index start, c
     s = leave;
 
     if (stalled > 16) {
-      // Rounding has the walk circling around an edge: step ahead by a millionth of the element and ask the tree.
+      // Rounding makes the walk circle around an edge. Step ahead by a millionth of the element and search the tree.
       s = std::min(1.0, s + 1e-6 / scale);
       stalled = 0;
       const auto ahead = find(from + s * d, -1, d);
@@ -256,7 +261,7 @@ std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) c
   const Vec3 d = to - from;
   if (mesh_->tets.empty() || d == Vec3::Zero() || !d.allFinite()) return std::nullopt;
   std::optional<Crossing> first;
-  double steepest = 0.0;  // slope of the face found, decides between faces met at one edge
+  double steepest = 0.0;  // slope of the chosen face; decides between faces that meet the path at one edge
 
   const auto nearer_entry = [&](std::span<const Index> tets) {
     for (const Index t : tets) {
@@ -266,7 +271,8 @@ std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) c
       const Vec4 dw = rates(*mesh_, t, d);
       const double scale = dw.cwiseAbs().maxCoeff();
       for (int face = 0; face < 4; ++face) {
-        if (neighbour[face] >= 0 || dw[face] <= 1e-12 * scale) continue;  // an inner face, or met from inside
+        // An inner face, or one that the path meets from inside.
+        if (neighbour[face] >= 0 || dw[face] <= 1e-12 * scale) continue;
         double at = -w[face] / dw[face];
         if (at < 0.0 && w[face] <= kTie) at = 0.0;  // `from` lies on the face
         if (at > 1.0 && w[face] + dw[face] >= -kTie) at = 1.0;
@@ -274,13 +280,13 @@ std::optional<Crossing> Locator::first_entry(const Vec3& from, const Vec3& to) c
         const Vec4 hit = w + at * dw;
         if (hit.minCoeff() < -kTie) continue;
         const double slope = -face_normal(t, face).dot(d);
-        const double width = kTie / scale;  // parameters closer than this are the same point
+        const double width = kTie / scale;  // parameters closer together than this belong to the same point
         if (first && (at > first->t + width ||
                       (at > first->t - width && (slope < steepest || (slope == steepest && t >= first->tet))))) {
           continue;
         }
         if (ties(hit) > 1) {
-          // At an edge or node the path may only touch the body: it enters if the mesh goes on behind the point.
+          // At an edge or node the path may only touch the body. It enters if there is mesh behind the point.
           const Vec3 x = from + at * d;
           const Candidate behind = best_around(*this, nearest_node(*mesh_, t, hit), x, d, t);
           if (behind.tet < 0 || behind.headroom < 0.0) continue;

@@ -20,8 +20,8 @@ void extend(Range& range, double value) {
   range.max = std::max(range.max, value);
 }
 
-// Radius of the sphere through the four corners: |a² (b×c) + b² (c×a) + c² (a×b)| / (2 |a·(b×c)|), the corners
-// relative to the first.
+// Radius of the sphere through the four corners: |a² (b×c) + b² (c×a) + c² (a×b)| / (2 |a·(b×c)|), where a, b and c are
+// the positions of three corners relative to the fourth.
 double circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 numerator = a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
   return numerator.norm() / (2.0 * std::abs(a.dot(b.cross(c))));
@@ -59,12 +59,12 @@ MeshQuality mesh_quality(const TetMesh& mesh) {
     }
 
     const Vec3& origin = mesh.nodes[tet[0]];
-    // The gradient of a barycentric coordinate is 1 / height long: r_in = 3 V / Σ A_i = 1 / Σ (1 / h_i)
+    // The gradient of a barycentric coordinate has the length 1 / height: r_in = 3 V / Σ A_i = 1 / Σ (1 / h_i)
     const double inradius = 1.0 / barycentric_gradients(mesh, t).colwise().norm().sum();
     const double ratio =
         3.0 * inradius /
         circumradius(mesh.nodes[tet[1]] - origin, mesh.nodes[tet[2]] - origin, mesh.nodes[tet[3]] - origin);
-    // Not std::min, which would let the NaN of a flat element pass.
+    // std::min would ignore the NaN of a flat element.
     if (!(ratio >= quality.radius_ratio_min)) quality.radius_ratio_min = std::isnan(ratio) ? 0.0 : ratio;
   }
   quality.fraction_below_12_deg = static_cast<double>(below_12_deg) / quality.tets;
@@ -106,9 +106,8 @@ std::string nearly_flat_warning(const TetMesh& mesh) {
   const Vec3 at = 0.25 * (mesh.nodes[tet[0]] + mesh.nodes[tet[1]] + mesh.nodes[tet[2]] + mesh.nodes[tet[3]]);
   return fmt::format(
       "{} of {} tetrahedra {} nearly flat, with a dihedral angle below {:g}°; the worst is tetrahedron {} (numbers "
-      "start "
-      "at 0) with {:.2g}°, at ({:.1f}, {:.1f}, {:.1f}) mm in '{}'. Displacements and forces near such tetrahedra are "
-      "inaccurate. Improve the mesh with the meshing program's optimiser, or mesh the body again.",
+      "start at 0) with {:.2g}°, at ({:.1f}, {:.1f}, {:.1f}) mm in '{}'. Displacements and forces near such "
+      "tetrahedra are inaccurate. Improve the mesh with the meshing program's optimiser, or mesh the body again.",
       flat.count, mesh.tet_count(), flat.count == 1 ? "is" : "are", kNearlyFlat_deg, flat.worst, flat.angle_deg, at.x(),
       at.y(), at.z(), mesh.regions[static_cast<std::size_t>(mesh.tet_region[flat.worst])]);
 }

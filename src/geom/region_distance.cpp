@@ -13,12 +13,12 @@ namespace stylet {
 
 namespace {
 
-constexpr double kOnFace_mm = 1e-9;  ///< a way so near to a face lies in it
-constexpr double kPoint = 1e-7;      ///< a share of a way that is no longer than this is a point
+constexpr double kOnFace_mm = 1e-9;  ///< a path closer to a face than this lies in the face
+constexpr double kPoint = 1e-7;      ///< a part of a path whose share is not above this is a single point
 
 using Corners = std::array<Vec3, 4>;
 
-/// A straight way from `a` to `b`.
+/// A straight path from `a` to `b`.
 struct Segment {
   Vec3 a;
   Vec3 b;
@@ -34,14 +34,14 @@ bool is_one_of(std::span<const int> regions, int region) {
   return std::find(regions.begin(), regions.end(), region) != regions.end();
 }
 
-/// A part of a way, from and to as shares of its length, 0…1.
+/// A part of a path: its ends as shares of the path's length, 0…1.
 struct Part {
   double from = 0.0;
   double to = 1.0;
 };
 
-/// The part of a way that lies in a tetrahedron, its faces included: the way is cut off by each of the four faces'
-/// planes in turn. Empty where the way misses the tetrahedron or touches it in a point.
+/// The part of a path that lies in a tetrahedron, including its faces. The planes of the four faces cut off the path
+/// one after the other. Empty where the path misses the tetrahedron or only touches it in a point.
 std::optional<Part> part_in(const Corners& x, const Segment& way) {
   Part part;
   for (const auto& face : kFaceVertices) {
@@ -58,7 +58,7 @@ std::optional<Part> part_in(const Corners& x, const Segment& way) {
   return part;
 }
 
-/// Shortest distance of two segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+/// Shortest distance between two segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
 double distance(const Segment& one, const Segment& other) {
   const Vec3 d1 = one.b - one.a;
   const Vec3 d2 = other.b - other.a;
@@ -69,7 +69,7 @@ double distance(const Segment& one, const Segment& other) {
   const double c = d1.dot(r);
   const double f = d2.dot(r);
   const double denominator = a * e - b * b;
-  // Parallel segments have many nearest points; those at the start of the first are as good as any.
+  // Parallel segments have many pairs of nearest points; the pair at the start of the first segment is as good as any.
   double s = denominator > 1e-12 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
   double t = (b * s + f) / e;
   if (t < 0.0 || t > 1.0) {
@@ -79,7 +79,8 @@ double distance(const Segment& one, const Segment& other) {
   return (r + s * d1 - t * d2).norm();
 }
 
-/// Distance of a point to the plane of a triangle where its foot lies in the triangle; infinite otherwise.
+/// Distance between a point and the plane of a triangle if the foot of the perpendicular is in the triangle, else
+/// infinite.
 double height_over(const Vec3& x, const std::array<Vec3, 3>& corners) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -89,8 +90,8 @@ double height_over(const Vec3& x, const std::array<Vec3, 3>& corners) {
   return std::abs(normal.normalized().dot(x - corners[0]));
 }
 
-/// Shortest distance between a way and a tetrahedron that it does not go through. The nearest points then lie on an
-/// edge, or an end of the way lies over a face.
+/// Shortest distance between a path and a tetrahedron through which it does not pass. Either the nearest point of the
+/// tetrahedron is on an edge, or an end of the path lies over a face.
 double distance(const Corners& x, const Segment& way) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 4; ++i) {
@@ -112,7 +113,7 @@ double length_in_regions(const TetMesh& mesh, std::span<const int> regions, cons
     if (!is_one_of(regions, mesh.tet_region[t])) continue;
     if (const auto part = part_in(corners_of(mesh, t), {from, to})) parts.push_back(*part);
   }
-  // A way in a face or along an edge lies in several tetrahedra at once and counts once.
+  // A path in a face or along an edge lies in several tetrahedra at once, but counts once.
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.from < b.from; });
   double share = 0.0;
   double counted = 0.0;

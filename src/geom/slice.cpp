@@ -11,11 +11,11 @@ namespace stylet {
 
 namespace {
 
-/// Number of the edge between two local vertices.
+/// Number of the edge between two local vertices, -1 on the diagonal.
 constexpr std::array<std::array<int, 4>, 4> kEdge{{{-1, 0, 1, 2}, {0, -1, 3, 4}, {1, 3, -1, 5}, {2, 4, 5, -1}}};
 
-/// The two vertices named first in front of the plane, the others behind; even permutations, so that the quadrilateral
-/// (0,2) (1,2) (1,3) (0,3) looks forward.
+/// Elements of which two vertices are in front of the plane and two behind. `v` lists the vertices in front first. Its
+/// permutations are even, so the quadrilateral (0,2) (1,2) (1,3) (0,3) faces forwards.
 struct Pairs {
   unsigned front;
   std::array<int, 4> v;
@@ -32,7 +32,8 @@ constexpr std::array<Pairs, 6> kPairs{{{0b0011, {0, 1, 2, 3}},
 Slicer::Slicer(const TetMesh& mesh) : tree_(mesh) {
   std::vector<Index> number_of_node(mesh.nodes.size(), -1);
   corners_.reserve(mesh.nodes.size());
-  using Edge = std::array<Index, 4>;  // its two nodes; the element's number, and the edge's in it
+  // Its two nodes, the number of an element that has it, and its number in that element.
+  using Edge = std::array<Index, 4>;
   std::vector<Edge> edges;
   edges.reserve(6 * mesh.tets.size());
   elements_.reserve(mesh.tets.size());
@@ -79,7 +80,7 @@ Index Slicer::slot(Node& node) {
   return node.slot;
 }
 
-/// The plane's point on the edge from a local vertex in front to one behind.
+/// The vertex on the edge from a local vertex in front of the plane to one behind it.
 Index Slicer::vertex(const Element& element, int above, int below) {
   Index a = element.nodes[static_cast<std::size_t>(above)];
   Index b = element.nodes[static_cast<std::size_t>(below)];
@@ -97,7 +98,7 @@ Index Slicer::vertex(const Element& element, int above, int below) {
   if (on_edge < 0) {
     on_edge = static_cast<Index>(vertices_.size());
     edges_cut_.push_back(edge);
-    if (a > b) std::swap(a, b);  // the same numbers whichever element comes first
+    if (a > b) std::swap(a, b);  // interpolate in the same order, whichever element is processed first
     Node& from = corners_[static_cast<std::size_t>(a)];
     Node& to = corners_[static_cast<std::size_t>(b)];
     const Index slot_a = slot(from);
@@ -108,7 +109,7 @@ Index Slicer::vertex(const Element& element, int above, int below) {
 }
 
 void Slicer::add(const Element& element, Index a, Index b, Index c) {
-  if (a == b || b == c || c == a) return;  // the plane only touches this element, or a corner of it
+  if (a == b || b == c || c == a) return;  // the plane only touches this element or one of its corners
   triangles_.push_back({{a, b, c}, element.tet, element.region});
 }
 
@@ -140,7 +141,7 @@ void Slicer::cut(const Vec3& origin, const Vec3& normal) {
       });
 }
 
-/// The plane through one element.
+/// Cuts one element by the current plane.
 void Slicer::cut(const Element& element) {
   unsigned front = 0;
   for (std::size_t i = 0; i < 4; ++i)
@@ -157,7 +158,7 @@ void Slicer::cut(const Element& element) {
     add(element, one, three, four);
     return;
   }
-  for (int i = 0; i < 4; ++i) {  // one vertex alone on its side
+  for (int i = 0; i < 4; ++i) {  // one vertex is alone on its side of the plane
     const bool alone_in_front = front == 1U << i;
     if (!alone_in_front && front != (0b1111U ^ (1U << i))) continue;
     const auto& o = kFaceVertices[static_cast<std::size_t>(i)];

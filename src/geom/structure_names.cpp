@@ -43,7 +43,7 @@ bool is_listed(std::string_view name, std::span<const std::string> words) {
 }
 
 std::string or_skip(std::string_view name) {
-  return fmt::format(" Or leave it out: skip = [\"{}\"] below [patient] (stylet mesh and info: --skip \"{}\").", name,
+  return fmt::format(" (or leave it out: skip = [\"{}\"] below [patient]; stylet mesh and info: --skip \"{}\")", name,
                      name);
 }
 

@@ -11,12 +11,13 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
-/// Local nodes of the eight parts, positive as their parent is: 0 … 3 its corners, 4 … 9 the middles of kEdges.
-/// The octahedron's diagonal joins the middles of the edges 02 and 13.
+/// Local numbers of the corners of the eight parts: 0 … 3 are the corners of the parent, 4 … 9 the middles of kEdges.
+/// The order makes the volume of each part positive if that of the parent is. The diagonal of the octahedron joins the
+/// middles of the edges 02 and 13.
 constexpr std::array<std::array<int, 4>, 8> kParts{
     {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3}, {4, 5, 6, 8}, {4, 7, 5, 8}, {5, 9, 6, 8}, {5, 7, 9, 8}}};
 
-/// Barycentric coordinates in the parent of a part's corners (4 × 4, one column each).
+/// Barycentric coordinates of a part's corners in the parent (4 × 4, one column each).
 Eigen::Matrix4d corners_of(const std::array<int, 4>& part) {
   Eigen::Matrix4d corners = Eigen::Matrix4d::Zero();
   for (int i = 0; i < 4; ++i) {

@@ -11,7 +11,8 @@ namespace stylet {
 
 namespace {
 
-/// A prism with corners a above corners b, as three tetrahedra.
+/// Adds a prism as three tetrahedra. The corners a are on one of its triangles, the corners b on the other, in the same
+/// order.
 void add_prism(const std::array<Vec4, 3>& a, const std::array<Vec4, 3>& b, std::vector<TetPart>& parts) {
   TetPart part;
   part << a[0], a[1], a[2], b[2];
@@ -22,7 +23,8 @@ void add_prism(const std::array<Vec4, 3>& a, const std::array<Vec4, 3>& b, std::
   parts.push_back(part);
 }
 
-/// What of `whole` lies where the function is at most `level`. @param values of the function at whole's corners
+/// Adds the part of `whole` in which the function is at most `level`. @param values of the function at the corners of
+/// `whole`
 void add_below(const TetPart& whole, const Vec4& values, double level, std::vector<TetPart>& parts) {
   std::array<int, 4> order{0, 1, 2, 3};
   std::sort(order.begin(), order.end(), [&](int i, int j) { return values[i] < values[j]; });

@@ -14,7 +14,7 @@ Topology::Topology(const TetMesh& mesh) {
     if (p.key != q.key) continue;
     neighbour[p.tet][p.local] = q.tet;
     neighbour[q.tet][q.local] = p.tet;
-    ++i;  // a checked mesh has at most two sides to a face
+    ++i;  // in a checked mesh, a face has at most two sides
   }
 
   for (Index t = 0; t < mesh.tet_count(); ++t) {

@@ -11,7 +11,7 @@ namespace stylet::meshing {
 
 namespace {
 
-constexpr double kOffsetRoom = 4.0;  // [mm] surfaces may be offset by up to this much
+constexpr double kOffsetRoom = 4.0;  // [mm] largest offset of a surface for which the boxes leave room
 
 }  // namespace
 
@@ -41,7 +41,7 @@ int priority(std::string_view c) {
                                                    "subcutaneous_fat"};
   if (c == "body") return static_cast<int>(order.size());
   const auto it = std::find(order.begin(), order.end(), c);
-  // Structures the user named himself come after the known organs.
+  // Regions that the user named come after the known organs.
   return static_cast<int>((it == order.end() ? std::find(order.begin(), order.end(), "") : it) - order.begin());
 }
 
@@ -112,7 +112,7 @@ double Anatomy::interface_distance(int a, int b, const Vec3& p) const {
 }
 
 Vec3 Anatomy::project(int a, int b, Vec3 p) const {
-  constexpr double kStep = 0.2;  // [mm] for the gradient: below that the grid's own kinks show
+  constexpr double kStep = 0.2;  // [mm] step for the gradient; with a smaller one, kinks of the grid would matter
   for (int i = 0; i < 3; ++i) {
     const double d = interface_distance(a, b, p);
     if (std::abs(d) < 1e-4) break;
@@ -158,7 +158,7 @@ const Structure* Anatomy::find(std::string_view name) const {
 
 namespace {
 
-/// Offset at which the shape's volume is `volume` [mm³], by bisection within ± 3 mm.
+/// Offset with which the shape has a given volume [mm³], found by bisection within ± 3 mm; 0 when there is none.
 double offset_for_volume(const Shape& shape, double volume) {
   double low = -std::min(3.0, 0.9 * shape.inner_radius());
   double high = 3.0;
@@ -170,8 +170,8 @@ double offset_for_volume(const Shape& shape, double volume) {
   return 0.5 * (low + high);
 }
 
-/// Whether it is no contradiction that one structure is drawn within another: anything lies in the body and in fat, the
-/// urethra and the zones lie in the gland, the lumen in the rectum, and a band ends in what it ties.
+/// Whether an overlap of two structures is normal: anything may lie in the body, in a band or in fat, urethra and zones
+/// lie in the gland, and the lumen lies in the rectum.
 bool belongs_inside(const Structure& inner, const Structure& outer) {
   return outer.name == "body" || outer.name == "band" || outer.name.ends_with("_fat") ||
          (outer.target && (inner.target || inner.name == "urethra")) ||
@@ -188,7 +188,7 @@ void settle_overlaps(Anatomy& a) {
     layer.offset = offset_for_volume(*layer.solid, volume);
     if (layer.members.size() == 1) a.structures[layer.members[0]].offset = layer.offset;
   }
-  // Share of each solid that structures of higher priority take, counted on its own grid.
+  // For each solid, compute the share that structures of higher priority take, on the solid's own grid.
   for (std::size_t l = 0; l < a.layers.size(); ++l) {
     const Layer& layer = a.layers[l];
     const auto* grid = dynamic_cast<const GridShape*>(layer.solid.get());
@@ -232,8 +232,8 @@ void settle_overlaps(Anatomy& a) {
       const double smaller = std::min(a.structures[h].input_volume, layer.solid->volume(layer.offset)) / 1000;
       if (belongs_inside(a.structures[h], a.structures[layer.members[0]])) continue;
       if (!(cc > 0.01 * smaller) || cc < 0.005) continue;
-      a.notes.push_back(fmt::format("'{}' and '{}' overlap by {:.2f} cc; it is meshed as '{}'", a.structures[h].name,
-                                    name, cc, a.structures[h].name));
+      a.notes.push_back(fmt::format("The structures '{}' and '{}' overlap by {:.2f} cc; the overlap is meshed as '{}'.",
+                                    a.structures[h].name, name, cc, a.structures[h].name));
     }
   }
 }

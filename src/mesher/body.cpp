@@ -10,11 +10,11 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kKept = 100.0;     // [mm] around all other structures
-constexpr double kWorthIt = 50.0;   // [mm] less than this beyond that is kept as well
-constexpr double kRounding = 15.0;  // [mm]
+constexpr double kKept = 100.0;     // [mm] margin around all other structures that is kept
+constexpr double kWorthIt = 50.0;   // [mm] cropping must remove more than this beyond the margin
+constexpr double kRounding = 15.0;  // [mm] radius of rounded edges
 
-/// Keeps the largest piece and those that hold points of other structures.
+/// Keeps the largest piece and pieces that contain points of other structures.
 double drop_limbs(GridShape& body, Anatomy& anatomy) {
   const Islands islands = find_islands(body);
   if (islands.volume.size() < 2) return 1;
@@ -31,8 +31,9 @@ double drop_limbs(GridShape& body, Anatomy& anatomy) {
   }
   const double fraction = keep_islands(body, islands, keep);
   if (fraction < 1) {
-    anatomy.notes.push_back(fmt::format(
-        "{:.1f} % of the body lies apart from the rest and holds no structure: left out", 100 * (1 - fraction)));
+    anatomy.notes.push_back(
+        fmt::format("{:.1f} % of the body is left out, since it lies apart from the rest and contains no structure.",
+                    100 * (1 - fraction)));
   }
   return fraction;
 }
@@ -83,9 +84,8 @@ double trim_body(GridShape& body, Anatomy& anatomy) {
       redistance(body);
       fraction = body.volume(0) / before;
       anatomy.notes.push_back(
-          fmt::format("the body was cropped to {:.0f} mm around the other structures: {:.0f} % of it is "
-                      "meshed",
-                      kKept, 100 * fraction));
+          fmt::format("The body was cropped to {:.0f} mm around the other structures; {:.0f} % of it is meshed.", kKept,
+                      100 * fraction));
     }
   }
   fraction *= drop_limbs(body, anatomy);

@@ -5,10 +5,10 @@
 
 namespace stylet::meshing {
 
-/// Makes a body of the input fit to be meshed: crops what lies far from all other structures and rounds its edges (the
-/// first and last slice cut it off flat; refinement would not end along such edges). Pieces that hold no other
-/// structure, such as an arm beside the trunk, are left out. Notes what was done.
-/// @return volume left, as a fraction of the volume before, not counting the rounding
+/// Prepares a body of the input for meshing. It crops parts far away from all other structures, leaves out pieces that
+/// contain no other structure, such as an arm beside the trunk, and rounds the edges where the first and last slice cut
+/// the body off; along such edges refinement would not end. Adds notes about what was done.
+/// @return volume left / volume before, apart from the rounding
 double trim_body(GridShape& body, Anatomy& anatomy);
 
 }  // namespace stylet::meshing

@@ -15,8 +15,8 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-// Douglas & Peucker 1973, started from the two points of the closed curve that lie farthest apart (found by two
-// sweeps), with an explicit stack so that a contour of any length is safe.
+// Douglas & Peucker 1973, starting from the two points of the closed curve that are farthest apart (found by two
+// sweeps). An explicit stack allows contours of any length.
 Contour cull(const Contour& contour, double tolerance_mm) {
   const std::vector<Vec3>& p = contour.points;
   const std::size_t n = p.size();
@@ -56,7 +56,7 @@ Contour cull(const Contour& contour, double tolerance_mm) {
   for (std::size_t i = 0; i < n; ++i) {
     if (keep[i]) culled.points.push_back(p[i]);
   }
-  // A sliver thinner than the tolerance must stay a polygon.
+  // A sliver thinner than the tolerance must remain a polygon.
   return culled.points.size() >= 3 ? culled : contour;
 }
 

@@ -10,7 +10,7 @@ namespace stylet::meshing {
 double tet_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b;
   if (!(ab.cross(ac).dot(ad) > 0)) return 0;
-  // Outward face normals; the angle between two faces is π − angle between their normals.
+  // Outward face normals. The angle between two faces is π − the angle between their normals.
   const std::array<Vec3, 4> n{bc.cross(bd).normalized(), ad.cross(ac).normalized(), ab.cross(ad).normalized(),
                               ac.cross(ab).normalized()};
   double low = 1, high = -1;

@@ -8,9 +8,9 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kGoodError = 0.015;     // good enough to stop
-constexpr double kLargestError = 0.03;   // promised
-constexpr double kLargestScale = 150;    // [mm] beyond this no element grows any more
+constexpr double kGoodError = 0.015;     // relative error of the number of nodes with which the search ends
+constexpr double kLargestError = 0.03;   // largest relative error that is accepted
+constexpr double kLargestScale = 150;    // [mm] a larger scale has no effect
 constexpr double kSmallestScale = 0.05;  // [mm]
 
 struct Trial {
@@ -18,10 +18,10 @@ struct Trial {
   double y;  // log (nodes / wanted)
 };
 
-/// Next log scale to try.
+/// The next log scale to try.
 double next(const std::vector<Trial>& trials, int round) {
-  const Trial* above = nullptr;  // too many nodes, largest such scale
-  const Trial* below = nullptr;  // too few nodes, smallest such scale
+  const Trial* above = nullptr;  // trial with too many nodes and the largest scale
+  const Trial* below = nullptr;  // trial with too few nodes and the smallest scale
   for (const Trial& t : trials) {
     if (t.y > 0 && (above == nullptr || t.x > above->x)) above = &t;
     if (t.y <= 0 && (below == nullptr || t.x < below->x)) below = &t;
@@ -33,16 +33,16 @@ double next(const std::vector<Trial>& trials, int round) {
       const Trial& before = trials[trials.size() - 2];
       if (std::abs(last.x - before.x) > 1e-6) slope = std::clamp((last.y - before.y) / (last.x - before.x), -4.0, -0.7);
     }
-    // A little further than the secant says, so that the answer gets enclosed.
+    // Step a little further than the secant, so that the solution gets enclosed.
     return last.x - 1.15 * last.y / slope;
   }
   const double width = below->x - above->x;
   if (width > 0.004) {
     const double t = above->y / (above->y - below->y);
-    // Plain interpolation creeps when the count has a step; every third trial halves.
+    // Interpolation converges slowly when the function has a step, so every third trial bisects.
     return above->x + width * (round % 3 == 2 ? 0.5 : std::clamp(t, 0.1, 0.9));
   }
-  // Noise: scales on either side of the step, further and further out.
+  // Where noise or a step is in the way, try scales on either side, further out each time.
   const int k = round / 2 + 1;
   return 0.5 * (above->x + below->x) + (round % 2 == 0 ? 0.0037 : -0.0037) * k;
 }
@@ -51,7 +51,7 @@ double next(const std::vector<Trial>& trials, int round) {
 
 Result<SizedMesh> find_element_size(const std::function<TetrahedraliserInput(double)>& input_for, Index wanted,
                                     double guess, const Progress& progress) {
-  // Small meshes are noisy and cheap, large ones neither.
+  // Small meshes are noisy and cheap; large meshes are neither.
   const int most = std::clamp(100000 / std::max(wanted, 1), 10, 60);
   SizedMesh best;
   double best_error = HUGE_VAL;
@@ -84,12 +84,12 @@ Result<SizedMesh> find_element_size(const std::function<TetrahedraliserInput(dou
     if (fewest > wanted) {
       return input_error("number of nodes",
                          fmt::format("{} wanted, but this anatomy needs about {:.0f}", wanted, fewest),
-                         fmt::format("ask for {:.0f} or more, or mesh fewer structures", 1.1 * fewest));
+                         fmt::format("Ask for {:.0f} or more, or mesh fewer structures", 1.1 * fewest));
     }
     return failure(
         "mesher",
-        fmt::format("no element size gives {} nodes; the nearest gives {:.1f} % off", wanted, 100 * best_error),
-        "ask for a few more or fewer nodes");
+        fmt::format("no element size gives {} nodes; the nearest number differs by {:.1f} %", wanted, 100 * best_error),
+        "Ask for a few more or fewer nodes");
   }
   return best;
 }

@@ -13,9 +13,9 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kWholeGland = 0.85;  // zones that make up this much of the gland divide all of it
+constexpr double kWholeGland = 0.85;  // if zones make up this share of the gland, they replace it
 
-/// The structure of one ROI.
+/// Makes the structure of one ROI.
 Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame, const MeshOptions& options,
                                Anatomy& anatomy) {
   const Roi& roi = *choice.roi;
@@ -33,8 +33,8 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
   const std::vector<Slice> original = to_slices(roi.contours, frame);
   std::vector<Slice> slices = to_slices(culled, frame);
   if (slices.size() < 2) {
-    return input_error(where, fmt::format("contours on {} slice; a solid needs at least two", slices.size()),
-                       "Contour it on more slices." + or_skip(roi.name));
+    return input_error(where, fmt::format("it has contours on {} slice, expected at least 2", slices.size()),
+                       "Contour it on more slices" + or_skip(roi.name));
   }
   const std::vector<double> thickness = slice_thickness(original);
   double largest = 0;
@@ -43,10 +43,10 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
     largest = std::max(largest, original[i].area());
   }
   if (!(s.input_volume > 1.0)) {
-    return input_error(where, fmt::format("the contours enclose {:.3g} mm³", s.input_volume),
-                       "Check the units (mm expected) and the contours." + or_skip(roi.name));
+    return input_error(where, fmt::format("the contours enclose {:.3g} mm³, expected more than 1 mm³", s.input_volume),
+                       "Check the contours and their units (mm)" + or_skip(roi.name));
   }
-  // Grid fine enough for the structure, within bounds of memory; smoothing well below its thickness.
+  // The grid must be fine enough for the structure but fit into memory; smoothing must be well below its thickness.
   const double radius = std::sqrt(largest / std::numbers::pi);
   if (s.name == "body") {
     const auto grid = interpolate_slices(slices, frame, std::clamp(radius / 20, 1.0, 4.0), 0);
@@ -56,29 +56,28 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
     const auto grid =
         interpolate_slices(slices, frame, std::clamp(radius / 20, 0.5, 3.0), std::min(1.2, 0.08 * radius));
     if (drop_small_islands(*grid, kSmallIsland) > 0) {
-      anatomy.notes.push_back(fmt::format("small pieces of '{}' apart from the rest were left out", roi.name));
+      anatomy.notes.push_back(fmt::format("Small pieces of '{}' apart from the rest were left out.", roi.name));
     }
     s.shape = grid;
   }
   if (!(s.shape->inner_radius() > 0)) {
-    return input_error(
-        where, "the contours enclose nothing at the resolution of the mesher (0.5 mm)",
-        "Look at them: are they thinner than that, or do they cancel each other out?" + or_skip(roi.name));
+    return input_error(where, "the contours enclose nothing at the resolution of the mesher (0.5 mm)",
+                       "Check whether they are thinner than that or cancel each other out" + or_skip(roi.name));
   }
   return s;
 }
 
-/// Puts a second ROI of the same region to the first.
+/// Unites a second ROI of the same region with the first.
 void join(Structure& first, const Structure& second, std::vector<std::string>& notes) {
   const auto united = unite(static_cast<const GridShape&>(*first.shape), static_cast<const GridShape&>(*second.shape));
   const double overlapping = united->volume(0) / (first.shape->volume(0) + second.shape->volume(0));
   first.input_volume = (first.input_volume + second.input_volume) * overlapping;
   first.boundary.insert(first.boundary.end(), second.boundary.begin(), second.boundary.end());
   first.shape = united;
-  notes.push_back(fmt::format("more than one ROI is named as {}: meshed as their union", first.name));
+  notes.push_back(fmt::format("More than one ROI is named as {}; their union is meshed.", first.name));
 }
 
-/// Zones share the gland without gaps: they become one layer. A prostate that they divide between them is dropped.
+/// Puts the zones into one layer, which they share without gaps. A prostate that consists of them is dropped.
 void join_zones(Anatomy& anatomy) {
   Anatomy joined = anatomy;
   joined.structures.clear();
@@ -94,7 +93,8 @@ void join_zones(Anatomy& anatomy) {
   if (members.size() < 2) return;
   const Structure* whole = anatomy.find("prostate");
   const bool drop = whole != nullptr && zones > kWholeGland * whole->input_volume;
-  if (drop) joined.notes.push_back("the zones make up the prostate: no region of its own is left for it");
+  if (drop)
+    joined.notes.push_back("The zones make up the prostate, so the mesh has no region 'prostate' besides them.");
   bool placed = false;
   for (const Structure& s : anatomy.structures) {
     const bool zone = std::any_of(members.begin(), members.end(), [&](const Structure& m) { return m.name == s.name; });
@@ -124,7 +124,8 @@ Result<Anatomy> anatomy_of(const ContourSet& set, const MeshOptions& options, co
   anatomy.source = set.source.empty() ? "contours" : set.source;
   anatomy.notes = set.notes;
   if (set.rois.empty()) {
-    return input_error(anatomy.source, "the contour set has no structures", "export it with the structures' contours");
+    return input_error(anatomy.source, "the contour set has no structures",
+                       "Export it with the contours of the structures");
   }
   auto chosen = choose_rois(set, options, anatomy.notes);
   if (!chosen) return chosen.error();
@@ -136,8 +137,8 @@ Result<Anatomy> anatomy_of(const ContourSet& set, const MeshOptions& options, co
         continue;
       }
       return input_error(fmt::format("{}, ROI '{}'", anatomy.source, c.roi->name),
-                         "a contour has fewer than three points or a point that is not a finite number",
-                         "Export the structure again." + or_skip(c.roi->name));
+                         "a contour has fewer than three points, or a point that is not a finite number",
+                         "Export the structure again" + or_skip(c.roi->name));
     }
     rois.push_back(c.roi);
   }

@@ -12,11 +12,11 @@
 namespace stylet::meshing {
 namespace {
 
-/// The image with its slice axis last: axis order, sizes and frame.
+/// The image with its slice axis last.
 struct Slices {
-  std::array<int, 3> axis{0, 1, 2};  ///< image axes used as u, v, n
-  std::array<int, 3> low{};          ///< first voxel of the part that is not background, with margin
-  std::array<int, 3> size{};         ///< voxels of that part
+  std::array<int, 3> axis{0, 1, 2};  ///< axes of the image used as u, v, n
+  std::array<int, 3> low{};          ///< first voxel of the part that is not background, including a margin
+  std::array<int, 3> size{};         ///< number of voxels of that part
   SliceFrame frame;
   Vec3 spacing;
 };
@@ -24,14 +24,17 @@ struct Slices {
 Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
   const std::size_t voxels = static_cast<std::size_t>(image.size[0]) * image.size[1] * image.size[2];
   if (voxels == 0 || image.labels.size() != voxels) {
-    return input_error(where, fmt::format("{} labels for {} voxels", image.labels.size(), voxels), "export it again");
+    return input_error(
+        where, fmt::format("it has {} labels for {} voxels, expected one label per voxel", image.labels.size(), voxels),
+        "Export it again");
   }
   if (!(image.spacing.minCoeff() > 0) || !image.spacing.allFinite() || !image.origin.allFinite() ||
       !((image.direction.transpose() * image.direction - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-3)) {
-    return input_error(where, "the image frame is not orthogonal with positive spacing", "resample the mask");
+    return input_error(where, "the axes of the image are not perpendicular, or its spacing is not positive",
+                       "Resample the mask on a rectangular grid");
   }
   Slices s;
-  // The slices lie across the axis of widest spacing; the last one when spacings are equal.
+  // Slices are perpendicular to the axis with the widest spacing, or to the last axis when spacings are equal.
   int n = 2;
   for (const int a : {0, 1}) {
     if (image.spacing[a] > 1.2 * image.spacing[n]) n = a;
@@ -52,9 +55,12 @@ Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
       }
     }
   }
-  if (high[0] < 0) return input_error(where, "every voxel is background", "choose a mask with a labelled structure");
+  if (high[0] < 0)
+    return input_error(where, "every voxel is background, expected a labelled structure",
+                       "Choose a mask with a labelled structure");
   if (high[n] == low[n]) {
-    return input_error(where, "the labels lie in one slice; a solid needs at least two", "segment more slices");
+    return input_error(where, "the labels lie in one slice, expected at least 2",
+                       "Segment the structures on more slices");
   }
   for (int a = 0; a < 3; ++a) {
     const int image_axis = s.axis[a];
@@ -68,7 +74,7 @@ Result<Slices> slices_of(const LabelImage& image, const std::string& where) {
   return s;
 }
 
-/// In-plane distance fields of all voxels for which `inside` holds.
+/// In-plane distance fields of the voxels for which `inside` holds.
 template <class Inside>
 SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside) {
   SliceFields f;
@@ -99,7 +105,7 @@ SliceFields fields_of(const LabelImage& image, const Slices& s, Inside&& inside)
   return f;
 }
 
-/// Where the smoothed surface cuts the pixel rows and columns of the slices.
+/// Points where the smoothed surface crosses pixel rows and columns of the slices.
 std::vector<Vec3> boundary_points(const GridShape& g, double offset, const SliceFields& f) {
   std::vector<Vec3> points;
   for (std::size_t s = 0; s < f.heights.size(); ++s) {
@@ -121,7 +127,7 @@ std::vector<Vec3> boundary_points(const GridShape& g, double offset, const Slice
   return points;
 }
 
-/// Removes the pieces of the common solid that no member has kept.
+/// Removes the pieces of the common solid in which no member has a part.
 void drop_unclaimed_islands(GridShape& solid, const std::vector<Structure>& members) {
   const Islands islands = find_islands(solid);
   std::vector<bool> keep(islands.volume.size(), false);
@@ -158,11 +164,12 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   const bool named = choice->has_target;
   if (!named) {
     if (!options.regions.empty()) {
-      return input_error(anatomy.source,
-                         "none of the regions named is a target (prostate, a prostate zone, CTV, PTV, GTV)",
-                         "name the label of the gland 'prostate', its zones 'peripheral_zone' and 'transition_zone'");
+      return input_error(
+          anatomy.source, "none of the assigned regions is a target (prostate, a prostate zone, CTV, PTV, GTV)",
+          "Name the label of the gland 'prostate', or its zones 'peripheral_zone' and 'transition_zone'");
     }
-    anatomy.notes.push_back("no label is named as prostate or prostate zone: all labels together count as the target");
+    anatomy.notes.push_back(
+        "No label is named as prostate or prostate zone, so all labels together count as the target.");
   }
   anatomy.notes.insert(anatomy.notes.end(), choice->notes.begin(), choice->notes.end());
 
@@ -172,7 +179,8 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     labels[use.region].insert(use.number);
   }
   if (labels.empty())
-    return input_error(anatomy.source, "every label is left out", "take one of them out of [patient] skip");
+    return input_error(anatomy.source, "every label is left out, expected at least one in the mesh",
+                       "Remove one of them from [patient] skip");
   const double step = std::max(0.8 * std::min(s.spacing[0], s.spacing[1]), std::min(s.spacing[2], 1.0));
   const double sigma = 0.9 * std::max(s.spacing[0], s.spacing[1]);
   const auto volume_of = [&](const std::set<int>& set) {
@@ -180,8 +188,8 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     for (const int l : set) count += voxels[l];
     return static_cast<double>(count) * image.spacing.prod();
   };
-  // All structures together are one solid without gaps, divided among them; the body of the input, if any, is a solid
-  // of its own that holds the others.
+  // All structures together form one solid without gaps, divided among them. If the input has a body, it is a solid of
+  // its own that contains the others.
   std::vector<Structure> members;
   std::set<int> organs;
   std::size_t done = 0;
@@ -193,11 +201,11 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
     const bool islands = drop_small_islands(*shape, kSmallIsland) > 0;
     if (!(shape->inner_radius() > 0.5 * step)) {
       anatomy.notes.push_back(
-          fmt::format("region '{}' has only {:.2f} cc and is nowhere thicker than a voxel: passed over", name,
-                      volume_of(set) / 1000));
+          fmt::format("The region '{}' has only {:.2f} cc and is nowhere thicker than a voxel, so it is left out.",
+                      name, volume_of(set) / 1000));
       continue;
     }
-    if (islands) anatomy.notes.push_back(fmt::format("small pieces of '{}' apart from the rest were left out", name));
+    if (islands) anatomy.notes.push_back(fmt::format("Small pieces of '{}' apart from the rest were left out.", name));
     organs.insert(set.begin(), set.end());
     Structure structure;
     structure.name = name;
@@ -211,7 +219,7 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
   drop_unclaimed_islands(*solid, members);
   anatomy.add(solid, std::move(members));
   if (labels.contains("body")) {
-    // Labels that are left out are tissue of the body: no part of a patient is empty.
+    // Labels that are left out are tissue of the body, because no part of a patient is empty.
     const SliceFields whole = fields_of(image, s, [](int l) { return l != 0; });
     auto shape = interpolate_fields(whole, std::max(step, 2.0), sigma);
     Structure body;

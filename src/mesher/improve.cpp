@@ -27,7 +27,7 @@ bool help(EditableMesh& m, LocalChanges& change, Index t) {
 }  // namespace
 
 void improve(EditableMesh& m, const Anatomy& anatomy, double goal) {
-  // Surfaces give way a little more to what could not be helped otherwise.
+  // The slack of surfaces grows for elements that could not be improved otherwise.
   for (const double slack : {0.05, 0.1, 0.15}) {
     LocalChanges change(m, anatomy, slack);
     for (int round = 0; round < kMostRounds; ++round) {

@@ -32,7 +32,7 @@ std::vector<Candidate> candidates_of(const LabelImage& image) {
   return all;
 }
 
-/// Where the user names none, every label is a region, under the name that the file gives it or its number.
+/// Used where the user assigns no region: every other label becomes a region with its name in the file or its number.
 void keep_the_others(std::vector<StructureUse>& uses, const std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (!candidates[i].nothing.empty() || !uses[i].region.empty() || uses[i].why != kNotRecognised) continue;
@@ -42,8 +42,8 @@ void keep_the_others(std::vector<StructureUse>& uses, const std::vector<Candidat
   }
 }
 
-/// Areas [mm²] over which labels that matter touch: (label, neighbour's label) → area. The neighbour of the image's
-/// edge is background.
+/// Areas [mm²] of contact of some labels: (label, neighbour's label) → area. Beyond the edge of the image is
+/// background.
 std::map<std::pair<int, int>, double> contact_areas(const LabelImage& image, const std::set<int>& labels) {
   std::map<std::pair<int, int>, double> areas;
   std::vector<bool> matters(std::size_t{1} << 16);
@@ -72,8 +72,8 @@ std::map<std::pair<int, int>, double> contact_areas(const LabelImage& image, con
   return areas;
 }
 
-/// The region of the target in which a label lies: of all that it touches, more is target than anything else, by area,
-/// and most of that is this region. Empty where it does not.
+/// The region of the target in which a label lies: by area, it touches more of the target than of anything else, and of
+/// the target mostly this region. Empty where it does not lie in the target.
 std::string region_around(int label, const std::map<std::pair<int, int>, double>& areas,
                           const std::map<int, std::string>& target) {
   std::map<std::string, double> within;
@@ -89,8 +89,9 @@ std::string region_around(int label, const std::map<std::pair<int, int>, double>
   return std::max_element(within.begin(), within.end(), less)->first;
 }
 
-/// A voxel has one label only: where a planning volume is drawn within the gland, its voxels are the gland's, and left
-/// out they would be a hole in it. So it becomes the region of the target in which it lies; then what lies in it does.
+/// A voxel has only one label: the voxels of a planning volume drawn within the gland belong to the gland, and without
+/// them the gland would have a hole. So the planning volume gets the region of the target in which it lies; repeated
+/// for planning volumes that lie in such a one.
 void fill_the_gland(std::vector<StructureUse>& uses, const LabelImage& image) {
   std::set<int> undecided;
   std::map<int, std::string> target;  // label → region
@@ -107,14 +108,14 @@ void fill_the_gland(std::vector<StructureUse>& uses, const LabelImage& image) {
       const std::string region = region_around(use.number, areas, target);
       if (region.empty()) continue;
       use.region = target[use.number] = region;
-      use.why = fmt::format("taken as part of {}, in which it lies: left out as a planning volume it would be a hole",
-                            region);
+      use.why = fmt::format(
+          "taken as part of {}, in which it lies, since without this planning volume there would be a hole", region);
       undecided.erase(use.number);
     }
   }
 }
 
-/// All of the gland as one region; of a mask without a target everything is the gland.
+/// Makes the whole gland one region and leaves out the rest. In a mask without a target, everything is the gland.
 void keep_gland_labels(std::vector<StructureUse>& uses) {
   const bool has_target =
       std::any_of(uses.begin(), uses.end(), [](const auto& u) { return is_target_region(u.region); });

@@ -8,10 +8,9 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kGain = 1e-4;  // smaller improvements are not worth a change, and might go round in circles
+constexpr double kGain = 1e-4;  // smaller improvements are not worth a change, and might repeat for ever
 
-/// Best triangulation of a polygon between two apexes (Klincsek 1980): maximises the worst tetrahedron.
-/// @param p ring nodes, counter-clockwise seen from `top`
+/// The triangulation of a ring of nodes between two apexes with the best worst tetrahedron (Klincsek 1980).
 struct Fan {
   double worst = 0;
   std::vector<std::array<Index, 3>> triangles;
@@ -90,7 +89,7 @@ bool LocalChanges::move(Index node) {
   const double before = mesh_.quality_around(node);
   double best = before;
   Vec3 at = start;
-  // Pattern search: twenty-six directions, halving the step whenever none of them helps.
+  // Pattern search in 26 directions; the step is halved when no direction helps.
   for (double step = 0.3 * length; step > 0.015 * length;) {
     Vec3 chosen = at;
     for (int i = -1; i <= 1; ++i) {
@@ -150,7 +149,7 @@ bool LocalChanges::remove_edge(Index a, Index b) {
     }
   }
   std::vector<Index> ring;
-  std::vector<int> label;  // of the link that leaves ring[i]; 0 = outside
+  std::vector<int> label;  // label of the link that starts at ring[i]; 0 = outside
   Index at = first;
   do {
     ring.push_back(at);
@@ -163,7 +162,7 @@ bool LocalChanges::remove_edge(Index a, Index b) {
     at = it->second.first;
   } while (at != first && ring.size() <= dead.size() + 1);
   if (ring.size() != dead.size() + (open ? 1 : 0)) return false;
-  // Sectors of one region each.
+  // Divide the ring into sectors, one per region.
   const int n = static_cast<int>(ring.size());
   std::vector<int> starts;
   for (int i = 0; i < n; ++i) {
@@ -183,7 +182,8 @@ bool LocalChanges::remove_edge(Index a, Index b) {
       }
       sectors.emplace_back(std::move(chain), label[from]);
     }
-    // The surface's diagonal changes from ab to cd: it must lie about as near to the surface, and not be in it already.
+    // The diagonal on the surface changes from ab to cd. The new one must be about as near to the surface, and must not
+    // already be an edge of it.
     const Index c = ring[starts[0]], d = ring[starts[1]];
     std::vector<int> pair{std::min(sectors[0].second, sectors[1].second),
                           std::max(sectors[0].second, sectors[1].second)};
@@ -207,7 +207,7 @@ bool LocalChanges::remove_edge(Index a, Index b) {
       born.push_back({{t[0], t[2], t[1], a}, region});
     }
   }
-  // Every node must keep a tetrahedron.
+  // Every node must still belong to a tetrahedron.
   for (const Index t : dead) {
     for (const Index v : mesh_.tets[t].nodes) {
       const bool used = std::any_of(born.begin(), born.end(), [&](const EditableMesh::Tet& x) {
@@ -233,7 +233,7 @@ bool LocalChanges::remove_face(Index tet, int local) {
   }
   const double before = std::min(mesh_.quality(tet), mesh_.quality(other));
   const int region = mesh_.tets[tet].label;
-  // f is counter-clockwise seen from b, so (a, b, f0, f1) is positive.
+  // f is counter-clockwise seen from b, so (a, b, f0, f1) has positive volume.
   std::vector<EditableMesh::Tet> born;
   for (int i = 0; i < 3; ++i) {
     born.push_back({{a, b, f[i], f[(i + 1) % 3]}, region});

@@ -6,21 +6,21 @@
 
 namespace stylet::meshing {
 
-/// Changes of a few elements that raise the worst quality among them (Freitag & Ollivier-Gooch 1997; Klingner &
-/// Shewchuk 2008). Each returns true when it changed the mesh. Surfaces between regions stay where they are, within
+/// Local changes of a few elements that improve the worst quality among them (Freitag & Ollivier-Gooch 1997; Klingner &
+/// Shewchuk 2008). Each returns true when it has changed the mesh. Surfaces between regions keep their places within
 /// `slack`.
 class LocalChanges {
  public:
-  /// @param slack how far a surface node may leave its surface, times the shortest edge at the node
+  /// @param slack largest distance between a surface node and its surface / shortest edge at the node
   LocalChanges(EditableMesh& mesh, const Anatomy& anatomy, double slack)
       : mesh_(mesh), anatomy_(anatomy), slack_(slack) {}
 
-  /// Moves a node to where its worst tetrahedron is best; surface nodes along their surfaces.
+  /// Moves a node to where the worst tetrahedron around it is best; surface nodes move along their surfaces.
   bool move(Index node);
-  /// Replaces the tetrahedra around an edge by the best triangulation of the ring around it. Edges on the surface
-  /// between two regions are swapped where the surface is flat enough.
+  /// Replaces the tetrahedra around an edge by the best triangulation of the ring of nodes around it. An edge on the
+  /// surface between two regions is swapped where the surface is flat enough.
   bool remove_edge(Index a, Index b);
-  /// Replaces two tetrahedra by three around the edge between their apexes.
+  /// Replaces two tetrahedra with a common face by three around the line between their apexes.
   bool remove_face(Index tet, int local);
 
  private:
@@ -32,7 +32,7 @@ class LocalChanges {
   double slack_;
 };
 
-/// Works through the worst tetrahedra until all have `goal` quality or no change helps any more.
+/// Improves the worst tetrahedra first, until all have at least the quality `goal` or no change helps.
 void improve(EditableMesh& mesh, const Anatomy& anatomy, double goal);
 
 }  // namespace stylet::meshing

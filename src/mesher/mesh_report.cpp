@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kVolumeTolerance = 0.08;
 
-/// Points of the structure's own boundary where it is also the region's: not those inside a structure of higher
+/// Points of the structure's boundary that are also on the boundary of its region, not inside a structure of higher
 /// priority.
 std::vector<Vec3> visible_boundary(const Anatomy& a, const Structure& s) {
   std::vector<Vec3> points;
@@ -57,8 +57,9 @@ MeshReport report_on(const TetMesh& mesh, const Anatomy& a) {
     }
     const double error = s.input_volume > 0 ? region.volume_cc / region.input_volume_cc - 1 : 0;
     if (std::abs(error) > kVolumeTolerance) {
-      r.notes.push_back(
-          fmt::format("region '{}' has {:+.0f} % of its input's volume: too few nodes for it", s.name, 100 * error));
+      r.notes.push_back(fmt::format(
+          "The volume of the region '{}' differs by {:+.0f} % from its input: the mesh has too few nodes for it.",
+          s.name, 100 * error));
     }
     r.regions.push_back(std::move(region));
   }

@@ -5,7 +5,7 @@
 
 namespace stylet::meshing {
 
-/// Quality of the mesh and how well it reproduces its input; `seconds` is left to the caller.
+/// Report on the quality of the mesh and how well it reproduces its input. The caller sets `seconds`.
 MeshReport report_on(const TetMesh& mesh, const Anatomy& anatomy);
 
 }  // namespace stylet::meshing

@@ -20,14 +20,14 @@ namespace meshing {
 namespace {
 
 constexpr Index kStandardNodes = 3000;
-constexpr Index kPaperNodes = 570;     // Goksel et al. 2005
-constexpr Index kMostNodes = 2000000;  // memory: about 2 kB each while meshing
-constexpr double kGoodNodeError = 0.024;
-constexpr double kLargestNodeError = 0.03;
+constexpr Index kPaperNodes = 570;          // Goksel et al. 2005
+constexpr Index kMostNodes = 2000000;       // limited by memory: meshing takes about 2 kB per node
+constexpr double kGoodNodeError = 0.024;    // relative error of the number of nodes that ends the attempts
+constexpr double kLargestNodeError = 0.03;  // largest relative error of a result
 constexpr int kMostAttempts = 4;
-constexpr double kNotedVolume = 1000;  // [mm³]
-constexpr double kSeedSpacing = 2.0;   // wanted edge lengths between the points refinement starts from
-constexpr double kQualityGoal = 1.6;   // dihedral angles 19.2° … 156° wherever they can be had
+constexpr double kNotedVolume = 1000;  // [mm³] a smaller loss of volume is not reported
+constexpr double kSeedSpacing = 2.0;   // distance of the seeds of refinement / wanted edge length
+constexpr double kQualityGoal = 1.6;   // means dihedral angles of 19.2° … 156°
 
 TetrahedraliserInput input_for(const Anatomy& a, const SizeField& size, double scale, Index nodes) {
   TetrahedraliserInput in;
@@ -41,15 +41,15 @@ TetrahedraliserInput input_for(const Anatomy& a, const SizeField& size, double s
   return in;
 }
 
-/// Lloyd rounds: many while they are cheap.
+/// Number of Lloyd rounds: many while they are cheap.
 int relaxation_rounds(Index nodes) { return std::clamp(60000 / nodes, 5, 20); }
 
-/// One way to a finished mesh.
+/// One attempt at a finished mesh.
 struct Attempt {
   RawMesh mesh;
-  Anatomy anatomy;        ///< with the offsets that met the volumes
-  double node_error = 0;  ///< relative
-  double quality = 0;     ///< of the worst element
+  Anatomy anatomy;        ///< with the offsets that meet the volumes
+  double node_error = 0;  ///< relative error of the number of nodes
+  double quality = 0;     ///< quality of the worst element
   [[nodiscard]] bool good() const { return node_error <= kGoodNodeError && quality >= 1; }
 };
 
@@ -67,7 +67,8 @@ Result<Attempt> attempt(const Anatomy& a, const SizeField& size, Index wanted, I
   const int body = 1 + static_cast<int>(a.find("body") - a.structures.data());
   const double dropped = drop_loose_pieces(raw, body);
   if (dropped > kNotedVolume) {
-    out.anatomy.notes.push_back(fmt::format("{:.1f} cc of body apart from the rest left out", dropped / 1000));
+    out.anatomy.notes.push_back(fmt::format(
+        "A part of the body of {:.1f} cc was left out, since it lies apart from the rest.", dropped / 1000));
   }
   EditableMesh editable(std::move(raw));
   improve(editable, out.anatomy, kQualityGoal);
@@ -79,8 +80,9 @@ Result<Attempt> attempt(const Anatomy& a, const SizeField& size, Index wanted, I
   return out;
 }
 
-/// The first attempt with the wanted number of nodes and all angles acceptable, or else the best of a few. Relaxation
-/// and loose pieces cost a few nodes: the next attempt aims as much higher; a bad element goes away with another size.
+/// The first attempt with the wanted number of nodes and acceptable angles, else the best of a few. Relaxation and
+/// loose pieces cost a few nodes, so the next attempt aims higher by as many; another element size may avoid a bad
+/// element.
 Result<Attempt> best_attempt(const Anatomy& a, const SizeField& size, Index wanted, const Progress& progress) {
   Attempt best;
   best.node_error = HUGE_VAL;
@@ -100,13 +102,14 @@ Result<Attempt> best_attempt(const Anatomy& a, const SizeField& size, Index want
     aim = static_cast<Index>(std::lround(aim * std::clamp(wanted / nodes, 0.9, 1.1) * other_size));
   }
   if (best.node_error > kLargestNodeError) {
-    return failure(a.source, fmt::format("{} nodes wanted, the nearest mesh has {}", wanted, best.mesh.nodes.size()),
-                   "ask for a few more or fewer nodes");
+    return failure(a.source,
+                   fmt::format("{} nodes are wanted, but the nearest mesh has {}", wanted, best.mesh.nodes.size()),
+                   "Ask for a few more or fewer nodes");
   }
   return best;
 }
 
-/// Regions in order of priority; an error where one of the input has got lost.
+/// Makes the mesh with its regions in order of priority; fails when a region of the input has no element.
 Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
   TetMesh m;
   m.nodes = raw.nodes;
@@ -121,11 +124,12 @@ Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
       } else if (!structure.generated) {
         return input_error(
             fmt::format("{}, region '{}'", a.source, structure.name),
-            fmt::format("it has {:.3f} cc outside other structures and no element at {} nodes",
+            fmt::format("it has {:.3f} cc outside other structures, but no element in a mesh of {} nodes",
                         structure.input_volume / 1000, raw.nodes.size()),
-            "Ask for more nodes, or leave the structure out (skip below [patient]; stylet mesh: --skip).");
+            "Ask for more nodes, or leave the structure out (skip below [patient]; stylet mesh: --skip)");
       } else {
-        a.notes.push_back(fmt::format("the generated region '{}' found no room", structure.name));
+        a.notes.push_back(fmt::format("The mesh has no element in the region '{}', which was to be added to the input.",
+                                      structure.name));
       }
     }
   }
@@ -138,7 +142,7 @@ Result<MeshedAnatomy> mesh(Anatomy a, const MeshOptions& options, const Progress
   const Index wanted = options.nodes > 0 ? options.nodes : preset;
   if (options.nodes < 0 || wanted > kMostNodes) {
     return input_error("number of nodes", fmt::format("{}, expected 1 to {}", options.nodes, kMostNodes),
-                       "choose a number between, or 0 for the preset's own");
+                       "Choose a number in this range, or 0 for the default of the preset");
   }
   settle_overlaps(a);
   add_surroundings(a, options);

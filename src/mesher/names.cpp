@@ -35,7 +35,7 @@ std::vector<std::string> words_of(std::string_view name) {
 
 namespace {
 
-/// Letters and digits only, lower case: "Femoral Head_Lt" → "femoralheadlt". Umlauts and the like are kept as they are.
+/// Letters and digits of a name in lower case: "Femoral Head_Lt" → "femoralheadlt". Umlauts and accents are kept.
 std::string plain(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -50,8 +50,9 @@ struct Synonym {
   std::string_view canonical;
 };
 
-// Whole names only: "optBladder", "Prostate+5mm" or "Rectum_in_PTV" are planning helpers, not anatomy. Names after AAPM
-// TG-263 (Mayo et al. 2018), of the common planning systems, and in German, French, Italian and Spanish.
+// Synonyms are whole names: "optBladder", "Prostate+5mm" or "Rectum_in_PTV" are planning helpers, not anatomy. The
+// names are those of AAPM TG-263 (Mayo et al. 2018), of common planning systems, and German, French, Italian and
+// Spanish ones.
 constexpr std::array kSynonyms{Synonym{"prostate", "prostate"},
                                Synonym{"pros", "prostate"},
                                Synonym{"prost", "prostate"},
@@ -172,7 +173,7 @@ constexpr std::array kSynonyms{Synonym{"prostate", "prostate"},
                                Synonym{"svs", "seminal_vesicles"},
                                Synonym{"semves", "seminal_vesicles"}};
 
-/// "l", "lt", "left" before or after one of the names of the femoral head.
+/// A name of the femoral head with "l", "lt", "left" and the like before or after it.
 std::string femur(const std::string& p) {
   constexpr std::array<std::string_view, 15> bones{"femur",       "femoralhead", "femoralheads",   "femhead",
                                                    "femurhead",   "headfemur",   "femheadneck",    "femurheadneck",
@@ -199,7 +200,7 @@ std::string femur(const std::string& p) {
   return {};
 }
 
-/// A zone of the gland, also one half of it, as 3D Slicer's users and the coded terms of DICOM write it: "peripheral",
+/// A zone of the gland, or one half of it, as users of 3D Slicer and the coded terms of DICOM write it: "peripheral",
 /// "PZ_left", "Transition Zone", "Structure of peripheral zone of prostate", "AFS".
 std::string zone(std::string_view name) {
   constexpr std::array<std::string_view, 13> beside{"left", "right", "l",        "r",         "lt",        "rt",  "of",
@@ -226,19 +227,19 @@ std::string zone(std::string_view name) {
                                            {"periperalzone", "peripheral_zone"}}};
   std::string rest, before;
   for (const std::string& word : meshing::words_of(name)) {
-    // "gland" alone is no filler: the central gland is the transition zone.
+    // "gland" alone is not a filler word, because the central gland is the transition zone.
     const bool filler =
         std::find(beside.begin(), beside.end(), word) != beside.end() || (word == "gland" && before == "prostate");
     if (!filler) rest += word;
     before = word;
   }
-  if (rest.starts_with("prostate")) rest.erase(0, 8);  // "prostatepz", in one word
+  if (rest.starts_with("prostate")) rest.erase(0, 8);  // "prostatepz" in one word
   if (rest.ends_with("prostate")) rest.erase(rest.size() - 8);
   const auto* const found = std::find_if(zones.begin(), zones.end(), [&](const Synonym& s) { return s.plain == rest; });
   return found == zones.end() ? std::string{} : std::string(found->canonical);
 }
 
-/// "PTV", "PTV1", "PTV_7800", "CTV 78 Gy", "CTVprostate", "Target", "Target volume 1".
+/// A planning volume: "PTV", "PTV1", "PTV_7800", "CTV 78 Gy", "CTVprostate", "Target", "Target volume 1".
 std::string planning_volume(const std::string& p) {
   struct Word {
     std::string_view start, canonical;
@@ -263,7 +264,7 @@ std::string planning_volume(const std::string& p) {
 std::string canonical_region(std::string_view name) {
   const std::string p = plain(name);
   for (const Synonym& s : kSynonyms) {
-    // A canonical name is its own synonym.
+    // A canonical name is a synonym of itself.
     if (p == s.plain || name == s.canonical) return std::string(s.canonical);
   }
   if (std::string z = zone(name); !z.empty()) return z;

@@ -38,7 +38,7 @@ double drop_loose_pieces(RawMesh& mesh, int body) {
   std::vector<bool> keep(count, false);
   for (auto p = pieces.begin(); p != pieces.end(); ++p) {
     const bool organ = std::any_of(p->begin(), p->end(), [&](Index t) { return mesh.label[t] != body; });
-    // A structure of its own needs some elements to be one; fewer are a splinter of a surface.
+    // An organ consists of at least some elements; fewer are a splinter of a surface.
     const bool stays = p == largest || (organ && p->size() >= 20);
     for (const Index t : *p) {
       keep[t] = stays;

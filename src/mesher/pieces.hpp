@@ -5,10 +5,11 @@
 
 namespace stylet::meshing {
 
-/// Keeps the pieces of the mesh that hold more than body: tetrahedra that hang together by faces. What is left over (an
-/// arm beside the trunk, a splinter that touches the rest in one edge) is dropped.
+/// Keeps the largest piece of the mesh and other pieces that contain more than body. A piece consists of tetrahedra
+/// connected by faces. Other pieces, such as an arm beside the trunk or a splinter that touches the rest in one edge,
+/// are removed.
 /// @param body label of the body, 0 = none
-/// @return volume dropped [mm³]
+/// @return volume removed [mm³]
 double drop_loose_pieces(RawMesh& mesh, int body);
 
 }  // namespace stylet::meshing

@@ -9,8 +9,8 @@ namespace {
 
 constexpr float kFar = 1e6F;
 
-/// Distance of every node next to the zero surface, from where the surface cuts the grid lines through the node: the
-/// cuts along the three axes span a plane, whose distance d has 1/d² = Σ 1/cut². Others get kFar.
+/// Distance of every node next to the zero surface, from the points where the surface cuts the grid lines through the
+/// node. The cuts along the three axes span a plane whose distance d satisfies 1/d² = Σ 1/cut². Other nodes get kFar.
 std::vector<float> distance_beside_surface(const GridShape& g) {
   std::vector<float> d(g.values.size(), kFar);
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(g.size[0]),
@@ -39,8 +39,8 @@ std::vector<float> distance_beside_surface(const GridShape& g) {
   return d;
 }
 
-/// Solution t of Σ max(0, (t − a_i)/h_i)² = 1 for the smallest neighbour distances a_i along each axis (upwind
-/// Eikonal).
+/// Solves Σ max(0, (t − a_i)/h_i)² = 1 for t (upwind discretisation of the eikonal equation), where a_i is the smallest
+/// distance of the neighbours along axis i and h_i the grid spacing.
 double eikonal(std::array<double, 3> a, std::array<double, 3> h) {
   for (int x = 0; x < 2; ++x) {
     for (int y = 0; y < 2 - x; ++y) {
@@ -77,11 +77,12 @@ void redistance(GridShape& g) {
   };
   const std::size_t dj = g.size[0];
   const std::size_t dk = dj * g.size[1];
-  // A node is looked at again only where a neighbour's distance has become smaller since: most are final after a sweep
-  // or two. @cite S. Bak, J. McLaughlin, D. Renzi, "Some improvements for the fast sweeping method", SIAM J Sci Comput
-  // 32 (2010) 2853–2874
+  // A node is processed again only if a neighbour's distance has become smaller since. Most nodes are final after one
+  // or two sweeps. @cite S. Bak, J. McLaughlin, D. Renzi, "Some improvements for the fast sweeping method", SIAM J Sci
+  // Comput 32 (2010) 2853–2874
   std::vector<char> stale(d.size(), 1);
-  for (int sweep = 0; sweep < 8; ++sweep) {  // all eight sweep directions, once: enough for straight characteristics
+  // Each of the eight directions once, which suffices for straight characteristics.
+  for (int sweep = 0; sweep < 8; ++sweep) {
     const bool ri = (sweep & 1) != 0, rj = (sweep & 2) != 0, rk = (sweep & 4) != 0;
     for (int kk = 0; kk < g.size[2]; ++kk) {
       const int k = rk ? g.size[2] - 1 - kk : kk;

@@ -28,7 +28,7 @@ std::vector<Candidate> candidates_of(const ContourSet& set) {
   return all;
 }
 
-/// The gland in one piece, and what holds it.
+/// Keeps the gland, as one region, and the band, and leaves out the rest.
 void keep_gland_contours(std::vector<StructureUse>& uses) {
   const bool whole = std::any_of(uses.begin(), uses.end(), [](const auto& u) { return u.region == "prostate"; });
   for (StructureUse& use : uses) {
@@ -51,10 +51,10 @@ Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOpti
     return input_error(
         set.source,
         fmt::format("no target structure: none of {} is recognised as prostate, prostate zone, CTV, PTV or GTV", names),
-        "Say which one is the target: map its name to 'prostate' below [patient.regions].");
+        "Map the name of the target to 'prostate' below [patient.regions]");
   }
   notes.insert(notes.end(), choice->notes.begin(), choice->notes.end());
-  std::vector<const Roi*> drawn;  // those that choice->uses are of
+  std::vector<const Roi*> drawn;  // the ROIs of choice->uses
   for (const Roi& roi : set.rois) {
     if (!roi.contours.empty()) drawn.push_back(&roi);
   }

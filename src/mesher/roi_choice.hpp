@@ -5,13 +5,14 @@
 
 namespace stylet::meshing {
 
+/// A ROI to be meshed.
 struct RoiChoice {
   const Roi* roi;
   std::string region;  ///< canonical name
 };
 
-/// Which ROIs of the set are meshed, and as what (choose_structures()), by priority. Notes what is left out.
-/// Errors: those of choose_structures(), no target.
+/// The ROIs of the set that are meshed, with their regions, sorted by priority (choose_structures()). Adds notes about
+/// ROIs that are left out. Errors: those of choose_structures(), and an input without a target.
 Result<std::vector<RoiChoice>> choose_rois(const ContourSet& set, const MeshOptions& options,
                                            std::vector<std::string>& notes);
 

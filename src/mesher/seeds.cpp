@@ -8,7 +8,7 @@
 namespace stylet::meshing {
 namespace {
 
-/// Surface point between p and q, whose labels differ, by bisection; the labels are those on its two sides.
+/// The surface point between p and q, whose labels differ, found by bisection, with the labels of its two sides.
 SurfaceSeed cut(const Anatomy& a, Vec3 p, int label_p, Vec3 q, int label_q) {
   while ((q - p).squaredNorm() > 1e-8) {
     const Vec3 m = 0.5 * (p + q);
@@ -26,8 +26,8 @@ SurfaceSeed cut(const Anatomy& a, Vec3 p, int label_p, Vec3 q, int label_q) {
 }  // namespace
 
 std::vector<SurfaceSeed> surface_seeds(const Anatomy& a, const SizeField& size, double scale, double spacing) {
-  // Structures of one layer after the other, each on a lattice of its own thickness, thin ones first: the seeds of a
-  // large solid must not crowd out those of a small one.
+  // Process one structure after the other, thin ones first, each on a lattice that fits its thickness. Otherwise the
+  // seeds of a large solid would leave no room for those of a small one.
   std::vector<SurfaceSeed> kept;
   std::map<std::array<int, 3>, std::vector<int>> bins;
   constexpr double kBin = 10.0;
@@ -59,7 +59,8 @@ std::vector<SurfaceSeed> surface_seeds(const Anatomy& a, const SizeField& size, 
   for (const int s : order) {
     const Structure& structure = a.structures[s];
     Eigen::AlignedBox3d box = structure.shape->box();
-    const double widest = 0.4 * box.sizes().maxCoeff();  // a few seeds on every structure, however large the elements
+    // Gives every structure a few seeds, however large the elements are.
+    const double widest = 0.4 * box.sizes().maxCoeff();
     const double step = std::clamp(0.5 * structure.shape->inner_radius(), 1.0, 8.0);
     box.min().array() -= 1.5 * step;
     box.max().array() += 1.5 * step;

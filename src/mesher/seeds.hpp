@@ -6,8 +6,8 @@
 
 namespace stylet::meshing {
 
-/// Points on every surface between two regions, dense enough that no thin or small structure is missed, and no closer
-/// than `spacing` wanted edge lengths.
+/// Points on every surface between two regions, from which meshing starts. They are dense enough for thin and small
+/// structures, but not closer together than `spacing` × wanted edge length.
 std::vector<SurfaceSeed> surface_seeds(const Anatomy& anatomy, const SizeField& size, double scale, double spacing);
 
 }  // namespace stylet::meshing

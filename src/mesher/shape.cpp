@@ -53,7 +53,7 @@ Eigen::AlignedBox3d GridShape::box() const {
 }
 
 double GridShape::volume(double offset) const {
-  // Each node owns a voxel; the part of it inside follows from the distance.
+  // Each node represents a voxel; its distance determines which part of the voxel is inside.
   const double width = spacing.mean();
   double sum = 0;
   for (const float v : values) sum += std::clamp(0.5 - (v - offset) / width, 0.0, 1.0);

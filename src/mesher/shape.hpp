@@ -7,31 +7,31 @@
 
 namespace stylet::meshing {
 
-/// A solid given by its signed distance: negative inside, positive outside.
+/// A solid, given by its signed distance function: negative inside, positive outside.
 class Shape {
  public:
   virtual ~Shape() = default;
-  /// [mm], exact near the surface, an estimate of the right sign far away. @param p [mm] LPS
+  /// Signed distance [mm]: exact near the surface, elsewhere an estimate of the right sign. @param p [mm] LPS
   [[nodiscard]] virtual double distance(const Vec3& p) const = 0;
-  /// Box [mm] LPS that holds the solid.
+  /// Box [mm] LPS that contains the solid.
   [[nodiscard]] virtual Eigen::AlignedBox3d box() const = 0;
-  /// Volume of {distance < offset} [mm³].
+  /// Volume of {distance < offset} [mm³]. @param offset [mm]
   [[nodiscard]] virtual double volume(double offset) const = 0;
-  /// Largest distance of an inner point from the surface [mm]: half the thickness of the solid's thickest part.
+  /// Largest distance between an inner point and the surface [mm]: half the thickness of the thickest part.
   [[nodiscard]] virtual double inner_radius() const = 0;
 };
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-/// A grid of signed distances in a slice frame, interpolated trilinearly; beyond the grid the value at its rim plus the
-/// distance from it.
+/// A grid of signed distances in a slice frame with trilinear interpolation. Beyond the grid, the distance is the value
+/// at its rim plus the distance from the rim.
 class GridShape : public Shape {
  public:
   SliceFrame frame;
   Vec3 low = Vec3::Zero();           ///< [mm] local coordinates of node (0,0,0)
   Vec3 spacing = Vec3::Ones();       ///< [mm]
-  std::array<int, 3> size{0, 0, 0};  ///< nodes along u, v, n
-  std::vector<float> values;         ///< [mm], u fastest
+  std::array<int, 3> size{0, 0, 0};  ///< number of nodes along u, v, n
+  std::vector<float> values;         ///< [mm] (nodes) signed distances, u varies fastest
 
   [[nodiscard]] double distance(const Vec3& p) const override;
   [[nodiscard]] Eigen::AlignedBox3d box() const override;
@@ -47,11 +47,11 @@ class GridShape : public Shape {
 /// Makes the values true distances again without moving their zero surface (fast sweeping, Zhao 2005).
 void redistance(GridShape& grid);
 
-/// Gaussian smoothing. @param sigma [mm]
+/// Smooths the values by a Gaussian. @param sigma [mm]
 void smooth(GridShape& grid, double sigma);
 
-/// Rounds convex edges to the given radius [mm] by an opening (erosion, then dilation). Values must be distances, and
-/// are distances afterwards.
+/// Rounds convex edges to a radius [mm] by morphological opening (erosion, then dilation). The values must be
+/// distances, and are distances afterwards.
 void round_edges(GridShape& grid, double radius);
 
 /// A rod with round ends.
@@ -68,7 +68,8 @@ class Capsule : public Shape {
   double radius_;
 };
 
-/// (x/a)⁴ + (y/b)⁴ + (z/c)⁴ < 1: between an ellipsoid and a box, flat in the middle of its faces, without edges.
+/// A superquadric (x/a)⁴ + (y/b)⁴ + (z/c)⁴ < 1: a shape between an ellipsoid and a box, flat in the middle of its faces
+/// and without edges.
 class Superquadric : public Shape {
  public:
   Superquadric(const Vec3& centre, const Vec3& half_axes) : centre_(centre), half_axes_(half_axes) {}
@@ -81,34 +82,38 @@ class Superquadric : public Shape {
   Vec3 centre_, half_axes_;
 };
 
-/// Signed distance of the solid between parallel slices: each slice's own signed distance field, interpolated along the
-/// slice normal (shape-based interpolation, Raya & Udupa 1990), closed by rounded caps half a slice beyond the last
-/// contours, smoothed and made a true distance.
+/// Signed distance of the solid between parallel slices. The signed distance fields of the slices are interpolated
+/// along the slice normal (shape-based interpolation, Raya & Udupa 1990). Rounded caps close the solid half a slice
+/// beyond its last contours; the result is smoothed and made a true distance.
 /// @param voxel wanted grid spacing [mm]
-/// @param sigma smoothing [mm]
+/// @param sigma width of the Gaussian for smoothing [mm]
 std::shared_ptr<GridShape> interpolate_slices(const std::vector<Slice>& slices, const SliceFrame& frame, double voxel,
                                               double sigma);
 
-/// Union of two solids of one slice frame, on a grid that holds both.
+/// Union of two solids in the same slice frame, on a grid that contains both.
 std::shared_ptr<GridShape> unite(const GridShape& a, const GridShape& b);
 
-/// A stack of in-plane signed distance fields on one grid.
+/// A stack of in-plane signed distance fields on a common grid.
 struct SliceFields {
   SliceFrame frame;
   Eigen::Vector2d low = Eigen::Vector2d::Zero();      ///< [mm] local position of pixel (0, 0)
   Eigen::Vector2d spacing = Eigen::Vector2d::Ones();  ///< [mm]
   std::array<int, 2> size{0, 0};
-  std::vector<double> heights;             ///< [mm] ascending (slices)
-  std::vector<std::vector<float>> fields;  ///< [mm] per slice (size[0]*size[1]), empty where the slice holds nothing
-  double gap = 0;                          ///< [mm] usual slice distance
+  std::vector<double> heights;  ///< (slices) [mm] along the normal, ascending
+  /// (slices) [mm] size[0]*size[1] values each; empty for a slice without the structure.
+  std::vector<std::vector<float>> fields;
+  double gap = 0;  ///< [mm] usual distance between slices
 };
 
-/// The same from in-plane fields.
+/// The same, from in-plane distance fields.
 /// @param step grid spacing along the normal [mm]
+/// @param sigma width of the Gaussian for smoothing [mm]
 std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma);
 
-/// In-plane signed distance of a pixel mask to the middle line between its inner and outer pixels [mm] (nx*ny); empty
-/// when no pixel is set. Exact Euclidean distance between pixel centres (Felzenszwalb & Huttenlocher 2012).
+/// In-plane signed distance [mm] (nx*ny) of a pixel mask to the line half way between its inner and outer pixels, from
+/// the exact Euclidean distance between pixel centres (Felzenszwalb & Huttenlocher 2012).
+/// @param dx, dy pixel size [mm]
+/// @return empty when no pixel is set
 std::vector<float> mask_distance(const std::vector<bool>& mask, int nx, int ny, double dx, double dy);
 
 }  // namespace stylet::meshing

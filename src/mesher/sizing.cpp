@@ -7,15 +7,16 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kDoubling = 14.0;      // [mm] from the target's surface, size has doubled
-constexpr double kLargestGrowth = 7.0;  // times the size in the target
-constexpr double kLimitGrowth = 0.35;   // [mm/mm] how fast the bound of a structure fades outside it
-constexpr double kSoftness = 0.5;       // wanted sizes beyond the bound count to this power
+constexpr double kDoubling = 14.0;      // [mm] distance from the target's surface over which the size doubles
+constexpr double kLargestGrowth = 7.0;  // largest size / size in the target
+constexpr double kLimitGrowth = 0.35;   // [mm/mm] growth of a structure's size limit with the distance from it
+constexpr double kSoftness = 0.5;       // exponent of wanted size / limit beyond the limit
 
-/// Size that resolves a structure of the given half thickness [mm]: 1.15 of it where that is 2.5 mm, 0.7 at 25 mm.
+/// Element size that resolves a structure of a given half thickness R [mm]: 1.15 R at R = 2.5 mm, 0.7 R at 25 mm.
 double resolving_size(double half_thickness) { return 1.4 * std::pow(half_thickness, 0.79); }
 
-/// Soft minimum: a hard one would leave no size to vary where few nodes are wanted and thin structures take them all.
+/// Soft minimum of size and limit. With a hard one, thin structures could take all nodes of a coarse mesh and the scale
+/// would have no effect.
 double bounded(double wanted, double limit) {
   return wanted < limit ? wanted : limit * std::pow(wanted / limit, kSoftness);
 }
@@ -59,7 +60,7 @@ double SizeField::operator()(const Vec3& p, double scale) const {
 }
 
 double SizeField::scale_for(double nodes) const {
-  // A body of volume V in elements of edge h has about 1.1 √2 V / h³ nodes.
+  // A body of volume V with elements of edge length h has about 1.1 √2 V / h³ nodes.
   double low = 0.05, high = 100;
   for (int i = 0; i < 30; ++i) {
     const double scale = std::sqrt(low * high);

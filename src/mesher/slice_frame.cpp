@@ -10,7 +10,7 @@
 namespace stylet::meshing {
 namespace {
 
-/// Area vector of a closed polygon (Newell): its direction is the plane's normal, its length the area [mm²].
+/// Area vector of a closed polygon (Newell): its direction is the normal of the plane, its length the area [mm²].
 Vec3 area_vector(const Contour& contour) {
   Vec3 sum = Vec3::Zero();
   const std::size_t n = contour.points.size();
@@ -59,7 +59,7 @@ bool same(const Polygon& a, const Polygon& b) {
 }  // namespace
 
 double Slice::area() const {
-  // A polygon at odd nesting depth is a hole. Depth from any of its vertices: the polygons do not cross.
+  // A polygon at an odd nesting depth is a hole. Any vertex gives the depth, because the polygons do not cross.
   double sum = 0;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
     int depth = 0;
@@ -80,7 +80,7 @@ Result<SliceFrame> common_frame(const ContourSet& contours, const std::vector<co
     }
   }
   if (!(normal.norm() > 0)) {
-    return input_error(contours.source, "the contours enclose no area", "export the structures again");
+    return input_error(contours.source, "the contours enclose no area", "Export the structures again");
   }
   normal.normalize();
   Eigen::Index largest = 0;
@@ -105,12 +105,13 @@ Result<SliceFrame> common_frame(const ContourSet& contours, const std::vector<co
         high = std::max(high, p.dot(normal));
       }
       if (high - low > 0.5) {
-        return input_error(fmt::format("{}, ROI '{}', contour near ({:.1f}, {:.1f}, {:.1f}) mm", contours.source,
-                                       roi->name, c.points[0].x(), c.points[0].y(), c.points[0].z()),
-                           fmt::format("the contour leaves the common slice plane by {:.2f} mm; at most 0.5 mm is "
-                                       "expected of parallel planar contours",
-                                       high - low),
-                           "Draw all structures on the same parallel slices." + or_skip(roi->name));
+        return input_error(
+            fmt::format("{}, ROI '{}', contour near ({:.1f}, {:.1f}, {:.1f}) mm", contours.source, roi->name,
+                        c.points[0].x(), c.points[0].y(), c.points[0].z()),
+            fmt::format("the contour leaves the common slice plane by {:.2f} mm, expected at most 0.5 mm "
+                        "(parallel planar contours)",
+                        high - low),
+            "Draw all structures on the same parallel slices" + or_skip(roi->name));
       }
     }
   }
@@ -132,9 +133,9 @@ std::vector<Slice> to_slices(const std::vector<Contour>& contours, const SliceFr
   std::stable_sort(flat.begin(), flat.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Slice> slices;
   for (auto& [height, polygon] : flat) {
-    // Heights within 0.1 mm are one slice written with rounding.
+    // Heights within 0.1 mm belong to one slice, written with rounding.
     if (slices.empty() || height - slices.back().height > 0.1) slices.push_back({height, {}});
-    // A contour written twice would cancel itself out.
+    // Under the even-odd rule, a contour that occurs twice would cancel itself out.
     auto& there = slices.back().polygons;
     if (std::none_of(there.begin(), there.end(), [&](const Polygon& p) { return same(p, polygon); })) {
       there.push_back(std::move(polygon));

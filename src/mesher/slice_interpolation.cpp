@@ -8,7 +8,7 @@
 namespace stylet::meshing {
 namespace {
 
-/// In-plane signed distance of a slice's polygons (even-odd rule) at all pixels.
+/// In-plane signed distance of a slice's polygons (even-odd rule) at all pixels of a grid.
 std::vector<float> polygon_distance(const Slice& slice, const SliceFields& grid) {
   struct Edge {
     double ax, ay, dx, dy, inverse_length2;
@@ -71,7 +71,7 @@ void envelope(const std::vector<double>& f, double h, std::vector<double>& d) {
   }
 }
 
-/// Squared distance of every pixel to the nearest pixel where `mask` has the value `to` [mm²].
+/// Squared distance [mm²] of every pixel to the nearest pixel where `mask` has the value `to`.
 std::vector<double> squared_distance(const std::vector<bool>& mask, bool to, int nx, int ny, double dx, double dy) {
   std::vector<double> d(mask.size(), HUGE_VAL);
   for (std::size_t n = 0; n < mask.size(); ++n) {
@@ -94,8 +94,8 @@ std::vector<double> squared_distance(const std::vector<bool>& mask, bool to, int
   return d;
 }
 
-/// Value between slices by a cubic Hermite curve through the slice values; slopes from the neighbours (Catmull–Rom),
-/// one-sided at the ends of the run.
+/// Weights of a cubic Hermite curve through slice values. Slopes follow from the neighbours (Catmull–Rom) and are
+/// one-sided at the ends of a run of slices.
 struct HermiteWeights {
   std::array<int, 4> slice{};
   std::array<double, 4> weight{};
@@ -126,7 +126,7 @@ std::vector<float> mask_distance(const std::vector<bool>& mask, int nx, int ny, 
   if (std::find(mask.begin(), mask.end(), true) == mask.end()) return {};
   const std::vector<double> to_in = squared_distance(mask, true, nx, ny, dx, dy);
   const std::vector<double> to_out = squared_distance(mask, false, nx, ny, dx, dy);
-  const double half = 0.25 * (dx + dy);  // the border runs half a pixel from the centres on either side
+  const double half = 0.25 * (dx + dy);  // the border is half a pixel away from the pixel centres on either side
   std::vector<float> d(mask.size());
   for (std::size_t n = 0; n < mask.size(); ++n) {
     d[n] = static_cast<float>(mask[n] ? half - std::sqrt(to_out[n]) : std::sqrt(to_in[n]) - half);
@@ -135,7 +135,7 @@ std::vector<float> mask_distance(const std::vector<bool>& mask, int nx, int ny, 
 }
 
 std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double step, double sigma) {
-  // Runs of slices that hold something, each to be closed by its own caps.
+  // Runs of consecutive slices with the structure; caps close each run.
   struct Run {
     int first, last;
     double first_radius, last_radius;  // largest inner distance in the end slices
@@ -178,7 +178,7 @@ std::shared_ptr<GridShape> interpolate_fields(const SliceFields& stack, double s
     for (const Run& r : runs) {
       const double low = stack.heights[r.first], high = stack.heights[r.last];
       if (w <= low || w >= high || r.first == r.last) {
-        // Cap: an ellipse from the contour to half a slice beyond it; further out the distance goes on growing.
+        // Cap: an ellipse from the contour to half a slice beyond it. Further out the distance keeps growing.
         const bool below = w <= low;
         const auto& d = stack.fields[below ? r.first : r.last];
         const double depth = below ? low - w : std::max(0.0, w - high);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The soft layers that contours and masks do not have.
+// Adds the soft layers that contours and masks lack.
 #include "stylet/geom/soft_layers.hpp"
 
 #include "anatomy.hpp"
@@ -14,16 +14,17 @@
 namespace stylet::meshing {
 namespace {
 
-constexpr double kLevatorTop = 0.25;       // of the gland's height, below its base: where the muscle begins
-constexpr double kFossaTop = 12.0;         // [mm] above the apex: how far the ischiorectal fat reaches up
-constexpr double kFossaDepth = 50.0;       // [mm] front to back
-constexpr double kBehindGland = 15.0;      // [mm] where a rectum would be that the input does not have
-constexpr double kRectumHalfWidth = 15.0;  // [mm] of such a rectum
-constexpr double kFatEnd = 20.0;           // [mm] above the lowest skin: how far the layer under the skin is followed
+constexpr double kLevatorTop = 0.25;       // top of the muscle below the gland's base / height of the gland
+constexpr double kFossaTop = 12.0;         // [mm] top of the ischiorectal fat above the apex
+constexpr double kFossaDepth = 50.0;       // [mm] extent of the ischiorectal fat from front to back
+constexpr double kBehindGland = 15.0;      // [mm] distance of a rectum that the input lacks behind the gland
+constexpr double kRectumHalfWidth = 15.0;  // [mm] half width of such a rectum
+// [mm] the layer under the skin ends this far above the lowest skin plus its thickness.
+constexpr double kFatEnd = 20.0;
 
 using Distance = std::function<double(const Vec3&)>;
 
-/// A solid by a formula for its distance.
+/// A solid whose distance is given by a function.
 class MadeShape : public Shape {
  public:
   MadeShape(Distance distance, const Eigen::AlignedBox3d& box, double thickness)
@@ -31,7 +32,7 @@ class MadeShape : public Shape {
   [[nodiscard]] double distance(const Vec3& p) const override { return distance_(p); }
   [[nodiscard]] Eigen::AlignedBox3d box() const override { return box_; }
   [[nodiscard]] double volume(double) const override { return std::numeric_limits<double>::quiet_NaN(); }
-  /// Elements as large as the layer is thick are small enough: it yields as a whole.
+  /// Half the thickness would make elements finer than needed: the layer yields as a whole.
   [[nodiscard]] double inner_radius() const override { return thickness_; }
 
  private:
@@ -40,7 +41,7 @@ class MadeShape : public Shape {
   double thickness_;
 };
 
-/// The structures of one name or more as one solid.
+/// Union of several structures.
 class Solid {
  public:
   void take(const Structure& s) {
@@ -66,7 +67,7 @@ Eigen::AlignedBox3d grown(Eigen::AlignedBox3d box, double by) {
   return box;
 }
 
-/// Makes the layers of one anatomy, innermost first.
+/// Adds the soft layers to an anatomy, the innermost first.
 class LayerMaker {
  public:
   LayerMaker(Anatomy& anatomy, const SoftLayers& layers) : a_(anatomy), layers_(layers) {
@@ -86,14 +87,15 @@ class LayerMaker {
     ischiorectal_fat();
     subcutaneous_fat();
     if (!made_.empty()) {
-      a_.notes.push_back(fmt::format("soft tissue that the input does not have was added: {}", fmt::join(made_, ", ")));
+      a_.notes.push_back(
+          fmt::format("Soft tissue that the input does not have was added: {}.", fmt::join(made_, ", ")));
     }
   }
 
  private:
   [[nodiscard]] bool wanted(const char* name, double size) const { return size > 0 && a_.find(name) == nullptr; }
 
-  /// Adds a layer that yields to all structures of the input.
+  /// Adds a layer to which all structures of the input are preferred.
   void add(const char* name, const std::string& said, Distance distance, const Eigen::AlignedBox3d& box,
            double thickness) {
     Structure s;
@@ -118,7 +120,7 @@ class LayerMaker {
     const double depth = rectum->shape->inner_radius() + rectum->offset;
     if (depth < 1.5 * wall) {
       a_.notes.push_back(fmt::format(
-          "the rectum is {:.1f} mm thick: too thin for a wall of {:g} mm and a lumen, so it is meshed as one",
+          "The rectum is meshed as one region: it is {:.1f} mm thick, too thin for a wall of {:g} mm and a lumen.",
           2 * depth, wall));
       return;
     }
@@ -140,12 +142,12 @@ class LayerMaker {
     const double thickness = layers_.periprostatic_fat_mm;
     if (!wanted("periprostatic_fat", thickness)) return;
     add(
-        "periprostatic_fat", fmt::format("{:g} mm of fat round the gland", thickness),
+        "periprostatic_fat", fmt::format("{:g} mm of fat around the gland", thickness),
         [solid = wrapped_, thickness](const Vec3& p) { return solid.distance(p) - thickness; },
         grown(wrapped_.box(), thickness), thickness);
   }
 
-  /// Round gland, its fat and the rectum, like a funnel that is open above.
+  /// A funnel around the gland, its fat and the rectum, open at its upper end.
   void levator() {
     const double thickness = layers_.levator_mm;
     if (!wanted("levator", thickness)) return;
@@ -165,7 +167,7 @@ class LayerMaker {
         box, thickness);
   }
 
-  /// On either side of the rectum, from the layer under the skin up to beside the apex.
+  /// Two bodies of fat beside the rectum, from the layer under the skin to above the apex.
   void ischiorectal_fat() {
     const double width = layers_.ischiorectal_fat_mm;
     if (!wanted("ischiorectal_fat", width)) return;
@@ -176,7 +178,7 @@ class LayerMaker {
     Vec3 middle(gland.center().x(), gland.max().y() + kBehindGland, 0.5 * (skin + top));
     double half = kRectumHalfWidth;
     if (rectum_.is_any()) {
-      // Where it passes the apex: its widest there is what the fat lies beside.
+      // The fat lies beside the widest part of the rectum where it passes the apex.
       Eigen::AlignedBox3d cut;
       const Eigen::AlignedBox3d box = rectum_.box();
       for (double x = box.min().x(); x <= box.max().x(); x += 1.0) {
@@ -207,7 +209,7 @@ class LayerMaker {
         box, 0.5 * width);
   }
 
-  /// What lies less than the thickness above the skin, seen along the patient's axis.
+  /// Tissue that is less than the thickness above the skin, measured along the patient's axis.
   void subcutaneous_fat() {
     const double thickness = layers_.subcutaneous_fat_mm;
     if (!wanted("subcutaneous_fat", thickness)) return;
@@ -223,7 +225,7 @@ class LayerMaker {
         box, thickness);
   }
 
-  /// z of the body's lowest point below a point [mm].
+  /// z [mm] of the lowest point of the body below a point.
   [[nodiscard]] double skin_below(Vec3 p) const {
     const double bottom = body_.box().min().z() - 1.0;
     double outside = bottom;

@@ -15,8 +15,8 @@
 namespace stylet::meshing {
 namespace {
 
-/// Kinds of planning volumes, the likeliest gland first: the CTV of an implant is the gland; a target that does not say
-/// which kind it is, or a PTV, may have a margin around it; a GTV may be a lesion within it.
+/// Kinds of planning volumes, most likely the gland first. The CTV of an implant is the gland; a PTV, or a target of
+/// unknown kind, may have a margin around it; a GTV may be a lesion within it.
 struct Kind {
   std::string_view name, caution;
 };
@@ -35,7 +35,7 @@ std::size_t planning_rank(std::string_view kind) {
   return static_cast<std::size_t>(found - kPlanning.begin());
 }
 
-/// Whether one of the words of a name, whatever number stands behind it, is one of these.
+/// Whether a word of the name, without trailing digits, is one of the wanted words.
 bool has_word(std::string_view name, std::initializer_list<std::string_view> wanted) {
   for (std::string word : words_of(name)) {
     while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back())) != 0) word.pop_back();
@@ -44,15 +44,15 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wan
   return false;
 }
 
-/// How well the name of a planning volume fits the gland, whatever its kind: 0 = it names the gland, 1 = it says
-/// nothing of the place; 2 and 3 = the same of one that names lymph nodes or a boost, which are beside the gland or a
-/// part of it.
+/// How well the name of a planning volume fits the gland, whatever its kind: 0 = it names the gland; 1 = it names no
+/// place; 2 and 3 = the same for a volume that also names lymph nodes or a boost, which are beside the gland or a part
+/// of it.
 std::size_t naming_rank(std::string_view name) {
   const std::size_t other = has_word(name, {"ln", "lns", "node", "nodes", "nodal", "boost"}) ? 2 : 0;
   return other + (lower(std::string(name)).find("prost") == std::string::npos ? 1 : 0);
 }
 
-/// "left", "right" or nothing, by the words of a name.
+/// "left", "right" or "", by the words of a name.
 std::string_view side_of(std::string_view name) {
   if (has_word(name, {"left", "l", "lt"})) return "left";
   return has_word(name, {"right", "r", "rt"}) ? "right" : "";
@@ -60,13 +60,13 @@ std::string_view side_of(std::string_view name) {
 
 bool is_planning(std::string_view kind) { return planning_rank(kind) < kPlanning.size(); }
 
-/// The region that the name, else the coded term beside it, stands for; empty when neither is known.
+/// Region by the candidate's name, else by its coded term; empty when neither is recognised.
 std::string region_named(const Candidate& candidate) {
   std::string by_name = canonical_region(candidate.name);
   return by_name.empty() ? canonical_region(candidate.meaning) : by_name;
 }
 
-/// Candidates, and what has been decided of them.
+/// The candidates and the decisions about them.
 class Decision {
  public:
   Decision(const std::vector<Candidate>& candidates, const MeshOptions& options, std::string source, std::string kind,
@@ -93,7 +93,7 @@ class Decision {
   }
 
  private:
-  /// The candidates that a user's word means.
+  /// Positions of the candidates to which a user's word refers.
   [[nodiscard]] Result<std::vector<std::size_t>> meant(const std::string& word, const std::string& key) const {
     std::vector<std::size_t> found = find_named(names_, word);
     if (found.empty()) found = find_named(words_, word);
@@ -103,7 +103,7 @@ class Decision {
       known.push_back(c.word.empty() || c.word == c.name ? c.name : fmt::format("{} ({})", c.name, c.word));
     const std::string near = nearest_name(word, names_);
     return input_error(source_, fmt::format("{}: there is no {} '{}'; the file has {}", key, kind_, word, known),
-                       near.empty() ? "Name one of these." : fmt::format("Did you mean '{}'?", near));
+                       near.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", near));
   }
 
   void leave(std::size_t i, std::string why) {
@@ -122,7 +122,7 @@ class Decision {
       const auto found = meant(word, "patient.skip");
       if (!found) return found.error();
       for (const std::size_t i : *found) {
-        // A reader that was told so has emptied it already.
+        // A reader that knows `skip` leaves the structure empty; its reason then is still that the user named it.
         if (candidates_[i].nothing.empty() || candidates_[i].nothing == kEmpty) leave(i, kSkipped);
       }
     }
@@ -136,9 +136,11 @@ class Decision {
       bool taken = false;
       for (const std::size_t i : *found) {
         if (uses_[i].why == kSkipped) {
-          return input_error(source_,
-                             fmt::format("{} '{}' is named in patient.skip and in patient.regions", kind_, word),
-                             "Remove it from one of the two.");
+          return input_error(
+              source_,
+              fmt::format("{} '{}' is named both in patient.skip and in patient.regions, expected in one of them",
+                          kind_, word),
+              "Remove it from one of the two");
         }
         if (!candidates_[i].nothing.empty()) continue;
         take(i, region_meant(region), "named in [patient.regions]");
@@ -149,8 +151,8 @@ class Decision {
       if (!taken) {
         const std::string& nothing = candidates_[found->front()].nothing;
         return input_error(fmt::format("{}, {} '{}'", source_, kind_, word),
-                           fmt::format("there is nothing in it to be meshed ({})", nothing),
-                           "Leave it out of patient.regions, or name another.");
+                           fmt::format("it has nothing to mesh ({})", nothing),
+                           "Remove it from patient.regions, or name another one");
       }
     }
     return Ok{};
@@ -166,14 +168,14 @@ class Decision {
       } else if (belongs_beside_named(i, region)) {
         take(i, region, fmt::format("taken as {} together with {}", region, names_taken_as(region)));
       } else {
-        leave(i, fmt::format("{} is taken as {}", names_taken_as(region), region));
+        leave(i, fmt::format("the region {1} is assigned to {0}", names_taken_as(region), region));
       }
     }
   }
 
-  /// Whether a structure is the same region as those that the user named so. A label of a mask is: its voxels are
-  /// nobody else's. Contours may be another drawing of the same; those of one half, of which no other is named, are
-  /// not.
+  /// Whether a structure belongs to the same region as the structures that the user assigned to it. A label of a mask
+  /// does, because its voxels belong to nothing else. Contours may be another drawing of the same organ, so they do
+  /// not, unless they are a half (left or right) that the user did not assign.
   [[nodiscard]] bool belongs_beside_named(std::size_t i, const std::string& region) const {
     if (apart_) return true;
     const std::string_view side = side_of(candidates_[i].name);
@@ -191,7 +193,7 @@ class Decision {
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
-  /// "ctv", "target", "ptv", "gtv", by name, else by type; empty for anything else.
+  /// "ctv", "target", "ptv" or "gtv", by name, else by type; empty for anything else.
   [[nodiscard]] std::string planning_kind(const Candidate& c) const {
     const std::string by_name = region_named(c);
     if (!by_name.empty()) return is_planning(by_name) ? by_name : std::string();
@@ -203,9 +205,9 @@ class Decision {
     return std::any_of(uses_.begin(), uses_.end(), [&](const StructureUse& u) { return wanted(u.region); });
   }
 
-  /// Planning volumes are no anatomy; one stands in where the gland itself is not drawn: first by naming_rank(), then
-  /// by its kind. Of several of a kind the one of that very name is preferred, then one with a longer name, then one by
-  /// its type, then the first.
+  /// Planning volumes are not anatomy, but one is used as the gland if the gland itself is not drawn. The best
+  /// naming_rank() wins, then the most likely kind. Within a kind, a volume named exactly like the kind is preferred,
+  /// then one with a longer name, then one recognised by its type, then the first.
   void find_gland() {
     const bool drawn =
         has([](const std::string& r) { return r == "prostate" || r == "peripheral_zone" || r == "transition_zone"; });
@@ -237,7 +239,7 @@ class Decision {
     if (has([](const std::string& r) { return r == "body"; })) return;
     for (std::size_t i = 0; i < uses_.size(); ++i) {
       if (!open_[i] || lower(candidates_[i].type) != "external") continue;
-      take(i, "body", fmt::format("taken as the body, since no {} is named so", kind_));
+      take(i, "body", fmt::format("taken as the body, since no {} is named body", kind_));
       return;
     }
   }
@@ -245,15 +247,15 @@ class Decision {
   const std::vector<Candidate>& candidates_;
   const MeshOptions& options_;
   std::string source_, kind_;
-  bool apart_ = false;  ///< no two candidates overlap
+  bool apart_ = false;  ///< candidates cannot overlap
   std::vector<std::string> names_, words_;
   std::vector<StructureUse> uses_;
   std::vector<bool> open_;       ///< not decided yet
-  std::set<std::string> asked_;  ///< regions that MeshOptions::regions gives
-  std::set<std::size_t> named_;  ///< candidates that it gives them to
+  std::set<std::string> asked_;  ///< regions that MeshOptions::regions assigns
+  std::set<std::size_t> named_;  ///< candidates to which it assigns them
 };
 
-/// "structures left out (empty): 'CTV', 'PROS'", one for each reason.
+/// Notes such as "The structures are left out (empty): 'CTV', 'PROS'.", one for each reason.
 std::vector<std::string> tell_left_out(const std::vector<StructureUse>& uses, const std::string& kind) {
   std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
   for (const StructureUse& use : uses) {
@@ -264,8 +266,8 @@ std::vector<std::string> tell_left_out(const std::vector<StructureUse>& uses, co
   }
   std::vector<std::string> told;
   for (const auto& [why, names] : reasons) {
-    told.push_back(
-        fmt::format("{}{} left out ({}): {}", kind, names.size() == 1 ? "" : "s", why, fmt::join(names, ", ")));
+    told.push_back(fmt::format("The {}{} left out ({}): {}.", kind, names.size() == 1 ? " is" : "s are", why,
+                               fmt::join(names, ", ")));
   }
   return told;
 }
@@ -288,7 +290,7 @@ StructureChoice told(std::vector<StructureUse> uses, const std::vector<Candidate
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (!uses[i].region.empty() && uses[i].why.starts_with("taken as")) {
       const std::string& type = candidates[i].type;
-      choice.notes.push_back(fmt::format("{} '{}'{} is {}", kind, uses[i].name,
+      choice.notes.push_back(fmt::format("The {} '{}'{} is {}.", kind, uses[i].name,
                                          type.empty() ? "" : fmt::format(" (type {})", type), uses[i].why));
     }
   }

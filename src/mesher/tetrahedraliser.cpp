@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only unit that includes CGAL's mesh generator, which takes long to compile.
-#define CGAL_NO_WARNINGS  // they go to the terminal; what matters comes back as an error code
+// The only file that includes CGAL's mesh generator, because that takes long to compile.
+#define CGAL_NO_WARNINGS  // warnings go to the terminal; what matters comes back as an error code
 
 #include "tetrahedraliser.hpp"
 
@@ -27,15 +27,15 @@ using Criteria = CGAL::Mesh_criteria_3<Tr>;
 using Point = Kernel::Point_3;
 namespace params = CGAL::parameters;
 
-// Bounds on the radius of a face's surface ball and of a tetrahedron's sphere, per wanted edge length; with these, the
-// mean edge comes out at about the wanted length.
+// Limits of the radius of a face's surface ball and of a tetrahedron's sphere / wanted edge length. With these values
+// the mean edge is about as long as wanted.
 constexpr double kFaceRadius = 0.72;
 constexpr double kCellRadius = 0.78;
-constexpr double kSurfaceError = 2e-6;  // of the box: bisection stops there
+constexpr double kSurfaceError = 2e-6;  // share of the box at which bisection ends
 
 Vec3 vec(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-/// Size criterion as CGAL wants it.
+/// Size criterion in CGAL's interface.
 struct ScaledSize {
   using FT = Kernel::FT;
   const std::function<double(const Vec3&)>* size;
@@ -84,8 +84,8 @@ Result<> Tetrahedraliser::refine() {
                       params::mesh_3_options(params::pointer_to_error_code = &code,
                                              params::maximal_number_of_vertices = p.input.most_nodes));
   if (code != CGAL::CGAL_MESH_3_NO_ERROR) {
-    return failure("mesher", fmt::format("refinement did not end below {} nodes", p.input.most_nodes),
-                   "look for contours that are degenerate or far smaller than the rest, or ask for fewer nodes");
+    return failure("mesher", fmt::format("refinement did not end with fewer than {} nodes", p.input.most_nodes),
+                   "Correct contours that are degenerate or far smaller than the rest, or ask for fewer nodes");
   }
   return Ok{};
 }

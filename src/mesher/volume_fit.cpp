@@ -9,10 +9,10 @@ namespace {
 
 constexpr int kRounds = 6;
 
-/// Volumes of all regions and areas between them.
+/// Volumes of all regions and the areas between them.
 struct Sums {
-  std::vector<double> volume;             ///< [mm³] (labels)
-  std::vector<std::vector<double>> area;  ///< [mm²] (labels × labels), 0 = outside
+  std::vector<double> volume;             ///< (labels) [mm³]
+  std::vector<std::vector<double>> area;  ///< (labels × labels) [mm²], label 0 = outside
 };
 
 Sums measure(const EditableMesh& m, std::size_t labels) {
@@ -36,7 +36,7 @@ Sums measure(const EditableMesh& m, std::size_t labels) {
   return s;
 }
 
-/// New offsets; returns the largest relative volume error before.
+/// Shifts the offsets; returns the largest relative volume error before the shift.
 double shift_offsets(const Sums& s, Anatomy& a) {
   double worst = 0;
   for (std::size_t l = 0; l < a.layers.size(); ++l) {
@@ -52,7 +52,7 @@ double shift_offsets(const Sums& s, Anatomy& a) {
       }
     }
     if (!(wanted > 0) || !(area > 0) || !(have > 0)) continue;
-    // Never further than a fraction of the structure's own thickness.
+    // The shift is limited to a fraction of the structure's thickness.
     const double most = 0.1 * layer.solid->inner_radius();
     const double shift = std::clamp((wanted - have) / area, -most, most);
     worst = std::max(worst, std::abs(have / wanted - 1));
@@ -77,7 +77,7 @@ double shift_offsets(const Sums& s, Anatomy& a) {
   return worst;
 }
 
-/// Where a node on several surfaces belongs: projected onto one after the other, a few times.
+/// Projects a node onto all its surfaces, one after the other, a few times.
 Vec3 onto_surfaces(const Anatomy& a, const std::vector<int>& labels, Vec3 p) {
   const int rounds = labels.size() == 2 ? 1 : 4;
   for (int r = 0; r < rounds; ++r) {
@@ -101,7 +101,7 @@ void fit_volumes(EditableMesh& m, Anatomy& a) {
       if (labels[n].size() < 2) continue;
       const Vec3 from = m.nodes[n];
       const Vec3 to = onto_surfaces(a, labels[n], from);
-      // As far as the elements around stay acceptable, or at least no worse than they are.
+      // Move as far as the elements around the node stay acceptable, or at least do not become worse.
       const double floor = std::min(1.0, m.quality_around(static_cast<Index>(n)));
       for (double part = 1; part > 0.2; part *= 0.5) {
         m.nodes[n] = from + part * (to - from);

@@ -6,8 +6,8 @@
 
 namespace stylet::meshing {
 
-/// Makes up for the volume that flat faces cut off round surfaces: shifts each structure's surface (its offset) by what
-/// its region lacks per area, and moves the nodes there. Few nodes move by more than a few per cent of an edge.
+/// Compensates the volume that flat faces cut off from round surfaces. Each structure's surface (its offset) is shifted
+/// by missing volume / area, and the nodes are moved there. Few nodes move by more than a few per cent of an edge.
 void fit_volumes(EditableMesh& mesh, Anatomy& anatomy);
 
 }  // namespace stylet::meshing

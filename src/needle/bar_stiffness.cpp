@@ -13,10 +13,10 @@ void BarStiffness::assemble(const TetShape& shape) {
   revision_ = shape.revision();
 }
 
-/// Blocks of the tangent of St. Venant–Kirchhoff's law between nodes a and b of an element, with G = F g:
-///   V (λ G_a G_bᵀ + μ G_b G_aᵀ + μ (g_a·g_b) F Fᵀ)  +  V (g_a·S g_b) I
-/// (material and geometric part, the former with what damping adds; Bonet & Wood, Nonlinear Continuum Mechanics for
-/// Finite Element Analysis, 2008, §9.4).
+/// Adds the tangent blocks of the St. Venant–Kirchhoff law between the nodes a and b of each element, with G = F g:
+///   V (λ G_a G_bᵀ + μ G_b G_aᵀ + μ (g_a·g_b) F Fᵀ)  +  V (g_a·S g_b) I.
+/// The first term is the material part, which damping increases, the second the geometric part (Bonet & Wood, Nonlinear
+/// Continuum Mechanics for Finite Element Analysis, 2008, §9.4).
 void BarStiffness::assemble_segment(const TetShape& shape, int segment, SegmentStiffness& K) {
   K.material.setZero();
   K.geometric.setZero();

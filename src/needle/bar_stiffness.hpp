@@ -7,26 +7,26 @@
 
 namespace stylet::tet {
 
-/// Stiffness of one segment [N/mm]: block (i, j) of nodes i ≥ j is that of `material` plus `geometric`(i, j) times the
-/// unit matrix.
+/// Stiffness of one segment [N/mm]. The block of nodes i ≥ j is block (i, j) of `material` + `geometric`(i, j) times
+/// the unit matrix.
 struct SegmentStiffness {
   Eigen::Matrix<double, 3 * kMostNodes, 3 * kMostNodes> material;
   Eigen::Matrix<double, kMostNodes, kMostNodes> geometric;
 };
 
-/// Stiffness of a bar of tetrahedra at its present shape, segment by segment, without loads and springs. Nothing
+/// Stiffness of a bar of tetrahedra at its current shape, segment by segment, without loads and springs. Nothing
 /// allocates after construction.
 class BarStiffness {
  public:
   explicit BarStiffness(const TetShape& shape);
 
-  /// Computes the stiffness for the shape as it is now. Nothing is done where it is known for that revision of the
-  /// shape, as when springs are lent after a first attempt without.
+  /// Computes the stiffness for the current shape. Does nothing when it is already known for this revision of the
+  /// shape, which happens when springs are lent after an attempt without them.
   void assemble(const TetShape& shape);
 
   [[nodiscard]] const SegmentStiffness& segment(int k) const { return segments_[static_cast<std::size_t>(k)]; }
 
-  /// The whole matrix [N/mm] in the order of TetShape::displacement; for checks, allocates.
+  /// The whole matrix [N/mm] in the order of TetShape::displacement. For tests; allocates.
   [[nodiscard]] MatX whole(const TetShape& shape) const;
 
  private:

@@ -58,7 +58,7 @@ Pulls BeamShape::pulls(double s, const Vec3& force) const {
   return result;
 }
 
-/// @param force of the share [N]
+/// @param force [N] share of the load that acts at the station, base axes
 Pull BeamShape::pull(const Station& at, double weight, const Vec3& force) const {
   if (at.element < 0) return {at, weight, force, point(at), Mat3::Zero()};
   const Mat3& R = frame_[at.element];

@@ -89,7 +89,7 @@ bool BeamTangent::relax(const BeamShape& shape, const Mat3& base_rotation, std::
   return true;
 }
 
-/// Adds another load after those there.
+/// Adds a load at the end, with its force.
 void BeamTangent::add_load(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load) {
   force_.segment<3>(3 * load_count()) = load.force;
   loads_.add(shape, base_rotation, load);
@@ -122,7 +122,7 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
     const Mat3 spin = chain_.spin(e);
     const Mat3 shift = chain_.shift(e);
 
-    // Loads beyond the element: its end moves by its chord, and all beyond turns with its end frame.
+    // Loads beyond the element: its end moves by its chord, and everything beyond rotates with its end frame.
     const RotationTerms terms = shape.terms({e, l});
     const Vec3 force = Rt * beyond.force;
     const Mat3 turning =
@@ -146,7 +146,7 @@ void BeamTangent::assemble_energy(const BeamShape& shape) {
     H.block<3, 3>(i, i) = (1.0 + shape.damping) * Mat3::Identity() - scale * second * scale;
     lever_[e] = lever;
   }
-  // An element a nearer the base turns the whole lever of element e: ∂²Π/∂y_a∂y_e = Ω_aᵀ Σ_c [f_c]× ∂r_c/∂y_e.
+  // An element a nearer to the base rotates the whole lever of element e: ∂²Π/∂y_a∂y_e = Ω_aᵀ Σ_c [f_c]× ∂r_c/∂y_e.
   for (int e = shape.elements() - 1; e >= 1; --e) {
     const Eigen::Index i = chain_.row(e) + 3;
     H.block(i, i - 3, H.rows() - i, 3).noalias() = chain_.spins().bottomRows(H.rows() - i).lazyProduct(lever_[e]);
@@ -162,7 +162,7 @@ void BeamTangent::add_springs(std::span<const Mat3> springs) {
     const Eigen::Index reach = Y_.rows() - chain_.row(e);
     const auto motion = Y_.middleCols<3>(3 * c).bottomRows(reach);
     auto corner = hessian_.matrix().bottomRightCorner(reach, reach);
-    // Column by column, the lower triangle only: three multiplications an entry and no work space.
+    // Column by column and only in the lower triangle: three multiplications per entry, and no work space.
     for (Eigen::Index j = 0; j < reach; ++j) {
       const Vec3 pull = spring * motion.row(j).transpose();
       corner.col(j).tail(reach - j).noalias() += motion.bottomRows(reach - j).lazyProduct(pull);
@@ -170,7 +170,7 @@ void BeamTangent::add_springs(std::span<const Mat3> springs) {
   }
 }
 
-/// For the columns of some loads at a time: first of them, how many, and how many of the last rows are not zero.
+/// Calls function(first column, number of columns, number of last rows that are not zero) for groups of loads.
 template <class Function>
 void BeamTangent::for_groups(Function&& function) const {
   for (Eigen::Index c = 0; c < load_count(); c += kCondensed) {

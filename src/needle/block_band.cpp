@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// Plain loops of fixed length: the compiler unrolls and vectorises them, and library products of this size would spend
-/// more on their set-up than on the arithmetic.
+/// Plain loops of constant length, which the compiler unrolls and vectorises. Library products of this size would spend
+/// more time on their set-up than on the arithmetic.
 namespace stylet::tet {
 
 namespace {

@@ -8,33 +8,34 @@
 
 namespace stylet::tet {
 
-inline constexpr int kBlock = 15;  ///< unknowns of a cross-section
+inline constexpr int kBlock = 15;  ///< number of unknowns of a cross-section
 using Block = Eigen::Matrix<double, kBlock, kBlock>;
 
-/// Symmetric positive definite matrix of 15 × 15 blocks, zero more than a few blocks off the diagonal, and its Cholesky
-/// factor in the same place; each row of blocks has its own width. Nothing allocates after construction.
+/// A symmetric positive definite matrix of 15 × 15 blocks that is zero further than kWidest blocks off the diagonal,
+/// and its Cholesky factor in the same memory. Each row of blocks has its own width. Nothing allocates after
+/// construction.
 class BlockBand {
  public:
-  static constexpr int kWidest = 3;  ///< blocks beside the diagonal
+  static constexpr int kWidest = 3;  ///< largest number of blocks beside the diagonal
 
   explicit BlockBand(int blocks);
 
-  /// All blocks zero; only the diagonal and the blocks next to it are in use.
+  /// Sets all blocks to zero, and the width of each row to the diagonal and the block next to it.
   void clear();
 
   [[nodiscard]] int blocks() const { return blocks_; }
-  /// Block (row, column), column ≤ row ≤ column + kWidest, from now on in use. Of diagonal blocks the lower triangle
-  /// counts.
+  /// Block (row, column) with column ≤ row ≤ column + kWidest; widens the row to include it. Only the lower triangle of
+  /// diagonal blocks is used.
   [[nodiscard]] Block& at(int row, int column) {
     int& first = first_[static_cast<std::size_t>(row)];
     first = std::min(first, column);
     return block(row, column);
   }
 
-  /// A = L Lᵀ, L over A. @return false if A is not positive definite (A is then spoilt)
+  /// Factorises A = L Lᵀ; L overwrites A. @return false if A is not positive definite (A is then destroyed)
   [[nodiscard]] bool factorise();
 
-  /// y ← L⁻¹ y from block `start` on; what lies before it is zero and stays so. y: (15 blocks) doubles
+  /// y ← L⁻¹ y for a y of (15 blocks) numbers that is zero before block `start`.
   void solve_lower(int start, double* y) const;
   /// y ← L⁻ᵀ y
   void solve_upper(double* y) const;
@@ -48,7 +49,7 @@ class BlockBand {
   [[nodiscard]] int first(int row) const { return first_[static_cast<std::size_t>(row)]; }
 
   int blocks_;
-  std::vector<int> first_;  ///< of each row, the first block in use
+  std::vector<int> first_;  ///< number of the first block in use in each row
   std::vector<Block> block_;
 };
 

@@ -10,7 +10,7 @@ namespace stylet {
 
 namespace {
 
-/// Second moment of area of a disc [mm⁴].
+/// Second moment of area of a disc [mm⁴], diameter in mm.
 double disc(double diameter) { return std::numbers::pi * std::pow(diameter, 4) / 64.0; }
 
 Error wrong(const char* name, const std::string& what, const char* cure) {
@@ -24,17 +24,17 @@ Result<SectionStiffness> section_stiffness(const Cannula& c) {
   if (!is_positive(c.young_MPa)) return not_positive("Young's modulus", "MPa", c.young_MPa);
   if (!(c.poisson > -1.0 && c.poisson <= 0.5))
     return wrong("Poisson's ratio", number_text(c.poisson) + ", expected more than -1 and at most 0.5",
-                 "Steel has 0.3");
+                 "Give 0.3 for steel");
   if (!(c.lumen_diameter_mm >= 0.0 && c.lumen_diameter_mm < c.outer_diameter_mm))
     return wrong("lumen diameter",
                  number_text(c.lumen_diameter_mm) + " mm, expected 0 or more and less than the outer diameter, " +
                      number_text(c.outer_diameter_mm) + " mm",
-                 "Give the tube's inner diameter; 0 for a solid needle");
+                 "Give the tube's inner diameter, or 0 for a solid needle");
   if (!(c.stylet_diameter_mm >= 0.0 && c.stylet_diameter_mm <= c.lumen_diameter_mm))
     return wrong("stylet diameter",
                  number_text(c.stylet_diameter_mm) + " mm, expected 0 … " + number_text(c.lumen_diameter_mm) +
                      " mm, the diameter of the lumen it slides in",
-                 "Give a thinner stylet, or the lumen as it is");
+                 "Give a thinner stylet or a wider lumen");
   if (c.stylet_diameter_mm > 0.0 && !is_positive(c.stylet_young_MPa))
     return not_positive("stylet's Young's modulus", "MPa", c.stylet_young_MPa);
 

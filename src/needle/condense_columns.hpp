@@ -8,15 +8,15 @@
 #include <algorithm>
 #include <cassert>
 
-/// What the needle's tangent H = L Lᵀ means for its load points, from Y = L⁻¹ Jᵀ and z = L⁻¹ g.
-/// start(a, b) is the row of Y before which the columns of loads a … b − 1 are zero.
+/// Compliance of the load points from the needle's tangent H = L Lᵀ, with Y = L⁻¹ Jᵀ and z = L⁻¹ g. start(a, b) is the
+/// row of Y before which the columns of the loads a … b − 1 are zero.
 namespace stylet {
 
-/// So many loads' columns are taken at once.
+/// Number of loads whose columns are processed together.
 inline constexpr Eigen::Index kCondensed = dense::kTile / 3;
 
-/// Compliance Yᵀ Y [mm/N] (3w × 3w): its rows and columns of loads first … last − 1 with those and the loads before
-/// them. @param first a multiple of kCondensed
+/// Compliance Yᵀ Y [mm/N] (3w × 3w): the rows and columns of the loads first … last − 1, for these loads and the loads
+/// before them. @param first a multiple of kCondensed
 template <class Start>
 void condense_columns(const MatX& Y, Eigen::Index first, Eigen::Index last, const Start& start,
                       Eigen::Ref<MatX>& compliance) {
@@ -27,7 +27,7 @@ void condense_columns(const MatX& Y, Eigen::Index first, Eigen::Index last, cons
     const auto columns = Y.middleCols(3 * a, 3 * na);
     for (Eigen::Index b = 0; b <= a; b += kCondensed) {
       const Eigen::Index nb = std::min(kCondensed, last - b);
-      constexpr Eigen::Index four = 4;  // numbers are multiplied side by side
+      constexpr Eigen::Index four = 4;  // four numbers are multiplied side by side
       const Eigen::Index reach = Y.rows() - std::max(start_a, start(b, b + nb));
       const Eigen::Index depth = std::min(Y.rows(), (reach + four - 1) / four * four);
       auto tile = compliance.block(3 * a, 3 * b, 3 * na, 3 * nb);
@@ -41,7 +41,7 @@ void condense_columns(const MatX& Y, Eigen::Index first, Eigen::Index last, cons
   }
 }
 
-/// The loads' motion by the Newton step, −Yᵀ z [mm] (3w).
+/// Motion of the load points in the Newton step, −Yᵀ z [mm] (3w).
 template <class Start>
 void condense_gradient(const MatX& Y, const VecX& z, Eigen::Index loads, const Start& start, Eigen::Ref<VecX>& free) {
   assert(free.size() == 3 * loads);

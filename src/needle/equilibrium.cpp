@@ -10,8 +10,8 @@ namespace stylet {
 
 namespace {
 
-/// The shape at the start of an iteration, to measure the change of potential energy from it without the rounding that
-/// distant coordinates bring.
+/// The shape at the start of an iteration. Measures the change of potential energy from it, without the rounding error
+/// that large coordinates would cause.
 class Potential {
  public:
   Potential(const Needle& needle, std::span<const PointLoad> loads)
@@ -21,7 +21,7 @@ class Potential {
 
   struct Change {
     double value = 0.0;     ///< [N mm]
-    double rounding = 0.0;  ///< [N mm] smaller changes mean nothing
+    double rounding = 0.0;  ///< [N mm] smaller changes are not significant
   };
   [[nodiscard]] Change to(const Needle& needle) const {
     const double energy = needle.energy();
@@ -74,7 +74,7 @@ Result<int> find_equilibrium(Needle& needle, std::span<const PointLoad> loads, d
     }
   }
   return failure("needle equilibrium",
-                 "out-of-balance moment " + std::to_string(residual) + " N mm left, expected at most " +
+                 "an out-of-balance moment of " + std::to_string(residual) + " N mm is left, expected at most " +
                      std::to_string(tolerance_Nmm) + " N mm",
                  "Apply the loads in smaller steps, allow more iterations, or loosen the tolerance");
 }

@@ -7,12 +7,12 @@
 namespace stylet {
 
 namespace {
-/// Rounds of the search for the crossing. Raised, a search that does not end costs more.
+/// Largest number of rounds of the search for the crossing. A larger number makes a search that fails cost more.
 constexpr int kMostRounds = 60;
-/// [mm] A point so near to the hole's plane lies on it. Raised, the crossing is less exact.
+/// [mm] A point closer to the hole's plane than this counts as on it. A larger value makes the crossing less exact.
 constexpr double kOnPlane_mm = 1e-13;
-/// Cosine between shaft and axis; a more oblique shaft does not run through the hole. Raised, a needle that is bent
-/// sharply comes out of the hole sooner.
+/// Smallest cosine between shaft and axis; a more oblique shaft counts as not running through the hole. A larger value
+/// takes a sharply bent needle out of the hole sooner.
 constexpr double kMostOblique = 0.1;
 }  // namespace
 
@@ -22,7 +22,7 @@ void GuideMeeting::place(const Vec3& centre, const Vec3& axis) {
   axis_ = axis;
 }
 
-/// Arc length where the shaft crosses the plane, by Newton's method kept between bounds.
+/// Finds the arc length where the shaft crosses the plane, by Newton's method with bisection as a safeguard.
 bool GuideMeeting::find_crossing(const Needle& needle) {
   const auto before_plane = [&](double s) { return axis_.dot(centre_ - needle.point(s)); };
   double low = 0.0;
@@ -61,7 +61,7 @@ void GuideMeeting::meet(const Needle& needle) {
   if (!holds()) return;
 
   const Vec3 e = d > 0.0 ? Vec3(offset_ / d) : Vec3(Vec3::Zero());
-  const double across = d > 0.0 ? beyond_ / d : 1.0;  // stiffness square to e, over that along it
+  const double across = d > 0.0 ? beyond_ / d : 1.0;  // stiffness perpendicular to e / stiffness along e
   const Mat3 in_plane = Mat3::Identity() - axis_ * axis_.transpose();
   const Mat3 H = hole_.stiffness_N_per_mm * (across * in_plane + (1.0 - across) * e * e.transpose());
   const Mat3 P = Mat3::Identity() - t * axis_.transpose() / cosine;

@@ -8,8 +8,8 @@
 namespace stylet {
 
 namespace {
-/// A hole bears the shaft with a stiffness that turns as the shaft runs along its edge: a tangent with an older one
-/// serves as long as it differs by no more than this part. Raised, iterations at a hole's edge are more.
+/// The hole's stiffness turns as the shaft moves along its edge. A tangent made for an older stiffness is still used
+/// while the relative difference is at most this. A larger value takes more iterations at the edge of a hole.
 constexpr double kTurned = 0.02;
 }  // namespace
 
@@ -29,14 +29,14 @@ void GuidedNeedle::place_guide(const Vec3& hole, const Vec3& axis) {
   hole_.meet(*inner_);
 }
 
-/// The hole comes first: loads are added and forgotten at the other end.
+/// Puts the hole's load before the caller's loads, because these are added and dropped at the end of the list.
 std::span<const PointLoad> GuidedNeedle::with_guide(std::span<const PointLoad> loads, const PointLoad& guide) {
   loads_.assign(1, guide);
   loads_.insert(loads_.end(), loads.begin(), loads.end());
   return loads_;
 }
 
-/// @param springs one for each of the loads, or none
+/// Puts the hole's stiffness before the caller's springs. @param springs one for each of the loads, or empty
 std::span<const Mat3> GuidedNeedle::with_guide(std::span<const Mat3> springs, std::size_t loads) {
   assert(springs.empty() || springs.size() == loads);
   springs_.assign(loads + 1, Mat3::Zero());

@@ -11,18 +11,18 @@
 
 namespace stylet::beam {
 
-/// Where point loads pull at the chain, load by load, for the shape at which each load was added. Nothing allocates
-/// after reserve().
+/// The pulls of point loads on the chain, load by load, each for the shape at which the load was added. Nothing
+/// allocates after reserve().
 class LoadPulls {
  public:
-  /// Makes room for so many loads.
+  /// Allocates memory for this number of loads.
   void reserve(Eigen::Index loads) {
     pulls_.reserve(static_cast<std::size_t>(AxisCurve::kReach * loads));
     ends_.reserve(static_cast<std::size_t>(loads));
     last_moved_.reserve(static_cast<std::size_t>(loads));
   }
 
-  /// Adds a load after those there. @param base_rotation base axes to LPS
+  /// Adds a load at the end. @param base_rotation base axes to LPS
   void add(const BeamShape& shape, const Mat3& base_rotation, const PointLoad& load) {
     const Pulls pulls = shape.pulls(load.s, base_rotation.transpose() * load.force);
     int last = -1;
@@ -33,7 +33,7 @@ class LoadPulls {
     ends_.push_back(static_cast<int>(pulls_.size()));
     last_moved_.push_back(last);
   }
-  /// Forgets all loads but the first.
+  /// Removes all loads after the first `loads` ones.
   void keep_first(Eigen::Index loads) {
     assert(loads <= count());
     last_moved_.resize(static_cast<std::size_t>(loads));
@@ -52,9 +52,9 @@ class LoadPulls {
     return all().subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(ends_[c] - begin));
   }
 
-  /// Element nearest the tip that moves the point of a load; -1: none does.
+  /// The element nearest to the tip whose curvature moves the point of a load; -1 if there is none.
   [[nodiscard]] int last_moved(Eigen::Index load) const { return last_moved_[static_cast<std::size_t>(load)]; }
-  /// The same of loads first … last − 1 together.
+  /// The same for the loads first … last − 1 together.
   [[nodiscard]] int last_moved(Eigen::Index first, Eigen::Index last) const {
     int element = -1;
     for (Eigen::Index load = first; load < last; ++load) element = std::max(element, last_moved(load));
@@ -63,8 +63,8 @@ class LoadPulls {
 
  private:
   std::vector<Pull> pulls_;
-  std::vector<int> ends_;        ///< (one per load) number of pulls up to and with the load's
-  std::vector<int> last_moved_;  ///< (one per load)
+  std::vector<int> ends_;        ///< (loads) number of pulls up to and including those of the load
+  std::vector<int> last_moved_;  ///< (loads)
 };
 
 }  // namespace stylet::beam

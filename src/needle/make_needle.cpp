@@ -25,7 +25,7 @@ Result<std::unique_ptr<Needle>> build(const NeedleSection& section, int elements
 
 /// The models, in the order of needle_models().
 struct Known {
-  int elements;  ///< docs/theory/needle.md, "Which model"
+  int elements;  ///< default number; docs/theory/needle.md has the errors
   Build build;
 };
 constexpr std::array kKnown{Known{24, build<BeamNeedle>}, Known{24, build<SpringsNeedle>}, Known{60, build<TetNeedle>}};

@@ -7,7 +7,8 @@ namespace stylet::tet {
 
 namespace {
 
-/// A = L Lᵀ of a 3 × 3 matrix of which the lower triangle is read. @return false if it is not positive definite
+/// Factorises A = L Lᵀ for a 3 × 3 matrix, of which the lower triangle is read. @return false if A is not positive
+/// definite
 bool cholesky(const Mat3& A, Mat3& L) {
   L.setZero();
   for (int j = 0; j < 3; ++j) {
@@ -24,7 +25,7 @@ bool cholesky(const Mat3& A, Mat3& L) {
   return true;
 }
 
-/// A L⁻ᵀ
+/// Returns A L⁻ᵀ.
 Mat3 over_transpose(Mat3 A, const Mat3& L) {
   A.col(0) /= L(0, 0);
   A.col(1) = (A.col(1) - L(1, 0) * A.col(0)) / L(1, 1);
@@ -90,7 +91,7 @@ void MiddleNodes::reduce(const VecX& gradient, VecX& layers) {
         const Vec3 share = out.coupling[i] * y;
         if (q >= kFirstMiddle) {
           reduced_.segment<3>(3 * (middle * k + q - kFirstMiddle)) -= share;
-        } else if (kBlock * k + 3 * (q - kLayerNodes) >= 0) {  // not of the clamped layer
+        } else if (kBlock * k + 3 * (q - kLayerNodes) >= 0) {  // the clamped layer has no unknowns
           layers.segment<3>(kBlock * k + 3 * (q - kLayerNodes)) -= share;
         }
       }

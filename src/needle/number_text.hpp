@@ -8,7 +8,7 @@
 
 namespace stylet {
 
-/// A number without needless zeros, for messages.
+/// Text of a number without trailing zeros, for messages.
 inline std::string number_text(double value) {
   std::string text = std::to_string(value);
   if (text.find('.') != std::string::npos) {

@@ -5,7 +5,7 @@
 
 namespace stylet::beam {
 
-/// Sums over the loads beyond an element, about the base: Σ f and Σ r fᵀ, in base axes.
+/// Sums over the loads beyond an element, with respect to the base, in base axes: Σ f and Σ r fᵀ.
 struct Resultant {
   Vec3 force = Vec3::Zero();   ///< Σ f [N]
   Mat3 tensor = Mat3::Zero();  ///< Σ r fᵀ [N mm]

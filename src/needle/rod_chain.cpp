@@ -54,7 +54,7 @@ bool RodChain::prepared_compliance(Eigen::Ref<MatX> compliance) {
   using Preparing = Parts::Preparing;
   assert(parts_->preparing != Preparing::nothing);
   beam::BeamTangent& tangent = parts_->prepared;
-  // Seven tenths of many loads are half of the triangle; of few none.
+  // The first seven tenths of the loads make half of the triangle. With few loads there is only one part.
   const Eigen::Index half = tangent.load_count() * 7 / 10 / kCondensed * kCondensed;
   switch (parts_->preparing) {
     case Preparing::solution:

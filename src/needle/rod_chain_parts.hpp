@@ -17,8 +17,8 @@ struct RodChain::Parts {
     bend_rest(section);
   }
 
-  /// Gives the unloaded shape its bow: the same curvature everywhere, of which the joint at the clamp, standing for
-  /// half a rod, has half.
+  /// Bows the unloaded shape: it gets the same curvature everywhere, except that the joint at the clamp, which stands
+  /// for half a rod, gets half.
   void bend_rest(const NeedleSection& section) {
     const Vec3 axis = bow_axis(section);
     const auto bend = [&](double k) {
@@ -38,8 +38,8 @@ struct RodChain::Parts {
   Mat3 base_rotation = Mat3::Identity();
   beam::BeamShape shape;
   beam::BeamTangent tangent;
-  beam::BeamTangent prepared;  ///< beside the one in use
-  /// What comes next of that one: L⁻¹Jᵀ, then the compliance in two parts.
+  beam::BeamTangent prepared;  ///< a new tangent, prepared while the other one is in use
+  /// The next piece of work on that tangent: L⁻¹Jᵀ, then the compliance in two parts.
   enum class Preparing { nothing, solution, first_loads, last_loads, complete } preparing = Preparing::nothing;
 };
 

@@ -7,12 +7,14 @@ namespace stylet::beam {
 
 namespace {
 
-/// Terms after which the series of c_6 has rounding only, for x below 4, and below kSmall: an element bent by 0.2 rad.
+/// Number of terms after which the rest of the series of c_6 is below rounding: kTerms if x < 4, and kFewTerms if
+/// x < kSmall, which is an element bent by 0.2 rad.
 constexpr int kTerms = 12;
 constexpr int kFewTerms = 4;
 constexpr double kSmall = 0.04;
 
-/// 1/((i + 6)(i + 5)): term j of the series of c_6 over the one before has i = 2j, of c_7 i = 2j + 1.
+/// 1/((i + 6)(i + 5)): ratio of term j to the term before it, with i = 2j in the series of c_6 and i = 2j + 1 in that
+/// of c_7.
 constexpr auto kRatio = [] {
   std::array<double, 2 * kTerms + 2> ratio{};
   for (std::size_t i = 0; i < ratio.size(); ++i) {
@@ -27,8 +29,8 @@ constexpr auto kRatio = [] {
 std::array<double, 8> stumpff(double x) {
   static constexpr std::array<double, 6> inverse_factorial = {1.0, 1.0, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120};
   std::array<double, 8> c{};
-  // x c_{k+2} = 1/k! - c_k, downwards from the series where x is small, upwards from the circular functions where it is
-  // large: each direction divides or multiplies errors the right way round.
+  // Recursion x c_{k+2} = 1/k! - c_k: downwards from the series where x is small, upwards from the circular functions
+  // where x is large. In each case the direction that damps rounding errors.
   if (x < 4.0) {
     const int terms = x < kSmall ? kFewTerms : kTerms;
     double sixth = 1.0;

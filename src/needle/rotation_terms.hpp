@@ -14,14 +14,14 @@ namespace stylet::beam {
   return m;
 }
 
-/// Stumpff functions c_k(x) = Σ_j (-x)^j / (2j + k)!, k = 0…7, x ≥ 0. c_1 = sin θ / θ with x = θ². To rounding for any
-/// x: no branch loses digits near zero. (Stumpff 1959.)
+/// Stumpff functions c_k(x) = Σ_j (-x)^j / (2j + k)!, k = 0…7, x ≥ 0, for example c_1 = sin θ / θ with x = θ². Accurate
+/// to rounding for any x, also near zero. (Stumpff 1959.)
 [[nodiscard]] std::array<double, 8> stumpff(double x);
 
-/// The first six, k = 0…5: all that first derivatives need, in a few operations where an element is bent by less than
-/// 0.2 rad.
+/// The first six of them, k = 0…5, which first derivatives need. Takes few operations where an element is bent by less
+/// than 0.2 rad.
 [[nodiscard]] inline std::array<double, 6> first_stumpff(double x) {
-  constexpr double small = 0.04;  // below, five terms of c_4 and c_5 leave rounding only
+  constexpr double small = 0.04;  // for smaller x, the error of five terms of c_4 and c_5 is below rounding
   if (!(x < small)) {
     const std::array<double, 8> c = stumpff(x);
     return {c[0], c[1], c[2], c[3], c[4], c[5]};
@@ -37,16 +37,16 @@ namespace stylet::beam {
   return {1.0 - x * second, 1.0 - x * third, second, third, fourth, fifth};
 }
 
-/// How the centreline runs through an element that turns the frame by a rotation vector.
+/// Shape of the centreline in an element that turns the frame by a rotation vector.
 enum class ElementKind {
-  arc,  ///< the turn is spread evenly: a piece of a circular helix
-  rod,  ///< a joint at the element's start takes all of the turn, and a straight rod follows
+  arc,  ///< the rotation is spread evenly: a piece of a circular helix
+  rod,  ///< a joint at the element's start has all of the rotation; a straight rod follows
 };
 
-/// What an element needs from its rotation vector φ [rad] (s κ for an arc up to s), with derivatives.
-/// exp([φ]×) = I + c_1 [φ]× + c_2 [φ]×²  and  V(φ) = ∫₀¹ exp(σ[φ]×) dσ = I + c_2 [φ]× + c_3 [φ]×²; V is also the left
-/// Jacobian of SO(3): exp([φ + δ]×) = exp([V δ]×) exp([φ]×) + O(δ²). The chord of the element per unit of its length,
-/// in the frame of its start, is C(φ) e_z, with C = V for an arc and C = exp for a rod.
+/// Functions of an element's rotation vector φ [rad] (s κ for an arc up to s) and their derivatives:
+///   exp([φ]×) = I + c_1 [φ]× + c_2 [φ]×²,    V(φ) = ∫₀¹ exp(σ[φ]×) dσ = I + c_2 [φ]× + c_3 [φ]×².
+/// V is also the left Jacobian of SO(3): exp([φ + δ]×) = exp([V δ]×) exp([φ]×) + O(δ²). The chord of the element / its
+/// length, in the frame of its start, is C(φ) e_z, with C = V for an arc and C = exp for a rod.
 class RotationTerms {
  public:
   explicit RotationTerms(const Vec3& phi, ElementKind kind = ElementKind::arc)
@@ -70,7 +70,7 @@ class RotationTerms {
  private:
   /// I + c_k [φ]× + c_{k+1} [φ]×²
   [[nodiscard]] Mat3 series(int k) const;
-  /// Its last column.
+  /// Last column of series(k).
   [[nodiscard]] Vec3 series_z(int k) const;
   /// Hessian in φ of E : (I + c_k [φ]× + c_{k+1} [φ]×²)
   [[nodiscard]] Mat3 hessian(int k, const Mat3& E) const;
@@ -80,7 +80,7 @@ class RotationTerms {
   Vec3 phi_;
   double x_;  ///< |φ|²
   std::array<double, 6> c_;
-  int chord_;  ///< C = I + c_k [φ]× + c_{k+1} [φ]×², this is k
+  int chord_;  ///< the k in C = I + c_k [φ]× + c_{k+1} [φ]×²
 };
 
 inline Mat3 RotationTerms::series(int k) const {
@@ -106,7 +106,7 @@ inline Vec3 RotationTerms::series_z(int k) const {
 }
 
 inline Mat3 RotationTerms::chord_derivative() const {
-  // C e_z = e_z + a φ × e_z + b (φ φ_z - x e_z), a = c_k and b = c_{k+1} of x.
+  // C e_z = e_z + a φ × e_z + b (φ φ_z - x e_z) with a = c_k(x) and b = c_{k+1}(x).
   const double a = c_[chord_];
   const double b = c_[chord_ + 1];
   const double by_a = 2.0 * first(chord_);

@@ -12,7 +12,7 @@ namespace stylet {
 namespace {
 
 constexpr double kSteelYoung_MPa = 210e3;
-constexpr double kLargestBow = 0.1;  ///< of the length
+constexpr double kLargestBow = 0.1;  ///< largest bow / length
 constexpr int kFewestElements = 4;
 constexpr int kMostElements = 500;
 
@@ -40,14 +40,14 @@ Result<> check_needle(const NeedleSection& section, int elements, int load_capac
     return input_error(
         "needle, bow",
         number_text(section.bow_mm) + " mm, expected 0 … " + number_text(largest_bow) + " mm, a tenth of the length",
-        "Give the tip's distance from the axis of the unloaded needle; bow_deg says to which side");
+        "Give the tip's distance from the axis of the unloaded needle; give its side as bow_deg");
   }
   if (!std::isfinite(section.bow_deg)) {
-    return input_error("needle, direction of the bow", "not a finite number of degrees", "Give an angle in degrees");
+    return input_error("needle, direction of the bow", "it is not a finite number", "Give an angle in degrees");
   }
   if (elements < kFewestElements || elements > kMostElements) {
     return input_error("needle, elements", std::to_string(elements) + ", expected 4…500",
-                       "24 elements follow a 200 mm needle to 0.1 %");
+                       "Use 24, with which a 200 mm needle is accurate to 0.1 %");
   }
   if (load_capacity < 1) {
     return input_error("needle, load capacity", std::to_string(load_capacity) + ", expected at least 1",

@@ -7,11 +7,11 @@ namespace stylet::beam {
 
 namespace {
 
-/// The smallest shift that is tried. Larger: fewer attempts just beyond buckling, and a shift that is less close to
-/// what is needed.
+/// The smallest shift that is tried. A larger one takes fewer attempts just beyond the buckling load, but exceeds the
+/// necessary shift by more.
 constexpr double kSmallestShift = 0.05;
 
-/// The shift above which it is taken for granted that the matrix is not finite. Larger: more attempts before that.
+/// A matrix that needs a larger shift is assumed not to be finite. A larger limit takes more attempts before that.
 constexpr double kLargestShift = 1e12;
 
 }  // namespace

@@ -6,23 +6,24 @@
 
 namespace stylet::beam {
 
-/// A symmetric matrix H and the Cholesky factor of H + shift I, where the shift is zero if H is positive definite and
-/// else large enough for the sum to be so. Nothing allocates after construction.
+/// A symmetric matrix H and the Cholesky factor of H + shift I. The shift is zero if H is positive definite, and
+/// otherwise large enough to make the sum positive definite. Nothing allocates after construction.
 class ShiftedFactor {
  public:
-  /// H is zero then, and the factor that of the unit matrix.
+  /// Starts with H = 0 and the factor of the unit matrix.
   explicit ShiftedFactor(Eigen::Index size);
 
-  /// H, of which the lower triangle counts. Writing it does not change the factor.
+  /// The matrix H, of which only the lower triangle is used. Writing it does not change the factor.
   [[nodiscard]] MatX& matrix() { return H_; }
   [[nodiscard]] const MatX& matrix() const { return H_; }
 
-  /// Factorises H. @param otherwise what to do where H is not positive definite
-  /// @return false where it was given up: there is no factor then
+  /// Factorises H.
+  /// @param otherwise what to do when H is not positive definite
+  /// @return false when it gave up; there is no factor then
   bool factorise(Indefinite otherwise);
   /// Whether the last factorise() made a factor.
   [[nodiscard]] bool factorised() const { return factorised_; }
-  /// The shift of the last attempt; 0 where H is positive definite.
+  /// The shift of the last attempt; 0 when H is positive definite.
   [[nodiscard]] double shift() const { return shift_; }
 
   /// Y ← L⁻¹ Y for columns whose rows before `start` are zero. @param Y (size × k)

@@ -31,7 +31,7 @@ struct TetNeedle::Parts {
     shape.bend_rest(axis * bow_curvature(section, [&](double k) { return (1.0 - std::cos(k * length)) / k; }));
   }
 
-  /// Makes the tip of the straight needle yield to a lateral force as much as theory says.
+  /// Scales Young's modulus so that the tip of the straight needle yields to a lateral force as theory says.
   void calibrate(const NeedleSection& section) {
     const std::array<PointLoad, 1> tip{PointLoad{length, Vec3::Zero()}};
     MatX compliance(3, 3);
@@ -45,14 +45,14 @@ struct TetNeedle::Parts {
   }
 
   double length;
-  double theory_modulus;         ///< [MPa] of a square section that bends as the needle does
-  double softness = 1.0;         ///< compliance of the tetrahedra with that modulus over theory's
+  double theory_modulus;  ///< [MPa] modulus with which theory gives the square section the needle's bending stiffness
+  double softness = 1.0;  ///< compliance of the tetrahedra with theory_modulus / compliance of theory
   double axial_stiffness = 0.0;  ///< [N/mm]
   Pose base;
   Mat3 base_rotation = Mat3::Identity();
   tet::TetShape shape;
   tet::TetTangent tangent;
-  VecX imbalance;  ///< work of residual()
+  VecX imbalance;  ///< work space of residual()
 };
 
 Result<std::unique_ptr<TetNeedle>> TetNeedle::build(const NeedleSection& section, int segments, int load_capacity,

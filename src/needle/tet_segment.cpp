@@ -10,20 +10,20 @@ namespace stylet::tet {
 
 namespace {
 
-/// Edges from the first node, as columns.
+/// Edges from the first node to the others, as columns.
 Mat3 edges(const std::vector<Vec3>& nodes, const std::array<int, 4>& node) {
   Mat3 m;
   for (int i = 0; i < 3; ++i) m.col(i) = nodes[node[i + 1]] - nodes[node[0]];
   return m;
 }
 
-/// Adds a tetrahedron, its nodes ordered so that its volume is positive.
+/// Adds a tetrahedron with its nodes ordered so that the volume is positive.
 void add_element(SegmentMesh& mesh, std::array<int, 4> node) {
   if (edges(mesh.nodes, node).determinant() < 0.0) std::swap(node[2], node[3]);
   mesh.elements.push_back(make_element(mesh.nodes, node));
 }
 
-/// Every face's four triangles about its centre, joined to the centre of the body.
+/// Joins the four triangles around the centre of every face to the centre of the body.
 void fill_symmetric(SegmentMesh& mesh) {
   constexpr int body = kFirstMiddle + 4;
   const auto side_face = [](int i) {
@@ -44,7 +44,7 @@ void fill_symmetric(SegmentMesh& mesh) {
   }
 }
 
-/// Four prisms about the axis, each cut into three along the diagonals that rise from the lower node number.
+/// Four prisms around the axis, each cut into three tetrahedra along diagonals that rise from the lower node number.
 void fill_asymmetric(SegmentMesh& mesh) {
   for (int i = 0; i < 4; ++i) {
     const int a = std::min(i, (i + 1) % 4);

@@ -9,34 +9,40 @@
 
 namespace stylet::tet {
 
-/// Nodes of a segment: 0…3 corners and 4 centre of the layer nearer the base, 5…9 the same of the next layer, then the
-/// middle nodes, which belong to this segment alone: 10…13 centres of the side faces, 14 centre of the body.
+/// Nodes of a segment: 0…3 are the corners and 4 is the centre of the layer nearer to the base; 5…9 are the same for
+/// the next layer. Then follow the middle nodes, which belong to this segment alone: 10…13 are the centres of the side
+/// faces, 14 is the centre of the body.
 inline constexpr int kLayerNodes = 5;
 inline constexpr int kAxisNode = 4;
 inline constexpr int kMostNodes = 15;
 inline constexpr int kFirstMiddle = 2 * kLayerNodes;
 
-/// A linear tetrahedron in the straight needle.
+/// A linear tetrahedron of the unloaded needle.
 struct Element {
-  std::array<int, 4> node{};     ///< of the segment
-  std::array<Vec3, 4> gradient;  ///< [1/mm] of the nodes' hat functions
+  std::array<int, 4> node{};     ///< node numbers in the segment
+  std::array<Vec3, 4> gradient;  ///< [1/mm] gradients of the hat functions of its nodes
   double volume = 0.0;           ///< [mm³]
 };
 
-/// The element between four nodes. @param nodes [mm] of the segment, @param node ordered so that its volume is positive
+/// The element between four nodes.
+/// @param nodes [mm] all nodes of the segment
+/// @param node numbers of the four nodes, in an order that makes the volume positive
 [[nodiscard]] Element make_element(const std::vector<Vec3>& nodes, const std::array<int, 4>& node);
 
-/// The piece of bar the needle repeats along its axis (z), all alike.
+/// The piece of the bar that is repeated along the needle's axis (z).
 struct SegmentMesh {
-  std::vector<Vec3> nodes;  ///< [mm] from the centre of the layer nearer the base; kFirstMiddle and more
+  /// [mm] relative to the centre of the layer nearer to the base; at least kFirstMiddle nodes.
+  std::vector<Vec3> nodes;
   std::vector<Element> elements;
 
   [[nodiscard]] int middle_nodes() const { return static_cast<int>(nodes.size()) - kFirstMiddle; }
-  /// Nodes that share an element with a middle node, without the middle nodes before it.
+  /// Nodes that share an element with a middle node, without the middle nodes that precede it.
   [[nodiscard]] std::vector<int> neighbours_after(int middle) const;
 };
 
-/// @param width [mm] of the square section, @param length [mm] of the segment
+/// Makes a segment of one kind.
+/// @param width width of the square section [mm]
+/// @param length length of the segment [mm]
 [[nodiscard]] SegmentMesh make_segment(TetNeedle::Segment kind, double width, double length);
 
 }  // namespace stylet::tet

@@ -27,7 +27,7 @@ Eigen::Index TetShape::dof(int segment, int node) const {
   const int before = segment * (middle + kLayerNodes);
   if (node >= kFirstMiddle) return 3 * (before + node - kFirstMiddle);
   if (node >= kLayerNodes) return 3 * (before + middle + node - kLayerNodes);
-  return 3 * (before - kLayerNodes + node);  // the layer at the end of the segment before
+  return 3 * (before - kLayerNodes + node);  // the layer at the end of the preceding segment
 }
 
 void TetShape::bend_rest(const Vec3& curvature) {
@@ -77,7 +77,7 @@ void TetShape::update() {
     }
     for (int e = 0; e < static_cast<int>(mesh_.elements.size()); ++e) {
       const Element& element = unloaded(k, e);
-      // Differences before products: where a segment is moved but hardly deformed, no digits of the strain are lost.
+      // Forming differences before products keeps all digits of the strain where a segment moves but hardly deforms.
       const Vec3& origin = u[element.node[0]];
       Mat3 H = Mat3::Zero();
       for (int i = 1; i < 4; ++i) H += (u[element.node[i]] - origin) * element.gradient[i].transpose();
@@ -134,7 +134,7 @@ double largest_imbalance(const TetShape& shape, const Mat3& base_rotation, std::
     }
   }
   Vec3 force = Vec3::Zero();
-  Vec3 moment = Vec3::Zero();  // about the layer in hand
+  Vec3 moment = Vec3::Zero();  // about the centre of the current layer
   double largest = 0.0;
   const auto note = [&largest](double value) { largest = larger_or_nan(largest, value); };
   for (int k = shape.segments() - 1; k >= 0; --k) {

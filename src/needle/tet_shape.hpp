@@ -11,37 +11,38 @@
 
 namespace stylet::tet {
 
-/// Layers (cross-sections) and segments count from the base; layer 0 is clamped and not among the unknowns.
-/// What update() knows of one element: deformation gradient and second Piola–Kirchhoff stress.
+/// State of one element: deformation gradient and second Piola–Kirchhoff stress, computed by TetShape::update().
 struct ElementState {
   Mat3 F = Mat3::Identity();
-  Mat3 elastic = Mat3::Zero();  ///< [MPa]
-  Mat3 S = Mat3::Zero();        ///< [MPa] elastic, and what damping adds
+  Mat3 elastic = Mat3::Zero();  ///< [MPa] elastic stress
+  Mat3 S = Mat3::Zero();        ///< [MPa] elastic stress plus the stress of damping
 };
 
-/// Displacements of all nodes in base axes from where they are in a straight needle, with stresses, nodal forces and
-/// energy, refreshed by update().
+/// Displacements of all nodes of a bar of tetrahedra, in base axes relative to the straight needle, with the stresses,
+/// nodal forces and energy that update() computes. Layers (cross-sections) and segments are numbered from the base;
+/// layer 0 is clamped and has no unknowns.
 class TetShape {
  public:
   TetShape(SegmentMesh mesh, int segments, double segment_length, double young_modulus, double poisson);
 
-  /// [mm] segment by segment: its middle nodes, then the layer at its end. Call update() after writing.
+  /// [mm] ordered by segment: its middle nodes, then the layer at its end. Call update() after writing.
   VecX displacement;
   void update();
-  /// Counts the calls of update(): what was made for the same number is still valid.
+  /// Number of calls of update(); values computed for the same number are still valid.
   [[nodiscard]] long revision() const { return revision_; }
 
-  /// Makes a bow of constant curvature [1/mm] the unloaded shape, and takes it.
+  /// Makes a bow of constant curvature [1/mm] the unloaded shape, and sets the current shape to it.
   void bend_rest(const Vec3& curvature);
-  /// [mm] of the unloaded shape, as displacement.
+  /// Displacement of the unloaded shape [mm], in the order of `displacement`.
   [[nodiscard]] const VecX& rest() const { return rest_; }
 
-  /// From now on strain also resists every change from that of now, `ratio` times as stiffly as it is; Needle::damp().
-  /// energy() stays what is stored.
+  /// From now on strain also resists changes from its current value, with `ratio` times its stiffness; see
+  /// Needle::damp(). energy() stays the elastic energy.
   void damp(double ratio);
   [[nodiscard]] double damping() const { return damping_; }
+  /// Damping stiffness / elastic stiffness.
 
-  /// Multiplies Young's modulus (and stresses, forces, energy).
+  /// Multiplies Young's modulus by a factor, and with it stresses, forces and energy.
   void scale_modulus(double factor);
 
   [[nodiscard]] int segments() const { return segments_; }
@@ -51,25 +52,25 @@ class TetShape {
   [[nodiscard]] double mu() const { return mu_; }          ///< [MPa]
   [[nodiscard]] double energy() const { return energy_; }  ///< [N mm]
 
-  /// First unknown of a node of a segment; negative for the clamped layer.
+  /// First unknown of a node of a segment; negative for nodes of the clamped layer.
   [[nodiscard]] Eigen::Index dof(int segment, int node) const;
   /// First unknown of the axis node of layer 1…n.
   [[nodiscard]] Eigen::Index axis_dof(int layer) const { return dof(layer - 1, kLayerNodes + kAxisNode); }
 
   [[nodiscard]] const ElementState& element(int segment, int e) const { return states_[number(segment, e)]; }
-  /// An element of the unloaded needle, base axes.
+  /// An element of the unloaded needle in base axes.
   [[nodiscard]] const Element& unloaded(int segment, int e) const {
     return bowed_.empty() ? mesh_.elements[static_cast<std::size_t>(e)] : bowed_[number(segment, e)];
   }
-  /// [N] of the stress on the nodes, damping's included; else ∂energy/∂displacement
+  /// [N] nodal forces of the stress, including damping; without damping they are ∂energy/∂displacement
   [[nodiscard]] const VecX& force() const { return force_; }
 
-  /// Centreline in base axes.
+  /// Point [mm] and unit tangent of the centreline at arc length s [mm], base axes.
   [[nodiscard]] Vec3 point(double s) const;
   [[nodiscard]] Vec3 tangent(double s) const;
-  [[nodiscard]] Vec3 axis_point(int layer) const;  ///< [mm] layer 0…n
+  [[nodiscard]] Vec3 axis_point(int layer) const;  ///< [mm] centre of layer 0…n
 
-  /// Present place [mm] of a node of a segment.
+  /// Current position [mm] of a node of a segment, base axes.
   [[nodiscard]] Vec3 place(int segment, int node) const;
 
  private:
@@ -80,7 +81,7 @@ class TetShape {
     const Eigen::Index i = dof(segment, node);
     return i < 0 ? Vec3::Zero() : Vec3(displacement.segment<3>(i));
   }
-  /// From the unloaded shape.
+  /// Displacement relative to the unloaded shape.
   [[nodiscard]] Vec3 strain_displacement_of(int segment, int node) const {
     const Eigen::Index i = dof(segment, node);
     return i < 0 ? Vec3::Zero() : Vec3(displacement.segment<3>(i) - rest_.segment<3>(i));
@@ -95,15 +96,17 @@ class TetShape {
   double damping_ = 0.0;
   long revision_ = 0;
   VecX rest_;
-  std::vector<Element> bowed_;  ///< of a bowed needle, segment by segment; a straight one's segments are all alike
+  std::vector<Element> bowed_;  ///< elements of a bowed needle, ordered by segment; empty for a straight needle, whose
+                                ///< segments are all equal
   std::vector<ElementState> states_;
-  std::vector<Mat3> damped_from_;  ///< [MPa] elastic stress of each element
+  std::vector<Mat3> damped_from_;  ///< [MPa] elastic stress of each element from which damping measures
   VecX force_;
 };
 
-/// Largest moment [N mm], over the layers, of the out-of-balance forces beyond about the layer's centre, or over the
-/// nodes of out-of-balance force × segment length, whichever is larger. Written to (unknowns): the forces themselves.
+/// The larger of two values: over the layers, the largest moment [N mm] about the layer's centre of the out-of-balance
+/// forces beyond it; over the nodes, the largest out-of-balance force × segment length.
 /// @param base_rotation base axes to LPS
+/// @param imbalance output (unknowns): the out-of-balance forces [N]
 [[nodiscard]] double largest_imbalance(const TetShape& shape, const Mat3& base_rotation,
                                        std::span<const PointLoad> loads, VecX& imbalance);
 

@@ -10,17 +10,17 @@ namespace stylet::tet {
 
 namespace {
 
-/// Smallest share of the material part that is added to make the stiffness positive definite. Larger: fewer attempts
-/// just beyond buckling, and a shift that is less close to what is needed.
+/// Smallest multiple of the material part that is tried as a shift. A larger one takes fewer attempts just beyond the
+/// buckling load, but exceeds the necessary shift by more.
 constexpr double kSmallestShift = 0.1;
 
-/// By how much the share grows from one attempt to the next. Larger: fewer attempts, with the same loss.
+/// Factor by which the shift grows from one attempt to the next. A larger factor has the same effects.
 constexpr double kGrowth = 4.0;
 
-/// The shift above which it is taken for granted that the matrix is not finite. Larger: more attempts before that.
+/// A matrix that needs a larger shift is assumed not to be finite. A larger limit takes more attempts before that.
 constexpr double kLargestShift = 1e12;
 
-/// First unknown of the axis node in its layer's block.
+/// Position of the axis node's first unknown in the block of its layer.
 constexpr int kAxis = 3 * kAxisNode;
 
 }  // namespace
@@ -104,7 +104,8 @@ bool TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Ma
   };
   if (attempt(0.0)) return true;
   if (otherwise == Indefinite::give_up) return false;
-  // Beyond buckling. The first shift that works bounds the smallest eigenvalue; twice that shift leaves a margin.
+  // Beyond the buckling load. The first shift that works bounds the smallest eigenvalue; twice that shift leaves a
+  // margin.
   for (double shift = kSmallestShift; shift < kLargestShift; shift *= kGrowth) {
     if (attempt(shift) && attempt(2.0 * shift)) return true;
   }
@@ -115,7 +116,7 @@ bool TetTangent::factorise_shifted(const Mat3& base_rotation, std::span<const Ma
   return true;
 }
 
-/// Adds every segment to the band of its two layers, of which the clamped one drops out, and factorises that.
+/// Adds every segment to the blocks of its two layers, leaving out the clamped layer, and factorises the result.
 bool TetTangent::factorise(double shift) {
   for (int k = 0; k < band_.blocks(); ++k) {
     if (!middle_.eliminate(k, stiffness_.segment(k), shift)) return false;
@@ -127,7 +128,8 @@ bool TetTangent::factorise(double shift) {
   return band_.factorise();
 }
 
-/// The cubic through four layers ties layers three apart as soon as springs act on it.
+/// Adds springs to the band. Four layers determine the cubic where a spring acts, so the spring couples layers up to
+/// three apart.
 void TetTangent::add_springs(const Mat3& base_rotation, std::span<const Mat3> springs) {
   assert(springs.size() == loads_.size());
   for (std::size_t c = 0; c < std::min(springs.size(), loads_.size()); ++c) {

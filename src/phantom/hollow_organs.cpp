@@ -11,15 +11,14 @@ namespace stylet::phantom {
 
 using Eigen::Vector2d;
 
-// --- urethra: from the bladder neck, backwards to the verumontanum, forwards through apex and pelvic floor
-// ------------
+// --- Urethra: from the bladder neck backwards to the verumontanum, then forwards through apex and pelvic floor.
 
 Urethra::Urethra(const Sizes& sizes, const Prostate& prostate)
     : Organ("Urethra", "ORGAN", {240, 200, 60}),
       half_length_(prostate.half_length),
       radius_(0.5 * sizes.urethra_diameter) {
   low = -1.72 * half_length_;
-  high = 1.04 * half_length_;  // the neck: half a slice into the bladder's lowest contour
+  high = 1.04 * half_length_;  // the neck: half a slice into the lowest contour of the bladder
 }
 
 double Urethra::centre(double z) const {
@@ -37,8 +36,7 @@ std::vector<Outline> Urethra::outlines(double z) const {
   })};
 }
 
-// --- bladder: a funnel at the neck, widest in its middle, leaning forward over the symphysis
-// ---------------------------
+// --- Bladder: a funnel at the neck, widest in its middle, leaning forwards over the symphysis.
 
 namespace {
 constexpr double bladder_half_width = 36.0;  // [mm] before scaling to the volume
@@ -61,7 +59,7 @@ Bladder::Bladder(const Sizes& sizes, const Prostate& prostate, Random& random)
 
 Outline Bladder::outline(double z) const {
   const double t = std::clamp((z - low) / (scale_ * bladder_height), 0.0, 1.0);
-  // The neck (t = 0) is a funnel of finite width, the dome (t = 1) is round.
+  // The neck (t = 0) is a funnel of finite width; the dome (t = 1) is round.
   const double u = 2.0 * t - 1.0;
   const double size = std::sqrt(std::max(1.0 - std::pow(std::abs(u), 2.3), u < 0.0 ? 0.10 : 0.0));
   const double lean = -3.6 - 12.0 * std::sin(0.5 * std::numbers::pi * t) * t;
@@ -74,11 +72,10 @@ Outline Bladder::outline(double z) const {
 
 std::vector<Outline> Bladder::outlines(double z) const { return {outline(z)}; }
 
-// --- rectum and anal canal: along the sacral hollow, bent backwards at the anorectal junction below the apex
-// -----------
+// --- Rectum and anal canal: along the sacral hollow, bent backwards at the anorectal junction below the apex.
 
 namespace {
-// Heights in half lengths of the gland; the front wall is for a gland 17 mm deep with a gap of 4 mm [mm].
+// Heights are in half lengths of the gland. The anterior wall [mm] is for a gland 17 mm deep with a gap of 4 mm.
 constexpr std::array<double, 9> rectum_heights{-1.95, -1.40, -0.93, -0.47, 0.0, 0.7, 1.63, 2.56, 3.4};
 constexpr std::array<double, 9> rectum_front{38.0, 27.5, 20.5, 20.0, 21.0, 22.5, 27.0, 32.5, 37.0};
 constexpr std::array<double, 9> rectum_half_width{9.0, 10.5, 14.0, 16.5, 17.0, 17.0, 18.0, 18.5, 17.5};
@@ -92,7 +89,7 @@ Rectum::Rectum(const Sizes& sizes, const Prostate& prostate, Random& random)
       scale_(sizes.rectum_diameter / 30.0),
       irregularity_(random, 0.05) {
   const double skin = -unit_ - sizes.skin_below_apex;
-  low = std::max(rectum_heights.front() * unit_, skin + 11.0);  // contours of the canal stop above the anal verge
+  low = std::max(rectum_heights.front() * unit_, skin + 11.0);  // contours of the canal end above the anal verge
   high = 70.0;
 }
 
@@ -103,7 +100,7 @@ std::vector<Outline> Rectum::outlines(double z) const {
   const double front = front_ + interpolate(rectum_heights, rectum_front, h);
   return {trace(40, [&](double theta) {
     const Vector2d p = irregularity_.factor(theta, 0.6 * h) * superellipse(a, b, 2.3, theta);
-    // The front wall lies flat against the gland, the back is round.
+    // The anterior wall is flat against the gland; the posterior wall is round.
     const double y = p.y() < 0.0 ? p.y() * (1.0 - 0.12 * (1.0 - std::pow(p.x() / a, 2))) : p.y();
     return Vector2d(p.x(), front + 0.88 * b + y);
   })};

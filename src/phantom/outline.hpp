@@ -11,16 +11,16 @@
 #include <span>
 #include <vector>
 
-/// Closed outlines in one transverse slice, x to the left and y to the back [mm].
+/// Closed outlines in a transverse slice; x points to the left, y posteriorly [mm].
 namespace stylet::phantom {
 
 using Outline = std::vector<Eigen::Vector2d>;
 
-/// Low-order irregularity of an outline: factor 1 + Σ a_m cos(mθ + φ_m + ψ_m t), m = 2…5, which turns slowly with the
-/// height t so that neighbouring slices resemble each other.
+/// Low-order irregularity of an outline: a factor 1 + Σ a_m cos(mθ + φ_m + ψ_m t), m = 2…5. It turns slowly with the
+/// height t, so that neighbouring slices resemble each other.
 class Irregularity {
  public:
-  /// @param amplitude of the whole, e.g. 0.03; order m contributes amplitude / m
+  /// @param amplitude total amplitude, e.g. 0.03; order m contributes about amplitude / m
   Irregularity(Random& random, double amplitude);
   [[nodiscard]] double factor(double theta, double t) const;
 
@@ -31,19 +31,20 @@ class Irregularity {
   std::array<double, 4> turn_{};
 };
 
-/// Point of a superellipse |x/a|^n + |y/b|^n = 1 at parameter theta; n = 2 is the ellipse, larger is squarer.
+/// Point of a superellipse |x/a|^n + |y/b|^n = 1 at parameter theta. n = 2 is an ellipse; larger n gives squarer
+/// shapes.
 Eigen::Vector2d superellipse(double a, double b, double n, double theta);
 
-/// `count` points at equal arc length along the closed curve theta → point, theta in [0, 2π).
+/// `count` points at equal arc lengths along the closed curve theta → point, theta in [0, 2π).
 Outline trace(int count, const std::function<Eigen::Vector2d(double)>& curve);
 
-/// The outline at height z, coordinates rounded to 0.001 mm (a micrometre is far below any drawing).
+/// The outline as a contour at height z, with coordinates rounded to 0.001 mm (far finer than any drawing).
 Contour at_height(const Outline& outline, double z);
 
-/// Area [mm²], positive when counter-clockwise seen from above (+z).
+/// Area [mm²]; positive when counter-clockwise seen from +z.
 double area(const Outline& outline);
 
-/// Smooth curve through the table's points (Catmull–Rom with uneven knots), constant outside.
+/// Smooth curve through the points of a table (Catmull–Rom with uneven knots), constant outside.
 /// @param knots ascending (n)
 /// @param values (n)
 double interpolate(std::span<const double> knots, std::span<const double> values, double x);

@@ -10,16 +10,16 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// Size of the section at relative height t in [-1, 1]: slender at the apex (-1), blunt at the base (+1).
+/// Relative size of the section at relative height t in [-1, 1]: slender at the apex (-1), blunt at the base (+1).
 double width_factor(double t) {
   const double u = std::min(std::abs(t), 1.0);
   return t < 0.0 ? std::sqrt(1.0 - std::pow(u, 2.2)) : std::pow(1.0 - std::pow(u, 3.6), 0.42);
 }
 
-/// The depth decreases later than the width towards the ends.
+/// Towards the ends, depth decreases later than width.
 double depth_factor(double t) { return std::pow(width_factor(t), 0.85); }
 
-/// The gland leans back by a millimetre at the base and forward at the apex.
+/// The gland leans by one millimetre: posteriorly at the base and anteriorly at the apex.
 double centre_y(double t) { return t; }
 
 }  // namespace
@@ -33,7 +33,7 @@ Prostate::Prostate(const Sizes& sizes, Random& random)
     half_length = depth * sizes.prostate_length;
   };
   resize(half_depth);
-  // The hollow does not scale with the gland, so the volume is met by a few repetitions.
+  // The hollow does not scale with the gland, so the volume is met by repetition.
   for (int i = 0; i < 4; ++i) resize(half_depth * std::cbrt(sizes.prostate_cc / volume_cc()));
   low = -0.97 * half_length;
   high = 0.97 * half_length;
@@ -52,7 +52,7 @@ Outline Prostate::outline(double z) const {
   return trace(48, [&](double theta) {
     Vector2d p = irregularity_.factor(theta, t) * superellipse(a, b, 2.5, theta);
     if (p.y() < 0.0) {
-      p.x() *= 1.0 - 0.16 * (-p.y() / b);  // the fibromuscular front is narrower than the peripheral zone
+      p.x() *= 1.0 - 0.16 * (-p.y() / b);  // the fibromuscular anterior part is narrower than the peripheral zone
     } else {
       p.y() -= hollow * std::exp(-std::pow(p.x() / (0.38 * a), 2)) * (p.y() / b);
     }

@@ -6,8 +6,8 @@
 
 namespace stylet::phantom {
 
-/// Random numbers that are the same on every machine: the standard fixes the engine's sequence but not what its
-/// distributions make of it, so the mapping is written out here.
+/// Random numbers that are the same on every machine. The standard specifies the sequence of the engine but not the
+/// output of its distributions, so the mapping is written out here.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -15,7 +15,7 @@ class Random {
   /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
 
-  /// Triangular around `centre`, never further away than `reach`.
+  /// Triangular distribution around `centre`, within ± `reach`.
   double around(double centre, double reach) {
     const double a = uniform();
     const double b = uniform();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pubic arch and the band that ties the gland to it.
+// The pubic arch, and the band that ties the gland to it.
 #include "anatomy.hpp"
 
 #include <algorithm>
@@ -12,12 +12,12 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr double symphysis_half_depth = 8.5;  // [mm] front to back
-constexpr double symphysis_high = 32.0;       // [mm]
-constexpr double symphysis_incline = 0.25;    // its upper end lies further forward: -dy/dz
-constexpr double ramus_half_length = 10.5;    // [mm] in a transverse cut
+constexpr double symphysis_half_depth = 8.5;  // [mm] anterior to posterior
+constexpr double symphysis_high = 32.0;       // [mm] upper end
+constexpr double symphysis_incline = 0.25;    // -dy/dz: the upper end is further anterior
+constexpr double ramus_half_length = 10.5;    // [mm] in a transverse section
 constexpr double ramus_half_thickness = 5.5;  // [mm]
-constexpr double rami_height = 31.0;          // [mm] from the symphysis' lower end to the ischial tuberosities
+constexpr double rami_height = 31.0;  // [mm] height from the lower end of the symphysis to the ischial tuberosities
 
 }  // namespace
 
@@ -34,7 +34,7 @@ PubicArch::PubicArch(const Sizes& sizes, const Prostate& prostate, Random& rando
 
 double PubicArch::back(double z) const { return front_shift_ - symphysis_incline * std::max(z, symphysis_low); }
 
-/// A slab bent backwards at its sides: both pubic bodies with the symphysis between them.
+/// Section of the symphysis: a slab bent backwards at its sides, consisting of both pubic bodies.
 Outline PubicArch::symphysis(double z) const {
   const double t = (z - symphysis_low) / (symphysis_high - symphysis_low);  // 0 lower end … 1 upper end
   const double half_width = 23.0 + 8.0 * std::sin(std::numbers::pi * std::min(1.0, 0.75 * t)) - 6.0 * std::pow(t, 6);
@@ -47,7 +47,7 @@ Outline PubicArch::symphysis(double z) const {
   });
 }
 
-/// Oblique cut of one ischiopubic ramus. It runs outwards, downwards and backwards.
+/// Oblique section of one ischiopubic ramus, which runs outwards, downwards and backwards.
 /// @param side +1 left, -1 right
 Outline PubicArch::ramus(double z, double side) const {
   const double down = symphysis_low - z;
@@ -62,7 +62,7 @@ Outline PubicArch::ramus(double z, double side) const {
     return Vector2d(side * (x + std::cos(angle) * p.x() - std::sin(angle) * p.y()),
                     y + std::sin(angle) * p.x() + std::cos(angle) * p.y());
   });
-  if (side < 0.0) std::reverse(outline.begin(), outline.end());  // mirroring turned it clockwise
+  if (side < 0.0) std::reverse(outline.begin(), outline.end());  // mirroring has made it clockwise
   return outline;
 }
 
@@ -79,7 +79,7 @@ Band::Band(const Prostate& prostate, const Urethra& urethra, const PubicArch& ar
 
 std::vector<Outline> Band::outlines(double z) const {
   constexpr double into_gland = 3.0, into_arch = 3.0;  // [mm] overlap at either end
-  constexpr double before_urethra = 1.3;               // [mm] kept free
+  constexpr double before_urethra = 1.3;               // [mm] distance to the urethra
   const double rear = std::min(prostate_.front(z) + into_gland, urethra_.front(z) - before_urethra);
   const double front = arch_.back(z) - into_arch;
   const double t = (z - low) / (high - low);

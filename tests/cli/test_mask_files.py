@@ -48,7 +48,7 @@ class LayeredSegmentation(InFolder):
     def test_it_is_meshed_with_zones_in_place_of_the_gland(self):
         report = self.json_of("mesh", "case.seg.nrrd", "-o", "m.vtu", "--nodes", "1500")
         self.assertLessEqual({"peripheral_zone", "transition_zone", "urethra"}, set(report["regions"]))
-        self.assertFalse(any("no label is named" in note for note in report["notes"]), report["notes"])
+        self.assertFalse(any("No label is named" in note for note in report["notes"]), report["notes"])
         self.assertTrue(any("the smaller segment" in note for note in report["notes"]), report["notes"])
 
 

@@ -58,8 +58,8 @@ class Structures(InFolder):
         said = self.insert()
         self.assertTrue(any("structure 'PTV' (type PTV) is taken as the gland, since no structure is named prostate" in s
                             for s in said), said)
-        self.assertIn("structure left out (name not recognised): 'X 1'", said)
-        self.assertIn("structure left out (empty): 'PROS'", said)
+        self.assertIn("The structure is left out (name not recognised): 'X 1'.", said)
+        self.assertIn("The structure is left out (empty): 'PROS'.", said)
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertIn("prostate", [e["region"] for e in summary["events"]])
         self.assertGreater(summary["target_shift_mm"]["max"], 0)
@@ -67,7 +67,7 @@ class Structures(InFolder):
     def test_naming_one_structure_leaves_the_others_recognised(self):
         self.write(organ("my gland", "", 0, 0, 20), organ("Rectum", "", 0, 45, 15), organ("X 1", "", 60, 0, 12),
                    lines='[patient.regions]\n"My Gland" = "prostate"\n[tissue.rectum]\nyoung_kPa = 25\n')
-        self.assertIn("structure left out (name not recognised): 'X 1'", self.insert())
+        self.assertIn("The structure is left out (name not recognised): 'X 1'.", self.insert())
         done = self.json_of("mesh", "case.json", "-o", "m.vtu", "--nodes", "800", "--region", "my gland=prostate")
         self.assertLess({"prostate", "rectum"}, set(done["regions"]))
 
@@ -84,7 +84,7 @@ class Structures(InFolder):
         self.refuse("insert", "case.toml", "-o", "out",
                     says=["ROI 'Rectum', contour 4", "crosses itself", 'skip = ["Rectum"] below [patient]'])
         self.write(organ("Prostate", "ORGAN", 0, 0, 20), broken, lines='skip = ["rectum"]')
-        self.assertIn("structure left out (named in [patient] skip): 'Rectum'", self.insert())
+        self.assertIn("The structure is left out (named in [patient] skip): 'Rectum'.", self.insert())
         meshed = self.json_of("mesh", "case.json", "-o", "m.vtu", "--nodes", "800", "--skip", "Rectum")
         self.assertNotIn("rectum", meshed["regions"])
         self.write(organ("Prostate", "ORGAN", 0, 0, 20), broken, lines='skip = ["Rektum"]')
@@ -93,7 +93,7 @@ class Structures(InFolder):
     def test_labels_and_surfaces_are_skipped_as_well(self):
         samples.nifti_mask(self.folder / "mask.nii.gz")
         meshed = self.json_of("mesh", "mask.nii.gz", "-o", "m.vtu", "--nodes", "800", "--skip", "2")
-        self.assertIn("label left out (named in [patient] skip): '2'", meshed["notes"])
+        self.assertIn("The label is left out (named in [patient] skip): '2'.", meshed["notes"])
         self.refuse("mesh", "mask.nii.gz", "-o", "n.vtu", "--skip", "7", says=["there is no label '7'"])
         samples.stl_surface(self.folder / "corner.stl")
         self.refuse("mesh", "corner.stl", "-o", "n.vtu", "--skip", "cornr",

@@ -11,10 +11,10 @@
 namespace stylet {
 namespace {
 
-/// Sizes around those of the tiles.
+/// Matrix sizes around multiples of the tile size.
 constexpr std::array<Eigen::Index, 13> kSizes{1, 2, 3, 5, 8, 13, 23, 24, 25, 48, 71, 123, 180};
 
-/// The same on every run, entries between −1 and 1.
+/// A matrix with entries between −1 and 1, the same on every run.
 MatX some_matrix(Eigen::Index rows, Eigen::Index columns) {
   MatX A(rows, columns);
   unsigned state = 12345U + static_cast<unsigned>(rows * 1000 + columns);
@@ -70,7 +70,7 @@ TEST(DenseCholesky, leaves_zeros_before_a_start_and_goes_on_from_columns_that_ar
       dense::solve_upper(other, y);
       EXPECT_LT((changed * y - b).norm(), 1e-12 * b.norm()) << n << ", " << start;
 
-      // The first columns are a factor by themselves.
+      // The first columns form a factor by themselves.
       if (start == 0) continue;
       MatX partly = A;
       ASSERT_TRUE(dense::factorise_first(partly, start)) << n << ", " << start;
@@ -107,7 +107,7 @@ TEST(DenseCholesky, stops_after_the_first_columns_and_leaves_what_is_left) {
 TEST(DenseLu, solves_with_rows_that_must_be_swapped) {
   for (const Eigen::Index n : kSizes) {
     MatX A = some_matrix(n, n);
-    A.diagonal().setZero();  // no pivot where it stands
+    A.diagonal().setZero();  // no pivot on the diagonal
     if (n == 1) A(0, 0) = 2.0;
     MatX LU = A;
     std::vector<int> pivots(static_cast<std::size_t>(n));

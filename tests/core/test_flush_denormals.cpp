@@ -11,7 +11,7 @@ namespace {
 volatile double smallest = std::numeric_limits<double>::min();
 volatile double denormal = std::numeric_limits<double>::denorm_min();
 
-/// Results that would be denormal, and denormal operands.
+/// Whether results that would be denormal, or denormal operands, count as zero.
 bool results_are_zero() { return smallest / 4 == 0.0; }
 bool operands_are_zero() { return denormal * 1e300 == 0.0; }
 

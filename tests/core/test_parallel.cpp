@@ -50,7 +50,8 @@ TEST(Parallel, AnExceptionReachesTheCallerAndEndsTheWork) {
                                         ++done;
                                       }),
                  std::runtime_error);
-    // Alone, it stops there and then; the others may be through before the one that throws gets its turn.
+    // With one thread, work stops at once. With several, the others may have finished before the one that throws gets
+    // its turn.
     if (threads == 1) {
       EXPECT_EQ(done, 10);
     }

@@ -19,7 +19,7 @@ using validate::sample;
 using validate::stress_of;
 using validate::traction;
 
-/// Builds, or fails the test with the error's message.
+/// Builds a tissue, or fails the test with the error's message.
 inline Tissue build(TetMesh mesh, std::vector<Material> materials, std::vector<Index> fixed,
                     Element element = Element::p1) {
   auto tissue = Tissue::build(std::move(mesh), std::move(materials), std::move(fixed), {}, element);
@@ -27,7 +27,7 @@ inline Tissue build(TetMesh mesh, std::vector<Material> materials, std::vector<I
   return std::move(*tissue);
 }
 
-/// validate::traction with σ by region.
+/// validate::traction() with one stress σ per region.
 inline VecX traction_by_region(const Tissue& tissue, const std::vector<Mat3>& stress_of_region) {
   return traction(tissue, [&](const Vec3&, int region) { return stress_of_region[region]; });
 }

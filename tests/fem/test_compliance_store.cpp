@@ -13,7 +13,7 @@ std::shared_ptr<const Tissue> two_regions() {
   return std::make_shared<const Tissue>(test::build(std::move(mesh), {{0.01, 0.49}, {0.05, 0.4}}, fixed));
 }
 
-// Displacement of a per force on b from a solve of its own.
+// Displacement of a per force on b, from a separate solve.
 Mat3 solved(const Tissue& tissue, Index a, Index b) {
   MatX f = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, 3);
   f.middleRows<3>(3 * Eigen::Index{b}).setIdentity();
@@ -35,7 +35,8 @@ TEST(ComplianceStore, BlocksAreThoseOfTheFactorHoweverTheyWereAdded) {
     for (std::size_t j = 0; j < nodes.size(); j += 5) {
       const Mat3 block = store.block(nodes[i], nodes[j]);
       const Mat3 expected = solved(*tissue, nodes[i], nodes[j]);
-      // Blocks between far nodes are small differences of large ones: compare on the scale of the diagonal blocks.
+      // Blocks between distant nodes are small differences of large numbers: compare on the scale of the diagonal
+      // blocks.
       const double scale = store.block(nodes[i], nodes[i]).norm() + store.block(nodes[j], nodes[j]).norm();
       EXPECT_LE((block - expected).norm(), 1e-12 * scale);
     }
@@ -66,7 +67,7 @@ TEST(ComplianceStore, NodesInTheMiddleOfAnEdgeAreStoredWithItsEnds) {
   const auto& tet = mesh.tets[80];
   store.add_nodes({tet.data(), 2});
   const auto nodes = tissue->nodes_of(80);
-  EXPECT_TRUE(store.has(nodes[4]));  // between the first two corners
+  EXPECT_TRUE(store.has(nodes[4]));  // in the middle of the edge between the first two corners
   EXPECT_FALSE(store.has(nodes[5]));
   store.add_nodes(tet);
   for (const Index a : nodes) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kSide_mm = 60.0;
 constexpr double kPi = std::numbers::pi;
 
-// A displacement field that vanishes on the surface of the cube, with the body force −div σ that holds it [N/mm³].
+// A displacement field that vanishes on the surface of the cube, with the body force −div σ [N/mm³] that causes it.
 struct Manufactured {
   std::function<Vec3(const Vec3&)> displacement;
   std::function<Vec3(const Vec3&)> body_force;
@@ -46,8 +46,8 @@ Manufactured bubble(const Material& material) {
           }};
 }
 
-// A flow without change of volume, u = curl of (0, 0, S(x) S(y) sin(πz/L)) with S = sin²(π·/L): its body force −μ Δu
-// does not depend on the Poisson ratio except through μ, so any loss of displacement is locking.
+// A flow without change of volume, u = curl of (0, 0, S(x) S(y) sin(πz/L)) with S = sin²(π·/L). Its body force −μ Δu
+// depends on Poisson's ratio only through μ, so any loss of displacement is locking.
 Manufactured incompressible(const Material& material) {
   const double k = kPi / kSide_mm;
   const auto S = [k](double x) { return std::pow(std::sin(k * x), 2); };
@@ -70,8 +70,8 @@ Manufactured incompressible(const Material& material) {
 
 struct Errors {
   double l2;        // ‖u_h − u‖ / ‖u‖ in L2
-  double softness;  // work of the load on u_h / its work on u: 1 without error, below 1 when too stiff
-  double pressure;  // the same as l2 for tr σ / 3, by its value in the middle of each element
+  double softness;  // work of the load on u_h / work on u: 1 without error, below 1 when too stiff
+  double pressure;  // as l2, for tr σ / 3 at the centroid of each element
 };
 
 Errors solve(const Manufactured& problem, const Material& material, int cells, Element element) {
@@ -80,7 +80,7 @@ Errors solve(const Manufactured& problem, const Material& material, int cells, E
       test::nodes_where(mesh, [](const Vec3& x) { return (x.array() == 0.0).any() || (x.array() == kSide_mm).any(); });
   const Tissue tissue = test::build(std::move(mesh), {material}, fixed, element);
   const auto rule = validate::tetrahedron_rule(4);
-  // Visits every quadrature point: place, volume, shape.
+  // Calls visit(place, volume, shape) for every quadrature point.
   const auto for_each_point = [&](const auto& visit) {
     for (Index t = 0; t < tissue.mesh().tet_count(); ++t) {
       const double volume = tet_volume(tissue.mesh(), t);
@@ -127,7 +127,7 @@ Errors solve(const Manufactured& problem, const Material& material, int cells, E
 }
 
 struct Order {
-  double order;  // of the L2 error when cells are halved
+  double order;  // order of the L2 error when the cells are halved
   double fine;   // the smaller error
 };
 
@@ -148,7 +148,7 @@ TEST(TissueConvergence, LinearTetrahedraConvergeWithOrderTwoInL2) {
 
 TEST(TissueConvergence, AveragedPressureConvergesWithOrderTwoInL2) {
   EXPECT_NEAR(order_of(Element::nodal_pressure, 0.45, 8).order, 2.0, 0.1);
-  // Still on its way down to two there: the error it starts from is larger.
+  // The order is still falling towards two, because the error starts from a larger value.
   EXPECT_GT(order_of(Element::nodal_pressure, 0.499, 8).order, 1.9);
 }
 
@@ -168,7 +168,7 @@ TEST(TissueConvergence, LinearTetrahedraLockAsPoissonApproachesOneHalf) {
   EXPECT_LT(before, 0.2);
 }
 
-// What a flow without change of volume loses between Poisson ratios 0.3 and `poisson`, all else equal.
+// Relative loss of displacement of a flow without change of volume between the Poisson ratios 0.3 and `poisson`.
 double lost_compliance(Element element, int cells, double poisson) {
   const Material plain{0.02, 0.3};
   const Material nearly{0.02, poisson};
@@ -203,8 +203,8 @@ TEST(NearlyIncompressibleBlock, IsAsSoftAsAFineMeshSaysWithEveryElementButTheLin
   EXPECT_LT(linear, 0.8 * reference);
 }
 
-// Nothing in the displacement holds pressures down that alternate from node to node (equal orders are not stable in
-// the sense of Babuška and Brezzi); on a smooth problem they must not show.
+// The displacement does not restrain pressures that alternate from node to node (equal orders are not stable in the
+// sense of Babuška and Brezzi). On a smooth problem such pressures must not appear.
 TEST(TissueConvergence, AveragedPressureItselfConverges) {
   const Material material{0.02, 0.499};
   const double coarse = solve(bubble(material), material, 8, Element::nodal_pressure).pressure;

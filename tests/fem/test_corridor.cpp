@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compliance of a corridor, taken from the trailing block of the factor.
+// Tests the compliance of a corridor that is computed from the trailing block of the factor.
 #include "bodies.hpp"
 
 #include "stylet/fem/compliance_store.hpp"
@@ -21,15 +21,15 @@ std::vector<Index> floor_of(const TetMesh& mesh) {
   return test::nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
 }
 
-/// With a factor whose corridor is eliminated last.
+/// A tissue whose corridor is eliminated last.
 Tissue with_corridor(const TetMesh& mesh, Element element, const std::vector<Index>& corridor) {
   auto tissue = Tissue::build(mesh, kMaterials, floor_of(mesh), {}, element, corridor);
   if (!tissue) throw std::runtime_error(tissue.error().message());
   return std::move(*tissue);
 }
 
-/// Largest difference between the corridor's blocks and solves with the factor of a tissue that knows no corridor,
-/// relative to the diagonal blocks.
+/// Largest difference between the corridor's blocks and solves with the factor of a tissue without a corridor, relative
+/// to the diagonal blocks.
 double difference(const TetMesh& mesh, Element element, const std::vector<Index>& corridor) {
   const Tissue tissue = with_corridor(mesh, element, corridor);
   const Tissue plain = with_corridor(mesh, element, {});
@@ -60,7 +60,8 @@ STYLET_FOR_EVERY_ELEMENT(CorridorCompliance);
 TEST_P(CorridorCompliance, IsThatOfSolvesAroundALine) {
   const TetMesh mesh = mesh_of(5);
   const auto near = test::nodes_where(mesh, [](const Vec3& x) { return (x - Vec3(25, 25, 25)).head<2>().norm() < 12; });
-  ASSERT_TRUE(std::any_of(near.begin(), near.end(), [&](Index a) { return mesh.nodes[a].z() == 0.0; }));  // held ones
+  ASSERT_TRUE(
+      std::any_of(near.begin(), near.end(), [&](Index a) { return mesh.nodes[a].z() == 0.0; }));  // some are held
   EXPECT_LE(difference(mesh, GetParam(), near), 1e-12);
 }
 

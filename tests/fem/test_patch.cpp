@@ -25,7 +25,7 @@ std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& tets
   return {nodes.begin(), nodes.end()};
 }
 
-/// The patch that is held nowhere.
+/// A patch without held nodes.
 Patch loose(const Tissue& tissue, const std::vector<Index>& tets, const Material& material) {
   const std::vector<Index> nodes = nodes_of(tissue, tets);
   return make_patch(tissue, tets, nodes, std::vector<char>(nodes.size(), 1), material);

@@ -29,7 +29,7 @@ VecX random_forces(const Tissue& tissue, unsigned seed) {
   return f;
 }
 
-// Two regions, three quarters of them above and beside the gland.
+// A tissue of two regions: gland within 60 mm of the origin, fat elsewhere.
 Tissue two_regions(Element element) {
   TetMesh mesh = jittered();
   assign_regions(mesh, {"fat", "gland"}, [](const Vec3& x) { return x.norm() > 60 ? 0 : 1; });
@@ -37,13 +37,13 @@ Tissue two_regions(Element element) {
   return build(std::move(mesh), {kFat, kGland}, fixed, element);
 }
 
-// The jittered box with the floor held, and its stiffness on all degrees of freedom away from the floor.
+// The jittered box with its floor held, and its stiffness for nodes away from the floor.
 struct Held {
   Tissue tissue;
-  std::vector<Index> inner;  // nodes whose rows of K see no fixed node
+  std::vector<Index> inner;  // nodes whose rows of K involve no fixed node
   Held(const Material& material, Element element)
       : tissue(build(jittered(), {material}, floor_nodes(jittered()), element)) {
-    // An averaged change of volume reaches over two rings of elements.
+    // An averaged change of volume couples two rings of elements.
     std::vector<char> near_support(static_cast<std::size_t>(tissue.displacement_nodes()), 0);
     for (const Index a : tissue.fixed_nodes()) near_support[a] = 1;
     for (int ring = 0; ring < 2; ++ring) {
@@ -59,7 +59,7 @@ struct Held {
     }
   }
 
-  // K u at the inner nodes, whose rows see free nodes only.
+  // K u at the inner nodes, whose rows involve free nodes only.
   VecX forces(const VecX& u) const {
     VecX free(tissue.free_dofs());
     for (Index a = 0; a < tissue.displacement_nodes(); ++a) {
@@ -98,7 +98,7 @@ TEST(Tissue, ElementBlockIsTheSecondDerivativeOfTheStrainEnergy) {
     const Mat3 strain = 0.5 * (gradient + gradient.transpose());
     return 0.5 * volume * test::stress_of(kGland, gradient).cwiseProduct(strain).sum();
   };
-  // The energy is a quadratic form, so its differences are exact: W(p + q) − W(p) − W(q).
+  // The energy is a quadratic form, so its differences W(p + q) − W(p) − W(q) are exact.
   for (int a = 0; a < 4; ++a) {
     for (int b = 0; b < 4; ++b) {
       const Mat3 block = element_block(g, volume, kGland, a, b);
@@ -153,7 +153,7 @@ TEST_P(EveryElement, RigidMotionsGiveNoStressAndNoForces) {
     const Vec3 axis = Vec3::Unit(mode % 3);
     const VecX u =
         test::sample(body.tissue, [&](const Vec3& x) { return mode < 3 ? axis : Vec3(axis.cross(x) / 60.0); });
-    // Against the stiffest diagonal entry times the motion.
+    // Compare with the stiffest diagonal entry times the motion.
     const double scale = body.tissue.stiffness().diagonal().maxCoeff() * u.cwiseAbs().maxCoeff();
     EXPECT_LT(body.forces(u).cwiseAbs().maxCoeff(), 1e-10 * scale);
     EXPECT_LT(body.tissue.support_forces(u).cwiseAbs().maxCoeff(), 1e-10 * scale);
@@ -162,7 +162,7 @@ TEST_P(EveryElement, RigidMotionsGiveNoStressAndNoForces) {
 }
 
 TEST_P(EveryElement, UniaxialBarStretchesByForceTimesLengthOverStiffness) {
-  // Without lateral contraction the held end does not disturb the field.
+  // Without lateral contraction, the held end does not disturb the field.
   const Material material{0.020, 0.0};
   TetMesh mesh = box_mesh({0, 0, 0}, {10, 15, 100}, {2, 3, 20}, 0.15);
   const auto fixed = floor_nodes(mesh);
@@ -194,7 +194,7 @@ TEST_P(EveryElement, UniaxialStressWithLateralContractionIsInEquilibrium) {
 }
 
 TEST_P(EveryElement, TwoMaterialsInSeriesCarryTheSameTraction) {
-  // Jitter across the bar only: the interface between the materials stays flat.
+  // Jitter only across the bar, so that the interface between the materials stays flat.
   TetMesh mesh = box_mesh({0, 0, 0}, {20, 20, 60}, {4, 4, 12}, 0.15);
   const TetMesh flat = box_mesh({0, 0, 0}, {20, 20, 60}, {4, 4, 12});
   for (Index a = 0; a < mesh.node_count(); ++a) mesh.nodes[a].z() = flat.nodes[a].z();
@@ -203,7 +203,7 @@ TEST_P(EveryElement, TwoMaterialsInSeriesCarryTheSameTraction) {
   const std::vector<Material> materials{kGland, kFat};
   const Tissue tissue = build(std::move(mesh), materials, fixed, GetParam());
 
-  // u = c_r z within each material, the traction σ e_z = (λ + μ) (c·e_z) e_z + μ c common to both.
+  // u = c_r z within each material, with the traction σ e_z = (λ + μ) (c·e_z) e_z + μ c common to both.
   const Vec3 common(2e-4, -1e-4, 5e-4);
   std::vector<Vec3> slope;
   std::vector<Mat3> stress;

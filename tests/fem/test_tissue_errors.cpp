@@ -24,7 +24,7 @@ void expect_refused(const TetMesh& mesh, const std::vector<Material>& materials,
   for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message;
 }
 
-// Adds `other` as further nodes and elements; `shared` nodes of it are those of the first mesh at the same place.
+// Adds the nodes and elements of `other`. With `weld`, nodes at the same place become one.
 TetMesh join(TetMesh mesh, const TetMesh& other, bool weld) {
   std::vector<Index> number;
   for (const Vec3& x : other.nodes) {
@@ -92,14 +92,14 @@ TEST(TissueErrors, EveryConnectedPartMustBeHeld) {
 }
 
 TEST(TissueErrors, APartThatHangsOnByAnEdgeIsFoundLoose) {
-  // Welded along the edge x = 40, z = 40 only: the second body turns about it.
+  // Welded only along the edge x = 40, z = 40: the second body can turn about it.
   const TetMesh mesh =
       join(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}), box_mesh({40, 0, 40}, {60, 40, 60}, {2, 4, 2}), true);
   expect_refused(mesh, {kSoft}, nodes_at_zero(mesh), {"not held", "single node or edge"});
   const TetMesh corner =
       join(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}), box_mesh({40, 40, 40}, {60, 60, 60}, {2, 2, 2}), true);
   expect_refused(corner, {kSoft}, nodes_at_zero(corner), {"not held", "single node or edge"});
-  // Wherever its nodes come in the elimination.
+  // The result must not depend on the position of its nodes in the order of elimination.
   const auto all = nodes_where(corner, [](const Vec3&) { return true; });
   const auto upper = nodes_where(corner, [](const Vec3& x) { return x.z() > 40; });
   for (const auto& corridor : {all, upper}) {

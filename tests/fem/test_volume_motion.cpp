@@ -19,10 +19,10 @@ using test::nodes_where;
 using test::sample;
 
 constexpr double kHeight_mm = 40.0;
-constexpr double kLower_mm = 10.0;  // the volume asked about lies between
+constexpr double kLower_mm = 10.0;  // the volume lies between these heights
 constexpr double kUpper_mm = 20.0;
 
-/// A bar along z, held below, whose second region is a slice of it.
+/// A bar along z, held at its lower end, with a slice of it as the second region.
 TetMesh sliced_bar(std::array<int, 3> cells) {
   TetMesh mesh = box_mesh({0, 0, 0}, {20, 20, kHeight_mm}, cells);
   assign_regions(mesh, {"body", "slice"}, [](const Vec3& x) { return x.z() > kLower_mm && x.z() < kUpper_mm ? 1 : 0; });
@@ -47,14 +47,14 @@ VolumeMotion motion_by(const VolumeResponse& response, const std::vector<PointFo
   return motion;
 }
 
-/// Mean displacement per force at a point [mm/N].
+/// Mean displacement of the volume per force at a point [mm/N].
 Mat3 mean_per_force(const VolumeResponse& response, const MaterialPoint& at) {
   Mat3 mean;
   for (int k = 0; k < 3; ++k) mean.col(k) = motion_by(response, {{at, Vec3::Unit(k)}}).shift_mm;
   return mean;
 }
 
-/// The displacement that forces cause [mm] (3 × displacement nodes).
+/// Displacement caused by forces [mm] (3 × displacement nodes).
 VecX displacement(const Tissue& tissue, const std::vector<PointForce>& forces) {
   VecX load = VecX::Zero(3 * Eigen::Index{tissue.displacement_nodes()});
   for (const PointForce& f : forces) {
@@ -65,8 +65,8 @@ VecX displacement(const Tissue& tissue, const std::vector<PointForce>& forces) {
   return tissue.solve(load);
 }
 
-/// The slice's motion by integrating a displacement over it, its thirds being layers of elements. The rigid motion is
-/// fitted to the displacement at the points of the rule by least squares.
+/// Motion of the slice, computed by integrating a displacement over it; its thirds are layers of elements. The rigid
+/// motion is fitted to the displacement at the quadrature points by least squares.
 VolumeMotion integrated(const Tissue& tissue, const VecX& u) {
   const TetMesh& mesh = tissue.mesh();
   VolumeMotion motion;
@@ -127,7 +127,7 @@ void expect_equal(const VolumeMotion& a, const VolumeMotion& b, double tolerance
 class VolumeMotionBy : public ElementTest {};
 
 TEST_P(VolumeMotionBy, forces_is_that_of_the_displacement_they_cause) {
-  const TetMesh mesh = sliced_bar({3, 3, 12});  // the slice's thirds are layers of elements
+  const TetMesh mesh = sliced_bar({3, 3, 12});  // the thirds of the slice are layers of elements
   const Tissue tissue = bar(mesh, 0.01, 0.45, GetParam());
   const auto response = VolumeResponse::solve(tissue, kSlice, Accuracy::of_the_tissue);
   ASSERT_TRUE(response) << response.error().message();
@@ -145,7 +145,7 @@ TEST_P(VolumeMotionBy, forces_is_that_of_the_displacement_they_cause) {
   }
 }
 
-/// Forces on the displacement nodes that bring about a displacement, which is zero where the bar is held.
+/// Forces on the displacement nodes that cause a given displacement, which is zero where the bar is held.
 std::vector<PointForce> forces_for(const Tissue& tissue, const VecX& u) {
   VecX free(tissue.free_dofs());
   for (Index node = 0; node < tissue.displacement_nodes(); ++node) {
@@ -168,14 +168,14 @@ std::vector<PointForce> forces_for(const Tissue& tissue, const VecX& u) {
   return forces;
 }
 
-// The slice is turned and swollen as a whole; its thirds, of unequal place, do not end where elements do.
+// The slice rotates and swells as a whole. The borders of its thirds do not coincide with element borders.
 TEST_P(VolumeMotionBy, forces_that_turn_and_swell_it_is_the_turn_and_the_swelling) {
   const TetMesh mesh = sliced_bar({2, 3, 8});
   const Tissue tissue = bar(mesh, 0.01, 0.3, GetParam());
   const auto response = VolumeResponse::solve(tissue, kSlice, Accuracy::of_the_tissue);
   ASSERT_TRUE(response) << response.error().message();
   const Vec3 shift(0.3, -0.2, 0.5), turn(0.01, -0.02, 0.03), about(4.0, 9.0, 12.0);
-  constexpr double swelling = 0.01;  // of every length
+  constexpr double swelling = 0.01;  // relative growth of every length
   const auto field = [&](const Vec3& x) -> Vec3 {
     return x.z() == 0.0 ? Vec3::Zero() : Vec3(shift + turn.cross(x - about) + swelling * (x - about));
   };
@@ -190,7 +190,8 @@ TEST_P(VolumeMotionBy, forces_that_turn_and_swell_it_is_the_turn_and_the_swellin
   EXPECT_LT((motion.third_mm[VolumeMotion::inferior] - field(centre - third * Vec3::UnitZ())).norm(), 1e-8);
 }
 
-// A linear displacement turns by sin θ about an axis n, and stretches what it turns; finite() is Rodrigues' rotation.
+// A linear displacement that rotates by sin θ about an axis n also stretches the body; finite() makes it Rodrigues'
+// rotation.
 TEST_P(VolumeMotionBy, forces_that_turn_it_far_is_the_whole_turn_when_it_is_made_finite) {
   const TetMesh mesh = sliced_bar({2, 3, 8});
   const Tissue tissue = bar(mesh, 0.01, 0.3, GetParam());
@@ -215,8 +216,9 @@ TEST_P(VolumeMotionBy, forces_that_turn_it_far_is_the_whole_turn_when_it_is_made
 
 STYLET_FOR_EVERY_ELEMENT(VolumeMotionBy);
 
-// Without Poisson's effect a force F on a whole cross-section at height z moves a point at height x by F min(x,
-// z)/(EA): the mean over the slice has a closed form, quadratic in z inside it, which quadratic elements represent.
+// Without Poisson's effect, a force F on a whole cross-section at height z moves a point at height x by F min(x,
+// z)/(EA). The mean over the slice has a closed form that is quadratic in z inside it, and quadratic elements represent
+// it exactly.
 TEST(VolumeResponse, of_a_bar_is_its_theory_with_quadratic_elements_whatever_the_step_uses) {
   constexpr double young = 0.01;
   const TetMesh mesh = sliced_bar({2, 2, 8});
@@ -238,7 +240,7 @@ TEST(VolumeResponse, of_a_bar_is_its_theory_with_quadratic_elements_whatever_the
   }
 }
 
-// What is left of the discretisation's error falls, whichever way the elements are made better.
+// The remaining discretisation error becomes smaller with either way of improving the elements.
 TEST(VolumeResponse, comes_nearer_to_that_of_a_fine_mesh_with_quadratic_elements_and_with_halved_edges) {
   const auto along_z = [](std::array<int, 3> cells, Accuracy accuracy) {
     const TetMesh mesh = sliced_bar(cells);
@@ -256,7 +258,7 @@ TEST(VolumeResponse, comes_nearer_to_that_of_a_fine_mesh_with_quadratic_elements
   EXPECT_LT(halved, 0.5 * quadratic);
 }
 
-// The iteration on quadratic elements against their factor.
+// Compares the iteration on quadratic elements with the solution by their factor.
 TEST(VolumeResponse, on_quadratic_elements_is_that_of_their_factor) {
   const TetMesh mesh = sliced_bar({3, 3, 6});
   for (const double poisson : {0.0, 0.45, 0.49, 0.4999}) {

@@ -10,7 +10,7 @@ namespace {
 
 TetMesh good() { return box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}); }
 
-// The mesh is refused as bad input, and the message has all the given parts.
+// The mesh is refused as bad input with a message that contains all given parts.
 void expect_refused(const TetMesh& mesh, const std::vector<std::string>& parts) {
   const auto result = check_mesh(mesh, "case.msh");
   ASSERT_FALSE(result);
@@ -109,7 +109,7 @@ TEST(CheckMesh, RefusesFlatTetrahedra) {
 
 TEST(CheckMesh, RefusesAFaceOfThreeTetrahedra) {
   TetMesh mesh = good();
-  // A fin on a face inside the box.
+  // Attach a tetrahedron to a face inside the box, like a fin.
   const auto& tet = mesh.tets[150];
   mesh.nodes.push_back(mesh.nodes[tet[0]] + Vec3(1, 2, 3));
   mesh.tets.push_back({tet[1], tet[2], tet[3], 125});

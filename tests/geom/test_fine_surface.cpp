@@ -11,7 +11,7 @@
 namespace stylet {
 namespace {
 
-/// Outer faces and interfaces of a box of two parts, as patches 0 and 1, and a needle's way through both.
+/// Outer faces and interface of a box of two regions, as patches 0 and 1, and a needle's way through both.
 struct Surfaces {
   TetMesh mesh = box_mesh({0, 0, 0}, {30, 30, 30}, {4, 4, 4}, 0.15);
   std::vector<std::array<Index, 3>> triangles;
@@ -62,7 +62,7 @@ TEST(FineSurface, is_as_large_as_it_was_and_faces_the_same_way) {
 TEST(FineSurface, stays_closed) {
   const Surfaces given;
   const FineSurface fine = given.refined();
-  std::map<std::pair<Index, Index>, int> edges;  // of the outer surface: once in each sense
+  std::map<std::pair<Index, Index>, int> edges;  // edges of the outer surface: each occurs once in each direction
   for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
     if (fine.patch[t] != 0) continue;
     for (std::size_t k = 0; k < 3; ++k) ++edges[{fine.triangles[t][k], fine.triangles[t][(k + 1) % 3]}];

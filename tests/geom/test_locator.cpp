@@ -10,7 +10,7 @@
 namespace stylet {
 namespace {
 
-// A mesh with its topology and locator, which keep references to one another.
+// A mesh with its topology and locator, which keep references to each other.
 struct Body {
   TetMesh mesh;
   Topology topology;
@@ -25,7 +25,7 @@ TetMesh rough_ball() {
   return mesh;
 }
 
-// An L: the box without its upper right quarter, so that straight walks leave and re-enter.
+// An L-shaped body: a box without its upper right quarter, so that straight paths leave and re-enter it.
 TetMesh bracket() {
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 20, 40}, {8, 4, 8});
   TetMesh out;
@@ -65,7 +65,7 @@ class Random {
   std::mt19937 engine_{7};
 };
 
-// Parameter at which the segment meets the triangle, by Moeller and Trumbore's formula; negative when it does not.
+// Parameter at which the segment meets the triangle (Möller and Trumbore's formula); negative when it does not.
 double meet(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 d = to - from;
   const Vec3 p = d.cross(c - a);
@@ -133,7 +133,7 @@ TEST(Locator, TiesAreBrokenByTheDirectionOfTravel) {
   const Body body(std::move(mesh));
   Random random;
   for (int i = 0; i < 3000; ++i) {
-    // On the interface: on a face, on an edge of the grid, on a node.
+    // A point on the interface: on a face, on an edge of the grid, or on a node.
     Vec3 x(20.0, random.uniform(1, 39), random.uniform(1, 39));
     if (i % 3 > 0) x.y() = 5.0 * (1 + random.below(7));
     if (i % 3 > 1) x.z() = 5.0 * (1 + random.below(7));
@@ -142,7 +142,7 @@ TEST(Locator, TiesAreBrokenByTheDirectionOfTravel) {
     const auto found = body.locator.find(x, random.below(body.mesh.tet_count()), travel);
     ASSERT_TRUE(found);
     EXPECT_EQ(body.mesh.tet_region[found->tet], travel.x() > 0 ? 1 : 0);
-    // x + 0·travel lies in the element found.
+    // The element contains x + 0·travel.
     EXPECT_GE(body.locator.weights(found->tet, x + 1e-6 * travel).minCoeff(), -1e-12);
   }
 }
@@ -183,7 +183,7 @@ TEST(Locator, FirstCrossingAgreesWithBruteForce) {
 }
 
 TEST(Locator, PathsThroughEdgesAndNodesStopWhereTheRegionChanges) {
-  // No jitter: paths between grid nodes run along edges, through nodes and inside faces all the way.
+  // Without jitter, paths between grid nodes run along edges, through nodes and inside faces all the way.
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
   assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
   const Body body(std::move(mesh));
@@ -206,7 +206,7 @@ TEST(Locator, PathsThroughEdgesAndNodesStopWhereTheRegionChanges) {
     } else {
       EXPECT_LT((place(body, end) - to).norm(), 1e-10);
     }
-    // Out of the mesh: the same, to a mirror of `to` beyond x = 40 or x = 0.
+    // The same for a path out of the mesh, to a mirror image of `to` beyond x = 40 or x = 0.
     const Vec3 out(to.x() > from.x() ? 60.0 : -20.0, to.y(), to.z());
     const Index begin = body.locator.find(from, -1, out - from).value().tet;
     const auto leaving = body.locator.first_crossing(from, begin, out, end);
@@ -228,14 +228,14 @@ TEST(Locator, APathThatStartsOnAnInterfaceFollowsItsDirection) {
   EXPECT_LT((place(body, end) - ahead).norm(), 1e-10);
   const Index near = body.locator.find(from, -1, back - from)->tet;
   EXPECT_FALSE(body.locator.first_crossing(from, near, back, end));
-  // From the near side into the far one the crossing is at once.
+  // From the near side into the far one, the crossing is at the start.
   const auto crossing = body.locator.first_crossing(from, near, ahead, end);
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->t, 0.0, 1e-12);
   EXPECT_EQ(body.mesh.tet_region[crossing->tet], 0);
 }
 
-// Follows the path through all regions as a needle would, checks each piece, and returns how many there are.
+// Follows a path through all regions as a needle would, checks each piece, and returns the number of pieces.
 int follow(const Body& body, const Vec3& from, const Vec3& to) {
   const Vec3 d = to - from;
   const auto entry = body.locator.first_entry(from, to);
@@ -254,7 +254,7 @@ int follow(const Body& body, const Vec3& from, const Vec3& to) {
     MaterialPoint end;
     const auto crossing = body.locator.first_crossing(start, tet, to, end);
     const double next = crossing ? t + crossing->t * (1.0 - t) : 1.0;
-    // Everywhere between two crossings the path is in a tetrahedron of the region.
+    // At every place between two crossings, the path is in a tetrahedron of the region.
     for (const double share : {0.1, 0.5, 0.77}) {
       const Vec3 x = from + (t + share * (next - t)) * d;
       bool seen = false;
@@ -273,14 +273,14 @@ int follow(const Body& body, const Vec3& from, const Vec3& to) {
       return pieces;
     }
     const Index other = body.topology.neighbour[crossing->tet][crossing->local];
-    // Out of the mesh through an edge, the outer face may be that of another region at that edge.
+    // Where the path leaves the mesh through an edge, the outer face may belong to another region at that edge.
     EXPECT_TRUE(other < 0 || body.mesh.tet_region[crossing->tet] == region);
     t = next;
     const auto ahead = body.locator.find(from + t * d, other, d);
     EXPECT_TRUE(ahead);
     if (!ahead) return pieces;
     if (other < 0) {
-      // Out of a convex mesh: nothing is left of it on the way.
+      // After leaving a convex mesh, the path does not enter it again.
       EXPECT_FALSE(body.locator.find(from + std::min(1.0, t + 1e-6) * d));
       return pieces;
     }
@@ -290,7 +290,7 @@ int follow(const Body& body, const Vec3& from, const Vec3& to) {
 }
 
 TEST(Locator, PathsThroughAMosaicOfRegionsAreFollowedPieceByPiece) {
-  // Every tetrahedron draws one of three regions: all faces, edges and nodes are interfaces.
+  // Every tetrahedron gets one of three regions at random: faces, edges and nodes are all interfaces.
   Random random;
   const auto mosaic = [&random](double jitter) {
     TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8}, jitter);
@@ -302,7 +302,7 @@ TEST(Locator, PathsThroughAMosaicOfRegionsAreFollowedPieceByPiece) {
   int pieces = 0;
   for (int i = 0; i < 1000; ++i) pieces += follow(rough, random.point(-30, 70), random.point(-5, 45));
   EXPECT_GT(pieces, 5000);
-  // Between grid points: along edges, in faces, through nodes.
+  // Between grid points, paths run along edges, in faces and through nodes.
   pieces = 0;
   for (int i = 0; i < 2000; ++i) {
     const auto grid = [&](int lo, int hi) { return 5.0 * (lo + random.below(hi - lo + 1)); };
@@ -345,7 +345,7 @@ TEST(Locator, EntryThroughEdgesAndNodesOfTheSkinIsNotMissed) {
       const auto entry = body.locator.first_entry(target - inward, target + 0.5 * inward);
       ASSERT_TRUE(entry) << i << ' ' << j;
       EXPECT_NEAR(entry->t, 2.0 / 3.0, 1e-12);
-      // From the skin itself, inwards: at once. Outwards: not at all.
+      // From the skin itself inwards the entry is at the start; outwards there is none.
       const auto touching = body.locator.first_entry(target, target + inward);
       ASSERT_TRUE(touching);
       EXPECT_NEAR(touching->t, 0.0, 1e-12);
@@ -356,7 +356,7 @@ TEST(Locator, EntryThroughEdgesAndNodesOfTheSkinIsNotMissed) {
 
 TEST(Locator, APathThatOnlyTouchesAnEdgeDoesNotEnter) {
   const Body body(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}));
-  EXPECT_FALSE(body.locator.first_entry({-10, 20, 10}, {10, 20, -10}));  // touches the edge x = z = 0
+  EXPECT_FALSE(body.locator.first_entry({-10, 20, 10}, {10, 20, -10}));  // the path only touches the edge x = z = 0
   EXPECT_FALSE(body.locator.first_entry({-10, -10, 20}, {-10, 50, 20}));
   EXPECT_TRUE(body.locator.first_entry({-10, 20, 10.001}, {10, 20, -9.999}));
 }

@@ -40,7 +40,7 @@ TEST(MeshQuality, KuhnCellHasItsKnownAnglesEdgesAndRadii) {
   EXPECT_NEAR(quality.dihedral_deg.max, 90.0, 1e-10);
   EXPECT_NEAR(quality.edge_mm.min, 10.0, 1e-12);
   EXPECT_NEAR(quality.edge_mm.max, 10.0 * std::sqrt(3.0), 1e-12);
-  // Inradius 1 / (2 + 2 √2), circumradius √3 / 2 in a unit cell.
+  // Inradius 1 / (2 + 2 √2) and circumradius √3 / 2 in a unit cell.
   EXPECT_NEAR(quality.radius_ratio_min, 3.0 / (2.0 + 2.0 * std::sqrt(2.0)) / (std::sqrt(3.0) / 2.0), 1e-12);
   EXPECT_NEAR(quality.region_volume_cc[0], 4.0, 1e-12);
   EXPECT_NEAR(quality.region_volume_cc[1], 8.0, 1e-12);
@@ -54,7 +54,8 @@ TEST(NearlyFlatTets, TheWorstIsNamedWithItsAngleAndPlace) {
   assign_regions(mesh, {"left", "right"}, [](const Vec3& x) { return x.x() < 10 ? 0 : 1; });
   EXPECT_EQ(nearly_flat_tets(mesh).count, 0);
   EXPECT_EQ(nearly_flat_warning(mesh), "");
-  // Two caps far from everything else: a right corner of 10 mm whose fourth node is 0.4 or 0.2 mm above its base.
+  // Two flat tetrahedra far from everything else: a right-angled corner of 10 mm whose fourth node is 0.4 or 0.2 mm
+  // above the base.
   for (const double height : {0.4, 0.2}) {
     const Index first = mesh.node_count();
     const double x = 100 / height;
@@ -66,7 +67,7 @@ TEST(NearlyFlatTets, TheWorstIsNamedWithItsAngleAndPlace) {
   const NearlyFlatTets flat = nearly_flat_tets(mesh);
   EXPECT_EQ(flat.count, 2);
   EXPECT_EQ(flat.worst, 73);
-  // Between the base and the oblique face, whose foot is 10 / √2 from the corner.
+  // The angle between the base and the oblique face, whose foot is 10 / √2 from the corner.
   EXPECT_NEAR(flat.angle_deg, std::atan(0.2 / (10.0 / std::sqrt(2.0))) * kDegree, 1e-9);
   const std::string warning = nearly_flat_warning(mesh);
   for (const char* part : {"2 of 74", "tetrahedron 73", "1.6°", "(502.5, 2.5, 0.1)", "'right'", "optimiser"})

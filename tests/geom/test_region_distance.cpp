@@ -14,30 +14,30 @@ namespace stylet {
 namespace {
 
 constexpr double kExact_mm = 1e-9;
-constexpr double kLength_mm = 1e-6;  // a chord ends where the way comes within a nanometre of a face
+constexpr double kLength_mm = 1e-6;  // a chord ends where the path is within a nanometre of a face
 const std::array<int, 1> kInner{1};
 
-/// A box of 60 mm cubed with cells of 4 mm and a second region where `inside` says so.
+/// A cube of 60 mm with cells of 4 mm; the second region is where `inside` is true.
 TetMesh body_with(const std::function<bool(const Vec3&)>& inside) {
   TetMesh mesh = box_mesh({-30, -30, -30}, {30, 30, 30}, {15, 15, 15});
   assign_regions(mesh, {"body", "inner"}, [&](const Vec3& x) { return inside(x) ? 1 : 0; });
   return mesh;
 }
 
-/// The same region as one that has the edges of boxes: whole cells.
+/// The same mesh with a second region of whole cells, which has the edges of a box.
 TetMesh body_with_block() {
   return body_with([](const Vec3& x) { return std::abs(x.x()) < 6 && std::abs(x.y()) < 6 && std::abs(x.z()) < 6; });
 }
 
-/// Distance of a point to a segment, by its formula.
+/// Distance between a point and a segment.
 double to_segment(const Vec3& x, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
   const double f = std::clamp((x - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
   return (x - from - f * way).norm();
 }
 
-/// Least distance of a way to points spread over all tetrahedra of the inner region: never less than the true one, and
-/// more by less than the points are apart.
+/// Smallest distance between a path and points distributed over all tetrahedra of the inner region. It is not below the
+/// true distance, and exceeds it by less than the spacing of the points.
 double to_samples(const TetMesh& mesh, const Vec3& from, const Vec3& to, int steps) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -58,7 +58,7 @@ double to_samples(const TetMesh& mesh, const Vec3& from, const Vec3& to, int ste
 
 TEST(RegionDistance, of_a_way_beside_a_sphere_is_that_to_its_centre_less_its_radius_but_for_the_mesh) {
   constexpr double radius = 12.0;
-  // Fine enough that whole tetrahedra stay close to the sphere.
+  // Fine enough for whole tetrahedra to stay close to the sphere.
   TetMesh mesh = box_mesh({-16, -16, -16}, {16, 16, 16}, {24, 24, 24});
   assign_regions(mesh, {"body", "inner"}, [&](const Vec3& x) { return x.norm() < radius ? 1 : 0; });
   const double cell = 32.0 / 24.0;
@@ -74,12 +74,12 @@ TEST(RegionDistance, of_a_way_beside_a_sphere_is_that_to_its_centre_less_its_rad
 TEST(RegionDistance, of_a_way_beside_a_cylinder_is_that_of_the_axes_less_its_radius_but_for_the_mesh) {
   constexpr double radius = 8.0;
   const TetMesh mesh = body_with([](const Vec3& x) { return std::hypot(x.x(), x.y()) < radius; });
-  // The cylinder's axis is z; the way runs along y at x = 20: the axes are 20 mm apart.
+  // The cylinder's axis is z and the path runs along y at x = 20: the axes are 20 mm apart.
   const auto crossing = distance_to_regions(mesh, kInner, {20, -25, 4}, {20, 25, 7});
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(*crossing, 20.0 - radius, 4.0);
   EXPECT_NEAR(*crossing, to_samples(mesh, {20, -25, 4}, {20, 25, 7}, 4), 0.2);
-  // Parallel to it.
+  // A path parallel to the axis.
   const auto parallel = distance_to_regions(mesh, kInner, {-16, 0, -20}, {-16, 0, 20});
   EXPECT_NEAR(*parallel, 16.0 - radius, 4.0);
 }

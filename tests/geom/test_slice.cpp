@@ -12,7 +12,7 @@
 namespace stylet {
 namespace {
 
-/// Corners of a slice of the undeformed mesh.
+/// Positions of the corners of a slice of the undeformed mesh.
 Eigen::Matrix3Xf corners(const Slicer& slicer) {
   const Eigen::Matrix3Xf still = Eigen::Matrix3Xf::Zero(3, static_cast<Eigen::Index>(slicer.nodes().size()));
   Eigen::Matrix3Xf at(3, static_cast<Eigen::Index>(slicer.vertices().size()));
@@ -25,7 +25,7 @@ Vec3 area_vector(const SliceTriangle& triangle, const Eigen::Matrix3Xf& at) {
   return 0.5 * (at.col(triangle.vertices[1]).cast<double>() - a).cross(at.col(triangle.vertices[2]).cast<double>() - a);
 }
 
-/// Area towards the normal; pieces that look backwards would take away.
+/// Area of the slice; triangles that face backwards count negative.
 double area(const Slicer& slicer, const Vec3& normal, int region = -1) {
   const Eigen::Matrix3Xf at = corners(slicer);
   double sum = 0.0;
@@ -35,9 +35,9 @@ double area(const Slicer& slicer, const Vec3& normal, int region = -1) {
   return sum;
 }
 
-/// Area of the section of the unit cube [0,1]³ by n·x = d: −∂/∂d of the volume behind, by inclusion and exclusion.
+/// Area of the section of the unit cube [0,1]³ by n·x = d: −∂/∂d of the volume behind it, by inclusion and exclusion.
 double section_of_unit_cube(Vec3 n, double d) {
-  for (int i = 0; i < 3; ++i) {  // mirrored so that n ≥ 0
+  for (int i = 0; i < 3; ++i) {  // mirror the cube so that n ≥ 0
     if (n[i] < 0.0) {
       d -= n[i];
       n[i] = -n[i];
@@ -57,7 +57,7 @@ double section_of_unit_cube(Vec3 n, double d) {
   return sum * n.norm() / (n[0] * n[1] * n[2]);
 }
 
-/// A ball: a cube whose shells are drawn out to spheres.
+/// A ball, made from a cube whose shells are mapped to spheres.
 TetMesh ball(double radius, int cells) {
   TetMesh mesh = box_mesh(Vec3::Constant(-radius), Vec3::Constant(radius), {cells, cells, cells});
   for (Vec3& x : mesh.nodes) {
@@ -66,7 +66,8 @@ TetMesh ball(double radius, int cells) {
   return mesh;
 }
 
-/// Every triangle lies in the plane and looks along the normal; edges are shared by two of them, or lie on the outside.
+/// Every triangle lies in the plane and faces along the normal; every edge belongs to two triangles or is on the
+/// outside.
 void expect_sound(const Slicer& slicer, const Vec3& origin, const Vec3& normal) {
   const Eigen::Matrix3Xf at = corners(slicer);
   for (Eigen::Index k = 0; k < at.cols(); ++k)
@@ -96,7 +97,7 @@ TEST(Slice, AnyPlaneThroughABoxHasTheAreaOfItsSection) {
 TEST(Slice, APlaneThroughNodesAndFacesTakesNothingTwiceAndLeavesNothingOut) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4});
   Slicer slicer(mesh);
-  for (const double z : {10.0, 20.0, 30.0}) {  // whole layers of faces lie in these
+  for (const double z : {10.0, 20.0, 30.0}) {  // whole layers of faces lie in these planes
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {1.0, -1.0}) {
         const Vec3 normal = sign * Vec3::Unit(axis);
@@ -106,12 +107,12 @@ TEST(Slice, APlaneThroughNodesAndFacesTakesNothingTwiceAndLeavesNothingOut) {
       }
     }
   }
-  // Through edges, nodes and diagonal faces.
+  // A plane through edges, nodes and diagonal faces.
   slicer.cut(Vec3::Zero(), {1, -1, 0});
   EXPECT_NEAR(area(slicer, {1, -1, 0}), 1600 * std::sqrt(2.0), 0.02);
   slicer.cut(Vec3::Constant(20), {1, 1, 1});
   EXPECT_NEAR(area(slicer, {1, 1, 1}), 1600 * 0.75 * std::sqrt(3.0), 0.02) << "a regular hexagon";
-  // The outermost faces: from one side they are the mesh's end, from the other just outside of it.
+  // The outermost faces: seen from one side they are the end of the mesh, seen from the other they are just outside it.
   slicer.cut(Vec3::Zero(), Vec3::UnitZ());
   EXPECT_TRUE(slicer.triangles().empty()) << "all of the mesh is in front";
   slicer.cut(Vec3::Zero(), -Vec3::UnitZ());
@@ -153,7 +154,7 @@ TEST(Slice, MovesWithTheMaterial) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}, 0.1);
   Slicer slicer(mesh);
   slicer.cut({20, 20, 20}, {0.3, 0.2, 1});
-  // An affine displacement moves every point of the slice by itself: interpolation has no error.
+  // An affine displacement moves every point of the slice exactly: interpolation has no error.
   Mat3 G;
   G << 0.1, 0.02, 0, -0.05, 0, 0.1, 0.03, 0, -0.08;
   Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(slicer.nodes().size()));

@@ -15,7 +15,7 @@ double share(const std::vector<TetPart>& parts) {
   return sum;
 }
 
-/// Mean of a linear function over the parts times their share of the tetrahedron.
+/// Sum over the parts of the mean of a linear function × the part's share of the tetrahedron.
 double integral(const std::vector<TetPart>& parts, const Vec4& values) {
   double sum = 0.0;
   for (const TetPart& part : parts) sum += share_of_tet(part) * (part.transpose() * values).mean();
@@ -23,7 +23,7 @@ double integral(const std::vector<TetPart>& parts, const Vec4& values) {
 }
 
 TEST(PartsOfATetrahedron, between_levels_of_one_corner_have_the_cone_s_volume) {
-  const Vec4 height(1.0, 0.0, 0.0, 0.0);  // below c: all but a cone of (1 − c)³
+  const Vec4 height(1.0, 0.0, 0.0, 0.0);  // the part below c is the whole without a cone of volume (1 − c)³
   for (const double c : {0.0, 0.1, 0.5, 0.9, 1.0})
     EXPECT_NEAR(share(parts_between(height, -1.0, c)), 1.0 - std::pow(1.0 - c, 3), 1e-14) << c;
   EXPECT_NEAR(share(parts_between(height, 0.25, 0.5)), std::pow(0.75, 3) - std::pow(0.5, 3), 1e-14);
@@ -39,7 +39,7 @@ TEST(PartsOfATetrahedron, of_successive_levels_make_up_the_whole_and_keep_to_the
   std::uniform_real_distribution<double> some(-1.0, 1.0);
   for (int repeat = 0; repeat < 200; ++repeat) {
     Vec4 values = Vec4::NullaryExpr([&] { return some(random); });
-    if (repeat % 4 == 0) values[1] = values[2];  // level edges
+    if (repeat % 4 == 0) values[1] = values[2];  // an edge on which the function is constant
     if (repeat % 8 == 0) values[3] = values[2];
     const std::array<double, 4> levels{-2.0, repeat % 3 == 0 ? values[0] : -0.3, 0.4 + 0.6 * std::abs(values[0]), 2.0};
     double whole = 0.0;

@@ -12,7 +12,7 @@ namespace {
 
 TetMesh layered_box() {
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 30, 20}, {4, 3, 2}, 0.1);
-  // The upper layer has the lower region number, so the order of regions and of elements differ.
+  // The upper layer has the lower region number, so the orders of regions and of elements differ.
   assign_regions(mesh, {"upper", "lower"}, [](const Vec3& x) { return x.z() < 10 ? 1 : 0; });
   return mesh;
 }
@@ -71,7 +71,8 @@ TEST(Topology, InterfacesAreListedOnceFromTheLowerRegion) {
     EXPECT_TRUE(seen.insert(key).second);
     total += area_vector(mesh, face);
   }
-  // Closed with the outer edge of the layer, which lies in the plane z = 10: the area vector is that of the section.
+  // The outer edge of the layer lies in the plane z = 10 and closes the surface: its area vector is that of the
+  // section.
   EXPECT_LT((total - Vec3(0, 0, -40.0 * 30.0)).norm(), 1e-9);
 }
 

@@ -28,7 +28,7 @@ inline bool has_note(const MeshedAnatomy& m, const std::string& part) {
   return false;
 }
 
-/// All nodes that elements of a region use.
+/// All nodes of the elements of a region.
 inline std::set<Index> nodes_of(const TetMesh& mesh, int region) {
   std::set<Index> nodes;
   for (Index t = 0; t < mesh.tet_count(); ++t) {
@@ -37,7 +37,8 @@ inline std::set<Index> nodes_of(const TetMesh& mesh, int region) {
   return nodes;
 }
 
-/// Valid, hit the node count, hold to the promised angles and volumes.
+/// Guaranteed properties of a mesh: it is valid, has the wanted number of nodes, and its angles and volumes are in
+/// range.
 struct Promise {
   double smallest_angle = 12, largest_angle = 165;
   double region_volume = 0.08, total_volume = 0.03;

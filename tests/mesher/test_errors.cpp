@@ -10,7 +10,7 @@ namespace {
 using testing::gland;
 using testing::set_of;
 
-/// An input error whose message holds all the parts.
+/// The result is an input error whose message contains all parts.
 template <class Input>
 void expect_refused(const Result<Input>& r, const std::vector<std::string>& parts) {
   ASSERT_FALSE(r.ok());

@@ -10,7 +10,8 @@
 namespace stylet::meshing {
 namespace {
 
-/// A cube of n³ cells of six tetrahedra each, inner nodes displaced at random: left half label 1, right half label 2.
+/// A cube of n³ cells of six tetrahedra each, with inner nodes displaced at random; the left half has label 1, the
+/// right half label 2.
 RawMesh shaken_cube(int n, double by) {
   RawMesh m;
   std::mt19937 random(7);
@@ -49,7 +50,7 @@ RawMesh shaken_cube(int n, double by) {
   return m;
 }
 
-/// A slab x < `at`.
+/// The half space x < `at`.
 class HalfSpace : public Shape {
  public:
   explicit HalfSpace(double at) : at_(at) {}
@@ -62,7 +63,7 @@ class HalfSpace : public Shape {
   double at_;
 };
 
-/// The cube as an anatomy: label 1 is x < middle, label 2 the rest of the box.
+/// The cube as an anatomy: label 1 is x < middle, label 2 is the rest of the box.
 class Box : public HalfSpace {
  public:
   explicit Box(double side) : HalfSpace(0), side_(side) {}

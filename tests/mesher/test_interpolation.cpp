@@ -97,7 +97,8 @@ TEST(Redistance, KeepsTheSurfaceAndMakesDistances) {
     for (int j = 0; j < g.size[1]; ++j) {
       for (int i = 0; i < g.size[0]; ++i) {
         const double r = g.node(i, j, k).norm();
-        g.values.push_back(static_cast<float>(0.01 * (r * r - 81)));  // the right zero surface, the wrong values
+        g.values.push_back(
+            static_cast<float>(0.01 * (r * r - 81)));  // the zero surface is right, the other values are wrong
       }
     }
   }

@@ -14,7 +14,7 @@ MeshOptions nodes(Index n) {
   return o;
 }
 
-/// A gland alone, meshed once for all claims about it.
+/// A gland alone, meshed once for all tests that use it.
 const Result<MeshedAnatomy>& simple(Index n = 700) {
   static const auto small = mesh_contours(set_of({gland()}), nodes(700));
   static const auto large = mesh_contours(set_of({gland()}), nodes(1500));
@@ -120,7 +120,7 @@ TEST(MeshContours, ABodyOfTheInputIsTheOuterBoundary) {
   ASSERT_TRUE(m.ok()) << m.error().message();
   testing::expect_kept(*m, 900);
   EXPECT_GT(testing::region(*m, "body").input_volume_cc, 500);
-  EXPECT_FALSE(testing::has_note(*m, "no body contour"));
+  EXPECT_FALSE(testing::has_note(*m, "No body contour"));
 }
 
 TEST(MeshContours, AVeryLongBodyIsCroppedAroundTheAnatomyAndSaysSo) {

@@ -36,7 +36,7 @@ TEST(MeshLabels, AnObliqueLeftHandedFrameGivesTheMovedZones) {
   const auto m = mesh_labels(image, zones(1200));
   ASSERT_TRUE(m.ok()) << m.error().message();
   testing::expect_kept(*m, 1200);
-  // The label at each element's centre, looked up in the image, is the element's region (but for a rim of a voxel).
+  // The image's label at the centroid of each element is the element's region, except for a rim of one voxel.
   int right = 0, all = 0;
   for (Index t = 0; t < m->mesh.tet_count(); ++t) {
     Vec3 c = Vec3::Zero();
@@ -167,7 +167,7 @@ TEST(MeshLabels, ALabelLeftOutOfABodyIsTissueOfTheBody) {
 TEST(MeshLabels, StrayVoxelsAndLabelsThinnerThanAVoxelAreLeftOutWithANote) {
   LabelImage image = testing::two_zones();
   image.labels[(2 * 56 + 3) * 64 + 4] = 2;    // far from the gland
-  image.labels[(7 * 56 + 28) * 64 + 50] = 9;  // in the middle of it, a label of one voxel
+  image.labels[(7 * 56 + 28) * 64 + 50] = 9;  // in the middle of the gland, a label of one voxel
   MeshOptions o;
   o.nodes = 700;
   const auto small = mesh_labels(image, o);

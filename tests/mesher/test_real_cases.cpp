@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the mesher promises, on real patients: eight label masks of prostate zones, two RT structure sets, the demo
-// patient.
+// Tests what the mesher guarantees on real patients: eight label masks of prostate zones, two RT structure sets, and
+// the demo patient.
 #include "mesh_checks.hpp"
 #include "stylet/io/contours_io.hpp"
 #include "stylet/io/label_image_io.hpp"
@@ -18,7 +18,7 @@ std::filesystem::path data_folder() {
   return named != nullptr ? named : STYLET_SHARED_DATA_DEFAULT;
 }
 
-/// Where a case lies below the data folder; empty: made by the program itself.
+/// Path of a case below the data folder; empty for the demo patient, which the program makes itself.
 std::string path_of(const std::string& name) {
   if (name == "demo") return "";
   if (name == "robustbrachy") return "robustbrachy_hdr_phantom/SS001.dcm";
@@ -87,7 +87,7 @@ TEST_P(RealCase, ThePaperPresetHas570NodesAndAnglesAbove9Degrees) {
 INSTANTIATE_TEST_SUITE_P(All, RealCase, ::testing::ValuesIn(kCases),
                          [](const auto& i) { return std::string(i.param); });
 
-/// Angles and node count hold at any size; volumes are promised from the default size upwards.
+/// Angles and node count are guaranteed at any size, volumes from the default size upwards.
 class AnySize : public RealCase {};
 
 TEST_P(AnySize, AnglesAndNodeCountHoldFrom1000To10000Nodes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The soft tissue that contours do not have: where it is, what it gives way to, and that the mesh stays good.
+// Tests the soft layers that contours lack: their places, the structures to which they yield, and the quality of the
+// mesh.
 #include "made_anatomy.hpp"
 #include "mesh_checks.hpp"
 #include "stylet/geom/locator.hpp"
@@ -14,7 +15,7 @@ using testing::tube;
 constexpr Index kNodes = 2500;
 constexpr double kFat = 7.0, kMuscle = 5.0, kSkinFat = 9.0, kWall = 4.0;  // [mm]
 const Vec3 kCentre(5, -20, 10), kHalf(20, 16, 18);                        // of testing::gland()
-constexpr double kRectum = 12.0;                                          // [mm] its radius
+constexpr double kRectum = 12.0;                                          // [mm] radius of the rectum
 const Vec3 kRectumAxis(5, 15, 0);
 
 MeshOptions with_layers() {
@@ -35,7 +36,7 @@ const Result<MeshedAnatomy>& pelvis() {
   return m;
 }
 
-/// Distance from the gland's ellipsoid [mm], to first order: good to a millimetre within one of the layers' thickness.
+/// Distance [mm] from the gland's ellipsoid to first order, accurate to a millimetre within a layer's thickness.
 double from_gland(const Vec3& p) {
   const Vec3 q = (p - kCentre).cwiseQuotient(kHalf);
   const Vec3 gradient = q.cwiseQuotient(kHalf) / q.norm();
@@ -70,13 +71,13 @@ TEST(SoftLayers, AllAreMadeAndTheMeshIsAsGoodAsWithoutThem) {
     EXPECT_TRUE(testing::has_region(*m, name)) << name;
     EXPECT_GT(volume(*m, name), 500.0) << name;
   }
-  EXPECT_TRUE(testing::has_note(*m, "7 mm of fat round the gland")) << "the user is told what was added";
+  EXPECT_TRUE(testing::has_note(*m, "7 mm of fat around the gland")) << "the user is told what was added";
 }
 
 TEST(SoftLayers, EachLiesWhereItBelongs) {
   const auto& m = pelvis();
   ASSERT_TRUE(m.ok());
-  constexpr double kOff = 2.5;  // [mm] faces are flat, the ellipsoid's distance is of first order
+  constexpr double kOff = 2.5;  // [mm] because faces are flat and the ellipsoid's distance is of first order
   for_elements(*m, "periprostatic_fat", [&](const Vec3& p, double) {
     EXPECT_GT(from_gland(p), -kOff);
     EXPECT_LT(from_gland(p), kFat + kOff);
@@ -97,7 +98,8 @@ TEST(SoftLayers, EachLiesWhereItBelongs) {
   for_elements(*m, "subcutaneous_fat", [&](const Vec3& p, double) { EXPECT_LT(p.z(), skin + kSkinFat + 25); });
 }
 
-/// The shell between two ellipsoids, less what gland's neighbours take of it: that is little here.
+/// The volume of the shell between two ellipsoids, without what neighbours of the gland take of it, which is little
+/// here.
 TEST(SoftLayers, TheFatRoundTheGlandIsAsThickAsAskedFor) {
   MeshOptions o;
   o.nodes = kNodes;
@@ -112,7 +114,7 @@ TEST(SoftLayers, TheFatRoundTheGlandIsAsThickAsAskedFor) {
   EXPECT_NEAR(volume(*m, "periprostatic_fat") / shell, 1.0, 0.06);
 }
 
-/// From the skin inwards along the axis: first the fat, as thick as asked for.
+/// From the skin inwards along the axis, the first layer is fat of the wanted thickness.
 TEST(SoftLayers, TheFatUnderTheSkinIsAsThickAsAskedFor) {
   const auto& m = pelvis();
   ASSERT_TRUE(m.ok());
@@ -128,7 +130,7 @@ TEST(SoftLayers, TheFatUnderTheSkinIsAsThickAsAskedFor) {
         const auto at = locator.find(Vec3(x, y, z), 0);
         if (at && m->mesh.tet_region[at->tet] == fat) ++inside;
       }
-      // The skin bends within one of the coarse elements there.
+      // The skin is curved within one of the coarse elements.
       EXPECT_NEAR(0.1 * inside, kSkinFat, 2.5) << x << ", " << y;
       sum += 0.1 * inside;
       ++ways;

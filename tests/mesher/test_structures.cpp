@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What structures and labels are taken as, what is left out, and that it is said.
+// Tests as which regions structures and labels are used, which ones are left out, and that this is reported.
 #include "made_anatomy.hpp"
 #include "stylet/mesher/structures.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 
 using testing::set_of;
 
-/// A structure that has a contour; nobody meshes it here.
+/// A structure with a contour, which is not meshed here.
 Roi roi(const std::string& name, const std::string& type = "") {
   Roi r;
   r.name = name;
@@ -93,8 +93,8 @@ TEST(Structures, AnEmptyPlanningVolumeIsNoGland) {
   ASSERT_TRUE(choice.ok());
   EXPECT_EQ(regions(*choice), Regions{"prostate"});
   EXPECT_EQ(choice->empty.size(), 3U);
-  EXPECT_TRUE(says(*choice, "structures left out (empty): 'CTV', 'PROS'"));
-  EXPECT_TRUE(says(*choice, "structure left out (only open curves or points): 'needle A5'"));
+  EXPECT_TRUE(says(*choice, "structures are left out (empty): 'CTV', 'PROS'"));
+  EXPECT_TRUE(says(*choice, "structure is left out (only open curves or points): 'needle A5'"));
 }
 
 TEST(Structures, PlanningVolumesAreLeftOutWhereTheGlandIsDrawn) {
@@ -115,8 +115,8 @@ TEST(Structures, NamingOneLeavesTheOthersRecognised) {
   const StructureChoice choice =
       chosen({roi("my volume"), roi("Bladder"), roi("Rectum"), roi("X1"), roi("PTV"), roi("Prostate")}, options);
   EXPECT_EQ(regions(choice), (Regions{"prostate", "bladder", "rectum", "", "", ""}));
-  EXPECT_TRUE(says(choice, "structure left out (name not recognised): 'X1'"));
-  EXPECT_TRUE(says(choice, "structure left out ('my volume' is taken as prostate): 'Prostate'"));
+  EXPECT_TRUE(says(choice, "structure is left out (name not recognised): 'X1'"));
+  EXPECT_TRUE(says(choice, "structure is left out (the region prostate is assigned to 'my volume'): 'Prostate'"));
   EXPECT_TRUE(says(choice, "'PTV'"));
 }
 
@@ -126,7 +126,7 @@ TEST(Structures, NamingOneHalfKeepsTheOther) {
   const StructureChoice choice = chosen({roi("PZ_left"), roi("PZ_right"), roi("PZ"), roi("L PZ")}, options);
   EXPECT_EQ(regions(choice), (Regions{"peripheral_zone", "peripheral_zone", "", ""}));
   EXPECT_TRUE(says(choice, "structure 'PZ_right' is taken as peripheral_zone together with 'PZ_left'"));
-  EXPECT_TRUE(says(choice, "left out ('PZ_left', 'PZ_right' is taken as peripheral_zone): 'PZ', 'L PZ'"));
+  EXPECT_TRUE(says(choice, "left out (the region peripheral_zone is assigned to 'PZ_left', 'PZ_right'): 'PZ', 'L PZ'"));
   options.regions = {{"hip", "femur_left"}};
   EXPECT_EQ(regions(chosen({roi("Prostate"), roi("hip"), roi("Femur_L")}, options)),
             (Regions{"prostate", "femur_left", ""}))
@@ -191,7 +191,7 @@ TEST(Structures, LabelsAreSkippedByNameOrNumber) {
   const auto choice = choose_structures(image, options);
   ASSERT_TRUE(choice.ok()) << choice.error().message();
   EXPECT_EQ(regions(*choice), (Regions{"peripheral_zone", "transition_zone", "", ""}));
-  EXPECT_TRUE(says(*choice, "labels left out (named in [patient] skip): 'Bladder', '4'"));
+  EXPECT_TRUE(says(*choice, "labels are left out (named in [patient] skip): 'Bladder', '4'"));
   options.skip = {"Blader"};
   const auto wrong = choose_structures(image, options);
   ASSERT_FALSE(wrong.ok());
@@ -205,7 +205,7 @@ TEST(Structures, ALabelThatTheReaderHasSkippedIsSaidToBe) {
   options.skip = {"Urethra"};
   const auto choice = choose_structures(image, options);
   ASSERT_TRUE(choice.ok()) << choice.error().message();
-  EXPECT_TRUE(says(*choice, "label left out (named in [patient] skip): 'Urethra'"));
+  EXPECT_TRUE(says(*choice, "label is left out (named in [patient] skip): 'Urethra'"));
   options.regions = {{"urethra", "urethra"}};
   const auto both = choose_structures(image, options);
   ASSERT_FALSE(both.ok());
@@ -238,7 +238,7 @@ TEST(Structures, ALabelCalledTargetIsTheGland) {
   EXPECT_TRUE(says(*choice, "label 'Target' is taken as the gland"));
 }
 
-/// A box of label `label` in an image; to[a] is the first voxel beyond it.
+/// Fills a box with a label; to[a] is the first voxel beyond the box.
 void fill(LabelImage& image, int label, const std::array<int, 3>& from, const std::array<int, 3>& to) {
   for (int k = from[2]; k < to[2]; ++k) {
     for (int j = from[1]; j < to[1]; ++j) {
@@ -252,7 +252,7 @@ void fill(LabelImage& image, int label, const std::array<int, 3>& from, const st
 
 TEST(Structures, APlanningLabelWithinTheGlandIsPartOfIt) {
   LabelImage image = testing::two_zones();
-  fill(image, 3, {28, 32, 6}, {36, 46, 9});  // most of it in the posterior zone
+  fill(image, 3, {28, 32, 6}, {36, 46, 9});  // most of it is in the posterior zone
   fill(image, 5, {30, 36, 7}, {32, 40, 8});  // within the other planning volume
   fill(image, 4, {54, 20, 5}, {64, 40, 9});  // beside the gland
   image.names = {{1, "PZ"}, {2, "TZ"}, {3, "GTV"}, {4, "PTV"}, {5, "Target"}};

@@ -11,7 +11,7 @@
 
 namespace stylet::test {
 
-/// A test over the needle models by name, with the model's own number of elements.
+/// A test that runs with each needle model, by name, with the model's default number of elements.
 class NeedleModelTest : public testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] static const std::string& model() { return GetParam(); }
@@ -22,15 +22,15 @@ class NeedleModelTest : public testing::TestWithParam<std::string> {
     return std::move(built).value();
   }
 
-  /// Out-of-balance moment [N mm] that rounding leaves at the most where forces are about 1 N: what the coupled solver
-  /// asks for is 1e-10 × force × length.
+  /// Largest out-of-balance moment [N mm] that rounding may leave with forces of about 1 N. The coupled solver asks for
+  /// 1e-10 × force × length.
   [[nodiscard]] static double tolerance() { return model() == "tet" ? 1e-8 : 1e-9; }
-  /// Brings the needle to equilibrium from its present shape.
+  /// Brings the needle to equilibrium from its current shape.
   static int settle(Needle& needle, std::span<const PointLoad> loads) {
     return test::settle(needle, loads, tolerance());
   }
 
-  /// How equilibrium positions follow the loads [mm/N] (3w × 3w), by equilibria solved anew.
+  /// Derivative of the equilibrium positions with respect to the loads [mm/N] (3w × 3w), from equilibria solved anew.
   static MatX compliance_by_differences(Needle& needle, const std::vector<PointLoad>& loads) {
     constexpr double h = 1e-4;
     const auto size = 3 * static_cast<Eigen::Index>(loads.size());
@@ -51,7 +51,7 @@ class NeedleModelTest : public testing::TestWithParam<std::string> {
 
 }  // namespace stylet::test
 
-// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): GoogleTest's own is one
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): GoogleTest's own is a macro
 #define STYLET_FOR_EVERY_NEEDLE_MODEL(suite)                                                                 \
   INSTANTIATE_TEST_SUITE_P(Models, suite, testing::ValuesIn(needle_models().begin(), needle_models().end()), \
                            [](const auto& tested) { return tested.param; })

@@ -16,13 +16,13 @@ using beam::RotationTerms;
 using test::kShort;
 using test::tilted;
 
-/// Loads inside elements, on their boundaries, at the tip, at and before the clamp; unordered on purpose.
+/// Loads inside elements, on their borders, at the tip, and at and before the clamp, in no order on purpose.
 std::vector<PointLoad> assorted_loads() {
   return {{97.3, {0.21, -0.4, 0.13}}, {kShort, {-0.3, 0.25, -0.5}}, {3.1, {1.1, -0.6, 0.4}}, {60.0, {0.2, 0.3, -0.9}},
           {61.7, {-0.5, 0.1, 0.3}},   {0.0, {2.0, 1.0, -3.0}},      {-5.0, {1.0, 1.0, 1.0}}};
 }
 
-/// Curved in 3D with element rotations up to the given angle [rad].
+/// A shape curved in 3D whose elements rotate by up to the given angle [rad].
 BeamShape curved(int elements, double angle) {
   BeamShape shape(elements, kShort, 15700.0, 12100.0);
   for (Eigen::Index i = 0; i < shape.curvature.size(); ++i) {
@@ -44,7 +44,7 @@ VecX gradient(const BeamShape& shape, const Mat3& base, const std::vector<PointL
   return tangent.gradient();
 }
 
-/// Central difference of fourth order of a vector function of the curvature component i.
+/// Fourth-order central difference of a vector function with respect to curvature component i.
 template <class Function>
 auto difference(BeamShape shape, Eigen::Index i, double h, Function&& function) {
   const double centre = shape.curvature[i];
@@ -80,7 +80,7 @@ TEST(RotationTerms, AgreeWithTheAngleAxisFormulaAndItsMean) {
     const Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
     const RotationTerms terms(angle * axis);
     EXPECT_LT((terms.rotation() - Eigen::AngleAxisd(angle, axis).toRotationMatrix()).norm(), 1e-14) << angle;
-    // Gauss–Legendre, 5 points on each of 16 intervals.
+    // Gauss–Legendre quadrature with 5 points on each of 16 intervals.
     const double node[] = {0.0, 0.5384693101056831, -0.5384693101056831, 0.9061798459386640, -0.9061798459386640};
     const double weight[] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665, 0.2369268850561891,
                              0.2369268850561891};
@@ -191,7 +191,7 @@ TEST(BeamTangent, StaysPositiveDefiniteFarBeyondBuckling) {
     tangent.condense(compliance, free);
     EXPECT_TRUE(compliance.allFinite());
     EXPECT_GT(compliance.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
-    // The step goes downhill.
+    // The step decreases the energy.
     const VecX before = shape.curvature;
     const VecX g = tangent.gradient();
     tangent.step(loads, shape);

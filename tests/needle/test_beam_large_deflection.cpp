@@ -34,7 +34,7 @@ TEST(BeamLargeDeflection, FollowsTheElasticaToSixtyDegreesWithinOnePercent) {
   }
 }
 
-/// The table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
+/// Computes a table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
 TEST(BeamLargeDeflection, ErrorFallsWithTheSquareOfTheElementLength) {
   const Elastica exact(60.0 * kDegree);
   const std::vector<PointLoad> loads = {{kLength, {exact.force, 0, 0}}};
@@ -56,7 +56,7 @@ TEST(BeamLargeDeflection, ErrorFallsWithTheSquareOfTheElementLength) {
   }
 }
 
-/// Lateral tip compliance [mm/N] of the straight column under an axial push.
+/// Lateral tip compliance [mm/N] of a straight column under an axial force.
 double lateral_compliance(double push) {
   const auto needle = test::beam(24);
   const std::vector<PointLoad> loads = {{kLength, {0, 0, -push}}};
@@ -71,7 +71,7 @@ TEST(BeamBuckling, LateralComplianceFollowsTheBeamColumnAndDivergesAtEulersLoad)
     const double exact = (std::tan(k * kLength) - k * kLength) / (k * push);
     EXPECT_NEAR(lateral_compliance(push), exact, 0.01 * exact) << share;
   }
-  // Stiffness 1/c falls to zero; extrapolated from just below.
+  // The stiffness 1/c falls to zero at the buckling load, which is extrapolated from just below.
   const double a = 0.97 * euler;
   const double b = 0.98 * euler;
   const double stiffness_a = 1.0 / lateral_compliance(a);
@@ -82,7 +82,7 @@ TEST(BeamBuckling, LateralComplianceFollowsTheBeamColumnAndDivergesAtEulersLoad)
 
 TEST(BeamBuckling, PushedPastEulersLoadItFindsTheBentEquilibrium) {
   const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
-  // Post-buckled elastica with tip slope 60° to the axis: P/P_E = (2 K(sin 30°)/π)².
+  // Post-buckling elastica whose tip slope is 60° to the axis: P/P_E = (2 K(sin 30°)/π)².
   const double k = std::sin(30.0 * kDegree);
   const double ratio = std::pow(2.0 * std::comp_ellint_1(k) / std::numbers::pi, 2);
   const auto needle = test::beam(24);
@@ -96,7 +96,7 @@ TEST(BeamBuckling, PushedPastEulersLoadItFindsTheBentEquilibrium) {
 }
 
 /// Kirchhoff rod by shooting: the same statics as differential equations, integrated with the classical Runge–Kutta
-/// rule; unknown is the moment at the clamp, condition a moment-free tip.
+/// rule. The unknown is the moment at the clamp, the condition a tip without moment.
 class ShootingRod {
  public:
   explicit ShootingRod(std::vector<PointLoad> loads) : loads_(std::move(loads)) {
@@ -159,8 +159,8 @@ class ShootingRod {
 };
 
 TEST(BeamLargeDeflection, BentOutOfPlaneItAgreesWithAShootingSolutionAndDoesNotTwist) {
-  // Forces in different planes along the shaft make its centreline a space curve. With one stiffness in every direction
-  // and no couple at the tip m·t is conserved along the shaft, so that the twist vanishes though the curve has torsion.
+  // Forces in different planes make the centreline a space curve. With the same stiffness in every direction and no
+  // couple at the tip, m·t is constant along the shaft, so the twist is zero although the curve has torsion.
   const std::vector<PointLoad> loads = {{90.0, {3.0, 0, 0}}, {150.0, {0, -2.4, 0.1}}, {kLength, {0.4, 1.8, -0.1}}};
   const ShootingRod exact(loads);
   ASSERT_LT(exact.largest_twist(), 1e-12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of the beam's tangent, each by itself.
+// Tests the parts of the beam's tangent one by one.
 #include "needle/load_pulls.hpp"
 #include "needle/scaled_chain.hpp"
 #include "needle/shifted_factor.hpp"
@@ -32,7 +32,7 @@ BeamShape curved(ElementKind kind) {
   return shape;
 }
 
-/// Loads inside elements, at the tip, before the clamp; unordered on purpose.
+/// Loads inside elements, at the tip and before the clamp, in no order on purpose.
 std::vector<PointLoad> some_loads() {
   return {{97.3, {0.21, -0.4, 0.13}}, {kShort, {-0.3, 0.25, -0.5}}, {3.1, {1.1, -0.6, 0.4}}, {-5.0, {1.0, 1.0, 1.0}}};
 }
@@ -184,13 +184,13 @@ TEST(ScaledChain, MotionIsTheDerivativeOfALoadsPoint) {
           EXPECT_LT((motion.row(chain.row(e) + k).transpose() - expected).norm(), 1e-6) << load.s << ' ' << e;
         }
       }
-      // Nothing beyond the last element that moves the point.
+      // Elements beyond the last one that moves the point have no effect.
       EXPECT_TRUE(motion.topRows(chain.row(pulls.last_moved(0))).isZero(0.0)) << load.s;
     }
   }
 }
 
-/// Symmetric with eigenvalues from `least` to 2.
+/// A symmetric matrix with eigenvalues from `least` to 2.
 MatX with_least_eigenvalue(double least) {
   constexpr Eigen::Index n = 60;
   const MatX root = MatX::NullaryExpr(n, n, [](Eigen::Index i, Eigen::Index j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cantilever formulae of Euler–Bernoulli theory, loads small enough that geometry stays linear to 1e-6.
+// Cantilever formulae of Euler–Bernoulli theory, with loads so small that geometry is linear to 1e-6.
 #include "stylet/needle/theory.hpp"
 #include "support.hpp"
 
@@ -43,8 +43,8 @@ TEST(BeamSmallDeflection, LoadInsideAnElementBendsTheWholeShaftWithinHalfAPercen
 }
 
 TEST(BeamSmallDeflection, DistributedLoadWithinHalfAPercentAndSecondOrder) {
-  // Midpoint rule over 50 strips; its own error against q L⁴/(8 EI) is taken out by summing the exact point
-  // deflections.
+  // Midpoint rule over 50 strips. Summing the exact deflections of its point loads eliminates its own error against q
+  // L⁴/(8 EI).
   std::vector<PointLoad> loads;
   double expected = 0.0;
   for (int i = 0; i < 50; ++i) {
@@ -60,7 +60,7 @@ TEST(BeamSmallDeflection, DistributedLoadWithinHalfAPercentAndSecondOrder) {
 }
 
 TEST(BeamSmallDeflection, MomentOfAForceCoupleBendsIntoACircle) {
-  // Two opposite forces d apart at the tip: constant moment F d over the rest of the shaft.
+  // Two opposite forces at a distance d at the tip give a constant moment F d over the rest of the shaft.
   constexpr double d = 2.0;
   const auto needle = test::beam();
   const std::vector<PointLoad> loads = {{kLength - d, {-0.001, 0, 0}}, {kLength, {0.001, 0, 0}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle that is not straight when nothing pulls on it.
+// Tests needles that are not straight without loads.
 #include "needle_model_test.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ TEST_P(BowedNeedle, UnloadedHasItsTipWhereTheBowSaysAndStoresNothing) {
     EXPECT_NEAR(tip.dot(side.cross(Vec3::UnitZ())), 0.0, 1e-9);
     EXPECT_EQ(needle->energy(), 0.0);
     EXPECT_LT(needle->residual({}), 1e-12);
-    // A circle: half way the offset is a quarter, up to the elements' own corners.
+    // On a circle, the offset half way is a quarter, apart from the corners between elements.
     EXPECT_NEAR(needle->point(kLength / 2).dot(side), kBow / 4.0, 0.005 * kBow);
     EXPECT_NEAR(needle->tangent(kLength).dot(side), 2.0 * kBow / kLength, 0.03 * 2.0 * kBow / kLength);
     EXPECT_NEAR(needle->tangent(0.0).z(), 1.0, 1e-12);
@@ -50,9 +50,9 @@ TEST_P(BowedNeedle, ComesBackToItsBowFromAnyShape) {
   EXPECT_LT((needle->point(kLength) - tip).norm(), 1e-6);
   needle->straighten();
   EXPECT_EQ(VecX(needle->state()), unloaded);
-  needle->set_state(VecX::Zero(unloaded.size()));  // held straight: bending energy EI κ² L / 2
+  needle->set_state(VecX::Zero(unloaded.size()));  // held straight: the bending energy is EI κ² L / 2
   EXPECT_NEAR(needle->point(kLength).x(), 0.0, 1e-12);
-  if (model() == "tet") return;  // its nodes on straight lines are not yet the least energy of a straight shaft
+  if (model() == "tet") return;  // nodes on straight lines do not have the least energy of a straight shaft
   const double curvature = 2.0 * kBow / (kLength * kLength);
   EXPECT_NEAR(needle->energy(), 0.5 * NeedleSection{}.bending_stiffness_Nmm2 * curvature * curvature * kLength,
               0.03 * needle->energy());

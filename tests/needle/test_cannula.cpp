@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The section's stiffness against the figures published for 18 gauge needles, and what is refused.
+// Compares the stiffness of sections with figures published for 18 gauge needles, and tests what is refused.
 #include "stylet/needle/cannula.hpp"
 #include "stylet/needle/section.hpp"
 
@@ -38,7 +38,8 @@ TEST(Cannula, AStyletAddsItsOwnBendingStiffnessOnly) {
   EXPECT_DOUBLE_EQ(with.bending_Nmm2, tube.bending_Nmm2 + wire.bending_Nmm2);
   EXPECT_EQ(with.torsion_Nmm2, tube.torsion_Nmm2);
   EXPECT_EQ(with.axial_N, tube.axial_N);
-  // About a common axis bending stiffnesses add, glued together or not: a stylet that fills the lumen makes it solid.
+  // About a common axis, bending stiffnesses add up whether or not the parts are glued together: a stylet that fills
+  // the lumen has the effect of a solid needle.
   EXPECT_NEAR(of({.stylet_diameter_mm = 1.0}).bending_Nmm2, of({.lumen_diameter_mm = 0.0}).bending_Nmm2, 1e-6);
   EXPECT_GT(of({.stylet_diameter_mm = 0.9, .stylet_young_MPa = 50e3}).bending_Nmm2, tube.bending_Nmm2);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Internal damping (Kelvin–Voigt) by implicit Euler steps of τ / ratio: of rods a moment EI (κ + τ dκ/dt), of
-// tetrahedra a stress C (E + τ dE/dt).
+// Internal damping (Kelvin–Voigt) in implicit Euler steps of τ / ratio. Rods get a moment EI (κ + τ dκ/dt), tetrahedra
+// a stress C (E + τ dE/dt).
 #include "stylet/needle/springs.hpp"
 #include "stylet/needle/tet.hpp"
 #include "stylet/needle/theory.hpp"
@@ -15,7 +15,7 @@ namespace {
 using test::kEI;
 using test::kLength;
 
-/// Newton's iteration; find_equilibrium() looks for the least potential energy, of which damping has no part.
+/// Newton's iteration. find_equilibrium() cannot be used, because it minimises the potential energy without damping.
 int balance(Needle& needle, const std::vector<PointLoad>& loads, double tolerance_Nmm) {
   int iterations = 0;
   for (; needle.residual(loads) > tolerance_Nmm && iterations < 30; ++iterations) {
@@ -59,13 +59,13 @@ TEST(NeedleDamping, makes_the_tangent_definite_and_exact_beyond_the_buckling_loa
   for (const auto& needle : needles()) {
     MatX compliance(3, 3);
     VecX free(3);
-    // Tetrahedra buckle by stress, which has to be there first.
+    // Tetrahedra buckle under stress, which therefore has to exist first.
     balance(*needle, {{kLength, {0, 0, -3.0 * critical}}}, 1e-2);
     EXPECT_FALSE(needle->linearise(loads, compliance, free, {}, Indefinite::give_up)) << needle->model();
     needle->straighten();
     needle->damp(4.0);
     EXPECT_TRUE(needle->linearise(loads, compliance, free, {}, Indefinite::give_up)) << needle->model();
-    // What the compliance says of another load is what the next balance has: Newton's step is exact.
+    // The compliance predicts the next equilibrium for another load exactly: Newton's step is exact.
     balance(*needle, loads, 1e-10);
     compliance = test::compliance_of(*needle, loads);
     const Vec3 before = needle->point(kLength);
@@ -89,7 +89,7 @@ TEST(NeedleDamping, an_old_tangent_finds_the_same_shape) {
     needle->damp(2.0);
     (*other)->damp(2.0);
     balance(*needle, loads, 1e-10);
-    if (needle->model() == "tet") {  // has to start from near by: tetrahedra stretch where they are turned
+    if (needle->model() == "tet") {  // must start near the solution, because tetrahedra stretch when they turn
       const std::vector<PointLoad> nearly = {{loads[0].s, 0.98 * loads[0].force}, {loads[1].s, 0.98 * loads[1].force}};
       balance(**other, nearly, 1e-10);
     }

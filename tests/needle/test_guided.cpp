@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hole of a guide template, around every model.
+// Tests the hole of a guide template with every needle model.
 #include "needle_model_test.hpp"
 #include "stylet/needle/guided.hpp"
 #include "stylet/needle/theory.hpp"
@@ -26,14 +26,14 @@ class NeedleInAGuide : public test::NeedleModelTest {
     needle->place_guide(Vec3(0, 0, at_mm) + aside, Vec3::UnitZ());
     return needle;
   }
-  /// Allowed error over theory of what the shaft does within `a` of the clamp: rods see it by their length.
+  /// Allowed relative error of the shaft within `a` of the clamp; rods of a given length represent it less well.
   [[nodiscard]] static double small(double a) {
     const double rod = kLength / elements();
     return model() == "tet" ? 0.04 : (model() == "springs" ? 0.01 + 0.5 * rod * rod / (a * a) : 0.01);
   }
 };
 
-constexpr double kHard = 1e5;  // [N/mm] so hard that theory's rigid support is meant
+constexpr double kHard = 1e5;  // [N/mm] so hard that it stands for the rigid support of theory
 
 TEST_P(NeedleInAGuide, IsAProppedCantileverAsInTheory) {
   constexpr double P = 1e-3;
@@ -83,8 +83,8 @@ TEST_P(NeedleInAGuide, TheHoleNeverPullsAlongTheShaft) {
 }
 
 TEST(BeamInAGuide, HandGuideAndLoadsAreInBalance) {
-  // The clamp's moment, which the hand bears, is that of loads and guide about the base. Read from the shape: beside
-  // the clamp the shaft's curvature is moment over EI.
+  // The moment at the clamp, which the hand bears, equals the moment of loads and guide about the base. It is read from
+  // the shape: at the clamp, the curvature of the shaft is moment / EI.
   const auto needle = std::make_unique<GuidedNeedle>(test::beam(48), GuideHole{0.05, 100.0}, 16);
   needle->place_guide({0.0, -2.0, 70.0}, Vec3::UnitZ());
   const std::vector<PointLoad> loads{{kLength, {0, 0.2, -0.1}}};
@@ -92,7 +92,8 @@ TEST(BeamInAGuide, HandGuideAndLoadsAreInBalance) {
   const PointLoad guide = needle->guide_load();
   const Vec3 moment = needle->point(kLength).cross(loads[0].force) + needle->point(guide.s).cross(guide.force);
   const VecX state = needle->state();
-  const double curvature = 1.5 * state[0] - 0.5 * state[3];  // at the clamp, from the first two elements' means
+  const double curvature =
+      1.5 * state[0] - 0.5 * state[3];  // at the clamp, extrapolated from the means of the first two elements
   EXPECT_NEAR(kEI * curvature, moment.x(), 1e-3 * std::abs(moment.x()));
 }
 
@@ -104,7 +105,7 @@ TEST_P(NeedleInAGuide, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
   ASSERT_GT(needle->guide_load().force.norm(), 0.1);
   const MatX compliance = test::compliance_of(*needle, loads);
   const MatX differences = compliance_by_differences(*needle, loads);
-  // What the tangent leaves out, the turning of the guide's force, is small.
+  // The part that the tangent neglects, the rotation of the guide's force, is small.
   for (Eigen::Index column = 0; column < compliance.cols(); ++column)
     EXPECT_LT((differences - compliance).col(column).norm(), 2e-3 * compliance.norm()) << column;
 }
@@ -120,7 +121,7 @@ TEST_P(NeedleInAGuide, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
   MatX expected(9, 9);
   VecX expected_free(9);
   needle->linearise(std::span(loads).first(2), compliance.topLeftCorner(6, 6), free.head(6));
-  if (model() == "tet") {  // this one wants a new tangent
+  if (model() == "tet") {  // this model needs a new tangent
     EXPECT_FALSE(needle->append(loads, compliance.bottomRows<3>()));
     return;
   }
@@ -144,10 +145,10 @@ TEST_P(NeedleInAGuide, IsPartOfATangentThatIsPrepared) {
   settle(*needle, loads);
   ASSERT_GT(needle->guide_load().force.norm(), 0.1);
   needle->linearise(loads, expected, expected_free);
-  ASSERT_EQ(needle->prepares(), model() != "tet");  // that one makes each at once
+  ASSERT_EQ(needle->prepares(), model() != "tet");  // the other model makes each tangent at once
   if (!needle->prepares()) return;
   EXPECT_TRUE(needle->prepare(loads, {}, Indefinite::give_up));
-  // The one in use is made anew meanwhile, for other loads.
+  // Meanwhile the tangent in use is recomputed for other loads.
   std::vector<PointLoad> others = loads;
   for (PointLoad& load : others) load.s -= 3.0;
   MatX of_others = expected;
@@ -159,8 +160,8 @@ TEST_P(NeedleInAGuide, IsPartOfATangentThatIsPrepared) {
 }
 
 TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
-  // Clamped and propped half way the shaft bears more than free: Euler's load of the free half alone is four times as
-  // much, and the two halves turn each other.
+  // A shaft that is clamped and propped half way bears more than a free one: Euler's load of the free half alone is
+  // four times as high, and the two halves turn each other.
   const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
   const auto free = make();
   const auto held = guided({0.0, kHard}, 100.0);

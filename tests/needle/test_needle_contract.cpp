@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the rest of the program relies on, whatever the model inside.
+// Tests the properties on which the rest of the program relies, with every needle model.
 #include "needle_model_test.hpp"
 #include "support.hpp"
 #include "support/count_allocations.hpp"
@@ -101,7 +101,7 @@ TEST_P(NeedleContract, FreeMotionAndComplianceForetellTheStepToFirstOrder) {
     for (int c = 0; c < 4; ++c) moved.segment<3>(3 * c) = needle->point(loads[c].s) - before.segment<3>(3 * c);
     const double error = (moved - foretold).norm() / foretold.norm();
     EXPECT_LT(error, 2.0 * size);
-    // Where points are linear in the unknowns, as with tetrahedra, the foretold motion is exact.
+    // Where points are linear in the unknowns, as with tetrahedra, the predicted motion is exact.
     if (previous > 1e-8) {
       EXPECT_NEAR(previous / error, 10.0, 2.0);
     }
@@ -121,8 +121,8 @@ TEST_P(NeedleContract, NewtonConvergesQuadratically) {
     residuals.push_back(needle->residual(loads));
   }
   ASSERT_LE(residuals.back(), tolerance());
-  if (model() == "tet") return;  // its way leads through stretched shapes: see TetNeedle.NewtonConvergesQuadratically
-  // Near the solution one step at least squares the size of the residual (moments here are tens of N mm).
+  if (model() == "tet") return;  // it passes through stretched shapes, see TetNeedle.NewtonConvergesQuadratically
+  // Near the solution, at least one step squares the size of the residual (moments here are tens of N mm).
   bool near = false;
   for (std::size_t i = 1; i < residuals.size(); ++i) {
     if (residuals[i - 1] < 0.1 && residuals[i] > 1e-10) {
@@ -163,8 +163,8 @@ TEST_P(NeedleContract, RelaxingConvergesToTheEquilibriumOfOtherLoadsAtOtherPlace
   VecX free(18);
   needle->linearise(loads, compliance, free);
   auto changed = loads;
-  // Tetrahedra that turn with an old tangent stretch, and stretching is stiff: that takes them a hundred times less
-  // far.
+  // Tetrahedra that turn with an old tangent stretch, and stretching is stiff, so they get a change that is a hundred
+  // times smaller.
   const double size = model() == "tet" ? 1e-4 : 1e-2;
   for (PointLoad& load : changed) load = {load.s - 50.0 * size, (1.0 + 2.0 * size) * load.force};
   const auto exact = make();
@@ -200,7 +200,7 @@ TEST_P(NeedleContract, RelaxingUnderTheFirstLoadsOnlyIsTheSameAsIfThereHadBeenNo
   needle->linearise(unloaded, compliance, free);
   other->linearise(off, expected, expected_free);
   ASSERT_TRUE(needle->relax(off, free.head(12)));
-  // Loads of another size change the tangent a little.
+  // Loads of a different size change the tangent slightly.
   EXPECT_LT((free.head(12) - expected_free).norm(), 0.05 * expected_free.norm());
   EXPECT_LT((compliance.topLeftCorner(12, 12) - expected).norm(), 0.05 * expected.norm());
   needle->advance(first);
@@ -223,14 +223,14 @@ TEST_P(NeedleContract, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
   MatX expected(18, 18);
   VecX free(18);
   VecX expected_free(18);
-  // Seven were there, the last two are gone, then one comes.
+  // There were seven loads; the last two are dropped, then one is added.
   auto seven = unloaded;
   seven.back() = {31.0, Vec3::Zero()};
   seven.push_back({77.0, Vec3::Zero()});
   MatX larger(21, 21);
   VecX larger_free(21);
   needle->linearise(seven, larger, larger_free);
-  if (model() == "tet") {  // this one wants a new tangent
+  if (model() == "tet") {  // this model needs a new tangent
     EXPECT_FALSE(needle->append(unloaded, compliance.bottomRows<3>()));
     return;
   }
@@ -259,7 +259,7 @@ TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
     n->advance(loads);
   }
   if (!needle->prepares()) {
-    EXPECT_EQ(model(), "tet");  // this one makes each at once
+    EXPECT_EQ(model(), "tet");  // this model makes each tangent at once
     return;
   }
   MatX prepared(60, 60);
@@ -283,7 +283,7 @@ TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
 TEST_P(NeedleContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
   const auto needle = make();
   const auto full = spread_loads(7);
-  // Simpson's rule on W = ∫ f(t)·du with f = t f₁, integrated by parts: W = f₁·u₁ - ∫ f₁·u dt.
+  // Simpson's rule for W = ∫ f(t)·du with f = t f₁, integrated by parts: W = f₁·u₁ - ∫ f₁·u dt.
   constexpr int intervals = 64;
   double integral = 0.0;
   double last = 0.0;
@@ -302,7 +302,7 @@ TEST_P(NeedleContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
 }
 
 TEST_P(NeedleContract, TangentIsContinuousUnitLengthAndTheDerivativeOfThePoint) {
-  // Rods keep their length, not that of the curve through their joints.
+  // Rods preserve their own length, not the length of the curve through their joints.
   const double stretch = model() == "beam" ? 1e-8 : 1e-3;
   const auto needle = make();
   settle(*needle, std::vector<PointLoad>{{kLength, {0.9, 0.5, 0.2}}, {70.0, {-2.0, 0.4, 0.0}}});
@@ -380,7 +380,7 @@ TEST_P(NeedleContract, NoCallAfterBuildAllocates) {
       needle->damp(2.0);
       needle->linearise(loads, compliance, free);
       needle->damp(0.0);
-      // Beyond buckling too.
+      // Also beyond the buckling load.
       loads.back().force = pose.rotation * Vec3(0.1, 0.0, -50.0);
       needle->linearise(loads, compliance, free);
       needle->advance(loads);
@@ -395,7 +395,7 @@ TEST_P(NeedleContract, NoCallAfterBuildAllocates) {
 
 TEST(AllocationCount, SeesMallocNewEigenAndWhatIsGivenBack) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
-  // Through volatile pointers, so that the compiler cannot leave the pairs out.
+  // Called through volatile pointers, so that the compiler cannot remove the pairs of calls.
   void* (*volatile allocate)(std::size_t) = std::malloc;
   void (*volatile release)(void*) = std::free;
   void* (*volatile make)(std::size_t) = ::operator new;
@@ -440,7 +440,7 @@ TEST_P(NeedleContract, EquilibriumUnderStrongLoadsIsReachedFromTheStraightNeedle
   EXPECT_LE(test::settle(*needle, loads, 1e-8), 4);
 }
 
-/// Pushed past the load it can bear on its own, held by springs at load points between elements.
+/// A needle pressed beyond its own buckling load and held by springs at load points along its shaft.
 struct Held {
   std::vector<PointLoad> loads = {{kLength, {0.02, 0.01, -3.0}}, {150.0, {0, 0, -0.2}}, {83.0, {0.01, 0, 0}}};
   std::vector<Mat3> springs = std::vector<Mat3>(3, Vec3(0.4, 0.4, 0.0).asDiagonal());
@@ -451,7 +451,7 @@ TEST_P(NeedleContract, OnSpringsItIsDefiniteBeyondBuckling) {
   const Held held;
   MatX compliance(9, 9);
   VecX free(9);
-  // The push is in the shape first: tetrahedra buckle by the stress they have, not by the load they are to get.
+  // The force is applied to the shape first: tetrahedra buckle under the stress they have, not under a load to come.
   auto push = held.loads;
   for (PointLoad& load : push) load.force.head<2>().setZero();
   needle->linearise(push, compliance, free);
@@ -491,13 +491,13 @@ TEST_P(NeedleContract, GivingUpOnAnIndefiniteTangentLeavesTheNextOneAsItWouldBe)
 }
 
 TEST_P(NeedleContract, ComplianceOnSpringsIsThatOfTheNeedleAndTheSpringsTogether) {
-  // Below buckling both are there, and (N⁻¹ + G)⁻¹ = (I + N G)⁻¹ N.
+  // Below the buckling load both compliances exist, with (N⁻¹ + G)⁻¹ = (I + N G)⁻¹ N.
   const auto needle = make();
   const Held held;
   auto loads = held.loads;
   for (PointLoad& load : loads) load.force *= 0.1;
   settle(*needle, loads);
-  loads[2].force.y() += 0.003;  // out of balance
+  loads[2].force.y() += 0.003;  // not in equilibrium
   MatX alone(9, 9);
   MatX compliance(9, 9);
   VecX free_alone(9);
@@ -512,7 +512,8 @@ TEST_P(NeedleContract, ComplianceOnSpringsIsThatOfTheNeedleAndTheSpringsTogether
 }
 
 TEST_P(NeedleContract, TheStepOnSpringsReachesTheSameEquilibriumQuadratically) {
-  // The caller keeps the springs' forces in its own balance: here it hangs the load points on real ones.
+  // The caller includes the springs' forces in its own equations; in this test they are real springs at the load
+  // points.
   const auto needle = make();
   const Held held;
   std::vector<Vec3> anchor;

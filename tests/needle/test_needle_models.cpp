@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every model against beam theory: small deflections to Euler–Bernoulli, large ones to the elastica.
+// Compares every model with beam theory: small deflections with Euler–Bernoulli, large ones with the elastica.
 #include "needle_model_test.hpp"
 #include "stylet/needle/theory.hpp"
 #include "support.hpp"
@@ -12,12 +12,12 @@ namespace {
 
 using test::kEI;
 using test::kLength;
-constexpr double kForce = 1e-5;  // [N] geometry stays linear to 1e-6
+constexpr double kForce = 1e-5;  // [N] small enough for linear geometry to 1e-6
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 class NeedleTheory : public test::NeedleModelTest {
  protected:
-  /// Allowed error of small deflections over theory.
+  /// Allowed relative error of small deflections.
   [[nodiscard]] static double small() { return model() == "tet" ? 0.02 : 0.005; }
 };
 
@@ -37,13 +37,13 @@ TEST_P(NeedleTheory, SmallDeflectionsAreEulerBernoullisWhereverTheLoad) {
 }
 
 TEST_P(NeedleTheory, ACoupleBendsItIntoACircle) {
-  // Two opposite forces at the tip: constant moment over the rest of the shaft.
+  // Two opposite forces at the tip give a constant moment over the rest of the shaft.
   constexpr double d = 40.0;
   const auto needle = make();
   test::settle(*needle, std::vector<PointLoad>{{kLength - d, {-0.001, 0, 0}}, {kLength, {0.001, 0, 0}}}, 1e-10);
   const double curvature = 0.001 * d / kEI;
   for (const double s : {50.0, 100.0, 150.0}) {
-    // Rods see their joints' moments: the shape is the circle's up to the rounding of its corners at the clamp.
+    // Rods have the moments of their joints: the shape is a circle except for the rounding of its corners at the clamp.
     EXPECT_NEAR(needle->point(s).x(), curvature * s * s / 2.0, 2.0 * small() * curvature * s * s / 2.0) << s;
     EXPECT_NEAR(needle->tangent(s).x(), curvature * s, 2.0 * small() * curvature * s) << s;
   }

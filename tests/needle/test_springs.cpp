@@ -17,7 +17,7 @@ using beam::ElementKind;
 using test::kEI;
 using test::kLength;
 
-/// Lateral compliance of the straight needle's tip over that of theory, L³/3EI.
+/// Lateral tip compliance of a straight needle / theory, L³/3EI.
 double softness(double clamp_weight, int rods) {
   BeamShape shape(rods, kLength, kEI, 12100.0, ElementKind::rod);
   shape.set_clamp_weight(clamp_weight);
@@ -30,7 +30,7 @@ double softness(double clamp_weight, int rods) {
 }
 
 TEST(SpringsNeedle, TheClampsJointIsTwiceAsStiffOrTwentyRodsAreSevenPercentTooSoft) {
-  // Sum over the joints of (L - x)²/k by hand: 2870 and 2670 over 8000/3.
+  // The sum over the joints of (L - x)²/k, computed by hand: 2870 and 2670 over 8000/3.
   EXPECT_NEAR(softness(1.0, 20), 2870.0 / (8000.0 / 3.0), 1e-9);  // 7.6 %
   EXPECT_NEAR(softness(2.0, 20), 2670.0 / (8000.0 / 3.0), 1e-9);  // 0.125 %
 }
@@ -39,7 +39,7 @@ TEST(SpringsNeedle, ErrorFallsWithTheSquareOfTheRodLength) {
   EXPECT_NEAR((softness(2.0, 12) - 1.0) / (softness(2.0, 24) - 1.0), 4.0, 0.05);
 }
 
-/// Loads on and between joints, at the tip, at and before the clamp.
+/// Loads on and between joints, at the tip, and at and before the clamp.
 std::vector<PointLoad> assorted_loads() {
   return {{97.3, {0.21, -0.4, 0.13}}, {kLength, {-0.3, 0.25, -0.5}}, {3.1, {1.1, -0.6, 0.4}}, {100.0, {0.2, 0.3, -0.9}},
           {196.7, {-0.5, 0.1, 0.3}},  {0.0, {2.0, 1.0, -3.0}},       {-5.0, {1.0, 1.0, 1.0}}};

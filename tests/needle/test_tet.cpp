@@ -45,7 +45,7 @@ TEST(TetSegment, FillsTheBarWithoutGapOrOverlap) {
   }
 }
 
-/// Bent, twisted and stretched.
+/// A bar that is bent, twisted and stretched.
 TetShape deformed(Segment kind, int segments = 4) {
   TetShape shape(tet::make_segment(kind, 1.27, 2.0), segments, 2.0, 9000.0, 0.3);
   for (Eigen::Index i = 0; i < shape.displacement.size(); ++i)
@@ -96,7 +96,7 @@ TEST(TetDerivatives, EliminationAndBandSolveWhatADenseFactorSolves) {
   const std::vector<Mat3> springs = {Vec3(3.0, 2.0, 0.0).asDiagonal(), Vec3(0.0, 5.0, 1.0).asDiagonal()};
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
     TetShape shape = deformed(kind);
-    shape.displacement *= 0.1;  // positive definite
+    shape.displacement *= 0.1;  // makes the tangent positive definite
     shape.update();
     TetTangent tangent(shape, 2);
     for (const bool lent : {false, true}) {
@@ -151,7 +151,7 @@ TEST(TetCalibration, TipDeflectsAsTheorySaysForAnyNumberOfSegmentsAndSection) {
 }
 
 TEST(TetCalibration, LinearTetrahedraBendFarTooStifflyTheMoreSoTheLongerTheSegments) {
-  // Softness over theory, 1/stiffening, by segment length over width.
+  // 1/stiffening, as a function of segment length / width.
   double before = 1.0;
   for (const auto& [segments, least, most] : {std::tuple{157, 0.5, 0.65}, {60, 0.2, 0.25}, {24, 0.03, 0.05}}) {
     const double softness = 1.0 / tets(segments)->stiffening();
@@ -163,11 +163,11 @@ TEST(TetCalibration, LinearTetrahedraBendFarTooStifflyTheMoreSoTheLongerTheSegme
 }
 
 TEST(TetCalibration, AlongItsAxisTheNeedleStaysFarStifferThanTissue) {
-  EXPECT_GT(tets()->axial_stiffness(), 100.0);  // [N/mm]; tissue around a needle: about 1 N/mm
+  EXPECT_GT(tets()->axial_stiffness(), 100.0);  // [N/mm]; tissue around a needle has about 1 N/mm
   EXPECT_NEAR(tip_compliance(*tets())(2, 2) * tets()->axial_stiffness(), 1.0, 1e-6);
 }
 
-/// The table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
+/// Computes a table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
 TEST(TetCalibration, AWiderSectionStretchesMoreAndNewtonGainsLittle) {
   double before = 1e300;
   std::printf("width mm | stiffening | E MPa | axial N/mm | Newton steps to 0.1 N at the tip\n");
@@ -182,8 +182,8 @@ TEST(TetCalibration, AWiderSectionStretchesMoreAndNewtonGainsLittle) {
   }
 }
 
-/// Stiffness against a lateral tip force at an angle, and how far the tip leaves the force's direction, both over the
-/// mean deflection.
+/// Deflection under a lateral tip force as a function of its direction, relative to the mean deflection: its spread,
+/// and the largest deflection perpendicular to the force.
 struct Lateral {
   double spread = 0.0;
   double sideways = 0.0;
@@ -211,8 +211,8 @@ TEST(TetSegment, SymmetricOneBendsAlikeInEveryDirectionAsymmetricOneDoesNotAndGo
   EXPECT_LT(good.spread, 1e-6);
   EXPECT_LT(good.sideways, 1e-6);
   const Lateral bad = lateral(*tets(60, Segment::asymmetric));
-  EXPECT_GT(bad.spread, 0.3);     // deflection depends on the force's direction: 35 %
-  EXPECT_GT(bad.sideways, 0.15);  // and its own direction is not the force's
+  EXPECT_GT(bad.spread, 0.3);     // deflection depends on the force's direction by 35 %
+  EXPECT_GT(bad.sideways, 0.15);  // and is not along the force
 }
 
 TEST(TetNeedle, NewtonConvergesQuadraticallyFromANearbyShape) {
@@ -233,8 +233,8 @@ TEST(TetNeedle, NewtonConvergesQuadraticallyFromANearbyShape) {
 }
 
 TEST(TetNeedle, RoundingLeavesLessThanTheCoupledSolverAsksFor) {
-  // A tenth of its tolerance (1e-9 … 1e-8) × largest force or 1 N × length, for short and long needles, nearly straight
-  // and much bent.
+  // The limit is a tenth of the solver's tolerance (1e-9 … 1e-8) × largest force or 1 N × length, for short and long
+  // needles, nearly straight and strongly bent.
   for (const double length : {20.0, 100.0, 200.0, 400.0}) {
     for (const double deflection : {0.01, 0.4}) {
       const auto needle = tets(60, Segment::symmetric, {.length_mm = length});

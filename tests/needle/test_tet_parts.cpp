@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of the tetrahedra's tangent, each by itself.
+// Tests the parts of the tetrahedra's tangent one by one.
 #include "needle/bar_stiffness.hpp"
 #include "needle/middle_nodes.hpp"
 #include "support.hpp"
@@ -19,7 +19,7 @@ using tet::TetShape;
 
 constexpr int kSegments = 3;
 
-/// Bent, twisted and stretched.
+/// A bar that is bent, twisted and stretched.
 TetShape deformed_bar(Segment kind) {
   TetShape shape(tet::make_segment(kind, 1.27, 2.0), kSegments, 2.0, 9000.0, 0.3);
   for (Eigen::Index i = 0; i < shape.displacement.size(); ++i)
@@ -61,7 +61,7 @@ TEST(BarStiffness, FollowsTheShape) {
   EXPECT_EQ(kept.whole(shape), fresh.whole(shape));
 }
 
-/// The whole matrix of a segment with the shift added, its nodes in order.
+/// The whole matrix of a segment with the shift added, nodes in order.
 MatX whole(const SegmentStiffness& K, int nodes, double shift) {
   MatX full = MatX::Zero(3 * nodes, 3 * nodes);
   for (int i = 0; i < nodes; ++i) {
@@ -96,7 +96,7 @@ TEST(MiddleNodes, LeaveTheLayersTheSchurComplement) {
   }
 }
 
-/// Solves the whole bar: middle nodes by elimination, the layers densely.
+/// Solves the whole bar: middle nodes by elimination, layers by a dense factor.
 VecX solve(MiddleNodes& middle, const BarStiffness& stiffness, const VecX& force) {
   MatX left = MatX::Zero(kBlock * kSegments, kBlock * kSegments);
   for (int k = 0; k < kSegments; ++k) {
@@ -116,7 +116,7 @@ VecX solve(MiddleNodes& middle, const BarStiffness& stiffness, const VecX& force
 }
 
 TEST(MiddleNodes, ReduceAndMoveSolveTheWholeBar) {
-  // The asymmetric segment has no middle nodes at all.
+  // The asymmetric segment has no middle nodes.
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
     const TetShape shape = deformed_bar(kind);
     BarStiffness stiffness(shape);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-/// Plane geometry of contours on transverse slices, written plainly on purpose: it judges the phantom.
+/// Plane geometry of contours on transverse slices. It is deliberately simple, because it is used to check the phantom.
 namespace stylet::test {
 
 inline double height(const Contour& c) { return c.points.front().z(); }
@@ -44,7 +44,7 @@ inline double distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * (b - a)).norm();
 }
 
-/// Distance of two outlines [mm].
+/// Distance between two outlines [mm].
 inline double gap(const Contour& c, const Contour& d) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : {std::pair(&c, &d), std::pair(&d, &c)}) {
@@ -62,8 +62,8 @@ inline bool overlap(const Contour& c, const Contour& d) {
          std::any_of(d.points.begin(), d.points.end(), [&](const Vec3& p) { return inside(c, p); });
 }
 
-/// Smallest gap between two structures over all slices they share [mm]; -1 when they overlap, infinity when they share
-/// none.
+/// Smallest distance between two structures over all common slices [mm]; -1 when they overlap, infinity when they have
+/// no common slice.
 inline double clearance(const Roi& a, const Roi& b) {
   double best = std::numeric_limits<double>::infinity();
   for (const Contour& c : a.contours) {

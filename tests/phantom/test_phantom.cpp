@@ -26,7 +26,7 @@ const ContourSet& reference() {
   return set;
 }
 
-/// The reference patient drawn every millimetre, for volumes and clearances between the usual slices.
+/// The reference patient drawn every millimetre, to measure volumes and distances between the usual slices.
 const ContourSet& fine_reference() {
   static const ContourSet set = demo_patient({.seed = 0, .slice_spacing_mm = 1.0});
   return set;
@@ -193,7 +193,7 @@ namespace {
 
 constexpr std::uint64_t last_seed = 50;
 
-/// Calls `judge` with every patient, drawn every 2.5 mm; failures name the seed.
+/// Calls `judge` for every patient, drawn every 2.5 mm; failures name the seed.
 void for_every_seed(const std::function<void(const ContourSet&)>& judge) {
   static const std::vector<ContourSet> patients = [] {
     std::vector<ContourSet> all;

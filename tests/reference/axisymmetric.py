@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Axisymmetric finite elements in CalculiX around a rod in tissue: what the models of this folder share. Lengths are in mm,
-forces in N, moduli in MPa; the rod's axis is r = 0 and its end lies at height 0."""
+"""Axisymmetric finite elements in CalculiX around a rod in tissue: common part of the models in this folder.
+Lengths are in mm, forces in N, moduli in MPa. The rod's axis is r = 0 and its end is at height 0."""
 
 import os
 import pathlib
@@ -10,12 +10,12 @@ import subprocess
 import sys
 import tempfile
 
-RADIUS_MM = 0.635  # of the rod
-SKIPPED = 77  # exit status that ctest knows
+RADIUS_MM = 0.635  # radius of the rod
+SKIPPED = 77  # exit status that ctest takes for a skipped test
 
 
 def away(start, end, smallest, growth, stops=()):
-    """Points from start to end, further apart the further from start; all of stops are among them."""
+    """Points from start to end with spacings that grow with the distance from start. They include all of `stops`."""
     points = [start]
     direction = 1.0 if end > start else -1.0
     for stop in sorted([*stops, end], key=lambda s: direction * s):
@@ -31,7 +31,7 @@ def away(start, end, smallest, growth, stops=()):
 
 
 def radii(far_mm, smallest, growth, stops=()):
-    """Radii of a grid that has a line along the rod's wall."""
+    """Radii of grid lines, one of which runs along the rod's wall."""
     return sorted({*away(RADIUS_MM, 0.0, smallest, growth), *away(RADIUS_MM, far_mm, smallest, growth, stops)})
 
 
@@ -41,8 +41,8 @@ class Mesh:
     def __init__(self, radii, heights, material_at):
         """material_at: name of the material at a height."""
         self.radii, self.heights = radii, heights
-        self.number = {}  # of a node, by twice the grid's indices: middle nodes are odd
-        self.elements = {}  # nodes of elements, by material
+        self.number = {}  # node number by twice the grid indices; odd indices are middle nodes
+        self.elements = {}  # material → nodes of each element
         for i in range(len(radii) - 1):
             for j in range(len(heights) - 1):
                 middle = 0.5 * (heights[j] + heights[j + 1])
@@ -67,7 +67,7 @@ class Mesh:
                 self.wall.append(n)
 
     def deck(self, materials):
-        """Lines of CalculiX's input: nodes, elements, and of each material the lines that follow its name."""
+        """Lines of CalculiX's input with nodes, elements and materials. materials: name → lines after the name."""
 
         def place(values, k):
             return values[k // 2] if k % 2 == 0 else 0.5 * (values[k // 2] + values[k // 2 + 1])
@@ -85,8 +85,8 @@ class Mesh:
 
 
 def pushed(lines, way_mm, step):
-    """Forces on the set END [(share of the step, N)] while a step whose first lines are given moves it down by way_mm, as
-    far as CalculiX came."""
+    """Moves the set END down by way_mm in a step whose first lines are given. Returns [(share of the step, force on END
+    in N)], as far as CalculiX gets."""
     if shutil.which("ccx") is None:
         print("skipped: the program ccx (CalculiX) is not installed")
         sys.exit(SKIPPED)
@@ -100,15 +100,16 @@ def pushed(lines, way_mm, step):
     found = re.findall(r"for set END and time\s+(\S+)\s+\S+\s+(\S+)\s+\S+\s", text)
     if not found:
         sys.exit("CalculiX failed:\n" + done.stdout[-2000:] + done.stderr[-2000:])
-    # CalculiX computes a wedge of two degrees.
+    # CalculiX gives the force on a wedge of two degrees.
     return [(float(share), -180.0 * float(force)) for share, force in found]
 
 
 def material(solid, young_MPa, poisson):
-    """Lines of a material: linear, neo-Hookean, or Yeoh's with C20 = C10; of both C10 = μ/2 and D1 = 2/K."""
+    """Lines of a material: linear, neo-Hookean, or Yeoh's solid with C20 = C10. The last two have C10 = μ/2 and
+    D1 = 2/K."""
     c10 = 0.25 * young_MPa / (1.0 + poisson)
     d1 = 6.0 * (1.0 - 2.0 * poisson) / young_MPa
-    none = 1e12  # a volume's higher terms
+    none = 1e12  # switches off the higher volumetric terms
     return {"linear": ["*ELASTIC", f"{young_MPa}, {poisson}"],
             "neo-hooke": ["*HYPERELASTIC, NEO HOOKE", f"{c10}, {d1}"],
             "yeoh": ["*HYPERELASTIC, YEOH", f"{c10}, {c10}, 0, {d1}, {none}, {none}"]}[solid]

@@ -1,25 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How deep a needle that has cut its way through fat presses a capsule in before it breaks, by finite elements that know
-nothing of Stylet: axisymmetric, in CalculiX.
+"""How deep a needle that has cut its way through fat presses a capsule in before it breaks, computed by finite elements
+independently of Stylet: axisymmetric, in CalculiX.
 
-    python3 tests/reference/capsule_behind_fat.py           prints curves, and what they owe to grid and assumptions, a quarter of an hour
-    python3 tests/reference/capsule_behind_fat.py --write   writes the table capsule_behind_fat.inc, three minutes
-    python3 tests/reference/capsule_behind_fat.py --check   the linear stiffness and the first three millimetres of the curve
-                                                            against that table: its test
+    capsule_behind_fat.py           prints curves and how they depend on grid and assumptions; takes 15 minutes
+    capsule_behind_fat.py --write   writes the table capsule_behind_fat.inc; takes three minutes
+    capsule_behind_fat.py --check   compares the linear stiffness and the first three millimetres of the curve with that
+                                    table: its test
 
-Fat of 2 kPa, 12 mm of it below a free surface, lies bonded on gland of 30 kPa, both with Poisson's ratio 0.45. A rod of
-radius 0.635 mm stands in a hole of its own radius through the fat. Its flat end is bonded to the gland's face and pushed on; the
-hole's wall slides along the rod without friction. A capsule of strength F breaks when the end presses with F. The rod's base has
-then gone 12 mm and the depth of the dent since the end met the fat's surface: the rod is rigid, and the hole bears nothing along it.
+A layer of fat (2 kPa), 12 mm thick with a free surface, is bonded to gland (30 kPa); both have a Poisson's ratio of
+0.45. A rod of radius 0.635 mm stands in a hole of the same radius through the fat. Its flat end is bonded to the
+gland's face and pushed into it; the hole's wall slides along the rod without friction. A capsule of strength F breaks
+when the end presses with F. Since its end met the fat's surface, the rod's base has then moved by 12 mm plus the depth
+of the dent, because the rod is rigid and the hole exerts no axial force.
 
-*The block* is a cylinder with the cross-section of a block 100 mm wide, and reaches 100 mm below the fat's surface; it is held
-at its side and bottom. *The half space* has linear tissue's motion by what is further away added to that: the difference of two
-linear compliances, that of the half space being extrapolated from blocks held at 200 and 400 mm.
+*The block* is a cylinder with the cross-section of a block 100 mm wide, and reaches 100 mm below the fat's surface; it
+is held at its side and bottom. For *the half space*, the motion of linear tissue further away is added: the difference
+of two linear compliances. The compliance of the half space is extrapolated from blocks held at 200 and 400 mm.
 
-The tissue is linear, or Yeoh's with C20 = C10 in both tissues (C10 = μ/2, D1 = 2/K), as in hyperelastic_punch.py. In Yeoh's solid
-the elements at the edge of the end are 0.38 mm wide: those half as wide collapse before the end has gone down by 12 mm, but up to there their
-force is the same within 1 %."""
+The tissue is linear, or Yeoh's solid with C20 = C10 in both tissues (C10 = μ/2, D1 = 2/K), as in hyperelastic_punch.py.
+With Yeoh's solid, the elements at the edge of the end are 0.38 mm wide. Elements half as wide collapse before the end
+has gone down by 12 mm, but until then give the same force within 1 %."""
 
 import argparse
 import math
@@ -31,21 +32,22 @@ from axisymmetric import RADIUS_MM, Mesh, away, material, pushed, radii
 
 FAT_MM = 12.0
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
-WIDE_MM, DEEP_MM = 100.0, 100.0  # of the block
+WIDE_MM, DEEP_MM = 100.0, 100.0  # size of the block
 SIDE_MM = WIDE_MM / math.sqrt(math.pi)  # radius of the cylinder with the block's cross-section
-BLOCK = (SIDE_MM, DEEP_MM - FAT_MM)  # where it is held: at its side, and below the gland's face
-FINE = (3e-4, 0.2)  # smallest element and its growth with the distance, of linear tissue
-COARSE = (0.6 * RADIUS_MM, 0.25)  # of Yeoh's solid
+BLOCK = (SIDE_MM, DEEP_MM - FAT_MM)  # held at this radius, and at this depth below the gland's face
+FINE = (3e-4, 0.2)  # smallest element and growth with the distance, for linear tissue
+COARSE = (0.6 * RADIUS_MM, 0.25)  # the same for Yeoh's solid
 DEEPEST_MM = 14.4
 CHECKED_MM = 3.0
-INCREMENT_MM = 0.3  # at most
+INCREMENT_MM = 0.3  # largest increment of CalculiX
 STRENGTHS_N = (1.0, 2.0, 3.0, 4.0, 4.5)
 TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "capsule_behind_fat.inc"
 
 
 def forces(solid, way_mm, held=BLOCK, grid=None, fat=None, slides=True):
-    """[(depth mm, N)] on the way down. held: distances of side and bottom. grid: smallest element and growth. fat: its solid,
-    where it is another. slides: the hole's wall stays at the rod, else it bears nothing at all."""
+    """[(depth in mm, force in N)] on the way down. held: distances of side and bottom [mm]. grid: smallest element [mm]
+    and growth. fat: solid of the fat if different. slides: whether the hole's wall slides along the rod; otherwise it
+    is free."""
     smallest, growth = grid or (FINE if solid == "linear" else COARSE)
     side_mm, below_mm = held
     heights = sorted({*away(0.0, -below_mm, smallest, growth), *away(0.0, FAT_MM, smallest, growth)})
@@ -56,26 +58,27 @@ def forces(solid, way_mm, held=BLOCK, grid=None, fat=None, slides=True):
     step = ["*STEP", "*STATIC, SOLVER=SPOOLES"]
     if solid != "linear":
         most = min(1.0, INCREMENT_MM / way_mm)
-        # An increment may take many iterations before it is halved.
+        # Allow many iterations before an increment is halved.
         step = ["*STEP, NLGEOM, INC=2000", "*STATIC, SOLVER=SPOOLES", f"{most}, 1, 1e-5, {most}",
                 "*CONTROLS, PARAMETERS=TIME INCREMENTATION", "8, 12, 9, 30, 10, 4, , 20, ,", "0.25, 0.5, 0.75, 0.85, , , 1.5,"]
     return [(share * way_mm, force) for share, force in pushed(lines, way_mm, step)]
 
 
 def compliance(held=BLOCK, **other):
-    """[mm/N] of linear tissue."""
+    """Compliance of linear tissue [mm/N]."""
     depth, force = forces("linear", 1e-6, held, **other)[-1]
     return depth / force
 
 
 def in_half_space():
-    """[mm/N] the compliance of linear tissue that is held infinitely far away: what the distance takes off falls as its inverse."""
+    """Compliance [mm/N] of linear tissue held infinitely far away: the effect of the distance is inversely proportional
+    to it."""
     near, far = (compliance((held, held)) for held in (200.0, 400.0))
     return 2.0 * far - near
 
 
 def depth_at(points, force):
-    """[mm] where a curve reaches a force, None beyond its end."""
+    """Depth [mm] at which a curve reaches a force, None beyond the end of the curve."""
     before = (0.0, 0.0)
     for z, f in points:
         if force <= f:
@@ -85,7 +88,7 @@ def depth_at(points, force):
 
 
 def told(name, points, more=0.0):
-    """Prints base depths at the break of capsules. more: compliance that is added."""
+    """Prints base depths at the break of capsules. more: additional compliance [mm/N]."""
     depths = ((strength, depth_at(points, strength)) for strength in STRENGTHS_N)
     text = ", ".join(f"{FAT_MM + z + more * strength:.2f} mm at {strength} N" for strength, z in depths if z is not None)
     print(f"{name}: pressed in by {points[-1][0]:.2f} mm; breaks at {text}", flush=True)

@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rod pressed millimetres deep into hyperelastic tissue, by finite elements that know nothing of Stylet.
+"""A rod pressed millimetres deep into hyperelastic tissue, computed by finite elements independently of Stylet.
 
-    python3 tests/reference/hyperelastic_punch.py           prints all curves and what is fitted to them, a quarter of an hour
-    python3 tests/reference/hyperelastic_punch.py --write   writes the table hyperelastic_punch.inc as well
-    python3 tests/reference/hyperelastic_punch.py --check   the first millimetre and a half of one curve against that table: its test
+    hyperelastic_punch.py           prints all curves and the fits to them; takes 15 minutes
+    hyperelastic_punch.py --write   also writes the table hyperelastic_punch.inc
+    hyperelastic_punch.py --check   compares the first millimetre and a half of one curve with that table: its test
 
-The flat end of a rod of radius 0.635 mm is bonded to tissue of 30 kPa and pushed on. *Inside*, it stands in a hole of its own
-radius in a medium that is held 60 mm away on all sides; the hole's wall slides along the rod without friction. *On the surface*
-there is no hole: the end presses on the face of a half space. What the distance of the held sides takes off the far field
-is put back: it is linear, and found with two linear models. The tissue is neo-Hookean, or Yeoh's with C20 = C10, both with
-C10 = μ/2 and D1 = 2/K. CalculiX goes on until an element at the edge of the end collapses, 6 mm at most.
+The flat end of a rod of radius 0.635 mm is bonded to tissue of 30 kPa and pushed on. *Inside*, it stands in a hole of
+the same radius in a medium that is held 60 mm away on all sides; the hole's wall slides along the rod without friction.
+*On the surface* there is no hole: the end presses on the face of a half space. The held sides reduce the far field by a
+linear displacement, which is found with two linear models and added again. The tissue is neo-Hookean, or Yeoh's solid
+with C20 = C10; both have C10 = μ/2 and D1 = 2/K. CalculiX continues until an element at the edge of the end collapses,
+or to 6 mm.
 
-Printed: force at some depths z; k1/(E R), k2/E and misfit (root mean square over the largest force) of F = k1 z + k2 z²; the
-same with the dent s in place of z, which is z less what the force would move linear tissue by if it were spread over 10 mm,
-F (5−6ν)/(16πμ(1−ν) 10 mm) (Kelvinlet, de Goes & James 2017), twice that on a surface; and once more with k1 as the linear model on the same
-grid has it. The split of z is Stylet's; the curves are not.
+Output: the force at some depths z; k1/(E R), k2/E and misfit (root mean square / largest force) of F = k1 z + k2 z²;
+the same for the dent s in place of z; and once more for s with k1 taken from the linear model on the same grid. The
+dent s is z minus the displacement of linear tissue under the same force spread over 10 mm, F (5−6ν)/(16πμ(1−ν) 10 mm)
+(Kelvinlet, de Goes & James 2017), or twice that on a surface. The division of z is Stylet's; the curves are not.
 
 O. H. Yeoh, Some forms of the strain energy function for rubber, Rubber Chem. Technol. 66 (1993) 754–771."""
 
@@ -33,17 +34,17 @@ DEEPEST_MM = 6.0
 CHECKED_MM = 1.44
 SPREAD_MM = 10.0
 SMALLEST_MM, GROWTH = 0.1 * RADIUS_MM, 0.3
-INCREMENT_MM = 0.18  # at most
+INCREMENT_MM = 0.18  # largest increment of CalculiX
 TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "hyperelastic_punch.inc"
 CASES = [(place, solid, poisson)
          for place, solid in (("inside", "yeoh"), ("surface", "yeoh"), ("inside", "neo-hooke")) for poisson in (0.45, 0.49)]
 
 
 def forces(place, solid, poisson, way_mm, held_mm):
-    """[(depth mm, N)] on the way down."""
+    """[(depth in mm, force in N)] on the way down."""
     inside = place == "inside"
 
-    def along(start, end, stop):  # whatever is held, the grid within HELD_MM is the same
+    def along(start, end, stop):  # the grid within HELD_MM does not depend on held_mm
         return away(start, end, SMALLEST_MM, GROWTH, [stop] if held_mm > HELD_MM else [])
 
     heights = {*along(0.0, -held_mm, -HELD_MM), *(along(0.0, held_mm, HELD_MM) if inside else [0.0])}
@@ -54,22 +55,23 @@ def forces(place, solid, poisson, way_mm, held_mm):
     step = ["*STEP", "*STATIC"]
     if solid != "linear":
         most = min(1.0, INCREMENT_MM / way_mm)
-        # An increment may take many iterations before it is halved.
+        # Allow many iterations before an increment is halved.
         step = ["*STEP, NLGEOM, INC=2000", "*STATIC", f"{most}, 1, 1e-4, {most}",
                 "*CONTROLS, PARAMETERS=TIME INCREMENTATION", "8, 12, 9, 30, 10, 4, , 20, ,", "0.25, 0.5, 0.75, 0.85, , , 1.5,"]
     return [(share * way_mm, force) for share, force in pushed(lines, way_mm, step)]
 
 
 def curve(place, solid, poisson, way_mm=DEEPEST_MM):
-    """[(depth mm, N)] in tissue that is held infinitely far away, and the compliance [mm/N] of a small dent there."""
+    """[(depth in mm, force in N)] in tissue held infinitely far away, and its compliance [mm/N] for a small dent."""
     near, far = (forces(place, "linear", poisson, 1e-6, held)[-1] for held in (HELD_MM, 2.0 * HELD_MM))
-    lacking = 2.0 * (far[0] / far[1] - near[0] / near[1])  # [mm/N]: what a held side takes off falls as its inverse distance
+    # [mm/N] effect of the held sides, which is inversely proportional to their distance.
+    lacking = 2.0 * (far[0] / far[1] - near[0] / near[1])
     points = [(z + lacking * force, force) for z, force in forces(place, solid, poisson, way_mm, HELD_MM)]
     return points, near[0] / near[1] + lacking
 
 
 def fitted(points, k1=None):
-    """k1, k2 and the misfit of F = k1 z + k2 z², by least squares."""
+    """k1, k2 and relative misfit of F = k1 z + k2 z² by least squares. k1: keeps this value if given."""
     m2, m3, m4 = (sum(z**power for z, _ in points) for power in (2, 3, 4))
     f1, f2 = (sum(f * z**power for z, f in points) for power in (1, 2))
     if k1 is None:
@@ -80,7 +82,7 @@ def fitted(points, k1=None):
 
 
 def between(points, depth):
-    """Force at a depth, None beyond the last."""
+    """Force at a depth, None beyond the last point."""
     before = (0.0, 0.0)
     for z, force in points:
         if depth <= z:
@@ -101,7 +103,7 @@ def report(place, solid, poisson, points, compliance):
 
 
 def check():
-    """The table's first curve, computed again."""
+    """Computes the first curve of the table again and compares."""
     rows = re.findall(r"\{0.45, ([\d.]+), ([\d.]+)\}", TABLE.read_text(encoding="utf-8"))
     table = [(float(z), float(force)) for z, force in rows]
     failed = False

@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The flat end of a rod that presses on tissue, by finite elements that know nothing of Stylet: axisymmetric, in CalculiX.
+"""The flat end of a rod that presses on tissue, computed by finite elements independently of Stylet: axisymmetric, in
+CalculiX.
 
-    python3 tests/reference/rod_end.py            prints the stiffness at all distances of rod_end.inc, some minutes
-    python3 tests/reference/rod_end.py --check    computes three of them and compares: the test of that table
-    python3 tests/reference/rod_end.py --alone    stiffness in gland alone over E R, for two of Poisson's ratios
-    python3 tests/reference/rod_end.py --shallow  the same at other depths below the free surface, for the first of them
+    rod_end.py            prints the stiffness at all distances of rod_end.inc; takes some minutes
+    rod_end.py --check    computes three of them and compares them with that table: its test
+    rod_end.py --alone    prints stiffness / (E R) in gland alone for two Poisson's ratios
+    rod_end.py --shallow  prints the same at other depths below the free surface for the first ratio
 
-A rod of radius 0.635 mm stands in a hole of its own radius, open to a free surface 40 mm above its end; the hole's wall bears
-nothing. Fat of 2 kPa lies above gland of 30 kPa, with Poisson's ratio 0.45, bonded at a plane square to the rod. The end is
-bonded to the tissue below it and pushed down; the force that this takes per millimetre is the stiffness. The block is held at
-its side and bottom, 200 mm away, and once more at 400 mm: what the distance takes off the compliance falls as its inverse.
-Quadratic elements (CAX8R), the smallest 0.3 µm, at the edge of the rod's end, where stress is singular: 0.01 mm there is 2 % too stiff."""
+A rod of radius 0.635 mm stands in a hole of the same radius, open to a free surface 40 mm above the rod's end; the
+hole's wall carries no force. Fat of 2 kPa lies above gland of 30 kPa, both with a Poisson's ratio of 0.45, bonded at a
+plane perpendicular to the rod. The end is bonded to the tissue below it and pushed down; force / displacement is the
+stiffness. The block is held at its side and bottom, 200 mm away and in a second computation 400 mm away; the compliance
+for infinity follows because the effect of the distance is inversely proportional to it. Elements are quadratic (CAX8R),
+the smallest 0.3 µm at the edge of the rod's end, where stress is singular; with 0.01 mm there, the result is 2 % too
+stiff."""
 
 import argparse
 import pathlib
@@ -20,15 +23,15 @@ import sys
 
 from axisymmetric import RADIUS_MM, Mesh, away, pushed, radii
 
-DEPTH_MM = 40.0  # of the rod's end below the free surface
+DEPTH_MM = 40.0  # depth of the rod's end below the free surface
 FAT_MPA, GLAND_MPA, POISSON = 2e-3, 30e-3, 0.45
-NO_FAT_MM = -1000.0  # the end is so far below the gland's surface that there is no fat
+NO_FAT_MM = -1000.0  # places the end so far below the gland's surface that there is no fat
 SMALLEST_MM, GROWTH = 3e-4, 0.2
 TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "rod_end.inc"
 
 
 def heights(above_mm, far_mm, depth_mm):
-    """Heights of a grid that has lines along the rod's end, at height 0, and along the interface."""
+    """Heights of grid lines, with lines along the rod's end, at height 0, and along the interface."""
     interface = -above_mm
     down = away(0.0, -far_mm, SMALLEST_MM, GROWTH, [interface] if interface < 0.0 else [])
     up = away(0.0, depth_mm, SMALLEST_MM, GROWTH, [interface] if 0.0 < interface < depth_mm else [])
@@ -36,7 +39,7 @@ def heights(above_mm, far_mm, depth_mm):
 
 
 def stiffness(above_mm, far_mm, poisson, depth_mm):
-    """[N/mm] with the block held `far_mm` away: the rod's end goes down by a millionth of a millimetre."""
+    """Stiffness [N/mm] with the block held far_mm away, from a motion of the rod's end by 10⁻⁶ mm."""
     mesh = Mesh(radii(far_mm, SMALLEST_MM, GROWTH), heights(above_mm, far_mm, depth_mm),
                 lambda height: "GLAND" if height < -above_mm else "FAT")
     materials = {"FAT": ["*ELASTIC", f"{FAT_MPA}, {poisson}"], "GLAND": ["*ELASTIC", f"{GLAND_MPA}, {poisson}"]}
@@ -45,7 +48,7 @@ def stiffness(above_mm, far_mm, poisson, depth_mm):
 
 
 def unbounded(above_mm, poisson=POISSON, depth_mm=DEPTH_MM):
-    """[N/mm] with the block held infinitely far away."""
+    """Stiffness [N/mm] with the block held infinitely far away."""
     near, far = (1.0 / stiffness(above_mm, far_mm, poisson, depth_mm) for far_mm in (200.0, 400.0))
     return 1.0 / (2.0 * far - near)
 

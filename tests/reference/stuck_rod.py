@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rigid rod that sticks to the tissue along its shaft and is moved along its axis, by finite elements that know nothing of
-Stylet: axisymmetric, in CalculiX.
+"""A rigid rod that sticks to the tissue along its shaft and is moved along its axis, computed by finite elements
+independently of Stylet: axisymmetric, in CalculiX.
 
-    python3 tests/reference/stuck_rod.py            prints the stiffness of all rods of stuck_rod.inc beside that table
-    python3 tests/reference/stuck_rod.py --check    computes those of one length and compares: the test of that table
-    python3 tests/reference/stuck_rod.py --finer    the same with elements that are ten times smaller at the edges
+    stuck_rod.py            prints the stiffness of all rods of stuck_rod.inc and compares it with that table
+    stuck_rod.py --check    computes the rods of one length and compares them: the test of that table
+    stuck_rod.py --finer    does the same with elements that are ten times smaller at the edges
 
-A rod of radius 0.635 mm stands in a hole of its own radius in a cylinder of tissue of 30 kPa, 100 mm wide and 100 mm high, whose
-side and bottom are held and whose top is free. Of each rod there are four models. The tissue is bonded to the shaft up to the
-rod's end, or only up to three radii behind it, and slides without friction beyond; and the rod's flat end is bonded to the
-tissue, or does not touch it. The force that moves the rod along its axis, per millimetre, is the stiffness.
-Quadratic elements (CAX8R), the smallest at the ends of what is bonded, where stress is singular."""
+A rod of radius 0.635 mm stands in a hole of the same radius in a cylinder of tissue of 30 kPa, 100 mm wide and 100 mm
+high, whose side and bottom are held and whose top is free. There are four models of each rod. The tissue is bonded to
+the shaft up to the rod's end, or only up to three radii behind it and slides without friction beyond that; the rod's
+flat end is bonded to the tissue, or does not touch it. Force / displacement along the axis is the stiffness. Elements
+are quadratic (CAX8R), the smallest at the ends of bonded parts, where stress is singular."""
 
 import argparse
 import pathlib
@@ -29,7 +29,7 @@ TABLE = pathlib.Path(__file__).parent.parent / "coupling" / "near_field" / "stuc
 
 
 def heights(length_mm, smallest):
-    """Heights of a grid that is fine at the rod's end, where the shaft begins to be bonded, and at the tissue's top."""
+    """Heights of grid lines, fine at the rod's end, where the bonded shaft begins, and at the top of the tissue."""
     places = [0.0, SLIDES_MM, length_mm]
     points = {*away(0.0, length_mm - HEIGHT_MM, smallest, GROWTH)}
     for low, high in zip(places, places[1:]):
@@ -39,7 +39,7 @@ def heights(length_mm, smallest):
 
 
 def stiffness(poisson, length_mm, bonded_from_mm, end_bonded, smallest):
-    """[N/mm] @param bonded_from_mm height above the rod's end from which on the shaft is bonded"""
+    """Stiffness [N/mm]. bonded_from_mm: height above the rod's end from which the shaft is bonded."""
     mesh = Mesh(radii(SIDE_MM, smallest, GROWTH), heights(length_mm, smallest), lambda height: "TISSUE")
     at_wall, at_end, from_here = 2 * mesh.radii.index(RADIUS_MM), 2 * mesh.heights.index(0.0), 2 * mesh.heights.index(bonded_from_mm)
     wall = {n for (i, j), n in mesh.number.items() if i == at_wall and j >= at_end}

@@ -11,7 +11,7 @@
 
 namespace {
 
-// Constant-initialised and in the executable, so that reading it from malloc itself never allocates.
+// Constant-initialised and part of the executable, so that reading it in malloc itself never allocates.
 thread_local long calls = 0;
 
 }  // namespace

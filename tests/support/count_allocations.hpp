@@ -4,15 +4,16 @@
 namespace stylet::test {
 
 /// Counts the calls of this thread to the malloc family (malloc, calloc, realloc, aligned_alloc, memalign,
-/// posix_memalign, and so operator new and Eigen) while it lives, and those that give a block back (free). Scopes nest:
-/// an outer one counts the inner one's too. A test program that uses it compiles count_allocations.cpp in, which
-/// replaces those functions.
+/// posix_memalign, and through them operator new and Eigen) and the calls of free while an object of this class exists.
+/// Scopes may be nested; an outer one includes the calls of the inner ones. A test program that uses it compiles
+/// count_allocations.cpp, which replaces these functions.
 class AllocationCount {
  public:
   AllocationCount();
   [[nodiscard]] long count() const;
 
-  /// False where the functions cannot be replaced (address, thread and memory sanitizers, other than glibc): skip then.
+  /// False where these functions cannot be replaced (under address, thread and memory sanitizers, and without glibc);
+  /// tests then have to be skipped.
   [[nodiscard]] static bool available();
 
  private:

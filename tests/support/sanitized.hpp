@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Whether the tests run under a sanitizer that watches the memory, and so many times as long.
+// Whether the tests run under a sanitizer that watches memory, which makes them many times slower.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define STYLET_SANITIZED_HEAP 1
 #elif defined(__has_feature)

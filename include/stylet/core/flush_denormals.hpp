@@ -3,8 +3,8 @@
 
 namespace stylet {
 
-/// Denormal numbers count as zero in this thread while it lives; the former mode comes back. FTZ and DAZ on x86,
-/// FPCR.FZ on 64-bit ARM.
+/// Makes the calling thread treat denormal numbers as zero while an object of this class exists. The destructor
+/// restores the previous mode. Sets FTZ and DAZ on x86, FPCR.FZ on 64-bit ARM.
 class FlushDenormals {
  public:
   FlushDenormals();
@@ -12,7 +12,7 @@ class FlushDenormals {
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
-  /// False on processors where this class does nothing.
+  /// @return false on processors for which this class does nothing
   [[nodiscard]] static bool available();
 
  private:

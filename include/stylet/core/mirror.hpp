@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// Copies the lower triangle of a square matrix into the upper one, in tiles that stay in the cache.
+/// Copies the lower triangle of a square matrix into the upper one. Works in tiles that fit into the processor's cache.
 inline void mirror_lower(MatX& A) {
   constexpr Eigen::Index tile = 64;
   const Eigen::Index n = A.rows();

@@ -7,12 +7,13 @@
 
 namespace stylet {
 
-/// Number of single-character insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`
-/// (optimal string alignment distance), upper and lower case alike.
+/// Edit distance (optimal string alignment): the number of insertions, deletions and substitutions of one character and
+/// swaps of two neighbouring characters that turn `a` into `b`. Upper and lower case count as equal.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The known name a mistyped one was probably meant to be: the one at the smallest edit distance, the first of equals;
-/// empty when even that one differs in more than a third of the longer one's characters (one is always allowed).
+/// The known name that a mistyped name most probably stands for.
+/// @return the name in `known` with the smallest edit distance, the first one among equals; empty when this distance is
+///   more than a third of the length of the longer name (a distance of one is always accepted)
 std::string nearest_name(std::string_view mistyped, std::span<const std::string> known);
 
 }  // namespace stylet

@@ -8,14 +8,16 @@
 
 namespace stylet {
 
-/// Bounds the threads of for_each_in_parallel().
-/// @param most [threads]; 0 = one per core, as at the start
+/// Sets the largest number of threads that for_each_in_parallel() uses.
+/// @param most [threads]; 0, the initial value, stands for one thread per core
 void set_worker_threads(int most);
 
-/// Calls work(0) … work(count − 1), each once, in any order and on several threads; returns when all are done. Pieces
-/// must not depend on each other, so that what comes out does not depend on the number of threads. An exception of a
-/// piece is passed on. Not for the step: it starts threads.
-/// @param progress is called in the caller's thread
+/// Calls work(0) … work(count − 1), each once, in any order and on several threads, and returns when all calls have
+/// returned. The calls must not depend on each other, so that the result does not depend on the number of threads. The
+/// first exception that a call throws is thrown again in the caller's thread, and the remaining calls are skipped.
+/// Starts threads, so it must not be called in a simulation step.
+/// @param progress is called in the caller's thread only
+/// @param stage name of the stage, passed to `progress`
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work,
                           const Progress& progress = {}, std::string_view stage = {});
 

@@ -6,7 +6,8 @@
 
 namespace stylet {
 
-/// Called by long work: the stage's name and how much of it is done, 0…1. May be empty.
+/// Callback of long computations: receives the name of the current stage and the fraction of it that is done, 0…1. May
+/// be empty.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 inline void report(const Progress& progress, std::string_view stage, double fraction) {

@@ -8,18 +8,19 @@
 
 namespace stylet {
 
-/// Who has to act: the user changes the input (exit status 2), or the run itself failed (exit status 1).
+/// Who has to act on an error. `input`: the user has to change the input (exit status 2). `failed`: the run itself
+/// failed (exit status 1).
 enum class ErrorKind { input, failed };
 
-/// What went wrong, where, and what to do about it. Building and loading return it; nothing throws across a public
-/// call.
+/// An error: what is wrong, where, and what the user can do. Functions that build or load something return it; no
+/// public function throws.
 struct Error {
   ErrorKind kind = ErrorKind::input;
   std::string where;  ///< file and the place in it, e.g. "case.dcm, ROI 'Prostate', slice z = -35 mm"
-  std::string what;   ///< the value found and what was expected
-  std::string cure;   ///< what the user can do, one sentence
+  std::string what;   ///< what is wrong, with the value found, and what was expected
+  std::string cure;   ///< what the user can do: one sentence in the imperative, without a full stop
 
-  /// "where: what. cure", one line.
+  /// @return "where: what. cure" in one line
   [[nodiscard]] std::string message() const;
 };
 
@@ -32,7 +33,7 @@ struct Error {
 
 struct Ok {};
 
-/// A value or an Error.
+/// Either a value or an Error.
 template <class T = Ok>
 class [[nodiscard]] Result {
  public:

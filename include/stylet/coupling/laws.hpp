@@ -99,12 +99,12 @@ struct CouplingSettings {
   double grazing_cos = 0.17;
   double max_advance_mm = 0.25;             ///< largest motion of the base in one sub-step
   double axial_compliance_mm_per_N = 2e-3;  ///< L / (E A) of the steel shaft
-  double join_mm = 1.27;   ///< a new entry within this distance of an old track joins it: the needle's diameter
-  Bevel bevel;             ///< of the needle's tip
+  double join_mm = 1.27;  ///< a new entry within this distance of an old track joins it: the needle's diameter
+  Bevel bevel;            ///< of the needle's tip
   std::shared_ptr<const CuttingModel> cutting;  ///< a program's own law of cutting; null: the built-in law
-  Creep creep;             ///< of the tissue
-  int capacity = 96;       ///< largest number of shaft contacts
-  int spare_nodes = 1500;  ///< room for nodes whose compliance is computed after the start
+  Creep creep;                                  ///< of the tissue
+  int capacity = 96;                            ///< largest number of shaft contacts
+  int spare_nodes = 1500;                       ///< room for nodes whose compliance is computed after the start
   /// Coupled solver: a balance has converged when the largest error, as a force, is below this part of the largest
   /// force or of 1 N.
   double tolerance = 1e-8;

@@ -9,21 +9,22 @@
 
 namespace stylet {
 
-/// Blocks of K⁻¹ between a node and those that had slots before it. Never changed once made, so copies share it.
+/// One row of a ComplianceStore: the blocks of K⁻¹ between a node and the nodes that got their slots before it. A row
+/// is never changed after it was made, so copies of a store share it.
 struct ComplianceRow {
   Index node = -1;
-  Index slot = -1;                         ///< which the node is to have
-  Index length = 0;                        ///< slots the row reaches
-  std::shared_ptr<const double[]> blocks;  ///< [mm/N] (3×3 for each slot) column by column: displacement of the node
-                                           ///< per force on the slot's node; zero for slots that were free
+  Index slot = -1;                         ///< the slot reserved for the node
+  Index length = 0;                        ///< number of slots that the row covers
+  std::shared_ptr<const double[]> blocks;  ///< [mm/N] (length) 3×3 blocks, column-major: displacement of `node` per
+                                           ///< force on the slot's node; zero for slots that were free
 };
 
-/// Rows of free nodes that have no slots yet, each with the blocks to all that are stored and to those of `nodes`
-/// before it. Solves with the tissue's factor, in batches; const, so any thread may. The block of a node with itself is
-/// symmetric to the last bit.
-/// @param stored who has which slot now
-/// @param nodes displacement nodes that can move
-/// @param slots (nodes) free ones, which they are to have
+/// Computes rows for nodes that have no slot yet. Each row has the blocks with all stored nodes and with the nodes
+/// before it in `nodes`. Solves with the tissue's factor, in batches; reads only, so it may run in any thread. The
+/// block of a node with itself is symmetric to the last bit.
+/// @param stored current assignment of nodes to slots
+/// @param nodes displacement nodes that are not fixed
+/// @param slots (nodes) free slots to be assigned to these nodes
 std::vector<ComplianceRow> solve_rows(const Tissue& tissue, const NodeSlots& stored, std::span<const Index> nodes,
                                       std::span<const Index> slots, const Progress& progress = {});
 

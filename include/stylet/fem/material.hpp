@@ -5,13 +5,14 @@
 
 namespace stylet {
 
-/// Isotropic linear elasticity.
+/// Isotropic linear elastic material.
 struct Material {
-  double young_MPa = 0.0;  ///< Young's modulus, > 0
-  double poisson = 0.0;    ///< Poisson ratio, in (-1, 0.5)
+  double young_MPa = 0.0;  ///< Young's modulus [MPa], > 0
+  double poisson = 0.0;    ///< Poisson's ratio, in (-1, 0.5)
 
-  [[nodiscard]] double lambda() const { return young_MPa * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  ///< [MPa]
-  [[nodiscard]] double mu() const { return young_MPa / (2 * (1 + poisson)); }                                ///< [MPa]
+  /// Lamé's first constant [MPa].
+  [[nodiscard]] double lambda() const { return young_MPa * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
+  [[nodiscard]] double mu() const { return young_MPa / (2 * (1 + poisson)); }  ///< shear modulus [MPa]
 
   bool operator==(const Material&) const = default;
 };

@@ -8,20 +8,20 @@
 
 namespace stylet {
 
-/// Which node has which slot of a table: numbers only, no data.
+/// Assignment of nodes to the slots of a table: numbers only, no data.
 class NodeSlots {
  public:
   explicit NodeSlots(Index nodes) : slot_(static_cast<std::size_t>(nodes), kNone) {}
 
-  /// Slot of a node; negative: it has none.
+  /// Slot of a node; negative when the node has none.
   [[nodiscard]] Index slot(Index node) const { return slot_[static_cast<std::size_t>(node)]; }
-  /// Node in a slot, −1 where it is free.
+  /// Node in a slot, −1 when the slot is free.
   [[nodiscard]] Index node(Index slot) const { return node_[static_cast<std::size_t>(slot)]; }
   [[nodiscard]] bool has(Index node) const { return slot(node) >= 0; }
 
-  /// Slots there are, free ones included.
+  /// Number of slots, including free ones.
   [[nodiscard]] Index count() const { return static_cast<Index>(node_.size()); }
-  /// Makes free slots at the end. Allocates.
+  /// Changes the number of slots to `slots`; new slots are free. Allocates.
   void resize(Index slots) { node_.resize(static_cast<std::size_t>(slots), kNone); }
 
   void occupy(Index slot, Index node) {

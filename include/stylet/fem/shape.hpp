@@ -7,17 +7,17 @@
 
 namespace stylet {
 
-/// Most displacement nodes an element has: the corners and the middles of the edges of a quadratic tetrahedron.
+/// Largest number of displacement nodes of an element: corners and edge middles of a quadratic tetrahedron.
 inline constexpr int kMostElementNodes = 10;
 
-/// How a material point is moved by the displacement nodes of its element: u(X) = Σ_i weight_i u(node_i).
+/// Interpolation at a material point X from the displacement nodes of its element: u(X) = Σ_i weight_i u(node_i).
 struct Shape {
-  int count = 0;                                   ///< of nodes in use
+  int count = 0;                                   ///< number of entries in use
   std::array<Index, kMostElementNodes> node{};     ///< displacement nodes (Tissue::node_position)
-  std::array<double, kMostElementNodes> weight{};  ///< sum 1; those of a quadratic element may be negative
+  std::array<double, kMostElementNodes> weight{};  ///< sum 1; weights of a quadratic element may be negative
 };
 
-/// Gradients of the same: ∂u/∂X = Σ_i u(node_i) gradient_iᵀ.
+/// Gradients of the interpolation in Shape: ∂u/∂X = Σ_i u(node_i) gradient_iᵀ.
 struct ShapeGradients {
   int count = 0;
   std::array<Index, kMostElementNodes> node{};

@@ -11,66 +11,71 @@
 
 namespace stylet {
 
-/// A straight way through tissue that a needle is to go.
+/// The planned straight way of a needle through the tissue.
 struct NeedleWay {
-  Vec3 entry = Vec3::Zero();       ///< [mm] LPS, on the skin
-  Vec3 direction = Vec3::UnitZ();  ///< unit
+  Vec3 entry = Vec3::Zero();       ///< [mm] LPS, a point on the skin
+  Vec3 direction = Vec3::UnitZ();  ///< unit vector, pointing inwards
   double length_mm = 0.0;
 };
 
-/// How forces that are spread over some ten millimetres move the tissue along the ways of needles: the displacement at
-/// one place per force at another, both averaged over the same density about their place. Unlike K⁻¹ between points it
-/// hardly depends on the mesh.
+/// The wide part of the compliance along planned ways of needles: displacement at one place per force at another, where
+/// both are averaged over the same density, about ten millimetres wide, around their place. Unlike K⁻¹ between points
+/// it hardly depends on the mesh.
 ///
-/// With W_k the nodal loads that a unit force makes when it is spread about sample k of a way, it is
+/// With W_k the nodal loads of a unit force that is spread around sample k of a way,
 ///   F(x, y) = Σ_k Σ_l a_k(x) a_l(y) M(k,l),    M(k,l) = W_k K⁻¹ W_lᵀ,
-/// where a interpolates cubically between the samples. So F is positive for any places, whatever lies around them.
+/// where the weights a interpolate cubically between the samples. F is therefore positive semidefinite for any places.
 /// docs/theory/near_field.md, section 3.
 class SpreadCompliance {
  public:
-  /// [mm] ε of the Kelvinlet that F is in a medium without surfaces. The density about each place is that of a
-  /// Kelvinlet 105π/512 times as wide: so much of the displacement at its middle is the mean over its own density.
+  /// [mm] Radius ε of the Kelvinlet that F equals in a medium without surfaces. The density around each place is that
+  /// of a Kelvinlet with the radius ε · 105π/512, because averaging a Kelvinlet over its own density multiplies the
+  /// displacement at its centre by 105π/512.
   static constexpr double kSpread_mm = 10.0;
 
-  /// Solves for M. Elements near the ways are made quadratic for it, on meshes of up to 45,000 nodes.
-  /// @param tissue is not kept
-  /// @param ways at least one
-  /// Errors: those of Tissue::build().
+  /// Solves for M. On meshes of up to 45,000 nodes, elements near the ways are made quadratic for this.
+  /// @param tissue used only during the call
+  /// @param ways at least one way
+  /// @return errors are those of Tissue::build()
   static Result<SpreadCompliance> solve(const Tissue& tissue, const std::vector<NeedleWay>& ways,
                                         const Progress& progress = {});
 
-  /// With what matrix() of another said for the same ways. @return null where it has not as many rows as the ways have
+  /// Restores a SpreadCompliance from the matrix() of another one for the same ways.
+  /// @return null when the size of the matrix does not fit the ways
   static std::shared_ptr<const SpreadCompliance> of(const std::vector<NeedleWay>& ways, MatX matrix);
 
-  /// Where a place lies among the samples.
+  /// Interpolation weights of a place between the samples of a way.
   struct Place {
     std::array<int, 4> sample{};
     std::array<double, 4> weight{};
-    /// How much F has to say there: 1 near the way, 0 far from it.
+    /// How far F is valid at the place: 1 near the way, 0 far from it, smooth in between.
     double known = 0.0;
   };
-  /// @param way number of the way that the needle goes
+  /// Interpolation weights at x [mm] LPS.
+  /// @param way number of the way along which the needle goes
   [[nodiscard]] Place place(const Vec3& x, int way = 0) const;
 
-  /// Number of the way that passes nearest to a place.
+  /// Number of the way that passes nearest to x [mm] LPS.
   [[nodiscard]] int way_near(const Vec3& x) const;
 
-  /// F [mm/N] between two places on the same way. Does not allocate.
+  /// F [mm/N] between two places on the same way: displacement at `at` per force at `on`. Does not allocate.
   [[nodiscard]] Mat3 operator()(const Place& at, const Place& on) const;
 
-  /// M [mm/N] (3 samples × 3 samples), those of the first way first, from the skin inwards. Between samples of two ways
-  /// it is zero: a needle goes one of them, and what it meets there does not depend on which others were planned.
+  /// M [mm/N] (3 samples × 3 samples); samples are ordered by way, and along each way from the skin inwards. Blocks
+  /// between samples of different ways are zero: a needle goes along one way, and its result must not depend on which
+  /// others were planned.
   [[nodiscard]] const MatX& matrix() const { return matrix_; }
 
  private:
   struct Line {
     NeedleWay way;
-    int first = 0;  ///< sample
+    int first = 0;  ///< number of the first sample
     int count = 0;
-    [[nodiscard]] double along(const Vec3& x) const;  ///< [mm] from the entry to the nearest place of the samples' line
-    [[nodiscard]] double distance(const Vec3& x) const;  ///< [mm] from that line
+    /// [mm] from the entry to the point of the line that is nearest to x.
+    [[nodiscard]] double along(const Vec3& x) const;
+    [[nodiscard]] double distance(const Vec3& x) const;  ///< [mm] between x and that line
   };
-  /// M of one line.
+  /// M for the samples of one line.
   static Result<MatX> solve(const Tissue& tissue, const Line& line);
   static std::vector<Line> lines_of(const std::vector<NeedleWay>& ways);
 

@@ -7,7 +7,9 @@
 
 namespace stylet {
 
-/// Centroid of a set of regions by volume [mm] LPS; the whole mesh when the set is empty.
+/// Centroid of the volume of some regions [mm] LPS.
+/// @param regions numbers of regions of the mesh; empty stands for the whole mesh
+/// @return the origin where these regions have no volume
 Vec3 centroid(const TetMesh& mesh, const std::vector<int>& regions);
 
 }  // namespace stylet

@@ -9,33 +9,35 @@
 
 namespace stylet {
 
-/// A point of a surface, between up to three given ones: they carry it along as they move.
+/// A point of a surface, interpolated between up to three of the given points and moving with them.
 struct SurfacePoint {
-  std::array<Index, 3> node{-1, -1, -1};  ///< of the given points, −1 = unused
-  std::array<double, 3> weight{};         ///< sum 1
+  std::array<Index, 3> node{-1, -1, -1};  ///< numbers of given points, −1 = unused
+  std::array<double, 3> weight{};         ///< weights of these points, sum 1
 };
 
-/// How fine triangles are near a line, and how soon they get coarser away from it.
+/// How long the edges of triangles may be: max(finest_mm, growth × distance to the nearest line).
 struct Fineness {
-  double finest_mm = 0.2;  ///< edges on the line
-  double growth = 0.35;    ///< edges at a distance are this share of it, where that is more
-  double reach_mm = 12.0;  ///< edges further away stay as they are
+  double finest_mm = 0.2;  ///< longest edge on the line; smaller values give more triangles
+  double growth = 0.35;    ///< longest edge / distance to the line, where this is more than finest_mm
+  double reach_mm = 12.0;  ///< edges further from every line than this keep their length
 };
 
-/// Triangles of surfaces, finer where lines pass through or near them than they were given. The surfaces keep their
-/// shape: every new point lies on a triangle that was given. They stay closed where they were.
+/// A triangulated surface that has been refined near lines. Every new point lies on one of the given triangles, so the
+/// surface keeps its shape, and it stays closed where it was closed.
 struct FineSurface {
-  std::vector<SurfacePoint> points;             ///< the given ones come first, under their own numbers
-  std::vector<Vec3> positions;                  ///< (points) [mm]
-  std::vector<std::array<Index, 3>> triangles;  ///< corners, in the sense of rotation they were given with
-  std::vector<int> patch;                       ///< (triangles) that of the triangle each is a piece of
+  std::vector<SurfacePoint> points;  ///< the given points come first, with unchanged numbers
+  std::vector<Vec3> positions;       ///< (points) [mm] LPS
+  /// Numbers of the corners, in the same sense of rotation as in the given triangle.
+  std::vector<std::array<Index, 3>> triangles;
+  std::vector<int> patch;  ///< (triangles) patch number of the given triangle of which this triangle is a part
 };
 
 using LineSegment = std::array<Vec3, 2>;  ///< both ends [mm]
 
-/// @param points [mm] corners of the triangles
-/// @param patch one number a triangle, any; a triangle's pieces have it as well
-/// @param lines where to refine; each gets a point wherever it goes through a triangle
+/// Refines triangulated surfaces near lines.
+/// @param points [mm] LPS, corners of the triangles
+/// @param patch (triangles) any number; the parts of a triangle inherit its number
+/// @param lines lines near which to refine; a point is added wherever a line passes through a triangle
 FineSurface refine_surface(std::span<const Vec3> points, std::vector<std::array<Index, 3>> triangles,
                            std::vector<int> patch, std::span<const LineSegment> lines, const Fineness& fineness = {});
 

@@ -3,10 +3,10 @@
 
 namespace stylet {
 
-/// How much of a patient is meshed, and how finely unless a number of nodes is given.
+/// Which part of a patient is meshed, and how finely where no number of nodes is given.
 enum class MeshPreset {
-  standard,  ///< all anatomy of the input, about 3,000 nodes
-  paper      ///< the target and its surroundings only, 570 nodes, as Goksel et al. 2005
+  standard,  ///< the whole anatomy of the input, about 3,000 nodes
+  paper      ///< only the target and its surroundings, 570 nodes, as in Goksel et al. 2005
 };
 
 }  // namespace stylet

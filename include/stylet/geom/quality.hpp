@@ -5,22 +5,23 @@
 
 namespace stylet {
 
+/// Smallest and largest value of a quantity.
 struct Range {
   double min = 0.0;
   double max = 0.0;
 };
 
-/// What a mesh is made of and how good its elements are.
+/// Size of a mesh and quality of its elements.
 struct MeshQuality {
   Index nodes = 0;
   Index tets = 0;
-  Range dihedral_deg;  ///< over all six angles of all elements
+  Range dihedral_deg;  ///< smallest and largest of the six dihedral angles of all elements
   Range edge_mm;
-  double radius_ratio_min = 0;                 ///< 3 r_in / r_circ, 1 for the regular tetrahedron, over all elements
-  double fraction_below_12_deg = 0;            ///< elements whose smallest dihedral angle is under 12°
-  std::vector<double> region_volume_cc;        ///< (regions)
-  std::vector<Index> region_tets;              ///< (regions)
-  std::array<Index, 18> dihedral_histogram{};  ///< counts in bins of 10°
+  double radius_ratio_min = 0;           ///< smallest 3 r_in / r_circ of all elements; the regular tetrahedron has 1
+  double fraction_below_12_deg = 0;      ///< fraction of the elements whose smallest dihedral angle is below 12°
+  std::vector<double> region_volume_cc;  ///< (regions) volume [cm³]
+  std::vector<Index> region_tets;        ///< (regions) number of tetrahedra
+  std::array<Index, 18> dihedral_histogram{};  ///< number of dihedral angles in each bin of 10°
 };
 
 MeshQuality mesh_quality(const TetMesh& mesh);

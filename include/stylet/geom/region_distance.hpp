@@ -8,16 +8,19 @@
 
 namespace stylet {
 
-/// How much of a straight way lies in some regions of a mesh.
+/// Length of the part of a straight path that lies in some regions of a mesh.
 /// @param regions numbers of regions of the mesh; may be empty
-/// @param from start of the way [mm] LPS @param to its end [mm] LPS, not the start
-/// @return length [mm]; a way along the regions' surface lies in them, one that touches them in a point does not
+/// @param from start of the path [mm] LPS
+/// @param to end of the path [mm] LPS, different from `from`
+/// @return length [mm]; a path along the surface of a region counts as inside it, a path that only touches it in a
+///   point does not
 double length_in_regions(const TetMesh& mesh, std::span<const int> regions, const Vec3& from, const Vec3& to);
 
-/// The shortest distance between a straight way and some regions of a mesh.
+/// Shortest distance between a straight path and some regions of a mesh.
 /// @param regions numbers of regions of the mesh
-/// @param from start of the way [mm] LPS @param to its end [mm] LPS, not the start
-/// @return distance [mm], 0 where the way goes through the regions; empty where the mesh has no element of them
+/// @param from start of the path [mm] LPS
+/// @param to end of the path [mm] LPS, different from `from`
+/// @return distance [mm], 0 where the path passes through the regions; empty where the mesh has no element in them
 std::optional<double> distance_to_regions(const TetMesh& mesh, std::span<const int> regions, const Vec3& from,
                                           const Vec3& to);
 

@@ -8,14 +8,17 @@
 
 namespace stylet {
 
-/// Positions of the names that a user's word means: those equal to it; where there is none, those that differ from it
-/// in upper and lower case or in blanks around them only. A word of blanks, or none at all, means nothing.
+/// Finds the names that a user's word refers to.
+/// @return positions in `names` of all names equal to `word`; if there is none, of all names that differ from it only
+///   in upper and lower case or in surrounding blanks; empty for an empty word or a word of blanks
 std::vector<std::size_t> find_named(std::span<const std::string> names, std::string_view word);
 
-/// Whether one of the words means this name, upper and lower case alike. No word means a name of blanks.
+/// Whether one of the words equals this name, apart from upper and lower case and surrounding blanks. A name of blanks
+/// is never listed.
 bool is_listed(std::string_view name, std::span<const std::string> words);
 
-/// For the end of a cure, where a structure cannot be used: how to do without it.
+/// Last part of the cure of an error about a structure that cannot be used, in parentheses and after a blank: how to
+/// leave the structure out.
 std::string or_skip(std::string_view name);
 
 }  // namespace stylet

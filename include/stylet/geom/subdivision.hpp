@@ -6,17 +6,20 @@
 
 namespace stylet {
 
-/// A mesh with every edge halved: the same bodies and surfaces, eight tetrahedra in the place of each.
+/// A mesh in which every edge has been halved and each tetrahedron replaced by eight. Bodies and surfaces are
+/// unchanged.
 struct Subdivision {
-  TetMesh mesh;                            ///< the old nodes first; tetrahedra 8 t … 8 t + 7 make up the old t
-  std::vector<std::array<Index, 2>> ends;  ///< of the edge in whose middle each new node lies, old numbers
+  TetMesh mesh;  ///< the original nodes come first; tetrahedra 8 t … 8 t + 7 replace the original tetrahedron t
+  /// (new nodes) both ends of the edge whose middle is the new node, original numbers.
+  std::vector<std::array<Index, 2>> ends;
 };
 
-/// Regular refinement: four tetrahedra at the corners, the octahedron between them cut along one diagonal.
+/// Regular refinement: each tetrahedron becomes four at its corners, and the octahedron between these is cut along one
+/// diagonal into four more.
 /// @cite Bey1995
 Subdivision subdivide(const TetMesh& mesh);
 
-/// The same material point in the subdivided mesh.
+/// The same material point, expressed in the subdivided mesh.
 MaterialPoint in_subdivision(const MaterialPoint& at);
 
 }  // namespace stylet

@@ -9,7 +9,7 @@
 
 namespace stylet {
 
-/// A triangulated surface, normals outward.
+/// A triangulated surface with normals that point outwards.
 struct Surface {
   std::string name;
   std::vector<Vec3> points;  ///< [mm] LPS

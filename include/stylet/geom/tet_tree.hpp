@@ -11,21 +11,22 @@
 
 namespace stylet {
 
-/// Boxes around the tetrahedra of a mesh, halved at the median of their centroids until a few are in each.
+/// A tree of bounding boxes around the tetrahedra of a mesh. Boxes are halved at the median of the centroids until few
+/// tetrahedra are left in each.
 class TetTree {
  public:
   explicit TetTree(const TetMesh& mesh);
 
-  /// All tetrahedra, those of a leaf side by side, and next to them those of the leaves beside it.
+  /// All tetrahedra, sorted so that the tetrahedra of one leaf, and of neighbouring leaves, are next to each other.
   [[nodiscard]] std::span<const Index> order() const { return order_; }
 
-  /// Passes the tetrahedra of every leaf, a part of order(), whose box, as all those around it, `meets` what is looked
-  /// for. Does not allocate.
-  /// @param meets (const Eigen::AlignedBox3d&) → bool
-  /// @param look (std::span<const Index> tets) → bool, whether to go on
+  /// Calls `look` for the tetrahedra of each leaf (a range of order()) for which `meets` returns true, for its own box
+  /// and for all boxes around it. Does not allocate.
+  /// @param meets (const Eigen::AlignedBox3d&) → bool: whether the box can contain what is searched for
+  /// @param look (std::span<const Index> tets) → bool: whether to continue
   template <class Meets, class Look>
   void visit(Meets&& meets, Look&& look) const {
-    // Halving at the median keeps the tree's depth under 32 for any mesh an Index can count.
+    // Halving at the median keeps the tree's depth below 32 for every mesh whose tetrahedra an Index can number.
     std::array<Index, 64> stack{};
     std::size_t top = 0;
     stack[top++] = 0;
@@ -45,7 +46,8 @@ class TetTree {
  private:
   struct Box {
     Eigen::AlignedBox3d box;
-    Index first, count;  ///< leaf: range in order_; inner: count = -1, first = left child (right = first + 1)
+    /// Leaf: range in order_; inner box: count = -1, first = left child (the right child is first + 1).
+    Index first, count;
   };
   std::vector<Box> boxes_;
   std::vector<Index> order_;

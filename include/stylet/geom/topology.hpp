@@ -5,25 +5,26 @@
 
 namespace stylet {
 
-/// A triangle of a tetrahedral mesh, corners ordered so that the normal points out of `tet`.
+/// A triangle of a tetrahedral mesh; its corners are ordered so that the normal points out of `tet`.
 struct Face {
   std::array<Index, 3> nodes;
   Index tet;        ///< the tetrahedron it belongs to
-  int local;        ///< it lies opposite local vertex `local` of that tetrahedron
-  Index neighbour;  ///< the tetrahedron on the other side, -1 outside the mesh
+  int local;        ///< the face lies opposite this local vertex of `tet`
+  Index neighbour;  ///< the tetrahedron on the other side, -1 on the outer surface
 };
 
-/// Who touches whom. Built once per mesh.
+/// Neighbourhood relations between the elements of a mesh, built once per mesh.
 struct Topology {
   explicit Topology(const TetMesh& mesh);
 
-  std::vector<std::array<Index, 4>> neighbour;  ///< (m) tetrahedron across the face opposite local vertex i, or -1
+  std::vector<std::array<Index, 4>> neighbour;  ///< (m) tetrahedron behind the face opposite local vertex i, or -1
   std::vector<Face> boundary;                   ///< outer faces of the mesh
-  std::vector<Face> interfaces;                 ///< faces between two regions, listed once, tet has the lower region
-  std::vector<std::vector<Index>> node_tets;    ///< (n) tetrahedra around each node
+  std::vector<Face> interfaces;  ///< faces between two regions, each once, with the lower region's element as `tet`
+  std::vector<std::vector<Index>> node_tets;  ///< (n) tetrahedra around each node
 };
 
-/// Local vertex numbers of the face opposite local vertex i, outward orientation for a positive tetrahedron.
+/// Local numbers of the vertices of the face opposite local vertex i, ordered so that the normal points out of a
+/// tetrahedron of positive volume.
 inline constexpr std::array<std::array<int, 3>, 4> kFaceVertices{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 }  // namespace stylet

@@ -5,31 +5,33 @@
 
 namespace stylet {
 
-/// What one structure of a contour set, or one label of a mask, becomes.
+/// Use of one structure of a contour set, or of one label of a mask.
 struct StructureUse {
   std::string name;    ///< as in the file; the number of a label without a name
-  int number = 0;      ///< of the ROI or label
-  std::string region;  ///< name of the region it is meshed as; empty: it is left out
-  std::string why;     ///< why it is left out, in a few words; or how it came by its region where not by its name
+  int number = 0;      ///< number of the ROI or label
+  std::string region;  ///< name of the region as which it is meshed; empty: it is left out
+  std::string why;     ///< in a few words, why it is left out, or how it got its region if not by its name
 };
 
-/// What becomes of the structures of an input.
+/// Use of all structures of an input.
 struct StructureChoice {
-  std::vector<StructureUse> uses;   ///< of the ROIs that have contours, in their order; or of the labels, ascending
-  std::vector<StructureUse> empty;  ///< of structures that have nothing to be meshed, all left out
-  std::vector<std::string> notes;   ///< for the user: what stands in for what, and all that is left out, with reasons
-  bool has_target = false;          ///< one of the regions is the target
+  std::vector<StructureUse> uses;   ///< structures with contours, in their order, or labels, ascending
+  std::vector<StructureUse> empty;  ///< structures without anything to mesh; all are left out
+  /// Messages to the user: which structure stands in for another one, and what is left out and why.
+  std::vector<std::string> notes;
+  bool has_target = false;  ///< whether one of the regions is the target
 };
 
-/// Decides by MeshOptions::skip, then MeshOptions::regions, then the structures' names, then their DICOM types. A
-/// planning volume (CTV, target, PTV, GTV) is the gland where nothing else is; so is EXTERNAL the body.
-/// Errors: a name in skip or regions that the input does not have, with the nearest one that it has; a structure that
-/// is asked for and has nothing to be meshed.
+/// Decides how the structures of a contour set are used: by MeshOptions::skip, then by MeshOptions::regions, then by
+/// the structures' names, then by their DICOM types. A planning volume (CTV, target, PTV, GTV) is used as the gland if
+/// nothing else is the gland; likewise a structure of the type EXTERNAL is used as the body. Errors: a name in skip or
+/// regions that the input does not have, with the nearest name that it has; a structure named in regions that has
+/// nothing to mesh.
 Result<StructureChoice> choose_structures(const ContourSet& contours, const MeshOptions& options);
 
-/// The same for a mask. Without MeshOptions::regions, labels that have no name or one that is not recognised are
-/// regions of their own ("label_2"). A planning volume that would be left out, and that touches more of the target than
-/// of anything else, is a part of the target: left out it would be a hole in it.
+/// Decides the same for a label mask. If MeshOptions::regions is empty, labels without a recognised name become regions
+/// of their own ("label_2"). A planning volume that would be left out, and that touches more of the target than of
+/// anything else, becomes part of the target: without it the target would have a hole.
 Result<StructureChoice> choose_structures(const LabelImage& image, const MeshOptions& options);
 
 }  // namespace stylet

@@ -7,30 +7,33 @@ namespace stylet {
 
 /// A hole of a guide template.
 struct GuideHole {
-  double clearance_mm = 0.05;         ///< radius of the hole less that of the needle, ≥ 0
-  double stiffness_N_per_mm = 100.0;  ///< of shaft against hole, > 0
+  double clearance_mm = 0.05;         ///< [mm] radius of the hole − radius of the needle, ≥ 0
+  double stiffness_N_per_mm = 100.0;  ///< [N/mm] stiffness of the contact between shaft and edge, > 0
 };
 
-/// How a shaft runs through a hole: where it crosses the hole's plane, and what the hole exerts on it there
-/// (GuidedNeedle has the formula).
+/// Contact of a shaft with a hole: where the shaft crosses the hole's plane, and the force of the hole on it there
+/// (formula: GuidedNeedle).
 class GuideMeeting {
  public:
   explicit GuideMeeting(const GuideHole& hole) : hole_(hole) {}
 
-  /// Puts the hole at `centre` [mm] LPS. @param axis LPS, towards the tip; unit vector
+  /// Places the hole.
+  /// @param centre [mm] LPS
+  /// @param axis unit vector LPS, towards the tip
   void place(const Vec3& centre, const Vec3& axis);
-  /// Takes the needle's present shape.
+  /// Computes crossing, force and stiffness for the current shape of the needle.
   void meet(const Needle& needle);
 
-  /// Whether the shaft is at the hole's edge, or where there is no play, in the hole.
+  /// Whether the hole exerts a force: the shaft touches its edge, or crosses its plane where there is no clearance.
   [[nodiscard]] bool holds() const { return crosses_ && (beyond_ > 0.0 || hole_.clearance_mm == 0.0); }
-  /// The hole's force on the needle and where it acts.
+  /// Force of the hole on the needle and the arc length where it acts.
   [[nodiscard]] const PointLoad& load() const { return load_; }
-  /// [N/mm] By how much that force changes as the shaft moves.
+  /// [N/mm] Tangent stiffness: minus the derivative of this force with respect to the position of the shaft, without
+  /// the effect of its rotation.
   [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
-  /// [mm] Distance of the shaft from the hole's axis in its plane; 0 where it does not cross it.
+  /// [mm] Distance between the shaft and the hole's axis, in its plane; 0 where the shaft does not cross the plane.
   [[nodiscard]] double offset() const { return offset_.norm(); }
-  /// [N mm] Elastic energy in the hole's edge.
+  /// [N mm] Elastic energy of the contact.
   [[nodiscard]] double energy() const { return 0.5 * hole_.stiffness_N_per_mm * beyond_ * beyond_; }
 
  private:
@@ -40,10 +43,10 @@ class GuideMeeting {
   bool placed_ = false;
   Vec3 centre_ = Vec3::Zero();  ///< [mm] LPS
   Vec3 axis_ = Vec3::UnitZ();   ///< unit, LPS
-  bool crosses_ = false;        ///< the shaft crosses the hole's plane
-  double beyond_ = 0.0;         ///< [mm] by which it is further from the hole's axis than the clearance, ≥ 0
-  Vec3 offset_ = Vec3::Zero();  ///< [mm] of the shaft from the hole, in the plane
-  PointLoad load_;              ///< its place is kept where there is no crossing: the next one is near
+  bool crosses_ = false;        ///< whether the shaft crosses the hole's plane
+  double beyond_ = 0.0;         ///< [mm] max(0, distance of the shaft from the axis − clearance)
+  Vec3 offset_ = Vec3::Zero();  ///< [mm] vector in the plane from the hole's centre to the shaft
+  PointLoad load_;              ///< without a crossing, s keeps its last value: the next crossing is near it
   Mat3 stiffness_ = Mat3::Zero();
 };
 

@@ -8,22 +8,21 @@
 
 namespace stylet {
 
-/// A needle of any model whose shaft runs through a hole. Where the shaft crosses the hole's plane, at x, it is free
-/// while its distance d from the hole's axis is less than the clearance c; beyond, the hole pushes back:
-///   W = ½ k (d − c)²,   force on the needle  −Pᵀ ∇W,   P = I − t nᵀ/(t·n)
-/// with the shaft's tangent t and the hole's axis n. P takes a motion of the shaft to that of the crossing, so the
-/// force is square to the shaft: the hole is smooth and the shaft slides through it without friction. It is one more
-/// load of the inner needle, with Pᵀ ∇²W P as its spring; the tangent of the coupling sees nothing but a stiffer
-/// needle. What the tangent leaves out is how the force turns with the shaft. There is no force while the tip has not
-/// reached the plane, and none when the base has passed it.
+/// A needle of any model whose shaft runs through a hole. Let the shaft, with tangent t, cross the hole's plane at a
+/// distance d from the hole's axis n. It is free while d is less than the clearance c; beyond, the hole pushes back:
+///   W = ½ k (d − c)²,   force on the needle  −Pᵀ ∇W,   P = I − t nᵀ/(t·n).
+/// P maps a motion of the shaft to the motion of the crossing. The force is therefore perpendicular to the shaft: the
+/// hole is smooth, and the shaft slides through it without friction. The force is an additional load of the inner
+/// needle with Pᵀ ∇²W P as its spring, so to the coupling the needle is just stiffer. The tangent neglects that the
+/// force turns with the shaft. There is no force before the tip reaches the plane or after the base has passed it.
 class GuidedNeedle final : public Needle {
  public:
-  /// @param inner built for at least load_capacity + 1 loads
+  /// @param inner a needle built for at least load_capacity + 1 loads
   GuidedNeedle(std::unique_ptr<Needle> inner, const GuideHole& hole, int load_capacity);
 
   void place_guide(const Vec3& hole, const Vec3& axis) override;
   [[nodiscard]] PointLoad guide_load() const override { return hole_.load(); }
-  /// Distance [mm] of the shaft from the hole's axis in its plane; 0 where it does not cross it.
+  /// [mm] Distance between the shaft and the hole's axis, in its plane; 0 where the shaft does not cross the plane.
   [[nodiscard]] double offset() const { return hole_.offset(); }
 
   [[nodiscard]] double length() const override { return inner_->length(); }
@@ -45,20 +44,20 @@ class GuidedNeedle final : public Needle {
   [[nodiscard]] double residual(std::span<const PointLoad> loads) override;
   void damp(double ratio) override { inner_->damp(ratio); }
   void straighten() override;
-  /// Elastic energy of shape and hole.
+  /// Elastic energy of the needle's shape and of the contact with the hole.
   [[nodiscard]] double energy() const override;
   [[nodiscard]] Eigen::Ref<const VecX> state() const override { return inner_->state(); }
   void set_state(const Eigen::Ref<const VecX>& state) override;
 
  private:
-  /// How the hole held when a tangent was made.
+  /// State of the hole for which a tangent was made.
   struct Hold {
     bool on = false;
     PointLoad with;
     Mat3 stiffness = Mat3::Zero();  ///< [N/mm]
   };
 
-  /// Whether the tangent is one with the hole as it holds now.
+  /// Whether the tangent in use was made for the current state of the hole.
   [[nodiscard]] bool fits() const;
   std::span<const PointLoad> with_guide(std::span<const PointLoad> loads, const PointLoad& guide);
   [[nodiscard]] Hold hold() const { return {hole_.holds(), hole_.load(), hole_.stiffness()}; }
@@ -66,13 +65,13 @@ class GuidedNeedle final : public Needle {
 
   std::unique_ptr<Needle> inner_;
   GuideMeeting hole_;
-  Hold held_;                     ///< at the last linearise()
+  Hold held_;                     ///< at the last linearise(), relax() or take_prepared()
   Hold prepared_;                 ///< at the last prepare()
-  std::vector<PointLoad> loads_;  ///< the hole's, then the caller's
-  std::vector<Mat3> springs_;     ///< [N/mm] of the hole and the caller's
-  MatX N_;                        ///< [mm/N] (3w + 3)²
-  VecX free_;                     ///< [mm] (3w + 3)
-  MatX prepared_N_;               ///< as N_, of the tangent that is prepared
+  std::vector<PointLoad> loads_;  ///< the hole's load, then the caller's loads
+  std::vector<Mat3> springs_;     ///< [N/mm] the hole's stiffness, then the caller's springs
+  MatX N_;                        ///< [mm/N] (3w + 3 square) compliance of the inner needle with the hole's load
+  VecX free_;                     ///< [mm] (3w + 3) `free` of the inner needle
+  MatX prepared_N_;               ///< as N_, for the prepared tangent
 };
 
 }  // namespace stylet

@@ -9,17 +9,18 @@
 
 namespace stylet {
 
-/// Names of the needle models, the default first: beam, springs, tet.
+/// Names of the needle models; the first one, "beam", is the default. The others are "springs" and "tet".
 [[nodiscard]] std::span<const std::string> needle_models();
 
-/// Number of elements, rods or segments that brings a 200 mm needle of the model within 0.2 % of theory at the least
-/// cost; an input error for an unknown model, with the nearest name there is.
+/// Default number of elements, rods or segments of a model: the cheapest one with which a 200 mm needle agrees with
+/// theory within 0.2 %.
+/// @return an input error for an unknown model, with the nearest known name
 [[nodiscard]] Result<int> default_needle_elements(const std::string& model);
 
-/// A straight needle of the model named.
-/// @param elements number of elements, rods or segments; 0 = the model's own default
+/// Builds a needle of the given model.
+/// @param elements number of elements, rods or segments; 0 = the default of the model
 /// @param load_capacity largest number of loads in any call
-/// @return input error for an unknown model, and for what the model cannot be built from
+/// @return an input error for an unknown model, and for values from which the model cannot be built
 Result<std::unique_ptr<Needle>> make_needle(const std::string& model, const NeedleSection& section, int elements,
                                             int load_capacity);
 

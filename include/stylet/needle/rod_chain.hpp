@@ -6,12 +6,13 @@
 
 namespace stylet {
 
-/// What BeamNeedle and SpringsNeedle share: an inextensible, unshearable chain of elements whose unknowns are κ, three
-/// per element (body frame; x, y bending, z twist), rotation vector over element length.
-/// state() is κ [1/mm], from the base; residual() is the largest over the elements of |D Δκ − m|, D = diag(EI, EI, GJ),
-/// Δκ the curvature beyond that of the unloaded shape, m the loads' moment averaged over the element as virtual work
-/// sees it. Loads at s ≤ 0 act on the clamp, s past the tip counts as the tip. Beyond the buckling load a multiple of
-/// the elastic part keeps the tangent positive definite.
+/// Common part of BeamNeedle and SpringsNeedle: an inextensible, unshearable chain of elements. The unknowns are the
+/// curvatures κ = rotation vector / element length, three per element (body frame; x, y bending, z twist).
+///
+/// state() is κ [1/mm], ordered from the base. residual() is the largest |D Δκ − m| of all elements, with D = diag(EI,
+/// EI, GJ), Δκ the curvature minus the curvature of the unloaded shape, and m the moment of the loads averaged over the
+/// element (by virtual work). Loads at s ≤ 0 act on the clamp; s beyond the tip counts as the tip. Beyond the buckling
+/// load, a multiple of the elastic part is added to keep the tangent positive definite.
 class RodChain : public Needle {
  public:
   ~RodChain() override;

@@ -5,23 +5,24 @@
 #include <cmath>
 #include <numbers>
 
-/// Closed solutions of bent beams, which needles are checked against.
+/// Closed-form solutions of bent beams, with which the needle models are checked.
 namespace stylet {
 
-/// Small deflection [mm] at s of a cantilever of bending stiffness EI [N mm²] under a lateral force [N] at a, clamped
-/// at 0 (Euler–Bernoulli).
+/// Deflection [mm] at s [mm] of a cantilever clamped at 0 under a lateral force [N] at a [mm], for small deflections
+/// (Euler–Bernoulli). @param bending_stiffness EI [N mm²]
 inline double cantilever_deflection(double force, double a, double s, double bending_stiffness) {
   const double near = std::min(s, a);
   const double far = std::max(s, a);
   return force * near * near * (3.0 * far - near) / (6.0 * bending_stiffness);
 }
 
-/// Cantilever under a dead end force P across its undeformed axis, by the slope at its tip [rad]. K. E. Bisshopp and
-/// D. C. Drucker, Large deflection of cantilever beams, Q. Appl. Math. 3 (1945) 272–275.
+/// Large deflection of a cantilever under a force at its tip that stays perpendicular to the undeformed axis, as a
+/// function of the slope at the tip [rad]. K. E. Bisshopp and D. C. Drucker, Large deflection of cantilever beams, Q.
+/// Appl. Math. 3 (1945) 272–275.
 struct Elastica {
-  double force;       ///< [N]
-  double deflection;  ///< [mm] along the force
-  double reach;       ///< [mm] along the undeformed axis
+  double force;       ///< [N] at the tip
+  double deflection;  ///< [mm] of the tip, along the force
+  double reach;       ///< [mm] position of the tip along the undeformed axis
 
   Elastica(double tip_slope, double length, double bending_stiffness) {
     const double k = std::sqrt((1.0 + std::sin(tip_slope)) / 2.0);
