@@ -18,7 +18,7 @@ class CuttingModel {
     int region = -1;                   ///< number of the region that is cut (TetMesh::regions)
     Vec3 at_mm = Vec3::Zero();         ///< [mm] LPS, in the undeformed patient
     double cut_mm_per_s = 0.0;         ///< [mm/s] speed of cutting in the last sub-step; 0 where the tip did not cut
-    double cutting_N = 0.0;            ///< [N] C of the region, tissue.<region>.cutting_N
+    double cutting_N = 0.0;            ///< [N] C of the region, tissue.REGION.cutting_N
     double viscosity_Ns_per_mm = 0.0;  ///< [N s/mm] η, coupling.tip_viscosity_Ns_per_m
   };
   /// The law of one sub-step: both numbers finite and not negative.

@@ -156,5 +156,5 @@ TEST(DemoScenario, goes_through_the_gland_and_past_urethra_rectum_and_pubic_arch
 TEST(ScenarioGuide, shows_the_keys_of_this_version) {
   const std::string guide = content(kSource / "docs/scenario.md");
   EXPECT_NE(guide.find("```toml\n" + schema_text() + "```"), std::string::npos)
-      << "docs/scenario.md differs from stylet insert --print-schema: run scripts/update_scenario_guide";
+      << "docs/scenario.md differs from stylet insert --print-schema: run scripts/update_reference";
 }
