@@ -33,7 +33,7 @@ std::vector<int> regions_of(const TetMesh& mesh, Spared structure) {
   return regions;
 }
 
-/// The target with the urethra where it runs through it: a needle along the urethra is in the gland as well.
+/// The target together with the urethra between the target's ends: a needle along the urethra is in the gland as well.
 class Gland {
  public:
   explicit Gland(const Model& model) : mesh_(model.mesh()), regions_(model.target_regions()) {
@@ -44,14 +44,14 @@ class Gland {
     for (const int region : regions_of(mesh_, Spared::urethra)) regions_.push_back(region);
   }
 
-  /// Length of a straight way within the gland [mm]. @param from @param to [mm] LPS, at the same x and y, `to` superior
+  /// Length [mm] of a straight way within the gland. @param from, to [mm] LPS, with the same x and y; `to` is superior
   [[nodiscard]] double length_of(const Vec3& from, const Vec3& to) const {
     const Vec3 low(from.x(), from.y(), std::max(from.z(), extent_.min().z()));
     const Vec3 high(to.x(), to.y(), std::min(to.z(), extent_.max().z()));
     return low.z() < high.z() ? length_in_regions(mesh_, regions_, low, high) : 0.0;
   }
 
-  /// Whether the line through a point, of any length, leads through the gland.
+  /// Whether the infinite line along z through a point leads through the gland.
   [[nodiscard]] bool is_met_through(const Vec3& x) const {
     return length_of({x.x(), x.y(), extent_.min().z()}, {x.x(), x.y(), extent_.max().z()}) > 0.0;
   }
@@ -59,7 +59,7 @@ class Gland {
  private:
   const TetMesh& mesh_;
   std::vector<int> regions_;
-  Eigen::AlignedBox3d extent_;  ///< of the target
+  Eigen::AlignedBox3d extent_;  ///< [mm] bounding box of the target
 };
 
 }  // namespace

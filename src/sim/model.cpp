@@ -23,12 +23,12 @@ namespace stylet {
 
 namespace {
 
-constexpr double kTentingMin_mm = 3.0;
-constexpr double kTentingMax_mm = 20.0;
-constexpr double kLagMax_mm = 5.0;
-/// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
+constexpr double kTentingMin_mm = 3.0;   ///< smallest plausible tenting
+constexpr double kTentingMax_mm = 20.0;  ///< largest plausible tenting
+constexpr double kLagMax_mm = 5.0;       ///< largest plausible cutting lag
+/// Compliance is precomputed this far beyond the planned depth, because the tip pushes tissue ahead of it.
 constexpr double kBeyond_mm = 15.0;
-/// Nodes up to which tissue.element = "auto" averages pressure.
+/// Largest number of nodes for which tissue.element = "auto" chooses elements with averaged pressure.
 constexpr Index kMostAveraged = 45000;
 
 bool is_gland(const std::string& region) {
@@ -36,7 +36,7 @@ bool is_gland(const std::string& region) {
          region == "central_zone" || region == "anterior_stroma";
 }
 
-/// The regions that make the target: the gland, else a planning volume, else unnamed labels.
+/// The regions that form the target: the gland, or else a planning volume, or else all unnamed labels.
 std::vector<int> find_target(const TetMesh& mesh) {
   const auto pick = [&](auto&& wanted) {
     std::vector<int> found;
@@ -83,9 +83,10 @@ CouplingSettings coupling_settings(const Scenario& s) {
   return c;
 }
 
-/// The methods of Goksel et al. 2005 are there to be compared: all on the same linear tetrahedra, which two of them
-/// need. Averaged pressure couples two rings of nodes: beyond some size its factor does not fit into memory, and
-/// locking has become small (docs/theory/tissue.md).
+/// The element of the tissue. The methods of Goksel et al. 2005 are there for comparison, so all of them use linear
+/// tetrahedra, which two of them need. Averaged pressure couples two rings of nodes; on meshes above some size its
+/// factor
+/// does not fit into memory, and locking is small there (docs/theory/tissue.md).
 Element element_of(const Scenario& s, Index nodes) {
   const bool of_the_paper = s.coupling.method != CouplingSettings::Method::near_field ||
                             s.coupling.engine != CouplingSettings::Engine::condensed;
@@ -96,15 +97,15 @@ Element element_of(const Scenario& s, Index nodes) {
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
   const auto section = needle_section(n);
   if (!section) return section.error();
-  return make_needle(word(n.model), *section, n.elements, capacity + 2);  // the tip, and a guide
+  return make_needle(word(n.model), *section, n.elements, capacity + 2);  // contacts, tip and guide
 }
 
 constexpr const char* kPrepareAgain = "Prepare the model again (stylet prepare)";
 
-/// Largest full inverse, kept twice, that an engine may ask for.
+/// Largest memory for the two copies of the full inverse that some engines keep.
 constexpr double kLargestInverse_GB = 8.0;
 
-/// Follows a recorded motion from outside the patient.
+/// The insertion of a recorded motion, which has to start with the tip outside of the patient.
 Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::size_t number, const Scenario& scenario,
                                 const Locator& locator, const std::string& where) {
   const double length = scenario.needle.length_mm;
@@ -140,7 +141,7 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
   return recorded;
 }
 
-/// Displacement nodes that elements have, ascending.
+/// Displacement nodes of some elements, ascending.
 std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& elements) {
   std::vector<Index> nodes;
   for (const Index t : elements) {
@@ -152,7 +153,7 @@ std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& elem
   return nodes;
 }
 
-/// Around the ways of all needles.
+/// The corridor around the ways of all needles.
 Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& insertions,
                      const Scenario::Coupling& coupling) {
   std::vector<std::array<Vec3, 2>> ways;
@@ -162,7 +163,7 @@ Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& i
   return find_corridor(mesh, ways, coupling.corridor_mm, coupling.corridor_nodes);
 }
 
-/// As far as compliance is stored.
+/// The ways of all needles, as long as the corridor.
 std::vector<NeedleWay> ways_of(const std::vector<PlannedInsertion>& insertions) {
   std::vector<NeedleWay> ways;
   ways.reserve(insertions.size());
@@ -171,14 +172,16 @@ std::vector<NeedleWay> ways_of(const std::vector<PlannedInsertion>& insertions) 
   return ways;
 }
 
-/// Whether something asks which part of the tissue's answer is wider than a needle.
+/// Whether the coupling needs the wide part of the compliance (SpreadCompliance): for tissue that creeps or stiffens.
 bool knows_wide(const CouplingSettings& coupling, const std::vector<RegionLaws>& laws) {
   if (coupling.method != CouplingSettings::Method::near_field) return false;
   const auto stiffens = [](const RegionLaws& region) { return region.stiffening_MPa > 0.0; };
   return coupling.creep.is_any() || (knows_stiffening(coupling) && std::any_of(laws.begin(), laws.end(), stiffens));
 }
 
-/// How far a tip moves tissue under a force: what is of the organs' scale follows it, what is of the needle's stiffens.
+/// Displacement [mm] of tissue under a force on the tip: a linear part on the scale of organs and a dent on the scale
+/// of
+/// the needle, which stiffens.
 double pressed_mm(const TissueParameters& t, double force_N, double needle_diameter_mm, const NearSurface& skin) {
   const Material material{t.young_kPa * 1e-3, t.poisson};
   const Medium medium{material.mu(), t.poisson};
@@ -191,7 +194,7 @@ double pressed_mm(const TissueParameters& t, double force_N, double needle_diame
   return organs * force_N + DentLaw{dent, t.stiffening * material.young_MPa}.depth(force_N);
 }
 
-/// The same message with the scenario's name in front of its place.
+/// The error with the scenario's name in front of its place.
 Error named(Error error, const std::string& where) {
   error.where = where + ", " + error.where;
   return error;
@@ -272,7 +275,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
 
   if (std::string flat = nearly_flat_warning(mesh); !flat.empty()) model->warnings_.push_back(std::move(flat));
 
-  // Where the needles go decides what must stay free, so plan first.
+  // The insertions are planned before the supports, because outer faces near an entry stay free.
   Topology topology(mesh);
   std::vector<PlannedInsertion> insertions;
   std::vector<Vec3> entries;
@@ -294,7 +297,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->supports_ = std::move(*supports);
   for (const int region : model->supports_.rigid_regions) model->laws_[static_cast<std::size_t>(region)].rigid = true;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
-    if (model->laws_[r].rigid) continue;  // nothing gives way there
+    if (model->laws_[r].rigid) continue;  // held tissue neither tents nor is cut
     for (auto& warning : tenting_warnings(mesh.regions[r], model->tissue_parameters_[r], scenario.needle.diameter_mm))
       model->warnings_.push_back(std::move(warning));
   }
@@ -307,7 +310,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
           "\"{}\" the tissue under the tip is linear, and dents deeper. Use \"near-field\" and \"coupled\".",
           mesh.regions[r], model->tissue_parameters_[r].stiffening, word(scenario.coupling.method),
           word(scenario.coupling.solver)));
-      break;  // once is enough
+      break;  // one warning for the first such region is enough
     }
   }
 
@@ -352,7 +355,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->insertions_ = std::move(insertions);
   if (!condensed) {
     const double dofs = model->tissue_->free_dofs() + 3.0 * model->coupling_.capacity;
-    const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // as it was at first, and as it is
+    const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // two copies: undeformed and current mesh
     if (gigabytes > kLargestInverse_GB) {
       return input_error(
           fmt::format("{}, coupling.engine = \"{}\"", where, word(scenario.coupling.engine)),
@@ -389,7 +392,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
 }
 
 std::unique_ptr<Needle> Model::make_needle() const {
-  auto needle = build_needle(scenario_.needle, coupling_.capacity);  // compile() has seen it succeed
+  auto needle = build_needle(scenario_.needle, coupling_.capacity);  // succeeds, since compile() has built one
   if (!needle) return nullptr;
   if (!scenario_.grid.guide) return std::move(*needle);
   GuideHole hole;

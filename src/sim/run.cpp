@@ -103,7 +103,7 @@ class Runner {
   }
 
   Result<> one(const PlannedInsertion& insertion, const BaseSteps& motion) {
-    const FlushDenormals flush;  // as the real-time loop does
+    const FlushDenormals flush;  // as in the real-time loop, so that the results are equal
     const double start = simulation_.time_s();
     const long deepest = deepest_step(*model_, insertion, motion);
     simulation_.place(insertion);
@@ -114,7 +114,7 @@ class Runner {
       gland.emplace(target_names());
     }
     if (auto r = take_frame("before"); !r) return r;
-    double next_frame = start + frame_every_s_;  // the first of the series is "before"
+    double next_frame = start + frame_every_s_;  // the frame "before" is the first of the series
     for (long k = 1; k <= motion.count; ++k) {
       const Pose base = motion.base(k);
       const double dt = motion.dt_s(k);
@@ -192,7 +192,7 @@ class Runner {
 
   Result<> take_frame(const std::string& label) {
     const Frame frame = simulation_.frame(label);
-    const Simulation::Balance balance = simulation_.balance(1.0);  // relative to the peak once that is known
+    const Simulation::Balance balance = simulation_.balance(1.0);  // sum_up() divides by the peak force
     summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
     summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
     summary_.compliance_condition =
@@ -220,7 +220,7 @@ class Runner {
     for (std::string& harm : harms(summary_.events)) summary_.warnings.push_back(std::move(harm));
   }
 
-  /// Woodbury's small matrix takes as many digits from K⁻¹ as its condition number has.
+  /// Warns about a lossy update of K⁻¹: the Woodbury formula loses log₁₀(condition number) digits.
   void note_condition() {
     constexpr double digits_lost = 1e8;
     double worst = 0.0;
@@ -256,14 +256,14 @@ class Runner {
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;
-  std::optional<TargetMotion> target_motion_;  ///< where the model has a target; solved for before the first step
+  std::optional<TargetMotion> target_motion_;  ///< solved for before the first step; empty without a target
   RunObserver& observer_;
   const Progress& progress_;
-  double peak_N_ = 0.0;  ///< largest force of the hand, all components
+  double peak_N_ = 0.0;  ///< largest magnitude of the hand's force
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
-  static constexpr std::size_t kFlags = 7;  ///< of Step
+  static constexpr std::size_t kFlags = 7;  ///< number of values of Step::Flag
   std::array<long, kFlags> flag_counts_{};
   Summary summary_;
 };

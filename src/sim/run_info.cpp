@@ -10,7 +10,7 @@
 #include <array>
 #include <string_view>
 
-/// What a report says about a model: every parameter with its value and where the value comes from.
+/// The description of a model for a report: every parameter with its value and the source of the value.
 namespace stylet {
 
 namespace {
@@ -18,13 +18,13 @@ namespace {
 constexpr const char* kFromScenario = "scenario";
 constexpr std::string_view kElements = "needle.elements";
 
-/// A key whose value a report shows, and why its default is what it is.
+/// A key whose value a report shows, and the reason for its default.
 struct Shown {
   const char* path;
   const char* source;
 };
 
-/// A key that is not here is missing in reports.
+/// Reports show only these keys, besides the tissue, the needle's section and the guide.
 constexpr std::array kShown{
     Shown{"needle.model", "most accurate for its cost"},
     Shown{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
@@ -49,7 +49,7 @@ constexpr std::array kShown{
     Shown{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
 };
 
-/// Layers that were made where the input had none.
+/// Layers that are added to the patient if the input does not have them.
 struct ShownLayer {
   const char* path;
   const char* region;
@@ -73,7 +73,7 @@ std::string unit_of(const std::string& path) {
   return {};
 }
 
-/// The rows of a region, or one that says that it is held.
+/// Adds the rows of a region, or a single row if the region is held.
 void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, TissuePreset preset,
                 const TissueParameters& used, bool held) {
   if (held) {
@@ -96,10 +96,10 @@ void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, Tiss
   row("friction_viscous_to_mm_per_s", &TissueParameters::friction_viscous_to_mm_per_s, "mm/s");
 }
 
-/// The needle's stiffness, given or from its section.
+/// Adds the needle's stiffness, given by the scenario or computed from the section.
 void add_section(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
   const auto section = needle_section(choice);
-  if (!section) return;  // compile() has seen it succeed
+  if (!section) return;  // cannot happen: compile() has checked the section
   const Cannula tube = cannula_of(choice);
   std::string from = fmt::format("tube of {:.3g} mm outer and {:.3g} mm inner diameter, E {:g} GPa", choice.diameter_mm,
                                  tube.lumen_diameter_mm, choice.young_GPa);
@@ -121,10 +121,10 @@ void add_guide(std::vector<ParameterRow>& rows, const TemplateGrid& grid) {
                   source(grid.distance_mm == standard.distance_mm)});
 }
 
-/// Numbers that a model of the needle finds for itself.
+/// Adds the numbers that the tetrahedral needle model calibrates itself.
 void add_tet(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
   const auto section = needle_section(choice);
-  if (!section) return;  // compile() has seen it succeed
+  if (!section) return;  // cannot happen: compile() has checked the section
   const int segments = choice.elements > 0 ? choice.elements : default_needle_elements(word(choice.model)).value();
   const auto built = TetNeedle::build(*section, segments, 1);
   if (!built) return;

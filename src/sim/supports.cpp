@@ -85,7 +85,7 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
         "The outer faces of the body are held: " + count_text(outer.size()) +
         ". The perineal face (facing inferior, below the gland) and what lies within 30 mm of an entry are free.");
   } else if (mode == OuterSupport::sides) {
-    // No anatomy to go by: hold what lies on the far side of the body as the first needle sees it.
+    // Without known anatomy, hold the outer faces of the far half of the body, seen along the first needle.
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = -low;
     for (const Vec3& x : mesh.nodes) {

@@ -10,7 +10,7 @@ namespace stylet {
 
 namespace {
 
-constexpr double kBeside_mm = 1e-3;  ///< so far from a surface a place is on one side of it for certain
+constexpr double kBeside_mm = 1e-3;  ///< a point this far from a surface is safely on one side of it
 
 }  // namespace
 

@@ -7,7 +7,7 @@ namespace {
 using test::box_scenario;
 using test::compiled;
 
-/// What a whole insertion warns of.
+/// All warnings of a complete insertion.
 std::string warnings_of(const Scenario& scenario) {
   struct Nobody : RunObserver {
     Result<> on_step(const Step&) override { return Ok{}; }
@@ -45,7 +45,7 @@ TEST(UnbrokenSurface, nothing_is_said_of_surfaces_that_break) {
   EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "pressed the surface"));
 }
 
-/// The way that the warning names is that of the tip past the place where the surface lies at rest.
+/// The distance in the warning is the distance of the tip past the rest position of the surface.
 TEST(UnbrokenSurface, the_way_is_no_longer_than_the_base_went_in) {
   Scenario s = with("body", 50.0);
   s.insertions[0].depth_mm = 9.0;
