@@ -14,7 +14,7 @@ namespace stylet {
 
 namespace {
 
-/// Refuses structures that cannot be one where the mesher would use them; notes what looks odd about the others.
+/// Checks the structures that the mesher will use (check_roi()), and adds a note for each that looks odd.
 Result<> check_used(const ContourSet& contours, const MeshOptions& options, std::vector<std::string>& notes) {
   const auto choice = choose_structures(contours, options);
   if (!choice) return choice.error();

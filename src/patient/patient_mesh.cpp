@@ -48,7 +48,7 @@ MeshReport report_as_is(const TetMesh& mesh) {
   return report;
 }
 
-/// Whether a model has a region whose motion is told: the gland, its zones, a planning volume or an unnamed label.
+/// Whether a mesh has a target, whose motion is reported: the gland, its zones, a planning volume or an unnamed label.
 bool has_target(const TetMesh& mesh) {
   return std::any_of(mesh.regions.begin(), mesh.regions.end(),
                      [](const std::string& r) { return is_target_region(r) || r.starts_with("label_"); });

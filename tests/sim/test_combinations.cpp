@@ -22,7 +22,7 @@ Scenario scenario_with(const std::string& method, const std::string& engine, con
   s.coupling.tolerance = 1e-9;  // the error after the staggered solver's slow iterations is many times larger
   s.needle.model = choice<NeedleModel>(needle).value();
   s.tissue_model.element = ElementChoice::p1;    // the engines with a full inverse need it
-  s.tissue_model.preset = TissuePreset::linear;  // the only preset that all methods support fully
+  s.tissue_model.preset = TissuePreset::linear;  // stiffening needs near-field and the coupled solver
   s.needle.elements = needle == "tet" ? 48 : 12;
   return s;
 }
