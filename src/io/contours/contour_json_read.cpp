@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contour JSON, reading (docs/formats.md).
+// Reader of contour JSON (docs/formats.md).
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 #include "stylet/core/nearest_name.hpp"
@@ -34,7 +34,7 @@ Result<> check_keys(const Json& object, std::span<const std::string> known, cons
   return Ok{};
 }
 
-/// A required string.
+/// The value of a key that must be a string.
 Result<std::string> string_at(const Json& object, const char* key, const std::string& where) {
   if (!object.contains(key)) {
     return input_error(where, fmt::format("the key '{}' is missing", key), "Add it (docs/formats.md).");
@@ -126,13 +126,13 @@ Result<Roi> parse_structure(const Json& json, std::size_t position, const std::s
   return roi;
 }
 
-/// The name of a structure, whatever else may be wrong with it; empty where it has none.
+/// The name of a structure, even if the structure has other errors; empty if it has no name.
 std::string name_of(const Json& structure) {
   const bool named = structure.is_object() && structure.contains("name") && structure["name"].is_string();
   return named ? trimmed(structure["name"].get<std::string>()) : std::string();
 }
 
-/// A structure, with the way to do without it where it cannot be read.
+/// Reads a structure. If it has an error, the message also says how to leave the structure out.
 Result<Roi> parse_named_structure(const Json& json, std::size_t position, const std::string& source) {
   Result<Roi> roi = parse_structure(json, position, source);
   if (roi || name_of(json).empty()) return roi;
@@ -182,7 +182,7 @@ Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::sp
   try {
     json = Json::parse(file);
   } catch (const Json::exception& error) {
-    // The library's text names line and column; the id in brackets before it is of no use to the reader.
+    // The library's message names line and column; the error id in brackets before it is removed.
     const std::string text = error.what();
     const auto start = text.find("] ");
     return input_error(source, "not valid JSON: " + (start == std::string::npos ? text : text.substr(start + 2)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DICOM RT Structure Set, reading (DICOM PS3.3 A.19, C.8.8.5, C.8.8.6, C.8.8.8).
+// Reader of DICOM RT Structure Sets (DICOM PS3.3 A.19, C.8.8.5, C.8.8.6, C.8.8.8).
 #include "detail/dicom.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
@@ -20,16 +20,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "DICM" after the preamble of 128 bytes (DICOM PS3.10 7.1).
+/// Whether a file has the mark "DICM" after a preamble of 128 bytes (DICOM PS3.10 7.1).
 bool has_dicom_mark(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 132> head{};
   return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
 }
 
-/// Points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
+/// The points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
 Result<Contour> parse_points(DcmItem& item, const std::string& where) {
-  const char* data = nullptr;  // the whole value at once: fetching it number by number takes quadratic time
+  const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
   if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
     return input_error(where, "the contour has no points (ContourData is missing or empty)",
                        "Export the structure set again.");
@@ -59,7 +59,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
     return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
                        "Export the structure set again; the file is damaged.");
   }
-  // Some programs repeat the first point at the end.
+  // Some programs repeat the first point at the end; the copies are dropped.
   while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
     contour.points.pop_back();
   }
@@ -71,7 +71,7 @@ struct RoiHeader {
   std::string frame_of_reference;
 };
 
-/// Reads the closed contours of one ROIContourSequence item into `roi`; says in the set what was passed over.
+/// Reads the closed contours of one ROIContourSequence item into `roi`; adds a note to the set on what it ignored.
 Result<> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
   const std::string& source = set.source;
   std::map<std::string, int> passed_over;
@@ -111,7 +111,7 @@ Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
                      "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours.");
 }
 
-/// The first structure decides the frame of reference.
+/// Checks that a structure has the frame of reference of the set, which is that of its first structure.
 Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& set) {
   if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
   if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
@@ -130,7 +130,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
   OFCondition status = file.loadFile(path.c_str());
   if (status.good()) status = file.loadAllDataIntoMemory();
   DcmDataset& data = *file.getDataset();
-  // What the file is matters more than where it breaks off.
+  // Check the kind of file first, because that error is more helpful than one about where the file is truncated.
   if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
     Result<> right_kind = check_is_structure_set(data, source);
     if (!right_kind) return right_kind.error();
@@ -142,7 +142,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
                        "Copy or export it again; it is truncated or damaged.");
   }
-  data.convertToUTF8();  // a failure leaves the bytes as they are
+  data.convertToUTF8();  // on failure the bytes stay unchanged
 
   ContourSet set;
   set.source = source;

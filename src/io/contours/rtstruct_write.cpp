@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DICOM RT Structure Set, writing (DICOM PS3.3 A.19). Implicit VR little endian, because explicit VR limits ContourData
-// (VR DS) to 64 KiB, which a body outline exceeds.
+// Writer of DICOM RT Structure Sets (DICOM PS3.3 A.19). It uses implicit VR little endian, because explicit VR limits
+// ContourData (VR DS) to 64 KiB, which a body outline exceeds.
 #include "detail/text.hpp"
 #include "detail/whole_file.hpp"
 #include "stylet/io/contours_io.hpp"
@@ -21,9 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double max_coordinate_mm = 1e6;  // DS holds 16 characters: 1e6 with four decimals is safe
-constexpr std::size_t max_name = 64;       // VR LO
+constexpr std::size_t max_name = 64;       // length of VR LO
 
-/// A number as DS: four decimals, no trailing zeros.
+/// A number as text of VR DS: four decimals without trailing zeros.
 std::string decimal_string(double value) {
   std::string text = fmt::format("{:.4f}", value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -43,8 +43,8 @@ std::string contour_data(const Contour& contour) {
   return text;
 }
 
-/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2): the same contours
-/// give the same file, and nothing of this computer gets into it.
+/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2). The same contours
+/// give the same file, and the identifier contains nothing about this computer.
 std::string derived_uid(const std::string& content, std::string_view role) {
   static const boost::uuids::uuid name_space{
       {0x8f, 0x14, 0xe4, 0x5f, 0xce, 0xea, 0x46, 0x7a, 0x9b, 0x30, 0x51, 0x0c, 0x6a, 0x2d, 0x77, 0x19}};
@@ -54,7 +54,7 @@ std::string derived_uid(const std::string& content, std::string_view role) {
   return "2.25." + number.str();
 }
 
-/// Everything that makes one structure set differ from another.
+/// Text with all data of a structure set, from which its identifiers are derived.
 std::string fingerprint(const ContourSet& set) {
   std::string text = set.label + '\n' + set.frame_of_reference + '\n';
   for (const Roi& roi : set.rois) {
@@ -85,7 +85,7 @@ Result<> check(const ContourSet& set, const std::string& where) {
   return Ok{};
 }
 
-/// ROI numbers of the set, or 1, 2, … when they are not unique.
+/// The ROI numbers of the set, or 1, 2, … if those are not unique.
 std::vector<int> roi_numbers(const ContourSet& set) {
   std::vector<int> numbers;
   for (const Roi& roi : set.rois) numbers.push_back(roi.number);
@@ -96,7 +96,7 @@ std::vector<int> roi_numbers(const ContourSet& set) {
   return numbers;
 }
 
-/// Puts attributes into an item and remembers the first failure.
+/// Writes attributes into an item and keeps the first failure.
 class Filler {
  public:
   void text(DcmItem& item, const DcmTagKey& tag, const std::string& value) {

@@ -50,7 +50,7 @@ std::vector<DcmItem*> items_of(DcmItem& parent, const DcmTagKey& tag) {
 
 namespace {
 
-/// SOP class and modality without the rest: quick even for a folder of a thousand slices.
+/// SOP class and modality of a file, read without its other data, which is fast even for a folder of a thousand slices.
 struct DicomKind {
   std::string sop_class, modality;
 };

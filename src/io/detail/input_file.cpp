@@ -28,7 +28,7 @@ const char* what_it_is(fs::file_type type) {
   }
 }
 
-/// Whether `inner` lies in `folder` or below it; both without links.
+/// Whether `inner` is in `folder` or below it. Both paths must be free of symbolic links.
 bool is_below(const fs::path& inner, const fs::path& folder) {
   const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), inner.begin(), inner.end());
   return rest == folder.end();

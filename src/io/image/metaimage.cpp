@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MetaImage; the header by MetaIO (the format's own library, part of VTK). Its frame is LPS, as ITK reads and writes
-// it.
+// Reader of MetaImage; MetaIO (the format's own library, part of VTK) reads the header. The file's frame is LPS, as in
+// ITK.
 #include "detail/input_file.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
@@ -16,7 +16,7 @@
 namespace stylet::detail {
 
 namespace fs = std::filesystem;
-using namespace vtkmetaio;  // NOLINT(google-build-using-namespace): where VTK keeps MetaIO
+using namespace vtkmetaio;  // NOLINT(google-build-using-namespace): VTK's namespace for MetaIO
 
 namespace {
 
@@ -65,7 +65,7 @@ double unit_mm(MET_DistanceUnitsEnumType unit) {
   }
 }
 
-/// zlib or gzip to exactly `size` bytes; shorter when the data end too early.
+/// Unpacks zlib or gzip data to `size` bytes; fewer if the data end too early.
 std::string inflated(std::string_view packed, std::size_t size) {
   std::string out(size, '\0');
   z_stream stream{};
@@ -74,7 +74,7 @@ std::string inflated(std::string_view packed, std::size_t size) {
   stream.next_out = reinterpret_cast<Bytef*>(out.data());
   std::size_t in_left = packed.size(), out_left = size;
   int status = Z_OK;
-  while (status == Z_OK && out_left > 0) {  // zlib counts in 32 bits
+  while (status == Z_OK && out_left > 0) {  // in portions, because zlib counts bytes in 32 bits
     stream.avail_in = static_cast<uInt>(std::min<std::size_t>(in_left, 1 << 30));
     stream.avail_out = static_cast<uInt>(std::min<std::size_t>(out_left, 1 << 30));
     const std::size_t in_given = stream.avail_in, out_given = stream.avail_out;
@@ -87,16 +87,16 @@ std::string inflated(std::string_view packed, std::size_t size) {
   return out;
 }
 
-/// What the header says of how to read the rest, looked at before MetaIO does: it takes NDims for the length of lists
-/// that have room for ten, and opens any data file.
+/// The fields of the header that must be checked before MetaIO reads it: MetaIO uses NDims as the length of lists that
+/// have room for ten numbers, and opens any data file.
 struct Announced {
   double dimensions = 0;
   std::string data_file;
-  std::size_t header_bytes = 0;  ///< the voxels of a file with header and data in one begin there
+  std::size_t header_bytes = 0;  ///< position of the voxels in a file with header and data
 };
 
-/// MetaIO separates at '=' or ':', whichever comes first, and knows its keys in one spelling only. Where it and this
-/// function might see different lines the header is refused.
+/// Reads these fields. MetaIO separates key and value at '=' or ':', whichever comes first, and knows its keys in one
+/// spelling only. A header in which MetaIO might see other lines than this function is an error.
 Result<Announced> announced_in(const fs::path& path) {
   const std::string source = path.string();
   constexpr std::size_t kLongest = 4095;
@@ -125,7 +125,7 @@ Result<Announced> announced_in(const fs::path& path) {
                            "Export one 3D label mask; the header is damaged.");
       }
     }
-    if (key == "ElementDataFile") {  // the last line of a header
+    if (key == "ElementDataFile") {  // always the last line of a header
       found.data_file = value;
       found.header_bytes = static_cast<std::size_t>(file.tellg());
       break;
@@ -140,7 +140,7 @@ Result<Announced> announced_in(const fs::path& path) {
   return found;
 }
 
-/// The file in which the voxels are. Errors: a list or a pattern of files, and those of data_file_of().
+/// The file with the voxels. Errors: a list or a pattern of files; errors of data_file_of().
 Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
   if (lower(name) == "local") return path;
   if (lower(name).starts_with("list") || name.find('%') != std::string::npos) {
@@ -151,7 +151,9 @@ Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
   return data_file_of(path, name);
 }
 
-/// The voxels' bytes as the file orders them. MetaIO itself leaves voxels uninitialised where a file ends too early.
+/// Reads the bytes of the voxels in the file's order. MetaIO is not used here, because it leaves voxels uninitialised
+/// if
+/// the file ends too early.
 Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path, std::size_t header_bytes,
                                 MetaImage& image, std::size_t size) {
   const std::string source = path.string();
@@ -163,7 +165,7 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
   std::string bytes(std::istreambuf_iterator<char>(file), {});
   std::size_t start = local ? header_bytes : static_cast<std::size_t>(std::max(image.HeaderSize(), 0));
   if (image.HeaderSize() < 0 && !image.CompressedData() && bytes.size() >= size)
-    start = bytes.size() - size;  // "-1": at the end
+    start = bytes.size() - size;  // header size -1 means that the voxels are at the end
   bytes.erase(0, std::min(start, bytes.size()));
   if (image.CompressedData()) bytes = inflated(bytes, size);
   if (bytes.size() < size) {
@@ -187,7 +189,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
   const Result<fs::path> data_path = voxel_file(path, announced->data_file);
   if (!data_path) return data_path.error();
   MetaImage image;
-  // The header first: a refusal must not wait for gigabytes, and says more than a failure in the data.
+  // Read the header first, so that an error does not need gigabytes of data to be read, and is more precise.
   if (!image.Read(path.c_str(), false)) return damaged("header");
   std::vector<std::size_t> sizes;
   for (int d = 0; d < image.NDims(); ++d) sizes.push_back(static_cast<std::size_t>(std::max(image.DimSize(d), 0)));

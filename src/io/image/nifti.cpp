@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NIfTI-1 and NIfTI-2, by VTK. World coordinates of the file are RAS; ours are LPS.
+// Reader of NIfTI-1 and NIfTI-2 with VTK. World coordinates of the file are RAS and are converted to LPS.
 #include "detail/parsers.hpp"
 #include "detail/vtk_messages.hpp"
 #include "image/voxels.hpp"
@@ -52,10 +52,10 @@ Result<VoxelType> voxel_type(vtkImageData& image, const std::string& source) {
   }
 }
 
-/// [mm] per unit of the header's length; 0 when the code is none of the standard's.
+/// Length [mm] of the unit that the header states; 0 for a code that the standard does not have.
 double unit_mm(int code) {
   switch (code & 0x07) {
-    case 0:  // not stated: mm by universal use
+    case 0:  // not stated; by convention mm
     case 2:
       return 1.0;
     case 1:
@@ -67,7 +67,7 @@ double unit_mm(int code) {
   }
 }
 
-/// One component of all voxels, out of several that lie beside each other.
+/// One component of all voxels of an image with interleaved components.
 std::vector<char> component_of(vtkImageData& image, std::size_t component) {
   const std::size_t bytes = static_cast<std::size_t>(image.GetScalarSize());
   const std::size_t step = bytes * static_cast<std::size_t>(image.GetNumberOfScalarComponents());
@@ -77,7 +77,7 @@ std::vector<char> component_of(vtkImageData& image, std::size_t component) {
   return values;
 }
 
-/// The file, unpacked, holds at least so many bytes. VTK fills what is missing with zeros and says nothing.
+/// Whether the file, unpacked, has at least `wanted` bytes. VTK would silently replace missing bytes by zeros.
 bool holds_bytes(const std::filesystem::path& path, double wanted) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) return false;
@@ -102,7 +102,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   };
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());
-  reader->TimeAsVectorOn();  // the volumes of a series become components, of which one is taken
+  reader->TimeAsVectorOn();  // the volumes of a series become components, one of which is used
   reader->UpdateInformation();
   if (messages->failed()) return damaged();
   vtkNIFTIImageHeader& header = *reader->GetNIFTIHeader();
@@ -120,7 +120,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
                        "Save the image again, e.g. from 3D Slicer.");
   }
 
-  // The standard's method 3 (sform) comes before method 2 (qform). VTK's matrices act on index × spacing.
+  // The standard's method 3 (sform) has priority over method 2 (qform). VTK's matrices apply to index × spacing.
   vtkMatrix4x4* form = header.GetSFormCode() > 0 ? reader->GetSFormMatrix() : nullptr;
   if (form == nullptr && header.GetQFormCode() > 0) form = reader->GetQFormMatrix();
   if (form == nullptr) {

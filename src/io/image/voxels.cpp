@@ -17,21 +17,24 @@ namespace stylet::detail {
 
 namespace {
 
-// A mask is made of pieces, so that most neighbours have the same label; the grey values of a picture vary from voxel
-// to voxel. Above so many different values the one or the other decides; above the second number it is a picture
-// anyway.
+// In a mask most neighbouring voxels have the same label, whereas grey values vary from voxel to voxel. An image with
+// at
+// most kFewValues different values is a mask, an image with more than kManyValues has grey values; between them the
+// share
+// of equal neighbours decides.
 constexpr std::size_t kFewValues = 16;
 constexpr std::size_t kManyValues = 256;
-constexpr double kAlikeInMask = 1.0 / 3.0;   // share of neighbours along i that have the same label, outside background
-constexpr std::size_t kMostCounted = 65536;  // different values that are counted for a message
-constexpr double kWhole = 1e-3;              // from a whole number, in what counts as one
-constexpr double max_shear = 1e-3;           // |cosine| between two axes; headers are single precision
+constexpr double kAlikeInMask =
+    1.0 / 3.0;  // least share of equal neighbours along i, outside the background, in a mask
+constexpr std::size_t kMostCounted = 65536;  // limit for counting different values for a message
+constexpr double kWhole = 1e-3;              // largest distance from a whole number
+constexpr double max_shear = 1e-3;           // largest |cosine| between two axes; headers have single precision
 
 const char* const mask_cure =
     "Name a label mask: 0 outside, one whole number per structure; a probability map must be cut at a threshold first, "
     "e.g. in 3D Slicer.";
 
-/// The values of an image as numbers, whatever their type in the file.
+/// The values of an image as numbers; T is their type in the file.
 template <class T>
 struct Values {
   const Voxels& voxels;
@@ -45,7 +48,7 @@ std::string voxel_name(const Voxels& voxels, std::size_t n) {
   return fmt::format("voxel ({}, {}, {})", n % nx, n / nx % ny, n / (nx * ny));
 }
 
-/// Says how many different values there are, and within what.
+/// The error for an image with grey values; it gives the number and the range of its values.
 template <class T>
 Error is_picture(const Values<T>& value, std::size_t count, const std::string& why) {
   std::unordered_set<double> different;
@@ -64,7 +67,7 @@ Error is_picture(const Values<T>& value, std::size_t count, const std::string& w
                      mask_cure);
 }
 
-/// Whether labels as many as these look like grey values.
+/// Whether labels with this number of different values look like grey values.
 bool varies_like_picture(const std::vector<std::uint16_t>& labels, std::size_t different) {
   if (different <= kFewValues) return false;
   if (different > kManyValues) return true;
@@ -84,7 +87,7 @@ Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
   const std::size_t count = labels.size();
   std::vector<bool> seen(std::numeric_limits<std::uint16_t>::max() + std::size_t{1});
   std::size_t different = 0;
-  std::optional<std::size_t> outside;  // the first voxel whose value no label can have
+  std::optional<std::size_t> outside;  // the first voxel whose value is not a possible label
   for (std::size_t n = 0; n < count; ++n) {
     const double v = value(n), whole = std::round(v);
     if (!std::isfinite(v)) {
