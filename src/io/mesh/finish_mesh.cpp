@@ -12,15 +12,15 @@ namespace stylet::detail {
 
 namespace {
 
-// Without a stated unit a mesh must be believable as the tissue around a needle.
+// A mesh without a stated unit must have a plausible size for the tissue around a needle.
 constexpr double smallest_believable_mm = 10.0;
 constexpr double largest_believable_mm = 2000.0;
 
-/// Refuses a mesh whose size shows that its unit is not mm, unless the unit is known.
+/// Error if the size of a mesh without a known unit shows that the unit is not mm.
 Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : nodes) box.extend(x);
-  if (nodes.empty() || !box.sizes().allFinite()) return Ok{};  // check_mesh() has the words for these
+  if (nodes.empty() || !box.sizes().allFinite()) return Ok{};  // check_mesh() reports these errors
   const double extent = box.sizes().maxCoeff();
   if (extent >= smallest_believable_mm && extent <= largest_believable_mm) return Ok{};
   const auto believable = [&](double scale) { return extent * scale >= 40.0 && extent * scale <= 1500.0; };
@@ -40,7 +40,7 @@ Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
       cure);
 }
 
-/// Drops nodes that no tetrahedron uses but another element does; nodes nobody uses stay and are refused later.
+/// Drops nodes that only other elements than tetrahedra use. Nodes without any element stay and are an error later.
 Index drop_foreign_nodes(RawMesh& raw) {
   if (raw.used_elsewhere.empty()) return 0;
   std::vector<bool> keep(raw.nodes.size());
@@ -67,7 +67,7 @@ Index drop_foreign_nodes(RawMesh& raw) {
   return dropped;
 }
 
-/// Region numbers of the file to 0, 1, … in ascending order, with names.
+/// Converts the file's region numbers to 0, 1, … in ascending order, with names.
 void set_regions(const RawMesh& raw, TetMesh& mesh) {
   std::map<int, int> index;
   for (const int tag : raw.tag) index[tag] = 0;
@@ -76,7 +76,7 @@ void set_regions(const RawMesh& raw, TetMesh& mesh) {
     const auto name = raw.tag_names.find(tag);
     std::string text =
         name != raw.tag_names.end() && !name->second.empty() ? name->second : fmt::format("region {}", tag);
-    // Two numbers may carry one name; regions need their own.
+    // Two numbers may have the same name in the file, but regions need different names.
     if (mesh.region_index(text) >= 0) text += fmt::format(" {}", tag);
     mesh.regions.push_back(std::move(text));
   }
@@ -90,7 +90,9 @@ bool numbers_in_range(const TetMesh& mesh) {
   });
 }
 
-/// Some programs list the nodes the other way round; only when all do, it is a convention and no damage.
+/// Inverts all tetrahedra if all of them are inverted, which is a convention of some programs; if only some are, the
+/// mesh
+/// is damaged.
 bool turn_if_all_inverted(TetMesh& mesh) {
   if (mesh.tets.empty() || !numbers_in_range(mesh)) return false;
   for (Index t = 0; t < mesh.tet_count(); ++t) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double weld_mm = 1e-4;
 
-/// Points that round to the same multiple of weld_mm become one.
+/// Merges points that round to the same multiple of weld_mm.
 void weld(Surface& surface) {
   using Key = std::array<std::int64_t, 3>;
   const auto key = [&](Index p) {
@@ -40,7 +40,7 @@ void weld(Surface& surface) {
   });
 }
 
-/// Every edge is used once in each direction.
+/// Whether every edge is used once in each direction.
 bool is_closed(const Surface& surface) {
   std::vector<std::pair<Index, Index>> edges, reversed;
   for (const auto& t : surface.triangles) {

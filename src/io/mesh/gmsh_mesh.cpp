@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// gmsh MSH 1, 2.2, 4.1 (ASCII, binary) and MEDIT .mesh, by the gmsh library.
+// Reader of gmsh MSH 1, 2.2, 4.1 (ASCII, binary) and MEDIT .mesh with the gmsh library.
 #include "detail/text.hpp"
 #include "mesh/gmsh_library.hpp"
 #include "mesh/msh_numbers.hpp"
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr int tetrahedron_4 = 4, tetrahedron_10 = 11;  // gmsh element types
 
-/// Region numbers and names of volumes: the volume's first physical group. Without groups, or when one group without a
-/// name holds several volumes (gmsh wants some group to save a mesh), the volumes themselves.
+/// Region numbers and names of volumes, from the volume's first physical group. If there are no groups, or if one group
+/// without a name holds several volumes (gmsh needs some group to save a mesh), each volume is a region.
 class Regions {
  public:
   explicit Regions(const GmshLibrary& gmsh) : gmsh_(gmsh) {
@@ -30,7 +30,7 @@ class Regions {
   [[nodiscard]] std::pair<int, std::string> of(int volume) const {
     std::vector<int> groups;
     if (!by_volume_) groups = gmsh_.physical_groups_of(3, volume);
-    // Minus keeps the number of a volume outside all groups apart from those of the groups.
+    // The minus sign distinguishes the number of a volume outside all groups from the numbers of groups.
     if (groups.empty()) return {by_volume_ ? volume : -volume, fmt::format("region {}", volume)};
     return {groups.front(), gmsh_.physical_name(3, groups.front())};
   }
@@ -40,7 +40,7 @@ class Regions {
   bool by_volume_ = true;
 };
 
-/// Numbers of all elements that gmsh took from a file, of every dimension.
+/// Numbers of all elements of every dimension that gmsh has read from a file.
 std::vector<std::size_t> element_numbers(const GmshLibrary& gmsh) {
   std::vector<std::size_t> numbers;
   for (const auto& [dimension, entity] : gmsh.entities(-1)) {
@@ -104,8 +104,10 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   return raw;
 }
 
-/// gmsh chooses its reader by extension and first bytes, takes what it does not know for a script, and runs a script
-/// called FILE.opt beside the file; scripts may start programs. Lets through only what it will take for a mesh.
+/// Checks that gmsh will treat a file as a mesh and not as a script, because scripts can start programs. gmsh chooses
+/// its
+/// reader by extension and first bytes, runs unknown content as a script, and also runs a script FILE.opt in the same
+/// folder.
 Result<> check_harmless(const fs::path& path, bool medit) {
   const std::string source = path.string();
   const std::string ending = path.extension().string();
@@ -130,7 +132,8 @@ Result<> check_harmless(const fs::path& path, bool medit) {
   return Ok{};
 }
 
-/// How many tetrahedra a MEDIT file announces. gmsh takes a file that ends too early for a smaller mesh.
+/// The number of tetrahedra that a MEDIT file announces, to detect a truncated file, which gmsh reads as a smaller
+/// mesh.
 std::size_t announced_tetrahedra(const fs::path& path) {
   std::ifstream file(path);
   std::size_t announced = 0, count = 0;
@@ -154,7 +157,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
     gmsh.merge(source);
     problem = gmsh.first_error();
     if (problem.empty()) {
-      if (!medit) {  // which has no numbers
+      if (!medit) {  // MEDIT elements have no numbers
         const auto nodes_of = [&gmsh](int type) { return gmsh.element_type(type).nodes; };
         if (Result<> numbered = check_element_numbers(path, element_numbers(gmsh), nodes_of); !numbered)
           return numbered.error();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL, PLY, OBJ, VTP, by VTK.
+// Reader of STL, PLY, OBJ and VTP with VTK.
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/surfaces.hpp"
@@ -21,7 +21,7 @@ namespace stylet::detail {
 
 namespace {
 
-/// The file's polygons; `header` receives comments that may name the frame.
+/// Reads the file's polygons; `header` receives comments that may state the frame.
 template <class Reader>
 vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string& header, unsigned long& error) {
   vtkNew<Reader> reader;
@@ -39,7 +39,9 @@ vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string
   return reader->GetOutput();
 }
 
-/// Binary STL states its triangles, text ends with a word; VTK reads what is there.
+/// Checks that an STL file is complete, since VTK reads truncated files without an error: a binary file states the
+/// number
+/// of triangles, and a text file ends with a keyword.
 Result<> check_stl_is_whole(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(file), {});

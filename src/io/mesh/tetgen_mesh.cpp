@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TetGen .node and .ele (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line per node or
-// tetrahedron; '#' begins a comment; numbers start at 0 or 1.
+// Reader of TetGen .node and .ele files (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line
+// per
+// node or tetrahedron; '#' begins a comment; numbering starts at 0 or 1.
 #include "detail/input_file.hpp"
 #include "detail/text.hpp"
 #include "mesh/raw_mesh.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lines of numbers, comments and blank lines left out; every error knows its line.
+/// Reads lines of numbers; skips comments and blank lines. Errors name the line.
 class NumberLines {
  public:
   explicit NumberLines(const fs::path& path) : file_(path), name_(path.string()) {}
@@ -59,7 +60,7 @@ Error wrong_line(const NumberLines& lines, std::string what) {
   return input_error(lines.place(), std::move(what), "Correct the file at that place.");
 }
 
-/// A whole number 0…2³¹-1, or none.
+/// Converts to a whole number 0…2³¹-2; empty if it is not one.
 std::optional<Index> whole(double value) {
   if (!(value >= 0.0 && value < 2147483647.0) || value != std::floor(value)) return std::nullopt;
   return static_cast<Index>(value);

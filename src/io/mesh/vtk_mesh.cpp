@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTU and legacy VTK unstructured grids, by VTK.
+// Reader of VTU and legacy VTK unstructured grids with VTK.
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/raw_mesh.hpp"
@@ -21,7 +21,7 @@ namespace stylet::detail {
 
 namespace {
 
-/// Cell arrays that hold region numbers, ours first, then those other programs write.
+/// Names of cell arrays with region numbers: first Stylet's own, then those of other programs.
 constexpr std::array<const char*, 7> region_arrays{"region",    "Region",     "CellEntityIds", "gmsh:physical",
                                                    "medit:ref", "MaterialID", "label"};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTU, by VTK: appended raw data, zlib. Frame and unit travel as field data.
+// Writer of VTU files with VTK: appended raw data, zlib; frame and unit are field data.
 #include "detail/whole_file.hpp"
 #include "stylet/io/mesh_io.hpp"
 
@@ -26,7 +26,7 @@ void add_text(vtkFieldData& fields, const char* name, const std::vector<std::str
   fields.AddArray(array);
 }
 
-/// @param columns how many values a field must have
+/// @param columns required number of columns of each field: nodes or elements
 Result<> add_fields(vtkDataSetAttributes& attributes, const std::vector<MeshField>& fields, Index columns,
                     const std::string& where) {
   for (const MeshField& field : fields) {

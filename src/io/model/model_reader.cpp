@@ -30,8 +30,9 @@ void demand(bool condition, const std::string& what) {
   if (!condition) throw NotAModel(what);
 }
 
-/// Reads arrays by their places, none larger than the file. What is wrong is thrown: NotAModel, NotSealed, or what the
-/// JSON library throws.
+/// Reads the arrays of a model file by their positions; none can be larger than the file. Throws NotAModel, NotSealed
+/// or
+/// exceptions of the JSON library.
 class Reader {
  public:
   Reader(const SealedFile& file, const Json& index) : file_(file), arrays_(index.at("arrays")) {}
@@ -57,7 +58,7 @@ class Reader {
 
   [[nodiscard]] bool has(const std::string& name) const { return arrays_.contains(name); }
 
-  /// @param shape 0 where any extent will do
+  /// Reads an array. @param shape expected extents; 0 = any
   template <class Number>
   [[nodiscard]] std::vector<Number> numbers(const std::string& name, const std::vector<std::uint64_t>& shape) const {
     const Place place = of(name);
@@ -80,14 +81,14 @@ class Reader {
     return mesh;
   }
 
-  /// As many rows as columns.
+  /// Reads a square matrix.
   [[nodiscard]] MatX square(const std::string& name) const {
     const std::uint64_t rows = of(name).shape.at(0);
     const auto values = numbers<double>(name, {rows, rows});
     return Eigen::Map<const MatX>(values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
   }
 
-  /// A symmetric matrix of which the lower triangle is in the file, column by column.
+  /// Reads a symmetric matrix, whose lower triangle is in the file column by column.
   [[nodiscard]] MatX symmetric(const std::string& name, Eigen::Index size, const Progress& progress) const {
     const Place place = of(name);
     const auto count = static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size + 1) / 2;

@@ -18,13 +18,13 @@ constexpr std::string_view kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz";
 constexpr std::size_t kLongestLine = 1000;
 
 constexpr double kNormTolerance = 1e-3;
-// Wider than any insertion, narrower than a mistaken unit.
+// Coordinates beyond this are a mistaken unit; no insertion is that large.
 constexpr double kFarthest_mm = 5000.0;
 constexpr double kLeastTravel_mm = 1.0;
 constexpr double kFastest_mm_per_s = 10e3;
 constexpr double kLongest_s = 36e3;
 
-/// One line of numbers.
+/// Parses one line of numbers.
 Result<MotionSample> parse_sample(std::string_view line, const std::string& where) {
   const auto fields = detail::split(line, ',');
   if (fields.size() != kMotionColumns.size()) {
@@ -65,7 +65,7 @@ Result<MotionSample> parse_sample(std::string_view line, const std::string& wher
   return sample;
 }
 
-/// What two samples show that one does not.
+/// Checks two consecutive samples: increasing times, plausible distance and speed.
 Result<> check_step(const MotionSample& before, const MotionSample& after, const std::string& where) {
   const double step = after.time_s - before.time_s;
   if (!(step > 0.0)) {
@@ -87,7 +87,7 @@ Result<> check_header(std::string_view line, const std::string& where) {
   for (const char c : detail::trimmed(line)) {
     if (c != ' ' && c != '\t') header += c;
   }
-  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // a mark that some spreadsheets write
+  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // byte order mark, which some spreadsheets write
   if (header == kHeader) return Ok{};
   if (header.size() > 100) header = header.substr(0, 100) + "…";
   for (char& c : header) {

@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kSchemaWidth = 110;
 
 struct TableText {
-  std::string_view pattern;  ///< of the keys in it
-  std::string_view header;   ///< with an example in place of a wildcard
+  std::string_view pattern;  ///< path of the table with wildcards
+  std::string_view header;   ///< the table's header with an example instead of a wildcard
   std::string_view about;
 };
 
@@ -47,13 +47,13 @@ constexpr std::array kTables{
     TableText{"output", "[output]", "What is kept of it."},
 };
 
-/// Characters as a reader counts them (UTF-8 code points).
+/// Number of characters (UTF-8 code points).
 std::size_t width(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// A comment of as many lines as it takes.
+/// A text as comment lines of at most kSchemaWidth columns.
 std::string comment(std::string_view text) {
   std::string out;
   std::string line = "#";
@@ -75,7 +75,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// "Young's modulus. 0.1 … 1000 kPa. Default: by region." and the key with a value, commented out.
+/// The comment on a key, such as "Young's modulus. 0.1 … 1000 kPa. Default: by region.", and the key with a value, also
+/// commented out.
 std::string key_text(const ScenarioKey& key, const std::string& name) {
   std::string about = capitalised(key.meaning);
   if (key.range.starts_with('"')) {
