@@ -24,7 +24,7 @@ class GmshLibrary {
   };
   struct Elements {
     int type = 0;
-    std::vector<std::size_t> tags, nodes;  ///< nodes: those of an element follow each other
+    std::vector<std::size_t> tags, nodes;  ///< the nodes of each element are consecutive
   };
   struct ElementType {
     std::string name;

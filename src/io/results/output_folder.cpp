@@ -26,7 +26,7 @@ Result<> write_all(const std::vector<File>& files, const fs::path& folder) {
   return Ok{};
 }
 
-/// The files under a hidden name beside the folder, which then takes its place in one step.
+/// Writes the files into a folder with a hidden name, which is then renamed to `folder` in one step.
 Result<> write_new_folder(const std::vector<File>& files, const fs::path& folder) {
   const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
   if (auto ready = prepare_folder(parent); !ready) return ready;

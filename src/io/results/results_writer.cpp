@@ -23,7 +23,7 @@ using namespace results;
 
 namespace {
 
-/// Puts the pictures into their folder; those of an earlier run that could not be drawn anew are removed.
+/// Writes the pictures into their folder. If there are none, the pictures of an earlier run are removed.
 Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
   std::error_code code;
   if (pictures.png.empty()) {
@@ -37,7 +37,7 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
   return Ok{};
 }
 
-/// Removes everything that an earlier run left but its run.h5. summary.json, which tells a finished run, goes first.
+/// Removes all results of an earlier run except its run.h5. summary.json, which marks a finished run, is removed first.
 Result<> remove_earlier_results(const fs::path& folder) {
   for (const char* name : {"summary.json", "report.html", "forces.csv", "gland.csv", "map.csv", "tissue.pvd",
                            "needle.pvd", "needle.vtp"}) {
@@ -51,8 +51,9 @@ Result<> remove_earlier_results(const fs::path& folder) {
   return Ok{};
 }
 
-/// Everything but run.h5, made from it and the summary: nothing can be in a picture or a table that is not in the
-/// recording, but for the gland's path, which follows from the forces there, and the map of the template's holes.
+/// Writes all files except run.h5, from run.h5 and the summary. Therefore pictures and tables show only recorded data,
+/// with
+/// two exceptions: the gland's path, which follows from the recorded forces, and the map of the template's holes.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
                               bool with_pictures, const HoleMap* map) {
@@ -85,7 +86,9 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   return Ok{};
 }
 
-/// A record with a number that is not finite cannot be told from one that never reached the disk.
+/// The error for a record with a number that is not finite, which a reader could not distinguish from a row that has
+/// not
+/// reached the disk.
 Error not_finite(const std::string& where, double time_s) {
   return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
                  "The simulation has lost its way before: look at the steps before this one.");
@@ -100,7 +103,7 @@ bool is_finite(const Frame& frame) {
   return finite;
 }
 
-/// Public calls do not throw; what libraries throw (memory, threads) becomes an error.
+/// Public calls do not throw: exceptions of libraries (memory, threads) become errors.
 template <class Work>
 auto guarded(const fs::path& folder, Work work) -> decltype(work()) {
   try {
@@ -118,7 +121,7 @@ struct ResultsWriter::Parts {
   Index nodes;
   std::function<MatX(const VecX&)> stress_of;
   Recorder recorder;
-  std::optional<HoleMap> map{};  ///< of the template's holes
+  std::optional<HoleMap> map{};  ///< map of the template's holes
   bool finished = false;
 };
 
@@ -130,7 +133,7 @@ Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folde
                                                            std::function<MatX(const VecX&)> stress_of) {
   return guarded(folder, [&]() -> Result<std::unique_ptr<ResultsWriter>> {
     if (auto ready = prepare_folder(folder); !ready) return ready.error();
-    // Nothing of an earlier run may ever stand beside the recording of this one, whenever this one is killed.
+    // Even if this run is killed, its recording must never be in one folder with other results of an earlier run.
     auto file = RunFileWriter::create(folder / "run.h5", info, mesh, [&] { return remove_earlier_results(folder); });
     if (!file) return file.error();
     auto parts =

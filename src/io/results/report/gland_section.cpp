@@ -12,7 +12,7 @@
 namespace stylet::results {
 namespace {
 
-constexpr int kGlandDigits = 3;  // mm, degrees, per cent
+constexpr int kGlandDigits = 3;  // of shifts [mm], turns [°] and the volume change [%]
 
 std::string number_cell(double value) { return "<td class=\"number\">" + fixed(value, kGlandDigits) + "</td>"; }
 
@@ -38,7 +38,7 @@ std::string turn_rows(const GlandMotion& gland) {
   return html;
 }
 
-/// The gland's story in two or three sentences.
+/// Two or three sentences about the gland's motion.
 std::string tell(const RunRecording& run, const GlandMotion& gland) {
   std::string text;
   if (gland.shift_at_break_mm) {

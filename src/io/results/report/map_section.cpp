@@ -16,8 +16,8 @@ std::string map_cell(const std::optional<double>& mm, int digits) {
 std::optional<double> length(const std::optional<Vec3>& v) { return v ? std::optional(v->norm()) : std::nullopt; }
 
 std::string rows(const HoleMap& map) {
-  constexpr int kWayDigits = 1;    // mm: of straight ways
-  constexpr int kShiftDigits = 2;  // mm: of what is predicted
+  constexpr int kWayDigits = 1;    // lengths along straight ways [mm]
+  constexpr int kShiftDigits = 2;  // predicted shifts [mm]
   std::string html;
   for (const HoleRow& row : map.holes) {
     const bool has_way = row.depth_mm > 0.0;

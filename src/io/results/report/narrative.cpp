@@ -14,7 +14,7 @@
 namespace stylet::results {
 namespace {
 
-/// "a, b and c".
+/// Joins texts as "a, b and c".
 std::string join(const std::vector<std::string>& parts) {
   std::string text;
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -36,7 +36,7 @@ std::string spoken(const std::string& region) {
 /// breaks there is the skin.
 std::string surface(const std::string& region) { return is_surrounding(region) ? "skin" : region; }
 
-/// "0.42 N"; small forces without false digits.
+/// A force such as "0.42 N", with fewer digits for small forces.
 std::string newtons(double force) {
   return std::abs(force) < 0.005 ? "less than 0.01 N" : fmt::format("{:.2f} N", force);
 }
@@ -64,10 +64,10 @@ std::string tell_motion(const RunRecording& run, const Frame& deepest) {
   return text + ".";
 }
 
-/// Events on the way in, in the order they happened.
+/// Sentences about the events on the way in, in their order.
 std::string tell_events(const std::vector<Event>& events) {
   std::vector<std::string> clauses;
-  std::string pierced;  // region of the last puncture: its entry need not be told again
+  std::string pierced;  // region of the last puncture, whose region_entered event needs no further sentence
   for (const Event& e : events) {
     const std::string at = fmt::format(" at {:.1f} mm", e.depth_mm);
     const std::string force = " under an axial force of " + newtons(e.force_N);
@@ -133,7 +133,7 @@ std::string tell_target(const RunRecording& run) {
       s.target_shift_max_mm);
 }
 
-/// Where the tip came to lie in the tissue, beside where it was planned to be.
+/// A sentence about the tip error: the tip's place in the tissue compared with its planned place.
 std::string tell_tip_error(const RunRecording& run) {
   const auto& error = run.summary->tip_error_mm;
   if (!error) return {};
