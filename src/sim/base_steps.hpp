@@ -24,8 +24,7 @@ BaseSteps planned_steps(const Model& model, const PlannedInsertion& insertion);
 long deepest_step(const Model& model, const PlannedInsertion& insertion, const BaseSteps& motion);
 
 /// Tip error: the deepest material point of the needle's track minus the point that the tip of a rigid straight needle
-/// on
-/// the same base would reach in a patient that nothing has moved.
+/// on the same base would reach in a patient that nothing has moved.
 /// @param step the last step, with the needle at its deepest
 /// @return [mm] LPS; empty if the tip is not in the tissue
 std::optional<Vec3> tip_error_mm(const Insertion& insertion, const Step& step);

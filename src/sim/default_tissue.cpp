@@ -17,10 +17,8 @@ struct Row {
 constexpr std::string_view kBone = "bone; held, so its modulus has no effect";
 
 // The defaults of the presets typical, firm and soft: forces as measured in patients and cadavers. The dent under the
-// tip
-// stiffens, so that these forces cause dents of plausible depth. The moduli are instantaneous, as a fast load meets
-// them;
-// the delayed moduli are a quarter of them (docs/parameters.md).
+// tip stiffens, so that these forces cause dents of plausible depth. The moduli are instantaneous, as a fast load meets
+// them; the delayed moduli are a quarter of them (docs/parameters.md).
 constexpr std::string_view kGland =
     "E fitted, with the creep to a quarter, around 30.8 kPa benign and 64.1 kPa cancer in vivo (Shoji 2018); cutting "
     "of the order of 1 N (van Gerwen 2012); capsule and friction fitted to a peak of 6 N for 18 gauge (Podder 2006, "
@@ -58,8 +56,7 @@ constexpr Row kMeasured[] = {
 };
 
 // The defaults of the preset linear: moduli as measured, and forces chosen such that a surface tents by 5 to 20 mm
-// before
-// it breaks and the cutting lag is at most 5 mm.
+// before it breaks and the cutting lag is at most 5 mm.
 constexpr std::string_view kLinearGland =
     "E 30.8 kPa benign, 64.1 kPa cancer in vivo (Shoji 2018); capsule and cutting force of the order of 1 N (van "
     "Gerwen 2012)";

@@ -109,8 +109,7 @@ MatX DisplayField::random_rows(Eigen::Index rows, const Progress& progress) cons
 }
 
 /// Determines S and T by a pivoted QR factorisation M P = Q R: K⁻¹(F, first k pivots) R₁₁⁻¹ R₁ Pᵀ ≈ K⁻¹(F,Z). The
-/// pivots
-/// that follow the first k are the columns that those represent worst, so the error is measured on them.
+/// pivots that follow the first k are the columns that those represent worst, so the error is measured on them.
 void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Progress& progress) {
   const Eigen::Index zone = 3 * static_cast<Eigen::Index>(zone_.size());
   const Eigen::Index solved = std::min<Eigen::Index>(zone, options.columns + kChecks);

@@ -49,8 +49,7 @@ struct Factors {
 
 /// Factorises M ≈ Q B with ‖M − Q B‖₂ ≤ tolerance: an orthonormal basis of random combinations of the columns, enlarged
 /// until it suffices (Halko, Martinsson & Tropp 2011), then reduced by the directions in which M is small. Empty if Q
-/// and
-/// B would need nearly as much memory as M.
+/// and B would need nearly as much memory as M.
 std::optional<Factors> factorise(const Eigen::MatrixXf& M, double tolerance) {
   // The errors of the two reductions are orthogonal, so their squares add up to tolerance².
   const double part = tolerance / std::numbers::sqrt2;

@@ -85,8 +85,7 @@ CouplingSettings coupling_settings(const Scenario& s) {
 
 /// The element of the tissue. The methods of Goksel et al. 2005 are there for comparison, so all of them use linear
 /// tetrahedra, which two of them need. Averaged pressure couples two rings of nodes; on meshes above some size its
-/// factor
-/// does not fit into memory, and locking is small there (docs/theory/tissue.md).
+/// factor does not fit into memory, and locking is small there (docs/theory/tissue.md).
 Element element_of(const Scenario& s, Index nodes) {
   const bool of_the_paper = s.coupling.method != CouplingSettings::Method::near_field ||
                             s.coupling.engine != CouplingSettings::Engine::condensed;
@@ -180,8 +179,7 @@ bool knows_wide(const CouplingSettings& coupling, const std::vector<RegionLaws>&
 }
 
 /// Displacement [mm] of tissue under a force on the tip: a linear part on the scale of organs and a dent on the scale
-/// of
-/// the needle, which stiffens.
+/// of the needle, which stiffens.
 double pressed_mm(const TissueParameters& t, double force_N, double needle_diameter_mm, const NearSurface& skin) {
   const Material material{t.young_kPa * 1e-3, t.poisson};
   const Medium medium{material.mu(), t.poisson};

@@ -119,8 +119,7 @@ std::string spelled_out(std::string pattern, const ScenarioSlot& slot) {
 }
 
 /// The known key that is most similar to an unknown one: a similar name in the same table, or else a similar name in
-/// any
-/// table; empty if there is none.
+/// any table; empty if there is none.
 std::string nearest_key(const std::string& pattern) {
   const auto [table, leaf] = table_and_leaf(pattern);
   std::vector<std::string> here;

@@ -51,8 +51,7 @@ struct Documented {
 };
 
 /// Builds the table of keys. `field` is a generic function that takes a Scenario, const or not, and a slot, and returns
-/// a
-/// pointer to the field; the same function serves reading, writing and the default.
+/// a pointer to the field; the same function serves reading, writing and the default.
 class ScenarioEntries {
  public:
   using Type = ScenarioValue::Type;

@@ -11,8 +11,7 @@
 namespace stylet {
 
 /// Reads a DICOM RT Structure Set (a file, or a directory that holds exactly one). Only closed planar contours are
-/// read;
-/// empty ROIs and open curves are ignored, with a note in the result.
+/// read; empty ROIs and open curves are ignored, with a note in the result.
 /// @param skip names of structures that are not needed: a damaged one is ignored instead of being an error
 Result<ContourSet> read_rtstruct(const std::filesystem::path& path, std::span<const std::string> skip = {});
 

@@ -18,8 +18,7 @@ struct MaskReadOptions {
 
 /// Reads a label mask: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM SEG. The
 /// image frame (oblique, left-handed) is kept; NIfTI's RAS and NRRD's declared space become LPS. Where segments
-/// overlap,
-/// the voxel belongs to the smaller segment.
+/// overlap, the voxel belongs to the smaller segment.
 Result<LabelImage> read_label_image(const std::filesystem::path& path, const MaskReadOptions& options = {});
 
 }  // namespace stylet

@@ -14,13 +14,11 @@
 namespace stylet {
 
 /// The key of a scenario's compiled model in the cache: SHA-256, in hexadecimal, of the build id of the program or
-/// shared
-/// library that holds this code, the scenario with all its settings, and the content of every file that it names. Any
-/// other version, value or patient gives another key; a stripped copy of the program gives the same key.
+/// shared library that holds this code, the scenario with all its settings, and the content of every file that it
+/// names. Any other version, value or patient gives another key; a stripped copy of the program gives the same key.
 /// @param scenario from read_scenario(), with absolute paths
 /// Errors: a file that cannot be read; a file whose data are in other files (.mhd, .nhdr, .node and .ele), which the
-/// key
-/// would not cover; a program that was linked without a build id.
+/// key would not cover; a program that was linked without a build id.
 Result<std::string> model_key(const Scenario& scenario);
 
 /// A folder with compiled models for later starts of the program: files as `stylet prepare` writes them, named by

@@ -29,8 +29,7 @@ struct ModelFile {
 /// Saves a model that has just been compiled. On error no incomplete file is left.
 /// @param notes notes of the mesher, for reports
 /// Errors: a model whose engine keeps the full inverse; a model that a simulation has extended beyond its corridor;
-/// errors
-/// of the disk.
+/// errors of the disk.
 Result<> save_model(const Model& model, const std::filesystem::path& path, std::span<const std::string> notes = {},
                     const Progress& progress = {});
 
@@ -39,8 +38,7 @@ Result<> save_model(const Model& model, const std::filesystem::path& path, std::
 Result<ModelFile> read_model_file(const std::filesystem::path& path, const Progress& progress = {});
 
 /// Loads the model from a file, ready for a Simulation. Its stiffness is factorised only when it is needed: for
-/// compliance
-/// beyond the corridor and for displacement fields of the whole mesh.
+/// compliance beyond the corridor and for displacement fields of the whole mesh.
 /// Errors: as read_model_file(); settings that change the data from which the compliance was computed.
 /// @param settings as for read_scenario(), but not of [patient] and [mesh], since the file holds the finished mesh
 Result<std::shared_ptr<const Model>> load_model(const std::filesystem::path& path, const Progress& progress = {},
@@ -53,8 +51,7 @@ Result<std::shared_ptr<const Model>> compile_model(ModelFile file, const std::fi
                                                    std::span<const std::string> settings = {});
 
 /// Checks settings for a model with a finished mesh: settings of [patient] and [mesh] are errors, because they would
-/// have
-/// no effect.
+/// have no effect.
 /// @param settings as for read_scenario()
 /// @param where name of the file with the mesh in messages
 Result<> check_settings(std::span<const std::string> settings, const std::string& where);
@@ -63,8 +60,7 @@ Result<> check_settings(std::span<const std::string> settings, const std::string
 bool is_model_file(const std::filesystem::path& path);
 
 /// True for a file for which is_model_file() is true, and for a file named like a model (.stylet) that is too damaged
-/// to
-/// be recognised; read_model_file() reports its error.
+/// to be recognised; read_model_file() reports its error.
 bool is_meant_as_model(const std::filesystem::path& path);
 
 /// True for any HDF5 file, by its first bytes.

@@ -22,8 +22,7 @@ struct RunRecording {
 };
 
 /// Reads a run.h5. If it is still being written, or its writer was killed, the result has everything that had reached
-/// the
-/// disk. Errors: no such file, not an HDF5 file, not a run, written by a newer version, damaged.
+/// the disk. Errors: no such file, not an HDF5 file, not a run, written by a newer version, damaged.
 Result<RunRecording> read_recording(const std::filesystem::path& path);
 
 }  // namespace stylet

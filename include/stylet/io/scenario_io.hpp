@@ -14,14 +14,11 @@ namespace stylet {
 
 /// Reads a scenario file (TOML, docs/scenario.md), applies settings, and checks the scenario. In the result,
 /// patient.source (unless it is "phantom") and insertion[].motion are absolute paths; relative ones in the file start
-/// at
-/// the file's folder. Errors name the file, the line (or the setting), the key, its value and the cure; for an unknown
-/// key
-/// or table they suggest the nearest known name.
+/// at the file's folder. Errors name the file, the line (or the setting), the key, its value and the cure; for an
+/// unknown key or table they suggest the nearest known name.
 /// @param settings "needle.length_mm=150", "insertion[0].hole=D4", or "insertion.hole=D4" for the only insertion; the
 ///   value is a TOML value, or else a text. They are applied in order, after the file. A relative path in a setting
-///   starts
-///   at the current folder or, if there is no such file, at the scenario file's folder.
+///   starts at the current folder or, if there is no such file, at the scenario file's folder.
 Result<Scenario> read_scenario(const std::filesystem::path& path, std::span<const std::string> settings = {});
 
 /// Reads a scenario, as read_scenario() does, from a text that stands for the content of the file `path`.
@@ -29,8 +26,7 @@ Result<Scenario> parse_scenario(const std::string& text, const std::filesystem::
                                 std::span<const std::string> settings = {});
 
 /// The complete scenario, defaults included, as the text of a TOML file with units in comments. Reading it gives the
-/// same
-/// scenario if patient.source and motions are absolute paths, as after read_scenario().
+/// same scenario if patient.source and motions are absolute paths, as after read_scenario().
 std::string to_toml(const Scenario& scenario);
 
 /// The output of `stylet insert --print-schema`: a TOML file, at most 110 columns wide, in which every key is commented

@@ -13,8 +13,7 @@ struct PatientFile {
 };
 
 /// Reads the file of a patient that will be meshed: read_input(), and then check_roi() for the structures that the
-/// mesher
-/// will use. Other structures, such as helpers of the planning software, are not checked.
+/// mesher will use. Other structures, such as helpers of the planning software, are not checked.
 Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
                                  const MeshOptions& mesh_options, const MaskReadOptions& mask_options = {});
 

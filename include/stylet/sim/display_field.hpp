@@ -13,8 +13,7 @@ namespace stylet {
 
 struct DisplayFieldOptions {
   /// [mm] Forces on elements within this distance of a planned way are shown; others are left out. Raising it needs
-  /// more
-  /// columns for the same error.
+  /// more columns for the same error.
   double reach_mm = 3.0;
   int columns = 600;  ///< largest number of columns of K⁻¹ that are kept; more cost time, memory and preparation
   double tolerance_mm_per_N = 0.05;  ///< columns are dropped as long as the error stays below this
@@ -25,12 +24,10 @@ struct DisplayFieldOptions {
 ///
 /// R are the nodes asked for, Z the nodes near the ways, S some of their degrees of freedom (the skeleton), and T maps
 /// a force on Z to the equivalent force on the skeleton. If Z has at most `columns` degrees of freedom, S is all of
-/// them
-/// and u is exact except for single precision. Otherwise S and T come from a pivoted QR of random combinations of the
-/// rows of K⁻¹(F,Z), where F are the nodes that the compliance store does not have (Halko, Martinsson & Tropp 2011);
-/// the
-/// rows of nearer nodes are exact, from the store. Forces on the skeleton are exact everywhere, except for an error of
-/// 1e-4 mm/N by which K⁻¹(R,S) is compressed (LowRankRows). Details: docs/theory/display.md.
+/// them and u is exact except for single precision. Otherwise S and T come from a pivoted QR of random combinations of
+/// the rows of K⁻¹(F,Z), where F are the nodes that the compliance store does not have (Halko, Martinsson & Tropp
+/// 2011); the rows of nearer nodes are exact, from the store. Forces on the skeleton are exact everywhere, except for
+/// an error of 1e-4 mm/N by which K⁻¹(R,S) is compressed (LowRankRows). Details: docs/theory/display.md.
 ///
 /// Immutable once prepared: any number of threads may read, each with its own Load. Reading does not allocate.
 class DisplayField {

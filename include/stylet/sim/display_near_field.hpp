@@ -13,12 +13,10 @@ namespace stylet {
 
 /// Adds the near field of the needle to pictures: the displacement right beside the needle that a mesh cannot represent
 /// and that a DisplayField therefore lacks, A − Λ K⁻¹ Λᵀ of NearFieldCompliance, at points of surfaces. With it the
-/// skin
-/// is drawn where the tip that presses on it is (docs/theory/display.md).
+/// skin is drawn where the tip that presses on it is (docs/theory/display.md).
 ///
 /// The effect of a force whose place stays the same is cached; for a force that moves, such as the tip's, it is
-/// computed
-/// for each picture. For one thread at a time. No system of equations is solved.
+/// computed for each picture. For one thread at a time. No system of equations is solved.
 class DisplayNearField {
  public:
   /// @param points between nodes of the mesh (SurfacePoint::node); points away from the planned ways, where the model

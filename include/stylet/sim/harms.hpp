@@ -15,8 +15,7 @@ namespace stylet {
 bool harmed_by_needle(std::string_view region);
 
 /// One sentence for each time the needle entered an organ that it harms, in the order of the events: "The needle
-/// entered
-/// the rectum, at a depth of 63.1 mm."
+/// entered the rectum, at a depth of 63.1 mm."
 std::vector<std::string> harms(std::span<const Event> events);
 
 }  // namespace stylet

@@ -32,8 +32,7 @@ struct HoleRow {
 };
 
 /// Map of a template before the insertion: the holes from which a needle reaches the target, and the predicted effect
-/// of
-/// a needle through each of them.
+/// of a needle through each of them.
 struct HoleMap {
   std::vector<std::string> columns;  ///< of the template, from the patient's right to the left
   std::vector<std::string> rows;     ///< of the template, from posterior to anterior
@@ -53,8 +52,7 @@ InsertionPlan plan_through(const InsertionPlan& plan, const std::string& hole);
 using PlanOfHole = std::function<InsertionPlan(const std::string& hole)>;
 
 /// Computes the straight ways through all holes of a model's template and their clearances, without any insertion. A
-/// way
-/// begins at the skin and has the depth of its plan, or ends at the far end of the target if the plan has no depth.
+/// way begins at the skin and has the depth of its plan, or ends at the far end of the target if the plan has no depth.
 /// @param where name of the scenario in messages
 /// Errors: a model without a target; no hole leads into the target.
 Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const std::string& where);
@@ -75,8 +73,7 @@ void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& 
                    const Progress& progress = {});
 
 /// Checks that a map can be made for a scenario: it must plan exactly one needle, through a hole of the template,
-/// without
-/// a recorded motion. The error names the key that prevents it.
+/// without a recorded motion. The error names the key that prevents it.
 /// @param where name of the scenario in messages
 Result<> check_mappable(const Scenario& scenario, const std::string& where);
 

@@ -14,10 +14,9 @@ namespace stylet {
 ///
 /// The rows of neighbouring nodes are similar. Therefore the nodes are divided into clusters by halving along the
 /// longest side, and the rows of a cluster c are stored in block low-rank form, A_c ≈ B_c Q_cᵀ, with an orthonormal
-/// basis
-/// Q_c (columns × r_c) and coordinates B_c. For a vector w, Q_cᵀ w is computed once for each cluster that is read, then
-/// multiplied by rows of B_c. The error of each cluster is ‖A_c − B_c Q_cᵀ‖₂ ≤ tolerance; a cluster for which the
-/// compressed form would save nothing is stored as it is.
+/// basis Q_c (columns × r_c) and coordinates B_c. For a vector w, Q_cᵀ w is computed once for each cluster that is
+/// read, then multiplied by rows of B_c. The error of each cluster is ‖A_c − B_c Q_cᵀ‖₂ ≤ tolerance; a cluster for
+/// which the compressed form would save nothing is stored as it is.
 ///
 /// Immutable: any number of threads may read, each with its own Product. Reading does not allocate.
 class LowRankRows {

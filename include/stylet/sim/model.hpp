@@ -31,9 +31,8 @@ struct ModelCompliance {
 };
 
 /// A compiled scenario: mesh, stiffness factor, compliance near the planned ways, laws, supports. Immutable:
-/// simulations
-/// in any threads may share it. When a needle leaves the planned corridor, its simulation adds compliance to a copy of
-/// its own.
+/// simulations in any threads may share it. When a needle leaves the planned corridor, its simulation adds compliance
+/// to a copy of its own.
 class Model {
  public:
   /// Compiles a scenario; takes seconds to minutes.
@@ -102,8 +101,7 @@ class Model {
 };
 
 /// Tenting [mm] of the surface of tissue with these parameters under a force F [N] on a flat punch of the needle's
-/// radius
-/// R: F (1 − ν²) / (2 R E), or less if the tissue stiffens (docs/theory/stiffening.md).
+/// radius R: F (1 − ν²) / (2 R E), or less if the tissue stiffens (docs/theory/stiffening.md).
 double tenting_mm(const TissueParameters& tissue, double force_N, double needle_diameter_mm);
 
 /// Warnings about implausible tissue parameters, found before anything is simulated: tenting outside 3 … 20 mm, cutting

@@ -10,15 +10,13 @@
 namespace stylet {
 
 // Largest difference between two steps of a needle at rest. Such steps differ by rounding, about 1e-15; these limits
-// are
-// below the tolerance of the balance between needle and tissue.
+// are below the tolerance of the balance between needle and tissue.
 inline constexpr double kRestForce_N = 1e-7;
 inline constexpr double kRestTorque_Nmm = 1e-5;
 inline constexpr double kRestPlace_mm = 1e-7;  ///< of the tip
 
 /// Whether a step repeats an earlier one: dt and base are equal bit for bit, tip state, flags and numbers of contacts
-/// are
-/// equal, and forces, torque and tip differ by at most kRestForce_N, kRestTorque_Nmm and kRestPlace_mm.
+/// are equal, and forces, torque and tip differ by at most kRestForce_N, kRestTorque_Nmm and kRestPlace_mm.
 bool is_at_rest(const Step& earlier, const Step& step);
 
 /// All steps of a recording in their order, including the steps at rest, for which there is no record but only their

@@ -90,9 +90,8 @@ struct Summary {
   std::vector<Event> events;
   double tip_deflection_mm = 0;  ///< largest distance of the tip from the straight line of insertion
   /// Tip error at the deepest point: material point of the tip minus the point that a rigid straight needle would reach
-  /// in
-  /// a patient that nothing has moved. LPS; the largest of several insertions; empty if the tip is not in the tissue at
-  /// that moment, and in recordings of earlier versions.
+  /// in a patient that nothing has moved. LPS; the largest of several insertions; empty if the tip is not in the tissue
+  /// at that moment, and in recordings of earlier versions.
   std::optional<Vec3> tip_error_mm;
   std::vector<TargetShift> target_shifts;  ///< at the deepest point of each insertion; empty without a target
   /// TargetShift::centroid_mm and largest_mm of the insertion with the greatest largest_mm.

@@ -34,8 +34,7 @@ struct TissueParameters {
 
 /// Default parameters for a region by its canonical name ("prostate", "body", "label_2", …): published values or, if
 /// there are none, fitted or assumed values; TissueParameters::source says which. Unknown names get the values of the
-/// soft
-/// tissue around the gland.
+/// soft tissue around the gland.
 TissueParameters default_tissue(const std::string& region, TissuePreset preset = TissuePreset::typical);
 
 /// Names of the regions for which default_tissue() has its own values, in the order of the documentation.
@@ -224,8 +223,7 @@ using ScenarioPlace = std::function<std::string(const std::string& path)>;
 Result<> check_scenario_keys(const Scenario& scenario, const ScenarioPlace& place);
 
 /// Checks a scenario: every key by check_scenario_keys(), then the rules that concern several keys, such as at least
-/// one
-/// insertion, one way to give its entry, a depth within the needle's length, and keys that exclude each other.
+/// one insertion, one way to give its entry, a depth within the needle's length, and keys that exclude each other.
 Result<> check_scenario(const Scenario& scenario, const ScenarioPlace& place);
 /// @param where name of the scenario in messages
 Result<> check_scenario(const Scenario& scenario, const std::string& where);

@@ -42,8 +42,7 @@ class Simulation {
   [[nodiscard]] Frame frame(const std::string& label = {}) const;
 
   /// Relative residual of the balance of forces on the tissue: of supports and contacts. The hand's force is not part
-  /// of
-  /// it, because it is computed as the sum of the forces of contacts and guide and would always balance them.
+  /// of it, because it is computed as the sum of the forces of contacts and guide and would always balance them.
   struct Balance {
     double force = 0.0;   ///< |sum of forces| / scale_N
     double torque = 0.0;  ///< |sum of moments about the entry| / (scale_N × 100 mm)

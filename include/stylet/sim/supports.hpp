@@ -18,10 +18,8 @@ bool is_bone(const std::string& region);
 
 /// Determines the nodes with zero displacement. Bones (pubic arch, femurs, or the regions that the scenario names) are
 /// held whole. Without a pubic arch, or with fixed.outer = "sides", the outer faces are held too, except for the
-/// perineal
-/// face (facing inferior, below the target) and everything within 30 mm of an entry. A mesh of unnamed tissue is held
-/// at
-/// the outer faces of its far half, seen along the needle.
+/// perineal face (facing inferior, below the target) and everything within 30 mm of an entry. A mesh of unnamed tissue
+/// is held at the outer faces of its far half, seen along the needle.
 /// @param target regions that form the target; may be empty
 /// @param entries [mm] LPS, entry points of the needles @param directions unit vectors, LPS, of the needles
 /// Errors: an unknown region, a box without nodes, nothing held.

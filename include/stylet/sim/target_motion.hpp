@@ -17,8 +17,7 @@ class TargetMotion {
   static Result<TargetMotion> of(const Model& model, const Progress& progress = {});
 
   /// The target motion of another model, sharing this solution if it is the same to the last bit: the same nodes must
-  /// be
-  /// held, and the mesh must be small enough that the solution does not depend on the needle's way. Otherwise empty.
+  /// be held, and the mesh must be small enough that the solution does not depend on the needle's way. Otherwise empty.
   /// @param other must have the same mesh, materials and target, and must outlive the result
   [[nodiscard]] std::optional<TargetMotion> shared_with(const Model& other) const;
 

@@ -42,8 +42,7 @@ struct Pipe {
 
  private:
   /// Moves a pipe end above the numbers of the standard streams: if those are closed, a pipe would get their numbers
-  /// and
-  /// receive everything that is printed.
+  /// and receive everything that is printed.
   static int beyond_standard_streams(int end) {
     if (end > STDERR_FILENO) return end;
     const int moved = ::fcntl(end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

@@ -23,9 +23,8 @@ struct ChildOutcome {
 };
 
 /// Runs `work` in a child process and returns the bytes that it produced. Any failure there (crash, abort, exit(),
-/// endless
-/// loop, exhausted memory, output on the terminal) only becomes an outcome for the parent. The child cannot write files
-/// and ends with its parent.
+/// endless loop, exhausted memory, output on the terminal) only becomes an outcome for the parent. The child cannot
+/// write files and ends with its parent.
 ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildLimits& limits);
 
 }  // namespace stylet::detail

@@ -34,8 +34,7 @@ std::string name_of(FileKind kind);
 std::string readable_formats();
 
 /// Recognises the format of a file by its first bytes; by its extension only for formats without a mark in their
-/// content
-/// (OBJ, TetGen, binary STL). Errors: nothing there, a folder, not a regular file, no permission, empty.
+/// content (OBJ, TetGen, binary STL). Errors: nothing there, a folder, not a regular file, no permission, empty.
 Result<FileKind> identify(const std::filesystem::path& path);
 
 }  // namespace stylet::detail

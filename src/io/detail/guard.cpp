@@ -50,8 +50,7 @@ double size_of(const fs::path& path) {
 }
 
 /// Unpacked size [MB] according to the last four bytes of a gzip stream, little endian. It is wrong only in forged
-/// files
-/// and beyond 4 GB.
+/// files and beyond 4 GB.
 double gzip_size_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<unsigned char, 4> end{};

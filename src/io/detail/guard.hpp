@@ -12,8 +12,7 @@ namespace stylet::detail {
 
 /// Limits for reading one file or searching one folder: generous for valid files of its packed and unpacked size, but
 /// short enough that a malicious file does not seem to hang the program. The unpacked size that a file claims is
-/// bounded
-/// by the largest ratio that deflate can achieve.
+/// bounded by the largest ratio that deflate can achieve.
 ChildLimits limits_for(const std::filesystem::path& path);
 
 /// The default cure in the error about a file that crashes its parser.

@@ -9,8 +9,7 @@
 namespace stylet::detail {
 
 /// Checks that a path is a file that can be opened and read to its end. Errors: nothing there, a folder, a named pipe,
-/// a
-/// device, a socket, no permission. The kind is checked before opening, since opening a named pipe would wait for its
+/// a device, a socket, no permission. The kind is checked before opening, since opening a named pipe would wait for its
 /// other end. Every reader calls this first.
 Result<> check_input_file(const std::filesystem::path& path);
 

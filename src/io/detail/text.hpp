@@ -32,8 +32,7 @@ inline constexpr std::size_t kLongestHeaderLine = 65535;
 std::optional<HeaderLine> next_header_line(std::istream& stream);
 
 /// Converts a text to a number, independent of the locale; empty if the text is anything but a number with blanks
-/// around
-/// it.
+/// around it.
 std::optional<double> to_number(std::string_view text);
 
 }  // namespace stylet::detail

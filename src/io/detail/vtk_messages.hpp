@@ -10,8 +10,7 @@
 namespace stylet::detail {
 
 /// Collects the messages that VTK would print. VTK reports errors only as text, and a reader that failed often returns
-/// a
-/// part of the data.
+/// a part of the data.
 class VtkMessages : public vtkOutputWindow {
  public:
   static VtkMessages* New();

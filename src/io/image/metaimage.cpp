@@ -152,8 +152,7 @@ Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
 }
 
 /// Reads the bytes of the voxels in the file's order. MetaIO is not used here, because it leaves voxels uninitialised
-/// if
-/// the file ends too early.
+/// if the file ends too early.
 Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path, std::size_t header_bytes,
                                 MetaImage& image, std::size_t size) {
   const std::string source = path.string();

@@ -36,8 +36,7 @@ inline void add_voxel(std::vector<Run>& runs, std::size_t voxel, std::size_t seg
 /// Paints the segments into image.labels (of the image's size, all 0). Where segments overlap, the voxel belongs to the
 /// segment with fewer voxels, because a structure inside another is the more specific one (the urethra or a zone inside
 /// the gland); of two equally large segments, to the later one. Names, and notes on overlaps and empty segments, are
-/// added
-/// to the image.
+/// added to the image.
 /// @param skip names or labels of segments that are left out: segments below them keep their voxels
 /// Errors: every segment is left out.
 Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& runs, std::span<const std::string> skip,

@@ -18,10 +18,8 @@ namespace stylet::detail {
 namespace {
 
 // In a mask most neighbouring voxels have the same label, whereas grey values vary from voxel to voxel. An image with
-// at
-// most kFewValues different values is a mask, an image with more than kManyValues has grey values; between them the
-// share
-// of equal neighbours decides.
+// at most kFewValues different values is a mask, an image with more than kManyValues has grey values; between them the
+// share of equal neighbours decides.
 constexpr std::size_t kFewValues = 16;
 constexpr std::size_t kManyValues = 256;
 constexpr double kAlikeInMask =

@@ -43,8 +43,7 @@ Result<std::vector<std::uint16_t>> labels_of(const Voxels& voxels);
 Result<LabelImage> to_label_image(const Voxels& voxels);
 
 /// Index of the chosen volume in a file, from 0. Errors: not 3D, too few voxels, several volumes and none chosen, a
-/// number
-/// that the file does not have.
+/// number that the file does not have.
 /// @param sizes (dimensions) number of voxels along each axis of the file; axes after the third count volumes
 /// @param chosen number of the volume, from 1; 0 = the only one
 Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen, const std::string& source);

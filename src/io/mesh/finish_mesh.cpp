@@ -91,8 +91,7 @@ bool numbers_in_range(const TetMesh& mesh) {
 }
 
 /// Inverts all tetrahedra if all of them are inverted, which is a convention of some programs; if only some are, the
-/// mesh
-/// is damaged.
+/// mesh is damaged.
 bool turn_if_all_inverted(TetMesh& mesh) {
   if (mesh.tets.empty() || !numbers_in_range(mesh)) return false;
   for (Index t = 0; t < mesh.tet_count(); ++t) {

@@ -61,8 +61,7 @@ int node_number(vtkMultiBlockDataSet& parent, unsigned index) {
 }
 
 /// Collects the surfaces below a block. VTK makes a block for each node, which contains blocks for the node's mesh
-/// (whose
-/// primitives are the surfaces) and for its children.
+/// (whose primitives are the surfaces) and for its children.
 void walk(vtkMultiBlockDataSet& parent, Surface& own, const std::vector<std::string>& names,
           std::vector<Surface>& surfaces) {
   for (unsigned i = 0; i < parent.GetNumberOfBlocks(); ++i) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The gmsh library is loaded only when a file needs it: it depends on CAD libraries, and binding their symbols would
-// take
-// most of the time of `stylet --version`.
+// take most of the time of `stylet --version`.
 #pragma once
 
 #include "stylet/core/result.hpp"

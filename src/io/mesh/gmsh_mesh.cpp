@@ -105,9 +105,8 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
 }
 
 /// Checks that gmsh will treat a file as a mesh and not as a script, because scripts can start programs. gmsh chooses
-/// its
-/// reader by extension and first bytes, runs unknown content as a script, and also runs a script FILE.opt in the same
-/// folder.
+/// its reader by extension and first bytes, runs unknown content as a script, and also runs a script FILE.opt in the
+/// same folder.
 Result<> check_harmless(const fs::path& path, bool medit) {
   const std::string source = path.string();
   const std::string ending = path.extension().string();

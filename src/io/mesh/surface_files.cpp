@@ -40,8 +40,7 @@ vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string
 }
 
 /// Checks that an STL file is complete, since VTK reads truncated files without an error: a binary file states the
-/// number
-/// of triangles, and a text file ends with a keyword.
+/// number of triangles, and a text file ends with a keyword.
 Result<> check_stl_is_whole(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(file), {});

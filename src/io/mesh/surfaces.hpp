@@ -19,9 +19,8 @@ Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double sc
 Surface to_surface(vtkPolyData& data, std::string name);
 
 /// Cleans surfaces: merges coincident points, drops triangles without area and surfaces without triangles, and turns
-/// the
-/// normals of closed surfaces outward. Errors: NaN; nothing left; a total extent that indicates wrong units (< 1 mm or
-/// > 2 m).
+/// the normals of closed surfaces outward. Errors: NaN; nothing left; a total extent that indicates wrong units (< 1 mm
+/// or > 2 m).
 Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const std::string& source);
 
 }  // namespace stylet::detail

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reader of TetGen .node and .ele files (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line
-// per
-// node or tetrahedron; '#' begins a comment; numbering starts at 0 or 1.
+// per node or tetrahedron; '#' begins a comment; numbering starts at 0 or 1.
 #include "detail/input_file.hpp"
 #include "detail/text.hpp"
 #include "mesh/raw_mesh.hpp"

@@ -35,8 +35,7 @@ Result<> add_file(Digest& digest, const fs::path& path) {
 }
 
 /// Whether a file refers to data in another file, or is one of several files that belong together. As in the readers,
-/// the
-/// content decides on the format before the name does.
+/// the content decides on the format before the name does.
 bool has_other_parts(const fs::path& path) {
   using detail::FileKind;
   const std::string ending = detail::lower(path.extension().string());

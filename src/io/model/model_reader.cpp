@@ -31,8 +31,7 @@ void demand(bool condition, const std::string& what) {
 }
 
 /// Reads the arrays of a model file by their positions; none can be larger than the file. Throws NotAModel, NotSealed
-/// or
-/// exceptions of the JSON library.
+/// or exceptions of the JSON library.
 class Reader {
  public:
   Reader(const SealedFile& file, const Json& index) : file_(file), arrays_(index.at("arrays")) {}

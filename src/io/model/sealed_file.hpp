@@ -18,10 +18,9 @@ struct NotSealed : std::runtime_error {
 };
 
 /// A file with an index and a seal at its end. The index is a text that gives the positions of the file's parts; the
-/// seal
-/// is a mark, the length of the index and a SHA-256 of all bytes before the digest. Opening the file verifies that it
-/// has
-/// exactly the bytes that were written, before any library parses it; its parts are then read by their positions.
+/// seal is a mark, the length of the index and a SHA-256 of all bytes before the digest. Opening the file verifies that
+/// it has exactly the bytes that were written, before any library parses it; its parts are then read by their
+/// positions.
 class SealedFile {
  public:
   /// Appends index and seal to a file. Throws NotSealed on an error of the disk.

@@ -122,8 +122,7 @@ LibraryTurn::~LibraryTurn() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 namespace {
 /// Silences HDF5 at the end of the program. HDF5 1.10 leaks an object whose checksum is wrong, and would print
-/// "infinite
-/// loop closing library" when it shuts down.
+/// "infinite loop closing library" when it shuts down.
 struct SilentEnd {
   SilentEnd() = default;
   ~SilentEnd() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }

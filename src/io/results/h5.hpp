@@ -72,8 +72,7 @@ class Handle {
 /// file nor its objects have time stamps, so that the same content gives the same bytes.
 Handle create_file(const char* path);
 /// Opens a file for reading that another process may be writing (SWMR), or was writing when it was killed. Since a
-/// wrong
-/// checksum may belong to a block that is being written, HDF5 repeats reading for at most a seventh of a second.
+/// wrong checksum may belong to a block that is being written, HDF5 repeats reading for at most a seventh of a second.
 Handle open_growing_file(const char* path);
 bool has_attribute(hid_t object, const char* name);
 
@@ -84,8 +83,7 @@ Handle array_type(hid_t element, hsize_t count);
 Handle string_type(std::size_t bytes);  ///< fixed length, UTF-8, null-padded
 
 /// Attributes: texts are scalars, numbers are 1-D arrays. All texts are written with a fixed length, because HDF5
-/// stores
-/// texts of variable length without a checksum and crashes if they are damaged. Both kinds can be read.
+/// stores texts of variable length without a checksum and crashes if they are damaged. Both kinds can be read.
 void write_attribute(hid_t object, const char* name, const std::string& text);
 void write_attribute(hid_t object, const char* name, std::span<const double> values);
 void write_attribute(hid_t object, const char* name, std::span<const int> values);

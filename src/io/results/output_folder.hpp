@@ -23,8 +23,8 @@ struct File {
 };
 
 /// Writes files into a folder. A new folder appears only when it is complete. In an existing folder the files are
-/// replaced
-/// one by one; the last one of the list is removed first and written last, so a folder that has it is complete.
+/// replaced one by one; the last one of the list is removed first and written last, so a folder that has it is
+/// complete.
 Result<> write_folder(const std::vector<File>& files, const std::filesystem::path& folder);
 
 /// A text as a quoted field of a CSV file.

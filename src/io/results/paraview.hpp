@@ -12,11 +12,9 @@
 namespace stylet::results {
 
 /// Writes tissue_0000.vtu … for all frames, and tissue.pvd with their times. Positions are those of the undeformed
-/// tissue;
-/// arrays are displacement_mm (3 × nodes), region and, if `stress_of` is given, stress_kPa (6 × tets).
+/// tissue; arrays are displacement_mm (3 × nodes), region and, if `stress_of` is given, stress_kPa (6 × tets).
 /// @param stress_of function that computes the stress [MPa] (6 × tets) xx yy zz xy yz zx of a displacement [mm] (3n);
-///   may
-///   be empty
+///   may be empty
 Result<> write_tissue(const RunRecording& run, const std::function<MatX(const VecX&)>& stress_of,
                       const std::filesystem::path& folder, const Progress& progress);
 

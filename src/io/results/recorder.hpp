@@ -12,8 +12,7 @@
 namespace stylet::results {
 
 /// Writes steps, frames and events to run.h5 in a thread of its own, so that the run never waits for the disk, and
-/// added
-/// data are in the file after at most two periods even while the run is busy.
+/// added data are in the file after at most two periods even while the run is busy.
 class Recorder {
  public:
   explicit Recorder(RunFileWriter writer);

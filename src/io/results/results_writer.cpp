@@ -52,8 +52,7 @@ Result<> remove_earlier_results(const fs::path& folder) {
 }
 
 /// Writes all files except run.h5, from run.h5 and the summary. Therefore pictures and tables show only recorded data,
-/// with
-/// two exceptions: the gland's path, which follows from the recorded forces, and the map of the template's holes.
+/// with two exceptions: the gland's path, which follows from the recorded forces, and the map of the template's holes.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
                               bool with_pictures, const HoleMap* map) {
@@ -87,8 +86,7 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
 }
 
 /// The error for a record with a number that is not finite, which a reader could not distinguish from a row that has
-/// not
-/// reached the disk.
+/// not reached the disk.
 Error not_finite(const std::string& where, double time_s) {
   return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
                  "The simulation has lost its way before: look at the steps before this one.");

@@ -23,9 +23,8 @@ inline constexpr double kMissing =
 // points and contacts. A row with a wrong check has not reached the disk completely, or has been changed.
 
 /// A row of /steps: the columns of forces.csv, the input of the step (dt_s and base), the number of steps at rest
-/// before
-/// it, and its flags (Step::Flag). Files of version 1 have no dt_s and no base, files before version 3 no rest_steps,
-/// files before version 4 no flags.
+/// before it, and its flags (Step::Flag). Files of version 1 have no dt_s and no base, files before version 3 no
+/// rest_steps, files before version 4 no flags.
 struct StepRow {
   double time_s = kMissing, dt_s = kMissing, base_depth_mm = kMissing;
   double base_x_mm = kMissing, base_y_mm = kMissing, base_z_mm = kMissing;

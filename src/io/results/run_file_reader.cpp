@@ -27,8 +27,7 @@ void demand(bool condition, const char* what) {
 }
 
 /// Number of valid rows: the rows before the first incomplete one. Throws Changed if a complete row follows an
-/// incomplete
-/// one, or if the number differs from `said`.
+/// incomplete one, or if the number differs from `said`.
 /// @param whole function that says whether row k is complete @param said number of rows according to /end
 std::size_t rows_of(std::size_t count, const std::function<bool(std::size_t)>& whole, std::optional<std::int64_t> said,
                     const char* what) {

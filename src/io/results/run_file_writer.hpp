@@ -20,8 +20,7 @@ struct StoredFrame {
 
 /// Writes run.h5. create() writes all data that are known before the run and creates every dataset; the file is then in
 /// SWMR mode (one writer, many readers) and only grows, so it can be read during the run and after the process was
-/// killed
-/// at any moment. For one thread at a time.
+/// killed at any moment. For one thread at a time.
 class RunFileWriter {
  public:
   /// Creates the file. An earlier file at `path` is replaced only when all data that are known before the run have been
@@ -33,14 +32,14 @@ class RunFileWriter {
   Result<> append_steps(std::span<const Step> steps);
   Result<> append_frame(const StoredFrame& stored);
   Result<> append_events(std::span<const Event> events);
-  Result<> append_summary(
-      const Summary& summary);  ///< and those of its events that are not there yet; once, at the end
-  Result<> flush();             ///< everything appended so far reaches the file
-  Result<> close();             ///< says in the file how much there is
+  /// Writes the summary, and those of its events that are not in the file yet. To be called once, at the end.
+  Result<> append_summary(const Summary& summary);
+  Result<> flush();  ///< writes all appended data to the file
+  Result<> close();  ///< writes /end and closes the file
 
  private:
   explicit RunFileWriter(std::filesystem::path path) : path_(std::move(path)) {}
-  /// Runs `action` and turns what HDF5 throws into an Error that names the file.
+  /// Runs `action` and converts exceptions of HDF5 to an Error that names the file.
   template <class Action>
   Result<> guarded(Action action) const;
 

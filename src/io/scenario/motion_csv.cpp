@@ -65,7 +65,7 @@ Result<MotionSample> parse_sample(std::string_view line, const std::string& wher
   return sample;
 }
 
-/// Checks two consecutive samples: increasing times, plausible distance and speed.
+/// Checks two consecutive samples: the time must increase, and the speed must be plausible.
 Result<> check_step(const MotionSample& before, const MotionSample& after, const std::string& where) {
   const double step = after.time_s - before.time_s;
   if (!(step > 0.0)) {

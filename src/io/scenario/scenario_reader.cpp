@@ -28,8 +28,7 @@ bool is_key(const std::string& pattern) {
 }
 
 /// The path of a key with the names of regions and structures and the numbers of entries replaced by the wildcards of
-/// the
-/// table of keys. A name below [tissue] is a region unless it is a key of [tissue] itself.
+/// the table of keys. A name below [tissue] is a region unless it is a key of [tissue] itself.
 std::string pattern_of(std::vector<std::string> path) {
   if (path.size() > 1 && path[0] == "tissue" && !is_key("tissue." + path[1])) path[1] = "<region>";
   if (path.size() > 2 && path[0] == "patient" && path[1] == "regions") path[2] = "<name>";

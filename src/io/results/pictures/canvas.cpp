@@ -53,8 +53,7 @@ void average_down(const vtkUnsignedCharArray& large, vtkImageData& picture) {
 }  // namespace
 
 /// An OpenGL 3.2 core context that draws only into its own framebuffers. It is a member of Canvas::Parts and therefore
-/// not
-/// in the anonymous namespace.
+/// not in the anonymous namespace.
 class SurfacelessContext {
  public:
   /// Opens the context. @return the error, or empty

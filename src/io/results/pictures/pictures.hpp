@@ -24,8 +24,7 @@ struct Pictures {
 std::span<const char* const> picture_names();
 
 /// Draws all pictures. This is done in child processes with limits, because an OpenGL driver can crash its process;
-/// this
-/// call returns in any case.
+/// this call returns in any case.
 /// @param run has at least one frame
 Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                        const Progress& progress);

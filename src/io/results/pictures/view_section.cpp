@@ -28,8 +28,7 @@ namespace stylet::results {
 namespace {
 
 // Offsets of the layers towards the viewer [mm], which determine what covers what. Since the projection is parallel,
-// they
-// move nothing in the picture.
+// they move nothing in the picture.
 constexpr double kInitialLayer = 0.5, kOutlineLayer = 1.0, kNeedleLayer = 60.0;
 
 vtkSmartPointer<vtkPolyData> cut(vtkDataSet* data, const Section& section) {

@@ -4,8 +4,7 @@
 #include <string_view>
 
 /// Pages, style sheets and scripts of web/report/, which the build embeds into the library: for the report of an
-/// insertion
-/// and for the pages of stylet reproduce and stylet validate.
+/// insertion and for the pages of stylet reproduce and stylet validate.
 namespace stylet::results {
 
 std::string_view report_template();  ///< HTML with {{slots}}

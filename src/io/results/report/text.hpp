@@ -19,8 +19,7 @@ std::string html_prose(std::string_view text);
 std::string script_safe(std::string_view javascript);
 
 /// Converts JSON for a <script> element: every "<" becomes an escape sequence. JSON allows that in strings, and "<"
-/// cannot
-/// occur elsewhere.
+/// cannot occur elsewhere.
 std::string json_script_safe(std::string_view json);
 
 /// Base 64 (RFC 4648) with padding.
