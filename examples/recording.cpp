@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the recording of a run, also of one that still goes on or was killed.
+// Reads the recording of a run, which may still be going on or may have been killed.
 //   build/bin/recording out/demo/run.h5
 #include <stylet/io/recording_io.hpp>
 

@@ -10,7 +10,8 @@ namespace stylet {
 
 namespace {
 
-/// A vector cut to a length, its direction kept. Just below it: rounding must not lead above a limit.
+/// A vector shortened to a length, with its direction kept. The result is slightly shorter, so that rounding cannot
+/// exceed the limit.
 Vec3 shortened(const Vec3& v, double length, bool& cut) {
   const double now = v.stableNorm();
   if (now <= length) return v;
@@ -44,7 +45,7 @@ Result<ForceGuard> ForceGuard::create(const ForceGuardSettings& s) {
                        fmt::format("{} s is shorter than fade_s = {} s", s.recover_s, s.fade_s),
                        "let forces return more slowly than they fade, or results good and bad by turns would pass");
   const double fade_s = std::max(s.max_force_N / s.force_slew_N_per_s, s.max_torque_Nmm / s.torque_slew_Nmm_per_s);
-  // Written this way round so that a slew rate that just fits is not refused for its last digit.
+  // The small tolerance accepts a slew rate that is exactly sufficient, in spite of rounding.
   if (fade_s > s.fade_s * (1.0 + 1e-12))
     return input_error(
         "force guard, fade_s",
@@ -60,7 +61,7 @@ void ForceGuard::fade(double dt) {
     fade_left_ = settings_.fade_s;
     ++counts_.fades;
   }
-  // What is left falls in proportion to the time left: linear in time, both vectors in their own direction.
+  // The output is proportional to the remaining time: both vectors fall linearly and keep their directions.
   const double left = std::max(0.0, fade_left_ - dt);
   const double keep = fade_left_ > 0.0 ? left / fade_left_ : 0.0;
   fade_left_ = left;

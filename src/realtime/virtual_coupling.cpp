@@ -10,7 +10,7 @@ namespace stylet {
 
 namespace {
 
-/// b − K T/2 − B, or why it is not positive.
+/// The spare damping b − K T/2 − B; an error if it is not positive.
 Result<double> spare(const char* motion, const char* stiffness_unit, const char* damping_unit, double K, double B,
                      double b, double T, const std::string& device) {
   const std::string where = fmt::format("virtual coupling, {}", motion);
@@ -47,7 +47,7 @@ Result<VirtualCoupling> VirtualCoupling::create(const VirtualCouplingSettings& s
                            device.damping_N_s_per_mm, period_s, device.name);
   if (!along) return along.error();
   const VirtualCoupling without_torque(s, *along);
-  // A hand that feels no torque takes no energy from one: only the signs of the numbers matter then.
+  // A device without torques exchanges no rotational energy, so only the signs of the rotational settings are checked.
   const double unlimited = 1e300;
   const auto around = spare("rotation", "N mm/rad", "N mm s/rad", s.stiffness_Nmm_per_rad, s.damping_Nmm_s_per_rad,
                             device.torque ? device.damping_Nmm_s_per_rad : unlimited, period_s, device.name);

@@ -33,18 +33,18 @@ constexpr uint32_t kKnownFlags = STYLET_RT_KEEP_DENORMALS | STYLET_RT_WORKER;
 constexpr double kShortest_s = 1e-9;
 constexpr double kLongest_s = 1.0;
 constexpr double kOffUnit = 1e-3;
-/// Quaternions as near as this to unit length are taken as they are, to the last bit.
+/// Quaternions whose length differs from 1 by at most this are not normalised, so that all bits are kept.
 constexpr double kRounding = 1e-14;
 
 void copy(const Vec3& from, double* to) noexcept { std::copy_n(from.data(), 3, to); }
 
-/// The pose, or nothing where it is none.
+/// Converts a pose; empty if it is invalid.
 std::optional<Pose> pose_of(const stylet_rt_pose& given) noexcept {
   Pose pose;
   pose.origin = Vec3(given.position_mm);
   pose.rotation = Eigen::Quaterniond(given.rotation[0], given.rotation[1], given.rotation[2], given.rotation[3]);
   const double length = pose.rotation.norm();
-  // Comparisons with what is not a number are false.
+  // Written so that NaN fails the comparison.
   if (!pose.origin.allFinite() || !(std::abs(length - 1.0) <= kOffUnit)) return std::nullopt;
   if (std::abs(length - 1.0) > kRounding) pose.rotation.coeffs() /= length;
   return pose;
