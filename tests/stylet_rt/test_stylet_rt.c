@@ -93,8 +93,7 @@ static stylet_rt_result stepped(stylet_rt_sim* sim, int k, double dt) {
   return result;
 }
 
-/* Collects the numbers of numbers.hpp through the C interface. @return their number; they are written if `out` is given
- */
+/* Collects the numbers of numbers.hpp through the C interface. @return their number */
 static size_t numbers_of(stylet_rt_sim* sim, double dt, double duration_s, double* out) {
   size_t n = 0;
   int k;

@@ -8,7 +8,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// NIfTI with voxels of another type.
+/// A NIfTI file with another voxel type.
 template <class T>
 std::string typed(std::int16_t code, const std::function<T(std::uint8_t)>& value) {
   const Mask mask;
@@ -135,7 +135,7 @@ TEST(LabelImageErrors, images_that_are_not_3d_are_refused) {
 
 namespace {
 
-/// The mask as the second of two volumes; the first has nothing but label 5.
+/// A file with two volumes: the first has only label 5, the second is the mask.
 std::string two_volumes(const Mask& mask, const std::string& one) {
   return one.substr(0, one.size() - mask.labels.size()) + std::string(mask.labels.size(), '\5') +
          one.substr(one.size() - mask.labels.size());

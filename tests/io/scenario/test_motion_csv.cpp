@@ -16,7 +16,7 @@ Result<std::vector<MotionSample>> read_motion(const std::string& content) {
   return read_motion_csv(folder.write("hand.csv", content));
 }
 
-/// What a motion whose second sample is this line is refused with.
+/// The message of the error for a motion with this line as its second sample.
 std::string refused_sample(const std::string& line) {
   const std::string message = refusal(read_motion(kHeader + "0,0,0,-250,1,0,0,0\n" + line + "\n"));
   expect_says(message, {"hand.csv, line 3"});

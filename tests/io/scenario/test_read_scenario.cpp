@@ -14,14 +14,14 @@ Result<Scenario> read(const std::string& content) {
   return read_scenario(folder.write("case.toml", content));
 }
 
-/// What a file is refused with; it names the file.
+/// The message of the error for a file with this content; checks that it names the file.
 std::string refused(const std::string& content) {
   const std::string message = refusal(read(content));
   expect_says(message, {"case.toml"});
   return message;
 }
 
-/// The same with one line put where a complete scenario has its fourth.
+/// The message for a complete scenario with this line as its fourth line.
 std::string refused_line_4(const std::string& table, const std::string& line) {
   const std::string message = refused(kHead + table + "\n" + line + kTail);
   expect_says(message, {"case.toml, line 4"});
@@ -124,7 +124,7 @@ TEST(ReadScenario, relative_names_start_in_the_scenarios_folder) {
   ASSERT_TRUE(scenario.ok()) << scenario.error().message();
   EXPECT_EQ(scenario->patient.source, (folder.path() / "data/case.dcm").string());
   EXPECT_EQ(scenario->insertions[0].motion, (folder.path() / "scenarios/hand.csv").string());
-  // However the scenario itself is named.
+  // The paths are absolute even if the scenario's own path is relative.
   const auto relative = read_scenario(std::filesystem::relative(file));
   ASSERT_TRUE(relative.ok());
   EXPECT_EQ(relative->insertions[0].motion, (folder.path() / "scenarios/hand.csv").string());
