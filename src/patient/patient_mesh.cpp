@@ -107,7 +107,7 @@ Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& pro
   options.stiff_band = scenario.mesh.stiff_band;
   options.layers = scenario.anatomy;
   if (scenario.patient.source == "phantom" && scenario.patient.volume > 0)
-    return input_error("patient.volume", "the phantom is no mask with volumes to choose from", "Leave it out.");
+    return input_error("patient.volume", "the phantom is no mask with volumes to choose from", "Leave it out");
   if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);
   const Result<PatientFile> file = read_patient(scenario.patient.source, {.scale = scenario.patient.scale}, options,
                                                 {.volume = scenario.patient.volume});

@@ -33,7 +33,7 @@ Result<> write_contour_json(const ContourSet& contours, const std::filesystem::p
         const Vec3& p = contour.points[i];
         if (!p.allFinite()) {
           return failure(path.string(), fmt::format("structure '{}' has a point that is not finite", roi.name),
-                         "Correct the contours before writing them.");
+                         "Correct the contours before writing them");
         }
         text += fmt::format("{}[{}, {}, {}]", i == 0 ? "" : ", ", p.x(), p.y(), p.z());
       }
@@ -46,7 +46,7 @@ Result<> write_contour_json(const ContourSet& contours, const std::filesystem::p
     std::ofstream file(temporary, std::ios::binary);
     file << text;
     file.close();
-    if (!file) return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space.");
+    if (!file) return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space");
     return Ok{};
   });
 }

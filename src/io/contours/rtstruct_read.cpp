@@ -32,12 +32,12 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
   if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
     return input_error(where, "the contour has no points (ContourData is missing or empty)",
-                       "Export the structure set again.");
+                       "Export the structure set again");
   }
   const auto values = split(data, '\\');
   if (values.size() % 3 != 0) {
     return input_error(where, fmt::format("ContourData has {} numbers, which is no multiple of three", values.size()),
-                       "Export the structure set again; the file is damaged.");
+                       "Export the structure set again; the file is damaged");
   }
   Contour contour;
   contour.points.reserve(values.size() / 3);
@@ -48,7 +48,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
       if (!value || !std::isfinite(*value)) {
         return input_error(fmt::format("{}, point {}", where, i / 3 + 1),
                            fmt::format("the coordinate '{}' is not a finite number", trimmed(values[i + axis])),
-                           "Export the structure set again; the file is damaged.");
+                           "Export the structure set again; the file is damaged");
       }
       point[axis] = *value;
     }
@@ -57,7 +57,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const auto stated = integer_of(item, DCM_NumberOfContourPoints);
   if (stated && *stated != static_cast<int>(contour.points.size())) {
     return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
-                       "Export the structure set again; the file is damaged.");
+                       "Export the structure set again; the file is damaged");
   }
   // Some programs repeat the first point at the end; the copies are dropped.
   while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
@@ -105,10 +105,10 @@ Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
   if (modality == "RTSTRUCT" || sop_class == UID_RTStructureSetStorage) return Ok{};
   if (modality.empty() && sop_class.empty()) {
     return input_error(source, "this is not a DICOM file, or a damaged one (neither modality nor SOP class is stated)",
-                       "Name a DICOM RT Structure Set (modality RTSTRUCT).");
+                       "Name a DICOM RT Structure Set (modality RTSTRUCT)");
   }
   return input_error(source, fmt::format("this DICOM file has modality '{}', RTSTRUCT is expected", modality),
-                     "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours.");
+                     "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours");
 }
 
 /// Checks that a structure has the frame of reference of the set, which is that of its first structure.
@@ -117,7 +117,7 @@ Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& 
   if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
   return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
                      "its frame of reference differs from that of the structures before it",
-                     "Export structures of one registration only; Stylet does not register images.");
+                     "Export structures of one registration only; Stylet does not register images");
 }
 
 }  // namespace
@@ -136,11 +136,11 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     if (!right_kind) return right_kind.error();
   }
   if (status.bad() && !has_dicom_mark(path) && text_of(data, DCM_SOPClassUID).empty()) {
-    return input_error(source, "this is not a DICOM file", "Name a DICOM RT Structure Set (modality RTSTRUCT).");
+    return input_error(source, "this is not a DICOM file", "Name a DICOM RT Structure Set (modality RTSTRUCT)");
   }
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   }
   data.convertToUTF8();  // on failure the bytes stay unchanged
 
@@ -153,17 +153,17 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     const auto number = integer_of(*item, DCM_ROINumber);
     if (!number) {
       return input_error(source, "a structure has no ROI number",
-                         "Export the structure set again; the file is damaged.");
+                         "Export the structure set again; the file is damaged");
     }
     RoiHeader header{text_of(*item, DCM_ROIName), text_of(*item, DCM_ReferencedFrameOfReferenceUID)};
     if (header.name.empty()) header.name = fmt::format("ROI {}", *number);
     if (!headers.emplace(*number, header).second) {
       return input_error(source, fmt::format("two structures have ROI number {}", *number),
-                         "Export the structure set again; ROI numbers are unique.");
+                         "Export the structure set again; ROI numbers are unique");
     }
   }
   if (headers.empty()) {
-    return input_error(source, "the structure set has no structures", "Export it again with its contours.");
+    return input_error(source, "the structure set has no structures", "Export it again with its contours");
   }
 
   std::map<int, std::string> types;
@@ -178,7 +178,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     const auto number = integer_of(*item, DCM_ReferencedROINumber);
     if (!number || !headers.contains(*number)) {
       return input_error(source, "contours refer to a structure that is not in the file",
-                         "Export the structure set again; the file is damaged.");
+                         "Export the structure set again; the file is damaged");
     }
     const RoiHeader& header = headers.at(*number);
     has_contour_item[*number] = true;
@@ -216,7 +216,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
   }
   if (set.rois.empty()) {
     return input_error(source, fmt::format("none of its {} structures has a closed planar contour", headers.size()),
-                       "Contour the structures before exporting.");
+                       "Contour the structures before exporting");
   }
   return set;
 }

@@ -65,19 +65,19 @@ std::string fingerprint(const ContourSet& set) {
 }
 
 Result<> check(const ContourSet& set, const std::string& where) {
-  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one.");
+  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one");
   for (const Roi& roi : set.rois) {
     const std::string place = fmt::format("{}, ROI '{}'", where, roi.name);
     if (roi.name.empty() || roi.name.size() > max_name || roi.name.find('\\') != std::string::npos) {
       return failure(place, fmt::format("a DICOM name has 1 to {} bytes and no backslash", max_name),
-                     "Rename the structure.");
+                     "Rename the structure");
     }
     for (const Contour& contour : roi.contours) {
       for (const Vec3& p : contour.points) {
         if (!p.allFinite() || p.cwiseAbs().maxCoeff() > max_coordinate_mm) {
           return failure(place,
                          fmt::format("the point ({}, {}, {}) mm is not finite or too far away", p.x(), p.y(), p.z()),
-                         "Correct the contour before writing it.");
+                         "Correct the contour before writing it");
         }
       }
     }
@@ -179,7 +179,7 @@ Result<> write_rtstruct(const ContourSet& contours, const fs::path& path) {
                   contours.frame_of_reference.empty() ? derived_uid(print, "frame") : contours.frame_of_reference);
   const auto refused = [&](const OFCondition& why) {
     return failure(path.string(), fmt::format("the RT Structure Set cannot be written ({})", why.text()),
-                   "Check the folder's permissions and space.");
+                   "Check the folder's permissions and space");
   };
   if (fill.status().bad()) return refused(fill.status());
   return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {

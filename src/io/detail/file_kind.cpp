@@ -158,7 +158,7 @@ std::string name_of(FileKind kind) {
 std::string readable_formats() {
   return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage, DICOM SEG; tetrahedra "
          "in "
-         "VTU, legacy VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB.";
+         "VTU, legacy VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB";
 }
 
 Result<FileKind> identify(const fs::path& path) {
@@ -170,7 +170,7 @@ Result<FileKind> identify(const fs::path& path) {
   const std::string bytes = first_bytes(path);
   if (is_damaged_gzip(path, bytes)) {
     return input_error(where, "this gzip file cannot be unpacked",
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   }
   return kind_of(bytes, size, path.extension().string());
 }

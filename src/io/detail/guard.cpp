@@ -152,7 +152,7 @@ Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits&
     case ChildEnd::not_started:
       return failure(path.string(),
                      fmt::format("no process could be started to read it ({})", std::strerror(outcome.code)),
-                     "Close other programs and try again.");
+                     "Close other programs and try again");
     case ChildEnd::timed_out:
       return input_error(path.string(), fmt::format("the parser did not finish within {:.0f} s{}", limits.cpu_s, words),
                          cure);
@@ -173,7 +173,7 @@ Error threw(const fs::path& path, const char* what, const char* cure) {
 
 Error out_of_memory(const fs::path& path) {
   return input_error(path.string(), "reading it needs more memory than a file of its size should",
-                     "The file is damaged (a wrong size in its header), or too large for this machine; crop it.");
+                     "The file is damaged (a wrong size in its header), or too large for this machine; crop it");
 }
 
 }  // namespace stylet::detail

@@ -16,10 +16,10 @@ Result<> write_whole(const fs::path& path, const std::function<Result<>(const fs
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) {
     return failure(path.string(), fmt::format("the folder '{}' does not exist", folder.string()),
-                   "Create it or choose another place.");
+                   "Create it or choose another place");
   }
   if (fs::is_directory(path, code)) {
-    return failure(path.string(), "a folder of this name is in the way", "Choose another file name.");
+    return failure(path.string(), "a folder of this name is in the way", "Choose another file name");
   }
   // The extension stays at the end, since some writers choose the format by it.
   const fs::path temporary =
@@ -34,7 +34,7 @@ Result<> write_whole(const fs::path& path, const std::function<Result<>(const fs
     const std::string why = code.message();
     fs::remove(temporary, code);
     return failure(path.string(), "the file cannot be put in place: " + why,
-                   "Check the folder's permissions and space.");
+                   "Check the folder's permissions and space");
   }
   return Ok{};
 }

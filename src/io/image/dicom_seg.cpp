@@ -24,7 +24,7 @@ namespace {
 constexpr double kAlike = 1e-3;         // tolerance of directions, and relative tolerance of spacings
 constexpr double kRegular_mm = 0.01;    // distance of a slice from its place in a regular stack, plus kAlike × height
 constexpr double kRegularShare = 0.01;  // the same distance as a share of the slice spacing
-constexpr const char* kExportAgain = "Export the segmentation again, e.g. from 3D Slicer; the file is damaged.";
+constexpr const char* kExportAgain = "Export the segmentation again, e.g. from 3D Slicer; the file is damaged";
 
 /// Position and segment of one frame.
 struct Frame {
@@ -135,13 +135,13 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
         std::abs(frame.pixel_mm[0] - first.pixel_mm[0]) > kAlike * first.pixel_mm[0] ||
         std::abs(frame.pixel_mm[1] - first.pixel_mm[1]) > kAlike * first.pixel_mm[1]) {
       return input_error(where, "its orientation or pixel spacing differs from the first frame's",
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer.");
+                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     const Vec3 shift = frame.position - first.position - height(frame) * normal;
     if (shift.norm() > kRegular_mm + kAlike * std::abs(height(frame))) {
       return input_error(where + ", ImagePositionPatient",
                          fmt::format("the slice lies {:.3g} mm beside the first one (a sheared stack)", shift.norm()),
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer.");
+                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     heights.push_back(height(frame));
   }
@@ -150,7 +150,7 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
   const double gap = slice_spacing(sorted, first.stated_spacing_mm);
   if (gap == 0) {
     return input_error(source, "all frames lie in one slice, at least 2 slices are needed",
-                       "Export the whole volume, not one slice.");
+                       "Export the whole volume, not one slice");
   }
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const double steps = (heights[f] - sorted.front()) / gap;
@@ -159,7 +159,7 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
                          fmt::format("the slice lies {:.4g} mm above the lowest, which is no multiple of the slice "
                                      "spacing of {:.4g} mm",
                                      heights[f] - sorted.front(), gap),
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer.");
+                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     frames[f].slice = static_cast<int>(std::round(steps));
   }
@@ -235,7 +235,7 @@ Result<Pixels> pixels_of(DcmDataset& data, double wanted, const std::string& sou
     return input_error(source,
                        fmt::format("its pixels are compressed as {}, which is not supported",
                                    DcmXfer(data.getOriginalXfer()).getXferName()),
-                       "Export it uncompressed, or convert it with dcmdjpeg, dcmdjpls or gdcmconv --raw.");
+                       "Export it uncompressed, or convert it with dcmdjpeg, dcmdjpls or gdcmconv --raw");
   }
   DcmElement* element = nullptr;
   if (data.findAndGetElement(DCM_PixelData, element).bad() || element == nullptr) {
@@ -303,12 +303,12 @@ Result<> check_is_segmentation(DcmDataset& data, const std::string& source) {
   const std::string sop_class = text_of(data, DCM_SOPClassUID), modality = text_of(data, DCM_Modality);
   if (sop_class == UID_SurfaceSegmentationStorage) {
     return input_error(source, "this is a DICOM surface segmentation, one of voxels is expected",
-                       "Export the segmentation as DICOM SEG or as a label mask.");
+                       "Export the segmentation as DICOM SEG or as a label mask");
   }
   if (modality == "SEG" || sop_class == UID_SegmentationStorage) return Ok{};
   return input_error(source,
                      fmt::format("this DICOM file has modality '{}', a segmentation (SEG) is expected", modality),
-                     "Name the segmentation that belongs to it.");
+                     "Name the segmentation that belongs to it");
 }
 
 }  // namespace
@@ -318,7 +318,7 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   const std::string source = path.string();
   if (options.volume > 1) {
     return input_error(source, fmt::format("volume {} is chosen, a DICOM segmentation holds one", options.volume),
-                       "Leave volume out.");
+                       "Leave volume out");
   }
   DcmFileFormat file;
   OFCondition status = file.loadFile(path.c_str());
@@ -327,11 +327,11 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   if (Result<> right = check_is_segmentation(data, source); !right) return right.error();
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   }
   if (integer_of(data, DCM_InConcatenationTotalNumber).value_or(1) > 1) {
     return input_error(source, "the segmentation is spread over several files (a concatenation)",
-                       "Export it as one file.");
+                       "Export it as one file");
   }
   data.convertToUTF8();  // on failure the bytes stay unchanged
   const int rows = integer_of(data, DCM_Rows).value_or(0), columns = integer_of(data, DCM_Columns).value_or(0);

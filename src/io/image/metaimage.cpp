@@ -50,7 +50,7 @@ Result<VoxelType> voxel_type(MetaImage& image, const std::string& source) {
     default:
       return input_error(source,
                          fmt::format("the voxel type {} is not supported", MET_ValueTypeName[image.ElementType()]),
-                         "Export the mask as MET_UCHAR or MET_USHORT.");
+                         "Export the mask as MET_UCHAR or MET_USHORT");
   }
 }
 
@@ -115,14 +115,14 @@ Result<Announced> announced_in(const fs::path& path) {
     if (wrong != nullptr) {
       return input_error(fmt::format("{}, line {}", source, number),
                          fmt::format("the header of the MetaImage file is damaged: {}", wrong),
-                         "Copy or export it again.");
+                         "Copy or export it again");
     }
     const std::string value = trimmed(line->text.substr(separator + 1));
     if (key == "NDims") {
       found.dimensions = to_number(value).value_or(0);
       if (!(found.dimensions >= 2 && found.dimensions <= 5)) {
         return input_error(source + ", NDims", fmt::format("the value is '{}', 3 is expected", value.substr(0, 40)),
-                           "Export one 3D label mask; the header is damaged.");
+                           "Export one 3D label mask; the header is damaged");
       }
     }
     if (key == "ElementDataFile") {  // always the last line of a header
@@ -135,7 +135,7 @@ Result<Announced> announced_in(const fs::path& path) {
     return input_error(
         source,
         fmt::format("the header of the MetaImage file has no {}", found.dimensions == 0 ? "NDims" : "ElementDataFile"),
-        "Copy or export it again; it is truncated or damaged.");
+        "Copy or export it again; it is truncated or damaged");
   }
   return found;
 }
@@ -146,7 +146,7 @@ Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
   if (lower(name).starts_with("list") || name.find('%') != std::string::npos) {
     return input_error(path.string() + ", ElementDataFile",
                        fmt::format("'{}': voxels spread over many files are not supported", name.substr(0, 80)),
-                       "Export one binary .mha file.");
+                       "Export one binary .mha file");
   }
   return data_file_of(path, name);
 }
@@ -157,7 +157,7 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
                                 MetaImage& image, std::size_t size) {
   const std::string source = path.string();
   if (!image.BinaryData()) {
-    return input_error(source, "voxels as text are not supported", "Export one binary .mha file.");
+    return input_error(source, "voxels as text are not supported", "Export one binary .mha file");
   }
   const bool local = data_path == path;
   std::ifstream file(data_path, std::ios::binary);
@@ -169,7 +169,7 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
   if (image.CompressedData()) bytes = inflated(bytes, size);
   if (bytes.size() < size) {
     return input_error(source, fmt::format("there are {} bytes of voxels, {} are expected", bytes.size(), size),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   }
   return bytes;
 }
@@ -181,7 +181,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
   const auto damaged = [&](const char* part) {
     return input_error(
         source, fmt::format("the {} of the MetaImage file cannot be read", part),
-        "Copy or export it again (an .mhd header needs its data file beside it); it is truncated or damaged.");
+        "Copy or export it again (an .mhd header needs its data file beside it); it is truncated or damaged");
   };
   const Result<Announced> announced = announced_in(path);
   if (!announced) return announced.error();
@@ -196,7 +196,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
   if (!volume) return volume.error();
   if (image.ElementNumberOfChannels() != 1) {
     return input_error(source, fmt::format("a voxel has {} components, 1 is expected", image.ElementNumberOfChannels()),
-                       "Export a label mask, not a colour or vector image.");
+                       "Export a label mask, not a colour or vector image");
   }
   Result<VoxelType> type = voxel_type(image, source);
   if (!type) return type.error();
@@ -226,7 +226,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
       return input_error(source + ", ElementSpacing",
                          fmt::format("the value along axis {} is {:g}, a number above 0 is expected", "ijk"[a],
                                      image.ElementSpacing(a)),
-                         "Write the image again with its voxel spacing in mm, e.g. from 3D Slicer.");
+                         "Write the image again with its voxel spacing in mm, e.g. from 3D Slicer");
     }
     // Row a of TransformMatrix is the direction of image axis a.
     for (int row = 0; row < 3; ++row) {

@@ -48,7 +48,7 @@ Result<VoxelType> voxel_type(vtkImageData& image, const std::string& source) {
     case VTK_DOUBLE:
       return VoxelType::float64;
     default:
-      return input_error(source, "the voxel type is not supported", "Export the mask as 8- or 16-bit whole numbers.");
+      return input_error(source, "the voxel type is not supported", "Export the mask as 8- or 16-bit whole numbers");
   }
 }
 
@@ -98,7 +98,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   const auto messages = VtkMessages::install();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NIfTI file cannot be read ({})", messages->first_error()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   };
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());
@@ -117,7 +117,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
     if (header.GetPixDim(a) >= 0 && std::isfinite(header.GetPixDim(a))) continue;
     return input_error(fmt::format("{}, pixdim[{}]", source, a),
                        fmt::format("the value is {:g}, a voxel spacing above 0 is expected", header.GetPixDim(a)),
-                       "Save the image again, e.g. from 3D Slicer.");
+                       "Save the image again, e.g. from 3D Slicer");
   }
 
   // The standard's method 3 (sform) has priority over method 2 (qform). VTK's matrices apply to index × spacing.
@@ -126,17 +126,17 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   if (form == nullptr) {
     return input_error(
         source, "the file does not say how the image lies in the patient (neither sform nor qform)",
-        "Save it again with its orientation, e.g. from 3D Slicer; without it left and right are unknown.");
+        "Save it again with its orientation, e.g. from 3D Slicer; without it left and right are unknown");
   }
   const double unit = unit_mm(header.GetXYZTUnits());
   if (unit == 0.0) {
     return input_error(source, fmt::format("the unit of length (code {}) is unknown", header.GetXYZTUnits() & 0x07),
-                       "Set xyzt_units to 2 (mm).");
+                       "Set xyzt_units to 2 (mm)");
   }
 
   if (!std::string_view(header.GetMagic()).starts_with("n+")) {
     return input_error(source, "this is a NIfTI image in two files (.hdr and .img)",
-                       "Convert it to a single .nii or .nii.gz.");
+                       "Convert it to a single .nii or .nii.gz");
   }
   double bytes = static_cast<double>(header.GetVoxOffset());
   double voxel = header.GetBitPix() / 8.0;
@@ -144,7 +144,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   bytes += voxel;
   if (!holds_bytes(path, bytes)) {
     return input_error(source, fmt::format("the file ends before its {:.0f} bytes of voxels", voxel),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   }
 
   reader->Update();
@@ -161,7 +161,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   const auto components = static_cast<std::size_t>(image.GetNumberOfScalarComponents());
   if (components != volumes) {
     return input_error(source, fmt::format("a voxel has {} components, 1 is expected", components / volumes),
-                       "Export a label mask, not a colour or vector image.");
+                       "Export a label mask, not a colour or vector image");
   }
   const std::vector<char> chosen = volumes == 1 ? std::vector<char>() : component_of(image, *volume);
   voxels.data = volumes == 1 ? image.GetScalarPointer() : chosen.data();

@@ -61,7 +61,7 @@ Result<VoxelType> voxel_type(int type, const std::string& source) {
       return VoxelType::float64;
     default:
       return input_error(source, fmt::format("the voxel type '{}' is not supported", airEnumStr(nrrdType, type)),
-                         "Export the mask as 8- or 16-bit whole numbers.");
+                         "Export the mask as 8- or 16-bit whole numbers");
   }
 }
 
@@ -81,7 +81,7 @@ Result<Vec3> to_lps(const Nrrd& nrrd, const std::string& source) {
               ? std::string("the header does not say how the image lies in the patient (no 'space')")
               : fmt::format("the space '{}' is not one of the patient's", airEnumStr(nrrdSpace, nrrd.space)),
           "Write 'space: left-posterior-superior' (or right-anterior-superior, left-anterior-superior), "
-          "'space directions' and 'space origin'.");
+          "'space directions' and 'space origin'");
   }
 }
 
@@ -182,7 +182,7 @@ Result<NrrdPointer> slice_of(const Nrrd& nrrd, int axis, std::size_t at, const s
   const int status = axis < 0 ? nrrdCopy(slice.get(), &nrrd) : nrrdSlice(slice.get(), &nrrd, axis, at);
   if (status != 0) {
     return input_error(source, fmt::format("a volume cannot be taken out of the NRRD file ({})", last_error()),
-                       "Export one 3D label mask.");
+                       "Export one 3D label mask");
   }
   return slice;
 }
@@ -201,7 +201,7 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
     const double unit = unit_mm(nrrd.spaceUnits[a]);
     if (unit == 0.0) {
       return input_error(source, fmt::format("the unit '{}' is unknown", nrrd.spaceUnits[a]),
-                         "Write 'space units: \"mm\" \"mm\" \"mm\"'.");
+                         "Write 'space units: \"mm\" \"mm\" \"mm\"'");
     }
     voxels.size[a] = axis.size;
     for (unsigned row = 0; row < 3; ++row) {
@@ -267,7 +267,7 @@ Result<> check_data_file(const std::filesystem::path& path, const std::string& n
   if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
     return input_error(path.string() + ", data file",
                        fmt::format("'{}': data spread over many files are not supported", name.substr(0, 80)),
-                       "Export one .nrrd file.");
+                       "Export one .nrrd file");
   }
   if (Result<std::filesystem::path> data = data_file_of(path, name); !data) return data.error();
   return Ok{};
@@ -289,7 +289,7 @@ Result<> check_header(const std::filesystem::path& path) {
       return input_error(fmt::format("{}, line {}", path.string(), number),
                          fmt::format("the header has a line of {}{} characters, at most {} are expected",
                                      line->whole ? "" : "more than ", text.size(), most),
-                         "Copy or export it again; it is damaged.");
+                         "Copy or export it again; it is damaged");
     }
     const auto colon = text.find(':');
     if (colon == std::string::npos || text.front() == '#') continue;
@@ -305,7 +305,7 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   const std::string source = path.string();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NRRD file cannot be read ({})", last_error()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "Copy or export it again; it is truncated or damaged");
   };
   if (Result<> header = check_header(path); !header) return header.error();
   // Read the header first, so that an error does not need gigabytes of data to be read, and is more precise.
@@ -315,7 +315,7 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   if (nrrdLoad(nrrd.get(), path.c_str(), header_only.get()) != 0) return damaged();
   if (nrrd->dim > 4) {
     return input_error(source + ", dimension", fmt::format("the value is {}, 3 or 4 is expected", nrrd->dim),
-                       "Export one 3D label mask, or volumes along a fourth axis only.");
+                       "Export one 3D label mask, or volumes along a fourth axis only");
   }
   const int axis = list_axis(*nrrd);
   std::vector<std::size_t> sizes;

@@ -43,7 +43,7 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
                LabelImage& image) {
   const std::vector<bool> skipped = listed(segments, skip);
   if (!segments.empty() && std::find(skipped.begin(), skipped.end(), false) == skipped.end()) {
-    return input_error(image.source, "every segment is left out", "Take one of them out of [patient] skip.");
+    return input_error(image.source, "every segment is left out", "Take one of them out of [patient] skip");
   }
   std::vector<std::size_t> voxels(segments.size(), 0);
   for (const Run& run : runs) voxels[run.segment] += run.count;

@@ -30,7 +30,7 @@ constexpr double max_shear = 1e-3;           // largest |cosine| between two axe
 
 const char* const mask_cure =
     "Name a label mask: 0 outside, one whole number per structure; a probability map must be cut at a threshold first, "
-    "e.g. in 3D Slicer.";
+    "e.g. in 3D Slicer";
 
 /// The values of an image as numbers; T is their type in the file.
 template <class T>
@@ -157,7 +157,7 @@ Result<> check_extent(const LabelImage& image) {
     }
   }
   if (high[0] < 0) {
-    return input_error(image.source, "the mask is empty: every voxel is 0", "Segment a structure before exporting.");
+    return input_error(image.source, "the mask is empty: every voxel is 0", "Segment a structure before exporting");
   }
   double extent = 0.0;
   for (int a = 0; a < 3; ++a) extent = std::max(extent, (high[a] - low[a] + 1) * image.spacing[a]);
@@ -166,20 +166,20 @@ Result<> check_extent(const LabelImage& image) {
                        fmt::format("the segmentation is {:.4g} mm long, 1 mm to 2 m is expected; voxel spacing "
                                    "{:.4g} × {:.4g} × {:.4g} mm",
                                    extent, image.spacing[0], image.spacing[1], image.spacing[2]),
-                       "The file's unit is probably not mm; correct its spacing.");
+                       "The file's unit is probably not mm; correct its spacing");
   }
   return Ok{};
 }
 
 Result<> set_frame(const Voxels& voxels, LabelImage& image) {
-  const char* const cure = "Write the image again with a valid orientation, in mm, e.g. from 3D Slicer.";
+  const char* const cure = "Write the image again with a valid orientation, in mm, e.g. from 3D Slicer";
   const std::array<std::size_t, 3>& size = voxels.size;
   const double count = static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
   if (count > std::numeric_limits<Index>::max()) {
     return input_error(voxels.source,
                        fmt::format("the image has {:.3g} voxels, at most {:.3g} are supported", count,
                                    static_cast<double>(std::numeric_limits<Index>::max())),
-                       "Crop it to the pelvis.");
+                       "Crop it to the pelvis");
   }
   if (Result<> reach = check_reach(fmt::format("{}, {}", voxels.source, voxels.origin_field), voxels.origin,
                                    "the image's first voxel");
@@ -213,7 +213,7 @@ Result<> set_frame(const Voxels& voxels, LabelImage& image) {
         return input_error(voxels.source,
                            fmt::format("the image axes {} and {} enclose {:.2f}°, 90° is expected (a sheared image)",
                                        "ijk"[a], "ijk"[b], std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI),
-                           "Resample the mask to a regular grid, e.g. with 3D Slicer.");
+                           "Resample the mask to a regular grid, e.g. with 3D Slicer");
       }
     }
   }
@@ -234,7 +234,7 @@ Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen
     return input_error(
         source,
         fmt::format("the image has {} voxels, at least 2 along each of 3 axes are needed", fmt::join(sizes, " × ")),
-        "Export the whole volume, not one slice.");
+        "Export the whole volume, not one slice");
   }
   double volumes = 1;
   for (const std::size_t n : sizes.subspan(3)) volumes *= static_cast<double>(std::max<std::size_t>(n, 1));
@@ -244,13 +244,13 @@ Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen
         source,
         fmt::format("the file holds {:.0f} volumes ({} voxels), one is needed", volumes, fmt::join(sizes, " × ")),
         "Say which one, counted from 1: volume = 1 below [patient] in a scenario, --volume 1 with "
-        "stylet info and stylet mesh.");
+        "stylet info and stylet mesh");
   }
   if (chosen > volumes) {
     return input_error(
         source,
         fmt::format("volume {} is chosen, the file holds {:.0f} ({} voxels)", chosen, volumes, fmt::join(sizes, " × ")),
-        volumes == 1 ? "Leave volume out." : fmt::format("Choose one from 1 to {:.0f}.", volumes));
+        volumes == 1 ? "Leave volume out" : fmt::format("Choose one from 1 to {:.0f}", volumes));
   }
   return static_cast<std::size_t>(chosen - 1);
 }

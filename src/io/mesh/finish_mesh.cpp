@@ -24,13 +24,13 @@ Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
   const double extent = box.sizes().maxCoeff();
   if (extent >= smallest_believable_mm && extent <= largest_believable_mm) return Ok{};
   const auto believable = [&](double scale) { return extent * scale >= 40.0 && extent * scale <= 1500.0; };
-  std::string cure = "State the unit: --scale S with S = mm per file unit.";
+  std::string cure = "State the unit: --scale S with S = mm per file unit";
   if (extent > largest_believable_mm) {
-    cure = "If they are micrometres, pass --scale 0.001; otherwise --scale S with S = mm per file unit.";
+    cure = "If they are micrometres, pass --scale 0.001; otherwise --scale S with S = mm per file unit";
   } else if (believable(1000.0) && extent <= 1.5) {
-    cure = "They are probably metres: pass --scale 1000; otherwise --scale S with S = mm per file unit.";
+    cure = "They are probably metres: pass --scale 1000; otherwise --scale S with S = mm per file unit";
   } else if (believable(10.0)) {
-    cure = "If they are centimetres, pass --scale 10; otherwise --scale S with S = mm per file unit.";
+    cure = "If they are centimetres, pass --scale 10; otherwise --scale S with S = mm per file unit";
   }
   return input_error(
       source,
@@ -107,7 +107,7 @@ Result<> check_scale(double scale) {
   if (scale == 0.0 || (std::isfinite(scale) && scale > 0.0)) return Ok{};
   return input_error("--scale",
                      fmt::format("{} is no unit of length, a number above 0 is expected (mm per file unit)", scale),
-                     "Pass e.g. --scale 1000 for metres.");
+                     "Pass e.g. --scale 1000 for metres");
 }
 
 Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const MeshReadOptions& options) {
@@ -121,7 +121,7 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
                        raw.passed_over.empty()
                            ? "the file holds no tetrahedra"
                            : fmt::format("the file holds no tetrahedra, only {}", raw.passed_over.begin()->first),
-                       "Export a volume mesh of tetrahedra; a surface has to be filled first.");
+                       "Export a volume mesh of tetrahedra; a surface has to be filled first");
   }
   if (raw.quadratic) out.notes.emplace_back("quadratic tetrahedra: only their corner nodes are used");
   if (const Index dropped = drop_foreign_nodes(raw); dropped > 0) {

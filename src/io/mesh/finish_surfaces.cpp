@@ -106,13 +106,13 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
       for (const Index p : t) box.extend(surface.points[p]);
     }
   }
-  if (box.isEmpty()) return input_error(source, "there are no triangles", "Export triangulated surfaces.");
+  if (box.isEmpty()) return input_error(source, "there are no triangles", "Export triangulated surfaces");
   const double extent = box.sizes().maxCoeff();
   if (extent < 1.0 || extent > 2000.0) {
     return input_error(source, fmt::format("its surfaces are {:.4g} mm across, 1 mm to 2 m is expected", extent),
                        extent < 1.0 ? "The coordinates are probably in metres: pass --scale 1000; otherwise --scale S "
-                                      "with S = mm per file unit."
-                                    : "State the unit: --scale S with S = mm per file unit.");
+                                      "with S = mm per file unit"
+                                    : "State the unit: --scale S with S = mm per file unit");
   }
   SurfacesWithNotes out;
   for (Surface& surface : surfaces) {
@@ -126,7 +126,7 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
     }
     out.surfaces.push_back(std::move(surface));
   }
-  if (out.surfaces.empty()) return input_error(source, "its triangles have no area", "Export triangulated surfaces.");
+  if (out.surfaces.empty()) return input_error(source, "its triangles have no area", "Export triangulated surfaces");
   return out;
 }
 

@@ -39,14 +39,14 @@ class NumberLines {
         const auto number = to_number(word);
         if (!number || !std::isfinite(*number)) {
           return input_error(place(), fmt::format("'{}' is not a finite number", word.substr(0, 40)),
-                             "Correct the file at that place.");
+                             "Correct the file at that place");
         }
         numbers.push_back(*number);
       }
       if (!numbers.empty()) return numbers;
     }
     return input_error(place(), "the file ends here, more lines are announced",
-                       "Export the mesh again; the file is truncated.");
+                       "Export the mesh again; the file is truncated");
   }
 
  private:
@@ -56,7 +56,7 @@ class NumberLines {
 };
 
 Error wrong_line(const NumberLines& lines, std::string what) {
-  return input_error(lines.place(), std::move(what), "Correct the file at that place.");
+  return input_error(lines.place(), std::move(what), "Correct the file at that place");
 }
 
 /// Converts to a whole number 0…2³¹-2; empty if it is not one.
@@ -149,7 +149,7 @@ Result<RawMesh> parse_tetgen_mesh(const fs::path& path) {
       return input_error(
           path.string(),
           fmt::format("its other half '{}' cannot be read: {}", part.filename().string(), file.error().what),
-          "A TetGen mesh needs both, the .node and the .ele file, side by side.");
+          "A TetGen mesh needs both, the .node and the .ele file, side by side");
     }
   }
   NumberLines node_lines(node_path), ele_lines(ele_path);

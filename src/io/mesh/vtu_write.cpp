@@ -35,7 +35,7 @@ Result<> add_fields(vtkDataSetAttributes& attributes, const std::vector<MeshFiel
       return failure(where,
                      fmt::format("the field '{}' has {} × {} values, 1, 3 or 6 × {} are expected", field.name,
                                  components, field.values.cols(), columns),
-                     "Give one column per node or tetrahedron.");
+                     "Give one column per node or tetrahedron");
     }
     vtkNew<vtkDoubleArray> array;
     array->SetName(field.name.c_str());
@@ -84,7 +84,7 @@ Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const
     writer->EncodeAppendedDataOff();
     writer->SetCompressorTypeToZLib();
     if (writer->Write() != 1 || writer->GetErrorCode() != 0) {
-      return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space.");
+      return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space");
     }
     return Ok{};
   });

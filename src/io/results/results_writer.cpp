@@ -59,7 +59,7 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
   if (run->frames.empty()) {
-    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish().");
+    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish()");
   }
   run->summary = summary;
   const Moments moments = find_moments(run->frames);
@@ -89,7 +89,7 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
 /// not reached the disk.
 Error not_finite(const std::string& where, double time_s) {
   return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
-                 "The simulation has lost its way before: look at the steps before this one.");
+                 "The simulation has lost its way before: look at the steps before this one");
 }
 
 bool is_finite(const Frame& frame) {
@@ -108,7 +108,7 @@ auto guarded(const fs::path& folder, Work work) -> decltype(work()) {
     return work();
   } catch (const std::exception& e) {
     return failure(folder.string(), fmt::format("cannot be filled: {}", e.what()),
-                   "Close other programs or use a smaller mesh, then run again.");
+                   "Close other programs or use a smaller mesh, then run again");
   }
 }
 
@@ -150,7 +150,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
     return failure(
         "frame",
         fmt::format("{} displacement components, the mesh has {} nodes", frame.displacement.size(), parts_->nodes),
-        "Give three components per node of the mesh passed to open().");
+        "Give three components per node of the mesh passed to open()");
   }
   if (!is_finite(frame)) return not_finite("frame", frame.time_s);
   StoredFrame stored{frame, {}};
@@ -163,7 +163,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
 void ResultsWriter::add_map(HoleMap map) { parts_->map = std::move(map); }
 
 Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
-  if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
+  if (parts_->finished) return failure("results", "finish() was called before", "Call it once");
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;

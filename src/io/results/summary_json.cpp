@@ -92,7 +92,7 @@ std::string summary_json(const Summary& s) {
 
 Result<Summary> parse_summary_json(std::string_view text, const std::string& where) {
   const auto refuse = [&](const std::string& reason) {
-    return input_error(where, "not a summary of a run: " + reason, "Give a file that this version of stylet wrote.");
+    return input_error(where, "not a summary of a run: " + reason, "Give a file that this version of stylet wrote");
   };
   try {
     const Json json = Json::parse(text);
