@@ -36,7 +36,7 @@ Result<> drop_skipped(std::vector<Surface>& surfaces, const std::vector<std::str
     if (found.empty()) {
       const std::string near = nearest_name(word, names);
       return input_error(where, fmt::format("patient.skip: there is no surface '{}'; the file has {}", word, names),
-                         near.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", near));
+                         near.empty() ? "Use one of these names" : fmt::format("Did you mean '{}'?", near));
     }
     for (const std::size_t i : found) drop[i] = true;
   }

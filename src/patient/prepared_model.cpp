@@ -64,7 +64,7 @@ Result<PreparedModel> prepare_model_file(const std::string& file, const std::vec
   const Result<Scenario> scenario = read_scenario(file, settings);
   if (!scenario) return scenario.error();
   if (cache == nullptr) return prepare_model(*scenario, progress, file);
-  report(progress, "looking for a model kept before", -1.0);
+  report(progress, "looking for a cached model", -1.0);
   const Result<std::string> key = model_key(*scenario);
   if (!key) return prepare_model(*scenario, progress, file);  // its error about an unreadable file is more precise
   if (const auto kept = cache->find(*key)) {

@@ -38,12 +38,14 @@ Result<ForceGuard> ForceGuard::create(const ForceGuardSettings& s) {
   for (const auto& [name, value] : all) {
     if (!positive(value))
       return input_error(fmt::format("force guard, {}", name), fmt::format("{} is not above 0", value),
-                         "give a positive limit");
+                         "Give a number above 0");
   }
   if (s.recover_s < s.fade_s)
-    return input_error("force guard, recover_s",
-                       fmt::format("{} s is shorter than fade_s = {} s", s.recover_s, s.fade_s),
-                       "let forces return more slowly than they fade, or results good and bad by turns would pass");
+    return input_error(
+        "force guard, recover_s",
+        fmt::format("{} s is shorter than fade_s = {} s, so that alternating good and bad results would reach the hand",
+                    s.recover_s, s.fade_s),
+        "Give at least fade_s");
   const double fade_s = std::max(s.max_force_N / s.force_slew_N_per_s, s.max_torque_Nmm / s.torque_slew_Nmm_per_s);
   // The small tolerance accepts a slew rate that is exactly sufficient, in spite of rounding.
   if (fade_s > s.fade_s * (1.0 + 1e-12))
@@ -51,7 +53,7 @@ Result<ForceGuard> ForceGuard::create(const ForceGuardSettings& s) {
         "force guard, fade_s",
         fmt::format("{} s is too short: {} N at {} N/s and {} N mm at {} N mm/s take {} s to fade", s.fade_s,
                     s.max_force_N, s.force_slew_N_per_s, s.max_torque_Nmm, s.torque_slew_Nmm_per_s, fade_s),
-        "raise fade_s or the slew rates, or lower the limits");
+        "Raise fade_s or the slew rates, or lower the limits");
   return ForceGuard(s);
 }
 

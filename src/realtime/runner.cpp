@@ -24,7 +24,7 @@ Result<> in_range(const char* name, double value, double least, double most, con
   if (value >= least && value <= most) return Ok{};
   return input_error(fmt::format("real-time runner, {}", name),
                      fmt::format("{} {} is outside {} … {} {}", value, unit, least, most, unit),
-                     fmt::format("give {} … {}", least, most));
+                     fmt::format("Give {} … {}", least, most));
 }
 
 Result<> check(const RunnerSettings& s) {
@@ -100,7 +100,7 @@ bool RealtimeRunner::running() const { return parts_->step_thread.joinable(); }
 
 Result<> RealtimeRunner::start() {
   Parts& p = *parts_;
-  if (running()) return failure("real-time runner", "it runs already", "stop it first");
+  if (running()) return failure("real-time runner", "it is already running", "Stop it first");
   p.exchange.stop.store(false, std::memory_order_release);
   // A step is due an eighth of a period after the device's turn, so that it uses the sample of the same period.
   const std::int64_t after = std::llround(p.settings.period_s * 1e9) / 8;
@@ -123,8 +123,8 @@ Result<> RealtimeRunner::start() {
     p.exchange.stop.store(true, std::memory_order_release);
     first_turn.set_value(monotonic_ns());
     p.join();
-    return failure("real-time runner", fmt::format("the system gives no thread: {}", error.what()),
-                   "raise the limit on the number of threads");
+    return failure("real-time runner", fmt::format("the system provides no thread: {}", error.what()),
+                   "Raise the limit on the number of threads");
   }
   p.rights = of_step.get();
   const ThreadRights device_rights = of_device.get();

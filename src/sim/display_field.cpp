@@ -187,7 +187,8 @@ void DisplayField::keep_near_rows() {
 
 Result<> DisplayField::check(const Model& model) {
   if (!model.inverse()) return Ok{};
-  return input_error("coupling.engine", "the display needs the compliances near the needles' ways",
+  return input_error("coupling.engine",
+                     "the display needs the compliance near the needles' ways, which this engine does not store",
                      "Use coupling.engine = \"condensed\"");
 }
 

@@ -153,7 +153,8 @@ Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const st
         where,
         fmt::format("no hole of the template leads into the target, whose centre is at ({:.1f}, {:.1f}, {:.1f}) mm",
                     centre.x(), centre.y(), centre.z()),
-        "Put the template before the target (template.centre_mm), or let the needle go deeper (insertion.depth_mm)");
+        "Move the template in front of the target (template.centre_mm), or let the needle go deeper "
+        "(insertion.depth_mm)");
   }
   return map;
 }
@@ -163,19 +164,19 @@ Result<> check_mappable(const Scenario& scenario, const std::string& where) {
     return input_error(fmt::format("{}, [[insertion]]", where),
                        fmt::format("there are {} insertions, and a map puts one needle into each hole of the template",
                                    scenario.insertions.size()),
-                       "Keep one [[insertion]], the one whose depth, speed and roll the map is to be for");
+                       "Keep only the [[insertion]] with the depth, speed and roll for the map");
   }
   const InsertionPlan& plan = scenario.insertions.front();
   if (!plan.motion.empty()) {
     return input_error(
         fmt::format("{}, insertion[0].motion = \"{}\"", where, plan.motion),
-        "a recorded motion is one needle's own and cannot be repeated through every hole of the template",
-        "Give a hole and a speed in its place, for example hole = \"D4\"");
+        "a recorded motion belongs to one needle and cannot be repeated through every hole of the template",
+        "Give a hole and a speed instead, for example hole = \"D4\"");
   }
   if (!plan.hole) {
     return input_error(fmt::format("{}, insertion[0].entry_mm", where),
-                       "the needle does not go through a hole of the template, and a map is of its holes",
-                       "Give a hole in its place, for example hole = \"D4\"");
+                       "the needle does not go through a hole of the template, which a map of the holes requires",
+                       "Give a hole instead, for example hole = \"D4\"");
   }
   return Ok{};
 }

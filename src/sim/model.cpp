@@ -132,8 +132,8 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
   if (scenario.grid.guide && recorded.depth_mm > deepest_mm(scenario)) {
     return input_error(
         fmt::format("{}, insertion[{}].motion", where, number),
-        fmt::format("the recorded motion goes {:.1f} mm deep and would push the base through the "
-                    "template, which lets it go {:.1f} mm",
+        fmt::format("the recorded motion is {:.1f} mm deep and would push the base through the template, which allows "
+                    "{:.1f} mm",
                     recorded.depth_mm, deepest_mm(scenario)),
         "Use a longer needle (needle.length_mm), a smaller template.distance_mm, or template.guide = false");
   }
@@ -222,8 +222,8 @@ std::vector<std::string> tenting_warnings(const std::string& region, const Tissu
   const double lag = cutting_lag_mm(t, t.cutting_N, needle_diameter_mm);
   if (lag > kLagMax_mm) {
     warnings.push_back(fmt::format(
-        "tissue.{}: cutting_N = {:g} with young_kPa = {:g}{} means that the tip cuts {:.1f} mm behind where "
-        "it pushes; at most {:g} mm is plausible. Change them together.",
+        "tissue.{}: cutting_N = {:g} with young_kPa = {:g}{} means a cutting lag of {:.1f} mm: the tip cuts that far "
+        "behind the place to which it is pushed; at most {:g} mm is plausible. Change them together.",
         region, t.cutting_N, t.young_kPa, stiffening, lag, kLagMax_mm));
   }
   return warnings;
@@ -240,8 +240,8 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     return input_error(
         fmt::format("{}, [tissue.{}]", where, name),
         fmt::format("the patient has no region '{}' (there are: {})", name, fmt::join(mesh.regions, ", ")),
-        fmt::format("{} patient.regions gives structures and labels their names",
-                    near.empty() ? "Name one of these;" : fmt::format("Did you mean '{}'?", near)));
+        fmt::format("{} patient.regions sets the names of structures and labels",
+                    near.empty() ? "Use one of these names;" : fmt::format("Did you mean '{}'?", near)));
   }
 
   std::shared_ptr<Model> model(new Model);
@@ -303,11 +303,12 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   if (!knows_stiffening(model->coupling_)) {
     for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
       if (model->tissue_parameters_[r].stiffening == 0.0 || model->laws_[r].rigid) continue;
-      model->warnings_.push_back(fmt::format(
-          "tissue.{}: stiffening = {:g} has no effect: with coupling.method = \"{}\" and coupling.solver = "
-          "\"{}\" the tissue under the tip is linear, and dents deeper. Use \"near-field\" and \"coupled\".",
-          mesh.regions[r], model->tissue_parameters_[r].stiffening, word(scenario.coupling.method),
-          word(scenario.coupling.solver)));
+      model->warnings_.push_back(
+          fmt::format("tissue.{}: stiffening = {:g} has no effect: with coupling.method = \"{}\" and coupling.solver = "
+                      "\"{}\" the tissue under the tip is linear, and its dent is deeper. Use coupling.method = "
+                      "\"near-field\" and coupling.solver = \"coupled\".",
+                      mesh.regions[r], model->tissue_parameters_[r].stiffening, word(scenario.coupling.method),
+                      word(scenario.coupling.solver)));
       break;  // one warning for the first such region is enough
     }
   }
@@ -326,9 +327,9 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   const Element element = element_of(scenario, mesh.node_count());
   if (element != element_of(scenario, 0)) {
     model->warnings_.push_back(
-        fmt::format("Linear tetrahedra (tissue.element = \"p1\") are used on this mesh of {} nodes, more than {}: "
-                    "averaged pressure "
-                    "would need too much memory. They are somewhat stiff where Poisson's ratio is near 0.5.",
+        fmt::format("Linear tetrahedra (tissue.element = \"p1\") are used on this mesh of {} nodes, more than {}, "
+                    "because elements with averaged pressure would need too much memory. Linear tetrahedra are "
+                    "somewhat too stiff if Poisson's ratio is near 0.5.",
                     mesh.node_count(), kMostAveraged));
   }
   const std::vector<Index> last = condensed ? corridor.nodes : std::vector<Index>{};
@@ -341,7 +342,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   const auto corridor_dofs = static_cast<Eigen::Index>(3 * model->tissue_->corridor().size());
   if (known && (known->store.rows() != corridor_dofs || known->store.cols() != corridor_dofs)) {
     return input_error(where,
-                       fmt::format("the compliance that comes with it is that of {} nodes, the corridor has {}",
+                       fmt::format("the saved compliance has {} nodes, but the corridor has {}",
                                    known->store.rows() / 3, corridor_dofs / 3),
                        kPrepareAgain);
   }
@@ -369,7 +370,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     if (!known) {
       kernel->add_nodes(nodes, progress);
     } else if (!kernel->add_nodes(nodes, known->kernel)) {
-      return input_error(where, "the near field that comes with it is not that of the corridor", kPrepareAgain);
+      return input_error(where, "the saved near field does not belong to this corridor", kPrepareAgain);
     }
     model->near_field_.kernel = std::move(kernel);
   }
@@ -378,7 +379,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     if (known && known->spread.size() > 0) {
       model->near_field_.spread = SpreadCompliance::of(ways, std::move(known->spread));
       if (!model->near_field_.spread)
-        return input_error(where, "the compliance along the needles' ways that comes with it is not theirs",
+        return input_error(where, "the saved compliance along the needles' ways does not belong to these ways",
                            kPrepareAgain);
     } else {
       auto spread = SpreadCompliance::solve(*model->tissue_, ways, progress);

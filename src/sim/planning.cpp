@@ -122,8 +122,9 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
     if (result.depth_mm > reach) {
       return input_error(
           place,
-          fmt::format("the target's far end lies {:.0f} mm deep, the needle is {:.0f} mm long and reaches {:.0f} mm",
-                      result.depth_mm, scenario.needle.length_mm, reach),
+          fmt::format(
+              "the target's far end lies {:.0f} mm deep, but the needle is {:.0f} mm long and reaches only {:.0f} mm",
+              result.depth_mm, scenario.needle.length_mm, reach),
           "Use a longer needle (needle.length_mm), or give a depth (depth_mm)");
     }
   }

@@ -94,8 +94,9 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
   result.remarks = harms(events);
   if (auto warning = unbroken.warning()) result.remarks.push_back(std::move(*warning));
   if (without_balance > 0) {
-    result.remarks.push_back(fmt::format(
-        "In {} of {} steps needle and tissue found no balance; a smaller run.dt_ms helps.", without_balance, deepest));
+    result.remarks.push_back(
+        fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
+                    without_balance, deepest));
   }
   return result;
 }

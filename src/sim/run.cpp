@@ -54,8 +54,8 @@ class Runner {
       if (auto done = one(insertions[i], planned_steps(*model_, insertions[i])); !done) return done.error();
       if (i + 1 < insertions.size() && simulation_.last_step().tip_state != TipState::air) {
         return input_error(fmt::format("insertion[{}]", i),
-                           "the needle is still in the tissue when the next one is to start",
-                           "Pull it out further: a larger approach_mm, or a longer recorded motion");
+                           "the needle is still in the tissue when the next insertion starts",
+                           "Draw the needle out further: use a larger approach_mm, or a longer recorded motion");
       }
     }
     return sum_up();
@@ -229,24 +229,24 @@ class Runner {
     }
     if (worst > digits_lost) {
       summary_.warnings.push_back(fmt::format(
-          "A change of the mesh had a small matrix of condition {:.0e}: the inverse stiffness has lost half of its "
-          "digits; use engine = \"condensed\" or a better mesh.",
+          "The inverse stiffness was updated for a change of the mesh by a matrix with the condition number {:.0e}, "
+          "and has lost half of its digits. Use coupling.engine = \"condensed\" or a better mesh.",
           worst));
     }
   }
 
   void note_flags() {
     static const std::array<const char*, kFlags> texts{
-        "did not converge to the full tolerance; a smaller run.dt_ms helps",
-        "a stick/slip state was frozen for one sub-step",
-        "compliance was missing where the needle left the prepared corridor, and that of the tip's last place stood in "
-        "for it, or at the skin none; raise coupling.corridor_mm or coupling.spare_nodes",
+        "the solver did not converge to the full tolerance; a smaller run.dt_ms helps",
+        "the stick/slip state of a contact was frozen for one sub-step",
+        "compliance was missing, because the needle had left the prepared corridor; the compliance at the tip's last "
+        "place was used instead, or none at the skin; raise coupling.corridor_mm or coupling.spare_nodes",
         "there was no room for another contact; raise coupling.contacts",
         "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
-        "the pose of the base was not finite and the step was not taken",
-        "the tip was inside the tissue and no force acted on it: it started there, went in flat to the skin, slipped "
-        "off it, or had gone through the far side; start the needle outside of the tissue, and enter it less flat to "
-        "the skin"};
+        "the pose of the base was not finite, so the step was not taken",
+        "the tip was inside the tissue and no force acted on it, because it started there, entered too flat to the "
+        "skin, slipped off it, or had gone through the far side; start the needle outside of the tissue, and enter it "
+        "less flat to the skin"};
     for (std::size_t bit = 0; bit < texts.size(); ++bit) {
       if (flag_counts_[bit] > 0)
         summary_.warnings.push_back(
@@ -278,17 +278,20 @@ Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::spa
                              RunObserver& observer, const Progress& progress) {
   if (steps.empty()) return input_error("recording", "it has no steps", "Record one with `stylet serve`");
   if (model->insertions().size() != 1)
-    return input_error("recording", fmt::format("its scenario has {} insertions", model->insertions().size()),
-                       "Run the scenario itself; what is repeated step by step is a single insertion");
+    return input_error(
+        "recording",
+        fmt::format("its scenario has {} insertions, but only a single insertion can be repeated step by step",
+                    model->insertions().size()),
+        "Run the scenario itself");
   for (std::size_t k = 0; k < steps.size(); ++k) {
     if (!steps[k].base.origin.allFinite() || !steps[k].base.rotation.coeffs().allFinite() || !(steps[k].dt_s > 0.0))
       return input_error(fmt::format("recording, step {}", k),
-                         "it does not say where the base was: the file was written by an earlier version",
+                         "it has no pose of the base, because an earlier version wrote the file",
                          "Record it again, or run its scenario");
     if (steps[k].rest_steps < 0 || (k == 0 && steps[k].rest_steps != 0))
       return input_error(fmt::format("recording, step {}", k),
-                         fmt::format("{} steps at rest cannot be before it", steps[k].rest_steps),
-                         "Give 0 or more, before the first step 0");
+                         fmt::format("there cannot be {} steps at rest before it", steps[k].rest_steps),
+                         "Give 0 or more, and 0 before the first step");
   }
   return Runner(model, observer, progress).recorded(steps);
 }

@@ -29,23 +29,23 @@ constexpr std::array kShown{
     Shown{"needle.model", "most accurate for its cost"},
     Shown{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
     Shown{"needle.diameter_mm", "18 gauge"},
-    Shown{"needle.stylet", "seeds and spacers lie where it would be"},
+    Shown{"needle.stylet", "seeds and spacers are in its place"},
     Shown{"needle.bevel_deg", "stated: a symmetric tip"},
-    Shown{"needle.bevel_law", "deflects as far as measured, by one number that can be read off the needle"},
+    Shown{"needle.bevel_law", "reproduces measured deflections with one number that can be measured on the needle"},
     Shown{"needle.bevel_force_ratio", "0.04-0.08 measured (Okamura 2004); for the law force only"},
     Shown{"needle.bow_mm", "a straight needle"},
     Shown{"needle.bow_deg", "a straight needle has no side"},
     Shown{kElements.data(), "numerical: no visible change of the needle's shape with more"},
     Shown{"coupling.method", "force does not depend on the mesh"},
-    Shown{"coupling.rule", "old compliances do not change when a node is added"},
+    Shown{"coupling.rule", "existing compliances do not change when a node is added"},
     Shown{"coupling.engine", "cost does not depend on the size of the mesh"},
-    Shown{"coupling.solver", "no damping to choose"},
+    Shown{"coupling.solver", "needs no damping parameter"},
     Shown{"coupling.spacing_mm", "numerical: about three needle diameters"},
     Shown{"coupling.tip_viscosity_Ns_per_m",
-          "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
-    Shown{"coupling.bone_damping_ms", "numerical: a needle that snaps on bone does so within milliseconds"},
+          "numerical: when a membrane breaks, the tip advances within milliseconds instead of at once"},
+    Shown{"coupling.bone_damping_ms", "numerical: a needle that snaps on bone takes milliseconds to do so"},
     Shown{"coupling.grazing_deg", "stated, no measurement known"},
-    Shown{"coupling.tolerance", "numerical: results do not hang on it"},
+    Shown{"coupling.tolerance", "numerical: results do not depend on it"},
     Shown{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
 };
 
@@ -77,7 +77,7 @@ std::string unit_of(const std::string& path) {
 void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, TissuePreset preset,
                 const TissueParameters& used, bool held) {
   if (held) {
-    rows.push_back({"tissue." + region, "held", "", "bone, or a region the scenario holds"});
+    rows.push_back({"tissue." + region, "held", "", "bone, or a region that the scenario holds"});
     return;
   }
   const TissueParameters standard = default_tissue(region, preset);
@@ -130,10 +130,10 @@ void add_tet(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choi
   if (!built) return;
   const TetNeedle* tet = built->get();
   rows.push_back({"needle.tet.calibration", fmt::format("{:.4g}", 1.0 / tet->stiffening()), "",
-                  "factor on Young's modulus that makes the tip deflect as theory says; linear tetrahedra bend too "
-                  "stiffly"});
+                  "factor on Young's modulus with which the tip deflects as in beam theory; linear tetrahedra are too "
+                  "stiff in bending"});
   rows.push_back({"needle.tet.axial_stiffness", fmt::format("{:.4g}", tet->axial_stiffness()), "N/mm",
-                  "what the calibrated modulus means along the needle"});
+                  "follows from the calibrated modulus"});
 }
 
 }  // namespace
@@ -159,24 +159,24 @@ RunInfo Model::info(std::size_t insertion) const {
   for (std::size_t r = 0; r < mesh().regions.size(); ++r)
     add_tissue(info.parameters, mesh().regions[r], scenario_.tissue_model.preset, tissue_parameters_[r],
                laws_[r].rigid);
-  info.parameters.push_back(
-      {"tissue.element", to_string(tissue_->element()), "",
-       scenario_.tissue_model.element == ElementChoice::automatic
-           ? "by coupling.method: linear tetrahedra where it needs them or is compared, else one that does not lock"
-           : kFromScenario});
+  info.parameters.push_back({"tissue.element", to_string(tissue_->element()), "",
+                             scenario_.tissue_model.element == ElementChoice::automatic
+                                 ? "depends on coupling.method: linear tetrahedra if the method needs them or for "
+                                   "comparison, else an element without locking"
+                                 : kFromScenario});
   const Scenario standard;
   const Scenario::TissueModel& tissue = scenario_.tissue_model;
   info.parameters.push_back({"tissue.preset", word(tissue.preset), "",
                              tissue.preset == standard.tissue_model.preset ? "default" : kFromScenario});
   const double creep = creep_of(scenario_);
-  info.parameters.push_back({"tissue.creep", fmt::format("{:g}", creep), "",
-                             tissue.creep ? kFromScenario
-                                          : (creep > 1.0 ? "fitted: a gland that moves by less when the needle is fast"
-                                                         : "stated: elastic")});
+  info.parameters.push_back(
+      {"tissue.creep", fmt::format("{:g}", creep), "",
+       tissue.creep ? kFromScenario
+                    : (creep > 1.0 ? "fitted: the gland moves less when the needle is faster" : "stated: elastic")});
   if (creep > 1.0) {
     info.parameters.push_back({"tissue.creep_s", fmt::format("{:g}", tissue.creep_s), "s",
                                tissue.creep_s == standard.tissue_model.creep_s
-                                   ? "fitted: a gland that moves by less when the needle is fast"
+                                   ? "fitted: the gland moves less when the needle is faster"
                                    : kFromScenario});
   }
   for (const ShownLayer& layer : kShownLayers) {

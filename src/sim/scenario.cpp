@@ -16,7 +16,7 @@ namespace {
 
 using Type = ScenarioValue::Type;
 
-constexpr const char* kAllKeys = "The command stylet insert --print-schema lists all keys";
+constexpr const char* kAllKeys = "Run stylet insert --print-schema for a list of all keys";
 
 /// "tissue.prostate.young_kPa" → "tissue.<region>.young_kPa" and the slot; "insertion[2].hole" → "insertion[].hole".
 std::string pattern_of(const std::string& path, ScenarioSlot& slot) {

@@ -107,7 +107,7 @@ class ScenarioEntries {
           const auto chosen = stylet::choice<E>(v.text);
           if (!chosen) {
             const std::string near = nearest_name(v.text, words);
-            return "not one of its words" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");
+            return "not an allowed word" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");
           }
           target = *chosen;
           return {};

@@ -43,7 +43,7 @@ stylet_rt_status guarded(ErrorText& error, const Body& body) noexcept {
     error.say(e.what());
     return STYLET_RT_FAILED;
   } catch (...) {
-    error.say("failed for a reason that has no name");
+    error.say("an unknown error occurred");
     return STYLET_RT_FAILED;
   }
 }

@@ -99,22 +99,25 @@ extern "C" {
 stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model, const stylet_rt_options* options,
                                       stylet_rt_sim** sim, char* error, size_t error_size) noexcept {
   ErrorText text(error, error_size);
-  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_create: there is no place for the simulation");
+  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_create: the argument sim is null");
   *sim = nullptr;
   if (model == nullptr) return text.bad_argument("stylet_rt_sim_create: the model is null");
   stylet_rt_options chosen = {};
   if (options != nullptr) {
     if (options->struct_size != sizeof chosen) {
       return text.bad_argument(
-          "stylet_rt_sim_create: options.struct_size is none that this library knows; set it to "
-          "sizeof(stylet_rt_options), and use header and library of one version");
+          "stylet_rt_sim_create: options.struct_size is not known to this library. Set it to "
+          "sizeof(stylet_rt_options), and use header and library of the same version");
     }
     chosen = *options;
   }
   if ((chosen.flags & ~kKnownFlags) != 0 || chosen.reserved != 0)
-    return text.bad_argument("stylet_rt_sim_create: options ask for what this library does not know; zero them first");
+    return text.bad_argument(
+        "stylet_rt_sim_create: options has unknown flags, or reserved is not 0. Set the structure to zero before you "
+        "fill it in");
   if (!planned(*model->model, chosen.insertion))
-    return text.bad_argument("stylet_rt_sim_create: options.insertion is none of the model's insertions");
+    return text.bad_argument(
+        "stylet_rt_sim_create: options.insertion is not the number of one of the model's insertions");
   return guarded(text, [&]() -> stylet_rt_status {
     auto made = std::make_unique<stylet_rt_sim>(model->model, chosen.flags);
     place(*made, static_cast<std::size_t>(chosen.insertion));

@@ -33,8 +33,8 @@ Scenario with(const std::string& region, double puncture_N) {
 TEST(UnbrokenSurface, a_capsule_that_is_pressed_far_in_and_never_breaks_is_told_of) {
   const std::string said = warnings_of(with("prostate", 50.0));
   EXPECT_SAYS(said, "pressed the surface of the prostate");
-  EXPECT_SAYS(said, "where 50.00 N break it");
-  EXPECT_SAYS(said, "A lower puncture_N");
+  EXPECT_SAYS(said, "but 50.00 N are needed to break it");
+  EXPECT_SAYS(said, "Lower puncture_N");
 }
 
 TEST(UnbrokenSurface, skin_that_never_breaks_is_told_of_too) {

@@ -267,14 +267,14 @@ static int settings_change_what_they_name(void) {
 
 static int bad_settings_are_refused_with_the_words_of_a_file(void) {
   const char* const bad[][2] = {
-      {"coupling.method=\"nearfield\"", "not one of its words (did you mean \"near-field\"?)"},
+      {"coupling.method=\"nearfield\"", "not an allowed word (did you mean \"near-field\"?)"},
       {"coupling.spacing_mm=-4", "coupling.spacing_mm = -4 is outside its range"},
       {"run.dt_ms=-1", "run.dt_ms = -1 is outside its range"},
       {"run.dt_ms=nan", "run.dt_ms = nan is not finite"},
       {"insertion[0].speed_mm_per_s=0", "insertion[0].speed_mm_per_s = 0 is outside its range"},
       {"insertion[0].speed_mm_per_s=inf", "insertion[0].speed_mm_per_s = inf is not finite"},
       {"needle.length_mm=1e9", "needle.length_mm = 1000000000 is outside its range"},
-      {"needle.model=\"rod\"", "needle.model = \"rod\" is not one of its words"},
+      {"needle.model=\"rod\"", "needle.model = \"rod\" is not an allowed word"},
       {"coupling.contacts=40.5", "coupling.contacts = 40.5 is not a whole number"},
       {"tissue.prostate.poisson=0.5", "tissue.prostate.poisson = 0.5 is outside its range"},
       {"coupling.contacts=0", "coupling.contacts = 0 is outside its range"}};

@@ -297,7 +297,7 @@ TEST(ReadScenario, refuses_values_out_of_range) {
   expect_says(refused_line_4("[fixed]", "box_mm = [1, 2, 3]"), {"fixed.box_mm = [1, 2, 3] is 3 numbers long, not 6"});
   expect_says(refused_line_4("[fixed]", "outer = \"side\""), {"fixed.outer = \"side\"", "did you mean \"sides\"?"});
   expect_says(refused_line_4("[coupling]", "method = \"near\""),
-              {"coupling.method = \"near\" is not one of its words", "\"near-field\", \"node-addition\""});
+              {"coupling.method = \"near\" is not an allowed word", "\"near-field\", \"node-addition\""});
   expect_says(refused_line_4("[template]", "columns = []"), {"template.columns", "too short"});
 }
 

@@ -25,7 +25,7 @@ namespace stylet::results {
 namespace {
 
 Error no_picture(const std::string& what) {
-  return failure("pictures", what, "Install the packages libegl1, libegl-mesa0 and libgl1-mesa-dri.");
+  return failure("pictures", what, "Install the packages libegl1, libegl-mesa0 and libgl1-mesa-dri");
 }
 
 /// Reduces a picture by averaging squares of kOversampling × kOversampling pixels.
