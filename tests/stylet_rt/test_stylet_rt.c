@@ -210,7 +210,7 @@ static void check_refused(const char* name, const char* word) {
 
 static int files_that_are_no_model_are_refused_with_place_and_cure(void) {
   check_refused("none.stylet", "no such file");
-  check_refused("cut.stylet", "cut short or damaged");
+  check_refused("cut.stylet", "truncated or damaged");
   check_refused("text.stylet", "not a saved model");
   return 0;
 }

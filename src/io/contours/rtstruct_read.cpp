@@ -32,12 +32,13 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
   if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
     return input_error(where, "the contour has no points (ContourData is missing or empty)",
-                       "Export the structure set again");
+                       "Export the structure set again.");
   }
   const auto values = split(data, '\\');
   if (values.size() % 3 != 0) {
-    return input_error(where, fmt::format("ContourData has {} numbers, which is no multiple of three", values.size()),
-                       "Export the structure set again; the file is damaged");
+    return input_error(where,
+                       fmt::format("ContourData has {} numbers, which is not a multiple of three", values.size()),
+                       "The file is damaged; export the structure set again.");
   }
   Contour contour;
   contour.points.reserve(values.size() / 3);
@@ -48,7 +49,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
       if (!value || !std::isfinite(*value)) {
         return input_error(fmt::format("{}, point {}", where, i / 3 + 1),
                            fmt::format("the coordinate '{}' is not a finite number", trimmed(values[i + axis])),
-                           "Export the structure set again; the file is damaged");
+                           "The file is damaged; export the structure set again.");
       }
       point[axis] = *value;
     }
@@ -57,7 +58,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const auto stated = integer_of(item, DCM_NumberOfContourPoints);
   if (stated && *stated != static_cast<int>(contour.points.size())) {
     return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
-                       "Export the structure set again; the file is damaged");
+                       "The file is damaged; export the structure set again.");
   }
   // Some programs repeat the first point at the end; the copies are dropped.
   while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
@@ -93,8 +94,9 @@ Result<> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
     return Ok{};
   }
   for (const auto& [type, count] : passed_over) {
-    set.notes.push_back(fmt::format("ROI '{}': {} {} curve{} passed over (only closed planar contours bound a region)",
-                                    roi.name, count, type, count == 1 ? "" : "s"));
+    set.notes.push_back(
+        fmt::format("ROI '{}': {} {} curve{} ignored, because only closed planar contours bound a region.", roi.name,
+                    count, type, count == 1 ? "" : "s"));
   }
   return Ok{};
 }
@@ -116,8 +118,8 @@ Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& 
   if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
   if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
   return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
-                     "its frame of reference differs from that of the structures before it",
-                     "Export structures of one registration only; Stylet does not register images");
+                     "its frame of reference differs from the one of the structures before it",
+                     "Export structures of one registration only; Stylet does not register images.");
 }
 
 }  // namespace
@@ -140,7 +142,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
   }
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
   data.convertToUTF8();  // on failure the bytes stay unchanged
 
@@ -153,7 +155,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     const auto number = integer_of(*item, DCM_ROINumber);
     if (!number) {
       return input_error(source, "a structure has no ROI number",
-                         "Export the structure set again; the file is damaged");
+                         "The file is damaged; export the structure set again");
     }
     RoiHeader header{text_of(*item, DCM_ROIName), text_of(*item, DCM_ReferencedFrameOfReferenceUID)};
     if (header.name.empty()) header.name = fmt::format("ROI {}", *number);
@@ -178,7 +180,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     const auto number = integer_of(*item, DCM_ReferencedROINumber);
     if (!number || !headers.contains(*number)) {
       return input_error(source, "contours refer to a structure that is not in the file",
-                         "Export the structure set again; the file is damaged");
+                         "The file is damaged; export the structure set again");
     }
     const RoiHeader& header = headers.at(*number);
     has_contour_item[*number] = true;

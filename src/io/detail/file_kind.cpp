@@ -170,7 +170,7 @@ Result<FileKind> identify(const fs::path& path) {
   const std::string bytes = first_bytes(path);
   if (is_damaged_gzip(path, bytes)) {
     return input_error(where, "this gzip file cannot be unpacked",
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
   return kind_of(bytes, size, path.extension().string());
 }

@@ -17,7 +17,7 @@ ChildLimits limits_for(const std::filesystem::path& path);
 
 /// The default cure in the error about a file that crashes its parser.
 inline constexpr const char* kExportAgain =
-    "The file is damaged or not what its format promises; export it again or in another format";
+    "The file is damaged or violates its format; export it again or in another format";
 
 /// The error for a parser that ended without a result.
 Error died(const std::filesystem::path& path, const ChildOutcome& outcome, const ChildLimits& limits, const char* cure);

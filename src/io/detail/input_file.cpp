@@ -59,7 +59,7 @@ Result<> check_input_file(const fs::path& path) {
 Result<fs::path> data_file_of(const fs::path& header, const std::string& name) {
   const auto refuse = [&](const std::string& what) {
     return input_error(header.string(), fmt::format("the header names '{}' as its data file: {}", name, what),
-                       "Keep header and data beside each other and name the data file without a path");
+                       "Keep header and data in one folder, and name the data file without a path");
   };
   const fs::path given(name);
   if (given.is_absolute()) return refuse("an absolute path is not followed");

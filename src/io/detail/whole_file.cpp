@@ -33,7 +33,7 @@ Result<> write_whole(const fs::path& path, const std::function<Result<>(const fs
   if (code) {
     const std::string why = code.message();
     fs::remove(temporary, code);
-    return failure(path.string(), "the file cannot be put in place: " + why,
+    return failure(path.string(), "the file cannot be renamed to its final name: " + why,
                    "Check the folder's permissions and space");
   }
   return Ok{};

@@ -24,7 +24,7 @@ namespace {
 constexpr double kAlike = 1e-3;         // tolerance of directions, and relative tolerance of spacings
 constexpr double kRegular_mm = 0.01;    // distance of a slice from its place in a regular stack, plus kAlike × height
 constexpr double kRegularShare = 0.01;  // the same distance as a share of the slice spacing
-constexpr const char* kExportAgain = "Export the segmentation again, e.g. from 3D Slicer; the file is damaged";
+constexpr const char* kExportAgain = "The file is damaged; export the segmentation again, e.g. from 3D Slicer";
 
 /// Position and segment of one frame.
 struct Frame {
@@ -58,7 +58,7 @@ Result<Frame> read_frame(DcmItem* own, DcmItem* shared, bool label_map, const st
   const auto turn = orientation ? numbers_of(*orientation, DCM_ImageOrientationPatient) : std::vector<double>();
   const auto pixel = measures ? numbers_of(*measures, DCM_PixelSpacing) : std::vector<double>();
   if (place.size() != 3 || turn.size() != 6 || pixel.size() != 2) {
-    return damaged(where, fmt::format("it does not say how it lies in the patient ({} is missing or damaged)",
+    return damaged(where, fmt::format("its position in the patient is unknown ({} is missing or damaged)",
                                       place.size() != 3  ? "ImagePositionPatient"
                                       : turn.size() != 6 ? "ImageOrientationPatient"
                                                          : "PixelSpacing"));
@@ -86,7 +86,7 @@ Result<Frame> read_frame(DcmItem* own, DcmItem* shared, bool label_map, const st
   }
   if (label_map) return frame;
   const auto number = segment ? integer_of(*segment, DCM_ReferencedSegmentNumber) : std::nullopt;
-  if (!number) return damaged(where, "it does not say which segment it shows (ReferencedSegmentNumber)");
+  if (!number) return damaged(where, "its segment is unknown (ReferencedSegmentNumber)");
   frame.segment = *number;
   return frame;
 }
@@ -139,9 +139,11 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
     }
     const Vec3 shift = frame.position - first.position - height(frame) * normal;
     if (shift.norm() > kRegular_mm + kAlike * std::abs(height(frame))) {
-      return input_error(where + ", ImagePositionPatient",
-                         fmt::format("the slice lies {:.3g} mm beside the first one (a sheared stack)", shift.norm()),
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
+      return input_error(
+          where + ", ImagePositionPatient",
+          fmt::format("the slice is shifted sideways by {:.3g} mm against the first one (a sheared stack)",
+                      shift.norm()),
+          "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     heights.push_back(height(frame));
   }
@@ -155,11 +157,12 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const double steps = (heights[f] - sorted.front()) / gap;
     if (steps > 1e5 || std::abs(steps - std::round(steps)) * gap > kRegular_mm + kRegularShare * gap) {
-      return input_error(fmt::format("{}, frame {}, ImagePositionPatient", source, f + 1),
-                         fmt::format("the slice lies {:.4g} mm above the lowest, which is no multiple of the slice "
-                                     "spacing of {:.4g} mm",
-                                     heights[f] - sorted.front(), gap),
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
+      return input_error(
+          fmt::format("{}, frame {}, ImagePositionPatient", source, f + 1),
+          fmt::format(
+              "the slice lies {:.4g} mm above the lowest, which is not a multiple of the slice spacing of {:.4g} mm",
+              heights[f] - sorted.front(), gap),
+          "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     frames[f].slice = static_cast<int>(std::round(steps));
   }
@@ -302,7 +305,7 @@ Result<std::vector<Run>> runs_of(const std::vector<Frame>& frames, const Pixels&
 Result<> check_is_segmentation(DcmDataset& data, const std::string& source) {
   const std::string sop_class = text_of(data, DCM_SOPClassUID), modality = text_of(data, DCM_Modality);
   if (sop_class == UID_SurfaceSegmentationStorage) {
-    return input_error(source, "this is a DICOM surface segmentation, one of voxels is expected",
+    return input_error(source, "this is a DICOM surface segmentation, a segmentation of voxels is expected",
                        "Export the segmentation as DICOM SEG or as a label mask");
   }
   if (modality == "SEG" || sop_class == UID_SegmentationStorage) return Ok{};
@@ -327,7 +330,7 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   if (Result<> right = check_is_segmentation(data, source); !right) return right.error();
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
   if (integer_of(data, DCM_InConcatenationTotalNumber).value_or(1) > 1) {
     return input_error(source, "the segmentation is spread over several files (a concatenation)",
@@ -355,8 +358,9 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   const Result<std::vector<Run>> runs = runs_of(*frames, *pixels, *rule, *stack, *segments);
   if (!runs) return runs.error();
   if (rule->least > 1) {
-    image.notes.push_back(fmt::format("fractional segments: a voxel is inside from {} of {} on, one half", rule->least,
-                                      integer_of(data, DCM_MaximumFractionalValue).value_or(255)));
+    image.notes.push_back(
+        fmt::format("The segments are fractional: a voxel with at least {} of {}, one half, is inside.", rule->least,
+                    integer_of(data, DCM_MaximumFractionalValue).value_or(255)));
   }
   if (Result<> painted = paint(*segments, *runs, options.skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();

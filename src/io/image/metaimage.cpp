@@ -111,7 +111,7 @@ Result<Announced> announced_in(const fs::path& path) {
     const char* wrong = nullptr;
     if (line->text.size() > kLongest) wrong = "it is longer than 4095 characters";
     if (line->lone_return) wrong = "it ends in a carriage return alone";
-    if (separator == std::string::npos || key.empty()) wrong = "it does not say KEY = VALUE";
+    if (separator == std::string::npos || key.empty()) wrong = "it is not of the form KEY = VALUE";
     if (wrong != nullptr) {
       return input_error(fmt::format("{}, line {}", source, number),
                          fmt::format("the header of the MetaImage file is damaged: {}", wrong),
@@ -122,7 +122,7 @@ Result<Announced> announced_in(const fs::path& path) {
       found.dimensions = to_number(value).value_or(0);
       if (!(found.dimensions >= 2 && found.dimensions <= 5)) {
         return input_error(source + ", NDims", fmt::format("the value is '{}', 3 is expected", value.substr(0, 40)),
-                           "Export one 3D label mask; the header is damaged");
+                           "The header is damaged; export one 3D label mask");
       }
     }
     if (key == "ElementDataFile") {  // always the last line of a header
@@ -135,7 +135,7 @@ Result<Announced> announced_in(const fs::path& path) {
     return input_error(
         source,
         fmt::format("the header of the MetaImage file has no {}", found.dimensions == 0 ? "NDims" : "ElementDataFile"),
-        "Copy or export it again; it is truncated or damaged");
+        "The file is truncated or damaged; copy or export it again");
   }
   return found;
 }
@@ -169,7 +169,7 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
   if (image.CompressedData()) bytes = inflated(bytes, size);
   if (bytes.size() < size) {
     return input_error(source, fmt::format("there are {} bytes of voxels, {} are expected", bytes.size(), size),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
   return bytes;
 }
@@ -179,9 +179,9 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
 Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const MaskReadOptions& options) {
   const std::string source = path.string();
   const auto damaged = [&](const char* part) {
-    return input_error(
-        source, fmt::format("the {} of the MetaImage file cannot be read", part),
-        "Copy or export it again (an .mhd header needs its data file beside it); it is truncated or damaged");
+    return input_error(source, fmt::format("the {} of the MetaImage file cannot be read", part),
+                       "The file is truncated or damaged; copy or export it again (an .mhd header needs its data file "
+                       "in the same folder)");
   };
   const Result<Announced> announced = announced_in(path);
   if (!announced) return announced.error();

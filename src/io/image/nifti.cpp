@@ -98,7 +98,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   const auto messages = VtkMessages::install();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NIfTI file cannot be read ({})", messages->first_error()),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   };
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());
@@ -125,8 +125,8 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   if (form == nullptr && header.GetQFormCode() > 0) form = reader->GetQFormMatrix();
   if (form == nullptr) {
     return input_error(
-        source, "the file does not say how the image lies in the patient (neither sform nor qform)",
-        "Save it again with its orientation, e.g. from 3D Slicer; without it left and right are unknown");
+        source, "the file does not state the position of the image in the patient (neither sform nor qform)",
+        "Left and right are unknown without it; save the image again with its orientation, e.g. from 3D Slicer");
   }
   const double unit = unit_mm(header.GetXYZTUnits());
   if (unit == 0.0) {
@@ -144,7 +144,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   bytes += voxel;
   if (!holds_bytes(path, bytes)) {
     return input_error(source, fmt::format("the file ends before its {:.0f} bytes of voxels", voxel),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
 
   reader->Update();

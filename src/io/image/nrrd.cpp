@@ -78,8 +78,8 @@ Result<Vec3> to_lps(const Nrrd& nrrd, const std::string& source) {
       return input_error(
           source,
           nrrd.space == nrrdSpaceUnknown
-              ? std::string("the header does not say how the image lies in the patient (no 'space')")
-              : fmt::format("the space '{}' is not one of the patient's", airEnumStr(nrrdSpace, nrrd.space)),
+              ? std::string("the header does not state the position of the image in the patient (no 'space')")
+              : fmt::format("the space '{}' is not a frame of the patient", airEnumStr(nrrdSpace, nrrd.space)),
           "Write 'space: left-posterior-superior' (or right-anterior-superior, left-anterior-superior), "
           "'space directions' and 'space origin'");
   }
@@ -147,18 +147,18 @@ std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd, std::size_t layers, std:
   std::vector<SegmentKeys> segments;
   for (const auto& [n, texts] : segment_texts(nrrd)) {
     const std::string called = texts.name && !texts.name->empty()
-                                   ? fmt::format("segment '{}'", *texts.name)
-                                   : fmt::format("the segment of the header's Segment{}", n);
+                                   ? fmt::format("Segment '{}'", *texts.name)
+                                   : fmt::format("The segment with number {} in the header", n);
     const std::string value = texts.value.value_or(std::to_string(n + 1)), layer = texts.layer.value_or("0");
     const auto number = whole_number(value, 1, 65535), at = whole_number(layer, 0, 65535);
     if (!number) {
-      notes.push_back(fmt::format("{} has no voxels: its Segment{}_LabelValue is '{}', 1 to 65535 is expected", called,
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_LabelValue is '{}', 1 to 65535 is expected.", called,
                                   n, value.substr(0, 40)));
     } else if (!at) {
-      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is '{}', a number from 0 on is expected",
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is '{}', a number from 0 on is expected.",
                                   called, n, layer.substr(0, 40)));
     } else if (static_cast<std::size_t>(*at) >= layers) {
-      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is {}, and the file's last layer is {}",
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is {}, and the file's last layer is {}.",
                                   called, n, *at, layers - 1));
     } else {
       segments.push_back({texts.name.value_or(""), *number, static_cast<std::size_t>(*at)});
@@ -241,7 +241,8 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
         place[label] = static_cast<int>(keys.size());
         keys.push_back({"", label, layer});
         image.notes.push_back(fmt::format(
-            "label {} of layer {} is none of the header's segments: it is taken as one without a name", label, layer));
+            "Label {} of layer {} does not belong to a segment of the header and becomes a segment without a name.",
+            label, layer));
       }
       add_voxel(runs, n, place[label]);
     }
@@ -252,11 +253,9 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
   std::vector<Segment> segments;
   for (const SegmentKeys& key : keys)
     segments.push_back({unique ? key.value : static_cast<int>(segments.size()) + 1, key.name, ""});
-  image.notes.push_back(fmt::format("{} segments in {} layers were put into one mask{}", segments.size(),
-                                    nrrd.axis[axis].size,
-                                    unique ? ""
-                                           : "; layers use the same labels, so that segments are numbered 1, 2, … "
-                                             "in the order of the file"));
+  image.notes.push_back(fmt::format(
+      "{} segments in {} layers were merged into one mask{}.", segments.size(), nrrd.axis[axis].size,
+      unique ? "" : "; since layers use the same labels, segments are numbered 1, 2, … in the order of the file"));
   if (Result<> painted = paint(segments, runs, skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();
   return image;
@@ -289,7 +288,7 @@ Result<> check_header(const std::filesystem::path& path) {
       return input_error(fmt::format("{}, line {}", path.string(), number),
                          fmt::format("the header has a line of {}{} characters, at most {} are expected",
                                      line->whole ? "" : "more than ", text.size(), most),
-                         "Copy or export it again; it is damaged");
+                         "The file is damaged; copy or export it again");
     }
     const auto colon = text.find(':');
     if (colon == std::string::npos || text.front() == '#') continue;
@@ -305,7 +304,7 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   const std::string source = path.string();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NRRD file cannot be read ({})", last_error()),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   };
   if (Result<> header = check_header(path); !header) return header.error();
   // Read the header first, so that an error does not need gigabytes of data to be read, and is more precise.

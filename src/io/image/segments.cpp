@@ -43,7 +43,7 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
                LabelImage& image) {
   const std::vector<bool> skipped = listed(segments, skip);
   if (!segments.empty() && std::find(skipped.begin(), skipped.end(), false) == skipped.end()) {
-    return input_error(image.source, "every segment is left out", "Take one of them out of [patient] skip");
+    return input_error(image.source, "every segment is left out", "Remove one of them from [patient] skip");
   }
   std::vector<std::size_t> voxels(segments.size(), 0);
   for (const Run& run : runs) voxels[run.segment] += run.count;
@@ -54,7 +54,7 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
     if (!name.empty()) image.names[label] = name;
     if (!meaning.empty()) image.meanings[label] = meaning;
     if (skipped[s]) image.names.try_emplace(label, std::to_string(label));  // keeps the skipped label known
-    if (voxels[s] == 0 && !skipped[s]) image.notes.push_back(fmt::format("segment '{}' is empty", called[label]));
+    if (voxels[s] == 0 && !skipped[s]) image.notes.push_back(fmt::format("Segment '{}' is empty.", called[label]));
   }
   std::map<std::pair<int, int>, std::size_t> overlaps;  // (smaller, larger) → voxels
   for (const Run& run : largest_first(runs, voxels)) {
@@ -67,7 +67,7 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
     }
   }
   for (const auto& [pair, shared] : overlaps) {
-    image.notes.push_back(fmt::format("'{0}' and '{1}' share {2} voxel{3}: the smaller segment, '{0}', has {4}",
+    image.notes.push_back(fmt::format("'{0}' and '{1}' share {2} voxel{3}: the smaller segment, '{0}', keeps {4}.",
                                       called[pair.first], called[pair.second], shared, shared == 1 ? "" : "s",
                                       shared == 1 ? "it" : "them"));
   }

@@ -29,8 +29,8 @@ constexpr double kWhole = 1e-3;              // largest distance from a whole nu
 constexpr double max_shear = 1e-3;           // largest |cosine| between two axes; headers have single precision
 
 const char* const mask_cure =
-    "Name a label mask: 0 outside, one whole number per structure; a probability map must be cut at a threshold first, "
-    "e.g. in 3D Slicer";
+    "Name a label mask: 0 outside, one whole number per structure; apply a threshold to a probability map first, e.g. "
+    "in 3D Slicer";
 
 /// The values of an image as numbers; T is their type in the file.
 template <class T>
@@ -107,7 +107,7 @@ Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
   if (outside) {
     return is_picture(
         value, count,
-        fmt::format(", and {:.6g} at {} is no label (0…65535)", value(*outside), voxel_name(voxels, *outside)));
+        fmt::format(", and {:.6g} at {} is not a label (0…65535)", value(*outside), voxel_name(voxels, *outside)));
   }
   if (varies_like_picture(labels, different)) return is_picture(value, count, "");
   return Ok{};
@@ -243,8 +243,8 @@ Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen
     return input_error(
         source,
         fmt::format("the file holds {:.0f} volumes ({} voxels), one is needed", volumes, fmt::join(sizes, " × ")),
-        "Say which one, counted from 1: volume = 1 below [patient] in a scenario, --volume 1 with "
-        "stylet info and stylet mesh");
+        "Choose one, counted from 1: volume = 1 below [patient] in a scenario, --volume 1 with stylet info and stylet "
+        "mesh");
   }
   if (chosen > volumes) {
     return input_error(

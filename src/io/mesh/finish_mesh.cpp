@@ -32,12 +32,11 @@ Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
   } else if (believable(10.0)) {
     cure = "If they are centimetres, pass --scale 10; otherwise --scale S with S = mm per file unit";
   }
-  return input_error(
-      source,
-      fmt::format("the mesh is {:.4g} units across; read as mm that is not believable ({:.0f} mm to {:.0f} mm is), so "
-                  "its coordinates are not in mm",
-                  extent, smallest_believable_mm, largest_believable_mm),
-      cure);
+  return input_error(source,
+                     fmt::format("the mesh is {:.4g} units across, which is not plausible in mm ({:.0f} mm to {:.0f} "
+                                 "mm is expected), so its coordinates are not in mm",
+                                 extent, smallest_believable_mm, largest_believable_mm),
+                     cure);
 }
 
 /// Drops nodes that only other elements than tetrahedra use. Nodes without any element stay and are an error later.
@@ -106,7 +105,7 @@ bool turn_if_all_inverted(TetMesh& mesh) {
 Result<> check_scale(double scale) {
   if (scale == 0.0 || (std::isfinite(scale) && scale > 0.0)) return Ok{};
   return input_error("--scale",
-                     fmt::format("{} is no unit of length, a number above 0 is expected (mm per file unit)", scale),
+                     fmt::format("{} is not a unit of length, a number above 0 is expected (mm per file unit)", scale),
                      "Pass e.g. --scale 1000 for metres");
 }
 
@@ -114,18 +113,18 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
   if (Result<> good = check_scale(options.scale); !good) return good.error();
   MeshWithNotes out;
   for (const auto& [kind, count] : raw.passed_over) {
-    out.notes.push_back(fmt::format("{} {} passed over, only tetrahedra are used", count, kind));
+    out.notes.push_back(fmt::format("{} {} ignored, because only tetrahedra are used.", count, kind));
   }
   if (raw.tets.empty()) {
     return input_error(source,
                        raw.passed_over.empty()
                            ? "the file holds no tetrahedra"
                            : fmt::format("the file holds no tetrahedra, only {}", raw.passed_over.begin()->first),
-                       "Export a volume mesh of tetrahedra; a surface has to be filled first");
+                       "Export a volume mesh of tetrahedra; fill a surface with tetrahedra first");
   }
-  if (raw.quadratic) out.notes.emplace_back("quadratic tetrahedra: only their corner nodes are used");
+  if (raw.quadratic) out.notes.emplace_back("Of the quadratic tetrahedra only the corner nodes are used.");
   if (const Index dropped = drop_foreign_nodes(raw); dropped > 0) {
-    out.notes.push_back(fmt::format("{} node{} that no tetrahedron uses dropped", dropped, dropped == 1 ? "" : "s"));
+    out.notes.push_back(fmt::format("Dropped {} node{} that no tetrahedron uses.", dropped, dropped == 1 ? "" : "s"));
   }
   const double scale = options.scale > 0.0 ? options.scale : raw.unit_mm > 0.0 ? raw.unit_mm : 1.0;
   for (Vec3& x : raw.nodes) {
@@ -143,7 +142,7 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
   out.mesh.nodes = std::move(raw.nodes);
   out.mesh.tets = std::move(raw.tets);
   if (turn_if_all_inverted(out.mesh))
-    out.notes.emplace_back("all tetrahedra were numbered the other way round; put right");
+    out.notes.emplace_back("The nodes of all tetrahedra were numbered the other way round; this was corrected.");
   if (Result<> sound = check_mesh(out.mesh, source); !sound) return sound.error();
   return out;
 }

@@ -74,7 +74,7 @@ Surface to_surface(vtkPolyData& data, std::string name) {
   const auto add = [&](vtkIdType a, vtkIdType b, vtkIdType c) {
     const vtkIdType count = data.GetNumberOfPoints();
     if (std::min({a, b, c}) < 0 || std::max({a, b, c}) >= count)
-      throw std::runtime_error("a triangle names a point that is not in the file");
+      throw std::runtime_error("a triangle refers to a point that is not in the file");
     surface.triangles.push_back({static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
   };
   vtkIdType count = 0;
@@ -118,7 +118,7 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
   for (Surface& surface : surfaces) {
     weld(surface);
     if (surface.triangles.empty()) {
-      out.notes.push_back(fmt::format("surface '{}' has no area; passed over", surface.name));
+      out.notes.push_back(fmt::format("Surface '{}' has no area and is ignored.", surface.name));
       continue;
     }
     if (is_closed(surface) && signed_volume(surface) < 0.0) {

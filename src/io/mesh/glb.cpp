@@ -95,7 +95,7 @@ Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double sc
     return input_error(source,
                        fmt::format("the GLB scene cannot be read ({})",
                                    messages->failed() ? messages->first_error() : "no reason given"),
-                       "Copy or export it again; it is truncated, damaged or compressed (Draco)");
+                       "The file is truncated, damaged or compressed (Draco); copy or export it again");
   }
   std::vector<Surface> raw;
   Surface loose;

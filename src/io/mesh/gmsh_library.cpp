@@ -29,10 +29,10 @@ Result<const GmshLibrary*> GmshLibrary::get() {
   if (!library.problem_.empty())
     return failure(name,
                    fmt::format("the library that reads gmsh and MEDIT meshes cannot be loaded ({})", library.problem_),
-                   "Install gmsh, or bring the mesh as VTU");
+                   "Install gmsh, or convert the mesh to VTU");
   if (!library.whole_)
     return failure(name, "the library that reads gmsh and MEDIT meshes lacks functions",
-                   "Install the gmsh that the program was built with, or bring the mesh as VTU");
+                   "Install the version of gmsh with which the program was built, or convert the mesh to VTU");
   return &library;
 }
 

@@ -58,7 +58,7 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   for (std::size_t a = 0; a < tags.size(); ++a) {
     if (!node.emplace(tags[a], static_cast<Index>(a)).second) {
       return input_error(source, fmt::format("node {} appears twice", tags[a]),
-                         "Export the mesh again; the file is damaged");
+                         "The file is damaged; export the mesh again");
     }
     raw.nodes.emplace_back(coordinates[3 * a], coordinates[3 * a + 1], coordinates[3 * a + 2]);
   }
@@ -86,7 +86,7 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
           if (found == node.end()) {
             return input_error(fmt::format("{}, element {}", source, elements[e]),
                                fmt::format("node {} is not in the file", nodes[e * per_element + i]),
-                               "Export the mesh again; the file is damaged");
+                               "The file is damaged; export the mesh again");
           }
           if (tets && i < 4) {
             tet[i] = found->second;
@@ -119,14 +119,14 @@ Result<> check_harmless(const fs::path& path, bool medit) {
   std::getline(std::ifstream(path, std::ios::binary), first_line);
   const auto begins = [&](std::string_view mark) { return first_line.starts_with(mark); };
   if (!medit && !begins("$MeshFormat") && !begins("$NOD") && !begins("$Comments")) {
-    return input_error(source, "the first line is none of $MeshFormat, $NOD, $Comments",
-                       "Remove what stands before it");
+    return input_error(source, "the first line is not $MeshFormat, $NOD or $Comments",
+                       "Remove everything before that line");
   }
   std::error_code code;
   if (fs::exists(source + ".opt", code)) {
-    return input_error(source,
-                       fmt::format("gmsh would run the script '{}' beside it", path.filename().string() + ".opt"),
-                       "Move that script away");
+    return input_error(
+        source, fmt::format("gmsh would run the script '{}' in the same folder", path.filename().string() + ".opt"),
+        "Move that script to another folder");
   }
   return Ok{};
 }
@@ -166,7 +166,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
       if (raw && medit && raw->tets.size() != announced) {
         return input_error(source,
                            fmt::format("the file announces {} tetrahedra and holds {}", announced, raw->tets.size()),
-                           "Copy or export it again; it is truncated or damaged");
+                           "The file is truncated or damaged; copy or export it again");
       }
       return raw;
     }
@@ -176,7 +176,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
   }
   return input_error(source,
                      fmt::format("gmsh cannot read the file ({})", problem.empty() ? "no reason given" : problem),
-                     "Copy or export it again; it is truncated or damaged");
+                     "The file is truncated or damaged; copy or export it again");
 }
 
 }  // namespace stylet::detail

@@ -110,7 +110,7 @@ std::optional<std::size_t> repeated(std::vector<std::size_t>& numbers) {
 Error has_number_twice(const fs::path& path, std::size_t number) {
   return input_error(fmt::format("{}, element {}", path.string(), number),
                      "two elements have this number, and gmsh would drop one of them",
-                     "Give every element a number of its own, triangles and lines too, or export the mesh again");
+                     "Give every element a different number, triangles and lines included, or export the mesh again");
 }
 
 }  // namespace
@@ -124,8 +124,8 @@ Result<> check_element_numbers(const fs::path& path, std::vector<std::size_t> ta
   auto numbers = list.numbers(nodes_of);
   if (const auto number = repeated(numbers)) return has_number_twice(path, *number);
   return input_error(path.string(),
-                     fmt::format("the file announces {} elements and gmsh took {}", *announced, taken.size()),
-                     "Copy or export it again; it is truncated or damaged");
+                     fmt::format("the file announces {} elements and gmsh has read {}", *announced, taken.size()),
+                     "The file is truncated or damaged; copy or export it again");
 }
 
 }  // namespace stylet::detail

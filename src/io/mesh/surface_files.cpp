@@ -57,7 +57,7 @@ Result<> check_stl_is_whole(const std::filesystem::path& path) {
   return input_error(path.string(),
                      text ? "the last line is not 'endsolid'"
                           : fmt::format("{} bytes cannot hold the {} triangles announced", bytes.size(), triangles),
-                     "Copy or export it again; it is truncated or damaged");
+                     "The file is truncated or damaged; copy or export it again");
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileK
     return input_error(source,
                        fmt::format("the surface cannot be read ({})",
                                    messages->failed() ? messages->first_error() : "no reason given"),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
   const VtkHints hints = vtk_hints(*data, header);
   const double unit = scale > 0.0 ? scale : hints.unit_mm > 0.0 ? hints.unit_mm : 1.0;

@@ -46,7 +46,7 @@ class NumberLines {
       if (!numbers.empty()) return numbers;
     }
     return input_error(place(), "the file ends here, more lines are announced",
-                       "Export the mesh again; the file is truncated");
+                       "The file is truncated; export the mesh again");
   }
 
  private:
@@ -148,8 +148,8 @@ Result<RawMesh> parse_tetgen_mesh(const fs::path& path) {
     if (Result<> file = check_input_file(part); !file) {
       return input_error(
           path.string(),
-          fmt::format("its other half '{}' cannot be read: {}", part.filename().string(), file.error().what),
-          "A TetGen mesh needs both, the .node and the .ele file, side by side");
+          fmt::format("the second file '{}' cannot be read: {}", part.filename().string(), file.error().what),
+          "Keep the .node and the .ele file of a TetGen mesh in the same folder");
     }
   }
   NumberLines node_lines(node_path), ele_lines(ele_path);

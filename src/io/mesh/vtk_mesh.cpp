@@ -34,7 +34,7 @@ Result<> read_regions(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& t
   }
   if (array == nullptr) return Ok{};
   if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != grid.GetNumberOfCells()) {
-    return input_error(source, fmt::format("the cell array '{}' has not one number per cell", array->GetName()),
+    return input_error(source, fmt::format("the cell array '{}' does not have one number per cell", array->GetName()),
                        "Write one region number per cell");
   }
   for (std::size_t t = 0; t < tet_cells.size(); ++t) {
@@ -71,7 +71,7 @@ Result<RawMesh> to_raw(vtkUnstructuredGrid& grid, const std::string& source) {
         return input_error(
             fmt::format("{}, cell {}", source, c),
             fmt::format("node number {} is out of range, expected 0 to {}", ids[i], grid.GetNumberOfPoints() - 1),
-            "Export the mesh again; the file is damaged");
+            "The file is damaged; export the mesh again");
       }
     }
     const int type = grid.GetCellType(c);
@@ -123,7 +123,7 @@ Result<RawMesh> parse_vtk_mesh(const std::filesystem::path& path, bool xml) {
     return input_error(source,
                        fmt::format("the VTK file cannot be read ({})",
                                    messages->failed() ? messages->first_error() : "no reason given"),
-                       "Copy or export it again; it is truncated or damaged");
+                       "The file is truncated or damaged; copy or export it again");
   }
   Result<RawMesh> raw = to_raw(*grid, source);
   if (!raw) return raw;

@@ -81,7 +81,7 @@ Result<> add_input(Digest& digest, const fs::path& path) {
 Result<std::string> model_key(const Scenario& scenario) {
   const std::string build = detail::build_id();
   if (build.empty()) {
-    return failure("models that are kept", "this program has no build id to name them by",
+    return failure("cache of models", "this program has no build id, which is part of the names of cached models",
                    "Link it with -Wl,--build-id=sha1");
   }
   Digest digest;
@@ -94,7 +94,8 @@ Result<std::string> model_key(const Scenario& scenario) {
   }
   for (const fs::path& input : inputs) {
     if (has_other_parts(input))
-      return failure(input.string(), "its data are in several files", "Give it as one file, such as .mha or .nrrd");
+      return failure(input.string(), "its data are in several files, which the cache does not support",
+                     "Convert it to one file, such as .mha or .nrrd");
     if (auto added = add_input(digest, input); !added) return added.error();
   }
   return digest.finish();
@@ -136,7 +137,8 @@ Result<> ModelCache::keep(const Model& model, const std::string& key, std::span<
   std::error_code code;
   fs::create_directories(folder_, code);
   if (code)
-    return failure(folder_.string(), "cannot be made: " + code.message(), "Check the permissions, or choose another");
+    return failure(folder_.string(), "cannot be created: " + code.message(),
+                   "Check the permissions, or choose another folder");
   const fs::path file = folder_ / (key + detail::kModelExtension);
   if (auto saved = save_model(model, file, notes, progress); !saved) return saved;
   forget_oldest(file);

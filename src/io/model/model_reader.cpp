@@ -153,7 +153,7 @@ Result<> check_settings(std::span<const std::string> settings, const std::string
   for (const std::string& setting : settings) {
     for (const char* table : {"patient.", "mesh."}) {
       if (setting.rfind(table, 0) == 0) {
-        return input_error(fmt::format("--set {}", setting), fmt::format("the mesh is in {} already", where),
+        return input_error(fmt::format("--set {}", setting), fmt::format("{} already has the finished mesh", where),
                            "Start from the scenario with this setting: stylet prepare SCENARIO.toml --set …");
       }
     }
@@ -183,8 +183,8 @@ Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress
   if (!is_hdf5_file(path)) return refuse("this is not a saved model");
   if (!SealedFile::is_marked(path)) {
     return refuse(
-        "it does not end as a saved model does: it was cut short or damaged, an earlier version of stylet saved it, or "
-        "it is something else");
+        "the end of a saved model is missing: the file is truncated or damaged, an earlier version of stylet saved it, "
+        "or it is not a model");
   }
   try {
     const SealedFile file(path, [&](double share) { report(progress, "checking the saved model", share); });
@@ -213,11 +213,11 @@ Result<std::shared_ptr<const Model>> compile_model(ModelFile file, const fs::pat
   if (compliance_origin((*model)->tissue()) != file.belongs_to) {
     return input_error(
         where,
-        settings.empty() ? fmt::format("its compliance was computed from something else than this "
-                                       "program makes of its scenario (written by stylet {})",
+        settings.empty() ? fmt::format("its compliance does not belong to the model that this program makes from its "
+                                       "scenario (written by stylet {})",
                                        file.version)
-                         : "these settings change what its compliance was computed from (tissue, "
-                           "supports, element or the needles' ways)",
+                         : "these settings change data on which its compliance depends (tissue, supports, element or "
+                           "the needles' ways)",
         settings.empty() ? kPrepareAgain : "Prepare a model with these settings: stylet prepare SCENARIO.toml --set …");
   }
   return model;

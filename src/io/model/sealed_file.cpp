@@ -94,7 +94,7 @@ SealedFile::SealedFile(const fs::path& path, const std::function<void(double)>& 
   if (seal.empty()) throw NotSealed("the seal at its end is missing");
   const std::uint64_t before = size_of(file_.get()) - kDigest;
   if (digest_of(file_.get(), before, progress) != seal.substr(kSeal - kDigest))
-    throw NotSealed("its bytes are not those that were written");
+    throw NotSealed("its bytes have changed since it was written");
   std::uint64_t length = 0;
   const char* const digits = seal.data() + kMark.size();
   const auto [end, status] = std::from_chars(digits, digits + kLength, length);

@@ -78,7 +78,7 @@ std::vector<std::string> texts_of(hid_t type, std::size_t count, const Read& rea
     for (char* pointer : pointers) texts.push_back(take(pointer));
     return texts;
   }
-  if (H5Tget_class(type) != H5T_STRING) throw Failure("read text: it is no text");
+  if (H5Tget_class(type) != H5T_STRING) throw Failure("read text: it is not a text");
   const std::size_t width = H5Tget_size(type);
   std::string all(count * width, '\0');
   read(type, all.data());

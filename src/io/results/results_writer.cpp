@@ -89,7 +89,7 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
 /// not reached the disk.
 Error not_finite(const std::string& where, double time_s) {
   return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
-                 "The simulation has lost its way before: look at the steps before this one");
+                 "The simulation diverged earlier; look at the steps before this one");
 }
 
 bool is_finite(const Frame& frame) {
@@ -107,7 +107,7 @@ auto guarded(const fs::path& folder, Work work) -> decltype(work()) {
   try {
     return work();
   } catch (const std::exception& e) {
-    return failure(folder.string(), fmt::format("cannot be filled: {}", e.what()),
+    return failure(folder.string(), fmt::format("cannot be written: {}", e.what()),
                    "Close other programs or use a smaller mesh, then run again");
   }
 }
@@ -163,7 +163,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
 void ResultsWriter::add_map(HoleMap map) { parts_->map = std::move(map); }
 
 Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
-  if (parts_->finished) return failure("results", "finish() was called before", "Call it once");
+  if (parts_->finished) return failure("results", "finish() has already been called", "Call it once");
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;

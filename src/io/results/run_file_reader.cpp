@@ -137,7 +137,7 @@ std::string summary_of(const StoredRun& run, const std::optional<EndRow>& end) {
 /// Checks a stored run and converts it. Throws Changed if its data differ from what was written.
 RunRecording checked(StoredRun run, const fs::path& path) {
   if (run.format_version >= kFirstWithChecks)
-    demand(run.start_digest == start_digest(run.info, run.mesh), "what it says of scenario and mesh");
+    demand(run.start_digest == start_digest(run.info, run.mesh), "scenario and mesh");
   for (const int region : run.info.target_regions)
     demand(region >= 0 && static_cast<std::size_t>(region) < run.mesh.regions.size(), "target_regions");
   const std::optional<EndRow> end = end_of(run);
@@ -200,7 +200,7 @@ Result<RunRecording> read_recording(const fs::path& path) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  return input_error(path.string(), "damaged: this is not what was written: " + changed, kGiveARecording);
+  return input_error(path.string(), "damaged: this part has changed since it was written: " + changed, kGiveARecording);
 }
 
 }  // namespace stylet

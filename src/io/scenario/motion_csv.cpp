@@ -114,7 +114,7 @@ Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& p
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
     const std::string where = fmt::format("{}, line {}", file, number);
     if (line.find('\0') != std::string::npos || line.size() > kLongestLine) {
-      return input_error(where, "this is no line of a text table", how);
+      return input_error(where, "this is not a line of text", how);
     }
     if (number == 1) {
       if (auto header = check_header(line, where); !header) return header.error();
@@ -135,7 +135,7 @@ Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& p
                        "Record the motion from before the skin to the end");
   }
   if (const double travel = box.diagonal().norm(); travel < kLeastTravel_mm) {
-    return input_error(file, fmt::format("the base moves within {:.3g} mm, that is no insertion", travel),
+    return input_error(file, fmt::format("the base moves within {:.3g} mm, which is not an insertion", travel),
                        "Give positions in mm: multiply by 1000 if they are in metres");
   }
   return samples;

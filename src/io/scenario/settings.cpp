@@ -117,7 +117,7 @@ Result<> ScenarioReader::apply_setting(const std::string& setting) {
     for (char& c : readable) {
       if (c < 0x20 || c > 0x7e) c = '?';
     }
-    return input_error("--set " + readable, "the setting has characters that are no printable text (UTF-8)", kForm);
+    return input_error("--set " + readable, "the setting has characters that are not printable text (UTF-8)", kForm);
   }
   const std::string where = "--set " + setting;
   const auto equals = find_unquoted(setting, '=');

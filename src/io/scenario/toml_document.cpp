@@ -56,7 +56,7 @@ void convert(const toml::node& node, TomlItem& item) {
     } else if (element.is_number()) {
       v.numbers.push_back(*element.value<double>());
     } else {
-      return unusable("a list of something else than numbers or texts");
+      return unusable("a list of other values than numbers or texts");
     }
   }
   if (!v.texts.empty() && !v.numbers.empty()) return unusable("a list of numbers and texts mixed");
@@ -96,7 +96,7 @@ std::string cure_for(std::string_view line) {
   const std::string value = trimmed(line.substr(equals + 1));
   if (value.empty()) return "Give the key a value, or put a # before the line";
   if (std::isalpha(static_cast<unsigned char>(value.front())) != 0) {
-    return fmt::format("Put texts in quotes (\"{}\"); true and false are written small, without quotes",
+    return fmt::format("Put texts in quotes (\"{}\"); write true and false in lower case, without quotes",
                        trimmed(std::string_view(value).substr(0, value.find('#'))));
   }
   if (value.find(',') != std::string::npos && value.front() != '[' && value.front() != '"' && value.front() != '{') {
@@ -109,7 +109,7 @@ std::string cure_for(std::string_view line) {
 /// @param what message of the parser @param line text of the line where it stopped
 Error syntax_error(const std::string& where, std::string what, const std::string& line) {
   if (lower(what).find("utf-8") != std::string::npos) {
-    return input_error(where, "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
+    return input_error(where, "this is not text in UTF-8", "Save the file as text in UTF-8, or name another file");
   }
   if (what.starts_with("Error ")) what.erase(0, 6);
   std::replace_if(

@@ -64,13 +64,13 @@ class Scan {
   [[nodiscard]] Error stray_character() const {
     const std::string_view c = character(text_.substr(at_));
     if (c.empty())
-      return input_error(where(), "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
+      return input_error(where(), "this is not text in UTF-8", "Save the file as text in UTF-8, or name another file");
     if (c == "\u00A0")
-      return input_error(where(), "there is a no-break space, which TOML does not know", "Write a plain space");
+      return input_error(where(), "there is a no-break space, which TOML does not allow", "Write a plain space");
     for (const std::string_view quote :
          {"\u201C", "\u201D", "\u201E", "\u2018", "\u2019", "\u201A", "\u00AB", "\u00BB"}) {
       if (c == quote)
-        return input_error(where(), fmt::format("{} is no quotation mark of TOML", c),
+        return input_error(where(), fmt::format("{} is not a quotation mark of TOML", c),
                            "Put texts in straight quotation marks: \"D4\"");
     }
     return input_error(where(), fmt::format("the character {} stands outside of quotation marks", c),
@@ -154,7 +154,7 @@ class Scan {
     if (name < text_.size() && text_[name] == '[') ++name;
     while (name < text_.size() && blank(text_[name])) ++name;
     if (name < text_.size() && (begins_name(text_[name]) || beyond_ascii(text_[name]))) return Ok{};
-    return input_error(where(), "a table begins here, but its name does not follow",
+    return input_error(where(), "a table begins here without a name",
                        "Write a table as [mesh], an insertion as [[insertion]]");
   }
 

@@ -146,7 +146,7 @@ TEST(LabelImage, metaimage_with_its_data_beside_it_is_read) {
   write_file(folder / "mask.mhd", metaimage(mask, false, "mask.raw"));
   expect_same_place(read_label_image(folder / "mask.mhd"), mask, "mhd");
   fs::remove(folder / "mask.raw");
-  expect_refused(read_label_image(folder / "mask.mhd"), {"mask.mhd", "mask.raw", "beside each other"});
+  expect_refused(read_label_image(folder / "mask.mhd"), {"mask.mhd", "mask.raw", "in one folder"});
 }
 
 TEST(LabelImage, the_same_mask_in_three_formats_is_the_same_image) {

@@ -258,12 +258,12 @@ TEST(LayeredNrrd, no_segment_is_lost_without_a_word) {
   EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "urethra"}})) << "no empty names";
   EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(2, 2, 3)), 2);
   EXPECT_EQ(label_at(*image, frame.origin), 3);
-  EXPECT_TRUE(notes_say(*image, "label 5 of layer 1 is none of the header's segments"));
+  EXPECT_TRUE(notes_say(*image, "Label 5 of layer 1 does not belong to a segment"));
   EXPECT_TRUE(
-      notes_say(*image, "segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
-  EXPECT_TRUE(notes_say(*image, "segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
-  EXPECT_TRUE(notes_say(*image, "segment 'half' has no voxels"));
-  EXPECT_TRUE(notes_say(*image, "segment 'where' has no voxels: its Segment6_Layer is 'x'"));
+      notes_say(*image, "Segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
+  EXPECT_TRUE(notes_say(*image, "Segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
+  EXPECT_TRUE(notes_say(*image, "Segment 'half' has no voxels"));
+  EXPECT_TRUE(notes_say(*image, "Segment 'where' has no voxels: its Segment6_Layer is 'x'"));
 }
 
 TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {

@@ -75,7 +75,7 @@ TEST(TetMeshErrors, gmsh_elements_that_share_a_number_are_named) {
     const bool of_version_4 = file.what.find("41") != std::string::npos;
     const std::string content = with_seven_twice(content_of(file.path), binary, of_version_4);
     expect_refused(read_tet_mesh(write_file(folder / "twice.msh", content)),
-                   {"twice.msh, element 7", "two elements have this number", "number of its own"});
+                   {"twice.msh, element 7", "two elements have this number", "a different number"});
     ++files;
   }
   EXPECT_EQ(files, 6);
@@ -159,7 +159,7 @@ TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
 
 TEST(TetMeshErrors, half_a_tetgen_mesh_is_refused) {
   expect_refused(read_mesh("m.ele", tetgen_texts(two_region_box()).second),
-                 {"'m.node'", "no such file", "side by side"});
+                 {"'m.node'", "no such file", "in the same folder"});
   expect_refused(read_mesh("m.node", tetgen_texts(two_region_box()).first), {"'m.ele'", "no such file"});
 }
 

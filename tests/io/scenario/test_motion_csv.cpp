@@ -81,7 +81,7 @@ TEST(MotionCsv, what_is_no_motion_is_refused) {
   expect_says(refusal(read_motion_csv(folder.write("e.csv", ""))), {"e.csv", "empty"});
   expect_says(refusal(read_motion_csv(folder.write("m.csv", "NRRD0004\n"))), {"m.csv: this is an NRRD image", "CSV"});
   expect_says(refusal(read_motion_csv(folder.write("b.csv", std::string("time\0", 5)))),
-              {"b.csv, line 1", "no line of a text table"});
+              {"b.csv, line 1", "not a line of text"});
   expect_says(refusal(read_motion_csv(folder.write("l.csv", std::string(5000, 'x')))), {"l.csv, line 1"});
 }
 

@@ -173,10 +173,10 @@ TEST(ReadScenario, refuses_bad_toml_with_line_column_and_cure) {
 
 TEST(ReadScenario, refuses_what_word_processors_make_of_toml) {
   expect_says(refused("[[insertion]]\nhole = \u201CD4\u201D\n"),
-              {"case.toml, line 2, column 8: \u201C is no quotation mark of TOML", "straight quotation marks"});
+              {"case.toml, line 2, column 8: \u201C is not a quotation mark of TOML", "straight quotation marks"});
   expect_says(refused("[needle]\nlength_mm\u00A0= 150\n"), {"line 2, column 10: there is a no-break space"});
   expect_says(refused("[needle]\nl\u00E4nge = 150\n"), {"line 2, column 2: the character \u00E4 stands outside"});
-  expect_says(refused("[needle]\nl\xE4nge = 150\n"), {"line 2, column 2: this is no text in UTF-8"});
+  expect_says(refused("[needle]\nl\xE4nge = 150\n"), {"line 2, column 2: this is not text in UTF-8"});
 }
 
 TEST(ReadScenario, refuses_what_the_parser_cannot_bear) {
@@ -283,7 +283,7 @@ TEST(ReadScenario, refuses_values_of_another_type) {
   expect_says(refused_line_4("[fixed]", "regions = \"pubic_arch\""), {"not a list of texts", "[\"pubic_arch\"]"});
   expect_says(refused_line_4("[fixed]", "box_mm = 3"), {"fixed.box_mm = 3 is not a list of numbers"});
   expect_says(refused_line_4("[fixed]", "box_mm = [1, \"2\"]"), {"fixed.box_mm is a list of numbers and texts mixed"});
-  expect_says(refused_line_4("[fixed]", "box_mm = [[1, 2], [3, 4]]"), {"fixed.box_mm is a list of something else"});
+  expect_says(refused_line_4("[fixed]", "box_mm = [[1, 2], [3, 4]]"), {"fixed.box_mm is a list of other values"});
   expect_says(refused_line_4("[mesh]", "nodes = 2024-02-29"), {"mesh.nodes is a date"});
   expect_says(refused_line_4("[patient.regions]", "1 = 2"), {"patient.regions.1 = 2 is not a text in quotes"});
 }

@@ -91,7 +91,7 @@ std::string reason_of(const detail::ChildOutcome& outcome) {
     case detail::ChildEnd::timed_out:
       return "drawing took too long";
     case detail::ChildEnd::not_started:
-      return std::string("no process to draw in: ") + std::strerror(outcome.code);
+      return std::string("no process could be started for drawing: ") + std::strerror(outcome.code);
   }
   return {};
 }
@@ -115,7 +115,7 @@ Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regi
     if (outcome.end != detail::ChildEnd::finished || !parcel.starts_with(kOk)) return {{}, reason_of(outcome)};
     parcel.remove_prefix(kOk.size());
     for (std::size_t k = 0; k < batch.size(); ++k) {
-      if (!take_picture(parcel, pictures.png[kNames[first + k]])) return {{}, "a picture got lost on its way"};
+      if (!take_picture(parcel, pictures.png[kNames[first + k]])) return {{}, "a picture was not received completely"};
     }
   }
   report(progress, "pictures", 1.0);
