@@ -21,30 +21,29 @@ struct TableText {
 };
 
 constexpr std::array kTables{
-    TableText{"patient", "[patient]",
-              "Whose anatomy it is. The only table, with [[insertion]], that must be filled in."},
-    TableText{
-        "patient.regions", "[patient.regions]",
-        "What structures or labels stand for. Those not named here are recognised by their names (prostate, "
-        "urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles and the "
-        "zones of the gland, in several spellings); where no structure is the prostate, a CTV, target, PTV or GTV "
-        "is the gland. Without this table all labels of a mask are used."},
-    TableText{"tissue", "[tissue]", "How all tissue is computed. No region may have the name of one of these keys."},
+    TableText{"patient", "[patient]", "The patient. Only this table and [[insertion]] must be filled in."},
+    TableText{"patient.regions", "[patient.regions]",
+              "Regions for structures or labels. Structures that are not listed here are recognised by their names "
+              "(prostate, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles "
+              "and the zones of the gland, in several spellings); if no structure is the prostate, a CTV, target, PTV "
+              "or GTV is used as the gland. Without this table all labels of a mask are used."},
+    TableText{"tissue", "[tissue]", "Settings for all tissue. No region may have the name of one of these keys."},
     TableText{"tissue.<region>", "[tissue.prostate]",
-              "What a tissue is made of; one table for each region that is to differ from its defaults, which are "
-              "those of the prostate here. docs/parameters.md gives all defaults and their sources."},
-    TableText{"fixed", "[fixed]", "What holds the patient still. Supports decide every force."},
+              "Properties of a tissue, in one table for each region that differs from its defaults. The defaults of "
+              "the prostate are shown. docs/parameters.md gives all defaults and their sources."},
+    TableText{"fixed", "[fixed]", "Supports, which hold the patient. They influence every force."},
     TableText{"anatomy", "[anatomy]",
-              "Soft tissue that contours and masks do not show. Each layer is made where the input does not have it."},
+              "Soft tissue that contours and masks do not show. Each layer is added if the input does not have it."},
     TableText{"mesh", "[mesh]", "How contours or a mask become tetrahedra; a tetrahedral mesh is used as it is."},
     TableText{"needle", "[needle]", "The needle."},
-    TableText{"coupling", "[coupling]", "How needle and tissue act on each other."},
+    TableText{"coupling", "[coupling]", "The interaction of needle and tissue."},
     TableText{"template", "[template]", "The guide template: a grid of holes in front of the perineum."},
-    TableText{"insertion[]", "[[insertion]]",
-              "One needle going in and out: through a template hole, or through a point in a direction or towards a "
-              "target, or as recorded. Repeat the table for more needles, one after the other."},
+    TableText{
+        "insertion[]", "[[insertion]]",
+        "One needle going in and out: through a template hole, through a point in a direction or towards a target, or "
+        "along a recorded motion. Repeat the table for further needles, which follow one after the other."},
     TableText{"run", "[run]", "The simulation."},
-    TableText{"output", "[output]", "What is kept of it."},
+    TableText{"output", "[output]", "The frames and pictures that are kept."},
 };
 
 /// Number of characters (UTF-8 code points).
@@ -99,8 +98,8 @@ std::string schema_text() {
   std::string out =
       comment(
           "All keys of a scenario, commented out, each with its meaning, range and unit. The value shown is the "
-          "default unless another default is named. Save this text as my.toml, take the # away before source and "
-          "hole, and run: stylet insert my.toml") +
+          "default unless another default is named. Save this text as my.toml, remove the # before source and hole, "
+          "and run: stylet insert my.toml") +
       comment("Patient coordinates are DICOM LPS: x to the patient's left, y to posterior, z to superior.");
   std::string last;
   for (const ScenarioKey& key : scenario_keys()) {
