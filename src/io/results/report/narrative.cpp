@@ -124,7 +124,7 @@ std::string tell_target(const RunRecording& run) {
   const Summary& s = *run.summary;
   if (run.info.target_regions.empty()) return {};
   if (s.target_shift_max_mm < 0.05) {
-    return fmt::format("With the needle at its deepest, the {} lay where it was before.", target_name(run));
+    return fmt::format("With the needle at its deepest, the {} was at its initial place.", target_name(run));
   }
   return fmt::format(
       "With the needle at its deepest, the centre of the {} had moved by {:.2f} mm ({}); the point of it that moved "
@@ -152,8 +152,9 @@ std::string tell_retraction(const RunRecording& run, const Frame& after) {
     return e.kind == EventKind::slip_start && e.time_s >= back->time_s;
   });
   if (slip != events.end()) {
-    text += fmt::format(" For the first {:.1f} mm the tissue stuck to it and was taken along; then it began to slip.",
-                        back->depth_mm - slip->depth_mm);
+    text +=
+        fmt::format(" For the first {:.1f} mm the tissue stuck to it and moved with it; then the needle began to slip.",
+                    back->depth_mm - slip->depth_mm);
   }
   if (find(events, EventKind::withdrawn) != nullptr) {
     double left = 0;
@@ -241,7 +242,7 @@ std::vector<std::string> tell_what_happened(const RunRecording& run, const Momen
   };
   add({tell_motion(run, deepest), tell_events(s.events)});
   add({tell_forces(run), tell_target(run), tell_tip_error(run),
-       fmt::format("The tip came to lie at most {:.1f} mm beside the straight line it was aimed along.",
+       fmt::format("The tip was at most {:.1f} mm away from the straight line along which it was aimed.",
                    s.tip_deflection_mm)});
   add({tell_retraction(run, run.frames[moments.after])});
   return paragraphs;
