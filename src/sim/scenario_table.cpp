@@ -120,10 +120,10 @@ void describe_anatomy(ScenarioEntries& keys) {
       "anatomy.levator_mm", "mm", 0, 20,
       "thickness of the levator muscle around the periprostatic fat and the rectum, below the gland's base; 0 = none",
       [](auto& s, const Slot&) { return &s.anatomy.levator_mm; });
-  keys.number("anatomy.ischiorectal_fat_mm", "mm", 0, 60,
-              "width of the fat on either side of the rectum, from the layer under the skin up to the level of the "
-              "apex; 0 = none",
-              [](auto& s, const Slot&) { return &s.anatomy.ischiorectal_fat_mm; });
+  keys.number(
+      "anatomy.ischiorectal_fat_mm", "mm", 0, 60,
+      "width of the fat on either side of the rectum, from the layer under the skin to 12 mm above the apex; 0 = none",
+      [](auto& s, const Slot&) { return &s.anatomy.ischiorectal_fat_mm; });
   keys.number("anatomy.subcutaneous_fat_mm", "mm", 0, 60,
               "thickness of the fat under the perineal skin, along the patient's axis; 0 = none",
               [](auto& s, const Slot&) { return &s.anatomy.subcutaneous_fat_mm; });

@@ -31,7 +31,7 @@ constexpr std::array kTables{
     TableText{"tissue.<region>", "[tissue.prostate]",
               "Properties of a tissue, in one table for each region that differs from its defaults. The defaults of "
               "the prostate are shown. docs/parameters.md gives all defaults and their sources."},
-    TableText{"fixed", "[fixed]", "Supports, which hold the patient. They influence every force."},
+    TableText{"fixed", "[fixed]", "Supports, which hold the patient in place. They decide every force."},
     TableText{"anatomy", "[anatomy]",
               "Soft tissue that contours and masks do not show. Each layer is added if the input does not have it."},
     TableText{"mesh", "[mesh]", "How contours or a mask become tetrahedra; a tetrahedral mesh is used as it is."},
