@@ -148,8 +148,8 @@ inline RunnerSettings plain_settings() {
   s.realtime_scheduling = false;
   s.lock_memory = false;
   s.late_after_s = 0.1;  // generous, since a busy machine may be late
-  s.guard.force_slew_N_per_s =
-      500.0;  // 2 N in the largest number of periods of a late turn: less than the tests' forces
+  // 2 N in the largest number of periods of a late turn, which is less than the tests' forces.
+  s.guard.force_slew_N_per_s = 500.0;
   s.guard.fade_s = 0.02;
   s.guard.recover_s = 0.05;
   return s;

@@ -204,8 +204,8 @@ TEST(DisplayNearField, forces_that_stay_and_forces_that_move_are_told_apart) {
     return u;
   };
   (void)shown(skin.near, first);
-  std::reverse(second.begin(),
-               second.end());  // another order, and below two forces fewer, as when contacts lose their force
+  // Another order, and below two forces fewer, as when contacts lose their force.
+  std::reverse(second.begin(), second.end());
   (void)shown(skin.near, std::span(second).subspan(2));
   const Eigen::Matrix3Xf after_others = shown(skin.near, second);
   EXPECT_LT((after_others - shown(fresh, second)).cwiseAbs().maxCoeff(), 1e-5F);

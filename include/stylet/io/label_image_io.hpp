@@ -12,8 +12,8 @@ namespace stylet {
 
 struct MaskReadOptions {
   int volume = 0;  ///< number of the volume in a file with several, from 1; 0 = the only one
-  std::vector<std::string> skip =
-      {};  ///< names or numbers of segments to ignore: segments below them keep their voxels
+  /// Names or numbers of segments to ignore; segments below them keep their voxels.
+  std::vector<std::string> skip = {};
 };
 
 /// Reads a label mask: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM SEG. The

@@ -12,8 +12,8 @@ namespace stylet {
 struct ForceGuardSettings {
   double max_force_N = 10.0;
   double max_torque_Nmm = 300.0;
-  double force_slew_N_per_s =
-      1000.0;  ///< fast enough for a puncture (newtons within milliseconds), slower than a fault
+  /// Fast enough for a puncture, which changes the force by newtons within milliseconds, but slower than a fault.
+  double force_slew_N_per_s = 1000.0;
   double torque_slew_Nmm_per_s = 30000.0;
   double fade_s = 0.05;     ///< time from the first bad result to zero force
   double recover_s = 0.25;  ///< time from the first good result after a fade to the full force; at least fade_s

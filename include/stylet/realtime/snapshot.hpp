@@ -46,8 +46,8 @@ struct ForceSnapshot {
 struct Snapshot {
   static constexpr std::size_t kCentreline = 65;
   static constexpr std::size_t kContacts = 128;
-  static constexpr std::size_t kForces =
-      256;  ///< more than contacts, since lasting forces remain at places that the needle has left
+  /// More than contacts, since lasting forces remain at places that the needle has left.
+  static constexpr std::size_t kForces = 256;
   static constexpr std::size_t kRegions = 16;
 
   Step step;             ///< the last step; its time_s counts from the creation of the runner

@@ -22,8 +22,8 @@ struct HoleRow {
   double left_mm = 0.0;      ///< from the template's centre towards the patient's left
   double anterior_mm = 0.0;  ///< from the template's centre towards anterior
   double depth_mm = 0.0;     ///< depth of the tip beyond the skin, along the way
-  double in_target_mm =
-      0.0;  ///< length of the way within the target and within the urethra where it crosses the target
+  /// Length of the way within the target, and within the urethra where it crosses the target.
+  double in_target_mm = 0.0;
   /// Distance [mm] between the needle's surface and each structure of kSpared, along the whole straight way. 0: the way
   /// touches the structure or goes through it; empty: the model does not have the structure.
   std::array<std::optional<double>, kSpared.size()> clearance_mm;

@@ -22,8 +22,7 @@ namespace {
 // share of equal neighbours decides.
 constexpr std::size_t kFewValues = 16;
 constexpr std::size_t kManyValues = 256;
-constexpr double kAlikeInMask =
-    1.0 / 3.0;  // least share of equal neighbours along i, outside the background, in a mask
+constexpr double kAlikeInMask = 1.0 / 3.0;   // least share of equal neighbours along i in a mask, without background
 constexpr std::size_t kMostCounted = 65536;  // limit for counting different values for a message
 constexpr double kWhole = 1e-3;              // largest distance from a whole number
 constexpr double max_shear = 1e-3;           // largest |cosine| between two axes; headers have single precision

@@ -16,8 +16,8 @@ namespace stylet::results {
 inline constexpr int kRunFileVersion = 4;
 inline constexpr int kFirstWithChecks = 4;  ///< first version of the format with checks
 inline constexpr const char* kRunFileFormat = "stylet-run";
-inline constexpr double kMissing =
-    std::numeric_limits<double>::quiet_NaN();  ///< fill value of rows that have not reached the disk
+/// Fill value of rows that have not reached the disk.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Every row has a check: the CRC-32 of its other columns in their order and, for a frame, of its displacement, needle
 // points and contacts. A row with a wrong check has not reached the disk completely, or has been changed.

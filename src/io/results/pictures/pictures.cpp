@@ -104,8 +104,8 @@ Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regi
                        const Progress& progress) {
   const PictureInput input{run, regions, run.frames[moments.deepest]};
   const std::vector<Drawing> list = drawings(input, moments);
-  constexpr std::size_t kPerChild =
-      3;  // the pictures of one moment: few OpenGL contexts to set up, and still visible progress
+  // The pictures of one moment: few OpenGL contexts to set up, and still visible progress.
+  constexpr std::size_t kPerChild = 3;
   Pictures pictures;
   for (std::size_t first = 0; first < list.size(); first += kPerChild) {
     report(progress, "pictures", static_cast<double>(first) / static_cast<double>(list.size()));
