@@ -160,8 +160,7 @@ STYLET_RT_API void stylet_rt_sim_destroy(stylet_rt_sim* sim) STYLET_RT_NOEXCEPT;
 /* Pose of the needle's base. 56 bytes. */
 typedef struct stylet_rt_pose {
   double position_mm[3]; /* LPS */
-  double rotation[4];    /* unit quaternion w, x, y, z: base to LPS. It is normalised if its length differs from 1 by at
-                            most 1e-3 */
+  double rotation[4];    /* unit quaternion w, x, y, z: base to LPS; a length within 1e-3 of 1 is normalised */
 } stylet_rt_pose;
 
 /* Places the straight needle outside the patient at the start of a planned insertion. The tissue keeps the tracks that

@@ -38,8 +38,8 @@ void ComplianceWorker::run() noexcept {
     using Work = ComplianceSupply::Work;
     const Work done = supply_.work(kAtOnce);
     if (done == Work::done) continue;
-    const int looks = done == Work::failed ? kLooksAfterFailure
-                                           : 1;  // after a failure to allocate, wait longer before the next attempt
+    // After a failure to allocate memory, wait longer before the next attempt.
+    const int looks = done == Work::failed ? kLooksAfterFailure : 1;
     for (int k = 0; k < looks && !stop_.load(std::memory_order_relaxed); ++k) std::this_thread::sleep_for(kLook);
   }
 }

@@ -43,8 +43,8 @@ std::size_t NeedleRegions::now(const Insertion& insertion, TipState tip, std::sp
     deepest[at] = found == end ? xi : std::max(deepest[at], xi);
   };
   for (std::size_t k = 0; k < count_; ++k) consider(entered_[k].xi, entered_[k].region);
-  for (const Track::Mark& mark : insertion.track().marks)
-    consider(mark.xi, mark.region);  // a track of an earlier insertion has marks only
+  // A track of an earlier insertion has marks only.
+  for (const Track::Mark& mark : insertion.track().marks) consider(mark.xi, mark.region);
   if (count > 0) {
     const auto first = std::max_element(deepest.begin(), deepest.begin() + static_cast<std::ptrdiff_t>(count));
     std::swap(out[0], out[static_cast<std::size_t>(first - deepest.begin())]);

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts the instructions of a step with about 40 contacts by callgrind, and compares them with a bound and between two meshes.
+"""Counts the instructions of a step with about 40 contacts by callgrind, and compares the count with a bound and between
+two meshes.
 
 Usage: test_step_instructions.py STEP_INSTRUCTIONS     the program built from step_instructions.cpp
 
-The count does not depend on the machine's speed or load, only on compiler and libraries. The bound is 1.5 times the count in
-elastic, linear tissue with g++ 12 (0.74 million), since tissue that stiffens and creeps may cost more. The cost of an iteration
-must not depend on the mesh; the number of iterations depends on the forces, which differ slightly between meshes.
+The count does not depend on the machine's speed or load, only on compiler and libraries. The bound is 1.5 times the
+count in elastic, linear tissue with g++ 12 (0.74 million), since tissue that stiffens and creeps may cost more. The cost
+of an iteration must not depend on the mesh; the number of iterations depends on the forces, which differ slightly
+between meshes.
 """
 import json
 import os

@@ -36,12 +36,10 @@ class PassivityControl {
   /// @return force and torque to send, with damping added if E < 0
   Wrench control(const Wrench& on_hand, const Twist& handle, double dt);
 
-  [[nodiscard]] double energy_Nmm() const { return energy_; }    ///< E
-  [[nodiscard]] double lowest_Nmm() const { return lowest_; }    ///< minimum of E, ≤ 0
-  [[nodiscard]] std::int64_t active() const { return active_; }  ///< periods in which damping was added
-  [[nodiscard]] std::int64_t limited() const {
-    return limited_;
-  }  ///< periods in which the limit on damping was reached
+  [[nodiscard]] double energy_Nmm() const { return energy_; }      ///< E
+  [[nodiscard]] double lowest_Nmm() const { return lowest_; }      ///< minimum of E, ≤ 0
+  [[nodiscard]] std::int64_t active() const { return active_; }    ///< periods in which damping was added
+  [[nodiscard]] std::int64_t limited() const { return limited_; }  ///< periods that needed more damping than allowed
 
  private:
   Settings settings_;

@@ -220,8 +220,7 @@ struct Pixels {
   std::size_t count = 0;  ///< number of bytes
   int bits = 8;
   [[nodiscard]] int operator()(std::size_t n) const {
-    if (bits == 1)
-      return bytes[n / 8] >> (n % 8) & 1;  // the first pixel is the lowest bit; frames follow without a gap
+    if (bits == 1) return bytes[n / 8] >> (n % 8) & 1;  // the first pixel is the lowest bit; no gaps between frames
     return bits == 8 ? bytes[n] : bytes[2 * n] | bytes[2 * n + 1] << 8;
   }
 };

@@ -132,8 +132,7 @@ struct SilentEnd {
 }  // namespace
 
 void fail(const char* action) {
-  static const SilentEnd
-      before_that_of_hdf5;  // HDF5 was initialised earlier, so this is destroyed before it shuts down
+  static const SilentEnd before_that_of_hdf5;  // destroyed before HDF5 shuts down, which was initialised earlier
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
   throw Failure(std::string(action) + ": " + (reason.empty() ? "HDF5 gave no reason" : reason));
