@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle into a patient of one's own: an RT Structure Set, a mask or a mesh. Not a medical device.
+// Inserts a needle into your own patient: an RT Structure Set, a mask or a mesh. Not a medical device.
 //   build/bin/first_insertion my_structures.dcm
 #include <stylet/patient/insert.hpp>
 

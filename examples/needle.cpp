@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle by itself, without tissue: how far a force across its tip bends it, beside the theory of slender beams.
+// Bends a needle without tissue by a lateral force on its tip, and compares the deflection with beam theory.
 #include <stylet/needle/beam.hpp>
 
 #include <cmath>

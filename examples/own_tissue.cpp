@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue with values of one's own: what a stronger capsule does to the force and to the gland. Not a medical device.
+// Uses your own tissue values: effect of a stronger capsule on the force and on the gland. Not a medical device.
 #include <stylet/patient/insert.hpp>
 
 #include <iostream>
@@ -8,12 +8,12 @@ int main() {
   for (const double capsule_N : {3.0, 4.3}) {
     stylet::Scenario scenario;
     scenario.patient.source = "phantom";  // the demo patient
-    scenario.mesh.nodes = 800;            // coarse, so that the example is quick
+    scenario.mesh.nodes = 800;            // a coarse mesh, so that the example is fast
     scenario.insertions = {{.hole = "e3.5"}};
     scenario.output.pictures = false;
     stylet::TissueParameters gland = stylet::default_tissue("prostate");
     gland.puncture_N = capsule_N;
-    gland.source = "example";  // said in the report
+    gland.source = "example";  // shown in the report
     scenario.tissue["prostate"] = gland;
     const auto prepared = stylet::prepare_model(scenario);
     if (!prepared) return std::cerr << prepared.error().message() << '\n', 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the recording of a run, also of one that still goes on or was killed.
+// Reads the recording of a run, which may still be going on or may have been killed.
 //   build/bin/recording out/demo/run.h5
 #include <stylet/io/recording_io.hpp>
 
@@ -14,5 +14,5 @@ int main(int count, char** words) {
   for (const stylet::Step& step : run->steps) peak_N = std::max(peak_N, step.force_axial_N);
   std::cout << run->info.scenario_name << ": " << run->steps.size() << " steps, largest axial force " << peak_N
             << " N\n";
-  if (!run->summary) std::cout << "it has no summary: it still goes on, or it was killed\n";
+  if (!run->summary) std::cout << "there is no summary: the run still goes on, or it was killed\n";
 }

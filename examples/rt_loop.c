@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A needle in a patient, from C, in a 1 kHz loop.
+/* Simulates a needle in a patient from C, in a loop at 1 kHz.
  *
  *   stylet prepare SCENARIO.toml -o MODEL.stylet
  *   stylet-rt-loop MODEL.stylet [--insertion N] [--no-clock] [--no-rights]
  *
- * Prints how long it is from nothing to the first step, then follows the planned insertion and prints what the hand
- * feels and how long steps take. --no-clock takes the steps without waiting for the clock; --no-rights does not ask the
- * system for real-time scheduling and locked memory. To build it away from Stylet's sources:
+ * Prints the time from the start of the program to the first step, then follows the planned insertion and prints the
+ * forces of the hand and the computing times of the steps. --no-clock takes the steps without waiting for the clock;
+ * --no-rights does not request real-time scheduling and locked memory. To build it outside of Stylet's sources:
  *
  *   cc -O2 rt_loop.c $(pkg-config --cflags --libs stylet_rt) -lpthread */
 #define _POSIX_C_SOURCE 200809L
@@ -48,7 +48,7 @@ static const char* event_kind(int32_t kind) {
   return kind >= 0 && kind < 10 ? names[kind] : "?";
 }
 
-/* The loop's thread keeps what it sees here; what is printed is printed afterwards. */
+/* The loop's thread stores its results in rows; they are printed after the loop. */
 typedef struct {
   double step_us; /* processor time */
   stylet_rt_result result;
@@ -62,12 +62,12 @@ typedef struct {
   int keep_to_clock, ask_for_rights;
   row* rows;
   size_t steps;
-  size_t late; /* steps begun more than a period after they were due */
+  size_t late; /* number of steps that began more than a period after they were due */
   long page_faults;
   stylet_rt_status status;
 } loop;
 
-/* Real-time scheduling for this thread; all memory of the process made present and kept. */
+/* Requests real-time scheduling for this thread, and locks all memory of the process. */
 static const char* ask_for_rights(void) {
   struct sched_param param;
   memset(&param, 0, sizeof param);
@@ -80,7 +80,7 @@ static const char* ask_for_rights(void) {
   return "ordinary scheduling, memory not locked (neither permitted)";
 }
 
-/* The pages of the stack are there from now on. */
+/* Touches the stack, so that its pages are mapped before the loop. */
 static void touch_stack(void) {
   volatile char stack[STACK_BYTES];
   size_t k;
@@ -116,7 +116,7 @@ static void* run(void* argument) {
       if (delay > 1e-9 * PERIOD_NS) ++l->late;
     }
 
-    /* A device's handle would be read here. */
+    /* A program with a haptic device would read the handle's pose here. */
     stylet_rt_sim_planned_base(l->sim, 1e-9 * PERIOD_NS * (double)(k + 1), &base);
 
     const double before = now_s(CLOCK_THREAD_CPUTIME_ID);
@@ -127,7 +127,7 @@ static void* run(void* argument) {
       break;
     }
 
-    /* The device would get -hand_force_N here, unless (flags & STYLET_RT_DISTRUSTED). */
+    /* It would send -hand_force_N to the device here, unless (flags & STYLET_RT_DISTRUSTED). */
     stylet_rt_sim_read_events(l->sim, &r->event, 1, &events);
     r->events = (int32_t)events;
   }
@@ -177,7 +177,7 @@ static void print_times(const loop* l) {
   free(us);
 }
 
-/* Everything that takes memory or time happens here, before the loop. @return exit status */
+/* Does everything that takes memory or time, before the loop. @return exit status */
 static int prepare(const char* path, int32_t insertion, stylet_rt_model** model, stylet_rt_sim** sim) {
   char error[1024];
   stylet_rt_model_info info;
@@ -252,7 +252,7 @@ int main(int argc, char** argv) {
     stylet_rt_model_insertion(model, (int32_t)insertion, &plan);
     l.steps = (size_t)(plan.duration_s / (1e-9 * PERIOD_NS)) + 1;
     l.rows = calloc(l.steps, sizeof *l.rows);
-    if (l.rows != NULL) memset(l.rows, 0xff, l.steps * sizeof *l.rows); /* so that its pages are there */
+    if (l.rows != NULL) memset(l.rows, 0xff, l.steps * sizeof *l.rows); /* touches the pages, so that they are mapped */
     if (l.rows == NULL || pthread_create(&thread, NULL, run, &l) != 0) {
       fprintf(stderr, "no memory or no thread for the loop\n");
       status = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two needles, one after the other, through two holes of the template. Not a medical device.
+// Inserts two needles, one after the other, through two holes of the template. Not a medical device.
 #include <stylet/patient/insert.hpp>
 
 #include <iostream>
@@ -7,7 +7,7 @@
 int main() {
   stylet::Scenario scenario;
   scenario.patient.source = "phantom";  // the demo patient
-  scenario.mesh.nodes = 800;            // coarse, so that the example is quick
+  scenario.mesh.nodes = 800;            // a coarse mesh, so that the example is fast
   scenario.insertions = {{.hole = "e3.5"}, {.hole = "c3.5", .speed_mm_per_s = 50.0}};
   scenario.output.pictures = false;
   const auto prepared = stylet::prepare_model(scenario);

@@ -13,11 +13,11 @@ namespace stylet {
 
 namespace {
 
-constexpr double plane_tolerance_mm = 0.1;      // points of one slice; files round to 0.01 mm
-constexpr double same_slice_mm = 0.05;          // contours nearer than this lie on one slice
-constexpr double max_tilt_deg = 1.0;            // between planes
-constexpr double crossing_tolerance_mm = 0.05;  // smaller overlaps of edges come from rounding
-constexpr double min_width_mm = 1e-3;           // of a contour; less is a line
+constexpr double plane_tolerance_mm = 0.1;      // distance of a slice's points from its plane; files round to 0.01 mm
+constexpr double same_slice_mm = 0.05;          // contours nearer to each other than this lie on one slice
+constexpr double max_tilt_deg = 1.0;            // largest angle between the planes of contours
+constexpr double crossing_tolerance_mm = 0.05;  // smaller overlaps of edges are rounding errors
+constexpr double min_width_mm = 1e-3;           // a contour narrower than this is a line
 
 /// Vector area of a closed polygon: its length is the area, its direction the normal (Newell).
 Vec3 vector_area(const Contour& contour) {
@@ -29,8 +29,8 @@ Vec3 vector_area(const Contour& contour) {
 
 /// Principal directions of a contour's points.
 struct Frame {
-  Vec3 normal;  ///< of the plane that fits the points best
-  Vec3 width;   ///< in that plane, across the longest direction
+  Vec3 normal;  ///< normal of the plane that fits the points best
+  Vec3 width;   ///< direction in that plane, perpendicular to the longest one
 };
 
 Frame fitted_frame(const Contour& contour) {
@@ -54,7 +54,7 @@ double thickness(const Contour& contour, const Vec3& normal) {
 /// Lengths of a contour's sides [mm].
 struct Sides {
   double closing = 0.0;  ///< from the last point to the first
-  double other = 0.0;    ///< longest of the others
+  double other = 0.0;    ///< the longest of the other sides
 };
 
 Sides sides_of(const Contour& contour) {
@@ -191,7 +191,7 @@ std::optional<std::string> long_closing_side(const Roi& roi) {
   std::size_t contours = 0;
   Sides longest;
   for (const Contour& contour : roi.contours) {
-    if (contour.points.size() < 8) continue;  // a coarse polygon says nothing about its own spacing
+    if (contour.points.size() < 8) continue;  // too few points to know their usual spacing
     const Sides sides = sides_of(contour);
     if (sides.closing <= std::max(5.0, 8.0 * sides.other)) continue;
     ++contours;
@@ -199,8 +199,8 @@ std::optional<std::string> long_closing_side(const Roi& roi) {
   }
   if (contours == 0) return std::nullopt;
   return fmt::format(
-      "structure '{}': {} of {} contours end far from where they began, by up to {:.1f} mm, with other points at most "
-      "{:.1f} mm apart; they are closed by a straight side",
+      "Structure '{}': in {} of {} contours the last point is far from the first, by up to {:.1f} mm, while other "
+      "neighbouring points are at most {:.1f} mm apart. These contours are closed by a straight side.",
       roi.name, contours, roi.contours.size(), longest.closing, longest.other);
 }
 

@@ -43,7 +43,7 @@ Result<PatientInput> read_input(const fs::path& path, const MeshReadOptions& mes
   if (mask_options.volume > 0 && !is_mask) {
     return input_error(path.string(),
                        fmt::format("this is {}; only a mask has volumes to choose from", detail::name_of(*kind)),
-                       "Leave the volume out (patient.volume, --volume).");
+                       "Leave the volume out (patient.volume, --volume)");
   }
   switch (*kind) {
     case FileKind::dicom:

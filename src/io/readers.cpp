@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The public readers: look at what the file is, then let the right parser work on it in a child process.
+// The public readers: they identify the format of the file and run its parser in a child process.
 #include "detail/file_kind.hpp"
 #include "detail/guard.hpp"
 #include "detail/parsers.hpp"
@@ -19,13 +19,13 @@ using detail::guarded;
 
 namespace {
 
-/// Refusal of a file that is something else than what was asked for.
+/// The error for a file of another kind than expected.
 Error wrong_kind(const fs::path& path, FileKind found, const char* wanted) {
   return input_error(path.string(), fmt::format("this is {}, {} is expected", detail::name_of(found), wanted),
                      detail::readable_formats());
 }
 
-/// A structure whose points are all in reach.
+/// Error if a point of the structure is out of reach (detail/reach.hpp).
 Result<> check_reach(const ContourSet& set, const Roi& roi) {
   for (std::size_t c = 0; c < roi.contours.size(); ++c) {
     const std::vector<Vec3>& points = roi.contours[c].points;
@@ -41,7 +41,8 @@ Result<> check_reach(const ContourSet& set, const Roi& roi) {
   return Ok{};
 }
 
-/// Structures out of reach are refused, in whatever format they came, or left out where nobody will miss them.
+/// Checks the reach of all structures, for every format. A structure in `skip` that is out of reach is left out
+/// instead.
 Result<ContourSet> within_reach(Result<ContourSet> read, std::span<const std::string> skip) {
   if (!read) return read;
   std::vector<Roi> in_reach;
@@ -115,7 +116,7 @@ Result<TetMesh> read_tet_mesh(const fs::path& path, const MeshReadOptions& optio
       break;
     case FileKind::gmsh:
     case FileKind::medit:
-      // Here, once: a child would load it for each file.
+      // The parent loads the library once; otherwise each child process would load it again.
       if (const auto library = detail::GmshLibrary::get(); !library) return library.error();
       parse = [&] { return detail::parse_gmsh_mesh(path, *kind == FileKind::medit); };
       break;

@@ -9,7 +9,7 @@ namespace stylet {
 
 namespace {
 
-/// Passes on to the result files what the run produces.
+/// Writes the steps and frames of a run to the result files, and keeps the steps.
 class Recorder final : public RunObserver {
  public:
   Recorder(ResultsWriter& writer, std::vector<Step>& steps) : writer_(writer), steps_(steps) {}
@@ -52,7 +52,7 @@ Result<InsertResult> insert(const PreparedModel& prepared, const std::filesystem
   Result<Summary> summary = settings.recorded.empty() ? run(model, recorder, progress)
                                                       : run_recorded(model, settings.recorded, recorder, progress);
   if (!summary) return summary.error();
-  // The run knows the model's warnings and its own, but not the notes.
+  // The summary has the warnings of model and run; the notes of reader and mesher are added here.
   summary->warnings.insert(summary->warnings.begin(), prepared.notes.begin(), prepared.notes.end());
   if (result.map) {
     predict_holes(model, plan_of, *result.map, progress);

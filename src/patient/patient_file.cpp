@@ -14,7 +14,7 @@ namespace stylet {
 
 namespace {
 
-/// Refuses structures that cannot be one where the mesher would use them; notes what looks odd about the others.
+/// Checks the structures that the mesher will use (check_roi()), and adds a note for each that looks odd.
 Result<> check_used(const ContourSet& contours, const MeshOptions& options, std::vector<std::string>& notes) {
   const auto choice = choose_structures(contours, options);
   if (!choice) return choice.error();
@@ -36,7 +36,7 @@ Result<> drop_skipped(std::vector<Surface>& surfaces, const std::vector<std::str
     if (found.empty()) {
       const std::string near = nearest_name(word, names);
       return input_error(where, fmt::format("patient.skip: there is no surface '{}'; the file has {}", word, names),
-                         near.empty() ? "Name one of these." : fmt::format("Did you mean '{}'?", near));
+                         near.empty() ? "Use one of these names" : fmt::format("Did you mean '{}'?", near));
     }
     for (const std::size_t i : found) drop[i] = true;
   }

@@ -23,14 +23,14 @@ Result<> rename_regions(TetMesh& mesh, const std::map<std::string, std::string>&
     if (found.empty()) {
       const std::string nearest = nearest_name(name, in_file);
       return input_error(where, fmt::format("there is no region '{}'; the mesh has {}", name, fmt::join(in_file, ", ")),
-                         nearest.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", nearest));
+                         nearest.empty() ? "Use one of these names" : fmt::format("Did you mean '{}'?", nearest));
     }
     for (const std::size_t region : found) mesh.regions[region] = region_meant(canonical);
   }
   for (auto region = mesh.regions.begin(); region != mesh.regions.end(); ++region) {
     if (std::find(mesh.regions.begin(), region, *region) != region) {
       return input_error(where, fmt::format("two regions would be called '{}'", *region),
-                         "Give every region a name of its own");
+                         "Give each region a different name");
     }
   }
   return Ok{};
@@ -48,7 +48,7 @@ MeshReport report_as_is(const TetMesh& mesh) {
   return report;
 }
 
-/// Whether a model has a region whose motion is told: the gland, its zones, a planning volume or an unnamed label.
+/// Whether a mesh has a target, whose motion is reported: the gland, its zones, a planning volume or an unnamed label.
 bool has_target(const TetMesh& mesh) {
   return std::any_of(mesh.regions.begin(), mesh.regions.end(),
                      [](const std::string& r) { return is_target_region(r) || r.starts_with("label_"); });
@@ -68,15 +68,15 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshOptions& options, 
                                const Progress&) {
   if (!options.skip.empty()) {
     return input_error(scenario.patient.source,
-                       "patient.skip has no meaning for a tetrahedral mesh, all of which is used",
-                       "Remove it; [patient.regions] gives regions other names");
+                       "patient.skip cannot be used with a tetrahedral mesh, which is always used completely",
+                       "Remove patient.skip; use [patient.regions] to rename regions");
   }
   auto out = take_mesh(mesh, options.regions, scenario.patient.source);
   if (out && !has_target(out->mesh)) {
-    out->report.notes.push_back(
-        fmt::format("no region of the mesh ({}) is the target: its motion is not told, and the template stands before "
-                    "the middle of the mesh; [patient.regions] says which region is the prostate",
-                    fmt::join(out->mesh.regions, ", ")));
+    out->report.notes.push_back(fmt::format(
+        "No region of the mesh ({}) is known as the target: no motion of a target is reported, and the template is in "
+        "front of the middle of the mesh. Name the region of the prostate in [patient.regions].",
+        fmt::join(out->mesh.regions, ", ")));
   }
   return out;
 }
@@ -84,7 +84,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshOptions& options, 
 Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshOptions&, const Scenario& scenario,
                                const Progress&) {
   return input_error(scenario.patient.source,
-                     fmt::format("{} triangulated surfaces; surfaces are not meshed", surfaces.size()),
+                     fmt::format("the file has {} triangulated surfaces, which cannot be meshed", surfaces.size()),
                      "Give contours, a label mask or a tetrahedral mesh");
 }
 
@@ -107,7 +107,7 @@ Result<MeshedAnatomy> mesh_patient(const Scenario& scenario, const Progress& pro
   options.stiff_band = scenario.mesh.stiff_band;
   options.layers = scenario.anatomy;
   if (scenario.patient.source == "phantom" && scenario.patient.volume > 0)
-    return input_error("patient.volume", "the phantom is no mask with volumes to choose from", "Leave it out.");
+    return input_error("patient.volume", "the phantom is not a mask with volumes to choose from", "Leave it out");
   if (scenario.patient.source == "phantom") return mesh_contours(demo_patient(), options, progress);
   const Result<PatientFile> file = read_patient(scenario.patient.source, {.scale = scenario.patient.scale}, options,
                                                 {.volume = scenario.patient.volume});

@@ -64,16 +64,16 @@ Result<PreparedModel> prepare_model_file(const std::string& file, const std::vec
   const Result<Scenario> scenario = read_scenario(file, settings);
   if (!scenario) return scenario.error();
   if (cache == nullptr) return prepare_model(*scenario, progress, file);
-  report(progress, "looking for a model kept before", -1.0);
+  report(progress, "looking for a cached model", -1.0);
   const Result<std::string> key = model_key(*scenario);
-  if (!key) return prepare_model(*scenario, progress, file);  // which says better what is wrong with a patient's file
+  if (!key) return prepare_model(*scenario, progress, file);  // its error about an unreadable file is more precise
   if (const auto kept = cache->find(*key)) {
     if (auto prepared = saved(kept->string(), {}, progress)) return prepared;
   }
   auto prepared = prepare_model(*scenario, progress, file);
   if (!prepared) return prepared;
   const Result<std::string> now = model_key(*scenario);
-  if (!now || *now != *key) return prepared;  // somebody has changed a file meanwhile
+  if (!now || *now != *key) return prepared;  // a file has changed in the meantime
   if (auto done = cache->keep(*prepared->model, *key, prepared->notes, progress); !done)
     prepared->not_kept = done.error().message();
   return prepared;

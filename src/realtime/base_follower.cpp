@@ -9,19 +9,19 @@ namespace stylet {
 
 namespace {
 
-/// Share by which S approaches a softer body per step: 1000 N/mm of bone are forgotten within 40 steps, while friction
-/// that sticks and slides by turns does not make S forget what it will need in the next step.
+/// Share by which S approaches the stiffness of a softer body per step. It decreases from 1000 N/mm of bone to nothing
+/// within 40 steps, but is kept while friction alternates between sticking and sliding.
 constexpr double kShrink = 0.2;
-/// Smaller motions say nothing about stiffness [mm].
+/// [mm] Smaller motions are ignored, since they give no information about stiffness.
 constexpr double kStill_mm = 1e-9;
-/// A body that proves stiffer than S by more than this factor (2 is where the step becomes unstable) may be so in
-/// directions not yet tried.
+/// If a body is stiffer than S by more than this factor (at 2 the step would become unstable), S takes its stiffness in
+/// all directions.
 constexpr double kSurprise = 1.5;
-/// A motion that changes by less than this share of itself is steady.
+/// A motion that changes by less than this share is steady.
 constexpr double kUneven = 0.02;
-/// Share of the coupling's stiffness that does not count.
+/// Stiffness below this share of the coupling's is negligible.
 constexpr double kNegligible = 1e-9;
-/// Beyond this S says no more than "does not move" [N/mm].
+/// [N/mm] Upper bound of S; a body of this stiffness does not move.
 constexpr double kStiffest = 1e6;
 
 Vec3 limited(const Vec3& v, double most) {
@@ -34,7 +34,7 @@ Vec3 limited(const Vec3& v, double most) {
 BaseFollower::BaseFollower(const Limits& limits, const VirtualCoupling& coupling)
     : limits_(limits), coupled_(true), lever_(coupling.lever_mm()) {
   const VirtualCouplingSettings& s = coupling.settings();
-  K_.setConstant(s.stiffness_N_per_mm);  // the lever makes both stiffnesses one number
+  K_.setConstant(s.stiffness_N_per_mm);  // the lever makes the stiffnesses of translation and rotation equal
   B_.head<3>().setConstant(s.damping_N_s_per_mm);
   B_.tail<3>().setConstant(s.damping_Nmm_s_per_rad / (lever_ * lever_));
 }
@@ -59,8 +59,8 @@ BaseFollower::Vec6 BaseFollower::offset(const Pose& device) const {
   return e;
 }
 
-/// Takes S to the stiffness that motion s and change of force y show, in all directions, if they show a much stiffer
-/// body than S says. @return whether they do
+/// If motion s and change of force y show a much stiffer body than S, sets S to that stiffness in all directions.
+/// @return whether it did
 bool BaseFollower::stiffen(const Vec6& s, const Vec6& y) {
   const double sy = s.dot(y);
   if (sy <= std::max(kSurprise * s.dot(S_ * s), kNegligible * K_[0] * s.squaredNorm())) return false;
@@ -74,9 +74,9 @@ void BaseFollower::learn(const Vec6& y) {
   change_ = y;
   continued_.setZero();
   if (moved_.norm() < kStill_mm) return;
-  // Changes of a steady motion show stiffness while sliding hides it.
+  // While the body slides, the total motion shows a low stiffness, but differences between steps show the real one.
   const bool stiffer = stiffen(moved_, y) || (ds.norm() > kUneven * moved_.norm() && stiffen(ds, dy));
-  // Less is nothing beside the coupling; as S shrinks it would end in numbers too small to divide by.
+  // Work below this is negligible against the coupling; without the limit a shrinking S would lead to division by zero.
   const double nothing = kNegligible * K_[0] * moved_.squaredNorm();
   const double sy = moved_.dot(y);
   const Vec6 Ss = S_ * moved_;
@@ -108,7 +108,7 @@ const Pose& BaseFollower::follow(const Pose& device, const Wrench& hand, double 
   Vec6 force = force_;
   if (hand.finite()) force << hand.force, hand.torque / lever_;
   if (first_) {
-    before_ = e;  // the handle was at rest, too
+    before_ = e;  // assumes that the handle was at rest
     change_.setZero();
     first_ = false;
   } else {
@@ -121,7 +121,7 @@ const Pose& BaseFollower::follow(const Pose& device, const Wrench& hand, double 
   const Vec6 unbalanced = K_.cwiseProduct(e) + damping.cwiseProduct(e - before_) - force;
   Vec6 by = stiffness.ldlt().solve(unbalanced + S_ * continued_);
   moved_before_ = moved_;
-  if (!by.allFinite()) {  // forces beyond all bounds
+  if (!by.allFinite()) {  // the forces were too large
     S_.setZero();
     by.setZero();
   }

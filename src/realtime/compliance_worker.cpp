@@ -8,7 +8,7 @@
 namespace stylet {
 namespace {
 
-/// Nodes solved for at once: more would cost less each, but the first would wait for the last.
+/// Number of nodes solved for at once. A larger number would be cheaper per node, but delay the first node.
 constexpr std::size_t kAtOnce = 16;
 constexpr auto kLook = std::chrono::milliseconds(1);
 constexpr int kLooksAfterFailure = 1000;
@@ -38,7 +38,8 @@ void ComplianceWorker::run() noexcept {
     using Work = ComplianceSupply::Work;
     const Work done = supply_.work(kAtOnce);
     if (done == Work::done) continue;
-    const int looks = done == Work::failed ? kLooksAfterFailure : 1;  // memory may be there again later
+    // After a failure to allocate memory, wait longer before the next attempt.
+    const int looks = done == Work::failed ? kLooksAfterFailure : 1;
     for (int k = 0; k < looks && !stop_.load(std::memory_order_relaxed); ++k) std::this_thread::sleep_for(kLook);
   }
 }

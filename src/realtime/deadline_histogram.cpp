@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBinBits = std::countr_zero(static_cast<unsigned>(DeadlineHistogram::kBinsPerOctave));
 
-/// Only one thread writes, so a plain load and store of each number do; no bus lock is needed.
+/// Stores a number. Since only one thread writes, a relaxed store without a locked operation is sufficient.
 void put(std::int64_t& number, std::int64_t value) {
   std::atomic_ref<std::int64_t>(number).store(value, std::memory_order_relaxed);
 }

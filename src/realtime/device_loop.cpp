@@ -12,7 +12,7 @@ namespace stylet {
 namespace {
 
 PassivityControl::Settings passivity_settings(const std::optional<VirtualCoupling>& coupling) {
-  if (!coupling) return {};  // nothing is known of the device: watch only
+  if (!coupling) return {};  // without a coupling the device's damping is not checked, so energy is only observed
   return {.max_damping_N_s_per_mm = coupling->spare_damping_N_s_per_mm(), .lever_mm = coupling->lever_mm()};
 }
 
@@ -29,7 +29,8 @@ DeviceLoop::DeviceLoop(Device& device, const std::optional<VirtualCoupling>& cou
       times_(times),
       period_ns_(std::llround(settings.period_s * 1e9)) {}
 
-/// Motion since the last turn, and the energy it took; a handle just found again has none.
+/// Updates velocity and energy by the handle's motion since the last turn. If the handle was not tracked in the last
+/// turn, its motion is unknown and taken as zero.
 void DeviceLoop::follow_handle(const DeviceInput& input, double dt) {
   const Pose now = handle(input);
   twist_ = {};

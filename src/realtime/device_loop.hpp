@@ -8,16 +8,16 @@
 
 namespace stylet {
 
-/// The device's thread: the handle's pose to the step, the coupling's force through passivity control and guard to the
-/// hand. Its work is small and the same every turn, so it keeps its period when a step does not. Nothing in run()
-/// allocates, locks, throws or logs.
+/// The device's thread. In each turn it passes the handle's pose to the step's thread, computes the coupling's force
+/// and sends it through passivity control and force guard to the device. Its work is small and constant, so it keeps
+/// its period even if a step does not. Nothing in run() allocates, locks, throws or logs.
 class DeviceLoop {
  public:
   DeviceLoop(Device& device, const std::optional<VirtualCoupling>& coupling, const ForceGuard& guard,
              const RunnerSettings& settings, Exchange& exchange, LoopTimes& times);
 
-  /// Until told to stop, and then until the force has faded.
-  /// @param clock_zero_ns of the runner's clock, on CLOCK_MONOTONIC @param origin_ns first turn
+  /// Runs until Exchange::stop is set and the force has then faded to zero.
+  /// @param clock_zero_ns start of the runner's clock, on CLOCK_MONOTONIC @param origin_ns time of the first turn
   void run(std::int64_t clock_zero_ns, std::int64_t origin_ns) noexcept;
 
  private:

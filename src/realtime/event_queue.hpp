@@ -9,22 +9,21 @@
 
 namespace stylet {
 
-/// Bounded wait-free queue from one thread to one other that counts what did not fit: what is already in it is kept,
-/// what comes to a full queue is dropped.
+/// Bounded wait-free queue from one thread to another. If the queue is full, new values are dropped and counted.
 template <class T, std::size_t Capacity>
 class EventQueue {
   static_assert(std::is_trivially_destructible_v<T>, "what crosses threads owns nothing: copying it never allocates");
 
  public:
-  /// Writer. @return false when the queue was full and the value was dropped
+  /// Writer: adds a value. @return false if the queue was full and the value was dropped
   bool push(const T& value) {
     if (queue_.push(value)) return true;
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return false;
   }
-  /// Reader: takes the oldest values, as many as there are and fit. @return how many
+  /// Reader: takes the oldest values, at most out.size(). @return number of values taken
   std::size_t pop(std::span<T> out) { return queue_.pop(out.data(), out.size()); }
-  /// Either side.
+  /// Number of dropped values; for both sides.
   [[nodiscard]] std::int64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
  private:

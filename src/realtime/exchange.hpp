@@ -11,19 +11,19 @@
 
 namespace stylet {
 
-/// What the device's thread needs of a step.
+/// The result of a step that the device's thread needs.
 struct StepResult {
   PlainPose base;
   Triple velocity{};          ///< [mm/s] LPS, of the base
   Triple angular_velocity{};  ///< [rad/s]
-  PlainWrench hand;           ///< exerted by the hand on the base
-  double clock_s = -1e300;    ///< when it was known
+  PlainWrench hand;           ///< force and torque that the hand exerts on the base
+  double clock_s = -1e300;    ///< end of the step on the runner's clock
   double simulated_s = 0.0;
-  bool good = false;  ///< trusted, and the simulation is not paused
+  bool good = false;  ///< the step is trusted, and the simulation is not paused
 };
 
-/// All that passes between the threads of a runner, every item with one writer and one reader; commands with any number
-/// of writers. Nothing here waits.
+/// All data that the threads of a runner exchange, wait-free. Each item has one writer and one reader; the commands at
+/// the end may have any number of writers.
 struct Exchange {
   static constexpr std::size_t kEvents = 1024;
   static constexpr std::size_t kSteps = 4096;
@@ -33,14 +33,14 @@ struct Exchange {
   LatestValue<Snapshot> snapshot;             ///< step → reader
   LatestValue<DeviceSnapshot> device;         ///< device → reader
   EventQueue<EventSnapshot, kEvents> events;  ///< step → reader
-  EventQueue<Step, kSteps> steps;             ///< step → reader; RunnerSettings::keep_steps
+  EventQueue<Step, kSteps> steps;             ///< step → reader, with RunnerSettings::keep_steps
 
   std::atomic<bool> stop{false};
   std::atomic<bool> paused{false};
-  std::atomic<std::int64_t> single_steps{0};  ///< asked for so far
+  std::atomic<std::int64_t> single_steps{0};  ///< number of single steps requested since the runner was created
 };
 
-/// Distributions that a runner's loops write; others take snapshots.
+/// Histograms that a runner's loops write; other threads read them with snapshot().
 struct LoopTimes {
   explicit LoopTimes(std::int64_t period_ns) : step_wall(period_ns), device_wall(period_ns) {}
   DeadlineHistogram step_cpu;

@@ -10,7 +10,8 @@ namespace stylet {
 
 namespace {
 
-/// A vector cut to a length, its direction kept. Just below it: rounding must not lead above a limit.
+/// A vector shortened to a length, with its direction kept. The result is slightly shorter, so that rounding cannot
+/// exceed the limit.
 Vec3 shortened(const Vec3& v, double length, bool& cut) {
   const double now = v.stableNorm();
   if (now <= length) return v;
@@ -37,20 +38,22 @@ Result<ForceGuard> ForceGuard::create(const ForceGuardSettings& s) {
   for (const auto& [name, value] : all) {
     if (!positive(value))
       return input_error(fmt::format("force guard, {}", name), fmt::format("{} is not above 0", value),
-                         "give a positive limit");
+                         "Give a number above 0");
   }
   if (s.recover_s < s.fade_s)
-    return input_error("force guard, recover_s",
-                       fmt::format("{} s is shorter than fade_s = {} s", s.recover_s, s.fade_s),
-                       "let forces return more slowly than they fade, or results good and bad by turns would pass");
+    return input_error(
+        "force guard, recover_s",
+        fmt::format("{} s is shorter than fade_s = {} s, so that alternating good and bad results would reach the hand",
+                    s.recover_s, s.fade_s),
+        "Give at least fade_s");
   const double fade_s = std::max(s.max_force_N / s.force_slew_N_per_s, s.max_torque_Nmm / s.torque_slew_Nmm_per_s);
-  // Written this way round so that a slew rate that just fits is not refused for its last digit.
+  // The small tolerance accepts a slew rate that is exactly sufficient, in spite of rounding.
   if (fade_s > s.fade_s * (1.0 + 1e-12))
     return input_error(
         "force guard, fade_s",
         fmt::format("{} s is too short: {} N at {} N/s and {} N mm at {} N mm/s take {} s to fade", s.fade_s,
                     s.max_force_N, s.force_slew_N_per_s, s.max_torque_Nmm, s.torque_slew_Nmm_per_s, fade_s),
-        "raise fade_s or the slew rates, or lower the limits");
+        "Raise fade_s or the slew rates, or lower the limits");
   return ForceGuard(s);
 }
 
@@ -60,7 +63,7 @@ void ForceGuard::fade(double dt) {
     fade_left_ = settings_.fade_s;
     ++counts_.fades;
   }
-  // What is left falls in proportion to the time left: linear in time, both vectors in their own direction.
+  // The output is proportional to the remaining time: both vectors fall linearly and keep their directions.
   const double left = std::max(0.0, fade_left_ - dt);
   const double keep = fade_left_ > 0.0 ? left / fade_left_ : 0.0;
   fade_left_ = left;

@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// Whether a sample of a device can be used at `now_s`: valid, not too old, numbers that are a pose.
+/// Whether a sample of a device can be used at `now_s`: it is valid, not too old, and its numbers are a pose.
 inline bool usable(const DeviceInput& input, double now_s, double late_after_s) {
   if (!input.valid || !(now_s - input.time_s <= late_after_s)) return false;
   double turn = 0.0;
@@ -17,7 +17,7 @@ inline bool usable(const DeviceInput& input, double now_s, double late_after_s) 
   return std::isfinite(sum) && turn > 0.25 && turn < 4.0;
 }
 
-/// Its pose, with a rotation of length 1.
+/// The pose of a sample, with a normalised quaternion.
 inline Pose handle(const DeviceInput& input) {
   Pose p = pose(input.pose);
   p.rotation.normalize();

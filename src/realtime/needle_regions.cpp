@@ -7,7 +7,7 @@ namespace stylet {
 
 namespace {
 
-/// How far along its track the tip is [mm]. Contacts on the shaft sit on the first marks.
+/// Arc length [mm] of the tip along its track. The contacts on the shaft are at the first marks of the track.
 double tip_xi(const Insertion& insertion, TipState tip, std::span<const ContactState> contacts) {
   const Track& track = insertion.track();
   if (tip != TipState::in_track) return track.end_xi;
@@ -31,7 +31,7 @@ std::size_t NeedleRegions::now(const Insertion& insertion, TipState tip, std::sp
                                std::span<std::int16_t> out) const {
   if (tip == TipState::air) return 0;
   const double here = tip_xi(insertion, tip, contacts);
-  std::array<double, 64> deepest{};  // of each that is written
+  std::array<double, 64> deepest{};  // for each region written: greatest arc length at which the track is in it
   std::size_t count = 0;
   const auto consider = [&](double xi, int region) {
     if (xi > here) return;
@@ -43,7 +43,8 @@ std::size_t NeedleRegions::now(const Insertion& insertion, TipState tip, std::sp
     deepest[at] = found == end ? xi : std::max(deepest[at], xi);
   };
   for (std::size_t k = 0; k < count_; ++k) consider(entered_[k].xi, entered_[k].region);
-  for (const Track::Mark& mark : insertion.track().marks) consider(mark.xi, mark.region);  // all that an old track has
+  // A track of an earlier insertion has marks only.
+  for (const Track::Mark& mark : insertion.track().marks) consider(mark.xi, mark.region);
   if (count > 0) {
     const auto first = std::max_element(deepest.begin(), deepest.begin() + static_cast<std::ptrdiff_t>(count));
     std::swap(out[0], out[static_cast<std::size_t>(first - deepest.begin())]);

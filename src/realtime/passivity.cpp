@@ -14,7 +14,7 @@ Wrench PassivityControl::control(const Wrench& on_hand, const Twist& handle, dou
   if (energy_ >= 0.0 || settings_.max_damping_N_s_per_mm <= 0.0) return on_hand;
   const double lever2 = settings_.lever_mm * settings_.lever_mm;
   const double square = handle.velocity.squaredNorm() + lever2 * handle.angular_velocity.squaredNorm();
-  if (!(square > 0.0)) return on_hand;  // at rest nothing flows: paid back when it moves
+  if (!(square > 0.0)) return on_hand;  // a handle at rest exchanges no energy; the excess is dissipated when it moves
   ++active_;
   double alpha = -energy_ / (dt * square);
   if (alpha > settings_.max_damping_N_s_per_mm) {

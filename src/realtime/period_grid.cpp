@@ -27,7 +27,7 @@ std::int64_t PeriodGrid::take() {
 bool PeriodGrid::finish(std::int64_t now_ns) {
   const std::int64_t passed = last_before(now_ns);
   const bool missed = now_ns > origin_ + (due_ + 1) * period_;
-  // A point is only still ahead if it has not passed; one hit exactly is taken at once.
+  // The next turn is at the next point ahead; a point that is reached exactly now is taken at once.
   std::int64_t next = std::max(passed, tick_) + 1;
   if (passed > tick_ && origin_ + passed * period_ == now_ns) next = passed;
   skipped_ += next - tick_ - 1;

@@ -17,14 +17,14 @@ namespace stylet {
 
 namespace {
 
-/// From start() to the first turn: both threads are waiting for it by then.
+/// Time from start() to the first turn, enough for both threads to be waiting for it.
 constexpr std::int64_t kLead_ns = 2'000'000;
 
 Result<> in_range(const char* name, double value, double least, double most, const char* unit) {
   if (value >= least && value <= most) return Ok{};
   return input_error(fmt::format("real-time runner, {}", name),
                      fmt::format("{} {} is outside {} … {} {}", value, unit, least, most, unit),
-                     fmt::format("give {} … {}", least, most));
+                     fmt::format("Give {} … {}", least, most));
 }
 
 Result<> check(const RunnerSettings& s) {
@@ -49,7 +49,7 @@ struct RealtimeRunner::Parts {
                   exchange, times),
         device_loop(*device, coupling, guard, settings, exchange, times) {}
 
-  /// In the thread itself, before its first turn.
+  /// Prepares the calling thread before its first turn.
   [[nodiscard]] ThreadRights set_up(int priority) const {
     ThreadRights granted;
     prepare_thread();
@@ -100,9 +100,9 @@ bool RealtimeRunner::running() const { return parts_->step_thread.joinable(); }
 
 Result<> RealtimeRunner::start() {
   Parts& p = *parts_;
-  if (running()) return failure("real-time runner", "it runs already", "stop it first");
+  if (running()) return failure("real-time runner", "it is already running", "Stop it first");
   p.exchange.stop.store(false, std::memory_order_release);
-  // A step is due an eighth of a period after the device, so that it finds the sample of its own period.
+  // A step is due an eighth of a period after the device's turn, so that it uses the sample of the same period.
   const std::int64_t after = std::llround(p.settings.period_s * 1e9) / 8;
   std::promise<std::int64_t> first_turn;
   const std::shared_future<std::int64_t> origin = first_turn.get_future().share();
@@ -123,14 +123,14 @@ Result<> RealtimeRunner::start() {
     p.exchange.stop.store(true, std::memory_order_release);
     first_turn.set_value(monotonic_ns());
     p.join();
-    return failure("real-time runner", fmt::format("the system gives no thread: {}", error.what()),
-                   "raise the limit on the number of threads");
+    return failure("real-time runner", fmt::format("the system provides no thread: {}", error.what()),
+                   "Raise the limit on the number of threads");
   }
   p.rights = of_step.get();
   const ThreadRights device_rights = of_device.get();
   p.rights.realtime_scheduling = p.rights.realtime_scheduling && device_rights.realtime_scheduling;
   if (p.rights.scheduling_error == 0) p.rights.scheduling_error = device_rights.scheduling_error;
-  p.memory.emplace(p.settings.lock_memory);  // now, so that the threads' stacks are among it
+  p.memory.emplace(p.settings.lock_memory);  // after both threads have started, so that their stacks are locked too
   p.rights.memory_locked = p.memory->locked();
   p.rights.memory_error = p.memory->error();
   p.rights.denormals_flushed = FlushDenormals::available();

@@ -25,7 +25,7 @@ bool StepLoop::wants_step(bool& single) {
   const std::int64_t asked = exchange_.single_steps.load(std::memory_order_acquire);
   single = false;
   if (!exchange_.paused.load(std::memory_order_acquire)) {
-    single_done_ = asked;  // single steps asked for while it runs mean nothing
+    single_done_ = asked;  // single steps requested while the simulation is not paused are ignored
     return true;
   }
   if (single_done_ == asked) return false;
@@ -78,7 +78,7 @@ void StepLoop::publish(bool paused) {
   result.good = outcome_.trusted && !paused;
   exchange_.result.publish();
 
-  // After the force, which is urgent.
+  // The snapshot comes after the force, which is urgent.
   Snapshot& snapshot = exchange_.snapshot.draft();
   body_.describe(snapshot);
   snapshot.step.time_s = simulated_s;

@@ -7,14 +7,15 @@
 
 namespace stylet {
 
-/// The step's thread: where the handle is → where the base goes → a step → who wants to know. Nothing in run()
-/// allocates, locks, throws or logs.
+/// The step's thread. In each turn it reads the handle's pose, moves the base, takes a step, and publishes the result.
+/// Nothing in run() allocates, locks, throws or logs.
 class StepLoop {
  public:
   StepLoop(Steppable& body, const BaseFollower& follower, const RunnerSettings& settings, Exchange& exchange,
            LoopTimes& times);
 
-  /// @param clock_zero_ns of the runner's clock, on CLOCK_MONOTONIC @param origin_ns first turn
+  /// Runs until Exchange::stop is set.
+  /// @param clock_zero_ns start of the runner's clock, on CLOCK_MONOTONIC @param origin_ns time of the first turn
   void run(std::int64_t clock_zero_ns, std::int64_t origin_ns) noexcept;
 
  private:
@@ -35,7 +36,7 @@ class StepLoop {
   bool said_paused_ = false;
   StepOutcome outcome_;
   LoopCounters counters_;
-  LoopCounters before_;  ///< of earlier runs, for what PeriodGrid counts
+  LoopCounters before_;  ///< counters of earlier runs, to which those of the present PeriodGrid are added
 };
 
 }  // namespace stylet

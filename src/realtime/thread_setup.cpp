@@ -30,8 +30,8 @@ LockedMemory::LockedMemory(bool wanted) {
   if (!wanted) return;
   const std::scoped_lock lock(mutex);
   if (holders == 0) {
-    // Memory to come is locked too only where there is no limit that it could run into: a limit would make allocations
-    // fail elsewhere in the process.
+    // Future allocations are locked only if there is no limit on locked memory: beyond a limit, allocations would fail
+    // anywhere in the process.
     rlimit limit{};
     const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
     if (mlockall(unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) != 0) {
@@ -58,13 +58,14 @@ void request_realtime_scheduling(int priority, ThreadRights& rights) {
 }
 
 void prepare_thread() {
-  // Half a megabyte is several times what a step uses; volatile so that the writes take place.
+  // Half a megabyte is several times the stack that a step uses. It is volatile so that the writes are not optimised
+  // away.
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): written below, a page at a time
   std::array<volatile char, std::size_t{512} * 1024> stack;
   constexpr std::size_t page = 4096;
   for (std::size_t k = 0; k < stack.size(); k += page) stack[k] = 0;
 #if defined(__linux__)
-  // An ordinary thread is woken up to 50 µs late to save power, unless it asks.
+  // By default Linux may wake an ordinary thread up to 50 µs late to save power; request exact timers.
   prctl(PR_SET_TIMERSLACK, 1ul, 0ul, 0ul, 0ul);
 #endif
 }
@@ -72,15 +73,15 @@ void prepare_thread() {
 void yield_to_others() {
 #if defined(__linux__)
   const sched_param ordinary{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // it may have been started by a real-time thread
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);  // the starting thread may be a real-time thread
   constexpr int nice = 10;
-  setpriority(PRIO_PROCESS, 0, nice);  // 0: of this thread alone, on Linux
+  setpriority(PRIO_PROCESS, 0, nice);  // on Linux, 0 means this thread only
 #endif
 }
 
 std::string ThreadRights::describe() const {
   const auto refusal = [](int error) {
-    // strerror is not safe among threads; the two refusals there are have their own words.
+    // strerror is not thread-safe, so the two possible errors have texts of their own.
     if (error == EPERM) return std::string("not permitted");
     if (error == ENOMEM) return std::string("more memory than may be locked");
     return fmt::format("error {}", error);

@@ -6,7 +6,7 @@
 
 namespace stylet {
 
-/// Keeps all pages of the process in memory while any of these that asked for it lives.
+/// Keeps all pages of the process in memory as long as an object with wanted = true exists.
 class LockedMemory {
  public:
   explicit LockedMemory(bool wanted);
@@ -22,14 +22,15 @@ class LockedMemory {
   int error_ = 0;
 };
 
-/// Asks for SCHED_FIFO for the calling thread and writes down the answer. @param priority 1…99, clamped to what there
-/// is
+/// Requests SCHED_FIFO for the calling thread and records the result. @param priority 1…99, clamped to the system's
+/// range
 void request_realtime_scheduling(int priority, ThreadRights& rights);
 
-/// Touches the stack a loop may use, so that its pages are there; asks for exact timers.
+/// Prepares the calling thread for a real-time loop: touches the stack that the loop may use, so that its pages are
+/// mapped, and requests exact timers.
 void prepare_thread();
 
-/// The calling thread gets processor time after ordinary ones that want it, where the system has that (Linux).
+/// Lowers the priority of the calling thread below ordinary threads, if the system supports it (Linux).
 void yield_to_others();
 
 }  // namespace stylet

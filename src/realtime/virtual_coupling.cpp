@@ -10,25 +10,24 @@ namespace stylet {
 
 namespace {
 
-/// b − K T/2 − B, or why it is not positive.
+/// The spare damping b − K T/2 − B; an error if it is not positive.
 Result<double> spare(const char* motion, const char* stiffness_unit, const char* damping_unit, double K, double B,
                      double b, double T, const std::string& device) {
   const std::string where = fmt::format("virtual coupling, {}", motion);
   if (!(std::isfinite(K) && K > 0.0))
     return input_error(where, fmt::format("a stiffness of {} {} is not above 0", K, stiffness_unit),
-                       "give a stiffness");
+                       "Give a stiffness above 0");
   if (!(std::isfinite(B) && B >= 0.0))
     return input_error(where, fmt::format("a damping of {} {} is below 0", B, damping_unit),
-                       "give a damping of 0 or more");
+                       "Give a damping of 0 or more");
   const double needed = 0.5 * K * T + B;
   if (b > needed) return b - needed;
-  const std::string cure =
-      b > B ? fmt::format("take a stiffness below {:.4g} {}, less damping, or a shorter period", 2.0 * (b - B) / T,
-                          stiffness_unit)
-            : fmt::format(
-                  "take a damping below the device's {:.4g} {} and a stiffness to match, or state the damping of "
-                  "the device if it has more",
-                  b, damping_unit);
+  const std::string cure = b > B ? fmt::format("Use a stiffness below {:.4g} {}, less damping, or a shorter period",
+                                               2.0 * (b - B) / T, stiffness_unit)
+                                 : fmt::format(
+                                       "Use a damping below the device's {:.4g} {} and a matching stiffness, or state "
+                                       "the damping of the device if it has more",
+                                       b, damping_unit);
   return input_error(where,
                      fmt::format("a stiffness of {:.4g} {} and a damping of {:.4g} {} at a period of {:.4g} ms need a "
                                  "device damped by more than K T/2 + B = {:.4g} {}; {} has {:.4g}",
@@ -42,12 +41,13 @@ Result<double> spare(const char* motion, const char* stiffness_unit, const char*
 Result<VirtualCoupling> VirtualCoupling::create(const VirtualCouplingSettings& s, const DeviceTraits& device,
                                                 double period_s) {
   if (!(std::isfinite(period_s) && period_s > 0.0))
-    return input_error("virtual coupling, period", fmt::format("{} s is not above 0", period_s), "give a period");
+    return input_error("virtual coupling, period", fmt::format("{} s is not above 0", period_s),
+                       "Give a period above 0");
   const auto along = spare("translation", "N/mm", "N s/mm", s.stiffness_N_per_mm, s.damping_N_s_per_mm,
                            device.damping_N_s_per_mm, period_s, device.name);
   if (!along) return along.error();
   const VirtualCoupling without_torque(s, *along);
-  // A hand that feels no torque takes no energy from one: only the signs of the numbers matter then.
+  // A device without torques exchanges no rotational energy, so only the signs of the rotational settings are checked.
   const double unlimited = 1e300;
   const auto around = spare("rotation", "N mm/rad", "N mm s/rad", s.stiffness_Nmm_per_rad, s.damping_Nmm_s_per_rad,
                             device.torque ? device.damping_Nmm_s_per_rad : unlimited, period_s, device.name);

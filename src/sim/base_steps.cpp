@@ -9,7 +9,7 @@ namespace stylet {
 
 namespace {
 
-/// Where the tip of a rigid straight needle on this base would be [mm] LPS.
+/// Tip [mm] LPS of a rigid straight needle on this base.
 Vec3 rigid_tip(const Pose& base, double length_mm) { return base.origin + length_mm * (base.rotation * Vec3::UnitZ()); }
 
 }  // namespace

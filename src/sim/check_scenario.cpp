@@ -54,7 +54,7 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
     return input_error(
         place(name + ".retract"),
         fmt::format("{}.retract = false leaves the needle in, and insertion[{}] follows", name, number + 1),
-        "Only the last insertion may leave its needle in: there is one needle");
+        "Let only the last insertion leave its needle in, since there is one needle");
   }
   const double reach = deepest_mm(s);
   if (p.depth_mm > reach) {
@@ -114,11 +114,10 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
   }
   if (s.tissue_model.element == ElementChoice::nodal_pressure || s.tissue_model.element == ElementChoice::p2) {
     const auto refused = [&](const std::string& setting, const char* cure) {
-      return input_error(
-          place("tissue.element"),
-          fmt::format("{} changes the stiffness of linear tetrahedra, and tissue.element = \"{}\" has none", setting,
-                      word(s.tissue_model.element)),
-          cure);
+      return input_error(place("tissue.element"),
+                         fmt::format("{} needs linear tetrahedra, and tissue.element = \"{}\" is another element",
+                                     setting, word(s.tissue_model.element)),
+                         cure);
     };
     if (s.coupling.method == Method::node_addition || s.coupling.method == Method::node_repositioning) {
       return refused(fmt::format("coupling.method = \"{}\"", word(s.coupling.method)),

@@ -16,8 +16,9 @@ struct Row {
 
 constexpr std::string_view kBone = "bone; held, so its modulus has no effect";
 
-// Forces as they are measured in patients and cadavers. The dent under the tip stiffens, so that they go with dents of
-// plausible depth; moduli are those that a fast load meets, creep makes them a quarter (docs/parameters.md).
+// The defaults of the presets typical, firm and soft: forces as measured in patients and cadavers. The dent under the
+// tip stiffens, so that these forces cause dents of plausible depth. The moduli are instantaneous, as a fast load meets
+// them; the delayed moduli are a quarter of them (docs/parameters.md).
 constexpr std::string_view kGland =
     "E fitted, with the creep to a quarter, around 30.8 kPa benign and 64.1 kPa cancer in vivo (Shoji 2018); cutting "
     "of the order of 1 N (van Gerwen 2012); capsule and friction fitted to a peak of 6 N for 18 gauge (Podder 2006, "
@@ -54,8 +55,8 @@ constexpr Row kMeasured[] = {
     {"femur_right", 1e5, 0.3, 0, 10.0, 0.0, 60, 45, kBone},
 };
 
-// Linear tissue: moduli as measured, forces chosen with them so that a surface tents by 5 to 20 mm before it breaks and
-// the cut lags behind the tip by at most 5 mm.
+// The defaults of the preset linear: moduli as measured, and forces chosen such that a surface tents by 5 to 20 mm
+// before it breaks and the cutting lag is at most 5 mm.
 constexpr std::string_view kLinearGland =
     "E 30.8 kPa benign, 64.1 kPa cancer in vivo (Shoji 2018); capsule and cutting force of the order of 1 N (van "
     "Gerwen 2012)";
@@ -109,7 +110,7 @@ bool is_surrounding(const std::string& region) {
 }
 
 TissueParameters default_tissue(const std::string& region, TissuePreset preset) {
-  // Planning volumes and unnamed labels of a mask stand for the gland.
+  // Planning volumes and unnamed labels of a mask represent the gland.
   const bool planned = region == "ctv" || region == "target" || region == "ptv" || region == "gtv";
   const std::string_view name = planned || region.starts_with("label_") ? "prostate" : std::string_view(region);
   const std::span<const Row> rows = rows_of(preset);

@@ -16,13 +16,13 @@ namespace stylet {
 
 namespace {
 
-constexpr double kShownBeyond_mm = 10.0;  ///< of the planned depth
+constexpr double kShownBeyond_mm = 10.0;  ///< the zone extends this far beyond the planned depth
 constexpr Eigen::Index kBatch = 192;      ///< right-hand sides solved for at once
 constexpr std::size_t kNearBatch = 64;    ///< near nodes whose rows are corrected at once
-constexpr Eigen::Index kOversample = 20;  ///< random rows more than columns
-constexpr Eigen::Index kChecks = 60;      ///< columns the error is measured on
-constexpr double kSafety = 2.0;  ///< over what was measured: columns are single degrees of freedom, not all of them
-constexpr double kRows_mm_per_N = 1e-4;  ///< what a cluster's rows may be off by, being kept at low rank
+constexpr Eigen::Index kOversample = 20;  ///< random rows in addition to the number of columns
+constexpr Eigen::Index kChecks = 60;      ///< columns on which the error is measured
+constexpr double kSafety = 2.0;           ///< factor on the measured error: only a sample of columns is measured
+constexpr double kRows_mm_per_N = 1e-4;   ///< tolerance of the low-rank compression of the rows (LowRankRows)
 constexpr unsigned kSeed = 20050101;
 
 double seconds_now() {
@@ -31,7 +31,7 @@ double seconds_now() {
 
 }  // namespace
 
-/// Free displacement nodes near a planned way whose compliances are there.
+/// Collects the zone Z: free displacement nodes near a planned way whose compliance is in the store.
 void DisplayField::find_zone(double reach_mm) {
   const Tissue& tissue = model_->tissue();
   const ComplianceStore& store = *model_->store();
@@ -60,7 +60,7 @@ void DisplayField::find_surface() {
   surface_.erase(std::unique(surface_.begin(), surface_.end()), surface_.end());
 }
 
-/// Columns of K⁻¹ [mm/N] (3 mesh nodes × dofs) of degrees of freedom of the zone.
+/// Solves for the columns of K⁻¹ [mm/N] (3 mesh nodes × dofs) of some degrees of freedom of the zone.
 Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, const Progress& progress) const {
   const Tissue& tissue = model_->tissue();
   const auto all = static_cast<Eigen::Index>(dofs.size());
@@ -79,13 +79,13 @@ Eigen::MatrixXf DisplayField::solve_columns(std::span<const Eigen::Index> dofs, 
   return columns;
 }
 
-/// Every degree of freedom of the zone is in the skeleton: nothing is approximated.
+/// Takes every degree of freedom of the zone into the skeleton, so that the field is exact.
 void DisplayField::keep_all(const Progress& progress) {
   for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(zone_.size()); ++i) skeleton_.push_back(i);
   rows_ = LowRankRows(model_->mesh().nodes, solve_columns(skeleton_, progress), 0.0, surface_, progress);
 }
 
-/// M = Ωᵀ K⁻¹(F,Z) (rows × 3Z): random combinations of the rows of the nodes that the store does not reach.
+/// M = Ωᵀ K⁻¹(F,Z) (rows × 3Z): random combinations Ω of the rows of the nodes F that the store does not have.
 MatX DisplayField::random_rows(Eigen::Index rows, const Progress& progress) const {
   const Tissue& tissue = model_->tissue();
   std::mt19937 random(kSeed);
@@ -96,7 +96,7 @@ MatX DisplayField::random_rows(Eigen::Index rows, const Progress& progress) cons
     const Eigen::Index count = std::min(kBatch, rows - first);
     MatX f = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, count);
     for (Index node = 0; node < tissue.mesh().node_count(); ++node) {
-      if (model_->store()->has(node)) continue;  // held, or exact anyway
+      if (model_->store()->has(node)) continue;  // held, or read from the store
       for (double& value : f.middleRows<3>(3 * Eigen::Index{node}).reshaped()) value = normal(random);
     }
     const MatX u = tissue.solve(f);
@@ -108,8 +108,8 @@ MatX DisplayField::random_rows(Eigen::Index rows, const Progress& progress) cons
   return M;
 }
 
-/// S and T by a pivoted QR: M P = Q R, so K⁻¹(F, first k pivots) R₁₁⁻¹ R₁ Pᵀ ≈ K⁻¹(F,Z). What comes next in the order
-/// of the pivots is what k columns represent worst: its own columns tell the error.
+/// Determines S and T by a pivoted QR factorisation M P = Q R: K⁻¹(F, first k pivots) R₁₁⁻¹ R₁ Pᵀ ≈ K⁻¹(F,Z). The
+/// pivots that follow the first k are the columns that those represent worst, so the error is measured on them.
 void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Progress& progress) {
   const Eigen::Index zone = 3 * static_cast<Eigen::Index>(zone_.size());
   const Eigen::Index solved = std::min<Eigen::Index>(zone, options.columns + kChecks);
@@ -136,7 +136,7 @@ void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Pro
   };
   Eigen::Index k = options.columns;
   statistics_.error_mm_per_N = error(k);
-  while (true) {  // fewer, as long as they do
+  while (true) {  // reduce the number of columns by a fifth as long as the error stays below the tolerance
     const Eigen::Index fewer = 4 * k / 5;
     const double with_fewer = fewer > 0 ? error(fewer) : options.tolerance_mm_per_N + 1.0;
     if (with_fewer > options.tolerance_mm_per_N) break;
@@ -151,13 +151,13 @@ void DisplayField::choose_skeleton(const DisplayFieldOptions& options, const Pro
     skeleton_.push_back(order[j]);
     to_skeleton_.col(order[j]) = Eigen::VectorXf::Unit(k, j);
   }
-  // A force has three components, each of which comes to a column of T on the skeleton.
+  // Each of the three components of a force causes one column of T on the skeleton, hence the factor √3.
   statistics_.error_mm_per_N +=
       std::numbers::sqrt3 * kRows_mm_per_N * static_cast<double>(to_skeleton_.colwise().norm().maxCoeff());
   rows_ = LowRankRows(model_->mesh().nodes, columns.leftCols(k), kRows_mm_per_N, surface_, progress);
 }
 
-/// Near the ways the skeleton would not do; what it gives is brought to what the store says.
+/// Near the ways the skeleton is not accurate enough, so its rows are corrected to the values of the store.
 void DisplayField::keep_near_rows() {
   if (to_skeleton_.size() == 0) return;
   const ComplianceStore& store = *model_->store();
@@ -187,7 +187,8 @@ void DisplayField::keep_near_rows() {
 
 Result<> DisplayField::check(const Model& model) {
   if (!model.inverse()) return Ok{};
-  return input_error("coupling.engine", "the display needs the compliances near the needles' ways",
+  return input_error("coupling.engine",
+                     "the display needs the compliance near the needles' ways, which this engine does not store",
                      "Use coupling.engine = \"condensed\"");
 }
 
@@ -264,7 +265,8 @@ void DisplayField::set(std::span<const TissueForce> forces, Load& load) const {
         to_skeleton_.middleCols<3>(3 * Eigen::Index{slot}).lazyProduct(load.zone_.segment<3>(3 * Eigen::Index{slot}));
 }
 
-/// Of all near nodes at once: columns of a few forces lie side by side, blocks of nodes that are asked for do not.
+/// Computes the correction of all near nodes at once: the columns of the few forces are contiguous in memory, whereas
+/// the rows of single nodes are not.
 void DisplayField::read_near_rows(Load& load) const {
   load.near_.setZero();
   for (const Index slot : load.loaded_)

@@ -54,7 +54,7 @@ DisplayNearField::DisplayNearField(std::shared_ptr<const Model> model, std::span
   moved_ = Eigen::VectorXf::Zero(3 * static_cast<Eigen::Index>(places_.size()));
 }
 
-/// Where what a force at this place does is kept; one that is not known yet takes the place of one that is not used.
+/// The slot with the blocks of a force at this place. A new place takes an unused slot, or a new one if all are used.
 std::size_t DisplayNearField::slot_for(const TissueForce& force) {
   auto found =
       std::find_if(sources_.begin(), sources_.end(), [&](const Source& s) { return same_place(s.force, force); });
@@ -96,7 +96,7 @@ bool DisplayNearField::knows_wide() const {
           std::any_of(laws.begin(), laws.end(), [](const RegionLaws& law) { return law.stiffening_MPa > 0.0; }));
 }
 
-/// Takes off what tissue that stiffens under the tip does not move by.
+/// Subtracts the part of the linear displacement under the tip by which stiffening tissue moves less.
 void DisplayNearField::stiffen(const TissueForce& tip, std::size_t slot) {
   if (!knows_wide()) return;
   const NearPlace on = place_of(tip);
@@ -141,7 +141,7 @@ void DisplayNearField::set(std::span<const TissueForce> forces) {
   left_out_N_ = 0.0;
   if (places_.empty()) return;
   const MeshKernel& kernel = *model_->kernel();
-  // First those that are where they were, so that none of them loses its place to a new one.
+  // Mark the slots of unchanged places first, so that no new place takes one of them.
   for (Source& source : sources_) {
     source.used = std::any_of(forces.begin(), forces.end(),
                               [&](const TissueForce& f) { return f.at.tet >= 0 && same_place(source.force, f); });

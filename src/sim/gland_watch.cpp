@@ -53,7 +53,7 @@ GlandStep GlandWatch::add(const Step& step, std::span<const Event> events, const
 
 GlandMotion GlandWatch::result() const {
   GlandMotion result = motion_;
-  // Tissue on which nothing acts stays where it is, however long one waits.
+  // Tissue without forces, lasting ones included, is undeformed and stays so: the residual shift is known to be zero.
   if (withdrawn_s_ && !result.shift_residual_mm && at_rest_) result.shift_residual_mm = Vec3::Zero();
   return result;
 }

@@ -33,7 +33,7 @@ std::vector<int> regions_of(const TetMesh& mesh, Spared structure) {
   return regions;
 }
 
-/// The target with the urethra where it runs through it: a needle along the urethra is in the gland as well.
+/// The target together with the urethra between the target's ends: a needle along the urethra is in the gland as well.
 class Gland {
  public:
   explicit Gland(const Model& model) : mesh_(model.mesh()), regions_(model.target_regions()) {
@@ -44,14 +44,14 @@ class Gland {
     for (const int region : regions_of(mesh_, Spared::urethra)) regions_.push_back(region);
   }
 
-  /// Length of a straight way within the gland [mm]. @param from @param to [mm] LPS, at the same x and y, `to` superior
+  /// Length [mm] of a straight way within the gland. @param from, to [mm] LPS, with the same x and y; `to` is superior
   [[nodiscard]] double length_of(const Vec3& from, const Vec3& to) const {
     const Vec3 low(from.x(), from.y(), std::max(from.z(), extent_.min().z()));
     const Vec3 high(to.x(), to.y(), std::min(to.z(), extent_.max().z()));
     return low.z() < high.z() ? length_in_regions(mesh_, regions_, low, high) : 0.0;
   }
 
-  /// Whether the line through a point, of any length, leads through the gland.
+  /// Whether the infinite line along z through a point leads through the gland.
   [[nodiscard]] bool is_met_through(const Vec3& x) const {
     return length_of({x.x(), x.y(), extent_.min().z()}, {x.x(), x.y(), extent_.max().z()}) > 0.0;
   }
@@ -59,7 +59,7 @@ class Gland {
  private:
   const TetMesh& mesh_;
   std::vector<int> regions_;
-  Eigen::AlignedBox3d extent_;  ///< of the target
+  Eigen::AlignedBox3d extent_;  ///< [mm] bounding box of the target
 };
 
 }  // namespace
@@ -153,7 +153,8 @@ Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const st
         where,
         fmt::format("no hole of the template leads into the target, whose centre is at ({:.1f}, {:.1f}, {:.1f}) mm",
                     centre.x(), centre.y(), centre.z()),
-        "Put the template before the target (template.centre_mm), or let the needle go deeper (insertion.depth_mm)");
+        "Move the template in front of the target (template.centre_mm), or let the needle go deeper "
+        "(insertion.depth_mm)");
   }
   return map;
 }
@@ -163,19 +164,19 @@ Result<> check_mappable(const Scenario& scenario, const std::string& where) {
     return input_error(fmt::format("{}, [[insertion]]", where),
                        fmt::format("there are {} insertions, and a map puts one needle into each hole of the template",
                                    scenario.insertions.size()),
-                       "Keep one [[insertion]], the one whose depth, speed and roll the map is to be for");
+                       "Keep only the [[insertion]] with the depth, speed and roll for the map");
   }
   const InsertionPlan& plan = scenario.insertions.front();
   if (!plan.motion.empty()) {
     return input_error(
         fmt::format("{}, insertion[0].motion = \"{}\"", where, plan.motion),
-        "a recorded motion is one needle's own and cannot be repeated through every hole of the template",
-        "Give a hole and a speed in its place, for example hole = \"D4\"");
+        "a recorded motion belongs to one needle and cannot be repeated through every hole of the template",
+        "Give a hole and a speed instead, for example hole = \"D4\"");
   }
   if (!plan.hole) {
     return input_error(fmt::format("{}, insertion[0].entry_mm", where),
-                       "the needle does not go through a hole of the template, and a map is of its holes",
-                       "Give a hole in its place, for example hole = \"D4\"");
+                       "the needle does not go through a hole of the template, which a map of the holes requires",
+                       "Give a hole instead, for example hole = \"D4\"");
   }
   return Ok{};
 }

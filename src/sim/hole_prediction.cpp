@@ -10,7 +10,7 @@ namespace stylet {
 
 namespace {
 
-/// Nodes of all meshes that are compiled at the same time, which bounds the memory that is needed.
+/// Largest total number of nodes of the meshes that are compiled in parallel; it limits the memory.
 constexpr Index kNodesAtOnce = 40000;
 
 }  // namespace

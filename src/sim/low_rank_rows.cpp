@@ -19,10 +19,10 @@ namespace stylet {
 
 namespace {
 
-/// Smaller clusters have bases of fewer columns, but more of them are asked for the same picture.
+/// Largest number of nodes in a cluster. Smaller clusters have smaller bases, but a picture needs more of them.
 constexpr std::ptrdiff_t kClusterNodes = 512;
-constexpr Eigen::Index kFirstGuess = 128;  ///< columns of the random samples that a basis is looked for among
-constexpr double kWorthIt = 0.75;          ///< of the numbers that A_c itself has; more are not a saving
+constexpr Eigen::Index kFirstGuess = 128;  ///< number of random samples for the first attempt at a basis
+constexpr double kWorthIt = 0.75;          ///< a cluster is compressed only to at most this fraction of the size of A_c
 constexpr unsigned kSampleSeed = 20050102;
 
 void halve(std::span<const Vec3> points, std::span<Index> nodes, const std::function<void(std::span<Index>)>& found) {
@@ -47,11 +47,11 @@ struct Factors {
   Eigen::MatrixXf coordinates;
 };
 
-/// M ≈ Q B with ‖M − Q B‖₂ ≤ tolerance: a basis of random samples of the columns, as many as it takes (Halko,
-/// Martinsson & Tropp 2011), then without the directions that M hardly has. Nothing if that needs nearly as many
-/// numbers as M.
+/// Factorises M ≈ Q B with ‖M − Q B‖₂ ≤ tolerance: an orthonormal basis of random combinations of the columns, enlarged
+/// until it suffices (Halko, Martinsson & Tropp 2011), then reduced by the directions in which M is small. Empty if Q
+/// and B would need nearly as much memory as M.
 std::optional<Factors> factorise(const Eigen::MatrixXf& M, double tolerance) {
-  // The two parts that are left out are perpendicular, so their squares add up.
+  // The errors of the two reductions are orthogonal, so their squares add up to tolerance².
   const double part = tolerance / std::numbers::sqrt2;
   const auto most =
       static_cast<Eigen::Index>(kWorthIt * static_cast<double>(M.size()) / static_cast<double>(M.rows() + M.cols()));

@@ -23,12 +23,12 @@ namespace stylet {
 
 namespace {
 
-constexpr double kTentingMin_mm = 3.0;
-constexpr double kTentingMax_mm = 20.0;
-constexpr double kLagMax_mm = 5.0;
-/// Compliance is stored a little beyond the planned depth: tissue is pushed ahead of the tip.
+constexpr double kTentingMin_mm = 3.0;   ///< smallest plausible tenting
+constexpr double kTentingMax_mm = 20.0;  ///< largest plausible tenting
+constexpr double kLagMax_mm = 5.0;       ///< largest plausible cutting lag
+/// Compliance is precomputed this far beyond the planned depth, because the tip pushes tissue ahead of it.
 constexpr double kBeyond_mm = 15.0;
-/// Nodes up to which tissue.element = "auto" averages pressure.
+/// Largest number of nodes for which tissue.element = "auto" chooses elements with averaged pressure.
 constexpr Index kMostAveraged = 45000;
 
 bool is_gland(const std::string& region) {
@@ -36,7 +36,7 @@ bool is_gland(const std::string& region) {
          region == "central_zone" || region == "anterior_stroma";
 }
 
-/// The regions that make the target: the gland, else a planning volume, else unnamed labels.
+/// The regions that form the target: the gland, or else a planning volume, or else all unnamed labels.
 std::vector<int> find_target(const TetMesh& mesh) {
   const auto pick = [&](auto&& wanted) {
     std::vector<int> found;
@@ -83,9 +83,9 @@ CouplingSettings coupling_settings(const Scenario& s) {
   return c;
 }
 
-/// The methods of Goksel et al. 2005 are there to be compared: all on the same linear tetrahedra, which two of them
-/// need. Averaged pressure couples two rings of nodes: beyond some size its factor does not fit into memory, and
-/// locking has become small (docs/theory/tissue.md).
+/// The element of the tissue. The methods of Goksel et al. 2005 are there for comparison, so all of them use linear
+/// tetrahedra, which two of them need. Averaged pressure couples two rings of nodes; on meshes above some size its
+/// factor does not fit into memory, and locking is small there (docs/theory/tissue.md).
 Element element_of(const Scenario& s, Index nodes) {
   const bool of_the_paper = s.coupling.method != CouplingSettings::Method::near_field ||
                             s.coupling.engine != CouplingSettings::Engine::condensed;
@@ -93,7 +93,7 @@ Element element_of(const Scenario& s, Index nodes) {
   return element_named(word(s.tissue_model.element)).value_or(p1 ? Element::p1 : Element::nodal_pressure);
 }
 
-/// Loads on a needle with so many contacts: the tip and a guide come on top.
+/// Number of point loads of a needle with `capacity` shaft contacts: the tip and a guide add one each.
 int needle_loads(int capacity) { return capacity + 2; }
 
 Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, int capacity) {
@@ -104,10 +104,10 @@ Result<std::unique_ptr<Needle>> build_needle(const Scenario::NeedleChoice& n, in
 
 constexpr const char* kPrepareAgain = "Prepare the model again (stylet prepare)";
 
-/// Largest full inverse, kept twice, that an engine may ask for.
+/// Largest memory for the two copies of the full inverse that some engines keep.
 constexpr double kLargestInverse_GB = 8.0;
 
-/// Follows a recorded motion from outside the patient.
+/// The insertion of a recorded motion, which has to start with the tip outside of the patient.
 Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::size_t number, const Scenario& scenario,
                                 const Locator& locator, const std::string& where) {
   const double length = scenario.needle.length_mm;
@@ -135,15 +135,15 @@ Result<PlannedInsertion> follow(const std::vector<MotionSample>& motion, std::si
   if (scenario.grid.guide && recorded.depth_mm > deepest_mm(scenario)) {
     return input_error(
         fmt::format("{}, insertion[{}].motion", where, number),
-        fmt::format("the recorded motion goes {:.1f} mm deep and would push the base through the "
-                    "template, which lets it go {:.1f} mm",
+        fmt::format("the recorded motion is {:.1f} mm deep and would push the base through the template, which allows "
+                    "{:.1f} mm",
                     recorded.depth_mm, deepest_mm(scenario)),
         "Use a longer needle (needle.length_mm), a smaller template.distance_mm, or template.guide = false");
   }
   return recorded;
 }
 
-/// Displacement nodes that elements have, ascending.
+/// Displacement nodes of some elements, ascending.
 std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& elements) {
   std::vector<Index> nodes;
   for (const Index t : elements) {
@@ -155,7 +155,7 @@ std::vector<Index> nodes_of(const Tissue& tissue, const std::vector<Index>& elem
   return nodes;
 }
 
-/// Around the ways of all needles.
+/// The corridor around the ways of all needles.
 Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& insertions,
                      const Scenario::Coupling& coupling) {
   std::vector<std::array<Vec3, 2>> ways;
@@ -165,7 +165,7 @@ Corridor corridor_of(const TetMesh& mesh, const std::vector<PlannedInsertion>& i
   return find_corridor(mesh, ways, coupling.corridor_mm, coupling.corridor_nodes);
 }
 
-/// As far as compliance is stored.
+/// The ways of all needles, as long as the corridor.
 std::vector<NeedleWay> ways_of(const std::vector<PlannedInsertion>& insertions) {
   std::vector<NeedleWay> ways;
   ways.reserve(insertions.size());
@@ -174,14 +174,15 @@ std::vector<NeedleWay> ways_of(const std::vector<PlannedInsertion>& insertions) 
   return ways;
 }
 
-/// Whether something asks which part of the tissue's answer is wider than a needle.
+/// Whether the coupling needs the wide part of the compliance (SpreadCompliance): for tissue that creeps or stiffens.
 bool knows_wide(const CouplingSettings& coupling, const std::vector<RegionLaws>& laws) {
   if (coupling.method != CouplingSettings::Method::near_field) return false;
   const auto stiffens = [](const RegionLaws& region) { return region.stiffening_MPa > 0.0; };
   return coupling.creep.is_any() || (knows_stiffening(coupling) && std::any_of(laws.begin(), laws.end(), stiffens));
 }
 
-/// How far a tip moves tissue under a force: what is of the organs' scale follows it, what is of the needle's stiffens.
+/// Displacement [mm] of tissue under a force on the tip: a linear part on the scale of organs and a dent on the scale
+/// of the needle, which stiffens.
 double pressed_mm(const TissueParameters& t, double force_N, double needle_diameter_mm, const NearSurface& skin) {
   const Material material{t.young_kPa * 1e-3, t.poisson};
   const Medium medium{material.mu(), t.poisson};
@@ -194,7 +195,7 @@ double pressed_mm(const TissueParameters& t, double force_N, double needle_diame
   return organs * force_N + DentLaw{dent, t.stiffening * material.young_MPa}.depth(force_N);
 }
 
-/// The same message with the scenario's name in front of its place.
+/// The error with the scenario's name in front of its place.
 Error named(Error error, const std::string& where) {
   error.where = where + ", " + error.where;
   return error;
@@ -224,8 +225,8 @@ std::vector<std::string> tenting_warnings(const std::string& region, const Tissu
   const double lag = cutting_lag_mm(t, t.cutting_N, needle_diameter_mm);
   if (lag > kLagMax_mm) {
     warnings.push_back(fmt::format(
-        "tissue.{}: cutting_N = {:g} with young_kPa = {:g}{} means that the tip cuts {:.1f} mm behind where "
-        "it pushes; at most {:g} mm is plausible. Change them together.",
+        "tissue.{}: cutting_N = {:g} with young_kPa = {:g}{} means a cutting lag of {:.1f} mm: the tip cuts that far "
+        "behind the place to which it is pushed; at most {:g} mm is plausible. Change them together.",
         region, t.cutting_N, t.young_kPa, stiffening, lag, kLagMax_mm));
   }
   return warnings;
@@ -242,8 +243,8 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     return input_error(
         fmt::format("{}, [tissue.{}]", where, name),
         fmt::format("the patient has no region '{}' (there are: {})", name, fmt::join(mesh.regions, ", ")),
-        fmt::format("{} patient.regions gives structures and labels their names",
-                    near.empty() ? "Name one of these;" : fmt::format("Did you mean '{}'?", near)));
+        fmt::format("{} patient.regions sets the names of structures and labels",
+                    near.empty() ? "Use one of these names;" : fmt::format("Did you mean '{}'?", near)));
   }
 
   std::shared_ptr<Model> model(new Model);
@@ -275,7 +276,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
 
   if (std::string flat = nearly_flat_warning(mesh); !flat.empty()) model->warnings_.push_back(std::move(flat));
 
-  // Where the needles go decides what must stay free, so plan first.
+  // The insertions are planned before the supports, because outer faces near an entry stay free.
   Topology topology(mesh);
   std::vector<PlannedInsertion> insertions;
   std::vector<Vec3> entries;
@@ -297,7 +298,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->supports_ = std::move(*supports);
   for (const int region : model->supports_.rigid_regions) model->laws_[static_cast<std::size_t>(region)].rigid = true;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
-    if (model->laws_[r].rigid) continue;  // nothing gives way there
+    if (model->laws_[r].rigid) continue;  // held tissue neither tents nor is cut
     for (auto& warning : tenting_warnings(mesh.regions[r], model->tissue_parameters_[r], scenario.needle.diameter_mm))
       model->warnings_.push_back(std::move(warning));
   }
@@ -305,12 +306,13 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   if (!knows_stiffening(model->coupling_)) {
     for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
       if (model->tissue_parameters_[r].stiffening == 0.0 || model->laws_[r].rigid) continue;
-      model->warnings_.push_back(fmt::format(
-          "tissue.{}: stiffening = {:g} has no effect: with coupling.method = \"{}\" and coupling.solver = "
-          "\"{}\" the tissue under the tip is linear, and dents deeper. Use \"near-field\" and \"coupled\".",
-          mesh.regions[r], model->tissue_parameters_[r].stiffening, word(scenario.coupling.method),
-          word(scenario.coupling.solver)));
-      break;  // once is enough
+      model->warnings_.push_back(
+          fmt::format("tissue.{}: stiffening = {:g} has no effect: with coupling.method = \"{}\" and coupling.solver = "
+                      "\"{}\" the tissue under the tip is linear, and its dent is deeper. Use coupling.method = "
+                      "\"near-field\" and coupling.solver = \"coupled\".",
+                      mesh.regions[r], model->tissue_parameters_[r].stiffening, word(scenario.coupling.method),
+                      word(scenario.coupling.solver)));
+      break;  // one warning for the first such region is enough
     }
   }
 
@@ -328,9 +330,9 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   const Element element = element_of(scenario, mesh.node_count());
   if (element != element_of(scenario, 0)) {
     model->warnings_.push_back(
-        fmt::format("Linear tetrahedra (tissue.element = \"p1\") are used on this mesh of {} nodes, more than {}: "
-                    "averaged pressure "
-                    "would need too much memory. They are somewhat stiff where Poisson's ratio is near 0.5.",
+        fmt::format("Linear tetrahedra (tissue.element = \"p1\") are used on this mesh of {} nodes, more than {}, "
+                    "because elements with averaged pressure would need too much memory. Linear tetrahedra are "
+                    "somewhat too stiff if Poisson's ratio is near 0.5.",
                     mesh.node_count(), kMostAveraged));
   }
   const std::vector<Index> last = condensed ? corridor.nodes : std::vector<Index>{};
@@ -343,7 +345,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   const auto corridor_dofs = static_cast<Eigen::Index>(3 * model->tissue_->corridor().size());
   if (known && (known->store.rows() != corridor_dofs || known->store.cols() != corridor_dofs)) {
     return input_error(where,
-                       fmt::format("the compliance that comes with it is that of {} nodes, the corridor has {}",
+                       fmt::format("the saved compliance has {} nodes, but the corridor has {}",
                                    known->store.rows() / 3, corridor_dofs / 3),
                        kPrepareAgain);
   }
@@ -355,7 +357,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
   model->insertions_ = std::move(insertions);
   if (!condensed) {
     const double dofs = model->tissue_->free_dofs() + 3.0 * model->coupling_.capacity;
-    const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // as it was at first, and as it is
+    const double gigabytes = 2.0 * dofs * dofs * sizeof(double) * 1e-9;  // two copies: undeformed and current mesh
     if (gigabytes > kLargestInverse_GB) {
       return input_error(
           fmt::format("{}, coupling.engine = \"{}\"", where, word(scenario.coupling.engine)),
@@ -371,7 +373,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     if (!known) {
       kernel->add_nodes(nodes, progress);
     } else if (!kernel->add_nodes(nodes, known->kernel)) {
-      return input_error(where, "the near field that comes with it is not that of the corridor", kPrepareAgain);
+      return input_error(where, "the saved near field does not belong to this corridor", kPrepareAgain);
     }
     model->near_field_.kernel = std::move(kernel);
   }
@@ -380,7 +382,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
     if (known && known->spread.size() > 0) {
       model->near_field_.spread = SpreadCompliance::of(ways, std::move(known->spread));
       if (!model->near_field_.spread)
-        return input_error(where, "the compliance along the needles' ways that comes with it is not theirs",
+        return input_error(where, "the saved compliance along the needles' ways does not belong to these ways",
                            kPrepareAgain);
     } else {
       auto spread = SpreadCompliance::solve(*model->tissue_, ways, progress);
@@ -419,8 +421,9 @@ Result<std::shared_ptr<const Model>> Model::with(OwnParts parts) const {
 }
 
 std::unique_ptr<Needle> Model::make_needle() const {
+  // Both succeed, since compile() and with() have built one.
   auto needle = own_.needle ? own_.needle(*needle_section(scenario_.needle), needle_loads(coupling_.capacity))
-                            : build_needle(scenario_.needle, coupling_.capacity);  // both were seen to succeed
+                            : build_needle(scenario_.needle, coupling_.capacity);
   if (!needle) return nullptr;
   if (!scenario_.grid.guide) return std::move(*needle);
   GuideHole hole;

@@ -5,8 +5,8 @@ namespace stylet {
 
 namespace {
 constexpr double kMPa_per_GPa = 1e3;
-constexpr double kLumenShare = 1.0 / 1.27;  ///< of the outer diameter, thin-walled 18 gauge
-constexpr double kStyletShare = 0.9;        ///< of the lumen: room to slide; stated, not measured
+constexpr double kLumenShare = 1.0 / 1.27;  ///< lumen over outer diameter of a thin-walled 18 gauge needle
+constexpr double kStyletShare = 0.9;        ///< stylet over lumen diameter, with room to slide; assumed, not measured
 }  // namespace
 
 Cannula cannula_of(const Scenario::NeedleChoice& choice) {

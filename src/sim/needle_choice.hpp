@@ -7,15 +7,15 @@
 
 namespace stylet {
 
-/// The tube and stylet a scenario describes, its open choices made.
+/// The tube and stylet of a scenario, with defaults filled in.
 Cannula cannula_of(const Scenario::NeedleChoice& choice);
 
-/// What the needle's models need: the section's stiffness, or what the scenario gives instead.
-/// @return input error for a section that cannot be
+/// The needle's section: stiffness computed from tube and stylet, or given by the scenario.
+/// @return an input error for an impossible section
 Result<NeedleSection> needle_section(const Scenario::NeedleChoice& choice);
 
-/// L / (E A) [mm/N] of the tube.
-/// @param choice one whose section can be
+/// Axial compliance L / (E A) [mm/N] of the tube.
+/// @param choice one for which needle_section() succeeds
 double axial_compliance(const Scenario::NeedleChoice& choice);
 
 }  // namespace stylet

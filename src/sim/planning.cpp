@@ -14,9 +14,9 @@ namespace stylet {
 
 namespace {
 
-constexpr double kBeforeFarEnd_mm = 2.0;  ///< an automatic depth ends so much before the target does
-constexpr double kRestAfter_s = 1.0;
-constexpr double kLeastDepth_mm = 5.0;  ///< of an automatic depth
+constexpr double kBeforeFarEnd_mm = 2.0;  ///< an automatic depth ends this far before the target's far end
+constexpr double kRestAfter_s = 1.0;      ///< pause after the needle is out, in tissue that creeps
+constexpr double kLeastDepth_mm = 5.0;    ///< smallest automatic depth
 
 bool contains(const std::vector<int>& regions, int region) {
   return std::find(regions.begin(), regions.end(), region) != regions.end();
@@ -30,7 +30,7 @@ Eigen::AlignedBox3d extent(const TetMesh& mesh) {
   return box;
 }
 
-/// Where a point is, seen from the nearest of some ways.
+/// Position of a point relative to the nearest of several ways.
 struct OnWay {
   std::size_t way = 0;
   double along_mm = 0.0;
@@ -88,7 +88,7 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
     }
   }
 
-  // The first surface on the line, coming from far outside.
+  // The entry is the first surface on the line, seen from far outside.
   const double far = (box.center() - on_line).norm() + box.diagonal().norm();
   const Vec3 from = on_line - far * result.direction;
   const Vec3 to = on_line + far * result.direction;
@@ -106,7 +106,8 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
 
   result.depth_mm = plan.depth_mm;
   if (result.depth_mm <= 0.0) {
-    // To the far end of the target on this line; a line beside the target goes as deep as its centre.
+    // Automatic depth: to the far end of the target on this line, or as deep as its centre if the line misses the
+    // target.
     double last = -1.0;
     const double reach = deepest_mm(scenario);
     Index hint = entry->tet;
@@ -121,8 +122,9 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
     if (result.depth_mm > reach) {
       return input_error(
           place,
-          fmt::format("the target's far end lies {:.0f} mm deep, the needle is {:.0f} mm long and reaches {:.0f} mm",
-                      result.depth_mm, scenario.needle.length_mm, reach),
+          fmt::format(
+              "the target's far end lies {:.0f} mm deep, but the needle is {:.0f} mm long and reaches only {:.0f} mm",
+              result.depth_mm, scenario.needle.length_mm, reach),
           "Use a longer needle (needle.length_mm), or give a depth (depth_mm)");
     }
   }
@@ -130,7 +132,7 @@ Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t n
                                        result.depth_mm, plan.speed_mm_per_s, plan.dwell_s, plan.retract,
                                        plan.retract_speed_mm_per_s, plan.roll_deg * std::numbers::pi / 180.0);
   if (plan.retract && creep_of(scenario) > 1.0) {
-    // Tissue that creeps goes on moving once the needle is out; a report tells where the gland is after a second.
+    // Tissue that creeps goes on moving once the needle is out, and the report gives the gland's shift after 1 s.
     std::vector<MotionSample> samples = result.motion.samples();
     samples.push_back({samples.back().time_s + kRestAfter_s, samples.back().base});
     result.motion = BaseMotion(std::move(samples));
@@ -147,7 +149,7 @@ Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2
   std::vector<std::pair<double, Index>> near;  // distance of an element, element
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const auto& tet = mesh.tets[static_cast<std::size_t>(t)];
-    // An element's place is that of its bounding ball.
+    // The distance of an element is the distance of its bounding ball.
     Vec3 centre = Vec3::Zero();
     for (const Index node : tet) centre += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
     double ball = 0.0;

@@ -7,31 +7,32 @@
 
 namespace stylet {
 
-inline constexpr double kNeedleOutside_mm = 5.0;  ///< of the needle stays out of the patient, to be held
+inline constexpr double kNeedleOutside_mm = 5.0;  ///< length of the needle that stays outside, for the hand
 
 /// Direction of a needle through a hole of the template: to superior.
 inline const Vec3 kThroughTemplate = Vec3::UnitZ();
 
-/// A point on the line of a needle through a hole, as far superior as the target's centre [mm] LPS. A hole that the
-/// template does not have is refused.
+/// The point [mm] LPS on the line of a needle through a hole that is as far superior as the target's centre. Error: a
+/// hole that the template does not have.
 Result<Vec3> point_behind_hole(const TemplateGrid& grid, const std::string& hole, const Vec3& target_centre);
 
-/// The line of a planned insertion: where it meets the skin and how deep it goes. A line that misses the patient is
-/// refused.
+/// Plans an insertion: entry point on the skin, direction, depth and motion. Errors: a line that misses the patient, a
+/// target beyond the needle's reach. @param number of the insertion in the scenario, from 0
 Result<PlannedInsertion> plan_insertion(const InsertionPlan& plan, std::size_t number, const Scenario& scenario,
                                         const Locator& locator, const std::vector<int>& target,
                                         const std::string& where);
 
-/// Where compliance is computed before the start.
+/// The part of the mesh for which compliance is computed before the start.
 struct Corridor {
   std::vector<Index> elements;  ///< ascending
-  std::vector<Index> nodes;     ///< of the mesh, those of the elements, way by way, each from its start to its end
-  double radius_mm = 0.0;       ///< around the needles' lines, every element it meets is there
+  std::vector<Index> nodes;     ///< their nodes in the mesh, sorted by way, then along the way
+  double radius_mm = 0.0;       ///< around the needles' lines; the corridor has every element within it
 };
 
-/// The elements within a radius of straight ways, or as many of the nearest as have `most_nodes` nodes.
-/// @param ways [mm] LPS from, to
-/// @param radius_mm at most this
+/// Finds the elements within a radius of straight ways, or the nearest of them if they have more than `most_nodes`
+/// nodes.
+/// @param ways [mm] LPS, start and end of each
+/// @param radius_mm largest radius of the corridor
 Corridor find_corridor(const TetMesh& mesh, const std::vector<std::array<Vec3, 2>>& ways, double radius_mm,
                        int most_nodes);
 

@@ -16,8 +16,8 @@ namespace stylet {
 
 namespace {
 
-constexpr long kReportEvery = 64;     // steps
-constexpr std::size_t kMostKept = 3;  // motions of targets, each with its model
+constexpr long kReportEvery = 64;     // steps between two reports of progress
+constexpr std::size_t kMostKept = 3;  // cached target motions, each of which keeps its model in memory
 
 std::vector<std::string> names_of_target(const Model& model) {
   std::vector<std::string> names;
@@ -26,7 +26,7 @@ std::vector<std::string> names_of_target(const Model& model) {
   return names;
 }
 
-/// Whether the same region has been entered before: once is enough to be told.
+/// Whether the event is that a region is entered that has been entered before; one remark for it is enough.
 bool has_entered(const std::vector<Event>& events, const Event& event) {
   return std::any_of(events.begin(), events.end(), [&](const Event& before) {
     return before.kind == event.kind && before.kind == EventKind::region_entered && before.region == event.region;
@@ -50,7 +50,7 @@ Result<TargetMotion> KnownTargets::of(const std::shared_ptr<const Model>& model,
 }
 
 Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTargets& targets, const Progress& progress) {
-  const FlushDenormals flush;  // as run() does
+  const FlushDenormals flush;  // as in run(), so that the results are equal
   const PlannedInsertion& insertion = model->insertions().front();
   const BaseSteps motion = planned_steps(*model, insertion);
   const long deepest = deepest_step(*model, insertion, motion);
@@ -94,8 +94,9 @@ Result<Prediction> predict(const std::shared_ptr<const Model>& model, KnownTarge
   result.remarks = harms(events);
   if (auto warning = unbroken.warning()) result.remarks.push_back(std::move(*warning));
   if (without_balance > 0) {
-    result.remarks.push_back(fmt::format(
-        "In {} of {} steps needle and tissue found no balance; a smaller run.dt_ms helps.", without_balance, deepest));
+    result.remarks.push_back(
+        fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
+                    without_balance, deepest));
   }
   return result;
 }

@@ -22,11 +22,11 @@ bool same_bits(const Pose& a, const Pose& b) {
 
 Vec3 force(const Step& s) { return {s.force_axial_N, s.force_sagittal_N, s.force_lateral_N}; }
 
-/// A step at rest after a record. @param number from 1
+/// The step at rest that is `number` ≥ 1 steps after a record.
 Step at_rest(const Step& record, std::int64_t number) {
   Step step = record;
   step.rest_steps = 0;
-  // Whole nanoseconds, as Simulation counts time: the same bits.
+  // Simulation counts time in whole nanoseconds; the same arithmetic gives the same bits.
   step.time_s = static_cast<double>(nanoseconds(record.time_s) + number * nanoseconds(record.dt_s)) / 1e9;
   return step;
 }

@@ -54,8 +54,8 @@ class Runner {
       if (auto done = one(insertions[i], planned_steps(*model_, insertions[i])); !done) return done.error();
       if (i + 1 < insertions.size() && simulation_.last_step().tip_state != TipState::air) {
         return input_error(fmt::format("insertion[{}]", i),
-                           "the needle is still in the tissue when the next one is to start",
-                           "Pull it out further: a larger approach_mm, or a longer recorded motion");
+                           "the needle is still in the tissue when the next insertion starts",
+                           "Draw the needle out further: use a larger approach_mm, or a longer recorded motion");
       }
     }
     return sum_up();
@@ -103,7 +103,7 @@ class Runner {
   }
 
   Result<> one(const PlannedInsertion& insertion, const BaseSteps& motion) {
-    const FlushDenormals flush;  // as the real-time loop does
+    const FlushDenormals flush;  // as in the real-time loop, so that the results are equal
     const double start = simulation_.time_s();
     const long deepest = deepest_step(*model_, insertion, motion);
     simulation_.place(insertion);
@@ -114,7 +114,7 @@ class Runner {
       gland.emplace(target_names());
     }
     if (auto r = take_frame("before"); !r) return r;
-    double next_frame = start + frame_every_s_;  // the first of the series is "before"
+    double next_frame = start + frame_every_s_;  // the frame "before" is the first of the series
     for (long k = 1; k <= motion.count; ++k) {
       const Pose base = motion.base(k);
       const double dt = motion.dt_s(k);
@@ -192,7 +192,7 @@ class Runner {
 
   Result<> take_frame(const std::string& label) {
     const Frame frame = simulation_.frame(label);
-    const Simulation::Balance balance = simulation_.balance(1.0);  // relative to the peak once that is known
+    const Simulation::Balance balance = simulation_.balance(1.0);  // sum_up() divides by the peak force
     summary_.residual_force_balance = std::max(summary_.residual_force_balance, balance.force);
     summary_.residual_torque_balance = std::max(summary_.residual_torque_balance, balance.torque);
     summary_.compliance_condition =
@@ -220,7 +220,7 @@ class Runner {
     for (std::string& harm : harms(summary_.events)) summary_.warnings.push_back(std::move(harm));
   }
 
-  /// Woodbury's small matrix takes as many digits from K⁻¹ as its condition number has.
+  /// Warns about a lossy update of K⁻¹: the Woodbury formula loses log₁₀(condition number) digits.
   void note_condition() {
     constexpr double digits_lost = 1e8;
     double worst = 0.0;
@@ -229,26 +229,26 @@ class Runner {
     }
     if (worst > digits_lost) {
       summary_.warnings.push_back(fmt::format(
-          "A change of the mesh had a small matrix of condition {:.0e}: the inverse stiffness has lost half of its "
-          "digits; use engine = \"condensed\" or a better mesh.",
+          "The inverse stiffness was updated for a change of the mesh by a matrix with the condition number {:.0e}, "
+          "and has lost half of its digits. Use coupling.engine = \"condensed\" or a better mesh.",
           worst));
     }
   }
 
   void note_flags() {
     static const std::array<const char*, kFlags> texts{
-        "did not converge to the full tolerance; a smaller run.dt_ms helps",
-        "a stick/slip state was frozen for one sub-step",
-        "compliance was missing where the needle left the prepared corridor, and that of the tip's last place stood in "
-        "for it, or at the skin none; raise coupling.corridor_mm or coupling.spare_nodes",
+        "the solver did not converge to the full tolerance; a smaller run.dt_ms helps",
+        "the stick/slip state of a contact was frozen for one sub-step",
+        "compliance was missing, because the needle had left the prepared corridor; the compliance at the tip's last "
+        "place was used instead, or none at the skin; raise coupling.corridor_mm or coupling.spare_nodes",
         "there was no room for another contact; raise coupling.contacts",
         "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
-        "the pose of the base was not finite and the step was not taken",
-        "the tip was inside the tissue and no force acted on it: it started there, went in flat to the skin, slipped "
-        "off it, or had gone through the far side; start the needle outside of the tissue, and enter it less flat to "
-        "the skin",
-        "the program's own law of cutting gave a number that is negative or not finite, and the built-in law stood in "
-        "for it; correct the law"};
+        "the pose of the base was not finite, so the step was not taken",
+        "the tip was inside the tissue and no force acted on it, because it started there, entered too flat to the "
+        "skin, slipped off it, or had gone through the far side; start the needle outside of the tissue, and enter it "
+        "less flat to the skin",
+        "the program's own law of cutting gave a number that is negative or not finite, so the built-in law was used "
+        "instead; correct the law"};
     for (std::size_t bit = 0; bit < texts.size(); ++bit) {
       if (flag_counts_[bit] > 0)
         summary_.warnings.push_back(
@@ -258,14 +258,14 @@ class Runner {
 
   std::shared_ptr<const Model> model_;
   Simulation simulation_;
-  std::optional<TargetMotion> target_motion_;  ///< where the model has a target; solved for before the first step
+  std::optional<TargetMotion> target_motion_;  ///< solved for before the first step; empty without a target
   RunObserver& observer_;
   const Progress& progress_;
-  double peak_N_ = 0.0;  ///< largest force of the hand, all components
+  double peak_N_ = 0.0;  ///< largest magnitude of the hand's force
   double total_s_ = 0.0;
   double frame_every_s_ = 0.0;
   std::vector<double> step_us_;
-  static constexpr std::size_t kFlags = 8;  ///< of Step
+  static constexpr std::size_t kFlags = 8;  ///< number of values of Step::Flag
   std::array<long, kFlags> flag_counts_{};
   Summary summary_;
 };
@@ -280,17 +280,20 @@ Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::spa
                              RunObserver& observer, const Progress& progress) {
   if (steps.empty()) return input_error("recording", "it has no steps", "Record one with `stylet serve`");
   if (model->insertions().size() != 1)
-    return input_error("recording", fmt::format("its scenario has {} insertions", model->insertions().size()),
-                       "Run the scenario itself; what is repeated step by step is a single insertion");
+    return input_error(
+        "recording",
+        fmt::format("its scenario has {} insertions, but only a single insertion can be repeated step by step",
+                    model->insertions().size()),
+        "Run the scenario itself");
   for (std::size_t k = 0; k < steps.size(); ++k) {
     if (!steps[k].base.origin.allFinite() || !steps[k].base.rotation.coeffs().allFinite() || !(steps[k].dt_s > 0.0))
       return input_error(fmt::format("recording, step {}", k),
-                         "it does not say where the base was: the file was written by an earlier version",
+                         "it has no pose of the base, because an earlier version wrote the file",
                          "Record it again, or run its scenario");
     if (steps[k].rest_steps < 0 || (k == 0 && steps[k].rest_steps != 0))
       return input_error(fmt::format("recording, step {}", k),
-                         fmt::format("{} steps at rest cannot be before it", steps[k].rest_steps),
-                         "Give 0 or more, before the first step 0");
+                         fmt::format("there cannot be {} steps at rest before it", steps[k].rest_steps),
+                         "Give 0 or more, and 0 before the first step");
   }
   return Runner(model, observer, progress).recorded(steps);
 }

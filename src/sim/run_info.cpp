@@ -10,7 +10,7 @@
 #include <array>
 #include <string_view>
 
-/// What a report says about a model: every parameter with its value and where the value comes from.
+/// The description of a model for a report: every parameter with its value and the source of the value.
 namespace stylet {
 
 namespace {
@@ -19,38 +19,38 @@ constexpr const char* kFromScenario = "scenario";
 constexpr const char* kFromProgram = "a part of the program that made the model";
 constexpr std::string_view kElements = "needle.elements";
 
-/// A key whose value a report shows, and why its default is what it is.
+/// A key whose value a report shows, and the reason for its default.
 struct Shown {
   const char* path;
   const char* source;
 };
 
-/// A key that is not here is missing in reports.
+/// Reports show only these keys, besides the tissue, the needle's section and the guide.
 constexpr std::array kShown{
     Shown{"needle.model", "most accurate for its cost"},
     Shown{"needle.length_mm", "usual brachytherapy needle, 150-200 mm"},
     Shown{"needle.diameter_mm", "18 gauge"},
-    Shown{"needle.stylet", "seeds and spacers lie where it would be"},
+    Shown{"needle.stylet", "seeds and spacers are in its place"},
     Shown{"needle.bevel_deg", "stated: a symmetric tip"},
-    Shown{"needle.bevel_law", "deflects as far as measured, by one number that can be read off the needle"},
+    Shown{"needle.bevel_law", "reproduces measured deflections with one number that can be measured on the needle"},
     Shown{"needle.bevel_force_ratio", "0.04-0.08 measured (Okamura 2004); for the law force only"},
     Shown{"needle.bow_mm", "a straight needle"},
     Shown{"needle.bow_deg", "a straight needle has no side"},
     Shown{kElements.data(), "numerical: no visible change of the needle's shape with more"},
     Shown{"coupling.method", "force does not depend on the mesh"},
-    Shown{"coupling.rule", "old compliances do not change when a node is added"},
+    Shown{"coupling.rule", "existing compliances do not change when a node is added"},
     Shown{"coupling.engine", "cost does not depend on the size of the mesh"},
-    Shown{"coupling.solver", "no damping to choose"},
+    Shown{"coupling.solver", "needs no damping parameter"},
     Shown{"coupling.spacing_mm", "numerical: about three needle diameters"},
     Shown{"coupling.tip_viscosity_Ns_per_m",
-          "numerical: a membrane that breaks lets the tip go on within milliseconds instead of at once"},
-    Shown{"coupling.bone_damping_ms", "numerical: a needle that snaps on bone does so within milliseconds"},
+          "numerical: when a membrane breaks, the tip advances within milliseconds instead of at once"},
+    Shown{"coupling.bone_damping_ms", "numerical: a needle that snaps on bone takes milliseconds to do so"},
     Shown{"coupling.grazing_deg", "stated, no measurement known"},
-    Shown{"coupling.tolerance", "numerical: results do not hang on it"},
+    Shown{"coupling.tolerance", "numerical: results do not depend on it"},
     Shown{"run.dt_ms", "update rate of haptic devices, 1 kHz"},
 };
 
-/// Layers that were made where the input had none.
+/// Layers that are added to the patient if the input does not have them.
 struct ShownLayer {
   const char* path;
   const char* region;
@@ -74,11 +74,11 @@ std::string unit_of(const std::string& path) {
   return {};
 }
 
-/// The rows of a region, or one that says that it is held.
+/// Adds the rows of a region, or a single row if the region is held.
 void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, TissuePreset preset,
                 const TissueParameters& used, bool held) {
   if (held) {
-    rows.push_back({"tissue." + region, "held", "", "bone, or a region the scenario holds"});
+    rows.push_back({"tissue." + region, "held", "", "bone, or a region that the scenario holds"});
     return;
   }
   const TissueParameters standard = default_tissue(region, preset);
@@ -97,10 +97,10 @@ void add_tissue(std::vector<ParameterRow>& rows, const std::string& region, Tiss
   row("friction_viscous_to_mm_per_s", &TissueParameters::friction_viscous_to_mm_per_s, "mm/s");
 }
 
-/// The needle's stiffness, given or from its section.
+/// Adds the needle's stiffness, given by the scenario or computed from the section.
 void add_section(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
   const auto section = needle_section(choice);
-  if (!section) return;  // compile() has seen it succeed
+  if (!section) return;  // cannot happen: compile() has checked the section
   const Cannula tube = cannula_of(choice);
   std::string from = fmt::format("tube of {:.3g} mm outer and {:.3g} mm inner diameter, E {:g} GPa", choice.diameter_mm,
                                  tube.lumen_diameter_mm, choice.young_GPa);
@@ -122,19 +122,19 @@ void add_guide(std::vector<ParameterRow>& rows, const TemplateGrid& grid) {
                   source(grid.distance_mm == standard.distance_mm)});
 }
 
-/// Numbers that a model of the needle finds for itself.
+/// Adds the numbers that the tetrahedral needle model calibrates itself.
 void add_tet(std::vector<ParameterRow>& rows, const Scenario::NeedleChoice& choice) {
   const auto section = needle_section(choice);
-  if (!section) return;  // compile() has seen it succeed
+  if (!section) return;  // cannot happen: compile() has checked the section
   const int segments = choice.elements > 0 ? choice.elements : default_needle_elements(word(choice.model)).value();
   const auto built = TetNeedle::build(*section, segments, 1);
   if (!built) return;
   const TetNeedle* tet = built->get();
   rows.push_back({"needle.tet.calibration", fmt::format("{:.4g}", 1.0 / tet->stiffening()), "",
-                  "factor on Young's modulus that makes the tip deflect as theory says; linear tetrahedra bend too "
-                  "stiffly"});
+                  "factor on Young's modulus with which the tip deflects as in beam theory; linear tetrahedra are too "
+                  "stiff in bending"});
   rows.push_back({"needle.tet.axial_stiffness", fmt::format("{:.4g}", tet->axial_stiffness()), "N/mm",
-                  "what the calibrated modulus means along the needle"});
+                  "follows from the calibrated modulus"});
 }
 
 }  // namespace
@@ -160,24 +160,24 @@ RunInfo Model::info(std::size_t insertion) const {
   for (std::size_t r = 0; r < mesh().regions.size(); ++r)
     add_tissue(info.parameters, mesh().regions[r], scenario_.tissue_model.preset, tissue_parameters_[r],
                laws_[r].rigid);
-  info.parameters.push_back(
-      {"tissue.element", to_string(tissue_->element()), "",
-       scenario_.tissue_model.element == ElementChoice::automatic
-           ? "by coupling.method: linear tetrahedra where it needs them or is compared, else one that does not lock"
-           : kFromScenario});
+  info.parameters.push_back({"tissue.element", to_string(tissue_->element()), "",
+                             scenario_.tissue_model.element == ElementChoice::automatic
+                                 ? "depends on coupling.method: linear tetrahedra if the method needs them or for "
+                                   "comparison, else an element without locking"
+                                 : kFromScenario});
   const Scenario standard;
   const Scenario::TissueModel& tissue = scenario_.tissue_model;
   info.parameters.push_back({"tissue.preset", word(tissue.preset), "",
                              tissue.preset == standard.tissue_model.preset ? "default" : kFromScenario});
   const double creep = creep_of(scenario_);
-  info.parameters.push_back({"tissue.creep", fmt::format("{:g}", creep), "",
-                             tissue.creep ? kFromScenario
-                                          : (creep > 1.0 ? "fitted: a gland that moves by less when the needle is fast"
-                                                         : "stated: elastic")});
+  info.parameters.push_back(
+      {"tissue.creep", fmt::format("{:g}", creep), "",
+       tissue.creep ? kFromScenario
+                    : (creep > 1.0 ? "fitted: the gland moves less when the needle is faster" : "stated: elastic")});
   if (creep > 1.0) {
     info.parameters.push_back({"tissue.creep_s", fmt::format("{:g}", tissue.creep_s), "s",
                                tissue.creep_s == standard.tissue_model.creep_s
-                                   ? "fitted: a gland that moves by less when the needle is fast"
+                                   ? "fitted: the gland moves less when the needle is faster"
                                    : kFromScenario});
   }
   for (const ShownLayer& layer : kShownLayers) {

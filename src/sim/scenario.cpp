@@ -9,14 +9,14 @@
 #include <algorithm>
 #include <cmath>
 
-/// Finding, setting and reading single keys by their path.
+/// Finds, sets and reads single keys of a scenario by their path.
 namespace stylet {
 
 namespace {
 
 using Type = ScenarioValue::Type;
 
-constexpr const char* kAllKeys = "The command stylet insert --print-schema lists all keys";
+constexpr const char* kAllKeys = "Run stylet insert --print-schema for a list of all keys";
 
 /// "tissue.prostate.young_kPa" → "tissue.<region>.young_kPa" and the slot; "insertion[2].hole" → "insertion[].hole".
 std::string pattern_of(const std::string& path, ScenarioSlot& slot) {
@@ -24,7 +24,7 @@ std::string pattern_of(const std::string& path, ScenarioSlot& slot) {
   constexpr std::string_view regions = "patient.regions.";
   constexpr std::string_view insertion = "insertion[";
   if (path.starts_with(tissue)) {
-    // A region's name may have dots in it, a key has none.
+    // The name of a region may contain dots, a key does not: the last dot separates them.
     const auto dot = path.rfind('.');
     if (dot > tissue.size()) {
       slot.name = path.substr(tissue.size(), dot - tissue.size());
@@ -40,7 +40,7 @@ std::string pattern_of(const std::string& path, ScenarioSlot& slot) {
       slot.index = std::stoul(path.substr(insertion.size(), digits));
       return "insertion[]" + path.substr(close + 1);
     }
-    // Not a number: no key, but near to one.
+    // The index is not a number: without it the key is unknown, but nearest_key() finds a similar one.
     const auto end = path.find(']');
     return "insertion" + (end == std::string::npos ? "" : path.substr(end + 1));
   }
@@ -74,14 +74,14 @@ std::string type_name(Type type) {
 bool fits(const ScenarioValue& value, Type type) {
   if (value.type == type) return true;
   if (type == Type::number || type == Type::integer) return value.type == Type::number || value.type == Type::integer;
-  // An empty list has no type of its own.
+  // An empty list fits both types of lists.
   if (type == Type::numbers || type == Type::texts) {
     return (value.type == Type::numbers || value.type == Type::texts) && value.numbers.empty() && value.texts.empty();
   }
   return false;
 }
 
-/// What the key takes, for the end of a message.
+/// The last clause of an error: the values that the key accepts.
 std::string cure_for(const ScenarioKey& key) {
   const std::string unit = key.unit.empty() ? "" : " " + key.unit;
   switch (key.type) {
@@ -107,7 +107,7 @@ std::pair<std::string, std::string> table_and_leaf(const std::string& pattern) {
   return {pattern.substr(0, dot), pattern.substr(dot + 1)};
 }
 
-/// A pattern in the user's own words.
+/// A pattern with the wildcards replaced by the slot's name and index.
 std::string spelled_out(std::string pattern, const ScenarioSlot& slot) {
   const auto replace = [&](std::string_view what, const std::string& by) {
     if (const auto at = pattern.find(what); at != std::string::npos) pattern.replace(at, what.size(), by);
@@ -118,8 +118,8 @@ std::string spelled_out(std::string pattern, const ScenarioSlot& slot) {
   return pattern;
 }
 
-/// The known key that an unknown one was probably meant to be: in its own table, else of that very name in another
-/// table, else the nearest name anywhere; empty when nothing is near.
+/// The known key that is most similar to an unknown one: a similar name in the same table, or else a similar name in
+/// any table; empty if there is none.
 std::string nearest_key(const std::string& pattern) {
   const auto [table, leaf] = table_and_leaf(pattern);
   std::vector<std::string> here;
@@ -158,7 +158,7 @@ Result<> store(Scenario& scenario, const ScenarioEntry& entry, const ScenarioSlo
   return Ok{};
 }
 
-/// What stands for the wildcards of a pattern in a scenario.
+/// All slots of a scenario that a pattern's wildcards can stand for.
 std::vector<ScenarioSlot> slots(const Scenario& scenario, const std::string& pattern) {
   std::vector<ScenarioSlot> result;
   if (pattern.starts_with("tissue.<region>")) {
@@ -227,7 +227,7 @@ Result<> set_scenario_key(Scenario& scenario, const std::string& path, const Sce
 }
 
 Result<> check_scenario_keys(const Scenario& scenario, const ScenarioPlace& place) {
-  Scenario unused;  // values are stored in it to hear whether they are refused
+  Scenario unused;  // store() needs a scenario; only its verdict on the value matters
   for (const ScenarioEntry& entry : scenario_table()) {
     for (const ScenarioSlot& slot : slots(scenario, entry.key.path)) {
       const auto value = entry.load(scenario, slot);

@@ -13,7 +13,7 @@
 
 namespace stylet {
 
-/// Values as the table of keys moves them to and from the scenario's fields.
+/// Conversion of the scenario's fields to ScenarioValue.
 namespace scenario_field {
 
 using Type = ScenarioValue::Type;
@@ -44,19 +44,19 @@ std::optional<ScenarioValue> value_of(const std::optional<T>& x) {
 
 }  // namespace scenario_field
 
-/// Where the text of a default is not simply the value a new Scenario has.
+/// Texts for the documentation of a key that replace the value of a new Scenario.
 struct Documented {
-  const char* standard = nullptr;  ///< in words, e.g. "by region"
-  const char* example = nullptr;   ///< a value as it is written
+  const char* standard = nullptr;  ///< the default in words, e.g. "by region"
+  const char* example = nullptr;   ///< a value as in a file
 };
 
-/// Builds the table of keys. `field` is a generic function that takes a Scenario, const or not, and a slot, and gives a
-/// pointer to the field; so one line serves reading, writing and the default.
+/// Builds the table of keys. `field` is a generic function that takes a Scenario, const or not, and a slot, and returns
+/// a pointer to the field; the same function serves reading, writing and the default.
 class ScenarioEntries {
  public:
   using Type = ScenarioValue::Type;
 
-  /// @param unit of low, high and the value
+  /// @param unit unit of low, high and the value
   template <class Field>
   void number(const char* path, const char* unit, double low, double high, const char* meaning, Field field,
               Documented doc = {}) {
@@ -107,7 +107,7 @@ class ScenarioEntries {
           const auto chosen = stylet::choice<E>(v.text);
           if (!chosen) {
             const std::string near = nearest_name(v.text, words);
-            return "not one of its words" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");
+            return "not an allowed word" + (near.empty() ? "" : " (did you mean \"" + near + "\"?)");
           }
           target = *chosen;
           return {};
@@ -153,14 +153,14 @@ class ScenarioEntries {
   void add(ScenarioKey key, Field field, Documented doc, Store store) {
     ScenarioEntry entry;
     entry.store = [=](Scenario& s, const ScenarioSlot& slot, const ScenarioValue& v) -> std::string {
-      // Into a copy first: what is refused must not leave a new tissue or insertion behind.
+      // Store into a copy first, so that a refused value does not create a new tissue or insertion.
       auto value = field_value(field, slot);
       std::string refusal = store(value, v);
       if (refusal.empty()) *field(s, slot) = std::move(value);
       return refusal;
     };
     entry.load = [=](const Scenario& s, const ScenarioSlot& slot) { return scenario_field::value_of(*field(s, slot)); };
-    // The default as a new scenario has it, so that the documentation cannot differ from it.
+    // The documented default is read from a new scenario, so that it cannot differ from the real one.
     Scenario fresh;
     const auto standard = scenario_field::value_of(*field(fresh, ScenarioSlot{"prostate", 0}));
     const bool unset = !standard || (standard->type == Type::text && standard->text.empty());

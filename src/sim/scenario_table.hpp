@@ -5,22 +5,24 @@
 
 namespace stylet {
 
-/// What stands for the wildcards of a path: "tissue.<region>.…", "patient.regions.<name>", "insertion[].…".
+/// Values of the wildcards of a path: the name in "tissue.<region>.…" and "patient.regions.<name>", the index in
+/// "insertion[].…".
 struct ScenarioSlot {
   std::string name;
   std::size_t index = 0;
 };
 
-/// A key and where its value lives.
+/// A key of the scenario, with functions that write and read its field.
 struct ScenarioEntry {
   ScenarioKey key;
-  /// Stores a value of the key's type, making the slot where it is new; a text says why the value is refused.
+  /// Stores a value of the key's type; creates the slot if it is new. Returns an empty text, or why it refuses the
+  /// value.
   std::function<std::string(Scenario&, const ScenarioSlot&, const ScenarioValue&)> store;
-  /// Loads from a slot that exists; empty when the key is not set.
+  /// Reads the value from an existing slot; empty if the key is not set.
   std::function<std::optional<ScenarioValue>(const Scenario&, const ScenarioSlot&)> load;
 };
 
-/// All keys of the scenario: path, unit, default, range, meaning, and the field each one stands for.
+/// All keys of the scenario in the order of the documentation.
 const std::vector<ScenarioEntry>& scenario_table();
 
 }  // namespace stylet

@@ -8,14 +8,15 @@ namespace stylet {
 
 namespace {
 
+/// prepare() makes compliance available within this radius around the tip.
 constexpr double kPrepare_mm = 6.0;
-/// Of the corridor's radius at most: a needle on its planned way must not ask for more than is there.
+/// The radius is at most this fraction of the corridor's, so that a needle on its planned way needs no new compliance.
 constexpr double kPrepareShare = 0.75;
-/// A worker has compliance ready so far ahead of the tip.
+/// A worker computes compliance this far ahead of the tip.
 constexpr double kAhead_mm = 10.0;
 constexpr int kNeedleSamples = 81;
 
-/// Compliance in copies, which share what the model has and grow on their own.
+/// The model's tissue with copies of its compliance, which share the model's data and can grow independently.
 InsertionTissue tissue_of(const Model& model) {
   return {std::make_shared<ComplianceStore>(*model.store()),
           &model.locator(),
@@ -29,7 +30,7 @@ InsertionTissue tissue_of(const Model& model) {
 
 Simulation::Simulation(std::shared_ptr<const Model> model)
     : model_(std::move(model)), insertion_(tissue_of(*model_), model_->make_needle(), model_->coupling()) {
-  // Room for the names of regions is taken now so that a step need not.
+  // Reserve memory for the names of regions, so that step() does not allocate.
   std::size_t longest = 0;
   for (const std::string& region : model_->mesh().regions) longest = std::max(longest, region.size());
   for (Event& event : events_) event.region.reserve(longest);
@@ -76,7 +77,7 @@ void Simulation::add_event(EventKind kind, double force_N, int region) {
   if (region >= 0) event.region.assign(model_->mesh().regions[static_cast<std::size_t>(region)]);
 }
 
-/// Notices where the base turns round. The event carries the moment of the turn, not that of its discovery.
+/// Adds an event if the base has turned round. The event has the time of the turn, not the time of its detection.
 void Simulation::notice_turn(double advance_mm, bool in_tissue) {
   const auto turned = turns_.follow(advance_mm, {step_.time_s, step_.base_depth_mm, step_.force_axial_N, in_tissue});
   if (!turned) return;
@@ -103,7 +104,7 @@ const Step& Simulation::step(const Pose& base, double dt) {
   step_.time_s = static_cast<double>(time_ns_) / 1e9;
   step_.dt_s = dt;
   step_.base_depth_mm = base_depth_mm(base);
-  // Axial, lateral towards patient left, sagittal = axial × lateral.
+  // Components of the hand's force: axial, lateral (towards the patient's left), sagittal = axial × lateral.
   Vec3 lateral = Vec3::UnitX() - axis.x() * axis;
   if (lateral.norm() < 1e-3) lateral = Vec3::UnitY() - axis.y() * axis;
   lateral.normalize();
@@ -113,11 +114,11 @@ const Step& Simulation::step(const Pose& base, double dt) {
 
   notice_turn(advance, step_.contacts > 0 || step_.tip_state == TipState::in_track);
   for (const InsertionEvent& event : insertion_.events()) {
-    // A puncture's force is the one that broke the surface, not what is left of it after the step.
+    // The force of a puncture is the force that broke the surface; at the end of the step it is lower.
     add_event(event.kind, std::isfinite(event.force_N) ? event.force_N : step_.force_axial_N, event.region);
   }
-  // Right after the turn what slid in still does: tissue springs back along the shaft. Then it sticks, and is taken
-  // along.
+  // Right after the turn the tissue springs back along the shaft, so contacts still slide inwards; then they stick and
+  // the tissue moves out with the shaft. Only then does sliding outwards count as the start of slip.
   if (!slipping_ && turns_.retracting() && step_.sliding_out_share > 0.5 && step_.force_axial_N < 0.0) {
     slipping_ = true;
     add_event(EventKind::slip_start, std::min(force_before, step_.force_axial_N), -1);
@@ -147,7 +148,7 @@ Simulation::Balance Simulation::balance(double scale_N) const {
   for (std::size_t k = 0; k < nodes.position.size(); ++k) {
     const auto node = static_cast<Index>(k);
     const Vec3 on_node = nodes.load.segment<3>(3 * node);
-    // What the contacts put on a held node goes straight to the support and deforms nothing.
+    // A contact's force on a held node is carried by the support and deforms nothing.
     Vec3 f = nodes.support.segment<3>(3 * node);
     const bool fixed = node < model_->mesh().node_count() && model_->tissue().is_fixed(node);
     if (!fixed) f += on_node;

@@ -42,7 +42,7 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
       return input_error(
           "fixed.regions",
           fmt::format("there is no region '{}' in the mesh (there are: {})", name, fmt::join(mesh.regions, ", ")),
-          near.empty() ? "Name one of these" : fmt::format("Did you mean '{}'?", near));
+          near.empty() ? "Use one of these names" : fmt::format("Did you mean '{}'?", near));
     }
     std::set<Index> own;
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -83,9 +83,9 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
     }
     supports.description.push_back(
         "The outer faces of the body are held: " + count_text(outer.size()) +
-        ". The perineal face (facing inferior, below the gland) and what lies within 30 mm of an entry are free.");
+        ". The perineal face (facing inferior, below the gland) and everything within 30 mm of an entry are free.");
   } else if (mode == OuterSupport::sides) {
-    // No anatomy to go by: hold what lies on the far side of the body as the first needle sees it.
+    // Without known anatomy, hold the outer faces of the far half of the body, seen along the first needle.
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = -low;
     for (const Vec3& x : mesh.nodes) {
@@ -105,8 +105,9 @@ Result<Supports> find_supports(const TetMesh& mesh, const Topology& topology, co
       }
     }
     supports.description.push_back(
-        "No anatomy is known to hold the tissue: the outer faces of its far half, seen along the needle, are held: " +
-        count_text(outer.size()) + ". Choose with [fixed].");
+        "The input has no anatomy that could hold the tissue, so the outer faces of its far half, seen along the "
+        "needle, are held: " +
+        count_text(outer.size()) + ". Use [fixed] to choose other supports.");
   }
   held.insert(outer.begin(), outer.end());
 

@@ -11,7 +11,7 @@ namespace {
 
 using Accuracy = VolumeResponse::Accuracy;
 
-/// The finest that takes seconds. docs/theory/near_field.md §8 has what is left between meshes.
+/// The finest accuracy that takes seconds. docs/theory/near_field.md §8 gives the remaining differences between meshes.
 Accuracy affordable(Index nodes) {
   constexpr Index halved = 700;
   constexpr Index quadratic = 5000;
@@ -30,7 +30,7 @@ Result<TargetMotion> TargetMotion::of(const Model& model, const Progress& progre
 }
 
 std::optional<TargetMotion> TargetMotion::shared_with(const Model& other) const {
-  // The tissue's own factor has the nodes of the needle's way last, so its rounding depends on the way.
+  // The factor of the tissue orders the nodes of the needle's way last, so its rounding errors depend on the way.
   if (affordable(other.mesh().node_count()) == Accuracy::of_the_tissue) return std::nullopt;
   if (other.supports().nodes != model_->supports().nodes) return std::nullopt;
   return TargetMotion(other, response_);

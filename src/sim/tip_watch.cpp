@@ -12,7 +12,7 @@ void TipWatch::follow(const Insertion& insertion, const Step& step) {
     deepest_.reset();
     return;
   }
-  if (step.tip_state == TipState::in_track) return;  // the end of the track is not where the tip is
+  if (step.tip_state == TipState::in_track) return;  // the tip is behind the end of the track
   if (deepest_ && step.base_depth_mm < deepest_->base_depth_mm - 1e-9) return;
   deepest_ = TipError{*now, step.base_depth_mm};
 }

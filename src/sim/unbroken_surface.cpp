@@ -10,7 +10,7 @@ namespace stylet {
 
 namespace {
 
-constexpr double kBeside_mm = 1e-3;  ///< so far from a surface a place is on one side of it for certain
+constexpr double kBeside_mm = 1e-3;  ///< a point this far from a surface is safely on one side of it
 
 }  // namespace
 
@@ -52,10 +52,8 @@ std::optional<UnbrokenSurface::Pressed> UnbrokenSurface::pressed_now(const Simul
 std::optional<std::string> UnbrokenSurface::warning() const {
   if (!furthest_ || furthest_->past_mm <= kFar_mm) return {};
   return fmt::format(
-      "The tip pressed the surface of the {} {:.1f} mm in front of it, with {:.2f} N where {:.2f} N break it, and it "
-      "never broke: the needle is not in the {}. A lower puncture_N, or a larger young_kPa or stiffening on either "
-      "side "
-      "of it, lets it break.",
+      "The tip pressed the surface of the {} {:.1f} mm inwards with {:.2f} N, but {:.2f} N are needed to break it: the "
+      "needle did not enter the {}. Lower puncture_N, or raise young_kPa or stiffening on either side of the surface.",
       furthest_->region, furthest_->past_mm, furthest_->force_N, furthest_->breaks_N, furthest_->region);
 }
 

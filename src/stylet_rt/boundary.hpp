@@ -10,7 +10,7 @@
 
 namespace stylet::rt {
 
-/// Where a message for the caller goes: cut to fit, zero at its end, no half characters of UTF-8.
+/// Writes messages into the caller's buffer: zero-terminated, and cut to fit without splitting UTF-8 characters.
 class ErrorText {
  public:
   ErrorText(char* text, std::size_t size) noexcept : text_(size > 0 ? text : nullptr), size_(size) { say({}); }
@@ -31,7 +31,7 @@ class ErrorText {
   std::size_t size_;
 };
 
-/// Calls `body`; what it throws ends here, as a status.
+/// Calls `body` and converts its exceptions to a status and a message.
 template <class Body>
 stylet_rt_status guarded(ErrorText& error, const Body& body) noexcept {
   try {
@@ -43,12 +43,12 @@ stylet_rt_status guarded(ErrorText& error, const Body& body) noexcept {
     error.say(e.what());
     return STYLET_RT_FAILED;
   } catch (...) {
-    error.say("failed for a reason that has no name");
+    error.say("an unknown error occurred");
     return STYLET_RT_FAILED;
   }
 }
 
-/// The same without words.
+/// Calls `body` and converts its exceptions to a status, without a message.
 template <class Body>
 stylet_rt_status guarded(const Body& body) noexcept {
   ErrorText nowhere(nullptr, 0);

@@ -19,13 +19,13 @@ struct stylet_rt_sim {
   stylet::Simulation simulation;
   std::uint32_t flags = 0;  ///< of stylet_rt_options
   std::size_t insertion = 0;
-  std::vector<stylet::ContactState> contacts;        ///< room
-  std::unique_ptr<stylet::ComplianceWorker> worker;  ///< with STYLET_RT_WORKER
+  std::vector<stylet::ContactState> contacts;        ///< scratch
+  std::unique_ptr<stylet::ComplianceWorker> worker;  ///< only with STYLET_RT_WORKER
 };
 
 namespace stylet::rt {
 
-/// A handle for a model that is there already.
+/// A new handle for an existing model.
 stylet_rt_model* make_handle(std::shared_ptr<const Model> model);
 
 }  // namespace stylet::rt

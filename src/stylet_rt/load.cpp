@@ -9,11 +9,11 @@
 extern "C" stylet_rt_status stylet_rt_model_load(const char* path, const char* const* settings, size_t settings_count,
                                                  stylet_rt_model** model, char* error, size_t error_size) noexcept {
   stylet::rt::ErrorText text(error, error_size);
-  if (model == nullptr) return text.bad_argument("stylet_rt_model_load: there is no place for the model");
+  if (model == nullptr) return text.bad_argument("stylet_rt_model_load: the argument model is null");
   *model = nullptr;
-  if (path == nullptr) return text.bad_argument("stylet_rt_model_load: the path is null");
+  if (path == nullptr) return text.bad_argument("stylet_rt_model_load: the argument path is null");
   if (settings == nullptr && settings_count > 0)
-    return text.bad_argument("stylet_rt_model_load: there are settings, but where is null");
+    return text.bad_argument("stylet_rt_model_load: the argument settings is null, but settings_count is not 0");
   return stylet::rt::guarded(text, [&]() -> stylet_rt_status {
     std::vector<std::string> all;
     for (size_t k = 0; k < settings_count; ++k) {

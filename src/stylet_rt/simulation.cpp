@@ -34,18 +34,18 @@ constexpr uint32_t kKnownFlags = STYLET_RT_KEEP_DENORMALS | STYLET_RT_WORKER;
 constexpr double kShortest_s = 1e-9;
 constexpr double kLongest_s = 1.0;
 constexpr double kOffUnit = 1e-3;
-/// Quaternions as near as this to unit length are taken as they are, to the last bit.
+/// Quaternions whose length differs from 1 by at most this are not normalised, so that all bits are kept.
 constexpr double kRounding = 1e-14;
 
 void copy(const Vec3& from, double* to) noexcept { std::copy_n(from.data(), 3, to); }
 
-/// The pose, or nothing where it is none.
+/// Converts a pose; empty if it is invalid.
 std::optional<Pose> pose_of(const stylet_rt_pose& given) noexcept {
   Pose pose;
   pose.origin = Vec3(given.position_mm);
   pose.rotation = Eigen::Quaterniond(given.rotation[0], given.rotation[1], given.rotation[2], given.rotation[3]);
   const double length = pose.rotation.norm();
-  // Comparisons with what is not a number are false.
+  // Written so that NaN fails the comparison.
   if (!pose.origin.allFinite() || !(std::abs(length - 1.0) <= kOffUnit)) return std::nullopt;
   if (std::abs(length - 1.0) > kRounding) pose.rotation.coeffs() /= length;
   return pose;
@@ -100,22 +100,25 @@ extern "C" {
 stylet_rt_status stylet_rt_sim_create(const stylet_rt_model* model, const stylet_rt_options* options,
                                       stylet_rt_sim** sim, char* error, size_t error_size) noexcept {
   ErrorText text(error, error_size);
-  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_create: there is no place for the simulation");
+  if (sim == nullptr) return text.bad_argument("stylet_rt_sim_create: the argument sim is null");
   *sim = nullptr;
   if (model == nullptr) return text.bad_argument("stylet_rt_sim_create: the model is null");
   stylet_rt_options chosen = {};
   if (options != nullptr) {
     if (options->struct_size != sizeof chosen) {
       return text.bad_argument(
-          "stylet_rt_sim_create: options.struct_size is none that this library knows; set it to "
-          "sizeof(stylet_rt_options), and use header and library of one version");
+          "stylet_rt_sim_create: options.struct_size is not known to this library. Set it to "
+          "sizeof(stylet_rt_options), and use header and library of the same version");
     }
     chosen = *options;
   }
   if ((chosen.flags & ~kKnownFlags) != 0 || chosen.reserved != 0)
-    return text.bad_argument("stylet_rt_sim_create: options ask for what this library does not know; zero them first");
+    return text.bad_argument(
+        "stylet_rt_sim_create: options has unknown flags, or reserved is not 0. Set the structure to zero before you "
+        "fill it in");
   if (!planned(*model->model, chosen.insertion))
-    return text.bad_argument("stylet_rt_sim_create: options.insertion is none of the model's insertions");
+    return text.bad_argument(
+        "stylet_rt_sim_create: options.insertion is not the number of one of the model's insertions");
   return guarded(text, [&]() -> stylet_rt_status {
     auto made = std::make_unique<stylet_rt_sim>(model->model, chosen.flags);
     place(*made, static_cast<std::size_t>(chosen.insertion));

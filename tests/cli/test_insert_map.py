@@ -72,7 +72,7 @@ class Map(InFolder):
     def test_what_no_map_can_be_made_of(self):
         (self.folder / "two.toml").write_text(PHANTOM + '[[insertion]]\nhole = "c3.5"\n')
         self.refuse("insert", "two.toml", "--map", "-o", "no", *SMALL,
-                    says=["two.toml, [[insertion]]", "2 insertions", "Keep one"])
+                    says=["two.toml, [[insertion]]", "2 insertions", "Keep only the"])
         block_mesh(self.folder / "block.msh")
         (self.folder / "block.toml").write_text(BLOCK)
         self.refuse("insert", "block.toml", "--map", "-o", "no",

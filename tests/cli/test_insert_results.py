@@ -157,7 +157,7 @@ class Insert(InFolder):
         self.assertEqual(info["kind"], "recording")
         # Its mesh is made: what would make another one is not taken as if it did.
         self.refuse("insert", "out/run.h5", "-o", "again", "--set", 'patient.skip=["lump"]',
-                    says=["patient.skip", "the mesh is in out/run.h5 already"])
+                    says=["patient.skip", "out/run.h5 already has the finished mesh"])
 
     def test_a_parameter_beyond_what_is_plausible_is_warned_of(self):
         done = self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST, "--set", "tissue.lump.puncture_N=30")

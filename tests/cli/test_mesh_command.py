@@ -44,7 +44,7 @@ class Mesh(InFolder):
         text = text.replace("$Elements\n384\n", "$Elements\n385\n").replace("$EndElements", "385 2 2 3 3 1 2 7\n$EndElements")
         (self.folder / "more.msh").write_text(text)
         notes = self.json_of("mesh", "more.msh", "-o", "more.vtu")["notes"]
-        self.assertTrue(any("passed over, only tetrahedra are used" in note for note in notes), notes)
+        self.assertTrue(any("ignored, because only tetrahedra are used" in note for note in notes), notes)
 
     def test_elements_that_share_a_number_are_refused(self):
         block_mesh(self.folder / "twice.msh")

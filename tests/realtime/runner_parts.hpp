@@ -19,7 +19,7 @@
 
 namespace stylet::test {
 
-/// Waits for something other threads do; a minute is for machines that have other things to do.
+/// Waits, for at most a minute on busy machines, until a condition that other threads bring about is true.
 inline bool comes_true(const std::function<bool()>& condition) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!condition()) {
@@ -29,19 +29,19 @@ inline bool comes_true(const std::function<bool()>& condition) {
   return true;
 }
 
-/// A base on a spring along z, which does what a test tells it to.
+/// A body whose base is held by a spring along z; tests can make its steps fail in several ways.
 struct SpringBody final : Steppable {
   double stiffness = 1.0;  ///< [N/mm]
-  double drive = 0.0;      ///< [N s/mm] pushes along with its motion, which no needle in tissue does
+  double drive = 0.0;  ///< [N s/mm] negative damping: pushes in the direction of motion, unlike any needle in tissue
   int events_per_step = 0;
   std::atomic<bool> hang{false};      ///< the step does not return until this is false
-  std::atomic<bool> nonsense{false};  ///< forces that are not finite
-  std::atomic<bool> distrust{false};  ///< steps without a balance
+  std::atomic<bool> nonsense{false};  ///< steps return forces that are not finite
+  std::atomic<bool> distrust{false};  ///< steps find no balance
   std::atomic<bool> hanging{false};
   std::atomic<std::int64_t> steps{0};
-  std::atomic<bool> flushes{false};  ///< denormal numbers are 0 in the loop's thread
-  std::atomic<int> policy{-1};       ///< of the loop's thread
-  std::vector<double> dts;           ///< room is taken before; read after stop()
+  std::atomic<bool> flushes{false};  ///< denormal numbers are treated as 0 in the loop's thread
+  std::atomic<int> policy{-1};       ///< scheduling policy of the loop's thread
+  std::vector<double> dts;           ///< dt of all steps; memory is reserved; to be read after stop()
   Pose at;
   Wrench hand;
 
@@ -78,16 +78,16 @@ struct SpringBody final : Steppable {
   }
 };
 
-/// A hand that holds a handle somewhere on the z axis, and a protocol of what it felt.
+/// A device whose handle is at a given place on the z axis, and which records the forces that it receives.
 struct TestHand final : Device {
   std::atomic<double> z{0.0};
   std::atomic<bool> valid{true};
-  std::atomic<bool> stuck{false};  ///< the stamps of its samples stand still
+  std::atomic<bool> stuck{false};  ///< the time stamps of its samples stand still
   std::atomic<bool> broken{false};
-  std::atomic<bool> sways{false};  ///< by 2 mm around z, once in 0.2 s
+  std::atomic<bool> sways{false};  ///< the handle oscillates by 2 mm around z with a period of 0.2 s
   std::atomic<std::int64_t> turns{0};
   double stamp = 0.0;
-  std::vector<Wrench> felt;  ///< room is taken before; read after stop()
+  std::vector<Wrench> felt;  ///< all forces received; memory is reserved; to be read after stop()
 
   TestHand() { felt.reserve(1'000'000); }
 
@@ -110,7 +110,7 @@ struct TestHand final : Device {
   }
 };
 
-/// Passes everything on and counts what its thread allocates between the first call and the last.
+/// Forwards all calls and counts the allocations of its thread between the first call and the last.
 struct CountingBody final : Steppable {
   std::unique_ptr<Steppable> inner;
   std::optional<AllocationCount> count;
@@ -142,19 +142,20 @@ struct CountingDevice final : Device {
   void write(const Wrench& on_hand) noexcept override { inner->write(on_hand); }
 };
 
-/// Nothing asked of the operating system: other programs share the machine.
+/// Settings without requests to the operating system, since other programs share the machine.
 inline RunnerSettings plain_settings() {
   RunnerSettings s;
   s.realtime_scheduling = false;
   s.lock_memory = false;
-  s.late_after_s = 0.1;                // a busy machine is late at times
-  s.guard.force_slew_N_per_s = 500.0;  // 2 N in as many periods as a late turn may stand for: less than the tests press
+  s.late_after_s = 0.1;  // generous, since a busy machine may be late
+  // 2 N in the largest number of periods of a late turn, which is less than the tests' forces.
+  s.guard.force_slew_N_per_s = 500.0;
   s.guard.fade_s = 0.02;
   s.guard.recover_s = 0.05;
   return s;
 }
 
-/// A runner on a spring and a hand, which stay within reach.
+/// A runner with a SpringBody and a TestHand, to which the test keeps access.
 struct SpringRun {
   SpringBody* body = nullptr;
   TestHand* hand = nullptr;
@@ -173,13 +174,13 @@ struct SpringRun {
   }
   void start() const { ASSERT_TRUE(runner->start().ok()); }
 
-  /// Force on the hand now, along z.
+  /// Present force on the hand, along z.
   [[nodiscard]] double felt() const {
     runner->fetch_device();
     return runner->device_snapshot().sent.force[2];
   }
-  /// After stop(): nothing the hand felt was above the limit, or changed faster than the slew rate from one turn to the
-  /// next, however far apart those were.
+  /// To be called after stop(): checks that the force on the hand never exceeded the limit, and never changed faster
+  /// than the slew rate between two turns, even late ones.
   void expect_gentle() const {
     const RunnerSettings& s = runner->settings();
     const double most = s.guard.force_slew_N_per_s * s.period_s * s.max_catch_up + 1e-9;

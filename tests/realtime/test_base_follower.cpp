@@ -33,8 +33,8 @@ Vec6 place(const Pose& p) {
   return x;
 }
 
-/// Symmetric, positive definite, eigenvalues between `softest` and `stiffest` in random directions; angles count as
-/// lengths on a lever.
+/// A random symmetric, positive definite stiffness with eigenvalues between `softest` and `stiffest`; angles are
+/// multiplied by the lever to be lengths.
 Mat6 random_stiffness(unsigned seed, double softest, double stiffest, double lever) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -49,7 +49,8 @@ Mat6 random_stiffness(unsigned seed, double softest, double stiffest, double lev
   return scale * Q * eigenvalue.asDiagonal() * Q.transpose() * scale;
 }
 
-/// Moves the handle 0.05 mm a step to `depth` along z and waits there. @return the largest force and the last state
+/// Moves the handle by 0.05 mm per step to `depth` along z and waits there. @return the largest force and the last
+/// state
 struct Trial {
   double largest_N = 0.0;
   double last_N = 0.0;
@@ -82,8 +83,8 @@ TEST(BaseFollower, finds_the_balance_of_any_linear_body_however_stiff_at_any_per
   const Pose handle{{1.0, -2.0, 3.0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Vec3(2, 1, 2) / 3.0))};
   for (unsigned seed = 0; seed < 60; ++seed) {
     for (const double dt : {1e-4, 1e-3, 1e-2}) {
-      // Free air and a needle end-on against bone at once; every third body is beyond that, may ring by a tenth of a
-      // millimetre until it is known, and needs the limit on speed.
+      // The stiffnesses range from free air to a needle end-on against bone. Every third body exceeds that range: it
+      // may oscillate by 0.1 mm until its stiffness is known, and needs the limit on speed.
       const bool beyond = seed % 3 == 0;
       const Mat6 body = random_stiffness(seed, beyond ? 1e-3 : 1e-2, beyond ? 1e5 : 2e3, lever);
       BaseFollower follower(beyond ? BaseFollower::Limits{} : kUnlimited, coupling(s));
@@ -104,7 +105,8 @@ TEST(BaseFollower, finds_the_balance_of_any_linear_body_however_stiff_at_any_per
 }
 
 TEST(BaseFollower, against_bone_a_thousand_times_as_stiff_as_the_coupling_the_hand_feels_the_coupling) {
-  // Free for 2 mm, then bone. A step into it is 0.05 mm, which an explicit step would answer with 50 N.
+  // Free air for 2 mm, then bone. The base enters it by 0.05 mm in a step, to which an explicit method would respond
+  // with 50 N.
   for (const double k : {1.0, 100.0, 1300.0, 1e5}) {
     const Trial trial = push([k](double z) { return k * std::max(0.0, z - 2.0); }, 10.0, 4000);
     const double balance = k / (k + 0.5) * 0.5 * 8.0;
@@ -125,7 +127,7 @@ TEST(BaseFollower, comes_off_bone_again_without_sticking_to_it) {
 }
 
 TEST(BaseFollower, friction_that_sticks_and_slides_stays_within_its_limit) {
-  // Elastic up to 2 N, then sliding: what a shaft in tissue is to the base.
+  // Elastic up to 2 N, then sliding, like a shaft in tissue.
   for (const double k : {1.0, 50.0, 1000.0}) {
     double anchor = 0.0;
     double largest_gap = 0.0;
@@ -139,14 +141,14 @@ TEST(BaseFollower, friction_that_sticks_and_slides_stays_within_its_limit) {
       force = k * (z - anchor);
       largest_gap = std::max(largest_gap, std::abs(hand - z));
     }
-    // In balance the handle is 2 N / (0.5 N/mm) ahead.
+    // In balance the handle is 2 N / (0.5 N/mm) = 4 mm ahead.
     EXPECT_LT(largest_gap, 4.5) << k;
   }
 }
 
 TEST(BaseFollower, a_body_that_slides_viscously_is_followed_without_ringing) {
-  // Viscous friction reaches the base through the elasticity k of tissue and shaft. 0.002 N s/mm is a cutting tip,
-  // 0.01 N s/mm a shaft 40 mm deep with friction of 250 N s/m².
+  // Viscous friction acts on the base through the elasticity k of tissue and shaft. 0.002 N s/mm corresponds to a
+  // cutting tip, 0.01 N s/mm to a shaft 40 mm deep with friction of 250 N s/m².
   for (const double k : {0.3, 3.0, 30.0}) {
     for (const double c : {0.002, 0.01, 0.1}) {
       for (const double dt : {2.5e-4, 1e-3, 4e-3}) {
@@ -158,7 +160,7 @@ TEST(BaseFollower, a_body_that_slides_viscously_is_followed_without_ringing) {
         double force = 0.0;
         for (double t = 0.0; t < 4.0; t += dt) {
           const double z = follower.follow(at(speed * t), {{0, 0, force}, {0, 0, 0}}, dt).origin.z();
-          // k (z − a) = c (a − a₀)/dt
+          // Solves k (z − a) = c (a − a₀)/dt for a.
           anchor = (k * z + c / dt * anchor) / (k + c / dt);
           force = k * (z - anchor);
           if (t > 3.0) largest = std::max(largest, std::abs(force - c * speed));
@@ -236,7 +238,7 @@ TEST(BaseFollower, forces_beyond_all_bounds_do_not_spoil_it) {
 }
 
 TEST(BaseFollower, is_as_good_after_a_hundred_thousand_steps_as_after_one) {
-  // What S has learned of a body that yields at a constant force dwindles for ever.
+  // At a constant force S decreases forever, down to tiny numbers.
   BaseFollower follower(kUnlimited, coupling());
   follower.start(at(0.0));
   double force = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compliance that another thread brings while the needle moves.
+// Tests of compliance that another thread computes while the needle moves.
 #include "sim/box_patient.hpp"
 #include "stylet/realtime/compliance_worker.hpp"
 #include "stylet/realtime/steppable.hpp"
@@ -11,7 +11,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// A model whose corridor is far from where its needle is going to be led.
+/// A model with a narrow corridor, far from the path along which the tests move the needle.
 std::shared_ptr<const Model> narrow() {
   static const std::shared_ptr<const Model> model = [] {
     Scenario s = box_scenario();
@@ -22,7 +22,7 @@ std::shared_ptr<const Model> narrow() {
   return model;
 }
 
-/// Where the base of the planned insertion is, moved sideways.
+/// Pose of the base at a depth of the planned insertion, moved sideways.
 Pose beside(double depth_mm) {
   const PlannedInsertion& plan = narrow()->insertions()[0];
   Pose pose = plan.motion.at(0.0);
@@ -64,8 +64,8 @@ TEST(ComplianceWorker, steps_beside_it_are_sound_or_flagged_and_it_catches_up) {
   SimulationSteppable body(narrow());
   place_beside(body.simulation());
   for (int k = 0; k < kSteps; ++k) {
-    if (k < kSteps / 3) body.simulation().prepare();              // waits, so that it gets in
-    std::this_thread::sleep_for(std::chrono::microseconds(200));  // some rows come, some do not
+    if (k < kSteps / 3) body.simulation().prepare();              // waits for the worker, so that the needle can enter
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // time for some of the compliance, but not for all
     const StepOutcome outcome = body.step(beside(-1.0 + k * kStep_mm), kStep_s);
     ASSERT_TRUE(outcome.hand.finite());
     const unsigned flags = body.simulation().last_step().flags;
@@ -105,7 +105,7 @@ TEST(ComplianceWorker, may_stop_whatever_is_under_way_and_another_may_go_on) {
   place_beside(simulation);
   for (int k = 0; k < kSteps; ++k) {
     const Pose base = beside(-1.0 + k * kStep_mm);
-    if (simulation.last_step().contacts == 0) simulation.prepare();  // so that it gets in
+    if (simulation.last_step().contacts == 0) simulation.prepare();  // so that the needle can enter
     const ComplianceWorker worker(simulation.supply(), simulation.supply_settings());
     simulation.step(base, kStep_s);
     simulation.step(base, kStep_s);

@@ -17,14 +17,14 @@ static_assert(std::is_trivially_copyable_v<DeadlineHistogram>);
 
 namespace {
 
-/// By sorting.
+/// The quantile computed by sorting.
 std::int64_t exact_quantile(std::vector<std::int64_t> values, double q) {
   std::sort(values.begin(), values.end());
   const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
   return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
-/// Durations spread evenly over the octaves, up to 1000 s.
+/// Random durations up to 1000 s with a uniform distribution of their logarithm.
 std::vector<std::int64_t> durations(unsigned seed, int count) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> exponent(0.0, 12.0);
@@ -42,7 +42,7 @@ TEST(DeadlineHistogram, one_value_comes_back_within_its_resolution_and_the_large
   for (const std::int64_t v : values) {
     *other = DeadlineHistogram();
     other->add(v);
-    other->add(DeadlineHistogram::kRange_ns);  // so that the largest value does not cap the bin
+    other->add(DeadlineHistogram::kRange_ns);  // so that the quantile is not limited by the largest value
     const std::int64_t found = other->quantile_ns(0.5);
     ASSERT_GE(found, v);
     ASSERT_LE(found - v, v / 64) << v;

@@ -43,7 +43,7 @@ TEST(Display, shows_a_running_simulation_from_other_threads) {
       std::move(body), std::make_unique<ScriptedDevice>(half_a_second()->insertions()[0].motion), settings);
   ASSERT_TRUE(runner.ok());
 
-  // One display takes snapshots; another shares the field with it and shows a picture of its own.
+  // One display reads snapshots; another one in a second thread uses the same field for another picture.
   std::atomic<bool> over{false};
   std::thread other([&] {
     auto load = (*field)->make_load();
@@ -60,7 +60,7 @@ TEST(Display, shows_a_running_simulation_from_other_threads) {
   auto load = (*field)->make_load();
   std::vector<TissueForce> room(Snapshot::kForces);
   Eigen::Matrix3Xf u(3, static_cast<Eigen::Index>(nodes.size()));
-  const double half = 0.25;  // in, and stopped there: the tissue is held deformed
+  const double half = 0.25;  // the needle is inside and stops there, so the tissue stays deformed
   int frames = 0;
   float largest = 0.0F;
   ASSERT_TRUE((*runner)->start().ok());

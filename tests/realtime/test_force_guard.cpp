@@ -21,7 +21,7 @@ ForceGuard guard(const ForceGuardSettings& settings = {}) {
   return *made;
 }
 
-/// One that has let this force through for long.
+/// A guard that has passed this force for a long time.
 ForceGuard settled(const Wrench& w, const ForceGuardSettings& settings = {}) {
   ForceGuard g = guard(settings);
   for (int k = 0; k < 2000; ++k) g.filter(w, true, kDt);
@@ -30,7 +30,7 @@ ForceGuard settled(const Wrench& w, const ForceGuardSettings& settings = {}) {
 
 Wrench push(double newton) { return {{0, 0, newton}, {0, 0, 0}}; }
 
-/// Anything that ever came out of a broken computation.
+/// Random results of a broken computation: NaN, infinite, huge and denormal values.
 Wrench nonsense(std::mt19937& random) {
   std::uniform_int_distribution<int> kind(0, 9);
   std::normal_distribution<double> normal(0.0, 8.0);
@@ -55,7 +55,7 @@ Wrench nonsense(std::mt19937& random) {
       w.torque *= 1e9;
       break;
     case 5:
-      w.force.setConstant(std::numeric_limits<double>::max());  // finite, its length is not
+      w.force.setConstant(std::numeric_limits<double>::max());  // the components are finite, but the norm is not
       break;
     case 6:
       w.force.setConstant(std::numeric_limits<double>::denorm_min());
@@ -189,7 +189,7 @@ TEST(ForceGuard, at_the_start_forces_come_gradually) {
 
 TEST(ForceGuard, settings_that_cannot_be_kept_are_refused_with_values_and_cure) {
   ForceGuardSettings s;
-  s.fade_s = 0.005;  // 10 N at 1000 N/s take 10 ms
+  s.fade_s = 0.005;  // too short, because 10 N at 1000 N/s take 10 ms
   auto made = ForceGuard::create(s);
   ASSERT_FALSE(made.ok());
   EXPECT_NE(made.error().what.find("0.005 s is too short"), std::string::npos) << made.error().message();

@@ -11,7 +11,7 @@ using namespace stylet;
 
 namespace {
 
-/// Large enough to be torn if it could be.
+/// A value large enough to be seen half-written if the exchange were not atomic.
 struct Block {
   std::array<std::int64_t, 200> number{};
 };

@@ -9,7 +9,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// A needle in the box, and the names of the regions it is in.
+/// A needle in the box patient, and the names of the regions in which it is.
 struct Watched {
   std::shared_ptr<const Model> model = compiled(box_scenario());
   Simulation simulation{model};

@@ -17,8 +17,9 @@ PassivityControl::Settings settings(double max_damping) {
   return {.max_damping_N_s_per_mm = max_damping, .lever_mm = 20.0};
 }
 
-/// A handle of 0.1 kg with little friction on a wall that answers late: unstable by itself. Integrated exactly enough
-/// between samples. @return largest penetration in the second half over that in the first
+/// A handle of 0.1 kg with little friction at a virtual wall with a delay, which is unstable without control. The
+/// motion between samples is integrated with small steps. @return ratio of the largest deflection in the second half to
+/// that in the first half
 double growth(double max_damping) {
   PassivityControl control(settings(max_damping));
   const double mass = 0.1e-3;  // N s²/mm
@@ -61,7 +62,7 @@ TEST(PassivityControl, books_what_the_hand_puts_in_and_gets_back) {
 }
 
 TEST(PassivityControl, leaves_the_force_of_a_passive_body_alone) {
-  // A spring, sampled finely, loaded and released many times.
+  // A finely sampled spring that is loaded and released many times.
   PassivityControl control(settings(1.0));
   double x = 0.0;
   for (int k = 0; k < 100'000; ++k) {
@@ -70,7 +71,7 @@ TEST(PassivityControl, leaves_the_force_of_a_passive_body_alone) {
     const Twist twist{{(next - x) / kT, 0, 0}, {0, 0, 0}};
     const Wrench sent = control.control(spring, twist, kT);
     ASSERT_EQ(sent.force, spring.force) << k;
-    // Held at the mean over the motion: no energy from sampling.
+    // The force held is the mean over the motion, so that sampling generates no energy.
     control.observe({{-0.25 * (x + next) - 1e-3, 0, 0}, {0, 0, 0}}, {next - x, 0, 0}, Vec3::Zero());
     if (control.energy_Nmm() < 0.0) break;
     x = next;

@@ -8,7 +8,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// Steps taken so far, as the snapshot says.
+/// Number of steps according to the newest snapshot.
 std::int64_t steps(const SpringRun& run) {
   run.runner->fetch_snapshot();
   return run.runner->snapshot().counters.steps;
@@ -24,7 +24,7 @@ bool turns(const SpringRun& run, int count) {
   return comes_true([&] { return run.hand->turns >= before + count; });
 }
 
-/// Pressed 4 mm into the spring and felt in full.
+/// Presses 4 mm into the spring, and waits until the hand feels the full force.
 bool pressed(const SpringRun& run) {
   run.hand->z = 4.0;
   return comes_true([&] { return std::abs(run.felt() + 4.0) < 1e-9; });
@@ -115,7 +115,7 @@ TEST(RealtimeRunner, a_handle_lost_from_sight_leaves_the_base_where_it_is_and_fe
       RunnerSettings s = plain_settings();
       if (coupled) s.coupling = VirtualCouplingSettings{};
       SpringRun run(s);
-      // Base and spring of 1 N/mm share the way with the coupling's 0.5 N/mm.
+      // The spring of 1 N/mm is in series with the coupling's 0.5 N/mm.
       const double share = coupled ? 1.0 / 3.0 : 1.0;
       const auto felt = [&](double z) { return comes_true([&] { return std::abs(run.felt() + share * z) < 1e-6; }); };
       run.start();
@@ -158,7 +158,7 @@ TEST(RealtimeRunner, in_pause_nothing_moves_the_force_fades_and_the_device_goes_
   EXPECT_TRUE(comes_true([&] { return std::abs(run.felt() + 4.0) < 1e-9; }));
   run.runner->stop();
   run.expect_gentle();
-  // The first step after a pause stands for no more time than any other.
+  // The time of the pause does not count as simulated time.
   EXPECT_GT(run.runner->snapshot().step.time_s, time - 1e-12);
 }
 
@@ -200,7 +200,7 @@ TEST(RealtimeRunner, starts_again_where_it_was_and_not_twice_at_a_time) {
     EXPECT_EQ(run.body->at.origin.z(), 4.0);
   }
   run.expect_gentle();
-  run.runner->stop();  // twice is once
+  run.runner->stop();  // a second call has no effect
 }
 
 TEST(RealtimeRunner, through_the_coupling_the_hand_feels_the_coupling_however_stiff_the_body) {

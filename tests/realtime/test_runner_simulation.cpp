@@ -12,7 +12,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// One second: in, a short stay, and some of the way out.
+/// A model whose insertion takes about one second: in, a short pause, and out.
 std::shared_ptr<const Model> one_second() {
   static const std::shared_ptr<const Model> model = [] {
     Scenario s = box_scenario();
@@ -31,7 +31,7 @@ RunnerSettings slow_settings() {
   return s;
 }
 
-/// A runner on the box model that a script leads, with both threads' allocations counted.
+/// A runner of the box model with a scripted device, which counts the allocations of both threads.
 struct BoxRun {
   CountingBody* body = nullptr;
   CountingDevice* device = nullptr;
@@ -50,7 +50,7 @@ struct BoxRun {
     runner = std::move(*made);
   }
 
-  /// Runs until the script is over, looking at what comes out all the while.
+  /// Runs until the end of the script, and passes each new snapshot to `look`.
   void run(const std::function<void(const Snapshot&)>& look = {}) const {
     const double end = one_second()->insertions()[0].motion.duration_s();
     ASSERT_TRUE(runner->start().ok());
@@ -74,7 +74,8 @@ TEST(RealtimeRunner, takes_a_simulation_through_an_insertion_led_by_a_script) {
     ASSERT_GT(s.step.time_s, last);
     last = s.step.time_s;
     most_N = std::max(most_N, s.step.force_axial_N);
-    // All of one step: the needle runs from base to tip, and the hand bears what the contacts exert.
+    // All data belong to the same step: the centreline runs from base to tip, and the hand's force balances the
+    // contacts.
     ASSERT_EQ(vec3(s.centreline.front()), s.step.base.origin);
     ASSERT_EQ(vec3(s.centreline.back()), s.step.tip_mm);
     Vec3 contacts = Vec3::Zero();
@@ -138,7 +139,7 @@ TEST(SimulationSteppable, shows_what_the_simulation_says) {
     EXPECT_EQ(vec3(shown.centreline[32]), simulation.insertion().needle().point(60.0)) << "halfway";
   }
   EXPECT_GT(contacts, 3);
-  // A pose that is none: the step is not taken, and its force goes nowhere.
+  // With an invalid pose the step is not taken, and its force is not trusted.
   Pose none;
   none.origin.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(body.step(none, 4e-3).trusted);

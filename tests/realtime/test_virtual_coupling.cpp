@@ -22,7 +22,7 @@ constexpr double kPeriod_s = 1e-3;
 }  // namespace
 
 TEST(VirtualCoupling, is_refused_exactly_from_where_sampling_could_feed_the_hand_on) {
-  // b > K T/2 + B with b = 0.005, B = 0.001: K < 8 N/mm.
+  // The condition b > K T/2 + B with b = 0.005 and B = 0.001 gives K < 8 N/mm.
   VirtualCouplingSettings s;
   s.stiffness_N_per_mm = 7.99;
   ASSERT_TRUE(VirtualCoupling::create(s, haptic(), kPeriod_s).ok());

@@ -16,7 +16,7 @@ inline bool contains(const std::string& text, const std::string& part) { return 
 
 #define EXPECT_SAYS(message, part) EXPECT_TRUE(stylet::test::contains(message, part)) << (message)
 
-/// A patient of 60 mm cubed: skin of the perineum at z = 0, gland in the middle, pubic arch in front (anterior, −y).
+/// A cubic patient with edges of 60 mm: perineal skin at z = 0, gland in the middle, pubic arch anterior (−y).
 inline TetMesh box_patient(bool with_arch = true) {
   TetMesh mesh = box_mesh({-30, -30, 0}, {30, 30, 60}, {6, 6, 6});
   assign_regions(mesh, {"body", "prostate", "pubic_arch"}, [=](const Vec3& x) {
@@ -27,7 +27,7 @@ inline TetMesh box_patient(bool with_arch = true) {
   return mesh;
 }
 
-/// One needle beside the gland's centre; sides held, so that the body is firm; few steps.
+/// A short scenario with one needle beside the gland's centre. The sides are held, so that the body is firm.
 inline Scenario box_scenario() {
   Scenario s;
   s.name = "box";
@@ -43,7 +43,7 @@ inline Scenario box_scenario() {
   return s;
 }
 
-/// The compiled model; a test that gets an error fails and stops.
+/// The compiled model; an error fails and stops the test.
 inline std::shared_ptr<const Model> compiled(const Scenario& scenario, TetMesh mesh = box_patient(),
                                              const std::vector<std::vector<MotionSample>>& motions = {}) {
   auto model = Model::compile(scenario, std::move(mesh), "case.toml", motions);
@@ -51,7 +51,7 @@ inline std::shared_ptr<const Model> compiled(const Scenario& scenario, TetMesh m
   return *model;
 }
 
-/// The error a scenario is refused with.
+/// The error of a scenario that cannot be compiled.
 inline Error refused(const Scenario& scenario, TetMesh mesh = box_patient(),
                      const std::vector<std::vector<MotionSample>>& motions = {}) {
   const auto model = Model::compile(scenario, std::move(mesh), "case.toml", motions);
@@ -62,7 +62,7 @@ inline Error refused(const Scenario& scenario, TetMesh mesh = box_patient(),
   return model.error();
 }
 
-/// Keeps everything a run reports.
+/// Keeps all steps and frames of a run.
 struct Kept final : RunObserver {
   std::vector<Step> steps;
   std::vector<Frame> frames;
@@ -76,7 +76,7 @@ struct Kept final : RunObserver {
   }
 };
 
-/// A finished run.
+/// A model, run to its end, with all results.
 struct Finished {
   std::shared_ptr<const Model> model;
   Kept kept;

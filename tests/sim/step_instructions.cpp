@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle deep in a block, about 40 contacts, in and back; callgrind counts the instructions of its steps. Run by
-// step_instructions.py.
-//   step_instructions CELLS    elements along the block's short edges
+// Moves a needle with about 40 contacts, deep in a block of tissue, forwards and back, while callgrind counts the
+// instructions of the steps. Run by test_step_instructions.py.
+//   step_instructions CELLS    number of elements along the block's short edges
 #include "stylet/geom/box_mesh.hpp"
 #include "stylet/sim/simulation.hpp"
 
@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kDepth_mm = 95.0;
 constexpr double kSpacing_mm = 2.3;
-constexpr int kForwards = 150;   ///< steps counted, more than one spacing
-constexpr int kBackwards = 100;  ///< … and through the reversal: every contact sticks, then slides
+constexpr int kForwards = 150;   ///< steps inwards, over more than one contact spacing
+constexpr int kBackwards = 100;  ///< steps outwards, in which every contact first sticks and then slides
 
 Scenario scenario() {
   Scenario s;
@@ -32,7 +32,7 @@ Scenario scenario() {
   s.needle.length_mm = 160.0;
   s.coupling.spacing_mm = kSpacing_mm;
   s.coupling.corridor_mm = 2.0;
-  s.tissue_model.element = ElementChoice::p1;  // quickly factorised; no step depends on it
+  s.tissue_model.element = ElementChoice::p1;  // fast to factorise; the cost of a step does not depend on it
   s.insertions.resize(1);
   s.insertions[0].entry_mm = {1.0, 1.5, -20.0};
   s.insertions[0].depth_mm = kDepth_mm + 5.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every way of remeshing with every engine, solver and needle: one flag apart, the same needle in the same tissue.
+// Runs every coupling method with every engine, solver and needle model on the same insertion and compares the results.
 #include "box_patient.hpp"
 
 #include <algorithm>
@@ -19,10 +19,10 @@ Scenario scenario_with(const std::string& method, const std::string& engine, con
   s.coupling.method = choice<CouplingSettings::Method>(method).value();
   s.coupling.engine = choice<CouplingSettings::Engine>(engine).value();
   s.coupling.solver = choice<CouplingSettings::Solver>(solver).value();
-  s.coupling.tolerance = 1e-9;  // what the staggered solver's slow iterations leave is many times that
+  s.coupling.tolerance = 1e-9;  // the error after the staggered solver's slow iterations is many times larger
   s.needle.model = choice<NeedleModel>(needle).value();
-  s.tissue_model.element = ElementChoice::p1;    // what the engines with a full inverse are for
-  s.tissue_model.preset = TissuePreset::linear;  // as every method has it
+  s.tissue_model.element = ElementChoice::p1;    // the engines with a full inverse need it
+  s.tissue_model.preset = TissuePreset::linear;  // stiffening needs near-field and the coupled solver
   s.needle.elements = needle == "tet" ? 48 : 12;
   return s;
 }
@@ -33,7 +33,7 @@ class EveryMethod : public testing::TestWithParam<const char*> {};
 
 TEST_P(EveryMethod, runs_to_the_same_events_and_forces_with_every_engine_solver_and_needle_or_says_why_not) {
   const char* method = GetParam();
-  std::map<std::string, Summary> by_needle;  // what the first engine and solver made of it
+  std::map<std::string, Summary> by_needle;  // results of the first engine and solver
   for (const char* engine : {"condensed", "woodbury", "bcs"}) {
     for (const char* solver : {"coupled", "staggered"}) {
       for (const char* needle : {"beam", "springs", "tet"}) {
@@ -55,7 +55,7 @@ TEST_P(EveryMethod, runs_to_the_same_events_and_forces_with_every_engine_solver_
         for (std::size_t k = 0; k < run.summary.events.size(); ++k) {
           EXPECT_EQ(run.summary.events[k].kind, first->second.events[k].kind);
           EXPECT_EQ(run.summary.events[k].time_s, first->second.events[k].time_s);
-          // A puncture's force is that of the iterate at which the surface broke, not of a balance.
+          // The force of a puncture belongs to the iterate at which the surface broke, not to a balance.
           const bool puncture = run.summary.events[k].kind == EventKind::puncture;
           EXPECT_NEAR(run.summary.events[k].force_N, first->second.events[k].force_N, puncture ? 1e-3 : 1e-5);
         }

@@ -21,7 +21,7 @@ std::shared_ptr<const Model> box_model() {
   return model;
 }
 
-/// A field that keeps every column, and one that must do with fewer.
+/// A field that keeps every column, and a field with fewer columns.
 std::shared_ptr<const DisplayField> field_with(int columns) {
   DisplayFieldOptions options;
   options.columns = columns;
@@ -39,7 +39,7 @@ const DisplayField& compressed() {
   return *field;
 }
 
-/// Points within a millimetre or two of the planned way, as contacts are.
+/// Points within 1 or 2 mm of the planned way, like contacts.
 MaterialPoint point_near_way(std::mt19937& random) {
   std::uniform_real_distribution<double> any(0.0, 1.0);
   const PlannedInsertion& plan = box_model()->insertions()[0];
@@ -76,7 +76,7 @@ Eigen::Matrix3Xf shown(const DisplayField& field, std::span<const TissueForce> f
   return u;
 }
 
-/// Largest distance [mm] of a node from where it should be.
+/// Largest error [mm] of a node's displacement.
 double off_by(const Eigen::Matrix3Xf& u, const VecX& expected) {
   return (u.cast<double>() - expected.head(u.size()).reshaped(3, u.cols())).colwise().norm().maxCoeff();
 }
@@ -130,7 +130,7 @@ TEST(DisplayField, is_exact_near_the_way_however_few_columns) {
 }
 
 TEST(DisplayField, is_exact_everywhere_for_forces_on_its_skeleton) {
-  // Forces on a node with all three of its degrees of freedom kept.
+  // Forces on a node whose three degrees of freedom are all kept.
   const Tissue& tissue = box_model()->tissue();
   int checked = 0;
   for (Index tet = 0; tet < tissue.mesh().tet_count() && checked < 8; ++tet) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of the tissue right at the needle.
+// Tests of the displayed tissue right beside the needle.
 #include "box_patient.hpp"
 #include "stylet/sim/display_field.hpp"
 #include "stylet/sim/display_near_field.hpp"
@@ -17,7 +17,7 @@ constexpr double kStep_mm = 0.1;
 std::shared_ptr<const Model> soft_skin() {
   static const std::shared_ptr<const Model> model = [] {
     Scenario s = box_scenario();
-    s.tissue_model.preset = TissuePreset::linear;  // what stiffens is drawn less closely: docs/dev/notes.md
+    s.tissue_model.preset = TissuePreset::linear;  // stiffening tissue is drawn less accurately: docs/dev/notes.md
     s.insertions[0].depth_mm = 40.0;
     return compiled(s);
   }();
@@ -52,7 +52,7 @@ struct Pushed {
   }
 };
 
-/// The outer surface as a display draws it, finer along the needle's way.
+/// The outer surface as a display draws it, refined along the needle's way.
 struct DrawnSkin {
   std::shared_ptr<const Model> model;
   FineSurface surface;
@@ -91,7 +91,7 @@ struct DrawnSkin {
     near.set(forces);
     if (with_near_field) near.add(u);
   }
-  /// Where the surface's material point at x [mm] is drawn.
+  /// Drawn position of the surface's material point at x [mm].
   [[nodiscard]] std::optional<Vec3> drawn(const Vec3& x) const {
     for (const auto& t : surface.triangles) {
       const auto at = [&](std::size_t k) { return surface.positions[static_cast<std::size_t>(t[k])]; };
@@ -159,7 +159,7 @@ TEST(DisplayNearField, the_skin_is_drawn_at_the_tip_that_presses_on_it_until_it_
   double deepest = 0.0;
   double worst = 0.0;
   double worst_of_mesh = 0.0;
-  std::optional<double> pressed;  // at the last picture before the break
+  std::optional<double> pressed;  // depth of the dent in the last picture before the break
   const Step* record = &needle.push();
   while (record->tip_state == TipState::air) record = &needle.push();
   while (record->tip_state == TipState::pressing) {
@@ -181,7 +181,7 @@ TEST(DisplayNearField, the_skin_is_drawn_at_the_tip_that_presses_on_it_until_it_
   EXPECT_LT(worst, 0.5);
   EXPECT_GT(worst_of_mesh, 1.0) << "the mesh alone would do";
 
-  // Broken, the skin goes back.
+  // After the break, the skin goes back.
   ASSERT_TRUE(pressed);
   const Vec3 entry = needle.simulation.insertion().track().entry;
   needle.push_to(deepest + 6.0);
@@ -204,7 +204,8 @@ TEST(DisplayNearField, forces_that_stay_and_forces_that_move_are_told_apart) {
     return u;
   };
   (void)shown(skin.near, first);
-  std::reverse(second.begin(), second.end());  // a contact that lost its force leaves a gap in the order
+  // Another order, and below two forces fewer, as when contacts lose their force.
+  std::reverse(second.begin(), second.end());
   (void)shown(skin.near, std::span(second).subspan(2));
   const Eigen::Matrix3Xf after_others = shown(skin.near, second);
   EXPECT_LT((after_others - shown(fresh, second)).cwiseAbs().maxCoeff(), 1e-5F);

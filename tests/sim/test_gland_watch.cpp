@@ -11,8 +11,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// A run of the box patient.
-/// In linear elastic tissue, where frames and the gland's path count the same.
+/// A run of the box patient in linear elastic tissue, where frames and the gland's path give the same motion.
 const Finished& box_run() {
   static const Finished run = [] {
     Scenario s = box_scenario();
@@ -38,7 +37,7 @@ VolumeMotion moved(double superior_mm) {
   return motion;
 }
 
-/// Adds steps of a tenth of a second with these shifts; the needle is deepest after the last but `out`.
+/// Result after steps of 0.1 s with these shifts and events; the needle is deepest after step number `deepest`.
 GlandMotion told(const std::vector<double>& shifts, const std::vector<std::pair<std::size_t, Event>>& events,
                  std::size_t deepest, bool at_rest) {
   GlandWatch watch({"peripheral_zone", "transition_zone"});
@@ -100,7 +99,7 @@ TEST(GlandMotion, turns_are_told_by_where_the_gland_goes) {
   EXPECT_EQ(turns[2].direction, "left side to posterior");
 }
 
-/// Mean of a frame's displacement over the target, its elements taken as linear.
+/// Mean of a frame's displacement over the target, with linear elements.
 Vec3 mean_shift(const TetMesh& mesh, const std::vector<int>& target, const VecX& u) {
   Vec3 sum = Vec3::Zero();
   double volume = 0.0;

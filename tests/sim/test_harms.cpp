@@ -22,7 +22,7 @@ TEST(Harms, are_entries_into_rectum_bladder_and_urethra_and_nothing_else) {
 
 TEST(Harms, are_among_the_warnings_of_a_run) {
   TetMesh mesh = box_patient(false);
-  mesh.regions[1] = "rectum";  // the gland's place
+  mesh.regions[1] = "rectum";  // instead of the gland
   Scenario s = box_scenario();
   s.insertions[0].depth_mm = 35.0;
   const Finished run(compiled(s, mesh));

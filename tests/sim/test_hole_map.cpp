@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// The box with a template of few holes in front of the gland's centre, which lies at (0, 5).
+/// The box patient with a template of few holes in front of the gland's centre, which is at (0, 5) mm.
 Scenario scenario_with_template() {
   Scenario s = box_scenario();
   s.insertions[0].entry_mm.reset();
@@ -30,7 +30,7 @@ const HoleRow& row_of(const HoleMap& map, const std::string& hole) {
   return *row;
 }
 
-/// The same needle through each hole.
+/// The same plan for each hole.
 PlanOfHole through_each(const InsertionPlan& plan) {
   return [plan](const std::string& hole) { return plan_through(plan, hole); };
 }
@@ -72,7 +72,7 @@ TEST(HoleMap, a_way_that_ends_before_the_target_misses_it) {
 }
 
 TEST(HoleMap, clearance_is_from_the_needles_surface_to_the_bone) {
-  // The arch of the box is made of whole cells: it is what lies anterior of y = −20.
+  // The pubic arch of the box consists of whole cells: everything anterior of y = −20.
   const HoleMap map = ways_of(scenario_with_template());
   const double radius = 0.5 * scenario_with_template().needle.diameter_mm;
   const auto to_bone = [&](const std::string& hole) { return row_of(map, hole).clearance_mm[0].value_or(-1.0); };
@@ -153,7 +153,7 @@ TEST(HoleMap, refuses_a_template_none_of_whose_holes_leads_to_the_target) {
   EXPECT_SAYS(map.error().message(), "template.centre_mm");
 }
 
-/// Insertions beside each other factorise with fewer threads each, which changes the last bits.
+/// Compares with a tolerance, because insertions in parallel factorise with fewer threads, which changes the last bits.
 void expect_near(const Vec3& a, const Vec3& b) { EXPECT_LT((a - b).norm(), 1e-9); }
 
 TEST(HolePrediction, is_that_of_the_run_with_this_hole) {
@@ -183,7 +183,7 @@ TEST(HolePrediction, is_that_of_the_run_with_this_hole) {
 }
 
 TEST(TipError, is_what_the_deepest_point_of_the_track_lies_off_the_plan) {
-  // A needle in tissue that hardly gives way gets where it was to be.
+  // In very stiff tissue the needle reaches the planned point.
   Scenario soft = scenario_with_template();
   Scenario firm = soft;
   for (const char* region : {"body", "prostate"}) {

@@ -23,7 +23,7 @@ std::vector<Vec3> points_in_a_box() {
   return points;
 }
 
-/// What forces along a line do to points about it: like 1/r, but finite.
+/// Displacement of points by forces along a line: similar to 1/r, but finite.
 Eigen::MatrixXf smooth(const std::vector<Vec3>& points) {
   Eigen::MatrixXf A(3 * static_cast<Eigen::Index>(points.size()), kColumns);
   for (Eigen::Index j = 0; j < kColumns; ++j) {
@@ -46,7 +46,7 @@ Eigen::MatrixXf rough() {
   return A;
 }
 
-/// Of all nodes, and of vectors of length 1.
+/// Largest error of the products of all nodes' rows with random unit vectors.
 double largest_error(const LowRankRows& rows, const Eigen::MatrixXf& A) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;

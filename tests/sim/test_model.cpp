@@ -21,7 +21,7 @@ TEST(ModelElement, is_the_chosen_one_and_linear_by_itself_for_the_methods_of_the
   }
 }
 
-// What a scenario and a mesh are refused for.
+// Errors of scenarios and meshes.
 
 TEST(ModelRefuses, a_needle_that_misses_the_patient) {
   Scenario s = box_scenario();
@@ -118,7 +118,7 @@ TEST(ModelRefuses, meshes_that_no_simulation_may_use) {
   });
 }
 
-// Where needles go.
+// Planned insertions.
 
 TEST(Planning, a_hole_is_a_line_along_superior_with_D4_in_front_of_the_glands_centre) {
   Scenario s = box_scenario();
@@ -253,7 +253,7 @@ TEST(CuttingLag, is_that_of_the_end_of_a_rod_deep_in_tissue) {
   TissueParameters t = default_tissue("prostate");
   t.stiffening = 0.0;
   for (const double diameter : {0.8, 1.27}) {
-    // 3.61 E R: by finite elements (tests/reference/rod_end.py --alone).
+    // Stiffness 3.61 E R, computed with finite elements (tests/reference/rod_end.py --alone).
     const double rod_end = 3.61 * t.young_kPa * 1e-3 * 0.5 * diameter;
     EXPECT_NEAR(cutting_lag_mm(t, 0.5, diameter) * rod_end / 0.5, 1.0, 0.02) << diameter;
   }
@@ -263,8 +263,8 @@ TEST(Tenting, and_lag_of_tissue_that_stiffens_are_its_linear_far_field_and_a_par
   TissueParameters t = default_tissue("body");
   constexpr double diameter = 1.27;
   const double young_MPa = t.young_kPa * 1e-3;
-  // Compliance of the same force spread over 10 mm, whatever moves by it moves in any tissue: Kelvinlet, twice that on
-  // a surface.
+  // Compliance to the same force spread over 10 mm, which is the linear part in any tissue: a Kelvinlet inside the
+  // tissue, twice that on a surface.
   const double spread =
       (5.0 - 6.0 * t.poisson) * (1.0 + t.poisson) / (8.0 * std::numbers::pi * young_MPa * (1.0 - t.poisson) * 10.0);
   for (const double stiffening : {0.1, 0.5, 2.0}) {

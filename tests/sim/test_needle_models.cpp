@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The same insertion with every needle model: they are models of one needle.
+// Runs the same insertion with every needle model: all of them describe the same needle.
 #include "box_patient.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Scenario thin_needle(const std::string& model) {
   return s;
 }
 
-/// Base force axial, sagittal, lateral [N].
+/// Force of the hand [N]: axial, sagittal, lateral.
 Vec3 force(const Step& step) { return {step.force_axial_N, step.force_sagittal_N, step.force_lateral_N}; }
 
 const ParameterRow* row(const RunInfo& info, const std::string& name) {
@@ -102,7 +102,7 @@ TEST(NeedleSectionOfAScenario, TheTubesWallDecidesHowMuchItStretches) {
   Scenario s = box_scenario();
   const double thin = compiled(s)->coupling().axial_compliance_mm_per_N;
   EXPECT_NEAR(thin, 120.0 / (200e3 * 0.48137), 1e-7);
-  s.needle.stylet = StyletPlace::in;  // slides freely: it does not hold the tube
+  s.needle.stylet = StyletPlace::in;  // slides freely, so it does not make the tube stiffer axially
   EXPECT_EQ(compiled(s)->coupling().axial_compliance_mm_per_N, thin);
   s.needle.lumen_diameter_mm = 0.0;
   s.needle.stylet = StyletPlace::out;
@@ -121,7 +121,7 @@ TEST(GuideTemplate, HoldsTheNeedleOfARunAndIsPartOfItsBalance) {
     EXPECT_LT(run.summary.residual_force_balance, 1e-9);
     for (const std::string& warning : run.summary.warnings) EXPECT_FALSE(contains(warning, "converge")) << warning;
     ASSERT_NE(run.event(EventKind::withdrawn), nullptr);
-    // In the hole the bowed tip is nearer to its line than it would be in the open.
+    // The hole brings the bowed tip nearer to its line than without a guide.
     Scenario open = s;
     open.grid.guide = false;
     const auto first_tip = [](const Scenario& scenario) {
@@ -142,7 +142,7 @@ TEST(GuideTemplate, TheBaseStopsBeforeIt) {
   EXPECT_SAYS(refused(s).what, "the template's distance, 90 mm (25)");
 }
 
-/// Where a bevelled tip is at the deepest point, beside the needle's line [mm].
+/// Offset [mm] of a bevelled tip from the needle's line at the deepest point.
 Vec3 deepest_tip(const Scenario& s, const std::vector<std::vector<MotionSample>>& motions = {}) {
   const Finished run(compiled(s, box_patient(), motions));
   const auto deepest = std::max_element(run.kept.steps.begin(), run.kept.steps.end(),

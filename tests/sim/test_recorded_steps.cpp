@@ -16,7 +16,7 @@ Step step_at(double time_s, double force_N, std::int64_t rest_steps = 0) {
   return step;
 }
 
-/// Steps at 1, 2, … 8 ms; those at 3, 4, 5, 6 ms are at rest.
+/// Steps at 1, 2, … 8 ms; the steps at 3, 4, 5 and 6 ms are at rest.
 const std::vector<Step> kRecords{step_at(0.001, 1), step_at(0.002, 2), step_at(0.007, 3, 4), step_at(0.008, 4)};
 
 }  // namespace
@@ -26,7 +26,7 @@ TEST(RecordedSteps, steps_at_rest_are_those_of_the_record_before_at_their_own_ti
   ASSERT_EQ(steps.count(), 8);
   const std::vector<double> forces_N{1, 2, 2, 2, 2, 2, 3, 4};
   for (std::int64_t k = 0; k < 8; ++k) {
-    EXPECT_EQ(steps.at(k).time_s, static_cast<double>(k + 1) / 1000.0);  // the bits that a simulation has
+    EXPECT_EQ(steps.at(k).time_s, static_cast<double>(k + 1) / 1000.0);  // bit for bit as in a simulation
     EXPECT_EQ(steps.at(k).force_axial_N, forces_N[static_cast<std::size_t>(k)]);
     EXPECT_EQ(steps.at(k).rest_steps, 0);
     EXPECT_EQ(steps.is_recorded(k), k < 2 || k > 5);

@@ -25,7 +25,7 @@ ScenarioValue text(std::string x) { return {.type = Type::text, .text = std::mov
 ScenarioValue numbers(std::vector<double> x) { return {.type = Type::numbers, .numbers = std::move(x)}; }
 ScenarioValue texts(std::vector<std::string> x) { return {.type = Type::texts, .texts = std::move(x)}; }
 
-/// What setting a key is refused with; empty when it is taken.
+/// Message of the error when a key is set; empty if there is none.
 std::string refusal(const std::string& path, const ScenarioValue& value) {
   Scenario scenario;
   const Scenario before = scenario;
@@ -46,7 +46,7 @@ Scenario runnable() {
   return s;
 }
 
-/// What a scenario is refused with; empty when it is taken. The place asked for is part of it.
+/// Message of the error of a scenario, with the path for which the place was asked; empty if there is none.
 std::string complaint(const Scenario& scenario) {
   const auto checked = check_scenario(scenario, [](const std::string& path) { return "at <" + path + ">"; });
   if (checked) return {};
@@ -105,7 +105,7 @@ TEST(ScenarioKeys, the_documented_default_is_the_one_a_new_scenario_has) {
   for (const ScenarioKey& key : scenario_keys()) {
     const auto value = scenario_value(fresh, filled_in(key.path));
     if (!value || (value->type == Type::text && value->text.empty()) || key.standard == "by region") continue;
-    if (key.path == "fixed.regions") continue;  // empty stands for the bones
+    if (key.path == "fixed.regions") continue;  // the empty list means the bones
     EXPECT_EQ(to_string(*value), key.standard) << key.path;
   }
 }
@@ -187,7 +187,7 @@ TEST(ScenarioKeys, numbers_that_are_none_are_refused) {
 }
 
 TEST(ScenarioKeys, every_limit_is_the_documented_one) {
-  // The range's own words, "low … high", say what must be taken and what must not.
+  // The documented range "low … high" determines which values must be accepted and which refused.
   for (const ScenarioKey& key : scenario_keys()) {
     if (key.type != Type::number && key.type != Type::integer) continue;
     const auto dots = key.range.find(" … ");
@@ -264,14 +264,14 @@ TEST(ScenarioValues, are_written_as_in_a_file) {
   EXPECT_EQ(to_string(texts({"A", "a"})), "[\"A\", \"a\"]");
 }
 
-/// A field as C++ writes it, past set_scenario_key().
+/// A value written directly into a field, without set_scenario_key().
 struct Written {
   std::string path;
   ScenarioValue value;
   std::function<void(Scenario&)> write;
 };
 
-/// Values that no key may have: too small, too large, not a number, a word that is none.
+/// Values that no key may have: too small, too large, not a number, an unknown word.
 std::vector<Written> bad_fields() {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -518,7 +518,7 @@ TEST(DefaultTissue, is_given_for_every_region_with_its_source) {
 }
 
 TEST(DefaultTissue, tents_and_lags_within_what_is_plausible) {
-  // A needle of 18 gauge: 3 to 20 mm before a surface breaks, at most 5 mm between the cut and the tip.
+  // For an 18 gauge needle: tenting of 3 to 20 mm before a surface breaks, a cutting lag of at most 5 mm.
   for (const TissuePreset preset : kPresets) {
     for (const std::string& region : known_tissues()) {
       const TissueParameters tissue = default_tissue(region, preset);

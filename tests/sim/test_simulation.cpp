@@ -11,7 +11,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// The run that most tests look at, made once.
+/// The run that most tests use, computed once.
 const Finished& standard() {
   static const Finished run(compiled(box_scenario()));
   return run;
@@ -41,7 +41,7 @@ void expect_same_bits(const Step& a, const Step& b) {
   EXPECT_EQ(a.iterations, b.iterations);
 }
 
-/// A needle moved by hand.
+/// A needle whose base the test moves itself.
 class ByHand {
  public:
   explicit ByHand(const Scenario& scenario = box_scenario())
@@ -93,13 +93,13 @@ TEST(Run, events_come_in_the_order_of_an_insertion_and_withdrawal) {
 TEST(Run, events_say_where_and_at_what_force) {
   const Finished& r = standard();
   EXPECT_NEAR(r.event(EventKind::skin_contact)->depth_mm, 0.0, 0.2);
-  // A record knows the force to a step: the membrane breaks somewhere between two of them.
+  // The membrane breaks between two recorded steps, so its force is known only within the rise of one step.
   double rise = 0.0;
   for (std::size_t k = 1; k < r.kept.steps.size(); ++k)
     rise = std::max(rise, r.kept.steps[k].force_axial_N - r.kept.steps[k - 1].force_axial_N);
   EXPECT_LE(r.event(EventKind::puncture, "body")->force_N, default_tissue("body").puncture_N + 1e-5);
   EXPECT_GE(r.event(EventKind::puncture, "body")->force_N, default_tissue("body").puncture_N - rise);
-  // At the capsule the shaft's friction comes on top of the membrane.
+  // At the capsule the friction on the shaft adds to the force of the membrane.
   EXPECT_GT(r.event(EventKind::puncture, "prostate")->force_N, default_tissue("prostate").puncture_N);
   EXPECT_LT(r.event(EventKind::puncture, "prostate")->force_N, default_tissue("prostate").puncture_N + 0.030 * 30.0);
   EXPECT_NEAR(r.event(EventKind::retraction_start)->depth_mm, r.model->insertions()[0].depth_mm, 1e-9);
@@ -346,7 +346,7 @@ TEST(Run, an_observer_can_stop_it) {
   EXPECT_EQ(observer.steps, 5);
 }
 
-// The hand.
+// Forces of the hand.
 
 TEST(HandForce, is_positive_pushing_and_negative_pulling) {
   ByHand hand;
@@ -361,7 +361,7 @@ TEST(HandForce, is_lateral_to_the_patients_left_and_sagittal_to_posterior) {
   const Step to_left = left.go(30, {3, 0, 0});
   EXPECT_GT(to_left.force_lateral_N - before.force_lateral_N, 0.05);
   EXPECT_LT(std::abs(to_left.force_sagittal_N - before.force_sagittal_N), 0.3 * to_left.force_lateral_N);
-  // The tissue lies ahead (+z) of the base: r × F = z × x = +y.
+  // The tissue lies in front (+z) of the base, so the torque is r × F = z × x = +y.
   EXPECT_GT(to_left.torque_Nmm.y() - before.torque_Nmm.y(), 5.0);
 
   ByHand back;
@@ -373,12 +373,12 @@ TEST(HandForce, is_lateral_to_the_patients_left_and_sagittal_to_posterior) {
 }
 
 TEST(Run, slip_starts_when_the_shaft_slides_out_and_the_hand_pulls) {
-  for (const double out_mm : {0.05, 0.19}) {  // in a step: 12 and 47 mm/s, without a pause at the turn
+  for (const double out_mm : {0.05, 0.19}) {  // per step: 12 and 47 mm/s, without a pause at the turn
     SCOPED_TRACE(testing::Message() << out_mm << " mm a step");
     ByHand hand;
     hand.go(35.0);
     ASSERT_GT(hand.simulation.last_step().force_axial_N, 0.0);
-    double most_sticking = 0.0;  // share of the contacts, until it slips
+    double most_sticking = 0.0;  // largest share of contacts that stick, before slip starts
     const Event* slip = nullptr;
     while (slip == nullptr && hand.depth > 20.0) {
       const std::size_t before = hand.events.size();
@@ -408,7 +408,7 @@ TEST(HandForce, of_elastic_tissue_relaxes_in_a_pause_by_the_viscous_parts_only) 
     EXPECT_LE(now, force + 1e-9) << "it only falls";
     force = now;
   }
-  // Friction b v ℓ and the tip's viscosity times the speed; v = 0.2 mm in 4 ms.
+  // Viscous friction b v ℓ plus the tip's viscosity times v, with v = 0.2 mm per 4 ms.
   const double v = 0.2 / 4e-3;
   const double viscous = 250e-6 * v * depth + 2e-3 * v;
   EXPECT_LT(moving - force, viscous);
@@ -482,7 +482,7 @@ TEST(Simulation, reports_the_bone_it_hits) {
   EXPECT_EQ(hand.simulation.last_step().tip_state, TipState::bone);
 }
 
-// Where the base is.
+// Motion of the base.
 
 TEST(BaseMotion, straight_goes_in_waits_and_comes_back) {
   const Vec3 along = Vec3(1, 2, 2) / 3.0;

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instructions of a step with some 40 contacts, counted by callgrind: a bound, and the same for an iteration on any mesh.
+"""Counts the instructions of a step with about 40 contacts by callgrind, and compares the count with a bound and between
+two meshes.
 
 Usage: test_step_instructions.py STEP_INSTRUCTIONS     the program built from step_instructions.cpp
 
-A count does not depend on the machine's speed or what else it does, only on compiler and libraries. The bound is half as
-much again as elastic, linear tissue took with g++ 12 (0.74 million), which is what tissue that stiffens and creeps may cost. What an
-iteration takes must not know the mesh; how many there are follows from the forces, which differ a little from mesh to mesh.
+The count does not depend on the machine's speed or load, only on compiler and libraries. The bound is 1.5 times the
+count in elastic, linear tissue with g++ 12 (0.74 million), since tissue that stiffens and creeps may cost more. The cost
+of an iteration must not depend on the mesh; the number of iterations depends on the forces, which differ slightly
+between meshes.
 """
 import json
 import os
@@ -25,7 +27,7 @@ SKIPPED = 77
 
 
 def count(program: str, cells: int) -> dict:
-    # Old kernels of BLAS: all they do here is prepare the tissue, and valgrind runs newer ones far more slowly.
+    # Old BLAS kernels, because valgrind runs newer ones far more slowly; BLAS is only used to prepare the tissue.
     environment = {**os.environ, "OPENBLAS_CORETYPE": "Core2", "OPENBLAS_NUM_THREADS": "1"}
     with tempfile.TemporaryDirectory() as folder:
         command = ["valgrind", "--tool=callgrind", "--instr-atstart=no", "--collect-atstart=no",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When a base that moves to and fro is said to have turned round.
+// Tests when a base that moves back and forth counts as turned.
 #include "stylet/sim/turn_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ using namespace stylet;
 
 namespace {
 
-/// Moves a base from depth to depth [mm]; every depth is its own time.
+/// Moves a base from depth to depth [mm], one second each, with a force of minus the depth.
 struct Base {
   TurnWatch watch;
   double depth = 0.0;

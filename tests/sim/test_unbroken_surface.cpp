@@ -7,7 +7,7 @@ namespace {
 using test::box_scenario;
 using test::compiled;
 
-/// What a whole insertion warns of.
+/// All warnings of a complete insertion.
 std::string warnings_of(const Scenario& scenario) {
   struct Nobody : RunObserver {
     Result<> on_step(const Step&) override { return Ok{}; }
@@ -33,8 +33,8 @@ Scenario with(const std::string& region, double puncture_N) {
 TEST(UnbrokenSurface, a_capsule_that_is_pressed_far_in_and_never_breaks_is_told_of) {
   const std::string said = warnings_of(with("prostate", 50.0));
   EXPECT_SAYS(said, "pressed the surface of the prostate");
-  EXPECT_SAYS(said, "where 50.00 N break it");
-  EXPECT_SAYS(said, "A lower puncture_N");
+  EXPECT_SAYS(said, "but 50.00 N are needed to break it");
+  EXPECT_SAYS(said, "Lower puncture_N");
 }
 
 TEST(UnbrokenSurface, skin_that_never_breaks_is_told_of_too) {
@@ -45,7 +45,7 @@ TEST(UnbrokenSurface, nothing_is_said_of_surfaces_that_break) {
   EXPECT_FALSE(test::contains(warnings_of(box_scenario()), "pressed the surface"));
 }
 
-/// The way that the warning names is that of the tip past the place where the surface lies at rest.
+/// The distance in the warning is the distance of the tip past the rest position of the surface.
 TEST(UnbrokenSurface, the_way_is_no_longer_than_the_base_went_in) {
   Scenario s = with("body", 50.0);
   s.insertions[0].depth_mm = 9.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// AllocationCount for C: what the thread has allocated and given back so far, -1 where they cannot be counted.
+// AllocationCount for C: number of allocations and releases of the thread; -1 if they cannot be counted.
 #include "support/count_allocations.hpp"
 
 extern "C" long allocations_so_far(void);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A host program gets what the engine and saved models need, and nothing of the formats, meshers and pictures of the
-# stylet program, not even through another library. Takes: LIBRARY.
+# Checks that a host program loads only the libraries that the engine and saved models need, and no library for the
+# formats, meshers and pictures of the stylet program, not even through another library. Variable: LIBRARY.
 execute_process(COMMAND ldd ${LIBRARY} OUTPUT_VARIABLE libraries COMMAND_ERROR_IS_FATAL ANY)
 if(NOT libraries MATCHES "libcholmod")
   message(FATAL_ERROR "this is no list of libraries:\n${libraries}")

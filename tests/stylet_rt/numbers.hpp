@@ -7,8 +7,9 @@
 
 namespace stylet::test {
 
-/// Everything that the interface in C shows of a planned insertion, as the one in C++ has it: after every step, the
-/// record; then the contacts, the centreline in 33 points and the events. In this order test_stylet_rt.c has it too.
+/// All numbers of a planned insertion that the C interface provides, computed with the C++ interface: after every step
+/// the result, the contacts, the centreline in 33 points and the events. test_stylet_rt.c collects them in the same
+/// order.
 inline std::vector<double> numbers_of(Simulation& simulation, std::size_t insertion) {
   const PlannedInsertion& plan = simulation.model().insertions()[insertion];
   const double dt = 1e-3 * simulation.model().scenario().run.dt_ms;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: save_box FOLDER. Writes box.stylet, what the interface in C++ makes of it, and files that are no models.
+// Usage: save_box FOLDER. Writes box.stylet, the results of the C++ interface for it, and files that are not models.
 #include "numbers.hpp"
 #include "sim/box_patient.hpp"
 #include "stylet/io/model_file.hpp"
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   try {
     Scenario scenario = test::box_scenario();
-    scenario.patient.source = "phantom";  // the one source that is not a path
+    scenario.patient.source = "phantom";  // the only source that is not a path
     scenario.insertions.push_back(scenario.insertions.front());
     scenario.insertions[1].entry_mm = {-5.0, 4.0, -20.0};
     taken(save_model(*test::compiled(scenario), folder / "box.stylet"));

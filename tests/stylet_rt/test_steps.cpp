@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simulations of one model, stepped through the C interface from several threads.
+// Tests simulations of one model that are stepped through the C interface from several threads.
 #include "sim/box_patient.hpp"
 #include "stylet_rt/handles.hpp"
 
@@ -18,7 +18,7 @@ struct Free {
 using ModelHandle = std::unique_ptr<stylet_rt_model, Free>;
 using SimHandle = std::unique_ptr<stylet_rt_sim, Free>;
 
-/// @param corridor_mm 0 = as it comes
+/// A model of the box patient. @param corridor_mm 0 = the scenario's default
 ModelHandle box(double corridor_mm = 0.0) {
   Scenario scenario = test::box_scenario();
   if (corridor_mm > 0.0) scenario.coupling.corridor_mm = corridor_mm;
@@ -119,7 +119,7 @@ TEST(SimulationsInC, have_a_worker_bring_what_lies_beyond_the_corridor) {
   for (int k = 1; k <= kSteps; ++k) {
     ASSERT_EQ(stylet_rt_sim_planned_base(sim.get(), k * kStep_s, &base), STYLET_RT_OK);
     base.position_mm[0] -= 9.0;
-    if (result.contacts == 0) {  // so that it gets in
+    if (result.contacts == 0) {  // so that the needle can enter
       ASSERT_EQ(stylet_rt_sim_prepare(sim.get(), nullptr, 0), STYLET_RT_OK);
     }
     ASSERT_EQ(stylet_rt_sim_step(sim.get(), &base, kStep_s, &result), STYLET_RT_OK);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The C interface, used from C. Usage: test_stylet_rt CLAIM FOLDER   with what save_box writes in FOLDER */
+/* Tests the C interface from C. Usage: test_stylet_rt CLAIM FOLDER   with the files of save_box in FOLDER */
 #define _DEFAULT_SOURCE
 
 #include <float.h>
@@ -83,7 +83,7 @@ static double duration(const stylet_rt_model* model, int32_t insertion) {
   return plan.duration_s;
 }
 
-/* Step k of a planned insertion. */
+/* Takes step k of a planned insertion. */
 static stylet_rt_result stepped(stylet_rt_sim* sim, int k, double dt) {
   stylet_rt_pose base;
   stylet_rt_result result;
@@ -93,7 +93,7 @@ static stylet_rt_result stepped(stylet_rt_sim* sim, int k, double dt) {
   return result;
 }
 
-/* As numbers.hpp has it. @return how many, all of them written where there is room */
+/* Collects the numbers of numbers.hpp through the C interface. @return their number */
 static size_t numbers_of(stylet_rt_sim* sim, double dt, double duration_s, double* out) {
   size_t n = 0;
   int k;
@@ -176,7 +176,7 @@ static int two_simulations_share_a_model(void) {
   const double dt = time_step(model);
   double most_N = 0.0;
   int k, apart = 0;
-  stylet_rt_model_destroy(model); /* they hold it */
+  stylet_rt_model_destroy(model); /* the simulations keep it alive */
   for (k = 1; k < 300; ++k) {
     const stylet_rt_result a = stepped(one, k, dt);
     const stylet_rt_result c = stepped(other, k, dt);
@@ -210,12 +210,12 @@ static void check_refused(const char* name, const char* word) {
 
 static int files_that_are_no_model_are_refused_with_place_and_cure(void) {
   check_refused("none.stylet", "no such file");
-  check_refused("cut.stylet", "cut short or damaged");
+  check_refused("cut.stylet", "truncated or damaged");
   check_refused("text.stylet", "not a saved model");
   return 0;
 }
 
-/* How often: STYLET_FLIPS in the environment, else a sample. */
+/* Number of flips: STYLET_FLIPS in the environment, else a sample. */
 static int a_file_with_any_bit_changed_is_refused(void) {
   const char* wanted = getenv("STYLET_FLIPS");
   const int flips = wanted == NULL ? 100 : atoi(wanted);
@@ -267,14 +267,14 @@ static int settings_change_what_they_name(void) {
 
 static int bad_settings_are_refused_with_the_words_of_a_file(void) {
   const char* const bad[][2] = {
-      {"coupling.method=\"nearfield\"", "not one of its words (did you mean \"near-field\"?)"},
+      {"coupling.method=\"nearfield\"", "not an allowed word (did you mean \"near-field\"?)"},
       {"coupling.spacing_mm=-4", "coupling.spacing_mm = -4 is outside its range"},
       {"run.dt_ms=-1", "run.dt_ms = -1 is outside its range"},
       {"run.dt_ms=nan", "run.dt_ms = nan is not finite"},
       {"insertion[0].speed_mm_per_s=0", "insertion[0].speed_mm_per_s = 0 is outside its range"},
       {"insertion[0].speed_mm_per_s=inf", "insertion[0].speed_mm_per_s = inf is not finite"},
       {"needle.length_mm=1e9", "needle.length_mm = 1000000000 is outside its range"},
-      {"needle.model=\"rod\"", "needle.model = \"rod\" is not one of its words"},
+      {"needle.model=\"rod\"", "needle.model = \"rod\" is not an allowed word"},
       {"coupling.contacts=40.5", "coupling.contacts = 40.5 is not a whole number"},
       {"tissue.prostate.poisson=0.5", "tissue.prostate.poisson = 0.5 is outside its range"},
       {"coupling.contacts=0", "coupling.contacts = 0 is outside its range"}};
@@ -419,7 +419,7 @@ static int a_pose_that_is_none_leaves_everything_as_it_was(void) {
     b_result = stepped(same, k, dt);
     CHECK(memcmp(&before, &b_result, sizeof before) == 0);
   }
-  /* A rotation of single precision is good enough. */
+  /* A rotation with single precision is accurate enough. */
   {
     stylet_rt_pose pose;
     stylet_rt_result a, exact;
@@ -482,7 +482,7 @@ static int what_there_is_no_room_for_is_left_out(void) {
   return 0;
 }
 
-/* All real-time calls, through a whole insertion. @return the largest force on the way */
+/* Makes all real-time calls during a complete insertion. @return the largest force */
 static double all_real_time_calls(const stylet_rt_model* model, stylet_rt_sim* sim, double duration_s) {
   static stylet_rt_contact contacts[MOST_CONTACTS];
   static stylet_rt_event events[STYLET_RT_MAX_EVENTS];
@@ -517,13 +517,13 @@ static int a_step_does_not_allocate(void) {
   const double duration_s = duration(model, 0);
   const long before = allocations_so_far();
   double most_N;
-  void* volatile block = NULL; /* so that the compiler does not leave it out */
+  void* volatile block = NULL; /* volatile, so that the compiler does not remove the allocation */
   if (before < 0) return SKIPPED;
   most_N = all_real_time_calls(model, sim, duration_s);
   CHECK(allocations_so_far() == before);
   CHECK(most_N > 0.3);
   block = malloc(1);
-  CHECK(allocations_so_far() == before + 1); /* it counts */
+  CHECK(allocations_so_far() == before + 1); /* the counter works */
   free(block);
   CHECK(allocations_so_far() == before + 2);
   stylet_rt_sim_destroy(sim);
@@ -531,7 +531,7 @@ static int a_step_does_not_allocate(void) {
   return 0;
 }
 
-/* In a process that the kernel kills at its first system call but for its end. */
+/* Runs steps in a process that the kernel kills at any system call except exit. */
 static int a_step_does_not_call_the_system(void) {
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   stylet_rt_model* model = loaded();
@@ -545,7 +545,7 @@ static int a_step_does_not_call_the_system(void) {
       double most_N;
       if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) _exit(SKIPPED);
       most_N = all_real_time_calls(model, sim, duration_s);
-      if (calls == 1) getppid(); /* one that does is killed indeed */
+      if (calls == 1) getppid(); /* checks that a process with a system call is killed */
       syscall(SYS_exit, most_N > 0.3 ? 0 : 1);
     }
     CHECK(child > 0 && waitpid(child, &status, 0) == child);
@@ -573,7 +573,7 @@ static void* insert(void* argument) {
   return NULL;
 }
 
-/* The thread dies of it if not. */
+/* The thread would crash with too small a stack. */
 static int a_quarter_of_a_megabyte_of_stack_is_enough(void) {
   whole_insertion it = {NULL, NULL, 0.0, 0.0};
   stylet_rt_model* model = loaded();
@@ -593,8 +593,8 @@ static int a_quarter_of_a_megabyte_of_stack_is_enough(void) {
   return 0;
 }
 
-/* Created with these flags; the needle's base is then put so that its tip lies at a denormal x in the air.
- * @return x of the tip, as the step made it */
+/* Creates a simulation with these flags and steps to a base pose for which the tip is in the air at a denormal x.
+ * @return x of the tip after the step */
 static double denormal_x_of_the_tip(uint32_t flags) {
   stylet_rt_model* model = loaded();
   stylet_rt_sim* sim = NULL;

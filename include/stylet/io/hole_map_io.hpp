@@ -7,10 +7,10 @@
 
 namespace stylet {
 
-/// A map of the template's holes as map.csv has it (docs/results.md): one header line, then one line per hole.
+/// The text of map.csv for a map of the template's holes (docs/results.md): one header line, then one line per hole.
 std::string hole_map_csv(const HoleMap& map);
 
-/// The same as JSON, with the template it is of (docs/results.md). What does not exist is null.
+/// The map as JSON, together with its template (docs/results.md). Values that do not exist are null.
 std::string hole_map_json(const HoleMap& map);
 
 }  // namespace stylet

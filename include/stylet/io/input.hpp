@@ -9,14 +9,14 @@
 
 namespace stylet {
 
-/// Whatever a user may name as a patient.
+/// The content of any file that can describe a patient.
 using PatientInput = std::variant<ContourSet, LabelImage, TetMesh, std::vector<Surface>>;
 
-/// Finds out what a file (or a directory with one RTSTRUCT or DICOM SEG in it) is, by content before extension, and
-/// reads it. Untrusted files go through a child process with limits on time and memory, so a parser's crash becomes an
-/// error.
-/// @param skip names of structures of a contour set that nobody will miss, even where they are damaged, and of segments
-/// (MaskReadOptions::skip)
+/// Reads a patient's file, or a directory with one RTSTRUCT or DICOM SEG in it, after detecting its format from its
+/// content, then from its extension. Untrusted files are parsed in a child process with limits on time and memory, so
+/// that a crash of a parser becomes an error.
+/// @param skip names of structures and segments that are not needed: damaged ones among the structures are ignored;
+///   segments as in MaskReadOptions::skip
 Result<PatientInput> read_input(const std::filesystem::path& path, const MeshReadOptions& mesh_options = {},
                                 const MaskReadOptions& mask_options = {}, std::span<const std::string> skip = {});
 

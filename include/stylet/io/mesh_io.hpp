@@ -11,23 +11,24 @@
 namespace stylet {
 
 struct MeshReadOptions {
-  double scale = 0.0;  ///< file unit in mm; 0 = the file's own unit if it states one, else 1 (a wrong unit is refused)
-  std::vector<std::string>* notes = nullptr;  ///< receives what was passed over or put right, in words for the user
+  double scale = 0.0;  ///< [mm] length of the file's unit; 0 = as the file says, else 1 mm, checked for plausibility
+  std::vector<std::string>* notes = nullptr;  ///< receives sentences for the user on what was ignored or corrected
 };
 
 /// Reads tetrahedra: VTU, legacy VTK, gmsh MSH 1, 2.2 and 4.1 (ASCII, binary), MEDIT .mesh, TetGen .node/.ele. Other
-/// elements in the file are passed over. Regions come from the format's own tag (physical group, reference, attribute,
-/// cell array "region"), inverted numbering of whole files is put right, the result has passed check_mesh().
+/// elements in the file are ignored. Regions come from the format's own tag (physical group, reference, attribute, cell
+/// array "region"). If all tetrahedra of a file are numbered inversely, this is corrected. The result has passed
+/// check_mesh().
 Result<TetMesh> read_tet_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
-/// A named array beside the mesh in a VTU file: 1, 3 or 6 components per node or element.
+/// A named array for the nodes or elements of a VTU file, with 1, 3 or 6 components each.
 struct MeshField {
   std::string name;  ///< with unit, e.g. "displacement_mm"
   MatX values;       ///< (components × nodes) or (components × tets)
 };
 
-/// Writes VTU (zlib, appended) with cell array "region", region names as field data, units in the array names.
-/// The file appears whole or not at all.
+/// Writes a VTU file (zlib, appended) with the cell array "region", region names as field data, and units in the array
+/// names. On error no incomplete file is left.
 Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path,
                    const std::vector<MeshField>& node_fields = {}, const std::vector<MeshField>& tet_fields = {});
 

@@ -13,35 +13,34 @@
 
 namespace stylet {
 
-/// The key under which the compiled model of a scenario is kept: SHA-256, in hexadecimal, of the build id of the
-/// program or shared library that holds this code, the scenario with all its settings, and the content of every file
-/// that it names. Another version, another value or another patient is another key; a stripped copy of the program is
-/// the same program.
-/// @param scenario as of read_scenario(), with absolute paths
-/// Errors: a file that cannot be read; one whose data are in other files that it names (.mhd, .nhdr, .node and .ele),
-/// which the key would not see; a program that was linked without a build id.
+/// The key of a scenario's compiled model in the cache: SHA-256, in hexadecimal, of the build id of the program or
+/// shared library that holds this code, the scenario with all its settings, and the content of every file that it
+/// names. Any other version, value or patient gives another key; a stripped copy of the program gives the same key.
+/// @param scenario from read_scenario(), with absolute paths
+/// Errors: a file that cannot be read; a file whose data are in other files (.mhd, .nhdr, .node and .ele), which the
+/// key would not cover; a program that was linked without a build id.
 Result<std::string> model_key(const Scenario& scenario);
 
-/// Compiled models kept from one start of the program to the next: files as `stylet prepare` writes them, named by
-/// model_key(). Any number of programs may use a folder at the same time.
+/// A folder with compiled models for later starts of the program: files as `stylet prepare` writes them, named by
+/// model_key(). Any number of programs may use the folder at the same time.
 class ModelCache {
  public:
-  /// @param folder where models are kept; made when the first one is. Empty: none are.
-  /// @param others folders that are looked into as well
-  /// @param most_bytes of all models in the folder: beyond it those go that were not used for longest
+  /// @param folder for the models; it is created with the first one. Empty: no model is kept.
+  /// @param others further folders to search, in which nothing is written
+  /// @param most_bytes largest total size of the models in `folder`; the least recently used models are removed
   explicit ModelCache(std::filesystem::path folder, std::vector<std::filesystem::path> others = {},
                       std::uintmax_t most_bytes = std::uintmax_t{4} << 30);
 
-  /// $XDG_CACHE_HOME/stylet/models, else ~/.cache/stylet/models; empty without a home.
+  /// The user's cache folder: $XDG_CACHE_HOME/stylet/models, else ~/.cache/stylet/models; empty without a home folder.
   static std::filesystem::path users_folder();
 
-  /// The model's file; it counts as used now.
+  /// The file of a model, if there is one; it then counts as used at this moment.
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& key) const;
 
-  /// Keeps a model that has just been compiled, and forgets the oldest others where there are too many. One that is
-  /// larger than the folder may be, or that cannot be saved (save_model()), is not kept.
-  /// @param notes of the mesher
-  /// Errors: the disk's.
+  /// Saves a model that has just been compiled, and removes the least recently used other models if the folder is too
+  /// large. A model that exceeds the folder's limit or that save_model() does not support is not kept.
+  /// @param notes notes of the mesher
+  /// Errors: of the disk.
   Result<> keep(const Model& model, const std::string& key, std::span<const std::string> notes = {},
                 const Progress& progress = {}) const;
 

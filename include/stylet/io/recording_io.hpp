@@ -11,18 +11,18 @@
 
 namespace stylet {
 
-/// A run as its run.h5 holds it: enough to replay it and to make every other result file again.
+/// The content of a run.h5: enough to replay the run and to write all other result files again.
 struct RunRecording {
   RunInfo info;
   TetMesh mesh;
   std::vector<Step> steps;
-  std::vector<Frame> frames;       ///< displacements were stored with single precision
-  std::optional<Summary> summary;  ///< empty while the run goes on, or when it was killed
-  std::vector<Event> events{};     ///< of a live session also when it was killed
+  std::vector<Frame> frames;       ///< displacements in single precision
+  std::optional<Summary> summary;  ///< empty while the run goes on, or if it was killed
+  std::vector<Event> events{};     ///< for a live session also available if it was killed
 };
 
-/// Reads a run.h5, also one that is being written or whose writer was killed: what had reached the disk is returned.
-/// Errors: no such file, not an HDF5 file, not a run, written by a newer version, damaged.
+/// Reads a run.h5. If it is still being written, or its writer was killed, the result has everything that had reached
+/// the disk. Errors: no such file, not an HDF5 file, not a run, written by a newer version, damaged.
 Result<RunRecording> read_recording(const std::filesystem::path& path);
 
 }  // namespace stylet

@@ -12,24 +12,24 @@ namespace stylet::results {
 
 using Colour = std::array<double, 3>;  ///< sRGB, 0…1
 
-/// How a region is shown, in pictures and in the interactive view alike.
+/// Appearance of a region in pictures and in the interactive view.
 struct RegionView {
   int region = 0;
   std::string name;    ///< as in the mesh, "pubic_arch"
-  std::string label;   ///< for people, "Pubic arch"
+  std::string label;   ///< as displayed, "Pubic arch"
   Colour colour{};     ///< from the palette of Okabe & Ito, which colour-blind readers can tell apart
   double opacity = 1;  ///< in the 3D views
   bool target = false;
-  bool background = false;                      ///< the tissue around everything else: drawn faintly, outer faces only
+  bool background = false;  ///< tissue that surrounds the other regions: drawn faintly, with its outer faces only
   std::vector<std::array<Index, 3>> triangles;  ///< node numbers of its surface, normals outward
 };
 
-/// One view per region that has tetrahedra, in the order of the mesh's regions. A region that lies inside another keeps
-/// the surface between them for itself, so that no face is drawn twice.
+/// One view per region that has tetrahedra, in the order of the mesh's regions. A face between a region and a region
+/// around it belongs to the inner one only, so that no face is drawn twice.
 /// @param targets indices of the target regions
 std::vector<RegionView> region_views(const TetMesh& mesh, std::span<const int> targets);
 
-/// "Pubic arch" for "pubic_arch": a region's or event's name as a reader would write it.
+/// The name of a region or event for display: "Pubic arch" for "pubic_arch".
 std::string readable_name(const std::string& name);
 
 }  // namespace stylet::results

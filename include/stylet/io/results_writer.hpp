@@ -12,11 +12,12 @@
 
 namespace stylet {
 
-/// Writes the result folder of one insertion: run.h5 grows while the run goes on (SWMR, flushed at least every 0.5 s);
-/// summary.json, forces.csv, tissue.pvd with its .vtu, needle.vtp and report.html appear whole when it has finished.
+/// Writes the result folder of a run. run.h5 grows during the run (SWMR, flushed at least every 0.5 s); summary.json,
+/// forces.csv, tissue.pvd with its .vtu files, needle.vtp and report.html are written when the run has finished.
 class ResultsWriter {
  public:
-  /// @param stress_of [MPa] (6 × tets) of a displacement (3n), for the VTU files; may be empty
+  /// @param stress_of function that computes the stress [MPa] (6 × tets) of a displacement [mm] (3n) for the VTU files;
+  ///   may be empty
   static Result<std::unique_ptr<ResultsWriter>> open(const std::filesystem::path& folder, const RunInfo& info,
                                                      const TetMesh& mesh,
                                                      std::function<MatX(const VecX&)> stress_of = {});
@@ -27,7 +28,7 @@ class ResultsWriter {
   /// Keeps the map of the template's holes; finish() writes it as map.csv.
   void add_map(HoleMap map);
   /// Writes all files. Progress covers the pictures.
-  /// @param pictures still pictures in the report; without them it has its interactive view only
+  /// @param pictures whether the report has still pictures in addition to its interactive view
   Result<> finish(const Summary& summary, const Progress& progress = {}, bool pictures = true);
 
  private:

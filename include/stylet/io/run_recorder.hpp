@@ -12,15 +12,15 @@
 
 namespace stylet {
 
-/// Writes run.h5 (docs/results.md) while something goes on whose end nobody knows: a thread of its own brings what is
-/// added to the disk five times a second, so a process that is killed loses less than a second. Calls never wait for
-/// the disk; they return its first error, if there was one.
+/// Writes run.h5 (docs/results.md) during a session of unknown length. A thread of its own writes the added data to the
+/// disk five times a second, so a process that is killed loses less than a second. Calls never wait for the disk; they
+/// return its first error, if there was one.
 class RunRecorder {
  public:
-  /// @param file replaced if it is there
+  /// @param file is replaced if it exists
   static Result<std::unique_ptr<RunRecorder>> open(const std::filesystem::path& file, const RunInfo& info,
                                                    const TetMesh& mesh);
-  ~RunRecorder();  ///< what was added is on the disk afterwards
+  ~RunRecorder();  ///< writes all added data to the disk
 
   Result<> add_step(const Step& step);
   Result<> add_event(const Event& event);
@@ -32,7 +32,7 @@ class RunRecorder {
   std::unique_ptr<Parts> parts_;
 };
 
-/// forces.csv of steps: the header and a line for each.
+/// The text of forces.csv for steps: the header and one line per step.
 std::string forces_csv_text(std::span<const Step> steps);
 
 }  // namespace stylet

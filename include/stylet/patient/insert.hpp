@@ -14,7 +14,7 @@
 
 namespace stylet {
 
-/// Choices of insert(); the default carries out the plans of the scenario and makes no map.
+/// Settings of insert(). By default it carries out the plans of the scenario and makes no map.
 struct InsertSettings {
   bool map = false;                ///< also predict the gland's shift for a needle through each hole of the template
   std::span<const Step> recorded;  ///< steps of a recording whose base motion is repeated; empty: the scenario's plans
@@ -25,14 +25,15 @@ struct InsertSettings {
 /// The result of insert(), beside the files that it wrote.
 struct InsertResult {
   Summary summary;             ///< forces, events, the gland's motion and warnings of the whole run
-  std::vector<Step> steps;     ///< all of them, in order of time
-  std::optional<HoleMap> map;  ///< if it was asked for
+  std::vector<Step> steps;     ///< all steps, in order of time
+  std::optional<HoleMap> map;  ///< only with InsertSettings::map
 };
 
 /// Carries out all insertions of a model and writes the result folder: report, pictures, tables and the recording
 /// (docs/results.md). It takes seconds to minutes.
-/// @param folder is made if it is missing; files of an earlier run in it are replaced
-/// Errors: a folder that cannot be written, a scenario without a template where a map is asked for, and those of run().
+/// @param folder is created if it is missing; files of an earlier run in it are replaced
+/// Errors: a folder that cannot be written; a map for a scenario that cannot have one (check_mappable()); errors of
+/// run().
 Result<InsertResult> insert(const PreparedModel& prepared, const std::filesystem::path& folder,
                             const InsertSettings& settings = {}, const Progress& progress = {});
 

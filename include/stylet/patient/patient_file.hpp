@@ -6,14 +6,14 @@
 
 namespace stylet {
 
-/// The content of a patient's file, and what was noticed while it was read.
+/// The content of a patient's file.
 struct PatientFile {
   PatientInput content;
-  std::vector<std::string> notes;  ///< for the user: what was passed over, put right or looks odd
+  std::vector<std::string> notes;  ///< sentences for the user: what was left out, corrected or looks odd
 };
 
-/// read_input() for a patient that is to be meshed: refuses as well contours that cannot be a structure (check_roi),
-/// but only those that the mesher would use; nobody has to repair a planning helper.
+/// Reads the file of a patient that will be meshed: read_input(), and then check_roi() for the structures that the
+/// mesher will use. Other structures, such as helpers of the planning software, are not checked.
 Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshReadOptions& read_options,
                                  const MeshOptions& mesh_options, const MaskReadOptions& mask_options = {});
 

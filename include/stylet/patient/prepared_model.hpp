@@ -11,15 +11,15 @@
 
 namespace stylet {
 
-/// A model ready for its first step.
+/// A compiled model, with notes and times of its preparation.
 struct PreparedModel {
   std::shared_ptr<const Model> model;
-  std::vector<std::string> notes;  ///< what the reader and the mesher left out, added or put right
+  std::vector<std::string> notes;  ///< what the reader and the mesher left out, added or corrected
   std::string not_kept;            ///< why the cache could not keep the model; empty if it did or there is no cache
-  double mesh_s = 0.0;             ///< contours, mask or file to mesh
-  double model_s = 0.0;            ///< mesh to model, or a saved model to model
+  double mesh_s = 0.0;             ///< time to read and mesh the patient
+  double model_s = 0.0;            ///< time to compile the model, or to load a saved model
 
-  /// Everything that a user should know before the first step: the notes, then the model's warnings.
+  /// All messages for the user before the first step: the notes, then the model's warnings.
   [[nodiscard]] std::vector<std::string> warnings() const;
 };
 
@@ -30,11 +30,11 @@ struct PreparedModel {
 Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& progress = {},
                                     const std::string& where = "scenario");
 
-/// The same for a scenario file, or for a model that was saved with save_model(), which is read in place of being made.
+/// Prepares the model of a scenario file, or loads a model that was saved with save_model().
 /// @param file SCENARIO.toml or MODEL.stylet
 /// @param settings keys of the scenario to change, as "KEY=VALUE"
-/// @param cache folder in which the model of an unchanged scenario is looked for first, and kept; may be null. A folder
-///   that cannot be written is no error (PreparedModel::not_kept).
+/// @param cache is searched for the model of an unchanged scenario, and keeps a new model; may be null. A folder that
+///   cannot be written is not an error (PreparedModel::not_kept).
 Result<PreparedModel> prepare_model_file(const std::string& file, const std::vector<std::string>& settings = {},
                                          const Progress& progress = {}, const ModelCache* cache = nullptr);
 

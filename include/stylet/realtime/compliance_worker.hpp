@@ -7,16 +7,16 @@
 
 namespace stylet {
 
-/// A thread that keeps compliance ahead of a needle while somebody else steps it: the worker's side of a
-/// ComplianceSupply. Ordinary scheduling, less urgent than its neighbours. It has nothing to do while the needle stays
-/// in the prepared corridor. A needle may outrun it: a step then says so (Step::compliance_missing).
+/// A thread that computes compliance ahead of a needle while another thread takes the steps: the worker's side of a
+/// ComplianceSupply. It has ordinary scheduling with low priority, and nothing to do while the needle stays in the
+/// prepared corridor. If the needle outruns it, steps are flagged (Step::compliance_missing).
 class ComplianceWorker {
  public:
-  /// Starts the thread; std::system_error when there is none to be had. No step may be under way.
-  /// @param supply outlives the worker
+  /// Starts the thread; throws std::system_error if the system provides none. No step may be in progress.
+  /// @param supply must outlive the worker
   ComplianceWorker(ComplianceSupply& supply, const ComplianceSupply::Settings& settings);
-  /// Waits for the end of a round, which may be that of making the factor of a model from a file. No step may be under
-  /// way.
+  /// Ends the thread after its present unit of work, which may be the factorisation of a model from a file. No step may
+  /// be in progress.
   ~ComplianceWorker();
   ComplianceWorker(const ComplianceWorker&) = delete;
   ComplianceWorker& operator=(const ComplianceWorker&) = delete;

@@ -6,28 +6,29 @@
 
 namespace stylet {
 
-/// Distribution of durations, of fixed size: adding neither allocates nor searches. Up to 64 ns every nanosecond has
-/// its own bin, beyond each octave has 64 of equal width, so a bin is never wider than 1/64 (1.6 %) of what it holds;
-/// that is the resolution of quantile(). Count, largest value and misses are exact. Plain data; one thread may add()
-/// while others take a snapshot().
+/// Histogram of durations, of fixed size; add() neither allocates nor searches. Up to 64 ns every nanosecond has its
+/// own bin; beyond that, each octave has 64 bins of equal width, so a bin is never wider than 1/64 (1.6 %) of its
+/// durations. This is the resolution of quantile_ns(). Count, largest value and misses are exact. Plain data; one
+/// thread may call add() while others call snapshot().
 class DeadlineHistogram {
  public:
   static constexpr int kBinsPerOctave = 64;
   static constexpr int kOctaves = 36;
-  /// Longer durations (73 minutes) share the last bin; largest_ns() is exact even so.
+  /// Durations longer than this (73 minutes) share the last bin; largest_ns() is exact for them as well.
   static constexpr std::int64_t kRange_ns = std::int64_t{kBinsPerOctave} << kOctaves;
 
   DeadlineHistogram() = default;
-  /// @param deadline_ns [ns] a duration above it is a miss; 0 = none
+  /// @param deadline_ns [ns] longer durations count as misses; 0 = no deadline
   explicit DeadlineHistogram(std::int64_t deadline_ns) : deadline_ns_(deadline_ns) {}
 
-  /// Writer. @param duration_ns [ns] negative ones count as 0
+  /// Adds a duration. For the writing thread only. @param duration_ns [ns] negative values count as 0
   void add(std::int64_t duration_ns);
 
-  /// Any thread, while another one adds: a copy whose count is the sum of its bins. Take quantiles from that.
+  /// A copy whose count is the sum of its bins. For any thread, also while another thread adds durations; compute
+  /// quantiles from the copy.
   [[nodiscard]] DeadlineHistogram snapshot() const;
 
-  /// Adds what another one has seen; its own deadline was applied there and its misses are taken over.
+  /// Adds all durations of another histogram. Its misses are counted according to its own deadline.
   void merge(const DeadlineHistogram& other);
 
   [[nodiscard]] std::int64_t count() const { return count_; }
@@ -35,12 +36,12 @@ class DeadlineHistogram {
   [[nodiscard]] std::int64_t misses() const { return misses_; }
   [[nodiscard]] std::int64_t deadline_ns() const { return deadline_ns_; }
 
-  /// Smallest duration [ns] that a share `q` of all does not exceed, too large by less than 1/64 and never above
-  /// largest_ns(); 0 without any. @param q 0…1
+  /// The q-quantile of the durations [ns], too large by less than 1/64 and never above largest_ns(); 0 if there are no
+  /// durations. @param q 0…1
   [[nodiscard]] std::int64_t quantile_ns(double q) const;
 
-  /// How many durations do not exceed `duration_ns`; those in the bin that it lies in count as longer unless it is the
-  /// bin's end.
+  /// Number of durations of at most `duration_ns`. Durations in the same bin as `duration_ns` count as longer, unless
+  /// `duration_ns` is the end of the bin.
   [[nodiscard]] std::int64_t up_to(std::int64_t duration_ns) const;
 
  private:

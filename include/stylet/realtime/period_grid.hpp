@@ -5,36 +5,37 @@
 
 namespace stylet {
 
-/// When a periodic loop is due, and how much time each turn stands for. Deadlines lie on the grid origin + k T and stay
-/// there: a late turn is not made up for by a quicker one, the points of the grid it passed over are skipped and the
-/// next turn waits for the next point ahead. The next turn then stands for all time since the last one, so simulated
-/// time keeps up with the clock, but for at most `max_periods`: what a long stall takes beyond that is lost to
-/// simulated time, for a needle must not leap. No clock inside: times are arguments.
+/// Schedule of a periodic loop: when each turn is due, and how much simulated time it stands for. Deadlines are the
+/// points origin + k T of a fixed grid. A late turn is not compensated by shorter ones: the points that it passed are
+/// skipped, and the next turn waits for the next point ahead. That turn stands for the whole time since the last one,
+/// so simulated time keeps up with the clock, but for at most `max_periods`; the time of a longer stall is lost for the
+/// simulation, because the needle must not jump. No clock is used; times are arguments.
 class PeriodGrid {
  public:
-  /// @param origin_ns first turn @param period_ns T > 0 @param max_periods ≥ 1
+  /// @param origin_ns [ns] time of the first turn @param period_ns [ns] T > 0 @param max_periods ≥ 1
   PeriodGrid(std::int64_t origin_ns, std::int64_t period_ns, int max_periods)
       : origin_(origin_ns), period_(period_ns), most_(max_periods) {}
 
-  /// When the next turn is due.
+  /// Time at which the next turn is due [ns].
   [[nodiscard]] std::int64_t due_ns() const { return origin_ + tick_ * period_; }
-  /// Point of the grid of the next turn.
+  /// Index k of the next turn's point of the grid.
   [[nodiscard]] std::int64_t tick() const { return tick_; }
 
-  /// The loop is awake. Points that passed meanwhile are skipped: the turn belongs to the last one not after now.
+  /// Call when the loop has woken up. Points that have passed are skipped: the turn belongs to the last point not after
+  /// `now_ns`.
   void wake(std::int64_t now_ns);
 
-  /// Time since the last turn that was taken, or the start [ns]: a whole number of periods, 1…max_periods.
+  /// Takes this turn. @return simulated time [ns] since the last turn taken, or since the start: 1…max_periods periods
   std::int64_t take();
-  /// This turn is not taken (paused): its time does not count.
+  /// Skips this turn because of a pause; its time does not count.
   void pass() { taken_ = tick_; }
 
-  /// The turn is over. @return true when it missed its deadline: the point of the grid after the one it was due at,
-  /// whether it was woken too late or took too long
+  /// Call when the turn is over. @return whether the turn missed its deadline, which is the point of the grid after the
+  /// one at which it was due; it may have been woken too late or taken too long
   bool finish(std::int64_t now_ns);
 
-  [[nodiscard]] std::int64_t skipped() const { return skipped_; }         ///< points without a turn
-  [[nodiscard]] std::int64_t lost_ns() const { return lost_ * period_; }  ///< time that take() has left out
+  [[nodiscard]] std::int64_t skipped() const { return skipped_; }         ///< number of points without a turn
+  [[nodiscard]] std::int64_t lost_ns() const { return lost_ * period_; }  ///< time lost beyond max_periods
 
  private:
   [[nodiscard]] std::int64_t last_before(std::int64_t now_ns) const;

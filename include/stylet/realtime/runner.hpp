@@ -15,74 +15,76 @@ namespace stylet {
 
 struct RunnerSettings {
   double period_s = 1e-3;      ///< 0.05 ms … 0.1 s
-  int max_catch_up = 4;        ///< a step stands for at most so many periods (PeriodGrid)
-  double late_after_s = 5e-3;  ///< older results and samples are not used; at least two periods
+  int max_catch_up = 4;        ///< largest number of periods that a step may stand for (PeriodGrid)
+  double late_after_s = 5e-3;  ///< results and samples older than this are not used; at least two periods
   BaseFollower::Limits limits;
   ForceGuardSettings guard;
-  /// Without: the base is where the handle is, and the hand feels the force on the base itself.
+  /// Without a coupling the base follows the handle exactly, and the hand feels the force on the base directly.
   std::optional<VirtualCouplingSettings> coupling;
-  bool realtime_scheduling = true;  ///< asked for; ThreadRights tells what was granted
-  int priority = 80;                ///< of SCHED_FIFO, 1…98; the device's thread has one more
-  bool keep_steps = false;          ///< every step is kept for take_steps()
-  bool lock_memory = true;          ///< asked for, for the whole process while the runner runs
+  bool realtime_scheduling = true;  ///< request real-time scheduling; ThreadRights says whether it was granted
+  int priority = 80;                ///< priority of SCHED_FIFO, 1…98; that of the device's thread is higher by 1
+  bool keep_steps = false;          ///< keep every step for take_steps()
+  bool lock_memory = true;          ///< request to lock the memory of the whole process while the runner runs
 };
 
-/// How long things took, since the runner was made. Misses count durations over a period.
+/// Durations since the runner was created. Misses are durations longer than a period.
 struct RunnerTimes {
-  DeadlineHistogram step_cpu;         ///< thread CPU time of Steppable::step
-  DeadlineHistogram step_wall;        ///< the same on the wall
-  DeadlineHistogram step_lateness;    ///< wake-up of the step's thread after it was due
-  DeadlineHistogram device_wall;      ///< a turn of the device's thread
-  DeadlineHistogram device_lateness;  ///< wake-up of the device's thread
+  DeadlineHistogram step_cpu;         ///< thread CPU time of Steppable::step()
+  DeadlineHistogram step_wall;        ///< wall-clock time of Steppable::step()
+  DeadlineHistogram step_lateness;    ///< delay of the step thread's wake-up after it was due
+  DeadlineHistogram device_wall;      ///< wall-clock time of a turn of the device's thread
+  DeadlineHistogram device_lateness;  ///< delay of the device thread's wake-up after it was due
 };
 
-/// Runs a simulation against a device in real time, in two threads with one clock. The device's thread reads the
-/// handle, computes the coupling's force, guards it and sends it, every period, whatever the simulation does; the
-/// step's thread moves the base and takes a step. They pass each other values without waiting, so a step that hangs
-/// cannot keep an old force at the hand. docs/realtime.md has the whole picture.
+/// Runs a simulation with a device in real time, in two threads with one clock. In every period, whatever the
+/// simulation does, the device's thread reads the handle, computes the coupling's force, makes it safe (ForceGuard) and
+/// sends it; the step's thread moves the base and takes a step. The threads exchange values wait-free, so a step that
+/// hangs cannot leave an old force at the hand. Details: docs/realtime.md.
 ///
-/// start() and stop() belong to one controlling thread; fetch…() and take_events() to one reading thread (it may be the
-/// same); pause(), resume() and single_step() to any, wait-free. A handle follows only from start() on.
+/// Call start() and stop() from one controlling thread, fetch…() and take_…() from one reading thread (which may be the
+/// same), and pause(), resume() and single_step(), which are wait-free, from any thread.
 class RealtimeRunner {
  public:
-  /// Refuses settings out of range, and a coupling that the device cannot bear (VirtualCoupling::create).
+  /// Errors: settings out of range, and a coupling that is not passive with this device (VirtualCoupling::create()).
   static Result<std::unique_ptr<RealtimeRunner>> create(std::unique_ptr<Steppable> body, std::unique_ptr<Device> device,
                                                         const RunnerSettings& settings);
-  ~RealtimeRunner();  ///< stops
+  ~RealtimeRunner();  ///< calls stop()
   RealtimeRunner(const RealtimeRunner&) = delete;
   RealtimeRunner& operator=(const RealtimeRunner&) = delete;
 
-  /// Starts both threads. An error only when there is no thread to be had; rights not granted are no error.
+  /// Starts both threads. Errors: it is already running; the system provides no thread. Rights that are not granted are
+  /// not an error.
   Result<> start();
-  /// Fades the force, ends both threads and waits for them; a step under way is finished first. The device is left with
-  /// no force. start() may follow.
+  /// Fades the force to zero, ends both threads and waits for them; a step in progress is finished first. start() may
+  /// be called again afterwards.
   void stop();
   [[nodiscard]] bool running() const;
 
-  void pause();   ///< after the step under way; the force fades
-  void resume();  ///< time spent in pause does not count
-  /// While paused: takes this many steps of one period.
+  void pause();   ///< pauses after the step in progress; the force fades to zero
+  void resume();  ///< continues; the time of the pause does not count as simulated time
+  /// Takes `count` steps of one period each while paused; without effect otherwise.
   void single_step(int count = 1);
 
-  /// Fetches the newest picture of the simulation. @return whether it is a new one
+  /// Fetches the newest snapshot of the simulation. @return whether it is a new one
   bool fetch_snapshot();
-  [[nodiscard]] const Snapshot& snapshot() const;  ///< the one fetched last
+  [[nodiscard]] const Snapshot& snapshot() const;  ///< the snapshot fetched last
+  /// Fetches the newest snapshot of the device. @return whether it is a new one
   bool fetch_device();
-  [[nodiscard]] const DeviceSnapshot& device_snapshot() const;
-  /// Takes the oldest events not yet taken. @return how many
+  [[nodiscard]] const DeviceSnapshot& device_snapshot() const;  ///< the device snapshot fetched last
+  /// Takes the oldest events from the queue. @return number of events written
   std::size_t take_events(std::span<EventSnapshot> out);
 
-  /// With keep_steps: takes the oldest steps not yet taken. Room is for four thousand; what comes beyond is dropped and
-  /// counted (LoopCounters::dropped_steps). @return how many
+  /// Takes the oldest steps from the queue, with RunnerSettings::keep_steps. The queue has room for 4096 steps; if it
+  /// is full, further ones are dropped and counted (LoopCounters::dropped_steps). @return number of steps written
   std::size_t take_steps(std::span<Step> out);
 
-  /// Any thread, any time; about 95 kB.
+  /// A copy of the histograms (about 95 kB). May be called from any thread at any time.
   [[nodiscard]] std::unique_ptr<RunnerTimes> times() const;
-  /// What the last start() was granted.
+  /// The rights that the last start() was granted.
   [[nodiscard]] const ThreadRights& rights() const;
   [[nodiscard]] const RunnerSettings& settings() const;
 
-  /// The simulation, while the runner does not run.
+  /// The simulation; must not be used while the runner is running.
   [[nodiscard]] Steppable& body();
 
  private:

@@ -6,7 +6,7 @@
 
 namespace stylet {
 
-/// A hand that follows a motion, whatever it feels: demonstrations, tests, measurements without a device.
+/// A device whose handle follows a given motion regardless of forces: for demonstrations, tests and measurements.
 class ScriptedDevice final : public Device {
  public:
   explicit ScriptedDevice(BaseMotion motion) : motion_(std::move(motion)) {}

@@ -11,43 +11,45 @@
 
 namespace stylet {
 
-/// What a step came to, as far as the loop is concerned.
+/// The result of a step that the loop needs.
 struct StepOutcome {
-  Wrench hand;           ///< what the hand exerts on the base; about the base point
-  bool trusted = false;  ///< false: the step did not find its balance, its force must not reach a hand
+  Wrench hand;           ///< force and torque that the hand exerts on the base, about the base point
+  bool trusted = false;  ///< false: the step found no balance, and its force must not reach a hand
 };
 
-/// Something with a base that the real-time loop moves. None of these calls may allocate, lock, wait or throw; all come
-/// from the loop's thread while it runs.
+/// Interface of a simulation whose base the real-time loop moves. No function may allocate, lock, wait or throw; while
+/// the loop runs, all are called from its thread.
 class Steppable {
  public:
   virtual ~Steppable() = default;
 
-  /// Where the base is now.
+  /// Present pose of the base.
   [[nodiscard]] virtual Pose base() const noexcept = 0;
-  /// Moves the base in dt seconds.
+  /// Takes a step: moves the base to a pose in dt seconds.
   virtual StepOutcome step(const Pose& base, double dt) noexcept = 0;
-  /// Writes what the last step looks like; time_s, clock_s, paused, trusted and counters are the loop's own.
+  /// Writes the state after the last step, except for time_s, clock_s, paused, trusted and counters, which the loop
+  /// sets.
   virtual void describe(Snapshot& out) noexcept = 0;
-  /// Copies the last step's events. @return how many; those beyond out.size() are left out
+  /// Copies the last step's events. @return number of events written; events beyond out.size() are left out
   virtual std::size_t events(std::span<EventSnapshot> out) noexcept = 0;
-  /// The last step as it is recorded; step_us is the loop's own. @return false: there is none, or it was not taken
+  /// Copies the last step for a recording, except for step_us, which the loop sets. @return false if there is no step
+  /// or it was refused
   virtual bool record(Step& /*out*/) noexcept { return false; }
 };
 
-/// The forces of a snapshot as a DisplayField takes them. @param out room for Snapshot::kForces
-/// @return those that are there
+/// Converts the forces of a snapshot to the input of a DisplayField. @param out with room for Snapshot::kForces
+/// @return the part of `out` that was written
 std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<TissueForce> out);
 
-/// A Simulation in the loop, with a worker that keeps compliance ahead of the tip. Where the tip outruns it, the steps
-/// are flagged (Step::compliance_missing).
+/// A Simulation for the real-time loop, with a worker thread that computes compliance ahead of the tip. If the tip
+/// outruns the worker, steps are flagged (Step::compliance_missing).
 class SimulationSteppable final : public Steppable {
  public:
-  /// Places the needle at the start of one of the model's insertions.
-  /// What the first steps need is there afterwards: solves if need be.
+  /// Places the needle at the start of one of the model's insertions, and makes the compliance for the first steps
+  /// available, solving for it if necessary.
   explicit SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion = 0);
 
-  /// Not while the loop runs.
+  /// The simulation; must not be used while the loop runs.
   [[nodiscard]] Simulation& simulation() { return simulation_; }
 
   [[nodiscard]] Pose base() const noexcept override;
@@ -59,8 +61,8 @@ class SimulationSteppable final : public Steppable {
  private:
   Simulation simulation_;
   std::unique_ptr<ComplianceWorker> worker_;
-  std::vector<ContactState> contacts_;  ///< room
-  std::vector<TissueForce> forces_;     ///< room
+  std::vector<ContactState> contacts_;  ///< scratch
+  std::vector<TissueForce> forces_;     ///< scratch
   NeedleRegions regions_;
   TipWatch tip_;
 };

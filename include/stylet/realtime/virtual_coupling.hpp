@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// Spring and damper between the device's handle and the needle's base, alike in all directions.
+/// Spring and damper between the device's handle and the needle's base, equal in all directions.
 struct VirtualCouplingSettings {
   double stiffness_N_per_mm = 0.5;
   double damping_N_s_per_mm = 0.001;
@@ -15,29 +15,32 @@ struct VirtualCouplingSettings {
   double damping_Nmm_s_per_rad = 0.05;
 };
 
-/// What the hand feels of the needle: never stiffer than this spring, however stiff needle and tissue are, which is
-/// what makes a sampled device stable.
+/// Virtual coupling: a spring and a damper between the handle and the needle's base. The hand never feels a stiffness
+/// above that of the spring, however stiff needle and tissue are; this makes a sampled device stable.
 /// @cite J. E. Colgate, M. C. Stanley, J. M. Brown, "Issues in the haptic display of tool use", IROS 1995, 140–145
 class VirtualCoupling {
  public:
-  /// Refuses a coupling that could feed energy to the hand through sampling and holding alone:
+  /// Error for a coupling that could supply energy to the hand by sampling and holding alone. The condition of
+  /// passivity is
   ///   b > K T / 2 + |B|
-  /// with the handle's physical damping b, for translation and, on devices that feel torques, for rotation.
-  /// @param period_s [s] T, of the loop that reads the device and sends the force; add twice any further delay
+  /// with the coupling's stiffness K and damping B and the handle's physical damping b, for translation and, on devices
+  /// with torques, for rotation.
+  /// @param period_s [s] T, period of the loop that reads the device and sends the force; add twice any further delay
   /// @cite J. E. Colgate, G. G. Schenkel, "Passivity of a class of sampled-data systems: application to haptic
   /// interfaces", Journal of Robotic Systems 14 (1997) 37–47: the virtual wall
   static Result<VirtualCoupling> create(const VirtualCouplingSettings& settings, const DeviceTraits& device,
                                         double period_s);
 
-  /// What the coupling exerts on the base; the hand feels the opposite.
+  /// Force and torque that the coupling exerts on the base; the hand feels the opposite.
   [[nodiscard]] Wrench on_base(const Pose& device, const Twist& device_twist, const Pose& base,
                                const Twist& base_twist) const;
 
   [[nodiscard]] const VirtualCouplingSettings& settings() const { return settings_; }
 
-  /// What may be added to the damping before the condition fails [N s/mm]; for rotation lever_mm()² times that.
+  /// Damping [N s/mm] that may be added to the coupling before the condition fails; for rotation lever_mm()² times
+  /// that.
   [[nodiscard]] double spare_damping_N_s_per_mm() const { return spare_damping_; }
-  /// [mm] √(rotational / translational stiffness): makes angles lengths.
+  /// √(rotational / translational stiffness) [mm], by which angles are converted to lengths.
   [[nodiscard]] double lever_mm() const;
 
  private:

@@ -26,7 +26,7 @@ struct Twist {
 /// `from`, turned by a rotation vector [rad] LPS.
 [[nodiscard]] Eigen::Quaterniond rotated(const Eigen::Quaterniond& from, const Vec3& by);
 
-// Plain data: what a device sends and is sent, and what a picture is drawn from.
+// The same quantities as plain data, for devices and displays.
 
 using Triple = std::array<double, 3>;  ///< x, y, z as Vec3
 

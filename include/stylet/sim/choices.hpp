@@ -10,20 +10,21 @@
 #include <string>
 #include <string_view>
 
-/// The choices that a scenario makes, and the words that its file has for them.
+/// The enumerations of a scenario, and the word that a scenario file uses for each of their values.
 namespace stylet {
 
-/// Where the defaults of tissue come from: measured forces with moduli in the middle of what is published, or at its
-/// firm or soft end; or linear elastic tissue, as the methods of Goksel et al. 2005 have it.
+/// Source of the default tissue values. `typical`: measured forces, with moduli from the middle of the published range;
+/// `firm` and `soft`: moduli from its ends; `linear`: linear elastic tissue, as in the methods of Goksel et al. 2005.
 enum class TissuePreset { typical, firm, soft, linear };
 enum class ElementChoice { automatic, p1, nodal_pressure, p2 };
 enum class OuterSupport { automatic, none, sides, all };
 enum class NeedleModel { beam, springs, tet };
 enum class StyletPlace { out, in };
-/// Where contact forces act on the needle of the staggered solver.
+/// Where the staggered solver applies a contact force to the needle: at the contact's exact place, or at the nearest
+/// node of the needle.
 enum class Projection { exact, nearest_node };
 
-/// Words of an enumeration, in the order of its values.
+/// The words of an enumeration in scenario files, in the order of its values.
 template <class E>
 struct Words;
 
@@ -81,7 +82,7 @@ concept Choice = requires {
   Words<E>::all.size();
 };
 
-/// The word for a value; for one that the enumeration does not have its number.
+/// The word for a value, or "number N" for a value N that the enumeration does not have.
 template <Choice E>
 [[nodiscard]] std::string word(E value) {
   const auto at = static_cast<std::size_t>(value);
@@ -89,7 +90,7 @@ template <Choice E>
                                    : "number " + std::to_string(static_cast<int>(value));
 }
 
-/// The value of a word; empty where it is none of the enumeration's.
+/// The value for a word; empty if the enumeration does not have the word.
 template <Choice E>
 [[nodiscard]] std::optional<E> choice(std::string_view word) {
   const auto& all = Words<E>::all;

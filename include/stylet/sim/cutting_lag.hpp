@@ -5,8 +5,9 @@
 
 namespace stylet {
 
-/// Depth [mm] by which a force [N] on a needle's tip moves tissue of these parameters around it, deep inside: so far
-/// behind the place where it is pushed to does a tip cut. Less where the tissue stiffens (docs/theory/stiffening.md).
+/// Cutting lag: displacement [mm] of tissue with these parameters, deep inside the body, under a force [N] on the
+/// needle's tip. The tip cuts this far behind the place to which the base has pushed it. Stiffening tissue
+/// (docs/theory/stiffening.md) has a smaller lag.
 double cutting_lag_mm(const TissueParameters& tissue, double force_N, double needle_diameter_mm);
 
 }  // namespace stylet

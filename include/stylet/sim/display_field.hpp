@@ -12,69 +12,73 @@
 namespace stylet {
 
 struct DisplayFieldOptions {
-  double reach_mm = 3.0;  ///< forces on elements so near a planned way are carried exactly, or to the stated error
-  int columns = 600;      ///< most columns of K⁻¹ that are kept
-  double tolerance_mm_per_N = 0.05;  ///< no more columns than this error needs, as far as `columns` goes
+  /// [mm] Forces on elements within this distance of a planned way are shown; others are left out. Raising it needs
+  /// more columns for the same error.
+  double reach_mm = 3.0;
+  int columns = 600;  ///< largest number of columns of K⁻¹ that are kept; more cost time, memory and preparation
+  double tolerance_mm_per_N = 0.05;  ///< columns are dropped as long as the error stays below this
 };
 
-/// Displacement of any nodes of the mesh under forces along the planned ways, fast enough for a picture and without the
-/// factor: u_R = K⁻¹(R,S) T f_Z.
+/// Computes the displacement of any nodes of the mesh under forces along the planned ways, fast enough for pictures and
+/// without the factor of the stiffness: u_R = K⁻¹(R,S) T f_Z.
 ///
-/// Z are the nodes near the ways, S some of their degrees of freedom (the skeleton) and T what a force on Z comes to on
-/// the skeleton. Where Z has no more degrees of freedom than `columns`, S is all of it and u exact but for single
-/// precision. Otherwise S and T come from a pivoted QR of random combinations of the rows of K⁻¹(F,Z), F being the
-/// nodes further away than the compliance store reaches (Halko, Martinsson & Tropp 2011); rows nearer by are exact,
-/// from the store. Forces on the skeleton are exact everywhere, but for 1e-4 mm/N that K⁻¹(R,S) may be off by as it is
-/// kept (LowRankRows). docs/theory/display.md has the whole story.
+/// R are the nodes asked for, Z the nodes near the ways, S some of their degrees of freedom (the skeleton), and T maps
+/// a force on Z to the equivalent force on the skeleton. If Z has at most `columns` degrees of freedom, S is all of
+/// them and u is exact except for single precision. Otherwise S and T come from a pivoted QR of random combinations of
+/// the rows of K⁻¹(F,Z), where F are the nodes that the compliance store does not have (Halko, Martinsson & Tropp
+/// 2011); the rows of nearer nodes are exact, from the store. Forces on the skeleton are exact everywhere, except for
+/// an error of 1e-4 mm/N by which K⁻¹(R,S) is compressed (LowRankRows). Details: docs/theory/display.md.
 ///
-/// Immutable once prepared: any number of threads may read, each with a Load of its own. Reading does not allocate.
+/// Immutable once prepared: any number of threads may read, each with its own Load. Reading does not allocate.
 class DisplayField {
  public:
-  /// Refuses a model whose engine keeps the full inverse and no store: it has no field.
+  /// Error for a model whose engine keeps the full inverse instead of a compliance store: the field needs the store.
   static Result<> check(const Model& model);
-  /// Solves for the columns. Not for the loop. Errors: those of check().
+  /// Solves for the columns; takes seconds, so it must not be called in the real-time loop. Errors: as check().
   static Result<std::shared_ptr<const DisplayField>> prepare(std::shared_ptr<const Model> model,
                                                              const DisplayFieldOptions& options = {},
                                                              const Progress& progress = {});
 
-  /// Forces, put together for reading.
+  /// The forces of one picture, with the intermediate results of reading the displacement under them.
   class Load {
    public:
-    /// Sum of the magnitudes [N] of what fell on nodes that are not near a planned way, and is not shown.
+    /// Sum of the magnitudes [N] of the nodal forces outside of Z; these forces are not shown.
     [[nodiscard]] double left_out_N() const { return left_out_N_; }
-    [[nodiscard]] double shown_N() const { return shown_N_; }  ///< the same of what is shown
+    /// Sum of the magnitudes [N] of the nodal forces that are shown.
+    [[nodiscard]] double shown_N() const { return shown_N_; }
 
    private:
     friend class DisplayField;
     Eigen::VectorXf zone_;           ///< [N] f_Z
     std::vector<Index> loaded_;      ///< slots in the zone with a force
-    LowRankRows::Product skeleton_;  ///< K⁻¹(R,S) times T f_Z [N]
-    Eigen::VectorXf near_;           ///< [mm] what near_rows_ make of f_Z, once a near node was asked for
-    bool near_is_there_ = false;
+    LowRankRows::Product skeleton_;  ///< product of K⁻¹(R,S) with T f_Z [N]
+    Eigen::VectorXf near_;           ///< [mm] near_rows_ × f_Z; computed when the first near node is read
+    bool near_is_there_ = false;     ///< near_ is valid
     double left_out_N_ = 0.0;
     double shown_N_ = 0.0;
   };
   [[nodiscard]] Load make_load() const;
 
-  /// Takes new forces in the place of those before. Forces on a held node move nothing.
+  /// Replaces the forces of `load`. Forces on a held node move nothing.
   void set(std::span<const TissueForce> forces, Load& load) const;
 
-  /// Displacement [mm] LPS of nodes of the mesh: what the mesh represents, without the needle's near field
+  /// Displacement [mm] LPS of nodes of the mesh as the mesh represents it, without the needle's near field
   /// (ContactCompliance::mesh_displacement).
   /// @param out (3 × nodes)
   void displacement(std::span<const Index> nodes, Load& load, Eigen::Ref<Eigen::Matrix3Xf> out) const;
 
-  /// Nodes of the patient's surface and of all surfaces between regions, ascending. They are the quickest to read.
+  /// Nodes of the patient's surface and of all surfaces between regions, ascending. Reading them is fastest, because
+  /// they are stored together.
   [[nodiscard]] std::span<const Index> surface() const { return surface_; }
 
-  /// Whether forces on a node of the mesh are shown without error everywhere.
+  /// Whether the displacement under forces on this node of the mesh is exact everywhere.
   [[nodiscard]] bool exact_on(Index node) const;
 
   struct Statistics {
     int zone_dofs = 0;  ///< free degrees of freedom of Z
-    int columns = 0;    ///< of the skeleton; as many: exact
-    /// No node is off by more than this for each newton of the magnitudes of all forces, rounding apart. Measured on
-    /// the columns that the skeleton represents worst, and taken twice.
+    int columns = 0;    ///< degrees of freedom of the skeleton; equal to zone_dofs: the field is exact
+    /// Largest error of any node's displacement, per newton of the summed magnitudes of all forces, without rounding.
+    /// Twice the error measured on the columns that the skeleton represents worst.
     double error_mm_per_N = 0.0;
     double seconds = 0.0;
     double megabytes = 0.0;
@@ -95,13 +99,13 @@ class DisplayField {
 
   std::shared_ptr<const Model> model_;
   std::vector<Index> surface_;
-  std::vector<Index> zone_;             ///< nodes of Z, none of them held
-  std::vector<Index> slot_;             ///< (displacement nodes) in zone_, -1
-  std::vector<Eigen::Index> skeleton_;  ///< degrees of freedom of Z that are in S
+  std::vector<Index> zone_;             ///< nodes of Z; held nodes are not in it
+  std::vector<Index> slot_;             ///< (displacement nodes) position in zone_, or -1
+  std::vector<Eigen::Index> skeleton_;  ///< S as indices of degrees of freedom of Z
   LowRankRows rows_;                    ///< (3 mesh nodes × S) [mm/N] K⁻¹(R,S)
   Eigen::MatrixXf to_skeleton_;         ///< (S × 3Z) T; empty: the identity
-  std::vector<Index> near_slot_;        ///< (mesh nodes) number among near nodes, -1; empty where nothing is left out
-  Eigen::MatrixXf near_rows_;           ///< (3 near nodes × 3Z) [mm/N] K⁻¹ − what the skeleton gives
+  std::vector<Index> near_slot_;  ///< (mesh nodes) number among the near nodes, or -1; empty if the field is exact
+  Eigen::MatrixXf near_rows_;     ///< (3 near nodes × 3Z) [mm/N] K⁻¹ minus its approximation by the skeleton
   Statistics statistics_;
 };
 

@@ -11,31 +11,31 @@
 
 namespace stylet {
 
-/// What the needle does to the tissue right beside it, for pictures: the near field that a mesh cannot represent and a
-/// DisplayField therefore lacks, A − Λ K⁻¹ Λᵀ of NearFieldCompliance, at points of surfaces. With it the skin lies
-/// where the tip that presses on it is (docs/theory/display.md).
+/// Adds the near field of the needle to pictures: the displacement right beside the needle that a mesh cannot represent
+/// and that a DisplayField therefore lacks, A − Λ K⁻¹ Λᵀ of NearFieldCompliance, at points of surfaces. With it the
+/// skin is drawn where the tip that presses on it is (docs/theory/display.md).
 ///
-/// What a force that stays where it is does to a point is kept; of those that move, as the tip's does, it is computed
-/// for each picture. For one thread at a time; nothing is solved.
+/// The effect of a force whose place stays the same is cached; for a force that moves, such as the tip's, it is
+/// computed for each picture. For one thread at a time. No system of equations is solved.
 class DisplayNearField {
  public:
-  /// @param points between nodes of the mesh (SurfacePoint::node); those away from the planned ways, where the model
+  /// @param points between nodes of the mesh (SurfacePoint::node); points away from the planned ways, where the model
   ///   has no kernel, are not moved
   DisplayNearField(std::shared_ptr<const Model> model, std::span<const SurfacePoint> points);
 
-  /// Takes new forces in the place of those before. Allocates while there are more of them than ever before.
+  /// Replaces the forces. Allocates when there are more of them than in any earlier call.
   void set(std::span<const TissueForce> forces);
 
-  /// Adds the near field [mm] LPS. @param u (3 × points)
+  /// Adds the near field to the displacement of the points. @param u (3 × points) [mm] LPS
   void add(Eigen::Ref<Eigen::Matrix3Xf> u) const;
 
-  /// Points that may be moved.
+  /// Number of points near a planned way, which are the points that the near field may move.
   [[nodiscard]] std::size_t points() const { return numbers_.size(); }
-  /// Sum of the magnitudes [N] of forces where the model has no kernel: their near field is not shown.
+  /// Sum of the magnitudes [N] of the forces at places where the model has no kernel; their near field is not shown.
   [[nodiscard]] double left_out_N() const { return left_out_N_; }
 
  private:
-  /// A force's place, and whether it is one of now.
+  /// A place whose blocks are cached, and whether one of the present forces acts there.
   struct Source {
     TissueForce force;
     bool used = false;
@@ -48,15 +48,17 @@ class DisplayNearField {
 
   std::shared_ptr<const Model> model_;
   NeedleKernel needle_;
-  std::vector<Eigen::Index> numbers_;                   ///< of the points that may be moved
-  std::vector<NearPlace> places_;                       ///< of these
-  std::vector<Index> nodes_;                            ///< of the mesh, that any of them hangs on
-  std::vector<std::array<std::size_t, 3>> node_slots_;  ///< (places) in nodes_, of the shape's nodes
-  std::vector<Mat3> of_node_;                           ///< (nodes) room for g of one force
+  std::vector<Eigen::Index> numbers_;                   ///< indices of the points that may be moved
+  std::vector<NearPlace> places_;                       ///< (numbers) their places
+  std::vector<Index> nodes_;                            ///< nodes of the mesh between which these points lie
+  std::vector<std::array<std::size_t, 3>> node_slots_;  ///< (places) positions in nodes_ of the place's nodes
+  std::vector<Mat3> of_node_;                           ///< (nodes) mesh kernel g of one force; scratch
   std::vector<Source> sources_;
   Eigen::MatrixXf blocks_;  ///< (3 places × 3 sources) [mm/N]
-  Eigen::MatrixXf narrow_;  ///< what of blocks_ lasting forces lack, being wide; empty: no tissue creeps or stiffens
-  Eigen::VectorXf moved_;   ///< (3 places) [mm]
+  /// The part of blocks_ that only forces on the needle's scale have, not lasting forces, which are spread widely;
+  /// empty if no tissue creeps or stiffens.
+  Eigen::MatrixXf narrow_;
+  Eigen::VectorXf moved_;  ///< (3 places) [mm]
   double left_out_N_ = 0.0;
 };
 

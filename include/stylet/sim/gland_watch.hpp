@@ -11,19 +11,19 @@
 
 namespace stylet {
 
-/// Picks from the gland's motion, step by step, what is told of an insertion.
+/// Follows the gland's motion step by step and collects the figures that are reported about an insertion.
 class GlandWatch {
  public:
   /// @param targets names of the regions that form the gland
   explicit GlandWatch(std::vector<std::string> targets) : targets_(std::move(targets)) {}
 
-  /// A step has been taken.
-  /// @param motion of the gland after it @param at_rest whether nothing acts on the tissue any more
-  /// @param deepest whether the base goes no further in after it
+  /// Adds a step that has been taken.
+  /// @param motion of the gland after the step @param at_rest whether no force acts on the tissue after the step
+  /// @param deepest whether this is the last step of the way in: the base goes no deeper afterwards
   GlandStep add(const Step& step, std::span<const Event> events, const VolumeMotion& motion, bool at_rest,
                 bool deepest);
 
-  /// The gland's motion over the steps that were added so far.
+  /// The gland's motion over all steps that have been added.
   [[nodiscard]] GlandMotion result() const;
 
  private:
@@ -33,9 +33,9 @@ class GlandWatch {
   std::vector<std::string> targets_;
   GlandMotion motion_;
   Vec3 last_shift_mm_ = Vec3::Zero();
-  bool advancing_ = true;              ///< up to the deepest step
-  bool at_rest_ = false;               ///< after the last step
-  std::optional<double> withdrawn_s_;  ///< when the needle came out
+  bool advancing_ = true;              ///< the deepest step has not been added
+  bool at_rest_ = false;               ///< no force acted on the tissue after the last step
+  std::optional<double> withdrawn_s_;  ///< time at which the needle came out
 };
 
 }  // namespace stylet

@@ -10,12 +10,12 @@
 
 namespace stylet {
 
-/// Whether a needle in a region of this name harms the patient: rectum, bladder and urethra are to be spared.
+/// Whether a needle in a region of this name harms the patient: true for rectum, bladder and urethra.
 /// @param region canonical name
 bool harmed_by_needle(std::string_view region);
 
-/// What the needle harmed, one sentence for each time it entered such an organ, in their order: "The needle entered the
-/// rectum, at a depth of 63.1 mm."
+/// One sentence for each time the needle entered an organ that it harms, in the order of the events: "The needle
+/// entered the rectum, at a depth of 63.1 mm."
 std::vector<std::string> harms(std::span<const Event> events);
 
 }  // namespace stylet

@@ -9,52 +9,55 @@
 
 namespace stylet {
 
-/// A tall matrix A with three rows for each of many nodes, for products of a few rows with a vector, again and again.
+/// A tall matrix A with three rows for each of many nodes, compressed for fast products of some of its rows with a
+/// vector.
 ///
-/// Rows of nodes next to each other resemble each other. So nodes are put into clusters, halved along their longest
-/// side, and a cluster's rows A_c ≈ B_c Q_cᵀ are kept as a basis Q_c (columns × r_c), orthonormal, and coordinates B_c
-/// in it: block low-rank. A product is Q_cᵀ w once for each cluster that is asked for, then B_c times that. No cluster
-/// is off by more than ‖A_c − B_c Q_cᵀ‖₂ ≤ tolerance; where that would save nothing A_c stays as it is.
+/// The rows of neighbouring nodes are similar. Therefore the nodes are divided into clusters by halving along the
+/// longest side, and the rows of a cluster c are stored in block low-rank form, A_c ≈ B_c Q_cᵀ, with an orthonormal
+/// basis Q_c (columns × r_c) and coordinates B_c. For a vector w, Q_cᵀ w is computed once for each cluster that is
+/// read, then multiplied by rows of B_c. The error of each cluster is ‖A_c − B_c Q_cᵀ‖₂ ≤ tolerance; a cluster for
+/// which the compressed form would save nothing is stored as it is.
 ///
-/// Immutable: any number of threads may read, each with a Product of its own. Reading does not allocate.
+/// Immutable: any number of threads may read, each with its own Product. Reading does not allocate.
 class LowRankRows {
  public:
   LowRankRows() = default;
-  /// @param points of the nodes, any unit
+  /// @param points positions of the nodes, any unit
   /// @param rows A (3 nodes × columns)
-  /// @param tolerance in the units of A; 0: A as it is
-  /// @param together nodes that are read together: they have clusters of their own, so that few are asked then
+  /// @param tolerance in the unit of A; 0: A is stored as it is
+  /// @param together nodes that are usually read together: they get clusters of their own, so that fewer clusters are
+  ///   needed to read them
   LowRankRows(std::span<const Vec3> points, const Eigen::Ref<const Eigen::MatrixXf>& rows, double tolerance,
               std::span<const Index> together = {}, const Progress& progress = {});
 
-  /// A vector to multiply with, and what the clusters' bases made of it as far as they were asked.
+  /// A vector w to multiply by, and a cache of the products Q_cᵀ w of the clusters that have been read.
   class Product {
    public:
-    /// Another vector is set by writing here, and forget().
+    /// The vector w (columns). Call forget() after writing to it.
     Eigen::VectorXf& vector() { return vector_; }
-    void forget();
+    void forget();  ///< clears the cache
 
    private:
     friend class LowRankRows;
     Eigen::VectorXf vector_;      ///< (columns)
-    Eigen::VectorXf in_basis_;    ///< Q_cᵀ w of all clusters
-    std::vector<char> is_there_;  ///< (clusters) in in_basis_
+    Eigen::VectorXf in_basis_;    ///< Q_cᵀ w of all clusters, one after the other
+    std::vector<char> is_there_;  ///< (clusters) whether the cluster's part of in_basis_ is valid
   };
   [[nodiscard]] Product make_product() const;
 
   /// The rows of a node times the vector.
   [[nodiscard]] Eigen::Vector3f times(Index node, Product& product) const;
-  /// Aᵀ of a node as it is kept (columns × 3). Allocates.
+  /// The rows of a node as stored, transposed (columns × 3). Allocates.
   [[nodiscard]] Eigen::Matrix<float, Eigen::Dynamic, 3> transposed(Index node) const;
 
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   struct Cluster {
-    bool is_compressed = false;   ///< or else the basis is the identity
+    bool is_compressed = false;   ///< false: the basis is the identity and is not stored
     Eigen::MatrixXf basis;        ///< Q_c (columns × r)
-    Eigen::MatrixXf coordinates;  ///< B_cᵀ (r × 3 of its nodes)
-    Eigen::Index first = 0;       ///< of its part of Product::in_basis_
+    Eigen::MatrixXf coordinates;  ///< B_cᵀ (r × 3 nodes of the cluster)
+    Eigen::Index first = 0;       ///< start of the cluster's part of Product::in_basis_
   };
   struct Place {
     Index cluster = -1;

@@ -14,34 +14,35 @@
 
 namespace stylet {
 
-/// An insertion with every open choice made.
+/// An insertion with entry point, direction, depth and motion determined.
 struct PlannedInsertion {
   std::string name;                ///< template hole, or "needle 1", …
   Vec3 entry = Vec3::Zero();       ///< [mm] LPS skin point on the needle's line
   Vec3 direction = Vec3::UnitZ();  ///< unit, LPS
-  double depth_mm = 0.0;           ///< of the base beyond skin contact
-  bool recorded = false;           ///< follows a motion that was given
+  double depth_mm = 0.0;           ///< base depth at the deepest point, beyond skin contact
+  bool recorded = false;           ///< the base follows a recorded motion
   BaseMotion motion;
 };
 
-/// What takes long to compute of a model.
+/// The parts of a compiled model that take long to compute; they can be stored and passed to Model::compile().
 struct ModelCompliance {
   MatX store;                  ///< [mm/N] (3c × 3c) K⁻¹ among the nodes of Tissue::corridor()
   std::vector<double> kernel;  ///< MeshKernel::numbers() of the corridor; empty without a near field
   MatX spread;                 ///< SpreadCompliance::matrix(); empty where nothing stiffens or creeps
 };
 
-/// A scenario compiled: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable:
-/// simulations in any threads may share it, and where a needle leaves the planned corridor its own copy of the
-/// compliance grows.
+/// A compiled scenario: mesh, stiffness factor, compliance near the planned ways, laws, supports. Immutable:
+/// simulations in any threads may share it. When a needle leaves the planned corridor, its simulation adds compliance
+/// to a copy of its own.
 class Model {
  public:
-  /// @param mesh the patient's tetrahedra, regions by canonical names
-  /// @param motions recorded base motions, one per insertion, empty where the plan is to be followed
-  /// @param where what to call the scenario in messages
-  /// @param known what compile() computed for the same scenario and mesh before: the stiffness is then factorised only
-  ///   when something asks for what is not in it. Refused where the sizes do not fit; whether it belongs to the model
-  ///   is the caller's to know.
+  /// Compiles a scenario; takes seconds to minutes.
+  /// @param mesh the patient's tetrahedra, with canonical names of regions
+  /// @param motions recorded base motions, one per insertion; an empty one means that the plan is followed
+  /// @param where name of the scenario in messages
+  /// @param known result of an earlier compile() of the same scenario and mesh: the stiffness is then factorised only
+  ///   when something needs compliance that `known` does not have. Sizes that do not fit are an error; the caller must
+  ///   make sure that it belongs to this model.
   static Result<std::shared_ptr<const Model>> compile(const Scenario& scenario, TetMesh mesh, const std::string& where,
                                                       const std::vector<std::vector<MotionSample>>& motions = {},
                                                       const Progress& progress = {},
@@ -59,30 +60,30 @@ class Model {
   [[nodiscard]] const Tissue& tissue() const { return *tissue_; }
   [[nodiscard]] const Topology& topology() const { return *topology_; }
   [[nodiscard]] const Locator& locator() const { return *locator_; }
-  /// Of the corridor.
+  /// Compliance among the nodes of the corridor.
   [[nodiscard]] const std::shared_ptr<const ComplianceStore>& store() const { return store_; }
-  /// The full K⁻¹, for engines that keep it; else empty.
+  /// The full K⁻¹ for engines that keep it; otherwise empty.
   [[nodiscard]] const std::shared_ptr<const MatX>& inverse() const { return inverse_; }
-  /// Kernel of the mesh near the needles' ways, where coupling.method = "near-field"; empty otherwise.
+  /// Kernel of the mesh near the needles' ways, for coupling.method = "near-field"; otherwise empty.
   [[nodiscard]] const std::shared_ptr<const MeshKernel>& kernel() const { return near_field_.kernel; }
-  /// The compliance to spread forces along the needles' ways, where there is a near field in tissue that stiffens or
-  /// creeps; empty otherwise.
+  /// Compliance to forces that are spread widely, along the needles' ways, for coupling.method = "near-field" in tissue
+  /// that stiffens or creeps; otherwise empty.
   [[nodiscard]] const std::shared_ptr<const SpreadCompliance>& spread() const { return near_field_.spread; }
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
-  /// Radius around the planned ways in which compliance is there from the start [mm]: coupling.corridor_mm, or less
-  /// where that has more than coupling.corridor_nodes.
+  /// Radius [mm] around the planned ways within which compliance is precomputed: coupling.corridor_mm, or less if that
+  /// radius holds more than coupling.corridor_nodes nodes.
   [[nodiscard]] double corridor_mm() const { return corridor_mm_; }
   [[nodiscard]] const std::vector<int>& target_regions() const { return target_; }
   [[nodiscard]] const Supports& supports() const { return supports_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// A needle of this model, unloaded; in a guide where the template is one.
+  /// A new, unloaded needle as the scenario describes it, in a guide hole if template.guide is set.
   [[nodiscard]] std::unique_ptr<Needle> make_needle() const;
 
-  /// What a report says about this model.
-  /// @param insertion the one the entry and direction are of
+  /// Description of this model for a report: parameters with their sources, supports, warnings.
+  /// @param insertion index of the insertion whose entry and direction are given
   [[nodiscard]] RunInfo info(std::size_t insertion = 0) const;
 
  private:
@@ -109,12 +110,12 @@ class Model {
   OwnParts own_;
 };
 
-/// Depth [mm] by which the surface of tissue of these parameters tents under a force [N] on a flat punch of the
-/// needle's radius: F (1 − ν²) / (2 R E), or less where it stiffens (docs/theory/stiffening.md).
+/// Tenting [mm] of the surface of tissue with these parameters under a force F [N] on a flat punch of the needle's
+/// radius R: F (1 − ν²) / (2 R E), or less if the tissue stiffens (docs/theory/stiffening.md).
 double tenting_mm(const TissueParameters& tissue, double force_N, double needle_diameter_mm);
 
-/// What is wrong with a set of parameters before anything is simulated: tenting outside 5 … 20 mm, a cutting lag over
-/// 5 mm. One sentence each.
+/// Warnings about implausible tissue parameters, found before anything is simulated: tenting outside 3 … 20 mm, cutting
+/// lag above 5 mm.
 std::vector<std::string> tenting_warnings(const std::string& region, const TissueParameters& tissue,
                                           double needle_diameter_mm);
 

@@ -5,13 +5,13 @@
 
 namespace stylet {
 
-/// Largest depth [mm] of the base: what is left of the needle outside is held by the hand, and by the template if that
-/// guides it.
+/// Largest base depth [mm] of the scenario's needle: a part of the needle stays outside, for the hand and, if
+/// template.guide is set, up to the template.
 double deepest_mm(const Scenario& scenario);
 
-/// What an insertion would be in the patient of a model, without computing anything for it: where it meets the skin and
-/// how deep it goes. Errors: a line that misses the patient, a target out of the needle's reach.
-/// @param where what to call it in messages
+/// Plans an insertion in the patient of a model: entry point on the skin, direction, depth and motion. Nothing is
+/// simulated. Errors: a line that misses the patient, a target beyond the needle's reach.
+/// @param where name of the insertion in messages
 Result<PlannedInsertion> plan_insertion(const Model& model, const InsertionPlan& plan, const std::string& where);
 
 }  // namespace stylet

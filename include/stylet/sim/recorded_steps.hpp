@@ -9,17 +9,18 @@
 
 namespace stylet {
 
-/// Results of a needle at rest are the same but for what rounding does to them, some 1e-15. So much they may differ,
-/// which is below what the balance of needle and tissue is found to.
+// Largest difference between two steps of a needle at rest. Such steps differ by rounding, about 1e-15; these limits
+// are below the tolerance of the balance between needle and tissue.
 inline constexpr double kRestForce_N = 1e-7;
 inline constexpr double kRestTorque_Nmm = 1e-5;
 inline constexpr double kRestPlace_mm = 1e-7;  ///< of the tip
 
-/// Whether a step comes to what an earlier one did: it was given the same dt and base, bit for bit, and its forces, its
-/// torque and its tip differ by no more than is rest; states and numbers of contacts are equal.
+/// Whether a step repeats an earlier one: dt and base are equal bit for bit, tip state, flags and numbers of contacts
+/// are equal, and forces, torque and tip differ by at most kRestForce_N, kRestTorque_Nmm and kRestPlace_mm.
 bool is_at_rest(const Step& earlier, const Step& step);
 
-/// The steps that the records of a recording stand for, with those at rest (Step::rest_steps), in their order.
+/// All steps of a recording in their order, including the steps at rest, for which there is no record but only their
+/// number (Step::rest_steps).
 class RecordedSteps {
  public:
   /// @param records must outlive this
@@ -27,19 +28,20 @@ class RecordedSteps {
 
   [[nodiscard]] std::int64_t count() const { return ends_.empty() ? 0 : ends_.back(); }
   /// @param step from 0; must be below count()
-  /// @return of a step at rest: the record before with the step's own time
+  /// @return the step's record; for a step at rest the record before it, with the step's own time
   [[nodiscard]] Step at(std::int64_t step) const;
   /// Whether a step has a record of its own.
   [[nodiscard]] bool is_recorded(std::int64_t step) const;
-  /// The last step at or before a time; −1 before the first.
+  /// Number of the last step at or before a time; −1 before the first step.
   [[nodiscard]] std::int64_t last_at(double time_s) const;
 
  private:
   std::span<const Step> records_;
-  std::vector<std::int64_t> ends_;  ///< of each record: steps up to it, with itself
+  std::vector<std::int64_t> ends_;  ///< for each record: number of steps up to and including it
 };
 
-/// The records, and behind each that a rest follows the last step of that rest: a curve through them is level there.
+/// The records, with the last step of each rest inserted behind the record that the rest follows, so that a curve drawn
+/// through them is level during the rest.
 std::vector<Step> with_ends_of_rests(std::span<const Step> records);
 
 }  // namespace stylet

@@ -20,10 +20,10 @@ struct Event {
   double time_s = 0;
   double depth_mm = 0;  ///< base depth
   double force_N = 0;   ///< axial force of the hand at that moment
-  std::string region;   ///< region touched, punctured or entered; empty where it has no meaning
+  std::string region;   ///< region touched, punctured or entered; empty if the event has none
 };
 
-/// A contact as shown to people.
+/// A contact, for display.
 struct ContactView {
   Vec3 position = Vec3::Zero();  ///< [mm] LPS, deformed
   Vec3 force = Vec3::Zero();     ///< [N] on the tissue
@@ -42,7 +42,7 @@ struct Frame {
   std::vector<ContactView> contacts;
 };
 
-/// A parameter as the run used it, for the report.
+/// A parameter with the value that the run used, for the report.
 struct ParameterRow {
   std::string name;  ///< key in the scenario, e.g. "tissue.prostate.young_kPa"
   std::string value;
@@ -50,13 +50,13 @@ struct ParameterRow {
   std::string source;  ///< "scenario", or where the default comes from (citation)
 };
 
-/// What a run is about, known before its first step.
+/// Description of a run that is known before its first step.
 struct RunInfo {
   std::string version;
   std::string scenario_name;
-  std::string scenario_text;  ///< the scenario as resolved, TOML
+  std::string scenario_text;  ///< the scenario with all defaults filled in, TOML
   std::vector<ParameterRow> parameters;
-  std::vector<std::string> supports;  ///< how the tissue is held, in words
+  std::vector<std::string> supports;  ///< how the tissue is held, in sentences
   std::vector<std::string> warnings;
   std::string method;  ///< coupling method and rule
   double needle_diameter_mm = 0;
@@ -73,13 +73,13 @@ struct MeshChange {
   RemeshEvent change;
 };
 
-/// How far the target was moved.
+/// Displacement of the target.
 struct TargetShift {
   Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume (VolumeMotion)
-  double largest_mm = 0.0;          ///< of any of its nodes, of what the mesh represents: depends on the mesh
+  double largest_mm = 0.0;  ///< largest displacement of a node of the target, as the mesh represents it: mesh-dependent
 };
 
-/// What a run comes to.
+/// Results of a run.
 struct Summary {
   std::string version;
   std::string scenario;
@@ -89,26 +89,28 @@ struct Summary {
   double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
   std::vector<Event> events;
   double tip_deflection_mm = 0;  ///< largest distance of the tip from the straight line of insertion
-  /// Where the tip is in the material at its deepest, less where it was planned to be: the point that a rigid straight
-  /// needle would reach in a patient that nothing has moved. LPS; the largest of several insertions; empty where the
-  /// tip is not in the tissue then, and in recordings of earlier versions.
+  /// Tip error at the deepest point: material point of the tip minus the point that a rigid straight needle would reach
+  /// in a patient that nothing has moved. LPS; the largest of several insertions; empty if the tip is not in the tissue
+  /// at that moment, and in recordings of earlier versions.
   std::optional<Vec3> tip_error_mm;
-  std::vector<TargetShift> target_shifts;        ///< at the deepest point of each insertion; none without a target
-  Vec3 target_shift_centroid_mm = Vec3::Zero();  ///< of the one that moved it furthest, as the next
+  std::vector<TargetShift> target_shifts;  ///< at the deepest point of each insertion; empty without a target
+  /// TargetShift::centroid_mm and largest_mm of the insertion with the greatest largest_mm.
+  Vec3 target_shift_centroid_mm = Vec3::Zero();
   double target_shift_max_mm = 0;
-  std::vector<GlandMotion> gland_motions;  ///< of each insertion; none without a target
-  std::optional<GlandMotion> gland;        ///< of the insertion that target_shift_max_mm is of
-  std::vector<GlandStep> gland_path;       ///< after each step; none without a target, and none when read from a file
-  double residual_force_balance = 0;       ///< |supports + contacts on the tissue| / peak force, largest of the run
+  std::vector<GlandMotion> gland_motions;  ///< of each insertion; empty without a target
+  std::optional<GlandMotion> gland;        ///< of the insertion of target_shift_max_mm
+  std::vector<GlandStep> gland_path;       ///< after each step; empty without a target and when read from a file
+  /// Largest value during the run of |supports + contacts on the tissue| / peak force of the hand.
+  double residual_force_balance = 0;
   double residual_torque_balance = 0;
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;
   CapacityUses capacity;
-  double compliance_condition = 1.0;  ///< of the compliance among the contacts, largest of the frames
+  double compliance_condition = 1.0;  ///< condition number of the compliance among the contacts, largest of all frames
   struct Blur {
     double smallest_mm = 0, median_mm = 0, largest_mm = 0;
-    int nodes = 0;  ///< 0 = the coupling puts no near field right
-  } mesh_blur;      ///< radius over which the mesh smears a force, along the needle's way
+    int nodes = 0;  ///< number of nodes measured; 0 = the coupling method does not correct the near field
+  } mesh_blur;      ///< radius over which the mesh smears a point force, along the needle's way
   std::vector<MeshChange> mesh_changes;
   std::vector<std::string> warnings;
 };

@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// Who watches a run. Calls may return an Error to stop it.
+/// Receives the steps and frames of a run. A call may return an Error to stop the run.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
@@ -15,17 +15,17 @@ class RunObserver {
   virtual Result<> on_frame(const Frame& frame) = 0;
 };
 
-/// Carries out all insertions of a model, one after the other, and sums up.
-/// Frames: one before, one per event worth a picture (labelled with the event's name), one at the deepest point
-/// ("deepest"), one after, and a regular series at scenario.output.frames_per_s, at most max_frames.
-/// @return what the run came to, without the step times' effect on anything else
+/// Simulates all insertions of a model, one after the other. Frames of each insertion: "before"; one per event,
+/// labelled with the event's name, except for region_entered, retraction_start and withdrawn; "deepest"; "after"; and
+/// unlabelled ones at scenario.output.frames_per_s, at most output.max_frames.
+/// @return the results; apart from the step times, two runs give the same numbers
 Result<Summary> run(const std::shared_ptr<const Model>& model, RunObserver& observer, const Progress& progress = {});
 
-/// Carries out the model's only insertion with the base led as it was in a recording, step by step. With the model that
-/// the recording was made with every number is the same to the last bit, but where the needle had outrun its compliance
-/// (Step::compliance_missing): how far a worker had come then is not recorded.
-/// @param steps their base and dt_s are used
-/// Errors: no steps, steps without base (files of the first version), a model of several insertions
+/// Simulates the model's only insertion with the base motion of a recording, step by step. With the model that the
+/// recording was made with, all numbers are the same to the last bit, except where the needle had outrun its compliance
+/// (Step::compliance_missing), since the progress of the thread that computed compliance is not recorded.
+/// @param steps of the recording; their base, dt_s and rest_steps are used
+/// Errors: no steps, steps without base (files of the first version), a model with several insertions
 Result<Summary> run_recorded(const std::shared_ptr<const Model>& model, std::span<const Step> steps,
                              RunObserver& observer, const Progress& progress = {});
 

@@ -15,38 +15,40 @@
 
 namespace stylet {
 
-/// What a tissue is made of and what it does to a needle. Every number has a source: see default_tissue().
+/// Mechanical parameters of a tissue and of its interaction with a needle. Every default has a source: see
+/// default_tissue().
 struct TissueParameters {
   double young_kPa = 0;
   double poisson = 0;
   double cutting_N = 0;   ///< axial force at which the tip begins to cut; coupling.tip_viscosity_Ns_per_m adds to it
-  double puncture_N = 0;  ///< of the surface around it; 0 = no membrane
+  double puncture_N = 0;  ///< axial force at which the tip breaks the region's surface; 0 = no membrane
   double stiffening = 0;  ///< k₂/E of the dent under the tip, F = k₁ z + k₂ z² (docs/theory/stiffening.md); 0 = linear
   double friction_static_N_per_m = 0;
   double friction_coulomb_N_per_m = 0;
   double friction_viscous_Ns_per_m2 = 0;
-  double friction_viscous_to_mm_per_s = 50;  ///< sliding friction grows no more beyond this speed
+  double friction_viscous_to_mm_per_s = 50;  ///< speed beyond which sliding friction stays constant
   std::string source;                        ///< where the values come from
 
   bool operator==(const TissueParameters&) const = default;
 };
 
-/// Published or, where nothing is published, fitted or stated defaults for a region by its canonical name ("prostate",
-/// "body", "label_2", …). Unknown names get the values of soft tissue around the gland.
+/// Default parameters for a region by its canonical name ("prostate", "body", "label_2", …): published values or, if
+/// there are none, fitted or assumed values; TissueParameters::source says which. Unknown names get the values of the
+/// soft tissue around the gland.
 TissueParameters default_tissue(const std::string& region, TissuePreset preset = TissuePreset::typical);
 
-/// Regions default_tissue() has values of its own for, in the order of documentation.
+/// Names of the regions for which default_tissue() has its own values, in the order of the documentation.
 std::vector<std::string> known_tissues();
 
-/// Whether a region fills the space between the organs (fat, muscle, the body): what breaks at its surface is the skin
-/// only, since no membrane parts it from its like.
+/// Whether a region fills the space between the organs (fat, muscle, the body). Such regions have no membrane between
+/// them: the only membrane at their surface is the skin.
 bool is_surrounding(const std::string& region);
 
 /// A guide template: a grid of holes in front of the perineum. Columns are lettered A a B b … G from the patient's
 /// right to the left, rows numbered 1, 1.5, … 7 from posterior to anterior.
 struct TemplateGrid {
   double pitch_mm = 5.0;
-  std::optional<std::array<double, 2>> centre_mm;  ///< LPS x and y of hole D4; unset: the target's centroid
+  std::optional<std::array<double, 2>> centre_mm;  ///< LPS x and y of hole D4; unset: of the target's centroid
   std::vector<std::string> columns{"A", "a", "B", "b", "C", "c", "D", "d", "E", "e", "F", "f", "G"};
   std::vector<std::string> rows{"1", "1.5", "2", "2.5", "3", "3.5", "4", "4.5", "5", "5.5", "6", "6.5", "7"};
 
@@ -54,57 +56,58 @@ struct TemplateGrid {
   /// "d3.5".
   [[nodiscard]] Result<std::array<double, 2>> offset_mm(const std::string& hole) const;
 
-  bool guide = false;          ///< the hole holds the shaft
-  double clearance_mm = 0.05;  ///< of the shaft in its hole: radius less radius
-  double distance_mm = 10.0;   ///< of the template from the skin, along the needle
+  bool guide = false;          ///< the hole holds the shaft sideways
+  double clearance_mm = 0.05;  ///< radius of the hole minus radius of the needle
+  double distance_mm = 10.0;   ///< distance between template and skin, along the needle
 
   bool operator==(const TemplateGrid&) const = default;
 };
 
 /// One needle going in and out.
 struct InsertionPlan {
-  std::optional<std::string> hole;                 ///< template hole, or
-  std::optional<std::array<double, 3>> entry_mm;   ///< a point the needle passes before the skin, LPS
+  std::optional<std::string> hole;                 ///< template hole; either this or entry_mm is needed
+  std::optional<std::array<double, 3>> entry_mm;   ///< a point on the needle's line, LPS
   std::optional<std::array<double, 3>> direction;  ///< LPS, need not be a unit vector; default superior
   std::optional<std::array<double, 3>> target_mm;  ///< a point to aim at, LPS, instead of a direction
-  double roll_deg = 0.0;                           ///< of the needle about its axis, from local x to local y
+  double roll_deg = 0.0;                           ///< rotation of the needle about its axis, from local x to local y
   double approach_mm = 3.0;                        ///< free travel before the skin
-  double depth_mm = 0.0;  ///< of the base beyond skin contact; 0 = to the far end of the target
+  double depth_mm = 0.0;  ///< largest base depth, from skin contact; 0 = to the far end of the target
   double speed_mm_per_s = 20.0;
   double dwell_s = 0.3;
   double retract_speed_mm_per_s = 20.0;
-  bool retract = true;  ///< pull the needle out after the dwell
-  std::string motion;   ///< a recorded base motion (CSV) instead of all the above
+  bool retract = true;  ///< draw the needle out after the dwell
+  std::string motion;   ///< file of a recorded base motion (CSV), which replaces all keys above
 
   bool operator==(const InsertionPlan&) const = default;
 };
 
-/// A simulation, as a person writes it down. Every field is a key of the scenario file with its unit in the name.
+/// Description of a simulation: patient, tissue, supports, mesh, needle, coupling, insertions, output. Every field is a
+/// key of the scenario file, whose name contains the unit; docs/scenario.md explains each key.
 struct Scenario {
   std::string name = "insertion";
   struct Patient {
     std::string source;                          ///< contours, mask or mesh; relative to the scenario file
     std::map<std::string, std::string> regions;  ///< ROI name or label → region name
     std::vector<std::string> skip;               ///< structures or labels to leave out
-    double scale = 0.0;                          ///< [mm] unit of a mesh file; 0 = as the file says
-    int volume = 0;                              ///< of a mask file with several, counted from 1; 0 = the only one
+    double scale = 0.0;                          ///< [mm] length of the unit of a mesh file; 0 = as the file says
+    int volume = 0;                              ///< number of the volume in a mask file, from 1; 0 = the only one
     bool operator==(const Patient&) const = default;
   } patient;
   struct TissueModel {
-    TissuePreset preset = TissuePreset::typical;  ///< of regions without an override
+    TissuePreset preset = TissuePreset::typical;  ///< source of the values of regions without an override
     ElementChoice element = ElementChoice::automatic;
-    std::optional<double> creep;  ///< how many times as far a force that lasts moves the tissue as at once: creep_of()
-    double creep_s = 0.6;         ///< time constant of that under a constant force
+    std::optional<double> creep;  ///< ratio of final to immediate displacement under a constant force; see creep_of()
+    double creep_s = 0.6;         ///< time constant of the creep under a constant force
     bool operator==(const TissueModel&) const = default;
-  } tissue_model;                                  ///< of all regions: the keys of [tissue] itself
+  } tissue_model;                                  ///< for all regions: the keys of [tissue] itself
   std::map<std::string, TissueParameters> tissue;  ///< overrides, complete (defaults filled in)
   struct Fixed {
-    std::vector<std::string> regions;  ///< regions whose nodes are all held; empty = pubic arch and femurs if there
-    OuterSupport outer = OuterSupport::automatic;  ///< sides: all but the perineal face
+    std::vector<std::string> regions;              ///< regions held whole; empty = pubic arch and femurs, if present
+    OuterSupport outer = OuterSupport::automatic;  ///< outer faces that are held; sides = all but the perineal face
     std::optional<std::array<double, 6>> box_mm;   ///< LPS, low and high corner: nodes inside are held as well
     bool operator==(const Fixed&) const = default;
   } fixed;
-  SoftLayers anatomy = typical_layers();  ///< what the patient has that contours and masks do not show
+  SoftLayers anatomy = typical_layers();  ///< layers of the patient that contours and masks do not show
   struct Mesh {
     int nodes = 0;  ///< 0 = the preset's default
     MeshPreset preset = MeshPreset::standard;
@@ -116,19 +119,19 @@ struct Scenario {
     NeedleModel model = NeedleModel::beam;
     double length_mm = 200.0;
     double diameter_mm = 1.27;
-    std::optional<double> lumen_diameter_mm;  ///< unset: that of an 18 gauge needle in proportion
+    std::optional<double> lumen_diameter_mm;  ///< unset: same ratio to the outer diameter as an 18 gauge needle
     double young_GPa = 200.0;
     StyletPlace stylet = StyletPlace::out;
-    std::optional<double> stylet_diameter_mm;  ///< unset: 0.9 of the lumen
+    std::optional<double> stylet_diameter_mm;  ///< unset: 0.9 times the lumen's diameter
     double stylet_young_GPa = 200.0;
-    std::optional<double> bending_stiffness_Nmm2;  ///< instead of the section's
-    std::optional<double> torsion_stiffness_Nmm2;  ///< instead of the section's
-    double bevel_deg = 0.0;                        ///< between the bevel's face and the axis; 0 = symmetric
+    std::optional<double> bending_stiffness_Nmm2;  ///< unset: computed from the section
+    std::optional<double> torsion_stiffness_Nmm2;  ///< unset: computed from the section
+    double bevel_deg = 0.0;                        ///< angle between the bevel's face and the axis; 0 = symmetric tip
     Bevel::Law bevel_law = Bevel::Law::offset;
     double bevel_force_ratio = 0.06;
-    double bow_mm = 0.0;   ///< offset of the unloaded needle's tip
-    double bow_deg = 0.0;  ///< towards which side, about the axis
-    int elements = 0;      ///< 0 = the model's own
+    double bow_mm = 0.0;   ///< offset of the unloaded needle's tip from its axis
+    double bow_deg = 0.0;  ///< direction of the offset, about the axis
+    int elements = 0;      ///< 0 = the default of the needle model
     bool operator==(const NeedleChoice&) const = default;
   } needle;
   struct Coupling {
@@ -165,13 +168,14 @@ struct Scenario {
   bool operator==(const Scenario&) const = default;
 };
 
-/// The tissue of a region in a scenario: the override, or the preset's default.
+/// The tissue parameters of a region in a scenario: the scenario's override, or the preset's default.
 TissueParameters tissue_of(const Scenario& scenario, const std::string& region);
 
-/// How many times as far a force that lasts moves the tissue as at once; 1 = elastic.
+/// Creep of the scenario's tissue: ratio of the final to the immediate displacement under a constant force; 1 =
+/// elastic.
 double creep_of(const Scenario& scenario);
 
-/// A value as it stands in a scenario file.
+/// A value of a scenario file.
 struct ScenarioValue {
   enum class Type { number, integer, boolean, text, numbers, texts };
   Type type = Type::number;
@@ -182,46 +186,46 @@ struct ScenarioValue {
   std::vector<std::string> texts{};
 };
 
-/// As the value is written in a scenario file: 60, true, "D4", [0, 0, 1].
+/// The value as text of a scenario file: 60, true, "D4", [0, 0, 1].
 std::string to_string(const ScenarioValue& value);
 
-/// What is known about a key.
+/// Documentation of a key of the scenario.
 struct ScenarioKey {
   std::string path;  ///< "tissue.<region>.young_kPa", "patient.regions.<name>", "insertion[].hole", "mesh.nodes"
   ScenarioValue::Type type = ScenarioValue::Type::number;
   std::string unit;      ///< "mm"; empty for a pure number or a word
-  std::string standard;  ///< default: a value as it is written, or words such as "by region"
-  std::string range;     ///< in words: "20 … 1000", "\"sides\", \"all\""
+  std::string standard;  ///< default: a value as in a file, or words such as "by region"
+  std::string range;     ///< allowed values as text: "20 … 1000", "\"sides\", \"all\""
   std::string meaning;
-  std::string example;  ///< a value as it is written; the default where that is one
+  std::string example;  ///< a value as in a file; the default, if it is a value
 };
 
-/// All keys, in the order of documentation.
+/// All keys, in the order of the documentation.
 const std::vector<ScenarioKey>& scenario_keys();
 
-/// Sets one key. Unknown keys are refused with the nearest known name; values out of range or of the wrong type with
-/// the documented range. What is refused leaves the scenario as it was.
+/// Sets one key. Errors: an unknown key (the message suggests the nearest known name); a value out of range or of the
+/// wrong type (the message gives the allowed range). On error the scenario is unchanged.
 /// @param path "tissue.prostate.young_kPa", "insertion[0].hole", "mesh.nodes"
 /// @param where file and line for the message
 Result<> set_scenario_key(Scenario& scenario, const std::string& path, const ScenarioValue& value,
                           const std::string& where);
 
-/// The value of one key; empty where it is not set (a default that depends on the patient) or not a key.
+/// The value of one key; empty if the key is not set (its default depends on the patient) or does not exist.
 /// @param path as for set_scenario_key()
 std::optional<ScenarioValue> scenario_value(const Scenario& scenario, const std::string& path);
 
-/// What to call the place of a key in messages, e.g. "demo.toml, line 12"; asked with "insertion[0].hole" or, where no
-/// single key is at fault, "insertion[0]" or "".
+/// Function that names the place of a key for messages, e.g. "demo.toml, line 12". Its argument is a path such as
+/// "insertion[0].hole" or, if no single key is at fault, "insertion[0]" or "".
 using ScenarioPlace = std::function<std::string(const std::string& path)>;
 
-/// Whether every key of a scenario has a value that set_scenario_key() takes, with its words where one has not: fields
-/// that were written in C++ are held to the same table as files are.
+/// Checks that set_scenario_key() would accept the value of every key of a scenario, and returns its error otherwise.
+/// Thus fields that were set in C++ obey the same table of ranges as files.
 Result<> check_scenario_keys(const Scenario& scenario, const ScenarioPlace& place);
 
-/// The same, and what single keys cannot show: at least one insertion, entry given one way, depth within the needle,
-/// corners and template in order.
+/// Checks a scenario: every key by check_scenario_keys(), then the rules that concern several keys, such as at least
+/// one insertion, one way to give its entry, a depth within the needle's length, and keys that exclude each other.
 Result<> check_scenario(const Scenario& scenario, const ScenarioPlace& place);
-/// @param where what to call the scenario in messages
+/// @param where name of the scenario in messages
 Result<> check_scenario(const Scenario& scenario, const std::string& where);
 
 }  // namespace stylet

@@ -6,54 +6,57 @@
 
 namespace stylet {
 
-/// One needle in one patient, moving: the preallocated state of a Model. step() is the only call of the loop; it does
-/// not allocate once the compliance around the tip is there (prepare()).
+/// Simulation of one needle in one patient: the mutable, preallocated state that belongs to a Model. A loop calls only
+/// step(), which does not allocate once prepare() has made the compliance around the tip available.
 class Simulation {
  public:
-  /// The needle is placed where the model's first insertion starts.
+  /// Places the needle at the start of the model's first insertion.
   explicit Simulation(std::shared_ptr<const Model> model);
 
-  /// Starts an insertion: the needle, straight, at its base pose outside the patient. Time goes on from where it was.
-  /// @param base of the needle @param entry [mm] LPS, skin point on its line @param direction LPS, into the patient
+  /// Starts an insertion with the needle straight and outside of the patient. Simulated time continues.
+  /// @param base pose of the needle's base @param entry [mm] LPS, skin point on the needle's line
+  /// @param direction LPS, into the patient
   void place(const Pose& base, const Vec3& entry, const Vec3& direction);
-  /// The same, where a planned insertion starts.
+  /// Starts a planned insertion at the beginning of its motion.
   void place(const PlannedInsertion& insertion) {
     place(insertion.motion.at(0.0), insertion.entry, insertion.direction);
   }
 
-  /// Moves the base to `base`.
-  /// @param dt [s] taken as a whole number of nanoseconds, so that times do not drift
-  /// @return last_step(); step_us is left at 0 (the caller owns the clock)
+  /// Moves the base to the pose `base` during `dt`.
+  /// @param dt [s]; rounded to whole nanoseconds, so that times do not drift
+  /// @return last_step(); its step_us is 0, since the caller measures computing time
   const Step& step(const Pose& base, double dt);
 
   /// Makes the compliance near the tip available; call between steps. Allocates when the tip has left the corridor.
   void prepare();
 
-  /// The last step that was taken, or what there was after the placing. Where a step was not taken, the one before it,
-  /// with no flag but Step::invalid_input.
+  /// The last step, or the state after place() if there has been none. If the last step was refused, this is the step
+  /// before it with Step::invalid_input as its only flag.
   [[nodiscard]] const Step& last_step() const { return step_; }
+  /// The events of the last step.
   [[nodiscard]] std::span<const Event> new_events() const {
     return {events_.data(), static_cast<std::size_t>(event_count_)};
   }
 
-  /// Everything visible now. Solves for the whole displacement: not in the loop.
+  /// The present state for display. Solves for the displacement of all nodes, so it must not be called in the loop.
   [[nodiscard]] Frame frame(const std::string& label = {}) const;
 
-  /// Action against reaction on the tissue (not in the loop). force: of supports and contacts together, over `scale_N`;
-  /// torque: their moments about the entry, over scale_N × 100 mm. The hand is not in it: its force is computed as the
-  /// sum of the contacts' and the guide's, so that those balance whatever the needle does.
+  /// Relative residual of the balance of forces on the tissue: of supports and contacts. The hand's force is not part
+  /// of it, because it is computed as the sum of the forces of contacts and guide and would always balance them.
   struct Balance {
-    double force = 0.0;
-    double torque = 0.0;
+    double force = 0.0;   ///< |sum of forces| / scale_N
+    double torque = 0.0;  ///< |sum of moments about the entry| / (scale_N × 100 mm)
   };
+  /// Computes the balance; must not be called in the loop. @param scale_N [N] reference force
   [[nodiscard]] Balance balance(double scale_N) const;
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const Insertion& insertion() const { return insertion_; }
-  /// What brings compliance to the needle, and around what a worker should have it ahead of the tip.
+  /// The supply of compliance around the needle, which a worker thread may serve ahead of the tip.
   [[nodiscard]] ComplianceSupply& supply() { return insertion_.supply(); }
+  /// Radius and distance ahead of the tip for which the worker should compute compliance.
   [[nodiscard]] ComplianceSupply::Settings supply_settings() const;
-  /// Insertion::observe_phases().
+  /// See Insertion::observe_phases().
   void observe_phases(PhaseObserver* observer) { insertion_.observe_phases(observer); }
   [[nodiscard]] double time_s() const { return step_.time_s; }
 
@@ -71,7 +74,7 @@ class Simulation {
   int event_count_ = 0;
   std::int64_t time_ns_ = 0;
   TurnWatch turns_;
-  bool slipping_ = true;  ///< since the last reversal more than half of the shaft has begun to slide
+  bool slipping_ = true;  ///< more than half of the inserted shaft has begun to slide since the last turn
 };
 
 }  // namespace stylet

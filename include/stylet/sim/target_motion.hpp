@@ -9,27 +9,29 @@
 
 namespace stylet {
 
-/// How far a needle has moved the target of a model.
+/// Computes how far a needle has moved the target of a model.
 class TargetMotion {
  public:
-  /// The target's motion per force is solved for once, on coarse meshes with finer elements than those of the step.
-  /// @param model outlives this
+  /// Solves once for the target's motion per force. On coarse meshes this uses finer elements than the steps do.
+  /// @param model must outlive the result
   static Result<TargetMotion> of(const Model& model, const Progress& progress = {});
 
-  /// The motion of another model's target, where that is the same to the last bit: the same patient and tissue, held at
-  /// the same nodes, and a mesh on which the needle's way has no part in it. Nothing is solved then; else it is empty.
-  /// @param other outlives what is returned, as does the model of this; of the same mesh, materials and target
+  /// The target motion of another model, sharing this solution if it is the same to the last bit: the same nodes must
+  /// be held, and the mesh must be small enough that the solution does not depend on the needle's way. Otherwise empty.
+  /// @param other must have the same mesh, materials and target, and must outlive the result
   [[nodiscard]] std::optional<TargetMotion> shared_with(const Model& other) const;
 
-  /// The target at one moment.
+  /// The motion of the target at one moment.
   struct Moment {
-    VolumeMotion motion;  ///< thirds are NaN that the target does not have
+    VolumeMotion motion;  ///< the shift of a third without tissue is NaN
     bool at_rest = true;  ///< no force acts on the tissue
   };
-  /// Microseconds; allocates only where there are more forces than ever before. For each step, between steps.
+  /// The target's motion after the last step. Takes microseconds; allocates only when there are more forces than in any
+  /// earlier call.
   Moment now(const Insertion& insertion);
 
-  /// Not for every step: it solves for a whole displacement.
+  /// The target's shift after the last step. Solves for the displacement of all nodes, so it is too slow for every
+  /// step.
   [[nodiscard]] TargetShift shift(const Insertion& insertion);
 
  private:
@@ -38,7 +40,7 @@ class TargetMotion {
 
   const Model* model_;
   std::shared_ptr<const VolumeResponse> response_;
-  std::vector<TissueForce> forces_;  ///< room for those of a moment
+  std::vector<TissueForce> forces_;  ///< scratch
 };
 
 }  // namespace stylet

@@ -7,21 +7,22 @@
 
 namespace stylet {
 
-/// Where the tip is in the tissue, less where it was to be.
+/// Tip error of a step: place of the tip in the tissue minus its planned place.
 struct TipError {
-  Vec3 mm = Vec3::Zero();      ///< LPS, in the undeformed patient: tip_error_mm() of a report
-  double base_depth_mm = 0.0;  ///< Step::base_depth_mm of the step that it is of
+  Vec3 mm = Vec3::Zero();      ///< LPS, in the undeformed patient; see Summary::tip_error_mm
+  double base_depth_mm = 0.0;  ///< Step::base_depth_mm of the step
 };
 
-/// Follows an insertion step by step for the error of its tip at the deepest, as a report has it. A needle that is
-/// drawn back keeps the error of its deepest step: behind the end of its track the tip is on its way out, not off its
-/// way. Does not allocate.
+/// Follows an insertion step by step and keeps the tip error of its deepest step, as in a report. While the needle is
+/// drawn back, the tip is behind the end of its track and its distance from the plan is not an error. Does not
+/// allocate.
 class TipWatch {
  public:
-  /// After every step. A step that was not taken changes nothing.
+  /// Call after every step. A step that was refused (Step::invalid_input) changes nothing.
   void follow(const Insertion& insertion, const Step& step);
 
-  /// Of the deepest step so far, of several the last; empty while the tip is not in the tissue.
+  /// Tip error of the deepest step; of several equally deep steps the last one. Empty while the tip is not in the
+  /// tissue.
   [[nodiscard]] const std::optional<TipError>& deepest() const { return deepest_; }
 
  private:

@@ -5,11 +5,11 @@
 
 namespace stylet {
 
-/// Watches which way a base moves along its own axis, and finds where it turned round. A hand trembles: it has turned
-/// once it is so far back from where it was furthest.
+/// Follows the motion of a base along its own axis and finds where it turned round. Since a hand trembles, the base
+/// counts as turned only when it is kTurn_mm behind its furthest place.
 class TurnWatch {
  public:
-  /// Time, depth and force at one place of the base.
+  /// State of the insertion at one place of the base.
   struct Moment {
     double time_s = 0.0;
     double depth_mm = 0.0;
@@ -20,8 +20,9 @@ class TurnWatch {
   /// Whether the base moves outwards.
   [[nodiscard]] bool retracting() const { return retracting_; }
 
-  /// The base has moved on. @param advance_mm along its axis, inwards > 0 @param now the moment at its new place
-  /// @return the moment at which it turned round, if the turn is noticed now
+  /// Call after every motion of the base.
+  /// @param advance_mm motion along its axis, inwards > 0 @param now the moment at the base's new place
+  /// @return the moment at which the base turned round, if this call detects a turn
   std::optional<Moment> follow(double advance_mm, const Moment& now) {
     travel_mm_ += advance_mm;
     const double back = retracting_ ? travel_mm_ - furthest_mm_ : furthest_mm_ - travel_mm_;
@@ -37,15 +38,15 @@ class TurnWatch {
   }
 
  private:
-  /// [mm] A base that is further back than this has turned. Raised, a trembling hand turns less often and a turn is
-  /// noticed later.
+  /// [mm] A base that is further back than this has turned. A larger value ignores stronger trembling and detects turns
+  /// later.
   static constexpr double kTurn_mm = 0.05;
-  /// [mm] Less is rounding.
+  /// [mm] Smaller motions are rounding errors.
   static constexpr double kStill_mm = 1e-9;
 
-  double travel_mm_ = 0.0;    ///< of the base along its own axis
-  double furthest_mm_ = 0.0;  ///< travel where it was furthest in its present direction
-  Moment there_;
+  double travel_mm_ = 0.0;    ///< position of the base along its own axis
+  double furthest_mm_ = 0.0;  ///< furthest value of travel_mm_ in the present direction
+  Moment there_;              ///< the moment at furthest_mm_
   bool retracting_ = false;
 };
 

@@ -8,29 +8,30 @@
 
 namespace stylet {
 
-/// Watches one insertion for a surface (skin or capsule) that the tip presses far in front of it and that never breaks:
-/// such a needle goes on without a word, and everything behind that surface is missed.
+/// Follows one insertion and detects a surface (skin or capsule) that the tip presses far in front of it and that never
+/// breaks. Without a warning nobody would notice that the needle does not reach the tissue behind that surface.
 class UnbrokenSurface {
  public:
-  /// A tip this far past where an unbroken surface lies at rest is worth a warning [mm].
+  /// [mm] Distance of the tip past the rest position of an unbroken surface, above which there is a warning.
   static constexpr double kFar_mm = 10.0;
 
-  /// After each step of the insertion. Allocates.
+  /// Call after each step of the insertion. Allocates.
   void add(const Simulation& simulation);
 
-  /// A sentence with distance, force and cure, where a surface was still unbroken at the end.
+  /// A warning with distance, force and cure, if the surface in front of the tip has been pressed further than kFar_mm
+  /// and has not broken.
   [[nodiscard]] std::optional<std::string> warning() const;
 
  private:
   struct Pressed {
     std::string region;
     double past_mm = 0.0;
-    double force_N = 0.0;   ///< of the tip, along the needle
-    double breaks_N = 0.0;  ///< what would break it
+    double force_N = 0.0;   ///< force of the tip, along the needle
+    double breaks_N = 0.0;  ///< force that would break the surface
   };
   [[nodiscard]] static std::optional<Pressed> pressed_now(const Simulation& simulation);
 
-  std::optional<Pressed> furthest_;  ///< of the surface ahead
+  std::optional<Pressed> furthest_;  ///< the furthest state of the surface in front of the tip
 };
 
 }  // namespace stylet

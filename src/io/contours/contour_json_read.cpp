@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contour JSON, reading (docs/formats.md).
+// Reader of contour JSON (docs/formats.md).
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
 #include "stylet/core/nearest_name.hpp"
@@ -34,7 +34,7 @@ Result<> check_keys(const Json& object, std::span<const std::string> known, cons
   return Ok{};
 }
 
-/// A required string.
+/// The value of a key that must be a string.
 Result<std::string> string_at(const Json& object, const char* key, const std::string& where) {
   if (!object.contains(key)) {
     return input_error(where, fmt::format("the key '{}' is missing", key), "Add it (docs/formats.md).");
@@ -115,7 +115,7 @@ Result<Roi> parse_structure(const Json& json, std::size_t position, const std::s
     if (!colour) return colour.error();
   }
   if (!json.contains("contours") || !json["contours"].is_array()) {
-    return input_error(where, "'contours' is missing or no list", "Write \"contours\": [[[x, y, z], …], …].");
+    return input_error(where, "'contours' is missing or not a list", "Write \"contours\": [[[x, y, z], …], …].");
   }
   const Json& contours = json["contours"];
   for (std::size_t i = 0; i < contours.size(); ++i) {
@@ -126,13 +126,13 @@ Result<Roi> parse_structure(const Json& json, std::size_t position, const std::s
   return roi;
 }
 
-/// The name of a structure, whatever else may be wrong with it; empty where it has none.
+/// The name of a structure, even if the structure has other errors; empty if it has no name.
 std::string name_of(const Json& structure) {
   const bool named = structure.is_object() && structure.contains("name") && structure["name"].is_string();
   return named ? trimmed(structure["name"].get<std::string>()) : std::string();
 }
 
-/// A structure, with the way to do without it where it cannot be read.
+/// Reads a structure. If it has an error, the message also says how to leave the structure out.
 Result<Roi> parse_named_structure(const Json& json, std::size_t position, const std::string& source) {
   Result<Roi> roi = parse_structure(json, position, source);
   if (roi || name_of(json).empty()) return roi;
@@ -144,7 +144,7 @@ Result<Roi> parse_named_structure(const Json& json, std::size_t position, const 
 Result<> check_header(const Json& json, const std::string& source) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "stylet-contours") {
     return input_error(source, "this JSON file does not say \"format\": \"stylet-contours\"",
-                       "Name a contour file as docs/formats.md describes it.");
+                       "Name a contour file as docs/formats.md describes it");
   }
   Result<> keys = check_keys(json, set_keys, source);
   if (!keys) return keys.error();
@@ -152,23 +152,23 @@ Result<> check_header(const Json& json, const std::string& source) {
     return input_error(source,
                        fmt::format("format version {} is unknown, 1 is expected",
                                    json.contains("version") ? json["version"].dump() : "(none)"),
-                       "Write \"version\": 1, or use the Stylet that wrote the file.");
+                       "Write \"version\": 1, or use the Stylet that wrote the file");
   }
   Result<std::string> units = string_at(json, "units", source);
   if (!units) return units.error();
   if (*units != "mm") {
     return input_error(source, fmt::format("units are '{}', 'mm' is expected", *units),
-                       "Convert all coordinates to millimetres and write \"units\": \"mm\".");
+                       "Convert all coordinates to millimetres and write \"units\": \"mm\"");
   }
   Result<std::string> frame = string_at(json, "frame", source);
   if (!frame) return frame.error();
   if (*frame != "LPS") {
     return input_error(
         source, fmt::format("the frame is '{}', 'LPS' is expected", *frame),
-        "Convert to DICOM patient coordinates (+x left, +y posterior, +z superior); from RAS negate x and y.");
+        "Convert to DICOM patient coordinates (+x left, +y posterior, +z superior); from RAS negate x and y");
   }
   if (!json.contains("structures") || !json["structures"].is_array() || json["structures"].empty()) {
-    return input_error(source, "'structures' is missing or empty", "Add at least one structure (docs/formats.md).");
+    return input_error(source, "'structures' is missing or empty", "Add at least one structure (docs/formats.md)");
   }
   return Ok{};
 }
@@ -182,11 +182,11 @@ Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::sp
   try {
     json = Json::parse(file);
   } catch (const Json::exception& error) {
-    // The library's text names line and column; the id in brackets before it is of no use to the reader.
+    // The library's message names line and column; the error id in brackets before it is removed.
     const std::string text = error.what();
     const auto start = text.find("] ");
     return input_error(source, "not valid JSON: " + (start == std::string::npos ? text : text.substr(start + 2)),
-                       "Correct the file at that place.");
+                       "Correct the file at that place");
   }
   Result<> header = check_header(json, source);
   if (!header) return header.error();
@@ -214,7 +214,8 @@ Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::sp
       continue;
     }
     if (!names.insert(roi->name).second) {
-      return input_error(source, fmt::format("two structures are called '{}'", roi->name), "Give each its own name.");
+      return input_error(source, fmt::format("two structures are called '{}'", roi->name),
+                         "Give each structure a different name");
     }
     if (roi->contours.empty()) {
       set.passed_over.push_back({roi->name, "empty"});
@@ -223,7 +224,7 @@ Result<ContourSet> parse_contour_json(const std::filesystem::path& path, std::sp
     set.rois.push_back(std::move(*roi));
   }
   if (set.rois.empty()) {
-    return input_error(source, "none of its structures has a contour", "Add contours (docs/formats.md).");
+    return input_error(source, "none of its structures has a contour", "Add contours (docs/formats.md)");
   }
   return set;
 }

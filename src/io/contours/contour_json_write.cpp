@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contour JSON, writing (docs/formats.md).
+// Writer of contour JSON (docs/formats.md).
 #include "detail/whole_file.hpp"
 #include "stylet/io/contours_io.hpp"
 
@@ -12,7 +12,7 @@ namespace stylet {
 
 Result<> write_contour_json(const ContourSet& contours, const std::filesystem::path& path) {
   using Json = nlohmann::ordered_json;
-  // One contour per line: readable in an editor, small enough, and friendly to version control.
+  // One contour per line, which is compact, readable in an editor, and gives short differences in version control.
   std::string text = "{\n";
   const auto quoted = [](const std::string& s) { return Json(s).dump(-1, ' ', false, Json::error_handler_t::replace); };
   text += "  \"format\": \"stylet-contours\",\n  \"version\": 1,\n  \"units\": \"mm\",\n  \"frame\": \"LPS\",\n";
@@ -33,7 +33,7 @@ Result<> write_contour_json(const ContourSet& contours, const std::filesystem::p
         const Vec3& p = contour.points[i];
         if (!p.allFinite()) {
           return failure(path.string(), fmt::format("structure '{}' has a point that is not finite", roi.name),
-                         "Correct the contours before writing them.");
+                         "Correct the contours before writing them");
         }
         text += fmt::format("{}[{}, {}, {}]", i == 0 ? "" : ", ", p.x(), p.y(), p.z());
       }
@@ -46,7 +46,7 @@ Result<> write_contour_json(const ContourSet& contours, const std::filesystem::p
     std::ofstream file(temporary, std::ios::binary);
     file << text;
     file.close();
-    if (!file) return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space.");
+    if (!file) return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space");
     return Ok{};
   });
 }

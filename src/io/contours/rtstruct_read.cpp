@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DICOM RT Structure Set, reading (DICOM PS3.3 A.19, C.8.8.5, C.8.8.6, C.8.8.8).
+// Reader of DICOM RT Structure Sets (DICOM PS3.3 A.19, C.8.8.5, C.8.8.6, C.8.8.8).
 #include "detail/dicom.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
@@ -20,24 +20,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "DICM" after the preamble of 128 bytes (DICOM PS3.10 7.1).
+/// Whether a file has the mark "DICM" after a preamble of 128 bytes (DICOM PS3.10 7.1).
 bool has_dicom_mark(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 132> head{};
   return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
 }
 
-/// Points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
+/// The points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
 Result<Contour> parse_points(DcmItem& item, const std::string& where) {
-  const char* data = nullptr;  // the whole value at once: fetching it number by number takes quadratic time
+  const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
   if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
     return input_error(where, "the contour has no points (ContourData is missing or empty)",
                        "Export the structure set again.");
   }
   const auto values = split(data, '\\');
   if (values.size() % 3 != 0) {
-    return input_error(where, fmt::format("ContourData has {} numbers, which is no multiple of three", values.size()),
-                       "Export the structure set again; the file is damaged.");
+    return input_error(where,
+                       fmt::format("ContourData has {} numbers, which is not a multiple of three", values.size()),
+                       "The file is damaged; export the structure set again.");
   }
   Contour contour;
   contour.points.reserve(values.size() / 3);
@@ -48,7 +49,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
       if (!value || !std::isfinite(*value)) {
         return input_error(fmt::format("{}, point {}", where, i / 3 + 1),
                            fmt::format("the coordinate '{}' is not a finite number", trimmed(values[i + axis])),
-                           "Export the structure set again; the file is damaged.");
+                           "The file is damaged; export the structure set again.");
       }
       point[axis] = *value;
     }
@@ -57,9 +58,9 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const auto stated = integer_of(item, DCM_NumberOfContourPoints);
   if (stated && *stated != static_cast<int>(contour.points.size())) {
     return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
-                       "Export the structure set again; the file is damaged.");
+                       "The file is damaged; export the structure set again.");
   }
-  // Some programs repeat the first point at the end.
+  // Some programs repeat the first point at the end; the copies are dropped.
   while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
     contour.points.pop_back();
   }
@@ -71,7 +72,7 @@ struct RoiHeader {
   std::string frame_of_reference;
 };
 
-/// Reads the closed contours of one ROIContourSequence item into `roi`; says in the set what was passed over.
+/// Reads the closed contours of one ROIContourSequence item into `roi`; adds a note to the set on what it ignored.
 Result<> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
   const std::string& source = set.source;
   std::map<std::string, int> passed_over;
@@ -93,8 +94,9 @@ Result<> read_contours(DcmItem& item, Roi& roi, ContourSet& set) {
     return Ok{};
   }
   for (const auto& [type, count] : passed_over) {
-    set.notes.push_back(fmt::format("ROI '{}': {} {} curve{} passed over (only closed planar contours bound a region)",
-                                    roi.name, count, type, count == 1 ? "" : "s"));
+    set.notes.push_back(
+        fmt::format("ROI '{}': {} {} curve{} ignored, because only closed planar contours bound a region.", roi.name,
+                    count, type, count == 1 ? "" : "s"));
   }
   return Ok{};
 }
@@ -105,18 +107,18 @@ Result<> check_is_structure_set(DcmDataset& data, const std::string& source) {
   if (modality == "RTSTRUCT" || sop_class == UID_RTStructureSetStorage) return Ok{};
   if (modality.empty() && sop_class.empty()) {
     return input_error(source, "this is not a DICOM file, or a damaged one (neither modality nor SOP class is stated)",
-                       "Name a DICOM RT Structure Set (modality RTSTRUCT).");
+                       "Name a DICOM RT Structure Set (modality RTSTRUCT)");
   }
   return input_error(source, fmt::format("this DICOM file has modality '{}', RTSTRUCT is expected", modality),
-                     "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours.");
+                     "Name the RT Structure Set that belongs to it; images, plans and doses hold no contours");
 }
 
-/// The first structure decides the frame of reference.
+/// Checks that a structure has the frame of reference of the set, which is that of its first structure.
 Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& set) {
   if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
   if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
   return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
-                     "its frame of reference differs from that of the structures before it",
+                     "its frame of reference differs from the one of the structures before it",
                      "Export structures of one registration only; Stylet does not register images.");
 }
 
@@ -130,19 +132,19 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
   OFCondition status = file.loadFile(path.c_str());
   if (status.good()) status = file.loadAllDataIntoMemory();
   DcmDataset& data = *file.getDataset();
-  // What the file is matters more than where it breaks off.
+  // Check the kind of file first, because that error is more helpful than one about where the file is truncated.
   if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
     Result<> right_kind = check_is_structure_set(data, source);
     if (!right_kind) return right_kind.error();
   }
   if (status.bad() && !has_dicom_mark(path) && text_of(data, DCM_SOPClassUID).empty()) {
-    return input_error(source, "this is not a DICOM file", "Name a DICOM RT Structure Set (modality RTSTRUCT).");
+    return input_error(source, "this is not a DICOM file", "Name a DICOM RT Structure Set (modality RTSTRUCT)");
   }
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
-  data.convertToUTF8();  // a failure leaves the bytes as they are
+  data.convertToUTF8();  // on failure the bytes stay unchanged
 
   ContourSet set;
   set.source = source;
@@ -153,17 +155,17 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     const auto number = integer_of(*item, DCM_ROINumber);
     if (!number) {
       return input_error(source, "a structure has no ROI number",
-                         "Export the structure set again; the file is damaged.");
+                         "The file is damaged; export the structure set again");
     }
     RoiHeader header{text_of(*item, DCM_ROIName), text_of(*item, DCM_ReferencedFrameOfReferenceUID)};
     if (header.name.empty()) header.name = fmt::format("ROI {}", *number);
     if (!headers.emplace(*number, header).second) {
       return input_error(source, fmt::format("two structures have ROI number {}", *number),
-                         "Export the structure set again; ROI numbers are unique.");
+                         "Export the structure set again; ROI numbers are unique");
     }
   }
   if (headers.empty()) {
-    return input_error(source, "the structure set has no structures", "Export it again with its contours.");
+    return input_error(source, "the structure set has no structures", "Export it again with its contours");
   }
 
   std::map<int, std::string> types;
@@ -178,7 +180,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
     const auto number = integer_of(*item, DCM_ReferencedROINumber);
     if (!number || !headers.contains(*number)) {
       return input_error(source, "contours refer to a structure that is not in the file",
-                         "Export the structure set again; the file is damaged.");
+                         "The file is damaged; export the structure set again");
     }
     const RoiHeader& header = headers.at(*number);
     has_contour_item[*number] = true;
@@ -216,7 +218,7 @@ Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::str
   }
   if (set.rois.empty()) {
     return input_error(source, fmt::format("none of its {} structures has a closed planar contour", headers.size()),
-                       "Contour the structures before exporting.");
+                       "Contour the structures before exporting");
   }
   return set;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DICOM RT Structure Set, writing (DICOM PS3.3 A.19). Implicit VR little endian, because explicit VR limits ContourData
-// (VR DS) to 64 KiB, which a body outline exceeds.
+// Writer of DICOM RT Structure Sets (DICOM PS3.3 A.19). It uses implicit VR little endian, because explicit VR limits
+// ContourData (VR DS) to 64 KiB, which a body outline exceeds.
 #include "detail/text.hpp"
 #include "detail/whole_file.hpp"
 #include "stylet/io/contours_io.hpp"
@@ -21,9 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double max_coordinate_mm = 1e6;  // DS holds 16 characters: 1e6 with four decimals is safe
-constexpr std::size_t max_name = 64;       // VR LO
+constexpr std::size_t max_name = 64;       // length of VR LO
 
-/// A number as DS: four decimals, no trailing zeros.
+/// A number as text of VR DS: four decimals without trailing zeros.
 std::string decimal_string(double value) {
   std::string text = fmt::format("{:.4f}", value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -43,8 +43,8 @@ std::string contour_data(const Contour& contour) {
   return text;
 }
 
-/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2): the same contours
-/// give the same file, and nothing of this computer gets into it.
+/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2). The same contours
+/// give the same file, and the identifier contains nothing about this computer.
 std::string derived_uid(const std::string& content, std::string_view role) {
   static const boost::uuids::uuid name_space{
       {0x8f, 0x14, 0xe4, 0x5f, 0xce, 0xea, 0x46, 0x7a, 0x9b, 0x30, 0x51, 0x0c, 0x6a, 0x2d, 0x77, 0x19}};
@@ -54,7 +54,7 @@ std::string derived_uid(const std::string& content, std::string_view role) {
   return "2.25." + number.str();
 }
 
-/// Everything that makes one structure set differ from another.
+/// Text with all data of a structure set, from which its identifiers are derived.
 std::string fingerprint(const ContourSet& set) {
   std::string text = set.label + '\n' + set.frame_of_reference + '\n';
   for (const Roi& roi : set.rois) {
@@ -65,19 +65,19 @@ std::string fingerprint(const ContourSet& set) {
 }
 
 Result<> check(const ContourSet& set, const std::string& where) {
-  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one.");
+  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one");
   for (const Roi& roi : set.rois) {
     const std::string place = fmt::format("{}, ROI '{}'", where, roi.name);
     if (roi.name.empty() || roi.name.size() > max_name || roi.name.find('\\') != std::string::npos) {
       return failure(place, fmt::format("a DICOM name has 1 to {} bytes and no backslash", max_name),
-                     "Rename the structure.");
+                     "Rename the structure");
     }
     for (const Contour& contour : roi.contours) {
       for (const Vec3& p : contour.points) {
         if (!p.allFinite() || p.cwiseAbs().maxCoeff() > max_coordinate_mm) {
           return failure(place,
                          fmt::format("the point ({}, {}, {}) mm is not finite or too far away", p.x(), p.y(), p.z()),
-                         "Correct the contour before writing it.");
+                         "Correct the contour before writing it");
         }
       }
     }
@@ -85,7 +85,7 @@ Result<> check(const ContourSet& set, const std::string& where) {
   return Ok{};
 }
 
-/// ROI numbers of the set, or 1, 2, … when they are not unique.
+/// The ROI numbers of the set, or 1, 2, … if those are not unique.
 std::vector<int> roi_numbers(const ContourSet& set) {
   std::vector<int> numbers;
   for (const Roi& roi : set.rois) numbers.push_back(roi.number);
@@ -96,7 +96,7 @@ std::vector<int> roi_numbers(const ContourSet& set) {
   return numbers;
 }
 
-/// Puts attributes into an item and remembers the first failure.
+/// Writes attributes into an item and keeps the first failure.
 class Filler {
  public:
   void text(DcmItem& item, const DcmTagKey& tag, const std::string& value) {
@@ -179,7 +179,7 @@ Result<> write_rtstruct(const ContourSet& contours, const fs::path& path) {
                   contours.frame_of_reference.empty() ? derived_uid(print, "frame") : contours.frame_of_reference);
   const auto refused = [&](const OFCondition& why) {
     return failure(path.string(), fmt::format("the RT Structure Set cannot be written ({})", why.text()),
-                   "Check the folder's permissions and space.");
+                   "Check the folder's permissions and space");
   };
   if (fill.status().bad()) return refused(fill.status());
   return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {

@@ -18,7 +18,7 @@ struct Edge {
 
 double cross(const Vec2& u, const Vec2& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-/// Signed distances of p and q from the line through e lie on both sides by more than the tolerance.
+/// Whether p and q lie on different sides of the line through e, both farther from it than the tolerance.
 bool separates(const Edge& e, const Vec2& p, const Vec2& q, double tolerance) {
   const Vec2 along = e.b - e.a;
   const double length = along.norm();
@@ -57,7 +57,7 @@ std::optional<Crossing> find_self_crossing(const std::vector<Vec2>& points, doub
       const Edge& f = edges[m];
       if (f.high[other] < e.low[other] || f.low[other] > e.high[other]) continue;
       const std::size_t apart = k > m ? k - m : m - k;
-      if (apart == 1 || apart == n - 1) continue;  // neighbours share a point
+      if (apart == 1 || apart == n - 1) continue;  // neighbouring edges share a point
       if (!separates(e, f.a, f.b, tolerance) || !separates(f, e.a, e.b, tolerance)) continue;
       const Vec2 u = e.b - e.a, v = f.b - f.a;
       const double t = cross(f.a - e.a, v) / cross(u, v);

@@ -16,12 +16,12 @@ struct Crossing {
   Eigen::Vector2d point;  ///< [mm]
 };
 
-/// Looks for a proper crossing of two edges of a closed polygon. Edges that touch or run along each other are no
-/// crossing: clinical contours cut holes out of a region by an edge that goes in and the same way out again
-/// ("keyhole"). Sweep over edges sorted along the longer axis of the polygon; O(n log n + pairs whose intervals
-/// overlap).
-/// @param points [mm] (n) the polygon, first point not repeated
-/// @param tolerance [mm] edges that reach across each other by less only touch (coordinates are rounded in files)
+/// Finds a proper crossing of two edges of a closed polygon, if there is one. Edges that touch or run along each other
+/// do not count, because clinical contours cut holes out of a region by an edge that goes in and out along the same
+/// path ("keyhole"). Algorithm: sweep over the edges sorted along the longer axis of the polygon; O(n log n + number of
+/// pairs whose intervals overlap).
+/// @param points [mm] (n) vertices of the polygon, the first one not repeated
+/// @param tolerance [mm] edges that overlap by less than this only touch, because coordinates are rounded in files
 std::optional<Crossing> find_self_crossing(const std::vector<Eigen::Vector2d>& points, double tolerance);
 
 }  // namespace stylet::detail

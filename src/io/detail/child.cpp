@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t noise_kept = 8192;
-constexpr char complete_mark = '\x17';  // ends a result: a child that dies while it writes leaves none
+constexpr char complete_mark = '\x17';  // last byte of a complete result; it is missing if the child died while writing
 
 struct Pipe {
   int read = -1, write = -1;
@@ -41,7 +41,8 @@ struct Pipe {
   }
 
  private:
-  /// Where standard streams are closed, a pipe would get their numbers, and with them what is printed.
+  /// Moves a pipe end above the numbers of the standard streams: if those are closed, a pipe would get their numbers
+  /// and receive everything that is printed.
   static int beyond_standard_streams(int end) {
     if (end > STDERR_FILENO) return end;
     const int moved = ::fcntl(end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
@@ -61,7 +62,7 @@ void limit(int resource, std::size_t value) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Address space of this process [bytes].
+/// Size of this process's address space [bytes].
 std::size_t address_space() {
   unsigned long pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
@@ -83,17 +84,17 @@ void write_all(int file, const char* data, std::size_t size) {
 
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits, int result, int noise) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // Handlers of the program (interrupt, crash reports) are not for the child.
+  // Reset the signal handlers of the program (interrupt, crash reports), which must not run in the child.
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU}) {
     std::signal(signal, SIG_DFL);
   }
-  std::signal(SIGXFSZ, SIG_IGN);  // writing a file fails instead of killing
+  std::signal(SIGXFSZ, SIG_IGN);  // writing a file fails instead of killing the process
   const int null = ::open("/dev/null", O_RDONLY);
   ::dup2(null, STDIN_FILENO);
   ::dup2(noise, STDOUT_FILENO);
   ::dup2(noise, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);
-  ::prctl(PR_SET_DUMPABLE, 0);  // no crash report either: a system may collect those in spite of the limit
+  ::prctl(PR_SET_DUMPABLE, 0);  // prevents crash reports, which some systems collect in spite of the limit
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(limits.cpu_s)));
 #ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves terabytes of address space
@@ -102,10 +103,10 @@ void write_all(int file, const char* data, std::size_t size) {
   const std::string bytes = work();
   write_all(result, bytes.data(), bytes.size());
   write_all(result, &complete_mark, 1);
-  ::_exit(0);  // no destructors, no exit handlers: they belong to the parent
+  ::_exit(0);  // skips destructors and exit handlers, which belong to the parent
 }
 
-/// Reads what is there. @return false when the other side has closed
+/// Reads the available bytes. @return false if the other side has closed
 bool take(int file, std::string& into) {
   std::array<char, 65536> buffer;
   const ssize_t got = ::read(file, buffer.data(), buffer.size());
@@ -113,7 +114,7 @@ bool take(int file, std::string& into) {
   return got > 0 || (got < 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-/// Collects both streams until the result pipe closes. @return false when time was up
+/// Collects both streams until the result pipe closes. @return false on timeout
 bool collect(int result, int noise, Clock::time_point deadline, ChildOutcome& outcome) {
   std::array<pollfd, 2> files{pollfd{result, POLLIN, 0}, pollfd{noise, POLLIN, 0}};
   while (files[0].fd >= 0) {
@@ -126,7 +127,7 @@ bool collect(int result, int noise, Clock::time_point deadline, ChildOutcome& ou
     if (outcome.noise.size() > 2 * noise_kept) outcome.noise.erase(0, outcome.noise.size() - noise_kept);
     files[0].revents = files[1].revents = 0;
   }
-  // The child has ended; what it printed last still lies in the pipe.
+  // The child has ended; read its last output from the pipe.
   while (files[1].fd >= 0 && ::poll(&files[1], 1, 0) > 0 && take(noise, outcome.noise)) {
   }
   return true;
@@ -141,7 +142,7 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildL
     outcome.code = errno;
     return outcome;
   }
-  std::fflush(nullptr);  // or the child would inherit, and print, what waits in the buffers
+  std::fflush(nullptr);  // otherwise the child would inherit and print the content of the buffers
   const pid_t child = ::fork();
   if (child < 0) {
     outcome.code = errno;
@@ -159,7 +160,7 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildL
   }
   const bool complete = !outcome.result.empty() && outcome.result.back() == complete_mark;
   if (!in_time || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) && !complete)) {
-    outcome.end = ChildEnd::timed_out;  // the hard processor limit ends in SIGKILL
+    outcome.end = ChildEnd::timed_out;  // the hard limit on processor time causes SIGKILL
   } else if (WIFSIGNALED(status)) {
     outcome.end = ChildEnd::signalled;
     outcome.code = WTERMSIG(status);

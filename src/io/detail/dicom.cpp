@@ -50,7 +50,7 @@ std::vector<DcmItem*> items_of(DcmItem& parent, const DcmTagKey& tag) {
 
 namespace {
 
-/// SOP class and modality without the rest: quick even for a folder of a thousand slices.
+/// SOP class and modality of a file, read without its other data, which is fast even for a folder of a thousand slices.
 struct DicomKind {
   std::string sop_class, modality;
 };
@@ -84,7 +84,7 @@ Result<std::string> only_patient_in(const fs::path& folder) {
   std::sort(found.begin(), found.end());
   if (found.empty()) {
     return input_error(folder.string(), "the folder holds no DICOM RT Structure Set and no DICOM segmentation (SEG)",
-                       "Name the file itself, or the folder in which it lies.");
+                       "Name the file itself, or the folder in which it lies");
   }
   if (found.size() == 1) return found.front().string();
   std::vector<std::string> names;
@@ -92,7 +92,7 @@ Result<std::string> only_patient_in(const fs::path& folder) {
   return input_error(folder.string(),
                      fmt::format("the folder holds {} RT Structure Sets and segmentations, one is expected: {}",
                                  found.size(), fmt::join(names, ", ")),
-                     "Name one of these files instead of the folder.");
+                     "Name one of these files instead of the folder");
 }
 
 }  // namespace stylet::detail

@@ -18,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first bytes, unpacked when the file is gzip; shorter at the file's end or when the packing is damaged.
+/// The first bytes of a file, unpacked if it is gzip; fewer if the file is short or its packing is damaged.
 std::string first_bytes(const fs::path& path) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) return {};
   std::string bytes;
-  std::array<char, 64> piece{};  // small: of a piece that ends in damage zlib gives nothing
+  std::array<char, 64> piece{};  // small, because zlib returns nothing of a piece that contains damage
   while (bytes.size() < 4096) {
     const int got = gzread(file.get(), piece.data(), piece.size());
     if (got <= 0) break;
@@ -38,12 +38,12 @@ bool at(const std::string& bytes, std::size_t position, std::string_view mark) {
 
 bool is_dicom(const std::string& bytes) {
   using namespace std::string_view_literals;
-  // With the 128-byte preamble, or a bare data set that begins with group 0002 or 0008 in little endian.
+  // DICOM: a preamble of 128 bytes, or a bare data set that begins with group 0002 or 0008 in little endian.
   return at(bytes, 128, "DICM") || at(bytes, 0, "\x08\0\x05\0"sv) || at(bytes, 0, "\x08\0\x08\0"sv) ||
          at(bytes, 0, "\x08\0\x16\0"sv) || at(bytes, 0, "\x02\0\0\0"sv);
 }
 
-/// A packed file whose packing is too damaged to look inside.
+/// Whether a gzip file is too damaged to read its first bytes.
 bool is_damaged_gzip(const fs::path& path, const std::string& unpacked) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 2> head{};
@@ -61,7 +61,7 @@ bool is_binary_stl(const std::string& bytes, std::uintmax_t size) {
   return size == 84 + 50 * static_cast<std::uintmax_t>(triangles);
 }
 
-/// Text that starts here, after blanks, a byte order mark and '#' comment lines.
+/// The text after leading blanks, a byte order mark and '#' comment lines.
 std::string_view after_comments(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (;;) {
@@ -106,7 +106,7 @@ FileKind kind_of(const std::string& bytes, std::uintmax_t size, const std::strin
   if (lower(text.substr(0, 6)).starts_with("solid ") || text.starts_with("solid\n")) return FileKind::stl;
   if (text.starts_with('{')) return FileKind::contour_json;
   if (is_metaimage(text)) return FileKind::metaimage;
-  // Formats without a mark of their own.
+  // Formats without a mark in their content are recognised by the extension.
   const std::string ending = lower(extension);
   if (ending == ".obj") return FileKind::obj;
   if (ending == ".node" || ending == ".ele") return FileKind::tetgen;
@@ -158,7 +158,7 @@ std::string name_of(FileKind kind) {
 std::string readable_formats() {
   return "Stylet reads DICOM RTSTRUCT and contour JSON; label masks in NIfTI, NRRD, MetaImage, DICOM SEG; tetrahedra "
          "in "
-         "VTU, legacy VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB.";
+         "VTU, legacy VTK, gmsh .msh, MEDIT .mesh, TetGen .node/.ele; surfaces in STL, PLY, OBJ, VTP, GLB";
 }
 
 Result<FileKind> identify(const fs::path& path) {
@@ -170,7 +170,7 @@ Result<FileKind> identify(const fs::path& path) {
   const std::string bytes = first_bytes(path);
   if (is_damaged_gzip(path, bytes)) {
     return input_error(where, "this gzip file cannot be unpacked",
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
   return kind_of(bytes, size, path.extension().string());
 }

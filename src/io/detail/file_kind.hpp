@@ -27,14 +27,14 @@ enum class FileKind {
   unknown,
 };
 
-/// What a user calls such a file, e.g. "a NIfTI image".
+/// The name of a kind of file in messages, e.g. "a NIfTI image".
 std::string name_of(FileKind kind);
 
-/// Sentence that lists every format Stylet reads; part of messages.
+/// A sentence for messages that lists every format that Stylet reads.
 std::string readable_formats();
 
-/// Recognises a file by its first bytes, and by its extension only where the content has no mark of its own (OBJ,
-/// TetGen, binary STL). Errors: nothing there, a folder, not a regular file, no permission, empty.
+/// Recognises the format of a file by its first bytes; by its extension only for formats without a mark in their
+/// content (OBJ, TetGen, binary STL). Errors: nothing there, a folder, not a regular file, no permission, empty.
 Result<FileKind> identify(const std::filesystem::path& path);
 
 }  // namespace stylet::detail

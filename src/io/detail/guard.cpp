@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last line a library printed, as a clause; empty when it kept silent.
+/// The last line that a library printed, as a clause of a message; empty if it printed nothing.
 std::string last_words(const std::string& noise) {
   std::string last;
   for (const auto line : split(noise, '\n')) {
@@ -31,14 +31,14 @@ std::string last_words(const std::string& noise) {
 }
 
 constexpr double kBase_s = 5.0;
-constexpr double kPacked_s = 2.0;     // per megabyte of the file
-constexpr double kUnpacked_s = 0.03;  // per megabyte that it unpacks to
+constexpr double kPacked_s = 2.0;     // time limit per megabyte of the file
+constexpr double kUnpacked_s = 0.03;  // time limit per megabyte of unpacked data
 constexpr double kMostUnpacked_s = 100.0;
-constexpr double kDeflate = 1000.0;  // a byte of deflate unpacks to no more bytes, whatever a forged file claims
-constexpr double kEntry_s = 0.002;   // per entry of a folder
+constexpr double kDeflate = 1000.0;  // largest ratio of unpacked to packed size, whatever a forged file claims
+constexpr double kEntry_s = 0.002;   // time limit per entry of a folder
 constexpr int kMostEntries = 50000;
 
-/// Megabytes of a file with what it names as its data, as they are and unpacked.
+/// Size of a file together with the data file that it names, packed and unpacked [MB].
 struct Megabytes {
   double packed = 0, unpacked = 0;
 };
@@ -49,8 +49,8 @@ double size_of(const fs::path& path) {
   return code ? 0.0 : static_cast<double>(size) / 1e6;
 }
 
-/// Megabytes that a file which ends in a gzip stream says it unpacks to: the stream's last four bytes, little endian.
-/// They lie only where someone has forged them, or beyond 4 GB.
+/// Unpacked size [MB] according to the last four bytes of a gzip stream, little endian. It is wrong only in forged
+/// files and beyond 4 GB.
 double gzip_size_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<unsigned char, 4> end{};
@@ -66,16 +66,16 @@ bool is_gzip(const fs::path& path) {
   return file.read(head.data(), 2) && head[0] == '\x1f' && head[1] == '\x8b';
 }
 
-/// What the header of an image says of its data.
+/// Description of an image's data from its header.
 struct ImageData {
-  fs::path file;         ///< in which the data are
+  fs::path file;         ///< the file with the data
   bool gzip = false;     ///< NRRD
-  double megabytes = 0;  ///< of compressed MetaImage, by its sizes
+  double megabytes = 0;  ///< unpacked size of a compressed MetaImage, from its dimensions
 };
 
-/// For NRRD and MetaImage. Only files that their readers would open count.
+/// The data of an NRRD or MetaImage file. Data files that the reader would not open are ignored.
 ImageData data_of_image(const fs::path& path, FileKind kind) {
-  constexpr std::size_t kMostHeader = 1 << 20;  // [bytes] looked at: what counts comes first
+  constexpr std::size_t kMostHeader = 1 << 20;  // [bytes] largest part of the header that is read
   ImageData data{.file = path};
   std::string name;
   bool compressed = false;
@@ -141,7 +141,7 @@ ChildLimits limits_for(const fs::path& path) {
   ChildLimits limits;
   limits.cpu_s = kBase_s + kPacked_s * size.packed + std::min(kUnpacked_s * size.unpacked, kMostUnpacked_s);
   if (fs::is_directory(path, code)) limits.cpu_s += kEntry_s * entries_of(path);
-  limits.wall_s = 30.0 + 3.0 * limits.cpu_s;  // the machine may be busy
+  limits.wall_s = 30.0 + 3.0 * limits.cpu_s;  // generous, since the machine may be busy
   limits.memory_bytes += static_cast<std::size_t>(40e6 * size.packed);
   return limits;
 }
@@ -152,7 +152,7 @@ Error died(const fs::path& path, const ChildOutcome& outcome, const ChildLimits&
     case ChildEnd::not_started:
       return failure(path.string(),
                      fmt::format("no process could be started to read it ({})", std::strerror(outcome.code)),
-                     "Close other programs and try again.");
+                     "Close other programs and try again");
     case ChildEnd::timed_out:
       return input_error(path.string(), fmt::format("the parser did not finish within {:.0f} s{}", limits.cpu_s, words),
                          cure);
@@ -173,7 +173,7 @@ Error threw(const fs::path& path, const char* what, const char* cure) {
 
 Error out_of_memory(const fs::path& path) {
   return input_error(path.string(), "reading it needs more memory than a file of its size should",
-                     "The file is damaged (a wrong size in its header), or too large for this machine; crop it.");
+                     "The file is damaged (a wrong size in its header), or too large for this machine; crop it");
 }
 
 }  // namespace stylet::detail

@@ -10,25 +10,25 @@
 
 namespace stylet::detail {
 
-/// Limits for reading one file, or looking through one folder: generous for honest files of its size, packed and
-/// unpacked, short enough that a trap does not look like a hang. What a file says of its unpacked size counts up to
-/// what deflate could make of its bytes.
+/// Limits for reading one file or searching one folder: generous for valid files of its packed and unpacked size, but
+/// short enough that a malicious file does not seem to hang the program. The unpacked size that a file claims is
+/// bounded by the largest ratio that deflate can achieve.
 ChildLimits limits_for(const std::filesystem::path& path);
 
-/// What to do about a file that its parser does not survive, unless the caller knows better.
+/// The default cure in the error about a file that crashes its parser.
 inline constexpr const char* kExportAgain =
-    "The file is damaged or not what its format promises; export it again or in another format.";
+    "The file is damaged or violates its format; export it again or in another format";
 
-/// The error a parser's end without a result becomes.
+/// The error for a parser that ended without a result.
 Error died(const std::filesystem::path& path, const ChildOutcome& outcome, const ChildLimits& limits, const char* cure);
 
-/// The error an exception becomes.
+/// The error for an exception.
 Error threw(const std::filesystem::path& path, const char* what, const char* cure);
 Error out_of_memory(const std::filesystem::path& path);
 
-/// Runs a parser on an untrusted file in a child process (child.hpp); its crash, hang or exception becomes an input
+/// Runs a parser on an untrusted file in a child process (child.hpp). A crash, hang or exception becomes an input
 /// error.
-/// @param cure part of that error
+/// @param cure last clause of that error
 template <class T>
 Result<T> guarded(const std::filesystem::path& path, const std::function<Result<T>()>& parse,
                   const char* cure = kExportAgain) {

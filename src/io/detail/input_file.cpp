@@ -28,7 +28,7 @@ const char* what_it_is(fs::file_type type) {
   }
 }
 
-/// Whether `inner` lies in `folder` or below it; both without links.
+/// Whether `inner` is in `folder` or below it. Both paths must be free of symbolic links.
 bool is_below(const fs::path& inner, const fs::path& folder) {
   const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), inner.begin(), inner.end());
   return rest == folder.end();
@@ -42,16 +42,16 @@ Result<> check_input_file(const fs::path& path) {
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) {
     return input_error(where, code && code != std::errc::no_such_file_or_directory ? code.message() : "no such file",
-                       "Check the name and the folder.");
+                       "Check the name and the folder");
   }
-  if (fs::is_directory(status)) return input_error(where, "this is a folder, a file is expected", "Name a file in it.");
+  if (fs::is_directory(status)) return input_error(where, "this is a folder, a file is expected", "Name a file in it");
   if (!fs::is_regular_file(status)) {
     return input_error(where, fmt::format("this is {}, not a regular file", what_it_is(status.type())),
-                       "Copy the data to a file first.");
+                       "Copy the data to a file first");
   }
   if (!std::ifstream(path, std::ios::binary)) {
     return input_error(where, fmt::format("the file cannot be opened ({})", std::strerror(errno)),
-                       "Check its permissions.");
+                       "Check its permissions");
   }
   return Ok{};
 }
@@ -59,7 +59,7 @@ Result<> check_input_file(const fs::path& path) {
 Result<fs::path> data_file_of(const fs::path& header, const std::string& name) {
   const auto refuse = [&](const std::string& what) {
     return input_error(header.string(), fmt::format("the header names '{}' as its data file: {}", name, what),
-                       "Keep header and data beside each other and name the data file without a path.");
+                       "Keep header and data in one folder, and name the data file without a path");
   };
   const fs::path given(name);
   if (given.is_absolute()) return refuse("an absolute path is not followed");

@@ -9,29 +9,30 @@
 
 namespace stylet::detail {
 
-/// Without blanks, tabs, line ends and NULs at both ends.
+/// A text without blanks, tabs, line ends and NULs at both ends.
 std::string trimmed(std::string_view text);
 
-/// In lower case (ASCII letters only).
+/// A text in lower case (ASCII letters only).
 std::string lower(std::string_view text);
 
-/// Parts between separators; empty parts are kept.
+/// The parts of a text between separators; empty parts are kept.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
 /// A line of a header, without its end.
 struct HeaderLine {
   std::string text;
-  bool whole = true;         ///< false: its end lies beyond kLongestHeaderLine
+  bool whole = true;         ///< false: the line is longer than kLongestHeaderLine
   bool lone_return = false;  ///< it ends in a carriage return alone
 };
 inline constexpr std::size_t kLongestHeaderLine = 65535;
 
-/// The next line, which ends at a line feed, a carriage return or both; nothing at the end of the stream. The libraries
-/// that read headers differ in what ends a line for them: whoever looks at one before them has to see every end. The
-/// stream's state stays good, so that tellg() is what follows the line.
+/// Reads the next line, which ends at a line feed, a carriage return or both; empty at the end of the stream. The
+/// libraries that read headers disagree on what ends a line, so a check before them must recognise every line end. The
+/// stream's state stays good, and tellg() is the position behind the line.
 std::optional<HeaderLine> next_header_line(std::istream& stream);
 
-/// The number a text is, blanks at the ends allowed, nothing else beside it; independent of the locale.
+/// Converts a text to a number, independent of the locale; empty if the text is anything but a number with blanks
+/// around it.
 std::optional<double> to_number(std::string_view text);
 
 }  // namespace stylet::detail

@@ -15,7 +15,7 @@ vtkSmartPointer<VtkMessages> VtkMessages::install() {
 
 void VtkMessages::DisplayErrorText(const char* text) {
   if (failed() || text == nullptr) return;
-  // "ERROR: In file.cxx, line 12\nvtkClass (0x5581): words\n\n"
+  // Format of a message: "ERROR: In file.cxx, line 12\nvtkClass (0x5581): words\n\n"
   std::string words(text);
   if (const auto end = words.find("): "); end != std::string::npos) words.erase(0, end + 3);
   words = trimmed(words);

@@ -9,13 +9,14 @@
 
 namespace stylet::detail {
 
-/// Collects what VTK would print. VTK reports errors as text only: a reader that failed often returns half of its data.
+/// Collects the messages that VTK would print. VTK reports errors only as text, and a reader that failed often returns
+/// a part of the data.
 class VtkMessages : public vtkOutputWindow {
  public:
   static VtkMessages* New();
   vtkTypeMacro(VtkMessages, vtkOutputWindow);
 
-  /// Takes the place of VTK's own window for the rest of the process (a child process that reads one file).
+  /// Replaces VTK's own output window for the rest of the process, which is a child process that reads one file.
   static vtkSmartPointer<VtkMessages> install();
 
   void DisplayErrorText(const char* text) override;
@@ -25,7 +26,7 @@ class VtkMessages : public vtkOutputWindow {
   void DisplayText(const char*) override {}
 
   [[nodiscard]] bool failed() const { return !first_error_.empty(); }
-  /// The first error's own words, one line, without source file and object address.
+  /// The text of the first error in one line, without source file and object address.
   [[nodiscard]] const std::string& first_error() const { return first_error_; }
 
  private:

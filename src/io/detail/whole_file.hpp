@@ -8,10 +8,10 @@
 
 namespace stylet::detail {
 
-/// Writes a file so that it appears whole or not at all: `write` fills a temporary file beside `path`, which then takes
-/// its place in one step. On any error the temporary is removed and whatever was at `path` stays.
-/// @param path where the file shall be; its folder must exist
-/// @param write fills the file it is given; an Error it returns is passed on
+/// Writes a file atomically: `write` fills a temporary file in the same folder, which is then renamed to `path`. On any
+/// error the temporary file is removed and an existing file at `path` stays unchanged.
+/// @param path of the file; its folder must exist
+/// @param write writes the content to the path it is given; its Error is passed on
 Result<> write_whole(const std::filesystem::path& path,
                      const std::function<Result<>(const std::filesystem::path&)>& write);
 

@@ -14,10 +14,10 @@
 #include <type_traits>
 #include <vector>
 
-/// What readers return, as bytes and back: from a child process to its parent on the same machine.
+/// Serialisation of the results of readers, to pass them from a child process to its parent on the same machine.
 namespace stylet::detail {
 
-/// A mesh and what was passed over while reading it.
+/// A mesh, with notes on what the reader ignored.
 struct MeshWithNotes {
   TetMesh mesh;
   std::vector<std::string> notes;
@@ -28,7 +28,7 @@ struct SurfacesWithNotes {
   std::vector<std::string> notes;
 };
 
-// One list of fields per type serves both directions.
+// One list of fields per type serves both for writing and for reading.
 void fields(auto& wire, Error& e) { wire(e.kind, e.where, e.what, e.cure); }
 void fields(auto& wire, Contour& c) { wire(c.points); }
 void fields(auto& wire, Roi& r) { wire(r.name, r.number, r.type, r.colour, r.contours); }
@@ -44,7 +44,7 @@ void fields(auto& wire, MeshWithNotes& m) { wire(m.mesh, m.notes); }
 void fields(auto& wire, Surface& s) { wire(s.name, s.points, s.triangles); }
 void fields(auto& wire, SurfacesWithNotes& s) { wire(s.surfaces, s.notes); }
 
-/// Plain numbers without padding, copied as they lie in memory.
+/// Types of plain numbers without padding, which are copied byte by byte.
 template <class T>
 inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <class T, std::size_t N>
@@ -95,7 +95,7 @@ class WireWriter {
   }
 };
 
-/// Throws std::runtime_error when the bytes end too early (the child died while it wrote).
+/// Reads serialised values. Throws std::runtime_error if the bytes end too early, because the child died while writing.
 class WireReader {
  public:
   explicit WireReader(std::string_view bytes) : rest_(bytes) {}

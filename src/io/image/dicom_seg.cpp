@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DICOM Segmentation, reading (DICOM PS3.3 A.51, C.8.20, C.7.6.16). One frame is one slice of one segment.
+// Reader of DICOM Segmentations (DICOM PS3.3 A.51, C.8.20, C.7.6.16). One frame is one slice of one segment.
 #include "detail/dicom.hpp"
 #include "detail/parsers.hpp"
 #include "detail/reach.hpp"
@@ -21,25 +21,25 @@ namespace stylet::detail {
 
 namespace {
 
-constexpr double kAlike = 1e-3;         // between directions, and of a pixel's or a slice's spacing
-constexpr double kRegular_mm = 0.01;    // between a slice and its place in a regular stack, beside kAlike of the way
-constexpr double kRegularShare = 0.01;  // of the slice spacing, between a slice and its place in a regular stack
-constexpr const char* kExportAgain = "Export the segmentation again, e.g. from 3D Slicer; the file is damaged.";
+constexpr double kAlike = 1e-3;         // tolerance of directions, and relative tolerance of spacings
+constexpr double kRegular_mm = 0.01;    // distance of a slice from its place in a regular stack, plus kAlike × height
+constexpr double kRegularShare = 0.01;  // the same distance as a share of the slice spacing
+constexpr const char* kExportAgain = "The file is damaged; export the segmentation again, e.g. from 3D Slicer";
 
-/// One frame's place and segment.
+/// Position and segment of one frame.
 struct Frame {
   Vec3 position = Vec3::Zero();              ///< [mm] LPS, centre of the first pixel
   Vec3 along_row = Vec3::Zero();             ///< unit direction in which the column index grows
   Vec3 along_column = Vec3::Zero();          ///< unit direction in which the row index grows
-  std::array<double, 2> pixel_mm{0.0, 0.0};  ///< between rows, between columns
-  double stated_spacing_mm = 0;              ///< between slices, 0 where the file does not say
+  std::array<double, 2> pixel_mm{0.0, 0.0};  ///< distance between rows, between columns
+  double stated_spacing_mm = 0;              ///< distance between slices; 0 if the file does not state it
   int segment = 0;
   int slice = 0;  ///< index in the stack
 };
 
 Error damaged(const std::string& where, const std::string& what) { return input_error(where, what, kExportAgain); }
 
-/// The item of a functional group: the frame's own, else the one all frames share; null where there is none.
+/// The item of a functional group: the frame's own, or else the shared one; null if there is none.
 DcmItem* group_of(DcmItem* own, DcmItem* shared, const DcmTagKey& group) {
   for (DcmItem* item : {own, shared}) {
     if (item == nullptr) continue;
@@ -58,7 +58,7 @@ Result<Frame> read_frame(DcmItem* own, DcmItem* shared, bool label_map, const st
   const auto turn = orientation ? numbers_of(*orientation, DCM_ImageOrientationPatient) : std::vector<double>();
   const auto pixel = measures ? numbers_of(*measures, DCM_PixelSpacing) : std::vector<double>();
   if (place.size() != 3 || turn.size() != 6 || pixel.size() != 2) {
-    return damaged(where, fmt::format("it does not say how it lies in the patient ({} is missing or damaged)",
+    return damaged(where, fmt::format("its position in the patient is unknown ({} is missing or damaged)",
                                       place.size() != 3  ? "ImagePositionPatient"
                                       : turn.size() != 6 ? "ImageOrientationPatient"
                                                          : "PixelSpacing"));
@@ -86,7 +86,7 @@ Result<Frame> read_frame(DcmItem* own, DcmItem* shared, bool label_map, const st
   }
   if (label_map) return frame;
   const auto number = segment ? integer_of(*segment, DCM_ReferencedSegmentNumber) : std::nullopt;
-  if (!number) return damaged(where, "it does not say which segment it shows (ReferencedSegmentNumber)");
+  if (!number) return damaged(where, "its segment is unknown (ReferencedSegmentNumber)");
   frame.segment = *number;
   return frame;
 }
@@ -107,9 +107,9 @@ Result<std::vector<Frame>> read_frames(DcmDataset& data, int count, bool label_m
   return frames;
 }
 
-/// The distance between slices: the median of those between neighbouring frames, since most have no empty slice between
-/// them; but the smallest one where the file states it. 0 = all frames lie in one slice.
-/// @param heights sorted [mm]; @param stated [mm] SpacingBetweenSlices, 0 where there is none
+/// The distance between slices [mm]: the smallest distance between neighbouring frames if it equals the stated one, or
+/// else the median distance, since most neighbours have no empty slice between them. 0 = all frames lie in one slice.
+/// @param heights [mm] sorted @param stated [mm] SpacingBetweenSlices; 0 if not stated
 double slice_spacing(const std::vector<double>& heights, double stated) {
   std::vector<double> gaps;
   for (std::size_t s = 1; s < heights.size(); ++s) {
@@ -121,7 +121,7 @@ double slice_spacing(const std::vector<double>& heights, double stated) {
   return gaps[(gaps.size() - 1) / 2];
 }
 
-/// Puts the frames into a regular stack and gives each its slice.
+/// Fits a regular stack to the frames and sets the slice index of each frame.
 Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_t columns, const std::string& source) {
   const Frame first = frames.front();
   const Vec3 normal = first.along_row.cross(first.along_column).normalized();
@@ -135,13 +135,15 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
         std::abs(frame.pixel_mm[0] - first.pixel_mm[0]) > kAlike * first.pixel_mm[0] ||
         std::abs(frame.pixel_mm[1] - first.pixel_mm[1]) > kAlike * first.pixel_mm[1]) {
       return input_error(where, "its orientation or pixel spacing differs from the first frame's",
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer.");
+                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     const Vec3 shift = frame.position - first.position - height(frame) * normal;
     if (shift.norm() > kRegular_mm + kAlike * std::abs(height(frame))) {
-      return input_error(where + ", ImagePositionPatient",
-                         fmt::format("the slice lies {:.3g} mm beside the first one (a sheared stack)", shift.norm()),
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer.");
+      return input_error(
+          where + ", ImagePositionPatient",
+          fmt::format("the slice is shifted sideways by {:.3g} mm against the first one (a sheared stack)",
+                      shift.norm()),
+          "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     heights.push_back(height(frame));
   }
@@ -150,16 +152,17 @@ Result<Voxels> stack_of(std::vector<Frame>& frames, std::size_t rows, std::size_
   const double gap = slice_spacing(sorted, first.stated_spacing_mm);
   if (gap == 0) {
     return input_error(source, "all frames lie in one slice, at least 2 slices are needed",
-                       "Export the whole volume, not one slice.");
+                       "Export the whole volume, not one slice");
   }
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const double steps = (heights[f] - sorted.front()) / gap;
     if (steps > 1e5 || std::abs(steps - std::round(steps)) * gap > kRegular_mm + kRegularShare * gap) {
-      return input_error(fmt::format("{}, frame {}, ImagePositionPatient", source, f + 1),
-                         fmt::format("the slice lies {:.4g} mm above the lowest, which is no multiple of the slice "
-                                     "spacing of {:.4g} mm",
-                                     heights[f] - sorted.front(), gap),
-                         "Resample the segmentation to one regular grid, e.g. with 3D Slicer.");
+      return input_error(
+          fmt::format("{}, frame {}, ImagePositionPatient", source, f + 1),
+          fmt::format(
+              "the slice lies {:.4g} mm above the lowest, which is not a multiple of the slice spacing of {:.4g} mm",
+              heights[f] - sorted.front(), gap),
+          "Resample the segmentation to one regular grid, e.g. with 3D Slicer");
     }
     frames[f].slice = static_cast<int>(std::round(steps));
   }
@@ -182,7 +185,7 @@ std::string meaning_of(DcmItem& item, const DcmTagKey& tag) {
   return codes.empty() ? "" : text_of(*codes.front(), DCM_CodeMeaning);
 }
 
-/// What a segment is by its codes: its type, or, where that says no more than "organ", the place.
+/// The meaning of a segment's codes: of its type or, if that is as general as "organ", of its anatomic region.
 std::string meaning_of_segment(DcmItem& item) {
   const std::string type = meaning_of(item, DCM_SegmentedPropertyTypeCodeSequence);
   const std::string general = lower(type);
@@ -192,13 +195,13 @@ std::string meaning_of_segment(DcmItem& item) {
   return place.empty() ? type : place;
 }
 
-/// In the order of their numbers.
+/// Reads the segments in the order of their numbers.
 Result<std::vector<Segment>> read_segments(DcmDataset& data, const std::string& source) {
   std::map<int, Segment> segments;
   for (DcmItem* item : items_of(data, DCM_SegmentSequence)) {
     const auto number = integer_of(*item, DCM_SegmentNumber);
     if (!number || *number < 0 || *number > 65535) return damaged(source, "a segment has no number from 1 to 65535");
-    if (*number == 0) continue;  // the background of a label map
+    if (*number == 0) continue;  // number 0 is the background of a label map
     Segment segment{*number, text_of(*item, DCM_SegmentLabel), meaning_of_segment(*item)};
     if (segment.name.empty()) segment.name = segment.meaning;
     if (!segments.emplace(*number, std::move(segment)).second) {
@@ -211,13 +214,13 @@ Result<std::vector<Segment>> read_segments(DcmDataset& data, const std::string& 
   return list;
 }
 
-/// The pixels of all frames: one bit, or one or two bytes each.
+/// The pixels of all frames, with one bit, one byte or two bytes each.
 struct Pixels {
   const Uint8* bytes = nullptr;
-  std::size_t count = 0;  ///< bytes
+  std::size_t count = 0;  ///< number of bytes
   int bits = 8;
   [[nodiscard]] int operator()(std::size_t n) const {
-    if (bits == 1) return bytes[n / 8] >> (n % 8) & 1;  // the first pixel in the lowest bit, frames without a gap
+    if (bits == 1) return bytes[n / 8] >> (n % 8) & 1;  // the first pixel is the lowest bit; no gaps between frames
     return bits == 8 ? bytes[n] : bytes[2 * n] | bytes[2 * n + 1] << 8;
   }
 };
@@ -234,7 +237,7 @@ Result<Pixels> pixels_of(DcmDataset& data, double wanted, const std::string& sou
     return input_error(source,
                        fmt::format("its pixels are compressed as {}, which is not supported",
                                    DcmXfer(data.getOriginalXfer()).getXferName()),
-                       "Export it uncompressed, or convert it with dcmdjpeg, dcmdjpls or gdcmconv --raw.");
+                       "Export it uncompressed, or convert it with dcmdjpeg, dcmdjpls or gdcmconv --raw");
   }
   DcmElement* element = nullptr;
   if (data.findAndGetElement(DCM_PixelData, element).bad() || element == nullptr) {
@@ -245,7 +248,7 @@ Result<Pixels> pixels_of(DcmDataset& data, double wanted, const std::string& sou
   if (element->getUint8Array(bytes).good() && bytes != nullptr) {
     pixels.bytes = bytes;
   } else if (element->getUint16Array(words).good() && words != nullptr) {
-    pixels.bytes = reinterpret_cast<const Uint8*>(words);  // in the file's order: this machine is little endian
+    pixels.bytes = reinterpret_cast<const Uint8*>(words);  // little endian, like the file
   }
   pixels.count = pixels.bytes == nullptr ? 0 : element->getLength();
   if (static_cast<double>(pixels.count) * 8 < wanted * pixels.bits) {
@@ -255,10 +258,10 @@ Result<Pixels> pixels_of(DcmDataset& data, double wanted, const std::string& sou
   return pixels;
 }
 
-/// Which pixels of a frame belong to a segment.
+/// Rule that says which pixels of a frame belong to a segment.
 struct Rule {
   bool label_map = false;
-  int least = 1;  ///< of a pixel inside
+  int least = 1;  ///< smallest value of a pixel inside
 };
 
 Result<Rule> rule_of(DcmDataset& data, const std::string& source) {
@@ -279,7 +282,7 @@ Result<Rule> rule_of(DcmDataset& data, const std::string& source) {
 /// The voxels of all segments.
 Result<std::vector<Run>> runs_of(const std::vector<Frame>& frames, const Pixels& pixels, const Rule& rule,
                                  const Voxels& stack, const std::vector<Segment>& segments) {
-  std::vector<int> place(std::size_t{1} << 16, -1);  // of a segment's number in the list
+  std::vector<int> place(std::size_t{1} << 16, -1);  // position in the list, by the segment's number
   for (std::size_t s = 0; s < segments.size(); ++s) place[segments[s].label] = static_cast<int>(s);
   std::vector<Run> runs;
   const std::size_t area = stack.size[0] * stack.size[1];
@@ -301,13 +304,13 @@ Result<std::vector<Run>> runs_of(const std::vector<Frame>& frames, const Pixels&
 Result<> check_is_segmentation(DcmDataset& data, const std::string& source) {
   const std::string sop_class = text_of(data, DCM_SOPClassUID), modality = text_of(data, DCM_Modality);
   if (sop_class == UID_SurfaceSegmentationStorage) {
-    return input_error(source, "this is a DICOM surface segmentation, one of voxels is expected",
-                       "Export the segmentation as DICOM SEG or as a label mask.");
+    return input_error(source, "this is a DICOM surface segmentation, a segmentation of voxels is expected",
+                       "Export the segmentation as DICOM SEG or as a label mask");
   }
   if (modality == "SEG" || sop_class == UID_SegmentationStorage) return Ok{};
   return input_error(source,
                      fmt::format("this DICOM file has modality '{}', a segmentation (SEG) is expected", modality),
-                     "Name the segmentation that belongs to it.");
+                     "Name the segmentation that belongs to it");
 }
 
 }  // namespace
@@ -317,7 +320,7 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   const std::string source = path.string();
   if (options.volume > 1) {
     return input_error(source, fmt::format("volume {} is chosen, a DICOM segmentation holds one", options.volume),
-                       "Leave volume out.");
+                       "Leave volume out");
   }
   DcmFileFormat file;
   OFCondition status = file.loadFile(path.c_str());
@@ -326,13 +329,13 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   if (Result<> right = check_is_segmentation(data, source); !right) return right.error();
   if (status.bad()) {
     return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
   if (integer_of(data, DCM_InConcatenationTotalNumber).value_or(1) > 1) {
     return input_error(source, "the segmentation is spread over several files (a concatenation)",
-                       "Export it as one file.");
+                       "Export it as one file");
   }
-  data.convertToUTF8();  // a failure leaves the bytes as they are
+  data.convertToUTF8();  // on failure the bytes stay unchanged
   const int rows = integer_of(data, DCM_Rows).value_or(0), columns = integer_of(data, DCM_Columns).value_or(0);
   const int count = integer_of(data, DCM_NumberOfFrames).value_or(0);
   if (rows < 2 || columns < 2 || count < 1) {
@@ -354,8 +357,9 @@ Result<LabelImage> parse_dicom_seg(const std::filesystem::path& path, const Mask
   const Result<std::vector<Run>> runs = runs_of(*frames, *pixels, *rule, *stack, *segments);
   if (!runs) return runs.error();
   if (rule->least > 1) {
-    image.notes.push_back(fmt::format("fractional segments: a voxel is inside from {} of {} on, one half", rule->least,
-                                      integer_of(data, DCM_MaximumFractionalValue).value_or(255)));
+    image.notes.push_back(
+        fmt::format("The segments are fractional: a voxel with at least {} of {}, one half, is inside.", rule->least,
+                    integer_of(data, DCM_MaximumFractionalValue).value_or(255)));
   }
   if (Result<> painted = paint(*segments, *runs, options.skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();

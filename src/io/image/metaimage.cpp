@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MetaImage; the header by MetaIO (the format's own library, part of VTK). Its frame is LPS, as ITK reads and writes
-// it.
+// Reader of MetaImage; MetaIO (the format's own library, part of VTK) reads the header. The file's frame is LPS, as in
+// ITK.
 #include "detail/input_file.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
@@ -16,7 +16,7 @@
 namespace stylet::detail {
 
 namespace fs = std::filesystem;
-using namespace vtkmetaio;  // NOLINT(google-build-using-namespace): where VTK keeps MetaIO
+using namespace vtkmetaio;  // NOLINT(google-build-using-namespace): VTK's namespace for MetaIO
 
 namespace {
 
@@ -50,7 +50,7 @@ Result<VoxelType> voxel_type(MetaImage& image, const std::string& source) {
     default:
       return input_error(source,
                          fmt::format("the voxel type {} is not supported", MET_ValueTypeName[image.ElementType()]),
-                         "Export the mask as MET_UCHAR or MET_USHORT.");
+                         "Export the mask as MET_UCHAR or MET_USHORT");
   }
 }
 
@@ -65,7 +65,7 @@ double unit_mm(MET_DistanceUnitsEnumType unit) {
   }
 }
 
-/// zlib or gzip to exactly `size` bytes; shorter when the data end too early.
+/// Unpacks zlib or gzip data to `size` bytes; fewer if the data end too early.
 std::string inflated(std::string_view packed, std::size_t size) {
   std::string out(size, '\0');
   z_stream stream{};
@@ -74,7 +74,7 @@ std::string inflated(std::string_view packed, std::size_t size) {
   stream.next_out = reinterpret_cast<Bytef*>(out.data());
   std::size_t in_left = packed.size(), out_left = size;
   int status = Z_OK;
-  while (status == Z_OK && out_left > 0) {  // zlib counts in 32 bits
+  while (status == Z_OK && out_left > 0) {  // in portions, because zlib counts bytes in 32 bits
     stream.avail_in = static_cast<uInt>(std::min<std::size_t>(in_left, 1 << 30));
     stream.avail_out = static_cast<uInt>(std::min<std::size_t>(out_left, 1 << 30));
     const std::size_t in_given = stream.avail_in, out_given = stream.avail_out;
@@ -87,16 +87,16 @@ std::string inflated(std::string_view packed, std::size_t size) {
   return out;
 }
 
-/// What the header says of how to read the rest, looked at before MetaIO does: it takes NDims for the length of lists
-/// that have room for ten, and opens any data file.
+/// The fields of the header that must be checked before MetaIO reads it: MetaIO uses NDims as the length of lists that
+/// have room for ten numbers, and opens any data file.
 struct Announced {
   double dimensions = 0;
   std::string data_file;
-  std::size_t header_bytes = 0;  ///< the voxels of a file with header and data in one begin there
+  std::size_t header_bytes = 0;  ///< position of the voxels in a file with header and data
 };
 
-/// MetaIO separates at '=' or ':', whichever comes first, and knows its keys in one spelling only. Where it and this
-/// function might see different lines the header is refused.
+/// Reads these fields. MetaIO separates key and value at '=' or ':', whichever comes first, and knows its keys in one
+/// spelling only. A header in which MetaIO might see other lines than this function is an error.
 Result<Announced> announced_in(const fs::path& path) {
   const std::string source = path.string();
   constexpr std::size_t kLongest = 4095;
@@ -111,21 +111,21 @@ Result<Announced> announced_in(const fs::path& path) {
     const char* wrong = nullptr;
     if (line->text.size() > kLongest) wrong = "it is longer than 4095 characters";
     if (line->lone_return) wrong = "it ends in a carriage return alone";
-    if (separator == std::string::npos || key.empty()) wrong = "it does not say KEY = VALUE";
+    if (separator == std::string::npos || key.empty()) wrong = "it is not of the form KEY = VALUE";
     if (wrong != nullptr) {
       return input_error(fmt::format("{}, line {}", source, number),
                          fmt::format("the header of the MetaImage file is damaged: {}", wrong),
-                         "Copy or export it again.");
+                         "Copy or export it again");
     }
     const std::string value = trimmed(line->text.substr(separator + 1));
     if (key == "NDims") {
       found.dimensions = to_number(value).value_or(0);
       if (!(found.dimensions >= 2 && found.dimensions <= 5)) {
         return input_error(source + ", NDims", fmt::format("the value is '{}', 3 is expected", value.substr(0, 40)),
-                           "Export one 3D label mask; the header is damaged.");
+                           "The header is damaged; export one 3D label mask");
       }
     }
-    if (key == "ElementDataFile") {  // the last line of a header
+    if (key == "ElementDataFile") {  // always the last line of a header
       found.data_file = value;
       found.header_bytes = static_cast<std::size_t>(file.tellg());
       break;
@@ -135,40 +135,41 @@ Result<Announced> announced_in(const fs::path& path) {
     return input_error(
         source,
         fmt::format("the header of the MetaImage file has no {}", found.dimensions == 0 ? "NDims" : "ElementDataFile"),
-        "Copy or export it again; it is truncated or damaged.");
+        "The file is truncated or damaged; copy or export it again");
   }
   return found;
 }
 
-/// The file in which the voxels are. Errors: a list or a pattern of files, and those of data_file_of().
+/// The file with the voxels. Errors: a list or a pattern of files; errors of data_file_of().
 Result<fs::path> voxel_file(const fs::path& path, const std::string& name) {
   if (lower(name) == "local") return path;
   if (lower(name).starts_with("list") || name.find('%') != std::string::npos) {
     return input_error(path.string() + ", ElementDataFile",
                        fmt::format("'{}': voxels spread over many files are not supported", name.substr(0, 80)),
-                       "Export one binary .mha file.");
+                       "Export one binary .mha file");
   }
   return data_file_of(path, name);
 }
 
-/// The voxels' bytes as the file orders them. MetaIO itself leaves voxels uninitialised where a file ends too early.
+/// Reads the bytes of the voxels in the file's order. MetaIO is not used here, because it leaves voxels uninitialised
+/// if the file ends too early.
 Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path, std::size_t header_bytes,
                                 MetaImage& image, std::size_t size) {
   const std::string source = path.string();
   if (!image.BinaryData()) {
-    return input_error(source, "voxels as text are not supported", "Export one binary .mha file.");
+    return input_error(source, "voxels as text are not supported", "Export one binary .mha file");
   }
   const bool local = data_path == path;
   std::ifstream file(data_path, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(file), {});
   std::size_t start = local ? header_bytes : static_cast<std::size_t>(std::max(image.HeaderSize(), 0));
   if (image.HeaderSize() < 0 && !image.CompressedData() && bytes.size() >= size)
-    start = bytes.size() - size;  // "-1": at the end
+    start = bytes.size() - size;  // header size -1 means that the voxels are at the end
   bytes.erase(0, std::min(start, bytes.size()));
   if (image.CompressedData()) bytes = inflated(bytes, size);
   if (bytes.size() < size) {
     return input_error(source, fmt::format("there are {} bytes of voxels, {} are expected", bytes.size(), size),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
   return bytes;
 }
@@ -178,16 +179,16 @@ Result<std::string> read_voxels(const fs::path& path, const fs::path& data_path,
 Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const MaskReadOptions& options) {
   const std::string source = path.string();
   const auto damaged = [&](const char* part) {
-    return input_error(
-        source, fmt::format("the {} of the MetaImage file cannot be read", part),
-        "Copy or export it again (an .mhd header needs its data file beside it); it is truncated or damaged.");
+    return input_error(source, fmt::format("the {} of the MetaImage file cannot be read", part),
+                       "The file is truncated or damaged; copy or export it again (an .mhd header needs its data file "
+                       "in the same folder)");
   };
   const Result<Announced> announced = announced_in(path);
   if (!announced) return announced.error();
   const Result<fs::path> data_path = voxel_file(path, announced->data_file);
   if (!data_path) return data_path.error();
   MetaImage image;
-  // The header first: a refusal must not wait for gigabytes, and says more than a failure in the data.
+  // Read the header first, so that an error does not need gigabytes of data to be read, and is more precise.
   if (!image.Read(path.c_str(), false)) return damaged("header");
   std::vector<std::size_t> sizes;
   for (int d = 0; d < image.NDims(); ++d) sizes.push_back(static_cast<std::size_t>(std::max(image.DimSize(d), 0)));
@@ -195,7 +196,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
   if (!volume) return volume.error();
   if (image.ElementNumberOfChannels() != 1) {
     return input_error(source, fmt::format("a voxel has {} components, 1 is expected", image.ElementNumberOfChannels()),
-                       "Export a label mask, not a colour or vector image.");
+                       "Export a label mask, not a colour or vector image");
   }
   Result<VoxelType> type = voxel_type(image, source);
   if (!type) return type.error();
@@ -225,7 +226,7 @@ Result<LabelImage> parse_metaimage(const std::filesystem::path& path, const Mask
       return input_error(source + ", ElementSpacing",
                          fmt::format("the value along axis {} is {:g}, a number above 0 is expected", "ijk"[a],
                                      image.ElementSpacing(a)),
-                         "Write the image again with its voxel spacing in mm, e.g. from 3D Slicer.");
+                         "Write the image again with its voxel spacing in mm, e.g. from 3D Slicer");
     }
     // Row a of TransformMatrix is the direction of image axis a.
     for (int row = 0; row < 3; ++row) {

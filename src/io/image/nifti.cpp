@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NIfTI-1 and NIfTI-2, by VTK. World coordinates of the file are RAS; ours are LPS.
+// Reader of NIfTI-1 and NIfTI-2 with VTK. World coordinates of the file are RAS and are converted to LPS.
 #include "detail/parsers.hpp"
 #include "detail/vtk_messages.hpp"
 #include "image/voxels.hpp"
@@ -48,14 +48,14 @@ Result<VoxelType> voxel_type(vtkImageData& image, const std::string& source) {
     case VTK_DOUBLE:
       return VoxelType::float64;
     default:
-      return input_error(source, "the voxel type is not supported", "Export the mask as 8- or 16-bit whole numbers.");
+      return input_error(source, "the voxel type is not supported", "Export the mask as 8- or 16-bit whole numbers");
   }
 }
 
-/// [mm] per unit of the header's length; 0 when the code is none of the standard's.
+/// Length [mm] of the unit that the header states; 0 for a code that the standard does not have.
 double unit_mm(int code) {
   switch (code & 0x07) {
-    case 0:  // not stated: mm by universal use
+    case 0:  // not stated; by convention mm
     case 2:
       return 1.0;
     case 1:
@@ -67,7 +67,7 @@ double unit_mm(int code) {
   }
 }
 
-/// One component of all voxels, out of several that lie beside each other.
+/// One component of all voxels of an image with interleaved components.
 std::vector<char> component_of(vtkImageData& image, std::size_t component) {
   const std::size_t bytes = static_cast<std::size_t>(image.GetScalarSize());
   const std::size_t step = bytes * static_cast<std::size_t>(image.GetNumberOfScalarComponents());
@@ -77,7 +77,7 @@ std::vector<char> component_of(vtkImageData& image, std::size_t component) {
   return values;
 }
 
-/// The file, unpacked, holds at least so many bytes. VTK fills what is missing with zeros and says nothing.
+/// Whether the file, unpacked, has at least `wanted` bytes. VTK would silently replace missing bytes by zeros.
 bool holds_bytes(const std::filesystem::path& path, double wanted) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) return false;
@@ -98,11 +98,11 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   const auto messages = VtkMessages::install();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NIfTI file cannot be read ({})", messages->first_error()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   };
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(path.c_str());
-  reader->TimeAsVectorOn();  // the volumes of a series become components, of which one is taken
+  reader->TimeAsVectorOn();  // the volumes of a series become components, one of which is used
   reader->UpdateInformation();
   if (messages->failed()) return damaged();
   vtkNIFTIImageHeader& header = *reader->GetNIFTIHeader();
@@ -117,26 +117,26 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
     if (header.GetPixDim(a) >= 0 && std::isfinite(header.GetPixDim(a))) continue;
     return input_error(fmt::format("{}, pixdim[{}]", source, a),
                        fmt::format("the value is {:g}, a voxel spacing above 0 is expected", header.GetPixDim(a)),
-                       "Save the image again, e.g. from 3D Slicer.");
+                       "Save the image again, e.g. from 3D Slicer");
   }
 
-  // The standard's method 3 (sform) comes before method 2 (qform). VTK's matrices act on index × spacing.
+  // The standard's method 3 (sform) has priority over method 2 (qform). VTK's matrices apply to index × spacing.
   vtkMatrix4x4* form = header.GetSFormCode() > 0 ? reader->GetSFormMatrix() : nullptr;
   if (form == nullptr && header.GetQFormCode() > 0) form = reader->GetQFormMatrix();
   if (form == nullptr) {
     return input_error(
-        source, "the file does not say how the image lies in the patient (neither sform nor qform)",
-        "Save it again with its orientation, e.g. from 3D Slicer; without it left and right are unknown.");
+        source, "the file does not state the position of the image in the patient (neither sform nor qform)",
+        "Left and right are unknown without it; save the image again with its orientation, e.g. from 3D Slicer");
   }
   const double unit = unit_mm(header.GetXYZTUnits());
   if (unit == 0.0) {
     return input_error(source, fmt::format("the unit of length (code {}) is unknown", header.GetXYZTUnits() & 0x07),
-                       "Set xyzt_units to 2 (mm).");
+                       "Set xyzt_units to 2 (mm)");
   }
 
   if (!std::string_view(header.GetMagic()).starts_with("n+")) {
     return input_error(source, "this is a NIfTI image in two files (.hdr and .img)",
-                       "Convert it to a single .nii or .nii.gz.");
+                       "Convert it to a single .nii or .nii.gz");
   }
   double bytes = static_cast<double>(header.GetVoxOffset());
   double voxel = header.GetBitPix() / 8.0;
@@ -144,7 +144,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   bytes += voxel;
   if (!holds_bytes(path, bytes)) {
     return input_error(source, fmt::format("the file ends before its {:.0f} bytes of voxels", voxel),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
 
   reader->Update();
@@ -161,7 +161,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   const auto components = static_cast<std::size_t>(image.GetNumberOfScalarComponents());
   if (components != volumes) {
     return input_error(source, fmt::format("a voxel has {} components, 1 is expected", components / volumes),
-                       "Export a label mask, not a colour or vector image.");
+                       "Export a label mask, not a colour or vector image");
   }
   const std::vector<char> chosen = volumes == 1 ? std::vector<char>() : component_of(image, *volume);
   voxels.data = volumes == 1 ? image.GetScalarPointer() : chosen.data();

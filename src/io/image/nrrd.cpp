@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NRRD, also 3D Slicer's .seg.nrrd, by Teem (the format's own library).
+// Reader of NRRD, including 3D Slicer's .seg.nrrd, with Teem (the format's own library).
 #include "detail/input_file.hpp"
 #include "detail/parsers.hpp"
 #include "detail/text.hpp"
@@ -24,7 +24,7 @@ struct NrrdCloser {
 };
 using NrrdPointer = std::unique_ptr<Nrrd, NrrdCloser>;
 
-/// Teem's own words for its last error, the innermost line.
+/// The innermost line of Teem's last error message.
 std::string last_error() {
   char* text = biffGetDone(NRRD);
   const std::string all = text == nullptr ? "" : text;
@@ -61,11 +61,11 @@ Result<VoxelType> voxel_type(int type, const std::string& source) {
       return VoxelType::float64;
     default:
       return input_error(source, fmt::format("the voxel type '{}' is not supported", airEnumStr(nrrdType, type)),
-                         "Export the mask as 8- or 16-bit whole numbers.");
+                         "Export the mask as 8- or 16-bit whole numbers");
   }
 }
 
-/// Signs that turn the file's space into LPS.
+/// The factors, 1 or −1, that convert coordinates of the file's space to LPS.
 Result<Vec3> to_lps(const Nrrd& nrrd, const std::string& source) {
   switch (nrrd.space) {
     case nrrdSpaceLeftPosteriorSuperior:
@@ -78,14 +78,14 @@ Result<Vec3> to_lps(const Nrrd& nrrd, const std::string& source) {
       return input_error(
           source,
           nrrd.space == nrrdSpaceUnknown
-              ? std::string("the header does not say how the image lies in the patient (no 'space')")
-              : fmt::format("the space '{}' is not one of the patient's", airEnumStr(nrrdSpace, nrrd.space)),
+              ? std::string("the header does not state the position of the image in the patient (no 'space')")
+              : fmt::format("the space '{}' is not a frame of the patient", airEnumStr(nrrdSpace, nrrd.space)),
           "Write 'space: left-posterior-superior' (or right-anterior-superior, left-anterior-superior), "
-          "'space directions' and 'space origin'.");
+          "'space directions' and 'space origin'");
   }
 }
 
-/// [mm] per unit; 0 when unknown.
+/// Length of a unit [mm]; 0 if the unit is unknown.
 double unit_mm(const char* unit) {
   const std::string name = unit == nullptr ? "" : lower(trimmed(unit));
   if (name.empty() || name == "mm" || name == "millimeter" || name == "millimetre") return 1.0;
@@ -95,10 +95,10 @@ double unit_mm(const char* unit) {
   return 0.0;
 }
 
-/// What 3D Slicer writes of one segment: keys SegmentN_Name, SegmentN_LabelValue and SegmentN_Layer.
+/// A segment as 3D Slicer describes it by the keys SegmentN_Name, SegmentN_LabelValue and SegmentN_Layer.
 struct SegmentKeys {
   std::string name;
-  int value = 0;  ///< in its layer
+  int value = 0;  ///< label value in its layer
   std::size_t layer = 0;
 };
 
@@ -106,7 +106,7 @@ struct SegmentTexts {
   std::optional<std::string> name, value, layer;
 };
 
-/// The keys of each segment, as text, by its N.
+/// The values of these keys as text, for each number N.
 std::map<int, SegmentTexts> segment_texts(const Nrrd& nrrd) {
   constexpr std::string_view start = "Segment";
   std::map<int, SegmentTexts> segments;
@@ -134,31 +134,31 @@ std::map<int, SegmentTexts> segment_texts(const Nrrd& nrrd) {
   return segments;
 }
 
-/// A whole number within bounds, or nothing.
+/// Converts a text to a whole number; empty if it is not one or out of bounds.
 std::optional<int> whole_number(const std::string& text, int least, int most) {
   const double value = to_number(text).value_or(-1.0);
   if (!(value >= least && value <= most) || value != std::floor(value)) return std::nullopt;
   return static_cast<int>(value);
 }
 
-/// The segments that the header describes; what is wrong with the others goes into the notes.
-/// @param layers of the file
+/// The segments that the header describes correctly; notes say what is wrong with the others.
+/// @param layers number of layers in the file
 std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd, std::size_t layers, std::vector<std::string>& notes) {
   std::vector<SegmentKeys> segments;
   for (const auto& [n, texts] : segment_texts(nrrd)) {
     const std::string called = texts.name && !texts.name->empty()
-                                   ? fmt::format("segment '{}'", *texts.name)
-                                   : fmt::format("the segment of the header's Segment{}", n);
+                                   ? fmt::format("Segment '{}'", *texts.name)
+                                   : fmt::format("The segment with number {} in the header", n);
     const std::string value = texts.value.value_or(std::to_string(n + 1)), layer = texts.layer.value_or("0");
     const auto number = whole_number(value, 1, 65535), at = whole_number(layer, 0, 65535);
     if (!number) {
-      notes.push_back(fmt::format("{} has no voxels: its Segment{}_LabelValue is '{}', 1 to 65535 is expected", called,
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_LabelValue is '{}', 1 to 65535 is expected.", called,
                                   n, value.substr(0, 40)));
     } else if (!at) {
-      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is '{}', a number from 0 on is expected",
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is '{}', a number from 0 on is expected.",
                                   called, n, layer.substr(0, 40)));
     } else if (static_cast<std::size_t>(*at) >= layers) {
-      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is {}, and the file's last layer is {}",
+      notes.push_back(fmt::format("{} has no voxels: its Segment{}_Layer is {}, and the file's last layer is {}.",
                                   called, n, *at, layers - 1));
     } else {
       segments.push_back({texts.name.value_or(""), *number, static_cast<std::size_t>(*at)});
@@ -167,7 +167,7 @@ std::vector<SegmentKeys> segment_keys(const Nrrd& nrrd, std::size_t layers, std:
   return segments;
 }
 
-/// The axis that is none of the patient's: layers of segments, or volumes; -1 = there is none.
+/// The axis that is not a spatial one but counts layers of segments or volumes; -1 = there is none.
 int list_axis(const Nrrd& nrrd) {
   if (nrrd.dim != 4) return -1;
   for (const int axis : {0, 3}) {
@@ -176,13 +176,13 @@ int list_axis(const Nrrd& nrrd) {
   return 3;
 }
 
-/// One volume of the file as it is.
+/// One volume or layer of the file.
 Result<NrrdPointer> slice_of(const Nrrd& nrrd, int axis, std::size_t at, const std::string& source) {
   NrrdPointer slice(nrrdNew());
   const int status = axis < 0 ? nrrdCopy(slice.get(), &nrrd) : nrrdSlice(slice.get(), &nrrd, axis, at);
   if (status != 0) {
     return input_error(source, fmt::format("a volume cannot be taken out of the NRRD file ({})", last_error()),
-                       "Export one 3D label mask.");
+                       "Export one 3D label mask");
   }
   return slice;
 }
@@ -201,7 +201,7 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
     const double unit = unit_mm(nrrd.spaceUnits[a]);
     if (unit == 0.0) {
       return input_error(source, fmt::format("the unit '{}' is unknown", nrrd.spaceUnits[a]),
-                         "Write 'space units: \"mm\" \"mm\" \"mm\"'.");
+                         "Write 'space units: \"mm\" \"mm\" \"mm\"'");
     }
     voxels.size[a] = axis.size;
     for (unsigned row = 0; row < 3; ++row) {
@@ -212,8 +212,9 @@ Result<Voxels> voxels_of(const Nrrd& nrrd, const Vec3& lps, const std::string& s
   return voxels;
 }
 
-/// The segments of all layers in one image; labels that the header does not describe are segments without a name. Each
-/// layer counts its labels from 1: where two have the same, the segments get their number in the file instead.
+/// Merges the segments of all layers into one image. Labels that the header does not describe become segments without a
+/// name. Each layer counts its labels from 1; if two layers share a label, all segments are numbered by their order in
+/// the file instead.
 Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentKeys> keys, const Vec3& lps,
                                 std::span<const std::string> skip, const std::string& source) {
   LabelImage image;
@@ -229,7 +230,7 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
     }
     Result<std::vector<std::uint16_t>> labels = labels_of(*voxels);
     if (!labels) return labels.error();
-    std::vector<int> place(std::size_t{1} << 16, -1);  // of a value's segment in the list
+    std::vector<int> place(std::size_t{1} << 16, -1);  // position in the list, by the segment's value
     for (std::size_t k = 0; k < keys.size(); ++k) {
       if (keys[k].layer == layer) place[keys[k].value] = static_cast<int>(k);
     }
@@ -240,7 +241,8 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
         place[label] = static_cast<int>(keys.size());
         keys.push_back({"", label, layer});
         image.notes.push_back(fmt::format(
-            "label {} of layer {} is none of the header's segments: it is taken as one without a name", label, layer));
+            "Label {} of layer {} does not belong to a segment of the header and becomes a segment without a name.",
+            label, layer));
       }
       add_voxel(runs, n, place[label]);
     }
@@ -251,30 +253,28 @@ Result<LabelImage> merge_layers(const Nrrd& nrrd, int axis, std::vector<SegmentK
   std::vector<Segment> segments;
   for (const SegmentKeys& key : keys)
     segments.push_back({unique ? key.value : static_cast<int>(segments.size()) + 1, key.name, ""});
-  image.notes.push_back(fmt::format("{} segments in {} layers were put into one mask{}", segments.size(),
-                                    nrrd.axis[axis].size,
-                                    unique ? ""
-                                           : "; layers use the same labels, so that segments are numbered 1, 2, … "
-                                             "in the order of the file"));
+  image.notes.push_back(fmt::format(
+      "{} segments in {} layers were merged into one mask{}.", segments.size(), nrrd.axis[axis].size,
+      unique ? "" : "; since layers use the same labels, segments are numbered 1, 2, … in the order of the file"));
   if (Result<> painted = paint(segments, runs, skip, image); !painted) return painted.error();
   if (Result<> extent = check_extent(image); !extent) return extent.error();
   return image;
 }
 
-/// A field that names the data's file or files, which Teem would open whatever it names.
+/// Checks a field that names data files, since Teem would open any file.
 Result<> check_data_file(const std::filesystem::path& path, const std::string& name) {
   if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
     return input_error(path.string() + ", data file",
                        fmt::format("'{}': data spread over many files are not supported", name.substr(0, 80)),
-                       "Export one .nrrd file.");
+                       "Export one .nrrd file");
   }
   if (Result<std::filesystem::path> data = data_file_of(path, name); !data) return data.error();
   return Ok{};
 }
 
-/// Looks at the header before Teem does: it opens whatever file a field names, and writes beyond the end of its own
-/// messages when a field holds a very long word. A line is a field where its first ": " comes before its first ":=",
-/// else a key and its value.
+/// Checks the header before Teem reads it, because Teem opens any file that a field names, and writes beyond the end of
+/// its message buffer if a field has a very long word. A line is a field if its first ": " comes before its first ":=";
+/// otherwise it is a key with its value.
 Result<> check_header(const std::filesystem::path& path) {
   constexpr std::size_t kLongestField = 512;
   std::ifstream file(path, std::ios::binary);
@@ -288,7 +288,7 @@ Result<> check_header(const std::filesystem::path& path) {
       return input_error(fmt::format("{}, line {}", path.string(), number),
                          fmt::format("the header has a line of {}{} characters, at most {} are expected",
                                      line->whole ? "" : "more than ", text.size(), most),
-                         "Copy or export it again; it is damaged.");
+                         "The file is damaged; copy or export it again");
     }
     const auto colon = text.find(':');
     if (colon == std::string::npos || text.front() == '#') continue;
@@ -304,17 +304,17 @@ Result<LabelImage> parse_nrrd(const std::filesystem::path& path, const MaskReadO
   const std::string source = path.string();
   const auto damaged = [&] {
     return input_error(source, fmt::format("the NRRD file cannot be read ({})", last_error()),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   };
   if (Result<> header = check_header(path); !header) return header.error();
-  // The header first: a refusal must not wait for gigabytes, and says more than a failure in the data.
+  // Read the header first, so that an error does not need gigabytes of data to be read, and is more precise.
   const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> header_only(nrrdIoStateNew(), nrrdIoStateNix);
   nrrdIoStateSet(header_only.get(), nrrdIoStateSkipData, AIR_TRUE);
   NrrdPointer nrrd(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), header_only.get()) != 0) return damaged();
   if (nrrd->dim > 4) {
     return input_error(source + ", dimension", fmt::format("the value is {}, 3 or 4 is expected", nrrd->dim),
-                       "Export one 3D label mask, or volumes along a fourth axis only.");
+                       "Export one 3D label mask, or volumes along a fourth axis only");
   }
   const int axis = list_axis(*nrrd);
   std::vector<std::size_t> sizes;

@@ -13,7 +13,7 @@ namespace stylet::detail {
 
 namespace {
 
-/// Which segments a user's words mean, each by its name, else by its label.
+/// For each segment whether a word of the user means it, by its name, or else by its label.
 std::vector<bool> listed(const std::vector<Segment>& segments, std::span<const std::string> words) {
   std::vector<std::string> names, numbers;
   for (const Segment& s : segments) {
@@ -29,7 +29,7 @@ std::vector<bool> listed(const std::vector<Segment>& segments, std::span<const s
   return in;
 }
 
-/// The runs in the order of their segments' sizes, the largest first; of segments of one size the first.
+/// The runs sorted by the sizes of their segments, the largest first; segments of equal size keep their order.
 std::vector<Run> largest_first(std::vector<Run> runs, const std::vector<std::size_t>& voxels) {
   std::stable_sort(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
     return std::pair(voxels[b.segment], a.segment) < std::pair(voxels[a.segment], b.segment);
@@ -43,7 +43,7 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
                LabelImage& image) {
   const std::vector<bool> skipped = listed(segments, skip);
   if (!segments.empty() && std::find(skipped.begin(), skipped.end(), false) == skipped.end()) {
-    return input_error(image.source, "every segment is left out", "Take one of them out of [patient] skip.");
+    return input_error(image.source, "every segment is left out", "Remove one of them from [patient] skip");
   }
   std::vector<std::size_t> voxels(segments.size(), 0);
   for (const Run& run : runs) voxels[run.segment] += run.count;
@@ -53,8 +53,8 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
     called[label] = name.empty() ? fmt::format("segment {}", label) : name;
     if (!name.empty()) image.names[label] = name;
     if (!meaning.empty()) image.meanings[label] = meaning;
-    if (skipped[s]) image.names.try_emplace(label, std::to_string(label));  // so that it is known to have been there
-    if (voxels[s] == 0 && !skipped[s]) image.notes.push_back(fmt::format("segment '{}' is empty", called[label]));
+    if (skipped[s]) image.names.try_emplace(label, std::to_string(label));  // keeps the skipped label known
+    if (voxels[s] == 0 && !skipped[s]) image.notes.push_back(fmt::format("Segment '{}' is empty.", called[label]));
   }
   std::map<std::pair<int, int>, std::size_t> overlaps;  // (smaller, larger) → voxels
   for (const Run& run : largest_first(runs, voxels)) {
@@ -67,7 +67,7 @@ Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& run
     }
   }
   for (const auto& [pair, shared] : overlaps) {
-    image.notes.push_back(fmt::format("'{0}' and '{1}' share {2} voxel{3}: the smaller segment, '{0}', has {4}",
+    image.notes.push_back(fmt::format("'{0}' and '{1}' share {2} voxel{3}: the smaller segment, '{0}', keeps {4}.",
                                       called[pair.first], called[pair.second], shared, shared == 1 ? "" : "s",
                                       shared == 1 ? "it" : "them"));
   }

@@ -15,16 +15,16 @@ namespace stylet::detail {
 struct Segment {
   int label = 0;  ///< 1…65535, unique
   std::string name;
-  std::string meaning;  ///< of its code, empty where there is none
+  std::string meaning;  ///< meaning of its code; empty if there is none
 };
 
-/// Voxels of one segment that follow one another in the image.
+/// Consecutive voxels of one segment in the image.
 struct Run {
   std::uint32_t first = 0, count = 0;
   std::uint32_t segment = 0;  ///< position in the list of segments
 };
 
-/// Puts a voxel of a segment to the runs.
+/// Adds a voxel of a segment to the runs.
 inline void add_voxel(std::vector<Run>& runs, std::size_t voxel, std::size_t segment) {
   if (!runs.empty() && runs.back().segment == segment && runs.back().first + std::size_t{runs.back().count} == voxel) {
     ++runs.back().count;
@@ -33,11 +33,11 @@ inline void add_voxel(std::vector<Run>& runs, std::size_t voxel, std::size_t seg
   }
 }
 
-/// Paints the segments into image.labels (of the image's size, all 0). Where segments overlap, the smaller one, by its
-/// voxels, has the voxel: what is inside something else is the more specific of both (the urethra or a zone inside the
-/// gland). Of two equally large ones the later has it. Names and notes on overlaps and on empty segments go into the
-/// image.
-/// @param skip names or labels of segments that are left out: what lies below them keeps its voxels
+/// Paints the segments into image.labels (of the image's size, all 0). Where segments overlap, the voxel belongs to the
+/// segment with fewer voxels, because a structure inside another is the more specific one (the urethra or a zone inside
+/// the gland); of two equally large segments, to the later one. Names, and notes on overlaps and empty segments, are
+/// added to the image.
+/// @param skip names or labels of segments that are left out: segments below them keep their voxels
 /// Errors: every segment is left out.
 Result<> paint(const std::vector<Segment>& segments, const std::vector<Run>& runs, std::span<const std::string> skip,
                LabelImage& image);

@@ -17,21 +17,21 @@ namespace stylet::detail {
 
 namespace {
 
-// A mask is made of pieces, so that most neighbours have the same label; the grey values of a picture vary from voxel
-// to voxel. Above so many different values the one or the other decides; above the second number it is a picture
-// anyway.
+// In a mask most neighbouring voxels have the same label, whereas grey values vary from voxel to voxel. An image with
+// at most kFewValues different values is a mask, an image with more than kManyValues has grey values; between them the
+// share of equal neighbours decides.
 constexpr std::size_t kFewValues = 16;
 constexpr std::size_t kManyValues = 256;
-constexpr double kAlikeInMask = 1.0 / 3.0;   // share of neighbours along i that have the same label, outside background
-constexpr std::size_t kMostCounted = 65536;  // different values that are counted for a message
-constexpr double kWhole = 1e-3;              // from a whole number, in what counts as one
-constexpr double max_shear = 1e-3;           // |cosine| between two axes; headers are single precision
+constexpr double kAlikeInMask = 1.0 / 3.0;   // least share of equal neighbours along i in a mask, without background
+constexpr std::size_t kMostCounted = 65536;  // limit for counting different values for a message
+constexpr double kWhole = 1e-3;              // largest distance from a whole number
+constexpr double max_shear = 1e-3;           // largest |cosine| between two axes; headers have single precision
 
 const char* const mask_cure =
-    "Name a label mask: 0 outside, one whole number per structure; a probability map must be cut at a threshold first, "
-    "e.g. in 3D Slicer.";
+    "Name a label mask: 0 outside, one whole number per structure; apply a threshold to a probability map first, e.g. "
+    "in 3D Slicer";
 
-/// The values of an image as numbers, whatever their type in the file.
+/// The values of an image as numbers; T is their type in the file.
 template <class T>
 struct Values {
   const Voxels& voxels;
@@ -45,7 +45,7 @@ std::string voxel_name(const Voxels& voxels, std::size_t n) {
   return fmt::format("voxel ({}, {}, {})", n % nx, n / nx % ny, n / (nx * ny));
 }
 
-/// Says how many different values there are, and within what.
+/// The error for an image with grey values; it gives the number and the range of its values.
 template <class T>
 Error is_picture(const Values<T>& value, std::size_t count, const std::string& why) {
   std::unordered_set<double> different;
@@ -64,7 +64,7 @@ Error is_picture(const Values<T>& value, std::size_t count, const std::string& w
                      mask_cure);
 }
 
-/// Whether labels as many as these look like grey values.
+/// Whether labels with this number of different values look like grey values.
 bool varies_like_picture(const std::vector<std::uint16_t>& labels, std::size_t different) {
   if (different <= kFewValues) return false;
   if (different > kManyValues) return true;
@@ -84,7 +84,7 @@ Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
   const std::size_t count = labels.size();
   std::vector<bool> seen(std::numeric_limits<std::uint16_t>::max() + std::size_t{1});
   std::size_t different = 0;
-  std::optional<std::size_t> outside;  // the first voxel whose value no label can have
+  std::optional<std::size_t> outside;  // the first voxel whose value is not a possible label
   for (std::size_t n = 0; n < count; ++n) {
     const double v = value(n), whole = std::round(v);
     if (!std::isfinite(v)) {
@@ -106,7 +106,7 @@ Result<> copy_labels(const Voxels& voxels, std::vector<std::uint16_t>& labels) {
   if (outside) {
     return is_picture(
         value, count,
-        fmt::format(", and {:.6g} at {} is no label (0…65535)", value(*outside), voxel_name(voxels, *outside)));
+        fmt::format(", and {:.6g} at {} is not a label (0…65535)", value(*outside), voxel_name(voxels, *outside)));
   }
   if (varies_like_picture(labels, different)) return is_picture(value, count, "");
   return Ok{};
@@ -156,7 +156,7 @@ Result<> check_extent(const LabelImage& image) {
     }
   }
   if (high[0] < 0) {
-    return input_error(image.source, "the mask is empty: every voxel is 0", "Segment a structure before exporting.");
+    return input_error(image.source, "the mask is empty: every voxel is 0", "Segment a structure before exporting");
   }
   double extent = 0.0;
   for (int a = 0; a < 3; ++a) extent = std::max(extent, (high[a] - low[a] + 1) * image.spacing[a]);
@@ -165,20 +165,20 @@ Result<> check_extent(const LabelImage& image) {
                        fmt::format("the segmentation is {:.4g} mm long, 1 mm to 2 m is expected; voxel spacing "
                                    "{:.4g} × {:.4g} × {:.4g} mm",
                                    extent, image.spacing[0], image.spacing[1], image.spacing[2]),
-                       "The file's unit is probably not mm; correct its spacing.");
+                       "The file's unit is probably not mm; correct its spacing");
   }
   return Ok{};
 }
 
 Result<> set_frame(const Voxels& voxels, LabelImage& image) {
-  const char* const cure = "Write the image again with a valid orientation, in mm, e.g. from 3D Slicer.";
+  const char* const cure = "Write the image again with a valid orientation, in mm, e.g. from 3D Slicer";
   const std::array<std::size_t, 3>& size = voxels.size;
   const double count = static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
   if (count > std::numeric_limits<Index>::max()) {
     return input_error(voxels.source,
                        fmt::format("the image has {:.3g} voxels, at most {:.3g} are supported", count,
                                    static_cast<double>(std::numeric_limits<Index>::max())),
-                       "Crop it to the pelvis.");
+                       "Crop it to the pelvis");
   }
   if (Result<> reach = check_reach(fmt::format("{}, {}", voxels.source, voxels.origin_field), voxels.origin,
                                    "the image's first voxel");
@@ -212,7 +212,7 @@ Result<> set_frame(const Voxels& voxels, LabelImage& image) {
         return input_error(voxels.source,
                            fmt::format("the image axes {} and {} enclose {:.2f}°, 90° is expected (a sheared image)",
                                        "ijk"[a], "ijk"[b], std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / M_PI),
-                           "Resample the mask to a regular grid, e.g. with 3D Slicer.");
+                           "Resample the mask to a regular grid, e.g. with 3D Slicer");
       }
     }
   }
@@ -233,7 +233,7 @@ Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen
     return input_error(
         source,
         fmt::format("the image has {} voxels, at least 2 along each of 3 axes are needed", fmt::join(sizes, " × ")),
-        "Export the whole volume, not one slice.");
+        "Export the whole volume, not one slice");
   }
   double volumes = 1;
   for (const std::size_t n : sizes.subspan(3)) volumes *= static_cast<double>(std::max<std::size_t>(n, 1));
@@ -242,14 +242,14 @@ Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen
     return input_error(
         source,
         fmt::format("the file holds {:.0f} volumes ({} voxels), one is needed", volumes, fmt::join(sizes, " × ")),
-        "Say which one, counted from 1: volume = 1 below [patient] in a scenario, --volume 1 with "
-        "stylet info and stylet mesh.");
+        "Choose one, counted from 1: volume = 1 below [patient] in a scenario, --volume 1 with stylet info and stylet "
+        "mesh");
   }
   if (chosen > volumes) {
     return input_error(
         source,
         fmt::format("volume {} is chosen, the file holds {:.0f} ({} voxels)", chosen, volumes, fmt::join(sizes, " × ")),
-        volumes == 1 ? "Leave volume out." : fmt::format("Choose one from 1 to {:.0f}.", volumes));
+        volumes == 1 ? "Leave volume out" : fmt::format("Choose one from 1 to {:.0f}", volumes));
   }
   return static_cast<std::size_t>(chosen - 1);
 }

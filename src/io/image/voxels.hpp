@@ -13,9 +13,9 @@ namespace stylet::detail {
 
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
-/// A 3D image as a format's library hands it over, before anyone has asked whether it is a segmentation.
+/// A 3D image as a format's library returns it, before it is checked whether it is a segmentation.
 struct Voxels {
-  std::string source;  ///< file
+  std::string source;  ///< file name for messages
   std::array<std::size_t, 3> size{0, 0, 0};
   VoxelType type = VoxelType::uint8;
   const void* data = nullptr;  ///< i fastest; size[0]*size[1]*size[2] values in the machine's byte order
@@ -23,8 +23,8 @@ struct Voxels {
   double intercept = 0.0;
   Mat3 axes = Mat3::Identity();           ///< [mm] LPS, columns: steps from one voxel to the next along i, j, k
   Vec3 origin = Vec3::Zero();             ///< [mm] LPS, centre of voxel (0,0,0)
-  std::string origin_field = "origin";    ///< what the format calls its origin
-  std::string spacing_field = "spacing";  ///< what the format calls its spacing
+  std::string origin_field = "origin";    ///< the format's name for the origin, for messages
+  std::string spacing_field = "spacing";  ///< the format's name for the spacing, for messages
 };
 
 /// Splits the frame of `voxels` into origin, spacing and directions of `image`, and sets its size. Errors: fewer than
@@ -32,20 +32,20 @@ struct Voxels {
 /// or sheared; each with the format's own name of the field.
 Result<> set_frame(const Voxels& voxels, LabelImage& image);
 
-/// Refuses an empty segmentation and one that is < 1 mm or > 2 m long.
+/// Error if a segmentation is empty, or if its extent is < 1 mm or > 2 m.
 Result<> check_extent(const LabelImage& image);
 
-/// The values as labels, or why they are none: not whole numbers (to 1e-3), outside 0…65535, or those of a picture.
+/// The values as labels. Errors: values that are not whole numbers (to 1e-3) or outside 0…65535; an image with grey
+/// values instead of labels.
 Result<std::vector<std::uint16_t>> labels_of(const Voxels& voxels);
 
-/// Turns an image into a segmentation, or says why it is none: the errors of set_frame(), labels_of() and
-/// check_extent().
+/// Converts an image into a segmentation. Errors: as set_frame(), labels_of() and check_extent().
 Result<LabelImage> to_label_image(const Voxels& voxels);
 
-/// Which volume of a file is meant, counted from 0. Errors: not 3D, too few voxels, several volumes and none chosen,
-/// a number that the file does not have.
-/// @param sizes (dimensions) voxels along each axis of the file; volumes along the fourth and later ones
-/// @param chosen counted from 1, 0 = the only one
+/// Index of the chosen volume in a file, from 0. Errors: not 3D, too few voxels, several volumes and none chosen, a
+/// number that the file does not have.
+/// @param sizes (dimensions) number of voxels along each axis of the file; axes after the third count volumes
+/// @param chosen number of the volume, from 1; 0 = the only one
 Result<std::size_t> choose_volume(std::span<const std::size_t> sizes, int chosen, const std::string& source);
 
 }  // namespace stylet::detail

@@ -12,35 +12,34 @@ namespace stylet::detail {
 
 namespace {
 
-// Without a stated unit a mesh must be believable as the tissue around a needle.
+// A mesh without a stated unit must have a plausible size for the tissue around a needle.
 constexpr double smallest_believable_mm = 10.0;
 constexpr double largest_believable_mm = 2000.0;
 
-/// Refuses a mesh whose size shows that its unit is not mm, unless the unit is known.
+/// Error if the size of a mesh without a known unit shows that the unit is not mm.
 Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : nodes) box.extend(x);
-  if (nodes.empty() || !box.sizes().allFinite()) return Ok{};  // check_mesh() has the words for these
+  if (nodes.empty() || !box.sizes().allFinite()) return Ok{};  // check_mesh() reports these errors
   const double extent = box.sizes().maxCoeff();
   if (extent >= smallest_believable_mm && extent <= largest_believable_mm) return Ok{};
   const auto believable = [&](double scale) { return extent * scale >= 40.0 && extent * scale <= 1500.0; };
-  std::string cure = "State the unit: --scale S with S = mm per file unit.";
+  std::string cure = "State the unit: --scale S with S = mm per file unit";
   if (extent > largest_believable_mm) {
-    cure = "If they are micrometres, pass --scale 0.001; otherwise --scale S with S = mm per file unit.";
+    cure = "If they are micrometres, pass --scale 0.001; otherwise --scale S with S = mm per file unit";
   } else if (believable(1000.0) && extent <= 1.5) {
-    cure = "They are probably metres: pass --scale 1000; otherwise --scale S with S = mm per file unit.";
+    cure = "They are probably metres: pass --scale 1000; otherwise --scale S with S = mm per file unit";
   } else if (believable(10.0)) {
-    cure = "If they are centimetres, pass --scale 10; otherwise --scale S with S = mm per file unit.";
+    cure = "If they are centimetres, pass --scale 10; otherwise --scale S with S = mm per file unit";
   }
-  return input_error(
-      source,
-      fmt::format("the mesh is {:.4g} units across; read as mm that is not believable ({:.0f} mm to {:.0f} mm is), so "
-                  "its coordinates are not in mm",
-                  extent, smallest_believable_mm, largest_believable_mm),
-      cure);
+  return input_error(source,
+                     fmt::format("the mesh is {:.4g} units across, which is not plausible in mm ({:.0f} mm to {:.0f} "
+                                 "mm is expected), so its coordinates are not in mm",
+                                 extent, smallest_believable_mm, largest_believable_mm),
+                     cure);
 }
 
-/// Drops nodes that no tetrahedron uses but another element does; nodes nobody uses stay and are refused later.
+/// Drops nodes that only other elements than tetrahedra use. Nodes without any element stay and are an error later.
 Index drop_foreign_nodes(RawMesh& raw) {
   if (raw.used_elsewhere.empty()) return 0;
   std::vector<bool> keep(raw.nodes.size());
@@ -67,7 +66,7 @@ Index drop_foreign_nodes(RawMesh& raw) {
   return dropped;
 }
 
-/// Region numbers of the file to 0, 1, … in ascending order, with names.
+/// Converts the file's region numbers to 0, 1, … in ascending order, with names.
 void set_regions(const RawMesh& raw, TetMesh& mesh) {
   std::map<int, int> index;
   for (const int tag : raw.tag) index[tag] = 0;
@@ -76,7 +75,7 @@ void set_regions(const RawMesh& raw, TetMesh& mesh) {
     const auto name = raw.tag_names.find(tag);
     std::string text =
         name != raw.tag_names.end() && !name->second.empty() ? name->second : fmt::format("region {}", tag);
-    // Two numbers may carry one name; regions need their own.
+    // Two numbers may have the same name in the file, but regions need different names.
     if (mesh.region_index(text) >= 0) text += fmt::format(" {}", tag);
     mesh.regions.push_back(std::move(text));
   }
@@ -90,7 +89,8 @@ bool numbers_in_range(const TetMesh& mesh) {
   });
 }
 
-/// Some programs list the nodes the other way round; only when all do, it is a convention and no damage.
+/// Inverts all tetrahedra if all of them are inverted, which is a convention of some programs; if only some are, the
+/// mesh is damaged.
 bool turn_if_all_inverted(TetMesh& mesh) {
   if (mesh.tets.empty() || !numbers_in_range(mesh)) return false;
   for (Index t = 0; t < mesh.tet_count(); ++t) {
@@ -105,26 +105,26 @@ bool turn_if_all_inverted(TetMesh& mesh) {
 Result<> check_scale(double scale) {
   if (scale == 0.0 || (std::isfinite(scale) && scale > 0.0)) return Ok{};
   return input_error("--scale",
-                     fmt::format("{} is no unit of length, a number above 0 is expected (mm per file unit)", scale),
-                     "Pass e.g. --scale 1000 for metres.");
+                     fmt::format("{} is not a unit of length, a number above 0 is expected (mm per file unit)", scale),
+                     "Pass e.g. --scale 1000 for metres");
 }
 
 Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const MeshReadOptions& options) {
   if (Result<> good = check_scale(options.scale); !good) return good.error();
   MeshWithNotes out;
   for (const auto& [kind, count] : raw.passed_over) {
-    out.notes.push_back(fmt::format("{} {} passed over, only tetrahedra are used", count, kind));
+    out.notes.push_back(fmt::format("{} {} ignored, because only tetrahedra are used.", count, kind));
   }
   if (raw.tets.empty()) {
     return input_error(source,
                        raw.passed_over.empty()
                            ? "the file holds no tetrahedra"
                            : fmt::format("the file holds no tetrahedra, only {}", raw.passed_over.begin()->first),
-                       "Export a volume mesh of tetrahedra; a surface has to be filled first.");
+                       "Export a volume mesh of tetrahedra; fill a surface with tetrahedra first");
   }
-  if (raw.quadratic) out.notes.emplace_back("quadratic tetrahedra: only their corner nodes are used");
+  if (raw.quadratic) out.notes.emplace_back("Of the quadratic tetrahedra only the corner nodes are used.");
   if (const Index dropped = drop_foreign_nodes(raw); dropped > 0) {
-    out.notes.push_back(fmt::format("{} node{} that no tetrahedron uses dropped", dropped, dropped == 1 ? "" : "s"));
+    out.notes.push_back(fmt::format("Dropped {} node{} that no tetrahedron uses.", dropped, dropped == 1 ? "" : "s"));
   }
   const double scale = options.scale > 0.0 ? options.scale : raw.unit_mm > 0.0 ? raw.unit_mm : 1.0;
   for (Vec3& x : raw.nodes) {
@@ -142,7 +142,7 @@ Result<MeshWithNotes> finish_mesh(RawMesh raw, const std::string& source, const 
   out.mesh.nodes = std::move(raw.nodes);
   out.mesh.tets = std::move(raw.tets);
   if (turn_if_all_inverted(out.mesh))
-    out.notes.emplace_back("all tetrahedra were numbered the other way round; put right");
+    out.notes.emplace_back("The nodes of all tetrahedra were numbered the other way round; this was corrected.");
   if (Result<> sound = check_mesh(out.mesh, source); !sound) return sound.error();
   return out;
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double weld_mm = 1e-4;
 
-/// Points that round to the same multiple of weld_mm become one.
+/// Merges points that round to the same multiple of weld_mm.
 void weld(Surface& surface) {
   using Key = std::array<std::int64_t, 3>;
   const auto key = [&](Index p) {
@@ -40,7 +40,7 @@ void weld(Surface& surface) {
   });
 }
 
-/// Every edge is used once in each direction.
+/// Whether every edge is used once in each direction.
 bool is_closed(const Surface& surface) {
   std::vector<std::pair<Index, Index>> edges, reversed;
   for (const auto& t : surface.triangles) {
@@ -74,7 +74,7 @@ Surface to_surface(vtkPolyData& data, std::string name) {
   const auto add = [&](vtkIdType a, vtkIdType b, vtkIdType c) {
     const vtkIdType count = data.GetNumberOfPoints();
     if (std::min({a, b, c}) < 0 || std::max({a, b, c}) >= count)
-      throw std::runtime_error("a triangle names a point that is not in the file");
+      throw std::runtime_error("a triangle refers to a point that is not in the file");
     surface.triangles.push_back({static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
   };
   vtkIdType count = 0;
@@ -106,19 +106,19 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
       for (const Index p : t) box.extend(surface.points[p]);
     }
   }
-  if (box.isEmpty()) return input_error(source, "there are no triangles", "Export triangulated surfaces.");
+  if (box.isEmpty()) return input_error(source, "there are no triangles", "Export triangulated surfaces");
   const double extent = box.sizes().maxCoeff();
   if (extent < 1.0 || extent > 2000.0) {
     return input_error(source, fmt::format("its surfaces are {:.4g} mm across, 1 mm to 2 m is expected", extent),
                        extent < 1.0 ? "The coordinates are probably in metres: pass --scale 1000; otherwise --scale S "
-                                      "with S = mm per file unit."
-                                    : "State the unit: --scale S with S = mm per file unit.");
+                                      "with S = mm per file unit"
+                                    : "State the unit: --scale S with S = mm per file unit");
   }
   SurfacesWithNotes out;
   for (Surface& surface : surfaces) {
     weld(surface);
     if (surface.triangles.empty()) {
-      out.notes.push_back(fmt::format("surface '{}' has no area; passed over", surface.name));
+      out.notes.push_back(fmt::format("Surface '{}' has no area and is ignored.", surface.name));
       continue;
     }
     if (is_closed(surface) && signed_volume(surface) < 0.0) {
@@ -126,7 +126,7 @@ Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const s
     }
     out.surfaces.push_back(std::move(surface));
   }
-  if (out.surfaces.empty()) return input_error(source, "its triangles have no area", "Export triangulated surfaces.");
+  if (out.surfaces.empty()) return input_error(source, "its triangles have no area", "Export triangulated surfaces");
   return out;
 }
 

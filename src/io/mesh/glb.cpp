@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// glTF 2.0 binary scenes, by VTK. glTF lengths are metres, +y is up (glTF 2.0 specification, 3.4).
+// Reader of binary glTF 2.0 scenes with VTK. glTF lengths are metres, +y is up (glTF 2.0 specification, 3.4).
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/surfaces.hpp"
@@ -19,7 +19,7 @@ namespace stylet::detail {
 
 namespace {
 
-/// A standing patient facing +z, head +y, left side +x, as anatomical atlases place him.
+/// Converts to LPS the coordinates of a standing patient as in anatomical atlases: facing +z, head +y, left side +x.
 Vec3 to_lps(const Vec3& x, double scale) { return scale * Vec3(x.x(), -x.z(), x.y()); }
 
 /// Collects all triangles below a block into one surface.
@@ -32,7 +32,7 @@ void collect(vtkDataObject* block, Surface& into) {
   }
 }
 
-/// Names of the scene's nodes, which VTK does not pass on, from the file's JSON part (glTF 2.0, 4.4).
+/// The names of the scene's nodes from the file's JSON part (glTF 2.0, 4.4); VTK does not provide them.
 std::vector<std::string> node_names(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 20> head{};  // magic, version, length; length and type of the first part
@@ -53,14 +53,15 @@ std::vector<std::string> node_names(const std::filesystem::path& path) {
   return names;
 }
 
-/// Number i of a block that VTK calls "Node_i"; -1 for other blocks.
+/// The number i of a block that VTK names "Node_i"; -1 for other blocks.
 int node_number(vtkMultiBlockDataSet& parent, unsigned index) {
   const char* name = parent.HasMetaData(index) ? parent.GetMetaData(index)->Get(vtkCompositeDataSet::NAME()) : nullptr;
   if (name == nullptr || !std::string_view(name).starts_with("Node_")) return -1;
   return static_cast<int>(to_number(std::string_view(name).substr(5)).value_or(-1.0));
 }
 
-/// VTK gives a block per node, in it blocks for its mesh (whose primitives are the surfaces) and for its children.
+/// Collects the surfaces below a block. VTK makes a block for each node, which contains blocks for the node's mesh
+/// (whose primitives are the surfaces) and for its children.
 void walk(vtkMultiBlockDataSet& parent, Surface& own, const std::vector<std::string>& names,
           std::vector<Surface>& surfaces) {
   for (unsigned i = 0; i < parent.GetNumberOfBlocks(); ++i) {
@@ -94,7 +95,7 @@ Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double sc
     return input_error(source,
                        fmt::format("the GLB scene cannot be read ({})",
                                    messages->failed() ? messages->first_error() : "no reason given"),
-                       "Copy or export it again; it is truncated, damaged or compressed (Draco).");
+                       "The file is truncated, damaged or compressed (Draco); copy or export it again");
   }
   std::vector<Surface> raw;
   Surface loose;

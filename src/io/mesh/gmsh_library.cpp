@@ -14,7 +14,7 @@ void check(int error) {
   if (error != 0) throw std::runtime_error(fmt::format("error {}", error));
 }
 
-/// @param flat dimension and number in turn
+/// @param flat dimension and number of each entity, alternating
 GmshLibrary::DimTags pairs(const std::vector<int>& flat) {
   GmshLibrary::DimTags all;
   for (std::size_t i = 0; i + 1 < flat.size(); i += 2) all.emplace_back(flat[i], flat[i + 1]);
@@ -29,10 +29,10 @@ Result<const GmshLibrary*> GmshLibrary::get() {
   if (!library.problem_.empty())
     return failure(name,
                    fmt::format("the library that reads gmsh and MEDIT meshes cannot be loaded ({})", library.problem_),
-                   "Install gmsh, or bring the mesh as VTU.");
+                   "Install gmsh, or convert the mesh to VTU");
   if (!library.whole_)
     return failure(name, "the library that reads gmsh and MEDIT meshes lacks functions",
-                   "Install the gmsh that the program was built with, or bring the mesh as VTU.");
+                   "Install the version of gmsh with which the program was built, or convert the mesh to VTU");
   return &library;
 }
 
@@ -83,7 +83,7 @@ void GmshLibrary::start() const {
   initialize_(0, nullptr, 0, &error);
   check(error);
   set("General.Terminal", 0);
-  set("General.AbortOnError", 2);  // the functions say that there was one
+  set("General.AbortOnError", 2);  // the functions report errors as return values
   set("General.NumThreads", 1);
   logger_start_(&error);
   check(error);

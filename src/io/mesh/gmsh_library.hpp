@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gmsh library, loaded with the first file that needs it: it brings CAD libraries, and binding the symbols of those
-// would be most of what `stylet --version` takes.
+// The gmsh library is loaded only when a file needs it: it depends on CAD libraries, and binding their symbols would
+// take most of the time of `stylet --version`.
 #pragma once
 
 #include "stylet/core/result.hpp"
@@ -13,7 +13,7 @@
 
 namespace stylet::detail {
 
-/// What of the library the reader calls. Where gmsh reports an error the functions throw std::runtime_error.
+/// The functions of the gmsh library that the reader calls. They throw std::runtime_error if gmsh reports an error.
 class GmshLibrary {
  public:
   using DimTags = std::vector<std::pair<int, int>>;  ///< dimension and number of each entity or group
@@ -23,20 +23,20 @@ class GmshLibrary {
   };
   struct Elements {
     int type = 0;
-    std::vector<std::size_t> tags, nodes;  ///< nodes: those of an element follow each other
+    std::vector<std::size_t> tags, nodes;  ///< the nodes of each element are consecutive
   };
   struct ElementType {
     std::string name;
     int nodes = 0;
   };
 
-  /// The library; loads it the first time. Failure: it is not there, or it is another version.
+  /// The library, loaded by the first call. Failure: it is missing, or it is another version.
   static Result<const GmshLibrary*> get();
 
-  /// Starts it, without the user's configuration files, silent, on one thread, with a log.
+  /// Initialises gmsh without the user's configuration files, silent, with one thread and a log.
   void start() const;
   void merge(const std::string& file) const;
-  /// gmsh goes on after errors; its log knows. Empty: none.
+  /// The first error in gmsh's log; empty if there is none. gmsh continues after errors.
   [[nodiscard]] std::string first_error() const;
 
   /// @param dimension −1: all
@@ -55,8 +55,8 @@ class GmshLibrary {
   std::vector<T> taken(T* data, std::size_t size) const;
   std::string taken(char* text) const;
 
-  std::string problem_;  ///< why it could not be loaded; empty: it is
-  bool whole_ = true;    ///< every function below is there
+  std::string problem_;  ///< why the library could not be loaded; empty: it is loaded
+  bool whole_ = true;    ///< all functions below have been found
   decltype(&gmshFree) free_ = nullptr;
   decltype(&gmshInitialize) initialize_ = nullptr;
   decltype(&gmshOptionSetNumber) set_number_ = nullptr;

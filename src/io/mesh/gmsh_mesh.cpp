@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// gmsh MSH 1, 2.2, 4.1 (ASCII, binary) and MEDIT .mesh, by the gmsh library.
+// Reader of gmsh MSH 1, 2.2, 4.1 (ASCII, binary) and MEDIT .mesh with the gmsh library.
 #include "detail/text.hpp"
 #include "mesh/gmsh_library.hpp"
 #include "mesh/msh_numbers.hpp"
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr int tetrahedron_4 = 4, tetrahedron_10 = 11;  // gmsh element types
 
-/// Region numbers and names of volumes: the volume's first physical group. Without groups, or when one group without a
-/// name holds several volumes (gmsh wants some group to save a mesh), the volumes themselves.
+/// Region numbers and names of volumes, from the volume's first physical group. If there are no groups, or if one group
+/// without a name holds several volumes (gmsh needs some group to save a mesh), each volume is a region.
 class Regions {
  public:
   explicit Regions(const GmshLibrary& gmsh) : gmsh_(gmsh) {
@@ -30,7 +30,7 @@ class Regions {
   [[nodiscard]] std::pair<int, std::string> of(int volume) const {
     std::vector<int> groups;
     if (!by_volume_) groups = gmsh_.physical_groups_of(3, volume);
-    // Minus keeps the number of a volume outside all groups apart from those of the groups.
+    // The minus sign distinguishes the number of a volume outside all groups from the numbers of groups.
     if (groups.empty()) return {by_volume_ ? volume : -volume, fmt::format("region {}", volume)};
     return {groups.front(), gmsh_.physical_name(3, groups.front())};
   }
@@ -40,7 +40,7 @@ class Regions {
   bool by_volume_ = true;
 };
 
-/// Numbers of all elements that gmsh took from a file, of every dimension.
+/// Numbers of all elements of every dimension that gmsh has read from a file.
 std::vector<std::size_t> element_numbers(const GmshLibrary& gmsh) {
   std::vector<std::size_t> numbers;
   for (const auto& [dimension, entity] : gmsh.entities(-1)) {
@@ -58,7 +58,7 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   for (std::size_t a = 0; a < tags.size(); ++a) {
     if (!node.emplace(tags[a], static_cast<Index>(a)).second) {
       return input_error(source, fmt::format("node {} appears twice", tags[a]),
-                         "Export the mesh again; the file is damaged.");
+                         "The file is damaged; export the mesh again");
     }
     raw.nodes.emplace_back(coordinates[3 * a], coordinates[3 * a + 1], coordinates[3 * a + 2]);
   }
@@ -86,7 +86,7 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
           if (found == node.end()) {
             return input_error(fmt::format("{}, element {}", source, elements[e]),
                                fmt::format("node {} is not in the file", nodes[e * per_element + i]),
-                               "Export the mesh again; the file is damaged.");
+                               "The file is damaged; export the mesh again");
           }
           if (tets && i < 4) {
             tet[i] = found->second;
@@ -104,33 +104,35 @@ Result<RawMesh> to_raw(const GmshLibrary& gmsh, const std::string& source) {
   return raw;
 }
 
-/// gmsh chooses its reader by extension and first bytes, takes what it does not know for a script, and runs a script
-/// called FILE.opt beside the file; scripts may start programs. Lets through only what it will take for a mesh.
+/// Checks that gmsh will treat a file as a mesh and not as a script, because scripts can start programs. gmsh chooses
+/// its reader by extension and first bytes, runs unknown content as a script, and also runs a script FILE.opt in the
+/// same folder.
 Result<> check_harmless(const fs::path& path, bool medit) {
   const std::string source = path.string();
   const std::string ending = path.extension().string();
   if (ending != (medit ? ".mesh" : ".msh")) {
     return input_error(source,
                        fmt::format("this is a {} mesh, but its name ends in '{}'", medit ? "MEDIT" : "gmsh", ending),
-                       fmt::format("Rename it to end in {}.", medit ? ".mesh" : ".msh"));
+                       fmt::format("Rename it to end in {}", medit ? ".mesh" : ".msh"));
   }
   std::string first_line;
   std::getline(std::ifstream(path, std::ios::binary), first_line);
   const auto begins = [&](std::string_view mark) { return first_line.starts_with(mark); };
   if (!medit && !begins("$MeshFormat") && !begins("$NOD") && !begins("$Comments")) {
-    return input_error(source, "the first line is none of $MeshFormat, $NOD, $Comments",
-                       "Remove what stands before it.");
+    return input_error(source, "the first line is not $MeshFormat, $NOD or $Comments",
+                       "Remove everything before that line");
   }
   std::error_code code;
   if (fs::exists(source + ".opt", code)) {
-    return input_error(source,
-                       fmt::format("gmsh would run the script '{}' beside it", path.filename().string() + ".opt"),
-                       "Move that script away.");
+    return input_error(
+        source, fmt::format("gmsh would run the script '{}' in the same folder", path.filename().string() + ".opt"),
+        "Move that script to another folder");
   }
   return Ok{};
 }
 
-/// How many tetrahedra a MEDIT file announces. gmsh takes a file that ends too early for a smaller mesh.
+/// The number of tetrahedra that a MEDIT file announces, to detect a truncated file, which gmsh reads as a smaller
+/// mesh.
 std::size_t announced_tetrahedra(const fs::path& path) {
   std::ifstream file(path);
   std::size_t announced = 0, count = 0;
@@ -154,7 +156,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
     gmsh.merge(source);
     problem = gmsh.first_error();
     if (problem.empty()) {
-      if (!medit) {  // which has no numbers
+      if (!medit) {  // MEDIT elements have no numbers
         const auto nodes_of = [&gmsh](int type) { return gmsh.element_type(type).nodes; };
         if (Result<> numbered = check_element_numbers(path, element_numbers(gmsh), nodes_of); !numbered)
           return numbered.error();
@@ -164,7 +166,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
       if (raw && medit && raw->tets.size() != announced) {
         return input_error(source,
                            fmt::format("the file announces {} tetrahedra and holds {}", announced, raw->tets.size()),
-                           "Copy or export it again; it is truncated or damaged.");
+                           "The file is truncated or damaged; copy or export it again");
       }
       return raw;
     }
@@ -174,7 +176,7 @@ Result<RawMesh> parse_gmsh_mesh(const fs::path& path, bool medit) {
   }
   return input_error(source,
                      fmt::format("gmsh cannot read the file ({})", problem.empty() ? "no reason given" : problem),
-                     "Copy or export it again; it is truncated or damaged.");
+                     "The file is truncated or damaged; copy or export it again");
 }
 
 }  // namespace stylet::detail

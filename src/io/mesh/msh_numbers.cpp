@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The list of elements of an MSH 1 or 2 file, number by number. Its other sections are passed over line by line.
+/// Reads the numbers in the list of elements of an MSH 1 or 2 file. Other sections are skipped line by line.
 class ElementList {
  public:
   explicit ElementList(const fs::path& path) : file_(path, std::ios::binary) {
@@ -31,13 +31,13 @@ class ElementList {
     if (there_ && std::getline(file_, announced)) count_ = static_cast<long long>(to_number(announced).value_or(-1));
   }
 
-  /// How many elements it announces; nothing: the file is of another version, or it has no elements.
+  /// The announced number of elements; empty if the file has another version or no elements.
   [[nodiscard]] std::optional<std::size_t> count() const {
     if (!there_ || count_ < 0) return std::nullopt;
     return static_cast<std::size_t>(count_);
   }
 
-  /// The elements' numbers in the file's order, as far as it can be read.
+  /// The numbers of the elements in the file's order, up to the first unreadable place.
   std::vector<std::size_t> numbers(const std::function<int(int)>& nodes_of) {
     std::vector<std::size_t> all;
     while (static_cast<long long>(all.size()) < count_ && read_block(nodes_of, all)) continue;
@@ -56,7 +56,7 @@ class ElementList {
     swapped_ = one != 1;
   }
 
-  /// One element, or with MSH 2 in binary several that share a head.
+  /// Reads one element, or in binary MSH 2 several elements with a common header.
   bool read_block(const std::function<int(int)>& nodes_of, std::vector<std::size_t>& all) {
     int number = 0, type = 0, tags = 0, elements = 1;
     if (version_ < 2.0) {
@@ -93,9 +93,9 @@ class ElementList {
   }
 
   std::ifstream file_;
-  double version_ = 1.0;  // without $MeshFormat
+  double version_ = 1.0;  // of a file without $MeshFormat
   bool binary_ = false;
-  bool swapped_ = false;  // of the other byte order
+  bool swapped_ = false;  // the file has the other byte order
   bool there_ = false;
   long long count_ = -1;
 };
@@ -110,7 +110,7 @@ std::optional<std::size_t> repeated(std::vector<std::size_t>& numbers) {
 Error has_number_twice(const fs::path& path, std::size_t number) {
   return input_error(fmt::format("{}, element {}", path.string(), number),
                      "two elements have this number, and gmsh would drop one of them",
-                     "Give every element a number of its own, triangles and lines too, or export the mesh again.");
+                     "Give every element a different number, triangles and lines included, or export the mesh again");
 }
 
 }  // namespace
@@ -124,8 +124,8 @@ Result<> check_element_numbers(const fs::path& path, std::vector<std::size_t> ta
   auto numbers = list.numbers(nodes_of);
   if (const auto number = repeated(numbers)) return has_number_twice(path, *number);
   return input_error(path.string(),
-                     fmt::format("the file announces {} elements and gmsh took {}", *announced, taken.size()),
-                     "Copy or export it again; it is truncated or damaged.");
+                     fmt::format("the file announces {} elements and gmsh has read {}", *announced, taken.size()),
+                     "The file is truncated or damaged; copy or export it again");
 }
 
 }  // namespace stylet::detail

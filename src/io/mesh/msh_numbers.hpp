@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements that share a number in a gmsh file. Of those in MSH 1 and 2 the library keeps one and does not say so.
+// Detects elements that share a number in a gmsh file. In MSH 1 and 2 the gmsh library silently keeps only one of them.
 #pragma once
 
 #include "stylet/core/result.hpp"
@@ -10,10 +10,10 @@
 
 namespace stylet::detail {
 
-/// Refuses a file in which two elements, of any kind, have the same number, and one of MSH 1 or 2 that announces more
-/// elements than the library took.
-/// @param taken numbers of all elements that the library took
-/// @param nodes_of how many nodes an element of a gmsh type has
+/// Error if two elements of any kind have the same number, or if an MSH 1 or 2 file announces more elements than the
+/// library has read.
+/// @param taken numbers of all elements that the library has read
+/// @param nodes_of function that gives the number of nodes of a gmsh element type
 Result<> check_element_numbers(const std::filesystem::path& path, std::vector<std::size_t> taken,
                                const std::function<int(int type)>& nodes_of);
 

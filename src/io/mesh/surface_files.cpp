@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL, PLY, OBJ, VTP, by VTK.
+// Reader of STL, PLY, OBJ and VTP with VTK.
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/surfaces.hpp"
@@ -21,7 +21,7 @@ namespace stylet::detail {
 
 namespace {
 
-/// The file's polygons; `header` receives comments that may name the frame.
+/// Reads the file's polygons; `header` receives comments that may state the frame.
 template <class Reader>
 vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string& header, unsigned long& error) {
   vtkNew<Reader> reader;
@@ -39,7 +39,8 @@ vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& path, std::string
   return reader->GetOutput();
 }
 
-/// Binary STL states its triangles, text ends with a word; VTK reads what is there.
+/// Checks that an STL file is complete, since VTK reads truncated files without an error: a binary file states the
+/// number of triangles, and a text file ends with a keyword.
 Result<> check_stl_is_whole(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(file), {});
@@ -56,7 +57,7 @@ Result<> check_stl_is_whole(const std::filesystem::path& path) {
   return input_error(path.string(),
                      text ? "the last line is not 'endsolid'"
                           : fmt::format("{} bytes cannot hold the {} triangles announced", bytes.size(), triangles),
-                     "Copy or export it again; it is truncated or damaged.");
+                     "The file is truncated or damaged; copy or export it again");
 }
 
 }  // namespace
@@ -88,7 +89,7 @@ Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileK
     return input_error(source,
                        fmt::format("the surface cannot be read ({})",
                                    messages->failed() ? messages->first_error() : "no reason given"),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
   const VtkHints hints = vtk_hints(*data, header);
   const double unit = scale > 0.0 ? scale : hints.unit_mm > 0.0 ? hints.unit_mm : 1.0;

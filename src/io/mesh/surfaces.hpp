@@ -9,17 +9,18 @@
 
 namespace stylet::detail {
 
-/// STL, PLY, OBJ, VTP: one surface, named after the file.
+/// Reads STL, PLY, OBJ or VTP: one surface, named after the file.
 Result<SurfacesWithNotes> parse_surface(const std::filesystem::path& path, FileKind kind, double scale);
 
-/// GLB: one surface per node with triangles, named as the node; metres, y up → LPS mm.
+/// Reads GLB: one surface per node with triangles, named as the node; converts metres, y up → LPS mm.
 Result<SurfacesWithNotes> parse_glb(const std::filesystem::path& path, double scale);
 
-/// Triangles of polygons and strips; points as they are, faces that are no triangles fanned.
+/// Converts polygons and strips to triangles: points stay unchanged, faces with more than three corners become fans.
 Surface to_surface(vtkPolyData& data, std::string name);
 
-/// Joins points that coincide, drops triangles without area and surfaces without triangles, turns a closed surface's
-/// normals outward; refuses NaN, nothing left, and an extent of the whole that betrays wrong units (< 1 mm or > 2 m).
+/// Cleans surfaces: merges coincident points, drops triangles without area and surfaces without triangles, and turns
+/// the normals of closed surfaces outward. Errors: NaN; nothing left; a total extent that indicates wrong units (< 1 mm
+/// or > 2 m).
 Result<SurfacesWithNotes> finish_surfaces(std::vector<Surface> surfaces, const std::string& source);
 
 }  // namespace stylet::detail

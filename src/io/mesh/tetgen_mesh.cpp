@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TetGen .node and .ele (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line per node or
-// tetrahedron; '#' begins a comment; numbers start at 0 or 1.
+// Reader of TetGen .node and .ele files (Si, TetGen 1.6 manual, section 5.2): a first line with counts, then one line
+// per node or tetrahedron; '#' begins a comment; numbering starts at 0 or 1.
 #include "detail/input_file.hpp"
 #include "detail/text.hpp"
 #include "mesh/raw_mesh.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lines of numbers, comments and blank lines left out; every error knows its line.
+/// Reads lines of numbers; skips comments and blank lines. Errors name the line.
 class NumberLines {
  public:
   explicit NumberLines(const fs::path& path) : file_(path), name_(path.string()) {}
@@ -39,14 +39,14 @@ class NumberLines {
         const auto number = to_number(word);
         if (!number || !std::isfinite(*number)) {
           return input_error(place(), fmt::format("'{}' is not a finite number", word.substr(0, 40)),
-                             "Correct the file at that place.");
+                             "Correct the file at that place");
         }
         numbers.push_back(*number);
       }
       if (!numbers.empty()) return numbers;
     }
     return input_error(place(), "the file ends here, more lines are announced",
-                       "Export the mesh again; the file is truncated.");
+                       "The file is truncated; export the mesh again");
   }
 
  private:
@@ -56,10 +56,10 @@ class NumberLines {
 };
 
 Error wrong_line(const NumberLines& lines, std::string what) {
-  return input_error(lines.place(), std::move(what), "Correct the file at that place.");
+  return input_error(lines.place(), std::move(what), "Correct the file at that place");
 }
 
-/// A whole number 0…2³¹-1, or none.
+/// Converts to a whole number 0…2³¹-2; empty if it is not one.
 std::optional<Index> whole(double value) {
   if (!(value >= 0.0 && value < 2147483647.0) || value != std::floor(value)) return std::nullopt;
   return static_cast<Index>(value);
@@ -148,8 +148,8 @@ Result<RawMesh> parse_tetgen_mesh(const fs::path& path) {
     if (Result<> file = check_input_file(part); !file) {
       return input_error(
           path.string(),
-          fmt::format("its other half '{}' cannot be read: {}", part.filename().string(), file.error().what),
-          "A TetGen mesh needs both, the .node and the .ele file, side by side.");
+          fmt::format("the second file '{}' cannot be read: {}", part.filename().string(), file.error().what),
+          "Keep the .node and the .ele file of a TetGen mesh in the same folder");
     }
   }
   NumberLines node_lines(node_path), ele_lines(ele_path);

@@ -7,14 +7,13 @@ class vtkDataObject;
 
 namespace stylet::detail {
 
-/// What a VTK file says about its frame and unit beside the geometry.
+/// Frame and unit according to the metadata of a VTK file.
 struct VtkHints {
   bool ras = false;      ///< coordinates are RAS; otherwise LPS
-  double unit_mm = 0.0;  ///< [mm] per file unit, 0 when not stated
+  double unit_mm = 0.0;  ///< [mm] per file unit; 0 if not stated
 };
 
-/// Looks for the words "SPACE=RAS" in a header line, as 3D Slicer writes them, and for the field data "SPACE" and
-/// "UNITS".
+/// Reads the text "SPACE=RAS" in a header line, as 3D Slicer writes it, and the field data "SPACE" and "UNITS".
 VtkHints vtk_hints(vtkDataObject& data, const std::string& header);
 
 }  // namespace stylet::detail

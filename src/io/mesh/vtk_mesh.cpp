@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTU and legacy VTK unstructured grids, by VTK.
+// Reader of VTU and legacy VTK unstructured grids with VTK.
 #include "detail/text.hpp"
 #include "detail/vtk_messages.hpp"
 #include "mesh/raw_mesh.hpp"
@@ -21,7 +21,7 @@ namespace stylet::detail {
 
 namespace {
 
-/// Cell arrays that hold region numbers, ours first, then those other programs write.
+/// Names of cell arrays with region numbers: first Stylet's own, then those of other programs.
 constexpr std::array<const char*, 7> region_arrays{"region",    "Region",     "CellEntityIds", "gmsh:physical",
                                                    "medit:ref", "MaterialID", "label"};
 
@@ -34,14 +34,14 @@ Result<> read_regions(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& t
   }
   if (array == nullptr) return Ok{};
   if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != grid.GetNumberOfCells()) {
-    return input_error(source, fmt::format("the cell array '{}' has not one number per cell", array->GetName()),
-                       "Write one region number per cell.");
+    return input_error(source, fmt::format("the cell array '{}' does not have one number per cell", array->GetName()),
+                       "Write one region number per cell");
   }
   for (std::size_t t = 0; t < tet_cells.size(); ++t) {
     const double value = array->GetComponent(tet_cells[t], 0);
     if (!(std::abs(value) < 1e9) || value != std::floor(value)) {
       return input_error(fmt::format("{}, cell {}", source, tet_cells[t]),
-                         fmt::format("the region number {} is not a whole number", value), "Write whole numbers.");
+                         fmt::format("the region number {} is not a whole number", value), "Write whole numbers");
     }
     raw.tag[t] = static_cast<int>(value);
   }
@@ -56,7 +56,7 @@ Result<RawMesh> to_raw(vtkUnstructuredGrid& grid, const std::string& source) {
   if (grid.GetPoints() == nullptr) return raw;
   if (grid.GetNumberOfPoints() > std::numeric_limits<Index>::max() ||
       grid.GetNumberOfCells() > std::numeric_limits<Index>::max()) {
-    return input_error(source, "the mesh has more than 2 billion nodes or cells", "Use a coarser mesh.");
+    return input_error(source, "the mesh has more than 2 billion nodes or cells", "Use a coarser mesh");
   }
   raw.nodes.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
   for (std::size_t a = 0; a < raw.nodes.size(); ++a) grid.GetPoint(static_cast<vtkIdType>(a), raw.nodes[a].data());
@@ -71,7 +71,7 @@ Result<RawMesh> to_raw(vtkUnstructuredGrid& grid, const std::string& source) {
         return input_error(
             fmt::format("{}, cell {}", source, c),
             fmt::format("node number {} is out of range, expected 0 to {}", ids[i], grid.GetNumberOfPoints() - 1),
-            "Export the mesh again; the file is damaged.");
+            "The file is damaged; export the mesh again");
       }
     }
     const int type = grid.GetCellType(c);
@@ -112,7 +112,7 @@ Result<RawMesh> parse_vtk_mesh(const std::filesystem::path& path, bool xml) {
     reader->ReadAllScalarsOn();
     if (!reader->IsFileUnstructuredGrid() && !messages->failed()) {
       return input_error(source, "this legacy VTK file holds no unstructured grid",
-                         "Export the volume mesh as UNSTRUCTURED_GRID.");
+                         "Export the volume mesh as UNSTRUCTURED_GRID");
     }
     reader->Update();
     error = reader->GetErrorCode();
@@ -123,7 +123,7 @@ Result<RawMesh> parse_vtk_mesh(const std::filesystem::path& path, bool xml) {
     return input_error(source,
                        fmt::format("the VTK file cannot be read ({})",
                                    messages->failed() ? messages->first_error() : "no reason given"),
-                       "Copy or export it again; it is truncated or damaged.");
+                       "The file is truncated or damaged; copy or export it again");
   }
   Result<RawMesh> raw = to_raw(*grid, source);
   if (!raw) return raw;

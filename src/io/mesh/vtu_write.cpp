@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTU, by VTK: appended raw data, zlib. Frame and unit travel as field data.
+// Writer of VTU files with VTK: appended raw data, zlib; frame and unit are field data.
 #include "detail/whole_file.hpp"
 #include "stylet/io/mesh_io.hpp"
 
@@ -26,7 +26,7 @@ void add_text(vtkFieldData& fields, const char* name, const std::vector<std::str
   fields.AddArray(array);
 }
 
-/// @param columns how many values a field must have
+/// @param columns required number of columns of each field: nodes or elements
 Result<> add_fields(vtkDataSetAttributes& attributes, const std::vector<MeshField>& fields, Index columns,
                     const std::string& where) {
   for (const MeshField& field : fields) {
@@ -35,7 +35,7 @@ Result<> add_fields(vtkDataSetAttributes& attributes, const std::vector<MeshFiel
       return failure(where,
                      fmt::format("the field '{}' has {} × {} values, 1, 3 or 6 × {} are expected", field.name,
                                  components, field.values.cols(), columns),
-                     "Give one column per node or tetrahedron.");
+                     "Give one column per node or tetrahedron");
     }
     vtkNew<vtkDoubleArray> array;
     array->SetName(field.name.c_str());
@@ -84,7 +84,7 @@ Result<> write_vtu(const TetMesh& mesh, const std::filesystem::path& path, const
     writer->EncodeAppendedDataOff();
     writer->SetCompressorTypeToZLib();
     if (writer->Write() != 1 || writer->GetErrorCode() != 0) {
-      return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space.");
+      return failure(path.string(), "the file cannot be written", "Check the folder's permissions and space");
     }
     return Ok{};
   });

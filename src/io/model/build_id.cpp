@@ -12,7 +12,7 @@
 namespace stylet::detail {
 namespace {
 
-/// Bytes of a loaded object.
+/// The bytes of a segment of a loaded object.
 std::string_view bytes_of(const dl_phdr_info& object, const ElfW(Phdr) & part) {
   // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as numbers
   return {reinterpret_cast<const char*>(object.dlpi_addr + part.p_vaddr), part.p_memsz};
@@ -28,7 +28,7 @@ bool holds(const dl_phdr_info& object, const void* address) {
   return false;
 }
 
-/// The build id among a series of notes; empty where it is not there.
+/// The build id in a series of ELF notes; empty if there is none.
 std::string id_among(std::string_view notes, std::size_t alignment) {
   const auto padded = [&](std::size_t size) { return (size + alignment - 1) / alignment * alignment; };
   constexpr std::string_view owner("GNU\0", 4);
@@ -58,7 +58,7 @@ int visit(dl_phdr_info* object, std::size_t, void* text) {
     const ElfW(Phdr)& part = object->dlpi_phdr[k];
     if (part.p_type == PT_NOTE) id = id_among(bytes_of(*object, part), part.p_align == 8 ? 8 : 4);
   }
-  return 1;  // that was the one
+  return 1;  // stops the iteration
 }
 
 }  // namespace

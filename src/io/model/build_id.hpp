@@ -5,9 +5,9 @@
 
 namespace stylet::detail {
 
-/// The build id of the program or shared library that holds this code, in hexadecimal: a digest that the linker makes
-/// of all that it links together. Another line of code, compiler or option is another one; `strip` leaves it, and two
-/// builds alike have the same. Empty where it was linked without one (--build-id).
+/// The build id of the program or shared library that holds this code, in hexadecimal: a digest by the linker of
+/// everything that it links. It changes with the code, the compiler and its options; it is the same for identical
+/// builds and after `strip`. Empty if the program was linked without a build id (--build-id).
 std::string build_id();
 
 }  // namespace stylet::detail

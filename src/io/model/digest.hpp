@@ -10,7 +10,7 @@ struct evp_md_ctx_st;
 
 namespace stylet::detail {
 
-/// SHA-256 of numbers and texts, one after the other, each with its length; or of plain bytes.
+/// SHA-256 of a sequence of numbers and texts, each with its length, or of plain bytes.
 class Digest {
  public:
   Digest();
@@ -25,9 +25,9 @@ class Digest {
   }
   void add(const std::string& text) { add_bytes(text.data(), text.size()); }
   void add_bytes(const void* data, std::size_t bytes);
-  void add_plain(const void* data, std::size_t bytes);  ///< without their length
+  void add_plain(const void* data, std::size_t bytes);  ///< adds bytes without their length
 
-  /// In hexadecimal; nothing can be added afterwards.
+  /// The digest in hexadecimal; nothing can be added afterwards.
   [[nodiscard]] std::string finish();
 
  private:

@@ -34,8 +34,8 @@ Result<> add_file(Digest& digest, const fs::path& path) {
   return failure(path.string(), "cannot be read", "Check the file and its permissions");
 }
 
-/// Whether a file says that part of it is in another one, or is one of several that belong together: what it is is
-/// decided as the readers do, by its content before its name.
+/// Whether a file refers to data in another file, or is one of several files that belong together. As in the readers,
+/// the content decides on the format before the name does.
 bool has_other_parts(const fs::path& path) {
   using detail::FileKind;
   const std::string ending = detail::lower(path.extension().string());
@@ -44,7 +44,7 @@ bool has_other_parts(const fs::path& path) {
   if (!kind || (*kind != FileKind::nrrd && *kind != FileKind::metaimage)) return kind && *kind == FileKind::tetgen;
   std::ifstream file(path, std::ios::binary);
   while (const std::optional<detail::HeaderLine> line = detail::next_header_line(file)) {
-    if (!line->whole) return true;  // whatever it says: no reader takes it
+    if (!line->whole) return true;  // no reader accepts such a line
     const auto separator = line->text.find_first_of(*kind == FileKind::nrrd ? ":" : "=:");
     const std::string key = detail::trimmed(line->text.substr(0, separator));
     const std::string value =
@@ -52,14 +52,14 @@ bool has_other_parts(const fs::path& path) {
     if (*kind == FileKind::metaimage) {
       if (key == "ElementDataFile") return value != "local";
     } else {
-      if (line->text.empty()) return false;  // the data follow
+      if (line->text.empty()) return false;  // the data begin after the empty line
       if (detail::lower(key) == "data file" || detail::lower(key) == "datafile") return true;
     }
   }
   return false;
 }
 
-/// A file, or all files of a folder in the order of their names.
+/// Adds a file to the digest, or all files of a folder in the order of their names.
 Result<> add_input(Digest& digest, const fs::path& path) {
   std::error_code code;
   if (!fs::is_directory(path, code)) return add_file(digest, path);
@@ -81,7 +81,7 @@ Result<> add_input(Digest& digest, const fs::path& path) {
 Result<std::string> model_key(const Scenario& scenario) {
   const std::string build = detail::build_id();
   if (build.empty()) {
-    return failure("models that are kept", "this program has no build id to name them by",
+    return failure("cache of models", "this program has no build id, which is part of the names of cached models",
                    "Link it with -Wl,--build-id=sha1");
   }
   Digest digest;
@@ -94,7 +94,8 @@ Result<std::string> model_key(const Scenario& scenario) {
   }
   for (const fs::path& input : inputs) {
     if (has_other_parts(input))
-      return failure(input.string(), "its data are in several files", "Give it as one file, such as .mha or .nrrd");
+      return failure(input.string(), "its data are in several files, which the cache does not support",
+                     "Convert it to one file, such as .mha or .nrrd");
     if (auto added = add_input(digest, input); !added) return added.error();
   }
   return digest.finish();
@@ -120,7 +121,7 @@ std::optional<fs::path> ModelCache::find(const std::string& key) const {
   for (const fs::path& place : places) {
     const fs::path file = place / (key + detail::kModelExtension);
     if (!is_model_file(file)) continue;
-    std::error_code ignored;  // a folder that is only to be read has no times to keep
+    std::error_code ignored;  // in a read-only folder the time cannot be set
     fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
     return file;
   }
@@ -132,11 +133,12 @@ Result<> ModelCache::keep(const Model& model, const std::string& key, std::span<
   if (folder_.empty() || model.inverse()) return Ok{};
   const Eigen::Index entries = model.store()->blocks().size();
   if (static_cast<std::uintmax_t>(entries) / 2 * sizeof(double) > most_bytes_)
-    return Ok{};  // a triangle of it is saved
+    return Ok{};  // too large, although only one triangle of the symmetric matrix is saved
   std::error_code code;
   fs::create_directories(folder_, code);
   if (code)
-    return failure(folder_.string(), "cannot be made: " + code.message(), "Check the permissions, or choose another");
+    return failure(folder_.string(), "cannot be created: " + code.message(),
+                   "Check the permissions, or choose another folder");
   const fs::path file = folder_ / (key + detail::kModelExtension);
   if (auto saved = save_model(model, file, notes, progress); !saved) return saved;
   forget_oldest(file);
@@ -151,7 +153,7 @@ void ModelCache::forget_oldest(const fs::path& newest) const {
   };
   std::vector<Kept> kept;
   std::uintmax_t total = 0;
-  std::error_code code;  // what somebody else has removed meanwhile is passed over
+  std::error_code code;  // files that another process removes in the meantime are ignored
   for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
     std::error_code gone;
     const Kept one{entry->last_write_time(gone), entry->path(), entry->file_size(gone)};

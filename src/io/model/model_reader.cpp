@@ -30,8 +30,8 @@ void demand(bool condition, const std::string& what) {
   if (!condition) throw NotAModel(what);
 }
 
-/// Reads arrays by their places, none larger than the file. What is wrong is thrown: NotAModel, NotSealed, or what the
-/// JSON library throws.
+/// Reads the arrays of a model file by their positions; none can be larger than the file. Throws NotAModel, NotSealed
+/// or exceptions of the JSON library.
 class Reader {
  public:
   Reader(const SealedFile& file, const Json& index) : file_(file), arrays_(index.at("arrays")) {}
@@ -57,7 +57,7 @@ class Reader {
 
   [[nodiscard]] bool has(const std::string& name) const { return arrays_.contains(name); }
 
-  /// @param shape 0 where any extent will do
+  /// Reads an array. @param shape expected extents; 0 = any
   template <class Number>
   [[nodiscard]] std::vector<Number> numbers(const std::string& name, const std::vector<std::uint64_t>& shape) const {
     const Place place = of(name);
@@ -80,14 +80,14 @@ class Reader {
     return mesh;
   }
 
-  /// As many rows as columns.
+  /// Reads a square matrix.
   [[nodiscard]] MatX square(const std::string& name) const {
     const std::uint64_t rows = of(name).shape.at(0);
     const auto values = numbers<double>(name, {rows, rows});
     return Eigen::Map<const MatX>(values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
   }
 
-  /// A symmetric matrix of which the lower triangle is in the file, column by column.
+  /// Reads a symmetric matrix, whose lower triangle is in the file column by column.
   [[nodiscard]] MatX symmetric(const std::string& name, Eigen::Index size, const Progress& progress) const {
     const Place place = of(name);
     const auto count = static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size + 1) / 2;
@@ -153,7 +153,7 @@ Result<> check_settings(std::span<const std::string> settings, const std::string
   for (const std::string& setting : settings) {
     for (const char* table : {"patient.", "mesh."}) {
       if (setting.rfind(table, 0) == 0) {
-        return input_error(fmt::format("--set {}", setting), fmt::format("the mesh is in {} already", where),
+        return input_error(fmt::format("--set {}", setting), fmt::format("{} already has the finished mesh", where),
                            "Start from the scenario with this setting: stylet prepare SCENARIO.toml --set …");
       }
     }
@@ -183,8 +183,8 @@ Result<ModelFile> read_model_file(const fs::path& path, const Progress& progress
   if (!is_hdf5_file(path)) return refuse("this is not a saved model");
   if (!SealedFile::is_marked(path)) {
     return refuse(
-        "it does not end as a saved model does: it was cut short or damaged, an earlier version of stylet saved it, or "
-        "it is something else");
+        "the end of a saved model is missing: the file is truncated or damaged, an earlier version of stylet saved it, "
+        "or it is not a model");
   }
   try {
     const SealedFile file(path, [&](double share) { report(progress, "checking the saved model", share); });
@@ -213,11 +213,11 @@ Result<std::shared_ptr<const Model>> compile_model(ModelFile file, const fs::pat
   if (compliance_origin((*model)->tissue()) != file.belongs_to) {
     return input_error(
         where,
-        settings.empty() ? fmt::format("its compliance was computed from something else than this "
-                                       "program makes of its scenario (written by stylet {})",
+        settings.empty() ? fmt::format("its compliance does not belong to the model that this program makes from its "
+                                       "scenario (written by stylet {})",
                                        file.version)
-                         : "these settings change what its compliance was computed from (tissue, "
-                           "supports, element or the needles' ways)",
+                         : "these settings change data on which its compliance depends (tissue, supports, element or "
+                           "the needles' ways)",
         settings.empty() ? kPrepareAgain : "Prepare a model with these settings: stylet prepare SCENARIO.toml --set …");
   }
   return model;

@@ -18,7 +18,7 @@ using namespace detail;
 
 namespace {
 
-/// The lower triangle, column by column.
+/// Writes the lower triangle of the compliance, column by column.
 void write_store(hid_t group, const MatX& store, const Progress& progress) {
   const auto size = static_cast<hsize_t>(store.cols());
   const hsize_t numbers = size * (size + 1) / 2;
@@ -37,7 +37,7 @@ void write_store(hid_t group, const MatX& store, const Progress& progress) {
   }
 }
 
-/// Where everything lies, for readers without HDF5.
+/// The index of the file: positions of all arrays, for readers without HDF5.
 std::string index_of(hid_t file, const ModelFile& content) {
   std::vector<std::string> names{"/scenario",
                                  "/notes",
@@ -129,7 +129,7 @@ Result<> save_model(const Model& model, const fs::path& path, std::span<const st
     try {
       write(temporary, file, progress);
       return Ok{};
-    } catch (const std::runtime_error& e) {  // of HDF5, or of the disk
+    } catch (const std::runtime_error& e) {  // thrown for errors of HDF5 and of the disk
       return failure(where, std::string("cannot be written: ") + e.what(), "Check the free space and the permissions");
     }
   });

@@ -18,7 +18,7 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-// The seal is text of always the same length: mark, length of the index, digest.
+// The seal is a text of fixed length: mark, length of the index, digest.
 constexpr std::string_view kMark = "\nstylet seal 1\n";
 constexpr std::size_t kLength = 16;
 constexpr std::size_t kDigest = 64;
@@ -55,7 +55,7 @@ std::uint64_t size_of(std::FILE* file) {
   return static_cast<std::uint64_t>(::ftello(file));
 }
 
-/// The seal, where there is one.
+/// The seal of a file; empty if it has none.
 std::string seal_of(std::FILE* file) {
   const std::uint64_t size = size_of(file);
   if (size < kSeal) return {};
@@ -94,7 +94,7 @@ SealedFile::SealedFile(const fs::path& path, const std::function<void(double)>& 
   if (seal.empty()) throw NotSealed("the seal at its end is missing");
   const std::uint64_t before = size_of(file_.get()) - kDigest;
   if (digest_of(file_.get(), before, progress) != seal.substr(kSeal - kDigest))
-    throw NotSealed("its bytes are not those that were written");
+    throw NotSealed("its bytes have changed since it was written");
   std::uint64_t length = 0;
   const char* const digits = seal.data() + kMark.size();
   const auto [end, status] = std::from_chars(digits, digits + kLength, length);

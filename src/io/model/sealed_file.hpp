@@ -12,30 +12,31 @@
 
 namespace stylet::detail {
 
-/// What is wrong with a sealed file, as a clause.
+/// Exception about a damaged sealed file; what() is a clause of a message.
 struct NotSealed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A file followed by a text that says where its parts lie, and by a seal: a mark, the length of that text and a
-/// SHA-256 of every byte before itself. Whoever has opened one has exactly the bytes that were written, and reads them
-/// by their places: no library looks at the file before they have been checked, and none needs to after that.
+/// A file with an index and a seal at its end. The index is a text that gives the positions of the file's parts; the
+/// seal is a mark, the length of the index and a SHA-256 of all bytes before the digest. Opening the file verifies that
+/// it has exactly the bytes that were written, before any library parses it; its parts are then read by their
+/// positions.
 class SealedFile {
  public:
-  /// Puts text and seal behind what is in a file. Throws NotSealed where the disk refuses.
+  /// Appends index and seal to a file. Throws NotSealed on an error of the disk.
   static void seal(const std::filesystem::path& path, const std::string& index);
   /// Whether a file ends with the mark of a seal; it may still be damaged.
   static bool is_marked(const std::filesystem::path& path);
 
-  /// Reads all of the file once. Throws NotSealed.
-  /// @param progress called with the share that has been read, 0…1
+  /// Opens a file and verifies its digest, which reads the whole file. Throws NotSealed.
+  /// @param progress is called with the share that has been read, 0…1
   SealedFile(const std::filesystem::path& path, const std::function<void(double)>& progress);
 
-  /// The text, as given to seal().
+  /// The index as given to seal().
   [[nodiscard]] const std::string& index() const { return index_; }
-  /// [bytes] before the text.
+  /// Number of bytes before the index.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Throws NotSealed where the bytes are not all before the text.
+  /// Reads bytes. Throws NotSealed if not all of them are before the index.
   void read(std::uint64_t at, std::uint64_t bytes, void* to) const;
 
  private:

@@ -5,7 +5,8 @@
 
 namespace stylet::results {
 
-/// Fixed-point text; a value that rounds to zero prints without a sign, so that no column flickers between 0 and -0.
+/// A number with a fixed number of decimals. A value that rounds to zero prints without a sign, so that a column does
+/// not alternate between 0 and -0.
 std::string fixed(double value, int digits);
 
 }  // namespace stylet::results

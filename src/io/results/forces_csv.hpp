@@ -9,11 +9,11 @@
 
 namespace stylet::results {
 
-/// First line of forces.csv, without line end. Columns and units: docs/results.md.
+/// The header line of forces.csv, without line end. Columns and units: docs/results.md.
 std::string_view forces_csv_header();
 
-/// forces.csv: the header and one line per step. Fixed number formats independent of the locale; the same steps give
-/// the same bytes. A value that is not finite prints as "nan" or "inf".
+/// The text of forces.csv: the header and one line per step. Number formats are fixed and independent of the locale, so
+/// that the same steps give the same bytes. A value that is not finite prints as "nan" or "inf".
 std::string forces_csv(std::span<const Step> steps);
 
 }  // namespace stylet::results

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPathTimeDigits = 6;  // s: a microsecond
 constexpr int kShiftDigits = 6;     // mm: a nanometre
-constexpr int kTurnDigits = 6;      // degrees: at the rim of a gland of 60 mm less than a nanometre
+constexpr int kTurnDigits = 6;      // degrees: less than a nanometre at the rim of a gland of 60 mm
 
 }  // namespace
 

@@ -8,8 +8,8 @@
 
 namespace stylet::results {
 
-/// gland.csv: a header and one line for each step, as in forces.csv. Columns and units: docs/results.md. Fixed number
-/// formats independent of the locale; the same path gives the same bytes.
+/// The text of gland.csv: a header and one line per step, as in forces.csv. Columns and units: docs/results.md. Number
+/// formats are fixed and independent of the locale, so that the same path gives the same bytes.
 std::string gland_csv(std::span<const GlandStep> path);
 
 }  // namespace stylet::results

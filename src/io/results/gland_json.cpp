@@ -9,7 +9,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// NaN where it is null.
+/// A vector; its components are NaN if it is null.
 Vec3 certain(const Json& json) {
   return vector_of(json).value_or(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
 }

@@ -7,7 +7,7 @@ namespace stylet::h5 {
 
 namespace {
 
-/// The innermost entry of HDF5's error stack carries the cause ("No space left on device").
+/// Keeps the innermost entry of HDF5's error stack, which has the cause ("No space left on device").
 herr_t keep_first(unsigned, const H5E_error2_t* entry, void* text) {
   auto& reason = *static_cast<std::string*>(text);
   if (reason.empty() && entry->desc != nullptr) reason = entry->desc;
@@ -35,14 +35,14 @@ std::vector<Number> read_numbers(hid_t object, const char* name, hid_t type) {
   return values;
 }
 
-/// Takes the text over from memory that HDF5 allocated.
+/// Copies a text from memory that HDF5 allocated, and frees that memory.
 std::string take(char* text) {
   std::string copy = text == nullptr ? "" : text;
   if (text != nullptr) H5free_memory(text);
   return copy;
 }
 
-/// Texts of fixed length side by side, each filled up with zeros.
+/// Concatenates texts, each padded with zeros to a fixed length.
 std::string side_by_side(std::span<const std::string> texts, std::size_t width) {
   std::string all(texts.size() * width, '\0');
   for (std::size_t k = 0; k < texts.size(); ++k) texts[k].copy(all.data() + k * width, width);
@@ -58,16 +58,16 @@ std::vector<std::string> taken_apart(const std::string& all, std::size_t width) 
   return texts;
 }
 
-/// What all of them fit into; HDF5 knows no text of length zero.
+/// The length of the longest text, but at least 1, since HDF5 does not support texts of length zero.
 std::size_t width_of(std::span<const std::string> texts) {
   std::size_t width = 1;
   for (const std::string& text : texts) width = std::max(width, text.size());
   return width;
 }
 
-/// Reads texts of either kind.
-/// @param type of one text in the file
-/// @param read fills memory: given the type in memory and where
+/// Reads texts of fixed or variable length.
+/// @param type type of one text in the file
+/// @param read function that reads into memory: its arguments are the type in memory and the address
 template <class Read>
 std::vector<std::string> texts_of(hid_t type, std::size_t count, const Read& read) {
   std::vector<std::string> texts;
@@ -78,27 +78,27 @@ std::vector<std::string> texts_of(hid_t type, std::size_t count, const Read& rea
     for (char* pointer : pointers) texts.push_back(take(pointer));
     return texts;
   }
-  if (H5Tget_class(type) != H5T_STRING) throw Failure("read text: it is no text");
+  if (H5Tget_class(type) != H5T_STRING) throw Failure("read text: it is not a text");
   const std::size_t width = H5Tget_size(type);
   std::string all(count * width, '\0');
   read(type, all.data());
   return taken_apart(all, width);
 }
 
-/// Refuses a space with more or fewer elements than there is room for; closes it.
+/// Throws if a dataspace does not have the expected number of elements; closes it.
 void expect_elements(Handle space, std::size_t count, const char* name) {
   if (static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space), name)) != count)
     throw Failure(std::string(name) + ": has the wrong shape");
 }
 
-/// A type of rows with one of the columns only.
+/// A compound type with only one of the columns.
 Handle column_type(const char* column, hid_t type) {
   Handle rows(check(H5Tcreate(H5T_COMPOUND, H5Tget_size(type)), "create type"), H5Tclose);
   check(H5Tinsert(rows, column, 0, type), column);
   return rows;
 }
 
-/// Properties of something new that does not remember when it was made.
+/// Creation properties of an object without time stamps.
 Handle timeless(hid_t kind) {
   Handle properties(check(H5Pcreate(kind), "create"), H5Pclose);
   check(H5Pset_obj_track_times(properties, false), "create");
@@ -121,8 +121,8 @@ LibraryTurn::LibraryTurn() : alone_(library()) {
 LibraryTurn::~LibraryTurn() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 namespace {
-/// HDF5 1.10 loses what it has read of an object whose checksum is wrong, and at its own end, where it finds that, it
-/// says "infinite loop closing library", unless it may not print.
+/// Silences HDF5 at the end of the program. HDF5 1.10 leaks an object whose checksum is wrong, and would print
+/// "infinite loop closing library" when it shuts down.
 struct SilentEnd {
   SilentEnd() = default;
   ~SilentEnd() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -132,7 +132,7 @@ struct SilentEnd {
 }  // namespace
 
 void fail(const char* action) {
-  static const SilentEnd before_that_of_hdf5;  // which had begun before
+  static const SilentEnd before_that_of_hdf5;  // destroyed before HDF5 shuts down, which was initialised earlier
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
   throw Failure(std::string(action) + ": " + (reason.empty() ? "HDF5 gave no reason" : reason));
@@ -145,7 +145,8 @@ Handle create_file(const char* path) {
 }
 
 Handle open_growing_file(const char* path) {
-  // The first wait is a nanosecond and each twice the one before: these are 0.13 s, HDF5's own 100 never end.
+  // The first wait is 1 ns and each further one twice as long: 28 attempts take 0.13 s; HDF5's default of 100 attempts
+  // would never end.
   constexpr unsigned kAttempts = 28;
   const Handle access(check(H5Pcreate(H5P_FILE_ACCESS), "open"), H5Pclose);
   check(H5Pset_metadata_read_attempts(access, kAttempts), "open");
@@ -308,7 +309,7 @@ std::size_t item_bytes(hid_t data) { return H5Tget_size(Handle(check(H5Dget_type
 
 namespace {
 
-/// File and memory dataspaces of some rows.
+/// The dataspaces in file and memory that select some rows.
 std::pair<Handle, Handle> select_rows(hid_t data, std::vector<hsize_t> shape, hsize_t first, hsize_t rows) {
   Handle file(check(H5Dget_space(data), "select rows"), H5Sclose);
   std::vector<hsize_t> start(shape.size(), 0);

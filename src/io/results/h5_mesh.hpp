@@ -6,7 +6,7 @@
 
 namespace stylet::h5 {
 
-/// Group "mesh": nodes_mm (n, 3), tets (m, 4), tet_region (m), regions.
+/// Writes the group "mesh": nodes_mm (n, 3), tets (m, 4), tet_region (m), regions.
 void write_mesh(hid_t file, const TetMesh& mesh);
 
 }  // namespace stylet::h5

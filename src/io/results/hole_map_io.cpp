@@ -23,7 +23,7 @@ std::string length_field(const std::optional<Vec3>& v) {
   return v && v->allFinite() ? fixed(v->norm(), kMapDigits) : "";
 }
 
-/// Why there are no figures, or what is to be said of them.
+/// The remark on a hole: why it has no figures, or remarks of its prediction.
 std::string remark_of(const HoleRow& row) {
   if (!row.failed.empty()) return row.failed;
   return row.prediction ? fmt::format("{}", fmt::join(row.prediction->remarks, " ")) : "";

@@ -26,7 +26,7 @@ Result<> write_all(const std::vector<File>& files, const fs::path& folder) {
   return Ok{};
 }
 
-/// The files under a hidden name beside the folder, which then takes its place in one step.
+/// Writes the files into a folder with a hidden name, which is then renamed to `folder` in one step.
 Result<> write_new_folder(const std::vector<File>& files, const fs::path& folder) {
   const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
   if (auto ready = prepare_folder(parent); !ready) return ready;
@@ -48,7 +48,7 @@ Result<> write_new_folder(const std::vector<File>& files, const fs::path& folder
 
 Error write_error(const fs::path& path, const std::string& reason) {
   return failure(path.string(), "cannot be written: " + reason,
-                 "Check the free space and the permissions of the result folder.");
+                 "Check the free space and the permissions of the result folder");
 }
 
 Result<> write_file(const fs::path& path, std::string_view content) {
@@ -68,7 +68,7 @@ Result<> write_file(const fs::path& path, std::string_view content) {
 Result<> prepare_folder(const fs::path& folder) {
   const auto refuse = [&](const std::string& reason) {
     return input_error("result folder " + folder.string(), reason,
-                       "Choose another folder with -o, or change its permissions.");
+                       "Choose another folder with -o, or change its permissions");
   };
   std::error_code code;
   fs::create_directories(folder, code);
@@ -108,7 +108,7 @@ Result<> remove_earlier(const fs::path& path) {
   fs::remove(path, code);
   if (!code) return Ok{};
   return input_error(path.string(), "this file of an earlier run cannot be removed: " + code.message(),
-                     "Choose another folder with -o, or remove it.");
+                     "Choose another folder with -o, or remove it");
 }
 
 Result<> remove_series_from(const fs::path& folder, std::string_view stem, std::string_view extension,

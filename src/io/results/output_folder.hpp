@@ -10,36 +10,38 @@
 
 namespace stylet::results {
 
-/// Makes sure `folder` exists, with its parents, and that files can be created in it.
+/// Creates `folder` and its parents if necessary, and checks that files can be created in it.
 Result<> prepare_folder(const std::filesystem::path& folder);
 
-/// Writes `content` as the file `path`, whole or not at all.
+/// Writes `content` to the file `path`. On error no incomplete file is left.
 Result<> write_file(const std::filesystem::path& path, std::string_view content);
 
-/// A file that is written in one go.
+/// Name and content of a file to write.
 struct File {
   std::string name;
   std::string content;
 };
 
-/// Fills a folder with these files. A new folder appears whole or not at all; in one that exists the files are replaced
-/// one by one, of which the last goes first and comes last: a folder that holds it is complete.
+/// Writes files into a folder. A new folder appears only when it is complete. In an existing folder the files are
+/// replaced one by one; the last one of the list is removed first and written last, so a folder that has it is
+/// complete.
 Result<> write_folder(const std::vector<File>& files, const std::filesystem::path& folder);
 
-/// A text as a field of a CSV file, in quotation marks.
+/// A text as a quoted field of a CSV file.
 std::string csv_text(std::string_view text);
 
-/// The error every writer of the result folder returns when the disk refuses: names the file and the system's reason.
+/// The error of all writers of the result folder if writing fails; it names the file and the system's reason.
 Error write_error(const std::filesystem::path& path, const std::string& reason);
 
-/// Removes a file of an earlier run, if it is there.
+/// Removes a file of an earlier run, if it exists.
 Result<> remove_earlier(const std::filesystem::path& path);
 
-/// Removes files called `stem`_0123.`extension` with a number of `first` or more: frames of an earlier, longer run.
+/// Removes the files named `stem`_0123.`extension` with numbers from `first` on, which are frames of an earlier, longer
+/// run.
 Result<> remove_series_from(const std::filesystem::path& folder, std::string_view stem, std::string_view extension,
                             std::size_t first);
 
-/// "tissue_0012.vtu" for ("tissue", 12, ".vtu").
+/// The name of a file of a series: "tissue_0012.vtu" for ("tissue", 12, ".vtu").
 std::string series_name(std::string_view stem, std::size_t number, std::string_view extension);
 
 }  // namespace stylet::results

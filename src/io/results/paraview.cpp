@@ -35,13 +35,13 @@ std::string collection(const std::vector<Frame>& frames, std::string_view stem, 
   return xml + "  </Collection>\n</VTKFile>\n";
 }
 
-/// Values of one array, a column per point.
+/// An array of point data, with one column per point.
 struct PointArray {
   const char* name;
   MatX values;
 };
 
-/// The needle's points from base to tip, joined by one line, followed by the contacts as single points.
+/// The text of a VTP file with the needle's points from base to tip as one line, then the contacts as single points.
 std::string needle_vtp(const Frame& frame, double diameter) {
   const auto shaft = static_cast<Eigen::Index>(frame.needle.size());
   const auto count = shaft + static_cast<Eigen::Index>(frame.contacts.size());
@@ -86,7 +86,7 @@ std::string needle_vtp(const Frame& frame, double diameter) {
     std::copy(source->values.data(), source->values.data() + source->values.size(), array->GetPointer(0));
     data->GetPointData()->AddArray(array);
   }
-  vtkNew<vtkStringArray> space;  // where 3D Slicer looks for the patient frame
+  vtkNew<vtkStringArray> space;  // 3D Slicer reads the patient frame from it
   space->SetName("SPACE");
   space->InsertNextValue("LPS");
   data->GetFieldData()->AddArray(space);

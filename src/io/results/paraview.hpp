@@ -11,14 +11,15 @@
 /// The files for ParaView and 3D Slicer.
 namespace stylet::results {
 
-/// tissue_0000.vtu … for every frame and tissue.pvd, which gives each its time. Positions are those of the undeformed
-/// tissue; arrays displacement_mm (3 × nodes), region and, if `stress_of` is given, stress_kPa (6 × tets).
-/// @param stress_of [MPa] (6 × tets) xx yy zz xy yz zx of a displacement (3n); may be empty
+/// Writes tissue_0000.vtu … for all frames, and tissue.pvd with their times. Positions are those of the undeformed
+/// tissue; arrays are displacement_mm (3 × nodes), region and, if `stress_of` is given, stress_kPa (6 × tets).
+/// @param stress_of function that computes the stress [MPa] (6 × tets) xx yy zz xy yz zx of a displacement [mm] (3n);
+///   may be empty
 Result<> write_tissue(const RunRecording& run, const std::function<MatX(const VecX&)>& stress_of,
                       const std::filesystem::path& folder, const Progress& progress);
 
-/// needle_0000.vtp … for every frame, needle.pvd, and needle.vtp with the deepest frame.
-/// @param deepest number of that frame
+/// Writes needle_0000.vtp … for all frames, needle.pvd with their times, and needle.vtp with the deepest frame.
+/// @param deepest index of the deepest frame
 Result<> write_needle(const RunRecording& run, std::size_t deepest, const std::filesystem::path& folder);
 
 }  // namespace stylet::results

@@ -7,14 +7,14 @@
 namespace stylet::results {
 
 namespace {
-constexpr std::chrono::milliseconds kPeriod{200};  // between flushes; half a second is the promise
+constexpr std::chrono::milliseconds kPeriod{200};  // between flushes; the documented limit is 0.5 s
 }
 
 Recorder::Recorder(RunFileWriter writer)
     : writer_(std::move(writer)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Recorder::~Recorder() {
-  // A run that ends without finish() still leaves everything it recorded.
+  // A run that ends without finish() still writes everything that it recorded.
   if (!closed_) (void)close(nullptr);
 }
 

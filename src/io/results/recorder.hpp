@@ -11,26 +11,26 @@
 
 namespace stylet::results {
 
-/// Takes steps and frames from the run and brings them to run.h5 from a thread of its own, so that the run never waits
-/// for the disk and whatever was added is in the file after at most two periods, also while the run itself is busy.
+/// Writes steps, frames and events to run.h5 in a thread of its own, so that the run never waits for the disk, and
+/// added data are in the file after at most two periods even while the run is busy.
 class Recorder {
  public:
   explicit Recorder(RunFileWriter writer);
   ~Recorder();
 
-  /// All return the thread's first error, if there was one.
+  // All functions return the first error of the thread, if there was one.
   Result<> add_step(const Step& step);
   Result<> add_frame(StoredFrame frame);
   Result<> add_event(const Event& event);
 
-  /// Writes what is left, the summary if given, and closes the file. Nothing can be added afterwards.
+  /// Writes the remaining data and the summary, if given, and closes the file. Nothing can be added afterwards.
   Result<> close(const Summary* summary);
 
  private:
   void run(const std::stop_token& stop);
   Result<> write_pending();
 
-  RunFileWriter writer_;  ///< touched by the thread only, until it has ended
+  RunFileWriter writer_;  ///< used only by the thread until it has ended
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<Step> steps_;          ///< not yet written
@@ -38,7 +38,7 @@ class Recorder {
   std::vector<Event> events_;        ///< not yet written
   std::optional<Error> error_;       ///< first failure of the thread
   bool closed_ = false;
-  std::jthread thread_;  ///< last member: starts when the others exist
+  std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 
 }  // namespace stylet::results

@@ -22,7 +22,7 @@ struct Custom {
   Colour colour;
 };
 
-/// Organs a reader expects to look alike from report to report; others take the free colours in turn.
+/// Fixed colours of organs, so that they look the same in all reports; other regions get the remaining colours in turn.
 constexpr std::array kCustoms{Custom{"prostate", kOrange}, Custom{"urethra", kYellow},
                               Custom{"bladder", kSkyBlue}, Custom{"rectum", kPurple},
                               Custom{"seminal", kGreen},   Custom{"pubic", kBone},
@@ -46,10 +46,10 @@ double area(const TetMesh& mesh, const std::array<Index, 3>& face) {
 
 std::array<Index, 3> flipped(const std::array<Index, 3>& face) { return {face[0], face[2], face[1]}; }
 
-/// Which regions touch which, by area.
+/// Areas of contact between regions.
 struct Contacts {
-  MatX shared;  ///< (r × r) [mm²] between regions
-  VecX outer;   ///< (r) [mm²] on the outside of the mesh
+  MatX shared;  ///< (r × r) [mm²] area of the surface between two regions
+  VecX outer;   ///< (r) [mm²] area of a region's surface on the outside of the mesh
   VecX volume;  ///< (r) [mm³]
 
   Contacts(const TetMesh& mesh, const Topology& topology) {
@@ -67,13 +67,13 @@ struct Contacts {
     for (Index t = 0; t < mesh.tet_count(); ++t) volume[region(t)] += tet_volume(mesh, t);
   }
 
-  /// More than a third of the inner region's surface is the outer region's, which is larger.
+  /// Whether a region lies in a larger one: more than a third of its surface is in contact with the larger one.
   [[nodiscard]] bool lies_in(int inner, int around) const {
     const double surface = outer[inner] + shared.row(inner).sum();
     return volume[inner] < volume[around] && shared(inner, around) > surface / 3;
   }
 
-  /// The region with most of the outside, if it also holds another region.
+  /// The region with the largest outer surface, if another region lies in it.
   [[nodiscard]] int background() const {
     Eigen::Index most = 0;
     if (outer.maxCoeff(&most) <= 0) return -1;
@@ -87,7 +87,7 @@ struct Contacts {
 }  // namespace
 
 std::string readable_name(const std::string& name) {
-  if (name == "ptv" || name == "ctv" || name == "gtv") {  // planning volumes are known by their initials
+  if (name == "ptv" || name == "ctv" || name == "gtv") {  // abbreviations of planning volumes
     std::string initials = name;
     for (char& c : initials) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return initials;

@@ -9,7 +9,7 @@ set(WEB_DIST ${STYLET_WEB_BUILD}/dist)
 
 set(report_assets ${STYLET_WEB_BUILD}/report_assets.cpp)
 configure_file(report/assets.cpp.in ${report_assets} @ONLY)
-# A file by itself: what it depends on would be forgotten in one joined of several.
+# Exclude the file from unity builds, because its dependencies would be lost in a joined file.
 set_source_files_properties(${report_assets} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
   OBJECT_DEPENDS "${report_outputs};${REPORT_TEMPLATE};${REPRODUCE_TEMPLATE};${VALIDATE_TEMPLATE}")
 add_library(stylet_report_assets STATIC ${report_assets} ${report_outputs})

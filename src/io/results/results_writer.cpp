@@ -23,7 +23,7 @@ using namespace results;
 
 namespace {
 
-/// Puts the pictures into their folder; those of an earlier run that could not be drawn anew are removed.
+/// Writes the pictures into their folder. If there are none, the pictures of an earlier run are removed.
 Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
   std::error_code code;
   if (pictures.png.empty()) {
@@ -37,7 +37,7 @@ Result<> write_pictures(const Pictures& pictures, const fs::path& folder) {
   return Ok{};
 }
 
-/// Removes everything that an earlier run left but its run.h5. summary.json, which tells a finished run, goes first.
+/// Removes all results of an earlier run except its run.h5. summary.json, which marks a finished run, is removed first.
 Result<> remove_earlier_results(const fs::path& folder) {
   for (const char* name : {"summary.json", "report.html", "forces.csv", "gland.csv", "map.csv", "tissue.pvd",
                            "needle.pvd", "needle.vtp"}) {
@@ -51,15 +51,15 @@ Result<> remove_earlier_results(const fs::path& folder) {
   return Ok{};
 }
 
-/// Everything but run.h5, made from it and the summary: nothing can be in a picture or a table that is not in the
-/// recording, but for the gland's path, which follows from the forces there, and the map of the template's holes.
+/// Writes all files except run.h5, from run.h5 and the summary. Therefore pictures and tables show only recorded data,
+/// with two exceptions: the gland's path, which follows from the recorded forces, and the map of the template's holes.
 Result<> write_from_recording(const fs::path& folder, const Summary& summary,
                               const std::function<MatX(const VecX&)>& stress_of, const Progress& progress,
                               bool with_pictures, const HoleMap* map) {
   auto run = read_recording(folder / "run.h5");
   if (!run) return run.error();
   if (run->frames.empty()) {
-    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish().");
+    return failure(folder.string(), "the run has no frame to show", "Add at least one frame before finish()");
   }
   run->summary = summary;
   const Moments moments = find_moments(run->frames);
@@ -85,10 +85,11 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
   return Ok{};
 }
 
-/// A record with a number that is not finite cannot be told from one that never reached the disk.
+/// The error for a record with a number that is not finite, which a reader could not distinguish from a row that has
+/// not reached the disk.
 Error not_finite(const std::string& where, double time_s) {
   return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
-                 "The simulation has lost its way before: look at the steps before this one.");
+                 "The simulation diverged earlier; look at the steps before this one");
 }
 
 bool is_finite(const Frame& frame) {
@@ -100,14 +101,14 @@ bool is_finite(const Frame& frame) {
   return finite;
 }
 
-/// Public calls do not throw; what libraries throw (memory, threads) becomes an error.
+/// Public calls do not throw: exceptions of libraries (memory, threads) become errors.
 template <class Work>
 auto guarded(const fs::path& folder, Work work) -> decltype(work()) {
   try {
     return work();
   } catch (const std::exception& e) {
-    return failure(folder.string(), fmt::format("cannot be filled: {}", e.what()),
-                   "Close other programs or use a smaller mesh, then run again.");
+    return failure(folder.string(), fmt::format("cannot be written: {}", e.what()),
+                   "Close other programs or use a smaller mesh, then run again");
   }
 }
 
@@ -118,7 +119,7 @@ struct ResultsWriter::Parts {
   Index nodes;
   std::function<MatX(const VecX&)> stress_of;
   Recorder recorder;
-  std::optional<HoleMap> map{};  ///< of the template's holes
+  std::optional<HoleMap> map{};  ///< map of the template's holes
   bool finished = false;
 };
 
@@ -130,7 +131,7 @@ Result<std::unique_ptr<ResultsWriter>> ResultsWriter::open(const fs::path& folde
                                                            std::function<MatX(const VecX&)> stress_of) {
   return guarded(folder, [&]() -> Result<std::unique_ptr<ResultsWriter>> {
     if (auto ready = prepare_folder(folder); !ready) return ready.error();
-    // Nothing of an earlier run may ever stand beside the recording of this one, whenever this one is killed.
+    // Even if this run is killed, its recording must never be in one folder with other results of an earlier run.
     auto file = RunFileWriter::create(folder / "run.h5", info, mesh, [&] { return remove_earlier_results(folder); });
     if (!file) return file.error();
     auto parts =
@@ -149,7 +150,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
     return failure(
         "frame",
         fmt::format("{} displacement components, the mesh has {} nodes", frame.displacement.size(), parts_->nodes),
-        "Give three components per node of the mesh passed to open().");
+        "Give three components per node of the mesh passed to open()");
   }
   if (!is_finite(frame)) return not_finite("frame", frame.time_s);
   StoredFrame stored{frame, {}};
@@ -162,7 +163,7 @@ Result<> ResultsWriter::add_frame(const Frame& frame) {
 void ResultsWriter::add_map(HoleMap map) { parts_->map = std::move(map); }
 
 Result<> ResultsWriter::finish(const Summary& summary, const Progress& progress, bool pictures) {
-  if (parts_->finished) return failure("results", "finish() was called before", "Call it once.");
+  if (parts_->finished) return failure("results", "finish() has already been called", "Call it once");
   parts_->finished = true;
   return guarded(parts_->folder, [&]() -> Result<> {
     if (auto closed = parts_->recorder.close(&summary); !closed) return closed;

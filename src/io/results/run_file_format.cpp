@@ -25,7 +25,7 @@ h5::Handle enum_type(Enum last) {
   return type;
 }
 
-/// The enumeration that h5py shows as bool.
+/// The enumeration type that h5py reads as bool.
 h5::Handle bool_type() {
   h5::Handle type(h5::check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
   const std::int8_t no = 0, yes = 1;
@@ -34,7 +34,7 @@ h5::Handle bool_type() {
   return type;
 }
 
-/// CRC-32 of bytes and numbers, one after the other.
+/// CRC-32 of a sequence of bytes and numbers.
 class Check {
  public:
   Check& bytes(const void* data, std::size_t size) {

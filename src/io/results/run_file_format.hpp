@@ -10,20 +10,21 @@
 #include <span>
 #include <string>
 
-/// What run.h5 looks like inside (docs/results.md): row types shared by its writer and its reader.
+/// The format of run.h5 (docs/results.md): row types shared by its writer and its reader.
 namespace stylet::results {
 
 inline constexpr int kRunFileVersion = 4;
-inline constexpr int kFirstWithChecks = 4;  ///< files of earlier versions have no checks
+inline constexpr int kFirstWithChecks = 4;  ///< first version of the format with checks
 inline constexpr const char* kRunFileFormat = "stylet-run";
-inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  ///< fill value of rows not yet on disk
+/// Fill value of rows that have not reached the disk.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Every row has a check: CRC-32 of its other columns in their order and, of a frame, of what belongs to it. A row whose
-// check is wrong has not reached the disk whole, or was changed since.
+// Every row has a check: the CRC-32 of its other columns in their order and, for a frame, of its displacement, needle
+// points and contacts. A row with a wrong check has not reached the disk completely, or has been changed.
 
-/// A row of /steps: the columns of forces.csv, what the step was given, the steps at rest before it, and its flags
-/// (Step::Flag). Files of version 1 have no dt_s and no base, those before version 3 no rest_steps, those before
-/// version 4 no flags.
+/// A row of /steps: the columns of forces.csv, the input of the step (dt_s and base), the number of steps at rest
+/// before it, and its flags (Step::Flag). Files of version 1 have no dt_s and no base, files before version 3 no
+/// rest_steps, files before version 4 no flags.
 struct StepRow {
   double time_s = kMissing, dt_s = kMissing, base_depth_mm = kMissing;
   double base_x_mm = kMissing, base_y_mm = kMissing, base_z_mm = kMissing;
@@ -43,7 +44,7 @@ StepRow to_row(const Step& step);
 Step from_row(const StepRow& row);
 h5::Handle step_row_type();
 
-/// A row of /frames/table. The frame's needle points and contacts are runs of rows in their own datasets.
+/// A row of /frames/table. The frame's needle points and contacts are consecutive rows of their own datasets.
 struct FrameRow {
   double time_s = kMissing, base_depth_mm = kMissing;
   std::array<char, 64> label{};
@@ -60,7 +61,7 @@ struct ContactRow {
   double arc_length_mm = kMissing;
   std::int8_t sticking = 0, tip = 0;
 };
-/// @param displacement (3n) @param needle, contacts those of this frame
+/// The check of a frame. @param displacement (3n) @param needle, contacts of this frame
 std::uint32_t check_of(const FrameRow& row, std::span<const float> displacement, std::span<const Vec3> needle,
                        std::span<const ContactRow> contacts);
 ContactRow to_row(const ContactView& contact);
@@ -79,7 +80,7 @@ EventRow to_row(const Event& event);
 Event from_row(const EventRow& row);
 h5::Handle event_row_type();
 
-/// The row of /end, which a writer adds as it closes the file: how much there is.
+/// The row of /end, which the writer adds when it closes the file: the numbers of rows.
 struct EndRow {
   std::int64_t steps = 0, frames = 0, events = 0;
   std::int64_t summary_bytes = 0;
@@ -93,10 +94,10 @@ h5::Handle end_row_type();
 /// Columns of /parameters.
 inline constexpr std::array kParameterColumns{"name", "value", "unit", "source"};
 
-/// SHA-256 of all that is known before the first step, but for what the file says about its format.
+/// SHA-256 of all data that are known before the first step, without the attributes about the format.
 std::string start_digest(const RunInfo& info, const TetMesh& mesh);
 
-/// Copies text into a fixed field; text that is too long is cut between two UTF-8 characters.
+/// Copies a text into a field of fixed length; a text that is too long is cut between two UTF-8 characters.
 template <std::size_t N>
 void put_text(std::array<char, N>& field, const std::string& text) {
   std::size_t length = text.size();

@@ -26,9 +26,9 @@ void demand(bool condition, const char* what) {
   if (!condition) throw Changed(what);
 }
 
-/// How many rows there are: those before the first that has not reached the disk whole. Throws Changed where a whole
-/// one comes after it, or where the writer has said that there are more.
-/// @param whole whether row k is
+/// Number of valid rows: the rows before the first incomplete one. Throws Changed if a complete row follows an
+/// incomplete one, or if the number differs from `said`.
+/// @param whole function that says whether row k is complete @param said number of rows according to /end
 std::size_t rows_of(std::size_t count, const std::function<bool(std::size_t)>& whole, std::optional<std::int64_t> said,
                     const char* what) {
   std::size_t rows = 0;
@@ -38,7 +38,7 @@ std::size_t rows_of(std::size_t count, const std::function<bool(std::size_t)>& w
   return rows;
 }
 
-/// A frame's parts among those of all frames; all empty where the row points outside.
+/// The parts of one frame in the datasets of all frames; all empty if the row refers to rows that do not exist.
 struct FrameParts {
   std::span<const float> displacement;
   std::span<const Vec3> needle;
@@ -64,7 +64,7 @@ FrameParts parts_of(const StoredRun& run, std::size_t frame) {
           part(run.contacts, row.contact_first, row.contact_count), true};
 }
 
-/// Decides which rows are whole: by their checks or, in files of earlier versions, by what was not written being NaN.
+/// Decides which rows are complete: by their checks or, in files of earlier versions, by the absence of NaN.
 class Wholeness {
  public:
   explicit Wholeness(const StoredRun& run) : run_(run), checks_(run.format_version >= kFirstWithChecks) {}
@@ -94,7 +94,7 @@ class Wholeness {
   bool checks_;
 };
 
-/// Whether the steps at rest between two records take as long as there is between them.
+/// Whether the steps at rest between two records take the time between them.
 bool rest_fits(const StepRow& before, const StepRow& row) {
   if (row.rest_steps == 0) return true;
   constexpr double tolerance_s = 1e-8;
@@ -117,14 +117,14 @@ Frame frame_of(const StoredRun& run, std::size_t k) {
   return frame;
 }
 
-/// What the writer said at the end, if it came to that.
+/// The row of /end, if the writer has written it.
 std::optional<EndRow> end_of(const StoredRun& run) {
   if (run.end.empty()) return std::nullopt;
   demand(run.end.size() == 1 && run.end[0].check == check_of(run.end[0]), "/end");
   return run.end[0];
 }
 
-/// The summary's text; empty where there is none, or where its writer was killed before it was whole.
+/// The summary's text; empty if there is none, or if the writer was killed before it was complete.
 std::string summary_of(const StoredRun& run, const std::optional<EndRow>& end) {
   if (run.format_version < kFirstWithChecks) return run.summary;
   if (!end) return {};
@@ -134,10 +134,10 @@ std::string summary_of(const StoredRun& run, const std::optional<EndRow>& end) {
   return run.summary;
 }
 
-/// Throws Changed where something is not what was written.
+/// Checks a stored run and converts it. Throws Changed if its data differ from what was written.
 RunRecording checked(StoredRun run, const fs::path& path) {
   if (run.format_version >= kFirstWithChecks)
-    demand(run.start_digest == start_digest(run.info, run.mesh), "what it says of scenario and mesh");
+    demand(run.start_digest == start_digest(run.info, run.mesh), "scenario and mesh");
   for (const int region : run.info.target_regions)
     demand(region >= 0 && static_cast<std::size_t>(region) < run.mesh.regions.size(), "target_regions");
   const std::optional<EndRow> end = end_of(run);
@@ -172,10 +172,10 @@ RunRecording checked(StoredRun run, const fs::path& path) {
   return out;
 }
 
-/// Throws Changed as checked() does.
+/// Reads and checks a file once. Throws Changed as checked() does.
 Result<RunRecording> read_once(const fs::path& path) {
   Result<StoredRun> stored = [&] {
-    const h5::LibraryTurn turn;  // no thread is in HDF5 when the child comes to be
+    const h5::LibraryTurn turn;  // no other thread may be in HDF5 when the child process is created
     return detail::guarded<StoredRun>(
         path, [&] { return parse_run_file(path); }, kGiveARecording);
   }();
@@ -189,7 +189,7 @@ Result<RunRecording> read_once(const fs::path& path) {
 Result<RunRecording> read_recording(const fs::path& path) {
   if (Result<> readable = detail::check_input_file(path); !readable)
     return input_error(path.string(), readable.error().what, kGiveARecording);
-  // A file that is being written may be caught between two of its pages.
+  // A file that is being written may be read in an inconsistent state; reading it again usually helps.
   constexpr int kAttempts = 3;
   std::string changed;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -200,7 +200,7 @@ Result<RunRecording> read_recording(const fs::path& path) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  return input_error(path.string(), "damaged: this is not what was written: " + changed, kGiveARecording);
+  return input_error(path.string(), "damaged: this part has changed since it was written: " + changed, kGiveARecording);
 }
 
 }  // namespace stylet

@@ -20,8 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Rows per chunk: some 100 kB for steps; one frame per chunk for displacements, so that a frame is read with one
-// access.
+// Rows per chunk: about 100 kB for steps. Displacements have one frame per chunk, so that a frame is read at once.
 constexpr hsize_t kStepChunk = 1024, kTableChunk = 64, kPointChunk = 2048, kTextChunk = 4096;
 
 void write_info(hid_t file, const RunInfo& info) {
@@ -49,7 +48,7 @@ fs::path hidden_name(const fs::path& path, const std::string& process) {
   return path.parent_path() / fmt::format(".{}.{}.part{}", path.stem().string(), process, path.extension().string());
 }
 
-/// Removes files that processes which have ended since did not come to put in place.
+/// Removes temporary files of processes that ended before they could rename them.
 void remove_abandoned(const fs::path& path) {
   const std::string before = fmt::format(".{}.", path.stem().string());
   std::vector<fs::path> abandoned;
@@ -81,7 +80,7 @@ Result<> RunFileWriter::guarded(Action action) const {
 
 Result<RunFileWriter> RunFileWriter::create(const fs::path& path, const RunInfo& info, const TetMesh& mesh,
                                             const std::function<Result<>()>& make_way) {
-  // Whoever still reads an earlier file keeps it; truncating it in place would pull it away under the reader.
+  // The new file gets another name first: truncating an earlier file in place would break processes that read it.
   remove_abandoned(path);
   const fs::path hidden = hidden_name(path, std::to_string(::getpid()));
   RunFileWriter w(path);
@@ -186,7 +185,7 @@ Result<> RunFileWriter::flush() {
 
 Result<> RunFileWriter::close() {
   Result<> ended = guarded([&] {
-    h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush");  // the end comes after all that it speaks of
+    h5::check(H5Fflush(file_, H5F_SCOPE_GLOBAL), "flush");  // all other data must reach the disk before /end
     written_.check = check_of(written_);
     h5::append_rows(end_, end_type_, 1, &written_);
   });

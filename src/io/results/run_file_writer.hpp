@@ -12,33 +12,34 @@
 
 namespace stylet::results {
 
-/// A frame with its displacement as it is stored.
+/// A frame with its displacement in single precision, as stored.
 struct StoredFrame {
   Frame frame;                      ///< `frame.displacement` is not used
   std::vector<float> displacement;  ///< [mm] (3n)
 };
 
-/// Writes run.h5. Everything known before the run is written and every dataset created by create(); the file is then in
-/// SWMR mode (one writer, many readers) and only grows, so it can be read while the run goes on and after the process
-/// died at any moment. One thread at a time.
+/// Writes run.h5. create() writes all data that are known before the run and creates every dataset; the file is then in
+/// SWMR mode (one writer, many readers) and only grows, so it can be read during the run and after the process was
+/// killed at any moment. For one thread at a time.
 class RunFileWriter {
  public:
-  /// The file takes its place when all that is known before the run is in it; until then an earlier one stays there.
-  /// @param make_way called right before; where it fails, everything stays as it was
+  /// Creates the file. An earlier file at `path` is replaced only when all data that are known before the run have been
+  /// written.
+  /// @param make_way is called right before the replacement; if it fails, nothing is changed
   static Result<RunFileWriter> create(const std::filesystem::path& path, const RunInfo& info, const TetMesh& mesh,
                                       const std::function<Result<>()>& make_way = {});
 
   Result<> append_steps(std::span<const Step> steps);
   Result<> append_frame(const StoredFrame& stored);
   Result<> append_events(std::span<const Event> events);
-  Result<> append_summary(
-      const Summary& summary);  ///< and those of its events that are not there yet; once, at the end
-  Result<> flush();             ///< everything appended so far reaches the file
-  Result<> close();             ///< says in the file how much there is
+  /// Writes the summary, and those of its events that are not in the file yet. To be called once, at the end.
+  Result<> append_summary(const Summary& summary);
+  Result<> flush();  ///< writes all appended data to the file
+  Result<> close();  ///< writes /end and closes the file
 
  private:
   explicit RunFileWriter(std::filesystem::path path) : path_(std::move(path)) {}
-  /// Runs `action` and turns what HDF5 throws into an Error that names the file.
+  /// Runs `action` and converts exceptions of HDF5 to an Error that names the file.
   template <class Action>
   Result<> guarded(Action action) const;
 

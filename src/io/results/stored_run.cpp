@@ -79,7 +79,7 @@ std::vector<Row> read_table(hid_t parent, const char* name, hid_t type) {
 void read_frames(hid_t file, StoredRun& run) {
   const h5::Handle group = h5::open_group(file, "frames");
   const h5::Handle displacement = h5::dataset(group, "displacement_mm"), needle = h5::dataset(group, "needle_mm");
-  // A frame's row is written after what belongs to it: with the table read first, that is there.
+  // The writer adds a frame's row after its data, so all data of the rows are there if the table is read first.
   run.frames = read_table<FrameRow>(group, "table", frame_row_type());
   const auto shape = h5::extents(displacement);
   demand(shape.size() == 3 && shape[1] == run.mesh.nodes.size() && shape[2] == 3,
@@ -107,7 +107,7 @@ StoredRun read_all(hid_t file) {
   const bool checks = run.format_version >= kFirstWithChecks;
   if (checks) {
     run.start_digest = h5::read_text_attribute(file, "start_sha256");
-    run.end = read_table<EndRow>(file, "end", end_row_type());  // first: what it speaks of is there
+    run.end = read_table<EndRow>(file, "end", end_row_type());  // read first, since the writer adds it last
   }
   run.mesh = read_mesh(file);
   run.info = read_info(file);

@@ -11,11 +11,11 @@
 
 namespace stylet::results {
 
-/// What to do about a file that is no recording, or no longer one.
+/// The cure in errors about a file that is not a recording or is damaged.
 inline constexpr const char* kGiveARecording =
-    "Give a run.h5 that `stylet insert` wrote. Of a damaged one take another copy, or run again what it recorded.";
+    "Give a run.h5 that `stylet insert` wrote; if it is damaged, use another copy or repeat the run";
 
-/// What a run.h5 holds, as it lies there and not yet checked.
+/// The content of a run.h5 as stored, before the checks.
 struct StoredRun {
   int format_version = 0;
   std::string start_digest;  ///< empty in files without checks
@@ -28,14 +28,14 @@ struct StoredRun {
   std::vector<ContactRow> contacts;
   std::vector<EventRow> events;
   std::string summary;
-  std::vector<EndRow> end;  ///< empty while the run goes on and when it was killed
+  std::vector<EndRow> end;  ///< empty while the run goes on and if it was killed
 };
 
-/// Reads all of a run.h5. To be called in a child process (detail/guard.hpp) while the caller holds an h5::LibraryTurn:
-/// HDF5 1.10 crashes on files that are damaged in the wrong place.
+/// Reads a run.h5 completely. To be called in a child process (detail/guard.hpp) while the parent holds an
+/// h5::LibraryTurn, because HDF5 1.10 crashes on some damaged files.
 Result<StoredRun> parse_run_file(const std::filesystem::path& path);
 
-// From the child to its parent.
+// Serialisation from the child process to its parent (detail/wire.hpp).
 void fields(auto& wire, StoredRun& r) {
   wire(r.format_version, r.start_digest, r.info, r.mesh, r.steps, r.frames, r.displacement, r.needle, r.contacts,
        r.events, r.summary, r.end);

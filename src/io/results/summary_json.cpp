@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The one of an enumeration's words, the last included, that `name` is.
+/// The value of an enumeration, from 0 to `last`, that has this name.
 template <class Enum>
 std::optional<Enum> word(const std::string& name, Enum last) {
   for (int k = 0; k <= static_cast<int>(last); ++k) {
@@ -25,7 +25,7 @@ std::optional<Enum> word(const std::string& name, Enum last) {
 Json in_use(const CapacityUse& use) { return {{"most", use.most}, {"room", use.room}}; }
 CapacityUse use_of(const Json& json) { return {json.at("most").get<int>(), json.at("room").get<int>()}; }
 
-/// How far the target was moved; null without a target.
+/// The target's shift; null without a target.
 Json target_shift(const Summary& s) {
   if (s.target_shifts.empty()) return nullptr;
   const Vec3& centroid = s.target_shift_centroid_mm;
@@ -92,7 +92,7 @@ std::string summary_json(const Summary& s) {
 
 Result<Summary> parse_summary_json(std::string_view text, const std::string& where) {
   const auto refuse = [&](const std::string& reason) {
-    return input_error(where, "not a summary of a run: " + reason, "Give a file that this version of stylet wrote.");
+    return input_error(where, "not a summary of a run: " + reason, "Give a file that this version of stylet wrote");
   };
   try {
     const Json json = Json::parse(text);
@@ -113,14 +113,14 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
                           e.at("region").get<std::string>()});
     }
     s.tip_deflection_mm = number(json.at("tip_deflection_mm"));
-    if (json.contains("tip_error_mm")) s.tip_error_mm = vector_of(json.at("tip_error_mm"));  // not in older ones
+    if (json.contains("tip_error_mm")) s.tip_error_mm = vector_of(json.at("tip_error_mm"));  // missing in older files
     if (const Json& shift = json.at("target_shift_mm"); !shift.is_null()) {
       for (int k = 0; k < 3; ++k)
         s.target_shift_centroid_mm[k] = number(shift.at("centroid").at(static_cast<size_t>(k)));
       s.target_shift_max_mm = number(shift.at("max"));
       s.target_shifts.push_back({s.target_shift_centroid_mm, s.target_shift_max_mm});
     }
-    if (json.contains("gland")) s.gland = gland_of(json.at("gland"));  // not in older ones
+    if (json.contains("gland")) s.gland = gland_of(json.at("gland"));  // missing in older files
     s.residual_force_balance = number(json.at("residual").at("force_balance"));
     s.residual_torque_balance = number(json.at("residual").at("torque_balance"));
     const Json& step = json.at("step_us");
@@ -129,7 +129,7 @@ Result<Summary> parse_summary_json(std::string_view text, const std::string& whe
     s.step_us_p999 = number(step.at("p999"));
     s.step_us_max = number(step.at("max"));
     s.contacts_max = json.at("contacts_max").get<int>();
-    if (json.contains("capacity")) {  // not in older ones
+    if (json.contains("capacity")) {  // missing in older files
       const Json& capacity = json.at("capacity");
       s.capacity = {use_of(capacity.at("contacts")), use_of(capacity.at("spare_nodes")), use_of(capacity.at("tracks")),
                     use_of(capacity.at("events"))};

@@ -9,11 +9,11 @@
 
 namespace stylet::results {
 
-/// Text of summary.json. Keys and units: docs/results.md. A value that is not finite becomes null.
+/// The text of summary.json. Keys and units: docs/results.md. A value that is not finite becomes null.
 std::string summary_json(const Summary& summary);
 
-/// Reads back what summary_json() wrote.
-/// @param where what to call the text in the message
+/// Reads the text that summary_json() wrote.
+/// @param where name of the text in messages
 Result<Summary> parse_summary_json(std::string_view text, const std::string& where);
 
 }  // namespace stylet::results

@@ -18,13 +18,13 @@ constexpr std::string_view kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz";
 constexpr std::size_t kLongestLine = 1000;
 
 constexpr double kNormTolerance = 1e-3;
-// Wider than any insertion, narrower than a mistaken unit.
+// Coordinates beyond this are a mistaken unit; no insertion is that large.
 constexpr double kFarthest_mm = 5000.0;
 constexpr double kLeastTravel_mm = 1.0;
 constexpr double kFastest_mm_per_s = 10e3;
 constexpr double kLongest_s = 36e3;
 
-/// One line of numbers.
+/// Parses one line of numbers.
 Result<MotionSample> parse_sample(std::string_view line, const std::string& where) {
   const auto fields = detail::split(line, ',');
   if (fields.size() != kMotionColumns.size()) {
@@ -65,7 +65,7 @@ Result<MotionSample> parse_sample(std::string_view line, const std::string& wher
   return sample;
 }
 
-/// What two samples show that one does not.
+/// Checks two consecutive samples: the time must increase, and the speed must be plausible.
 Result<> check_step(const MotionSample& before, const MotionSample& after, const std::string& where) {
   const double step = after.time_s - before.time_s;
   if (!(step > 0.0)) {
@@ -87,7 +87,7 @@ Result<> check_header(std::string_view line, const std::string& where) {
   for (const char c : detail::trimmed(line)) {
     if (c != ' ' && c != '\t') header += c;
   }
-  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // a mark that some spreadsheets write
+  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // byte order mark, which some spreadsheets write
   if (header == kHeader) return Ok{};
   if (header.size() > 100) header = header.substr(0, 100) + "…";
   for (char& c : header) {
@@ -114,7 +114,7 @@ Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& p
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
     const std::string where = fmt::format("{}, line {}", file, number);
     if (line.find('\0') != std::string::npos || line.size() > kLongestLine) {
-      return input_error(where, "this is no line of a text table", how);
+      return input_error(where, "this is not a line of text", how);
     }
     if (number == 1) {
       if (auto header = check_header(line, where); !header) return header.error();
@@ -135,7 +135,7 @@ Result<std::vector<MotionSample>> read_motion_csv(const std::filesystem::path& p
                        "Record the motion from before the skin to the end");
   }
   if (const double travel = box.diagonal().norm(); travel < kLeastTravel_mm) {
-    return input_error(file, fmt::format("the base moves within {:.3g} mm, that is no insertion", travel),
+    return input_error(file, fmt::format("the base moves within {:.3g} mm, which is not an insertion", travel),
                        "Give positions in mm: multiply by 1000 if they are in metres");
   }
   return samples;

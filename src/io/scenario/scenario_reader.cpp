@@ -27,8 +27,8 @@ bool is_key(const std::string& pattern) {
   return std::any_of(keys.begin(), keys.end(), [&](const ScenarioKey& key) { return key.path == pattern; });
 }
 
-/// The names that are a region's, a structure's or an entry's, replaced as the table of keys writes them. A name below
-/// [tissue] is a region's unless it is a key of [tissue] itself.
+/// The path of a key with the names of regions and structures and the numbers of entries replaced by the wildcards of
+/// the table of keys. A name below [tissue] is a region unless it is a key of [tissue] itself.
 std::string pattern_of(std::vector<std::string> path) {
   if (path.size() > 1 && path[0] == "tissue" && !is_key("tissue." + path[1])) path[1] = "<region>";
   if (path.size() > 2 && path[0] == "patient" && path[1] == "regions") path[2] = "<name>";
@@ -41,7 +41,8 @@ std::string pattern_of(std::vector<std::string> path) {
   return text;
 }
 
-/// "patient", "patient.regions", "tissue", "tissue.<region>", "insertion[]", … in the order of documentation.
+/// The tables of a scenario in the order of the documentation: "patient", "patient.regions", "tissue",
+/// "tissue.<region>", "insertion[]", …
 const std::vector<std::string>& known_tables() {
   static const std::vector<std::string> tables = [] {
     std::vector<std::string> all;
@@ -61,7 +62,7 @@ bool is_table(const std::string& pattern) {
   return std::find(known_tables().begin(), known_tables().end(), pattern) != known_tables().end();
 }
 
-/// How a table is written: "[mesh]", "[tissue.REGION]", "[[insertion]]".
+/// The header of a table in a file: "[mesh]", "[tissue.REGION]", "[[insertion]]".
 std::string header_of(std::string pattern) {
   if (pattern == "tissue") pattern = "tissue.<region>";
   if (const auto at = pattern.find("<region>"); at != std::string::npos) pattern.replace(at, 8, "REGION");
@@ -78,7 +79,7 @@ std::string keys_of(const std::string& table) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
-/// Is `pattern` a table that the scenario has? `name` is how the user wrote it.
+/// Checks that the scenario has a table. @param pattern of the table @param name of the table as the user wrote it
 Result<> check_table(const std::string& pattern, const std::string& name, const std::string& where) {
   if (is_table(pattern)) return Ok{};
   if (is_table(pattern + "[]")) {
@@ -165,7 +166,7 @@ Result<> ScenarioReader::take(const TomlItem& item, const std::string& where) {
   const std::string pattern = pattern_of(item.path);
   if (item.kind == TomlItem::Kind::table) {
     if (Result<> known = check_table(pattern, path, where); !known) return known;
-    // An [[insertion]] counts even with nothing in it.
+    // An empty [[insertion]] counts as an insertion.
     if (pattern == "insertion[]" && item.path[1] == fmt::format("[{}]", scenario_.insertions.size())) {
       scenario_.insertions.emplace_back();
     }
@@ -188,7 +189,8 @@ Result<> ScenarioReader::take(const TomlItem& item, const std::string& where) {
   return Ok{};
 }
 
-/// A region's override is complete, so a preset that comes after some of its values is put under them.
+/// Sets a key. Since the override of a region holds all values, a later tissue.preset requires that all overrides are
+/// rebuilt from the new defaults and the values given so far.
 Result<> ScenarioReader::set(const TomlItem& item, const std::string& where) {
   if (Result<> done = set_scenario_key(scenario_, joined(item.path), item.value, where); !done) return done;
   if (pattern_of(item.path).starts_with("tissue.<region>")) tissue_values_.push_back(item);

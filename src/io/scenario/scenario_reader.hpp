@@ -9,18 +9,18 @@
 
 namespace stylet::detail {
 
-/// Puts the parts of a scenario together and remembers where each came from.
+/// Builds a scenario from a file and settings, and records the place from which each key came, for messages.
 class ScenarioReader {
  public:
   explicit ScenarioReader(const std::filesystem::path& file);
 
-  /// Everything in the file.
+  /// Reads the file.
   Result<> read_file();
-  /// The same of a text that is as good as the file.
+  /// Reads a text that stands for the content of the file.
   Result<> read_text(const std::string& text);
-  /// One `--set key=value`.
+  /// Applies one setting, as of `--set key=value`.
   Result<> apply_setting(const std::string& setting);
-  /// The whole, checked.
+  /// The complete scenario, checked.
   Result<Scenario> finish() &&;
 
  private:
@@ -34,7 +34,7 @@ class ScenarioReader {
   std::filesystem::path file_;
   Scenario scenario_;
   std::map<std::string, std::string> places_;  ///< key or table → "demo.toml, line 7" or "--set …"
-  std::vector<TomlItem> tissue_values_;        ///< below [tissue.REGION], as given so far
+  std::vector<TomlItem> tissue_values_;        ///< all values given so far below [tissue.REGION]
 };
 
 }  // namespace stylet::detail

@@ -15,45 +15,44 @@ namespace {
 constexpr std::size_t kSchemaWidth = 110;
 
 struct TableText {
-  std::string_view pattern;  ///< of the keys in it
-  std::string_view header;   ///< with an example in place of a wildcard
+  std::string_view pattern;  ///< path of the table with wildcards
+  std::string_view header;   ///< the table's header with an example instead of a wildcard
   std::string_view about;
 };
 
 constexpr std::array kTables{
-    TableText{"patient", "[patient]",
-              "Whose anatomy it is. The only table, with [[insertion]], that must be filled in."},
-    TableText{
-        "patient.regions", "[patient.regions]",
-        "What structures or labels stand for. Those not named here are recognised by their names (prostate, "
-        "urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles and the "
-        "zones of the gland, in several spellings); where no structure is the prostate, a CTV, target, PTV or GTV "
-        "is the gland. Without this table all labels of a mask are used."},
-    TableText{"tissue", "[tissue]", "How all tissue is computed. No region may have the name of one of these keys."},
+    TableText{"patient", "[patient]", "The patient. Only this table and [[insertion]] must be filled in."},
+    TableText{"patient.regions", "[patient.regions]",
+              "Regions for structures or labels. Structures that are not listed here are recognised by their names "
+              "(prostate, urethra, bladder, rectum, pubic_arch, femur_left, femur_right, band, body, seminal_vesicles "
+              "and the zones of the gland, in several spellings); if no structure is the prostate, a CTV, target, PTV "
+              "or GTV is used as the gland. Without this table all labels of a mask are used."},
+    TableText{"tissue", "[tissue]", "Settings for all tissue. No region may have the name of one of these keys."},
     TableText{"tissue.<region>", "[tissue.prostate]",
-              "What a tissue is made of; one table for each region that is to differ from its defaults, which are "
-              "those of the prostate here. docs/parameters.md gives all defaults and their sources."},
-    TableText{"fixed", "[fixed]", "What holds the patient still. Supports decide every force."},
+              "Properties of a tissue, in one table for each region that differs from its defaults. The defaults of "
+              "the prostate are shown. docs/parameters.md gives all defaults and their sources."},
+    TableText{"fixed", "[fixed]", "Supports, which hold the patient in place. They decide every force."},
     TableText{"anatomy", "[anatomy]",
-              "Soft tissue that contours and masks do not show. Each layer is made where the input does not have it."},
+              "Soft tissue that contours and masks do not show. Each layer is added if the input does not have it."},
     TableText{"mesh", "[mesh]", "How contours or a mask become tetrahedra; a tetrahedral mesh is used as it is."},
     TableText{"needle", "[needle]", "The needle."},
-    TableText{"coupling", "[coupling]", "How needle and tissue act on each other."},
+    TableText{"coupling", "[coupling]", "The interaction of needle and tissue."},
     TableText{"template", "[template]", "The guide template: a grid of holes in front of the perineum."},
-    TableText{"insertion[]", "[[insertion]]",
-              "One needle going in and out: through a template hole, or through a point in a direction or towards a "
-              "target, or as recorded. Repeat the table for more needles, one after the other."},
+    TableText{
+        "insertion[]", "[[insertion]]",
+        "One needle going in and out: through a template hole, through a point in a direction or towards a target, or "
+        "along a recorded motion. Repeat the table for further needles, which follow one after the other."},
     TableText{"run", "[run]", "The simulation."},
-    TableText{"output", "[output]", "What is kept of it."},
+    TableText{"output", "[output]", "The frames and pictures that are kept."},
 };
 
-/// Characters as a reader counts them (UTF-8 code points).
+/// Number of characters (UTF-8 code points).
 std::size_t width(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// A comment of as many lines as it takes.
+/// A text as comment lines of at most kSchemaWidth columns.
 std::string comment(std::string_view text) {
   std::string out;
   std::string line = "#";
@@ -75,7 +74,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// "Young's modulus. 0.1 … 1000 kPa. Default: by region." and the key with a value, commented out.
+/// The comment on a key, such as "Young's modulus. 0.1 … 1000 kPa. Default: by region.", and the key with a value, also
+/// commented out.
 std::string key_text(const ScenarioKey& key, const std::string& name) {
   std::string about = capitalised(key.meaning);
   if (key.range.starts_with('"')) {
@@ -98,8 +98,8 @@ std::string schema_text() {
   std::string out =
       comment(
           "All keys of a scenario, commented out, each with its meaning, range and unit. The value shown is the "
-          "default unless another default is named. Save this text as my.toml, take the # away before source and "
-          "hole, and run: stylet insert my.toml") +
+          "default unless another default is named. Save this text as my.toml, remove the # before source and hole, "
+          "and run: stylet insert my.toml") +
       comment("Patient coordinates are DICOM LPS: x to the patient's left, y to posterior, z to superior.");
   std::string last;
   for (const ScenarioKey& key : scenario_keys()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings from the command line: --set key=value.
+// Applies settings of the command line: --set key=value.
 #include "detail/text.hpp"
 #include "scenario/scenario_reader.hpp"
 #include "scenario/toml_precheck.hpp"
@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kForm =
     "Write --set key=value, for example --set insertion[0].depth_mm=60 or --set tissue.prostate.young_kPa=30";
 
-/// Where `wanted` first stands outside of quotation marks.
+/// Position of the first `wanted` outside of quotation marks.
 std::size_t find_unquoted(std::string_view text, char wanted, std::size_t from = 0) {
   char quote = 0;
   for (std::size_t i = from; i < text.size(); ++i) {
@@ -33,7 +33,7 @@ std::string unquoted(std::string text) {
   return text;
 }
 
-/// "insertion[0].hole" → {"insertion", "[0]", "hole"}; names in quotation marks may have dots in them.
+/// Splits a path: "insertion[0].hole" → {"insertion", "[0]", "hole"}. Names in quotation marks may contain dots.
 std::vector<std::string> parts_of(const std::string& key) {
   std::vector<std::string> parts;
   for (std::size_t start = 0;;) {
@@ -50,7 +50,7 @@ std::vector<std::string> parts_of(const std::string& key) {
   }
 }
 
-/// What a text is as TOML; nothing when it is not one TOML value.
+/// Parses a text as a TOML value; empty if it is not a single TOML value.
 std::optional<std::vector<TomlItem>> as_toml(const std::string& text) {
   auto items = parse_toml("value = " + text, "");
   if (!items) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<std::vector<TomlItem>> as_toml(const std::string& text) {
 
 }  // namespace
 
-/// The path a setting means, with the insertion's number filled in where it may be left out.
+/// The path of a setting. The number of the insertion, which may be omitted if there is only one, is filled in.
 Result<std::vector<std::string>> ScenarioReader::setting_path(const std::string& key, const std::string& where) const {
   std::vector<std::string> path = parts_of(key);
   if (path.front() != "insertion") return path;
@@ -104,7 +104,7 @@ Result<> ScenarioReader::take_setting(const std::vector<std::string>& path, cons
     item.path.insert(item.path.begin(), path.begin(), path.end());
     Result<> taken = take(item, where);
     if (taken) continue;
-    // A shell takes quotation marks away: --set name=2024 means the text.
+    // A shell removes quotation marks, so --set name=2024 may mean a text.
     const bool was_text = item.kind == TomlItem::Kind::value && item.value.type == ScenarioValue::Type::text;
     if (was_text || items->size() > 1 || !take_text()) return taken;
   }
@@ -117,7 +117,7 @@ Result<> ScenarioReader::apply_setting(const std::string& setting) {
     for (char& c : readable) {
       if (c < 0x20 || c > 0x7e) c = '?';
     }
-    return input_error("--set " + readable, "the setting has characters that are no printable text (UTF-8)", kForm);
+    return input_error("--set " + readable, "the setting has characters that are not printable text (UTF-8)", kForm);
   }
   const std::string where = "--set " + setting;
   const auto equals = find_unquoted(setting, '=');

@@ -19,7 +19,8 @@ namespace {
 
 using Type = ScenarioValue::Type;
 
-/// A value as the table of keys takes it; where it cannot be one, `what` says what it is instead.
+/// Converts a TOML node to a ScenarioValue; if that is impossible, the item becomes `unusable` and `what` names its
+/// type.
 void convert(const toml::node& node, TomlItem& item) {
   item.kind = TomlItem::Kind::value;
   ScenarioValue& v = item.value;
@@ -55,7 +56,7 @@ void convert(const toml::node& node, TomlItem& item) {
     } else if (element.is_number()) {
       v.numbers.push_back(*element.value<double>());
     } else {
-      return unusable("a list of something else than numbers or texts");
+      return unusable("a list of other values than numbers or texts");
     }
   }
   if (!v.texts.empty() && !v.numbers.empty()) return unusable("a list of numbers and texts mixed");
@@ -86,7 +87,7 @@ void collect(const toml::node& node, const std::vector<std::string>& path, std::
   items.push_back(std::move(item));
 }
 
-/// What to do about a line that is not TOML; the commonest slips are named.
+/// The cure for a line that is not valid TOML; it recognises the most common mistakes.
 std::string cure_for(std::string_view line) {
   const auto equals = line.find('=');
   if (equals == std::string_view::npos) {
@@ -95,7 +96,7 @@ std::string cure_for(std::string_view line) {
   const std::string value = trimmed(line.substr(equals + 1));
   if (value.empty()) return "Give the key a value, or put a # before the line";
   if (std::isalpha(static_cast<unsigned char>(value.front())) != 0) {
-    return fmt::format("Put texts in quotes (\"{}\"); true and false are written small, without quotes",
+    return fmt::format("Put texts in quotes (\"{}\"); write true and false in lower case, without quotes",
                        trimmed(std::string_view(value).substr(0, value.find('#'))));
   }
   if (value.find(',') != std::string::npos && value.front() != '[' && value.front() != '"' && value.front() != '{') {
@@ -105,15 +106,15 @@ std::string cure_for(std::string_view line) {
   return "Write key = value, texts in quotes (\"D4\"), lists in brackets ([1, 2, 3]), each key once in its table";
 }
 
-/// @param what the parser's words; @param line where it stopped reading
+/// @param what message of the parser @param line text of the line where it stopped
 Error syntax_error(const std::string& where, std::string what, const std::string& line) {
   if (lower(what).find("utf-8") != std::string::npos) {
-    return input_error(where, "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
+    return input_error(where, "this is not text in UTF-8", "Save the file as text in UTF-8, or name another file");
   }
   if (what.starts_with("Error ")) what.erase(0, 6);
   std::replace_if(
       what.begin(), what.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  // The line itself where a person can read it.
+  // Quote the line if it is short and has readable characters only.
   const bool readable = !line.empty() && line.size() <= 100 && is_readable(line);
   return input_error(where, fmt::format("{}this is not valid TOML ({})", readable ? line + ": " : "", what),
                      cure_for(readable ? line : ""));
@@ -138,7 +139,7 @@ Result<std::vector<TomlItem>> parse_unguarded(std::string_view text, const std::
 
 }  // namespace
 
-// From the child process to its parent (detail/wire.hpp).
+// Serialisation from the child process to its parent (detail/wire.hpp).
 void fields(auto& wire, ScenarioValue& v) { wire(v.type, v.number, v.boolean, v.text, v.numbers, v.texts); }
 void fields(auto& wire, TomlItem& i) { wire(i.kind, i.path, i.value, i.what, i.line, i.column); }
 

@@ -15,22 +15,22 @@ struct TomlItem {
   enum class Kind {
     table,
     value,
-    unusable,  ///< a value no key takes: a date, a list of lists, …
+    unusable,  ///< a value of a type that no key has: a date, a list of lists, …
   };
   Kind kind = Kind::value;
-  std::vector<std::string> path;  ///< keys from the root; the entry of a list of tables is "[0]", "[1]", …
-  ScenarioValue value;            ///< of Kind::value
-  std::string what;               ///< of Kind::unusable, in words: "a date"
+  std::vector<std::string> path;  ///< keys from the root; an entry of a list of tables is "[0]", "[1]", …
+  ScenarioValue value;            ///< for Kind::value
+  std::string what;               ///< for Kind::unusable, the type in words: "a date"
   std::size_t line = 0;           ///< from 1
   std::size_t column = 0;         ///< from 1
 };
 
-/// All tables and values of a document in the order of their appearance; a table comes before what is in it. Syntax
-/// errors name line and column and quote the line.
-/// @param source file name for the messages
+/// Parses a document into its tables and values in the order of their appearance; a table comes before its content.
+/// Syntax errors name line and column and quote the line.
+/// @param source file name for messages
 Result<std::vector<TomlItem>> parse_toml(std::string_view text, const std::string& source);
 
-/// "insertion[0].hole" of {"insertion", "[0]", "hole"}.
+/// Joins a path: {"insertion", "[0]", "hole"} → "insertion[0].hole".
 std::string joined(const std::vector<std::string>& path);
 
 }  // namespace stylet::detail

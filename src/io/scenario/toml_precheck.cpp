@@ -16,7 +16,7 @@ bool begins_name(char c) {
          c == '"' || c == '\'';
 }
 
-/// Number of bytes of the character that begins with this one; 0 when none does.
+/// Number of bytes of the UTF-8 character that begins with this byte; 0 if no character does.
 std::size_t length_of(char first) {
   const auto byte = static_cast<unsigned char>(first);
   if (byte < 0x80) return 1;
@@ -25,7 +25,7 @@ std::size_t length_of(char first) {
   return byte >= 0xF0 && byte < 0xF5 ? 4 : 0;
 }
 
-/// The character whose bytes begin here; empty when they are no UTF-8.
+/// The first character of a text; empty if it is not valid UTF-8.
 std::string_view character(std::string_view text) {
   const std::string_view bytes = text.substr(0, length_of(text.front()));
   const bool whole = bytes.size() == length_of(text.front());
@@ -34,14 +34,14 @@ std::string_view character(std::string_view text) {
   return whole && follows ? bytes : std::string_view{};
 }
 
-/// Goes through a document once, knowing no more of TOML than what is inside of quotes and comments.
+/// Scans a document once. It only distinguishes quotes, comments, brackets and headers, and does not parse TOML.
 class Scan {
  public:
   Scan(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   Result<> run() {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
-    char previous = '\n';  // the last character that was no blank
+    char previous = '\n';  // the last character other than a blank
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
       if (blank(c)) continue;
@@ -64,13 +64,13 @@ class Scan {
   [[nodiscard]] Error stray_character() const {
     const std::string_view c = character(text_.substr(at_));
     if (c.empty())
-      return input_error(where(), "this is no text in UTF-8", "Save the file as text in UTF-8, or name another file");
+      return input_error(where(), "this is not text in UTF-8", "Save the file as text in UTF-8, or name another file");
     if (c == "\u00A0")
-      return input_error(where(), "there is a no-break space, which TOML does not know", "Write a plain space");
+      return input_error(where(), "there is a no-break space, which TOML does not allow", "Write a plain space");
     for (const std::string_view quote :
          {"\u201C", "\u201D", "\u201E", "\u2018", "\u2019", "\u201A", "\u00AB", "\u00BB"}) {
       if (c == quote)
-        return input_error(where(), fmt::format("{} is no quotation mark of TOML", c),
+        return input_error(where(), fmt::format("{} is not a quotation mark of TOML", c),
                            "Put texts in straight quotation marks: \"D4\"");
     }
     return input_error(where(), fmt::format("the character {} stands outside of quotation marks", c),
@@ -97,19 +97,19 @@ class Scan {
     return follow_bracket(c);
   }
 
-  /// May a text, a list or a key in quotation marks begin after this character?
+  /// Whether a text, a list or a key in quotation marks may begin after this character.
   static bool begins_value(char previous) {
     return std::string_view("\n=[{,.").find(previous) != std::string_view::npos;
   }
 
-  /// From the opening quotation mark to the closing one, or to the end of the line where there is none.
+  /// Skips from the opening quotation mark to the closing one, or to the end of the line if there is none.
   Result<> skip_quoted(char quote) {
     const std::string three(3, quote);
     const bool many_lines = text_.substr(at_).starts_with(three);
     for (at_ += many_lines ? 3 : 1; at_ < text_.size(); ++at_) {
       if (many_lines ? text_.substr(at_).starts_with(three) : text_[at_] == quote) {
         if (!many_lines) return Ok{};
-        // Up to two quotation marks of the text's own may stand before the three that end it.
+        // The three closing quotation marks may follow up to two that belong to the text.
         at_ += 2;
         for (int own = 0; own < 2 && at_ + 1 < text_.size() && text_[at_ + 1] == quote; ++own) ++at_;
         return Ok{};
@@ -119,7 +119,7 @@ class Scan {
         return Ok{};
       }
       if (quote == '"' && text_[at_] == '\\') {
-        // In many lines blanks and line ends may follow: the text goes on after them.
+        // In a text of several lines, blanks and line ends may follow the backslash before the text continues.
         const auto next = text_.find_first_not_of(many_lines ? " \t\r\n" : "", at_ + 1);
         if (next != std::string_view::npos && beyond_ascii(text_[next])) {
           return input_error(where(), "after this \\ there is a character beyond ASCII",
@@ -131,7 +131,7 @@ class Scan {
     return Ok{};
   }
 
-  /// Brackets and braces of lists and inline tables close in the order in which they open.
+  /// Checks that the brackets and braces of lists and inline tables are balanced.
   Result<> follow_bracket(char c) {
     if (c == '[' || c == '{') open_ += c;
     if (c != ']' && c != '}') return Ok{};
@@ -147,21 +147,21 @@ class Scan {
     return Ok{};
   }
 
-  /// "[" or "[[" and then a name.
+  /// Checks that a table header is "[" or "[[" followed by a name.
   Result<> begin_header() {
     in_header_ = true;
     auto name = at_ + 1;
     if (name < text_.size() && text_[name] == '[') ++name;
     while (name < text_.size() && blank(text_[name])) ++name;
     if (name < text_.size() && (begins_name(text_[name]) || beyond_ascii(text_[name]))) return Ok{};
-    return input_error(where(), "a table begins here, but its name does not follow",
+    return input_error(where(), "a table begins here without a name",
                        "Write a table as [mesh], an insertion as [[insertion]]");
   }
 
   std::string_view text_;
   const std::string& source_;
   std::size_t at_ = 0;
-  std::string open_;  ///< brackets and braces around this place, the innermost last
+  std::string open_;  ///< open brackets and braces, the innermost last
   bool in_header_ = false;
 };
 

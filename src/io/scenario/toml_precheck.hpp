@@ -8,15 +8,16 @@
 
 namespace stylet::detail {
 
-/// Refuses with a good message the commonest of what the TOML parser cannot bear. toml++ 3.3 (Debian 12) breaks its own
-/// preconditions, with undefined behaviour or a failed assertion, where a character beyond ASCII, say an editor's curly
-/// quotation mark, stands outside of quotes or after a continued line, where a table's header does not begin with a
-/// name, and in several malformed values (github.com/marzer/tomlplusplus issues 190 and 294, pull request 301). What
-/// this check does not see ends in the child process that the parser runs in.
+/// Checks a text for the most common errors that the TOML parser cannot handle, and gives a clear message. toml++ 3.3
+/// (Debian 12) violates its own preconditions, with undefined behaviour or a failed assertion, for a non-ASCII
+/// character, such as an editor's curly quotation mark, outside of quotes or after a continued line; for a table header
+/// that does not begin with a name; and for several malformed values (github.com/marzer/tomlplusplus issues 190 and
+/// 294, pull request 301). Errors that this check does not find can only crash the child process in which the parser
+/// runs.
 /// @param source file name for the message
 Result<> precheck_toml(std::string_view text, const std::string& source);
 
-/// Is it UTF-8 without control characters, line ends included?
+/// Whether a text is valid UTF-8 without control characters and line ends.
 bool is_readable(std::string_view text);
 
 }  // namespace stylet::detail

@@ -11,7 +11,7 @@ namespace stylet {
 
 namespace {
 
-/// A key as TOML writes it: bare where that is allowed and does not look like a number.
+/// The text of a key in TOML: without quotes if that is allowed and it does not look like a number.
 std::string key_text(const std::string& key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-';
@@ -25,7 +25,7 @@ struct Line {
   std::string unit;
 };
 
-/// Lines of a table, units aligned behind the values.
+/// The text of a table, with units aligned behind the values.
 std::string table_text(const std::string& header, const std::vector<Line>& lines) {
   std::size_t width = 0;
   for (const Line& line : lines) {
@@ -38,8 +38,8 @@ std::string table_text(const std::string& header, const std::vector<Line>& lines
   return out;
 }
 
-/// The keys of one table that are set.
-/// @param pattern e.g. "tissue.<region>"; @param path the same with its wildcard filled in, e.g. "tissue.prostate"
+/// The lines for all keys of one table that are set.
+/// @param pattern e.g. "tissue.<region>" @param path the pattern with its wildcard filled in, e.g. "tissue.prostate"
 std::vector<Line> lines_of(const Scenario& scenario, const std::string& pattern, const std::string& path) {
   std::vector<Line> lines;
   for (const ScenarioKey& key : scenario_keys()) {

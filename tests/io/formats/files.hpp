@@ -17,7 +17,7 @@ namespace stylet::test {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for one test, removed afterwards.
+/// A folder for one test, removed afterwards.
 class Folder {
  public:
   Folder() {
@@ -59,7 +59,7 @@ std::string why(const Result<T>& result) {
   return result.ok() ? "" : result.error().message();
 }
 
-/// Expects a refusal of the user's input that names all the given words.
+/// Expects an input error whose message has all the given words.
 template <class T>
 void expect_refused(const Result<T>& result, std::initializer_list<const char*> words) {
   ASSERT_FALSE(result.ok()) << "was accepted, but should be refused for: " << (words.size() > 0 ? *words.begin() : "");
@@ -79,7 +79,7 @@ inline Contour circle(double z, double radius, int points = 24, const Vec3& cent
   return c;
 }
 
-/// Two balls of contours: "Prostate" and "Rectum".
+/// Contours of two balls, "Prostate" and "Rectum".
 inline ContourSet two_organs() {
   ContourSet set;
   set.label = "two organs";
@@ -98,7 +98,7 @@ inline ContourSet two_organs() {
   return set;
 }
 
-/// Largest distance between corresponding points; infinite when the sets differ in structure.
+/// Largest distance between corresponding points; infinite if the sets differ in structure.
 inline double largest_difference(const ContourSet& a, const ContourSet& b) {
   double worst = 0.0;
   if (a.rois.size() != b.rois.size()) return INFINITY;

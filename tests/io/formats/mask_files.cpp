@@ -137,7 +137,7 @@ std::string nrrd(const Mask& mask, const std::string& encoding, const std::strin
        << extra << '\n';
   if (encoding == "raw") return text.str() + data_of(mask);
   if (encoding == "gzip") return text.str() + gzipped(data_of(mask));
-  for (const int label : mask.labels) text << label << ' ';  // ascii
+  for (const int label : mask.labels) text << label << ' ';  // encoding ascii
   return text.str();
 }
 

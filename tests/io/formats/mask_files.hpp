@@ -11,15 +11,15 @@
 
 namespace stylet::test {
 
-/// A small mask in a frame of one's choice, to be written in three formats by hand.
+/// A small mask in a freely chosen frame, which the functions below write in three formats.
 struct Mask {
   std::array<int, 3> size{12, 10, 8};
   Mat3 axes = Vec3(2.0, 2.5, 4.0).asDiagonal();  ///< [mm] LPS, columns: voxel steps
   Vec3 origin{-10.0, 20.0, -30.0};               ///< [mm] LPS
   std::vector<std::uint8_t> labels;
 
-  Mask();  ///< label 1 in a box of 6 × 4 × 3 voxels from (2,3,2), label 2 in one voxel (9,7,5)
-  [[nodiscard]] Vec3 centre(int label) const;  ///< [mm] LPS mean of the label's voxel centres
+  Mask();  ///< label 1 in a box of 6 × 4 × 3 voxels from (2,3,2), label 2 in voxel (9,7,5)
+  [[nodiscard]] Vec3 centre(int label) const;  ///< [mm] LPS, mean of the label's voxel centres
 };
 
 /// An oblique right-handed frame, and its mirror image.
@@ -42,7 +42,7 @@ std::string nrrd(const Mask& mask, const std::string& encoding = "raw", const st
                  const std::string& space = "left-posterior-superior");
 std::string metaimage(const Mask& mask, bool compressed = false, const std::string& data_file = "LOCAL");
 
-/// What a file with this name and content is read as.
+/// Reads a file with this name and content.
 Result<LabelImage> read_mask(const std::string& name, const std::string& bytes);
 
 }  // namespace stylet::test

@@ -70,7 +70,7 @@ namespace {
 
 void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
-/// Lets gmsh write what it has read.
+/// Converts a file with gmsh.
 void write_with_gmsh(const fs::path& from, const fs::path& to, double version, bool binary) {
   gmsh::initialize(0, nullptr, false);
   gmsh::option::setNumber("General.Terminal", 0);

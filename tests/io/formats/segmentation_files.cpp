@@ -22,7 +22,7 @@ void good(const OFCondition& status) {
 
 OFString number(double value) { return fmt::format("{:.10g}", value).c_str(); }
 
-/// Groups that all frames share: orientation and spacing.
+/// Adds the functional groups that all frames share: orientation and spacing.
 void add_shared(DcmSegmentation& seg, const Mask& frame) {
   const Vec3 r = frame.axes.col(0).normalized(), c = frame.axes.col(1).normalized();
   FGPixelMeasures measures;
@@ -109,7 +109,7 @@ DcmItem& group_of_frame(DcmDataset& data, int frame, const DcmTagKey& group) {
 std::string layered_nrrd(const Mask& frame, const std::vector<std::vector<std::uint8_t>>& layers,
                          const std::string& keys) {
   std::string text = nrrd(frame);
-  text.resize(text.size() - frame.labels.size() - 1);  // the data, and the empty line before them
+  text.resize(text.size() - frame.labels.size() - 1);  // removes the data and the empty line before them
   text = replaced(text, "dimension: 3", "dimension: 4");
   text = replaced(text, "sizes: ", fmt::format("sizes: {} ", layers.size()));
   text = replaced(text, "space directions: (", "space directions: none (");

@@ -21,7 +21,7 @@ Contour polygon(double z, std::initializer_list<std::pair<double, double>> point
   return c;
 }
 
-/// A structure whose every slice is the same polygon.
+/// A structure with the same polygon in all slices.
 Roi prism(const Contour& base) {
   Roi roi;
   roi.name = "Prism";
@@ -105,7 +105,7 @@ TEST(CheckRoi, refuses_metres_and_micrometres) {
 }
 
 TEST(CheckRoi, refuses_a_curve_whose_closing_side_crosses_it) {
-  Contour spiral;  // nearly one and a half turns inwards
+  Contour spiral;  // almost 1.5 turns inwards
   for (int i = 0; i <= 60; ++i) {
     const double angle = 2.9 * M_PI * i / 60, radius = 20 - 0.2 * i;
     spiral.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
@@ -128,8 +128,8 @@ TEST(CheckRoi, refuses_a_self_crossing_contour_and_says_where) {
 }
 
 TEST(CheckRoi, accepts_a_keyhole_that_cuts_out_a_hole) {
-  // Outer square, in along an edge to the hole, round it, and out the same way; and the two passages rounded apart by
-  // 0.02 mm.
+  // An outer square, an edge inwards to the hole, around it, and back along the same edge; then with the two edges
+  // separated by 0.02 mm, as after rounding.
   for (const double apart : {0.0, 0.02, -0.02}) {
     const Roi roi = prism(polygon(0, {{0, 0},
                                       {30, 0},

@@ -15,7 +15,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// What a parser that behaves so becomes.
+/// The result of guarded() for a parser with this behaviour.
 Result<TetMesh> parse(const std::function<Result<TetMesh>()>& parser) { return guarded<TetMesh>("case.msh", parser); }
 
 }  // namespace
@@ -87,7 +87,7 @@ TEST(Child, the_limit_grows_with_what_a_file_unpacks_to) {
   const Folder folder;
   Mask mask;
   mask.size = {200, 200, 500};
-  mask.labels.assign(20000000, 1);  // packs to some 20 kB
+  mask.labels.assign(20000000, 1);  // is compressed to about 20 kB
   const double plain_s = 5.0 + 2.03 * 20.0;
   EXPECT_NEAR(limits_for(write_file(folder / "m.nii", nifti(mask))).cpu_s, plain_s, 0.1);
   for (const auto& [name, bytes] : {std::pair<const char*, std::string>{"m.nii.gz", gzipped(nifti(mask))},
@@ -120,7 +120,7 @@ TEST(Child, the_limit_of_a_folder_grows_with_its_entries) {
 TEST(Child, an_endless_loop_ends_at_the_limit) {
   const auto spin = []() -> std::string {
     std::uint64_t n = 1;
-    while (n != 0) n = n * 6364136223846793005ULL | 1;  // never 0, and no compiler proves it
+    while (n != 0) n = n * 6364136223846793005ULL | 1;  // never 0, which no compiler can prove
     return std::to_string(n);
   };
   const auto start = std::chrono::steady_clock::now();

@@ -10,7 +10,7 @@ namespace {
 const char* const small = R"({"format": "stylet-contours", "version": 1, "units": "mm", "frame": "LPS",
  "structures": [{"name": "Prostate", "contours": [[[0,0,0],[10,0,0],[10,10,0]], [[0,0,5],[10,0,5],[10,10,5]]]}]})";
 
-/// Reads `small` with one piece replaced.
+/// Reads `small` with one part of its text replaced.
 Result<ContourSet> with(const std::string& from, const std::string& to) {
   const Folder folder;
   return read_contour_json(write_file(folder / "case.json", replaced(small, from, to)));

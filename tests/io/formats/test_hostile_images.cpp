@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that would make a program read elsewhere, wait for ever or compute with absurd numbers.
+// Tests of files that would make a program read other files, wait forever or compute with absurd numbers.
 #include "detail/text.hpp"
 #include "files.hpp"
 #include "mask_files.hpp"
@@ -86,7 +86,7 @@ TEST(HostileImages, an_absurd_number_of_dimensions_is_refused_before_the_library
 
 namespace {
 
-/// A MetaImage header and an NRRD header beside each other that name a data file, and what reading them says.
+/// Checks the error for a MetaImage header and for an NRRD header that name this data file.
 void expect_data_file_refused(const Folder& folder, const std::string& name, const char* says) {
   const Mask mask;
   write_file(folder / "case/m.mhd", metaimage(mask, false, name));

@@ -57,7 +57,7 @@ TEST(Input, files_that_are_not_there_or_cannot_be_opened_are_refused) {
   expect_refused(read_input(folder / "file/below"), {"below"});
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   expect_refused(read_input(folder / "pipe"), {"not a regular file"});
-  if (::geteuid() != 0) {  // root may read everything
+  if (::geteuid() != 0) {  // root can read everything
     fs::permissions(write_file(folder / "locked", "x"), fs::perms::none);
     expect_refused(read_input(folder / "locked"), {"locked", "cannot be opened"});
   }

@@ -25,7 +25,7 @@ Vec3 centre(const LabelImage& image, int label) {
   return sum / count;
 }
 
-/// The file puts both labels where the mask has them in the patient, whatever order its voxels come in.
+/// Checks that both labels of an image are at the same places in the patient as in the mask, for any order of voxels.
 void expect_same_place(const Result<LabelImage>& image, const Mask& mask, const std::string& what) {
   ASSERT_TRUE(image.ok()) << what << ": " << why(image);
   for (const int label : {1, 2}) {
@@ -49,7 +49,7 @@ TEST(LabelImage, nifti_keeps_oblique_and_left_handed_frames) {
 TEST(LabelImage, nifti_prefers_the_sform) {
   Mask mask;
   std::string bytes = nifti(mask);
-  poke<std::int16_t>(bytes, 252, 1);  // a qform that says something else
+  poke<std::int16_t>(bytes, 252, 1);  // a contradicting qform
   poke(bytes, 268, 500.0F);
   expect_same_place(read_mask("mask.nii", bytes), mask, "both");
 }
@@ -146,7 +146,7 @@ TEST(LabelImage, metaimage_with_its_data_beside_it_is_read) {
   write_file(folder / "mask.mhd", metaimage(mask, false, "mask.raw"));
   expect_same_place(read_label_image(folder / "mask.mhd"), mask, "mhd");
   fs::remove(folder / "mask.raw");
-  expect_refused(read_label_image(folder / "mask.mhd"), {"mask.mhd", "mask.raw", "beside each other"});
+  expect_refused(read_label_image(folder / "mask.mhd"), {"mask.mhd", "mask.raw", "in one folder"});
 }
 
 TEST(LabelImage, the_same_mask_in_three_formats_is_the_same_image) {

@@ -8,7 +8,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// NIfTI with voxels of another type.
+/// A NIfTI file with another voxel type.
 template <class T>
 std::string typed(std::int16_t code, const std::function<T(std::uint8_t)>& value) {
   const Mask mask;
@@ -135,7 +135,7 @@ TEST(LabelImageErrors, images_that_are_not_3d_are_refused) {
 
 namespace {
 
-/// The mask as the second of two volumes; the first has nothing but label 5.
+/// A file with two volumes: the first has only label 5, the second is the mask.
 std::string two_volumes(const Mask& mask, const std::string& one) {
   return one.substr(0, one.size() - mask.labels.size()) + std::string(mask.labels.size(), '\5') +
          one.substr(one.size() - mask.labels.size());
@@ -190,7 +190,8 @@ TEST(LabelImageErrors, an_nrrd_of_five_dimensions_is_refused_whatever_volume_is_
 
 TEST(LabelImageErrors, an_image_that_does_not_say_where_it_lies_is_refused) {
   const Mask mask;
-  expect_refused(read_mask("mask.nii", nifti(mask, NiftiForm::none)), {"neither sform nor qform", "left and right"});
+  expect_refused(read_mask("mask.nii", nifti(mask, NiftiForm::none)),
+                 {"neither sform nor qform", "Left and right are unknown"});
   expect_refused(read_mask("mask.nrrd", nrrd(mask, "raw", "", "scanner-xyz")), {"scanner-xyz"});
   std::string text = nrrd(mask);
   for (const char* key : {"space: ", "space directions: ", "space origin: "}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files damaged in many small ways: whatever happens to the parsers, the reader answers with a value or an input error,
-// soon.
+// Tests of randomly damaged files: whatever the parsers do, the reader must return a value or an input error within a
+// time limit.
 #include "files.hpp"
 #include "mask_files.hpp"
 #include "mesh_files.hpp"
@@ -16,7 +16,7 @@ using namespace stylet::test;
 namespace {
 
 constexpr int mutations = 60;
-constexpr double patience_s = 15.0;  // of processor time, whatever else the machine does
+constexpr double patience_s = 15.0;  // limit on processor time, which does not depend on the machine's load
 
 /// Processor time of this process and of its children that have ended [s].
 double processor_time_s() {
@@ -30,8 +30,8 @@ double processor_time_s() {
   return seconds;
 }
 
-/// One random change: bytes flipped, a stretch overwritten, cut out, doubled, or the end cut off; numbers in text
-/// replaced.
+/// Applies one random change: flips bytes; overwrites, removes or duplicates a section; truncates; or replaces a number
+/// in a text.
 std::string mutated(std::string bytes, std::mt19937_64& random) {
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % std::max<std::size_t>(n, 1)); };
   const std::size_t at = below(bytes.size()), length = std::min(bytes.size() - at, 1 + below(40));
@@ -55,7 +55,7 @@ std::string mutated(std::string bytes, std::mt19937_64& random) {
     case 5:
       bytes.resize(std::max<std::size_t>(at, 1));
       break;
-    default: {  // the next number in a text becomes an extreme one
+    default: {  // replaces the next number in a text by an extreme one
       const auto digit = bytes.find_first_of("0123456789", at);
       const char* const extremes[] = {"-1", "0", "4294967295", "99999999999999999999", "1e308", "nan"};
       if (digit != std::string::npos) bytes.replace(digit, 1, extremes[below(6)]);
@@ -83,7 +83,7 @@ void expect_sober_answers(const fs::path& path, const std::function<fs::path(con
   EXPECT_GT(refused, 0) << path.filename() << ": nothing was refused, the mutations do not bite";
 }
 
-/// Mutates the file in place of itself.
+/// Mutates a file many times, and checks the result of reading it.
 void expect_sober_answers(const Folder& folder, const std::string& name, const std::string& bytes) {
   const fs::path original = write_file(folder / ("original-" + name), bytes);
   expect_sober_answers(original, [&](const std::string& changed) { return write_file(folder / name, changed); });

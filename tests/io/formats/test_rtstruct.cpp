@@ -13,7 +13,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// A structure set of ours, changed with DCMTK as another program might have written it.
+/// A structure set written by Stylet and then changed with DCMTK, as another program might have written it.
 fs::path changed(const Folder& folder, const std::function<void(DcmDataset&)>& change,
                  E_TransferSyntax syntax = EXS_LittleEndianImplicit, E_FileWriteMode mode = EWM_fileformat) {
   const fs::path path = folder / "case.dcm";

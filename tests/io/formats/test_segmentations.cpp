@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Segmentations with several, perhaps overlapping, segments: DICOM SEG and the layers of .seg.nrrd.
+// Tests of segmentations with several, possibly overlapping, segments: DICOM SEG and the layers of .seg.nrrd.
 #include "segmentation_files.hpp"
 #include "stylet/io/input.hpp"
 
@@ -18,7 +18,7 @@ bool in_urethra(int i, int j, int /*k*/) { return i >= 4 && i < 6 && j >= 4 && j
 
 std::vector<Drawn> gland_and_urethra() { return {{"Prostate", "Prostate", in_gland}, {"duct", "Urethra", in_urethra}}; }
 
-/// The voxels of the grid of `frame` in a list, with 1 where `inside` holds.
+/// All voxels of the grid of `frame`, with value 1 where `inside` is true.
 std::vector<std::uint8_t> voxels(const Mask& frame, const std::function<bool(int, int, int)>& inside) {
   std::vector<std::uint8_t> values;
   for (int k = 0; k < frame.size[2]; ++k) {
@@ -29,7 +29,7 @@ std::vector<std::uint8_t> voxels(const Mask& frame, const std::function<bool(int
   return values;
 }
 
-/// The label that an image has at a place in the patient, 0 outside of it.
+/// The label of an image at a place in the patient; 0 outside of the image.
 int label_at(const LabelImage& image, const Vec3& place) {
   const Vec3 index = (image.direction.transpose() * (place - image.origin)).cwiseQuotient(image.spacing);
   std::array<Index, 3> voxel{};
@@ -41,7 +41,7 @@ int label_at(const LabelImage& image, const Vec3& place) {
   return image.labels[(static_cast<std::size_t>(voxel[2]) * image.size[1] + voxel[1]) * image.size[0] + voxel[0]];
 }
 
-/// Both images have the same labels everywhere in the grid of `frame`.
+/// Checks that both images have the same labels on the grid of `frame`.
 void expect_same_labels(const LabelImage& a, const LabelImage& b, const Mask& frame) {
   std::size_t differing = 0, labelled = 0;
   for (int k = 0; k < frame.size[2]; ++k) {
@@ -245,7 +245,7 @@ TEST(LayeredNrrd, a_skipped_segment_takes_no_voxel_from_what_lies_below) {
 TEST(LayeredNrrd, no_segment_is_lost_without_a_word) {
   const Mask frame;
   auto gland = voxels(frame, in_gland);
-  gland[0] = 5;  // none of the segments below
+  gland[0] = 5;  // not one of the segments below
   const auto image =
       read_mask("case.seg.nrrd", layered_nrrd(frame, {voxels(frame, in_urethra), gland},
                                               "Segment0_Name:=urethra\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
@@ -258,12 +258,12 @@ TEST(LayeredNrrd, no_segment_is_lost_without_a_word) {
   EXPECT_EQ(image->names, (std::map<int, std::string>{{1, "urethra"}})) << "no empty names";
   EXPECT_EQ(label_at(*image, frame.origin + frame.axes * Vec3(2, 2, 3)), 2);
   EXPECT_EQ(label_at(*image, frame.origin), 3);
-  EXPECT_TRUE(notes_say(*image, "label 5 of layer 1 is none of the header's segments"));
+  EXPECT_TRUE(notes_say(*image, "Label 5 of layer 1 does not belong to a segment"));
   EXPECT_TRUE(
-      notes_say(*image, "segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
-  EXPECT_TRUE(notes_say(*image, "segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
-  EXPECT_TRUE(notes_say(*image, "segment 'half' has no voxels"));
-  EXPECT_TRUE(notes_say(*image, "segment 'where' has no voxels: its Segment6_Layer is 'x'"));
+      notes_say(*image, "Segment 'lost' has no voxels: its Segment3_Layer is 2, and the file's last layer is 1"));
+  EXPECT_TRUE(notes_say(*image, "Segment 'odd' has no voxels: its Segment4_LabelValue is 'one'"));
+  EXPECT_TRUE(notes_say(*image, "Segment 'half' has no voxels"));
+  EXPECT_TRUE(notes_say(*image, "Segment 'where' has no voxels: its Segment6_Layer is 'x'"));
 }
 
 TEST(LayeredNrrd, labels_that_no_other_layer_has_are_kept) {

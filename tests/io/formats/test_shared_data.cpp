@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real cases: every file loads as its source describes it, or is refused with the right message.
+// Tests with real cases: every file is read as its source describes it, or fails with the right message.
 #include "files.hpp"
 #include "stylet/geom/quality.hpp"
 #include "stylet/io/input.hpp"
@@ -78,7 +78,7 @@ TEST_F(SharedData, prostate_masks_have_the_volume_extent_and_tilt_of_their_sourc
     EXPECT_LT((extent - c.extent).cwiseAbs().maxCoeff(), 0.1);
     EXPECT_NEAR(std::acos(std::min(1.0, std::abs(image->direction(2, 2)))) * 180.0 / M_PI, c.tilt_deg, 0.06);
     EXPECT_NEAR(image->direction.determinant(), 1.0, 1e-5);
-    // RAS voxel order: the first axis runs to the right, which is -x in LPS.
+    // The voxels are in RAS order: the first axis points to the right, which is -x in LPS.
     EXPECT_LT(image->direction(0, 0), -0.9);
     EXPECT_LT(image->direction(1, 1), -0.9);
   }
@@ -112,7 +112,7 @@ TEST_F(SharedData, vitesse_structure_set_gives_organs_and_notes_its_needles) {
     EXPECT_NEAR(volume_cc(roi), expected.at(roi.name), 0.06) << roi.name;
     EXPECT_TRUE(check_roi(roi, set->source).ok()) << why(check_roi(roi, set->source));
   }
-  // The folder holds a plan and a dose as well.
+  // The folder also has a plan and a dose.
   EXPECT_TRUE(read_input(data_folder() / "robustbrachy_hdr_phantom").ok());
   expect_refused(read_input(data_folder() / "robustbrachy_hdr_phantom" / "PL001.dcm"), {"RTPLAN"});
   expect_refused(read_input(data_folder() / "robustbrachy_hdr_phantom" / "DO001.dcm"), {"RTDOSE"});

@@ -75,7 +75,7 @@ std::string vtp(double size) {
   return text.str();
 }
 
-/// GLB with two nodes: "left" as it is and "right" moved by 1 along x; every triangle has its own vertices.
+/// A GLB file with two nodes: "left", and "right", which is moved by 1 along x. Every triangle has its own vertices.
 std::string glb(double size) {
   std::string binary;
   for (const auto& f : faces) {
@@ -168,7 +168,7 @@ TEST(Surfaces, glb_nodes_become_named_surfaces_in_lps_mm) {
   Eigen::AlignedBox3d left, right;
   for (const Vec3& p : (*surfaces)[0].points) left.extend(p);
   for (const Vec3& p : (*surfaces)[1].points) right.extend(p);
-  // (x, y, z) m, y up, becomes (1000 x, -1000 z, 1000 y).
+  // (x, y, z) in m, y up, becomes (1000 x, -1000 z, 1000 y) in mm.
   EXPECT_LT((left.min() - Vec3(0, -30, 0)).norm() + (left.max() - Vec3(30, 0, 30)).norm(), 1e-3);
   EXPECT_LT((right.min() - Vec3(1000, -30, 0)).norm(), 1e-3);
 }

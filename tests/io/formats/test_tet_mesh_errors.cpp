@@ -15,14 +15,14 @@ Result<TetMesh> read_mesh(const std::string& name, const std::string& text) {
   return read_tet_mesh(write_file(folder / name, text));
 }
 
-/// The mesh, changed, as legacy VTK.
+/// Reads a changed mesh, written as legacy VTK.
 Result<TetMesh> changed(const std::function<void(TetMesh&)>& change) {
   TetMesh mesh = two_region_box();
   change(mesh);
   return read_mesh("m.vtk", vtk_text(mesh));
 }
 
-/// A gmsh file of tetrahedra whose eighth element gets the number of the seventh.
+/// Changes a gmsh file of tetrahedra so that the eighth element has the number of the seventh.
 std::string with_seven_twice(std::string content, bool binary, bool of_version_4) {
   if (!binary) {
     const auto list = content.find(content.starts_with("$NOD") ? "$ELM" : "$Elements");
@@ -39,7 +39,7 @@ std::string with_seven_twice(std::string content, bool binary, bool of_version_4
   return content;
 }
 
-/// MSH 2.2, binary, by hand, in the byte order of this machine or the other.
+/// Binary MSH 2.2, in the byte order of this machine or the other one.
 std::string msh22_binary(const TetMesh& mesh, bool swapped) {
   std::string text = "$MeshFormat\n2.2 1 8\n";
   const auto put = [&](auto value) {
@@ -75,7 +75,7 @@ TEST(TetMeshErrors, gmsh_elements_that_share_a_number_are_named) {
     const bool of_version_4 = file.what.find("41") != std::string::npos;
     const std::string content = with_seven_twice(content_of(file.path), binary, of_version_4);
     expect_refused(read_tet_mesh(write_file(folder / "twice.msh", content)),
-                   {"twice.msh, element 7", "two elements have this number", "number of its own"});
+                   {"twice.msh, element 7", "two elements have this number", "a different number"});
     ++files;
   }
   EXPECT_EQ(files, 6);
@@ -159,7 +159,7 @@ TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
 
 TEST(TetMeshErrors, half_a_tetgen_mesh_is_refused) {
   expect_refused(read_mesh("m.ele", tetgen_texts(two_region_box()).second),
-                 {"'m.node'", "no such file", "side by side"});
+                 {"'m.node'", "no such file", "in the same folder"});
   expect_refused(read_mesh("m.node", tetgen_texts(two_region_box()).first), {"'m.ele'", "no such file"});
 }
 
@@ -184,7 +184,7 @@ TEST(TetMeshErrors, scripts_are_never_run) {
   const Folder folder;
   const std::string touch = "SystemCall \"touch " + (folder / "harm").string() + "\";\n";
   const std::string mesh = msh22_text(two_region_box());
-  // gmsh takes what it does not know for a script.
+  // gmsh would run unknown content as a script.
   for (const auto& [name, text] :
        {std::pair("a.msh", touch + mesh), std::pair("b.geo", touch), std::pair("c.mesh", touch),
         std::pair("d.msh", "$Nonsense\n" + touch), std::pair("e.msh", " " + mesh + touch),

@@ -5,7 +5,7 @@
 
 namespace stylet::test {
 
-/// The box as it is saved; its mesh is given, and "phantom" is the one source that is not a path.
+/// The scenario of the saved box. Its mesh is given separately; "phantom" is the only source that is not a path.
 inline Scenario saved_box() {
   Scenario scenario = box_scenario();
   scenario.patient.source = "phantom";

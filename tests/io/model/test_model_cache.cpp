@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled models kept from one start to the next: found by what they are of, and not too many.
+// Tests of the cache of compiled models: models are found by their key, and the size of the folder is limited.
 #include "box.hpp"
 #include "io/formats/files.hpp"
 
@@ -70,7 +70,7 @@ TEST(ModelCache, AKeyFollowsFromTheBuildIdOfTheCodeAndNotFromTheProgramsFile) {
   const std::string id = detail::build_id();
   EXPECT_EQ(id.size(), 40u);  // of SHA-1
   EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
-  // The bytes of the note lie in the program's file: that is where the linker put them.
+  // The program's file contains the bytes of the note that the linker wrote.
   std::ifstream file("/proc/self/exe", std::ios::binary);
   const std::string program{std::istreambuf_iterator<char>(file), {}};
   std::string bytes;
@@ -118,7 +118,7 @@ TEST(ModelCache, APatientInSeveralFilesHasNoKey) {
   EXPECT_TRUE(says_so("e.nrrd", "NRRD0004\ntype: short\ndata file: e.raw\n"));
   EXPECT_FALSE(says_so("f.seg.nrrd", "NRRD0004\ntype: short\n\ndata file: of the voxels\n"));
   EXPECT_TRUE(says_so("g.node", "1 3 0 0\n"));
-  // Content counts before the name, and a line ends wherever a reader may see its end.
+  // The content has priority over the name, and a line ends wherever any reader may see its end.
   EXPECT_TRUE(says_so("h.img", "NRRD0004\ntype: short\ndata file: e.raw\n"));
   EXPECT_TRUE(says_so("i", "ObjectType = Image\nElementDataFile = a.raw\n"));
   EXPECT_TRUE(says_so("j.nrrd", "NRRD0004\n# a comment\rdatafile: e.raw\n"));
@@ -155,7 +155,7 @@ TEST(ModelCache, ForgetsTheOneNotUsedForLongest) {
   keep(cache, "second");
   const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
   for (const char* name : {"first.stylet", "second.stylet"}) fs::last_write_time(folder.path() / name, long_ago);
-  EXPECT_TRUE(cache.find("first"));  // used now
+  EXPECT_TRUE(cache.find("first"));  // counts as used at this moment
   write(folder.path() / "notes.txt", "not a model: stays");
   keep(cache, "third");
   EXPECT_TRUE(cache.find("first"));

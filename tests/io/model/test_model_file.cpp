@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A saved model is the model, or is refused.
+// Tests that a saved model equals the original, or that reading it fails.
 #include "box.hpp"
 #include "io/formats/files.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 using test::Folder;
 using test::saved_box;
 
-/// Every number of a run but the clock's, and the forces on the tissue at its end.
+/// All numbers of a run except computing times, and the forces on the tissue at its end.
 std::vector<double> run_of(const std::shared_ptr<const Model>& model, bool grow = true) {
   std::vector<double> numbers;
   Simulation simulation(model);
@@ -44,7 +44,7 @@ std::shared_ptr<const Model> loaded(const std::filesystem::path& path, std::span
   return *model;
 }
 
-/// Some nodes whose compliance is not there.
+/// Some nodes without stored compliance.
 std::vector<Index> beyond(const Model& model) {
   std::vector<Index> nodes;
   for (Index a = 0; a < model.mesh().node_count() && nodes.size() < 5; ++a) {
@@ -58,7 +58,7 @@ void save(const Model& model, const std::filesystem::path& path, std::span<const
   if (!saved) throw std::runtime_error(saved.error().message());
 }
 
-/// The message a file is refused with.
+/// The message of the error when a file is loaded.
 std::string refusal(const std::filesystem::path& path, std::span<const std::string> settings = {}) {
   const auto model = load_model(path, {}, settings);
   if (model) return "not refused";
@@ -180,7 +180,7 @@ TEST(SavedModel, OfAnotherMeshOrMaterialIsRefused) {
   EXPECT_SAYS(model.error().message(), "near field");
 }
 
-/// Small, so that many of it can be read.
+/// Saves a small model, so that it can be read many times.
 void save_small(const std::filesystem::path& path) {
   Scenario scenario = saved_box();
   scenario.coupling.corridor_mm = 1.0;
@@ -196,7 +196,7 @@ TEST(SavedModel, WithAnyBitChangedIsRefused) {
   const int flips = wanted == nullptr ? 200 : std::atoi(wanted);
   for (int k = 0; k < flips; ++k) {
     std::string bytes = whole;
-    // One in four where the index and the seal are, which are small.
+    // One in four changes is in the index and the seal, which are small.
     const std::size_t at = k % 4 == 0 ? whole.size() - 1 - random() % 2500 : random() % whole.size();
     bytes[at] ^= static_cast<char>(1 << (random() % 8));
     test::write_file(folder / "flipped.stylet", bytes);
@@ -254,7 +254,7 @@ TEST(SavedModel, MadeToDeceiveIsRefusedOrReadButNeverEndsTheProgram) {
 TEST(SavedModel, HasTheSameBytesEachTime) {
   const Folder folder;
   save_small(folder / "one.stylet");
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 notes times in seconds, where it does
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's time stamps have a resolution of 1 s
   save_small(folder / "two.stylet");
   EXPECT_EQ(test::content_of(folder / "one.stylet"), test::content_of(folder / "two.stylet"));
 }

@@ -6,14 +6,14 @@
 
 namespace stylet::testing {
 
-/// How often `word` occurs in `text`.
+/// Number of occurrences of `word` in `text`.
 inline std::size_t count(std::string_view text, std::string_view word) {
   std::size_t found = 0;
   for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + word.size())) ++found;
   return found;
 }
 
-/// What lies between the first `begin` and the next `end` behind it.
+/// The text between the first `begin` and the next `end` behind it.
 inline std::string between(std::string_view text, std::string_view begin, std::string_view end) {
   const std::size_t from = text.find(begin);
   if (from == std::string_view::npos) return {};
@@ -21,7 +21,7 @@ inline std::string between(std::string_view text, std::string_view begin, std::s
   return std::string(text.substr(start, text.find(end, start) - start));
 }
 
-/// The page without the contents of its scripts and styles: what a browser takes as markup.
+/// The page without the contents of its scripts and styles.
 inline std::string markup(std::string page) {
   for (const auto& [begin, end] : {std::pair{"<script", "</script>"}, std::pair{"<style", "</style>"}}) {
     for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at)) {

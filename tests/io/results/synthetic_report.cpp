@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes the result folder of the made-up run, to look at while working on the report: synthetic_report OUT/ [CELLS]
+// Writes the result folder of the synthetic run, for work on the report: synthetic_report OUT/ [CELLS]
 #include "stylet/io/results_writer.hpp"
 #include "synthetic_run.hpp"
 

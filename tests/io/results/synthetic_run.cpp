@@ -22,7 +22,7 @@ namespace {
 struct Ellipsoid {
   const char* name;
   Vec3 centre, radii;
-  /// About the distance to the surface [mm], negative inside.
+  /// Approximate distance to the surface [mm], negative inside.
   [[nodiscard]] double level(const Vec3& x) const {
     return ((x - centre).cwiseQuotient(radii).norm() - 1) * radii.minCoeff();
   }
@@ -30,7 +30,7 @@ struct Ellipsoid {
 
 const Vec3 kLow(-60, -50, 0), kHigh(60, 50, 120);
 
-/// First match wins; what no ellipsoid holds is body.
+/// The organs; the first that contains a point determines its region, and points outside of all are in the body.
 const std::array<Ellipsoid, 5>& organs() {
   static const std::array<Ellipsoid, 5> all{{{"prostate", {0, 0, 62}, {25, 18, 20}},
                                              {"bladder", {0, -9, 100}, {30, 23, 19}},
@@ -47,7 +47,7 @@ int organ_at(const Vec3& x) {
   return 0;
 }
 
-/// Moves nodes that are close to an organ's surface onto it, as far as no tetrahedron becomes flat.
+/// Moves nodes that are close to an organ's surface onto it, unless a tetrahedron would become flat.
 void fit_to_organs(TetMesh& mesh, double reach) {
   const std::vector<Vec3> grid = mesh.nodes;
   for (std::size_t n = 0; n < grid.size(); ++n) {
@@ -86,7 +86,7 @@ TetMesh anatomy(const std::array<int, 3>& cells) {
 
 constexpr double kSpeed = 20, kStart = -6, kDeepest = 76, kHold = 0.4;   // mm/s, mm, mm, s
 constexpr double kSkin = 0, kPuncture = 7, kGland = 41, kGlandCut = 46;  // depths [mm]
-constexpr double kStick = 4;                                             // mm of retraction before slip
+constexpr double kStick = 4;                                             // retraction before slip [mm]
 constexpr double kInsertion = (kDeepest - kStart) / kSpeed;
 constexpr double kRetractionStart = kInsertion + kHold;
 constexpr double kEnd = kRetractionStart + kInsertion;
@@ -118,7 +118,7 @@ double axial_force(double time) {
   return top + (-0.0125 * (kDeepest - kStick) - top) * turn;
 }
 
-/// How far the tissue is dragged along [mm], at its most.
+/// Largest displacement by which the tissue is dragged along [mm].
 double drag_at(double time) { return 4.2 * axial_force(time) / inserting_force(kDeepest); }
 
 VecX displacement_at(const TetMesh& mesh, double time) {
@@ -136,7 +136,7 @@ VecX displacement_at(const TetMesh& mesh, double time) {
   return u;
 }
 
-/// The needle's centreline bends away from its straight line by a cubic in the inserted part.
+/// A point of the needle's centreline, which deviates from a straight line by a cubic in the inserted part.
 Vec3 needle_point(double depth, double s) {
   const double z = depth - kLength + s;
   const double inside = std::max(0.0, z) / kDeepest;

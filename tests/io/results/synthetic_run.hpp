@@ -12,7 +12,7 @@
 
 namespace stylet::testing {
 
-/// What ResultsWriter is given in the course of a run.
+/// The input of a ResultsWriter during a run.
 struct SyntheticRun {
   RunInfo info;
   TetMesh mesh;
@@ -22,23 +22,22 @@ struct SyntheticRun {
 };
 
 struct SyntheticOptions {
-  std::array<int, 3> cells{8, 7, 9};  ///< of the box that holds the anatomy
+  std::array<int, 3> cells{8, 7, 9};  ///< cells of the box that contains the anatomy
   double step_s = 0.01;
-  int frames = 8;  ///< regular frames, beside those with a label
+  int frames = 8;  ///< number of regular frames, in addition to labelled ones
 };
 
-/// A made-up insertion into ellipsoids in a box, by formulas and without a simulation: an approach, skin contact,
-/// puncture, entry into the gland, the deepest point, a hold, a retraction that sticks and then slips, and withdrawal.
+/// A synthetic insertion into ellipsoids in a box, computed by formulas without a simulation: approach, skin contact,
+/// puncture, entry into the gland, deepest point, pause, a retraction that sticks and then slips, and withdrawal.
 SyntheticRun synthetic_run(const SyntheticOptions& options = {});
 
-/// What a reader of the run's file would get.
-/// A map of the template's holes as that of a run, with all that may be missing: hole D1 has no way, D7 no prediction,
-/// and there is no rectum.
+/// The recording that a reader of the run's file would get. A map of the template's holes with all kinds of missing
+/// data: hole D1 has no way, D7 has no prediction, and there is no rectum.
 HoleMap synthetic_map();
 
 RunRecording recording_of(const SyntheticRun& run);
 
-/// A folder below the test's temporary folder, empty at first, removed with everything in it at the end.
+/// An empty folder below the test's temporary folder, removed at the end with its content.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -51,7 +50,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The whole file as text; empty when it cannot be read.
+/// The whole file as text; empty if it cannot be read.
 std::string file_text(const std::filesystem::path& path);
 
 /// Names of all files and folders directly in `folder`, sorted.

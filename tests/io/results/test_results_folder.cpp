@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The result folder as a whole: what is in it after a good run, after a failed one, and when it cannot be written.
+// Tests of the result folder: its content after a successful run and after a failed one, and errors of writing.
 #include "report_page.hpp"
 #include "results/forces_csv.hpp"
 #include "results/gland_csv.hpp"
@@ -46,7 +46,7 @@ MatX some_stress(const TetMesh& mesh) {
   return stress;
 }
 
-/// Keeps EGL from finding any driver, as on a machine without one; pictures are then left out, which is fast.
+/// Prevents EGL from finding a driver, as on a machine without one. Then there are no pictures, which makes tests fast.
 void take_drivers_away() { setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent/vendor.json", 1); }
 
 Result<> write_run(const fs::path& folder, const SyntheticRun& run) {
@@ -61,7 +61,7 @@ Result<> write_run(const fs::path& folder, const SyntheticRun& run) {
   return (*writer)->finish(run.summary);
 }
 
-/// Runs `work` in a child and returns what it returns; the limits it sets on itself stay there.
+/// Runs `work` in a child process and returns its result; limits that it sets for its process do not affect the test.
 template <class Work>
 int in_child(Work work) {
   const pid_t child = fork();
@@ -80,7 +80,7 @@ bool is_png(const std::string& bytes) {
 TEST(ResultFolder, holds_every_file_with_the_numbers_of_the_run) {
   const auto run = synthetic_run();
   const TemporaryFolder place;
-  const fs::path folder = place.path() / "new" / "OUT";  // parents are made
+  const fs::path folder = place.path() / "new" / "OUT";  // parents are created
   std::vector<std::string> stages;
   {
     auto writer = ResultsWriter::open(folder, run.info, run.mesh, [&](const VecX&) { return some_stress(run.mesh); });
@@ -180,7 +180,7 @@ TEST(ResultFolder, needle_vtp_is_the_needle_at_its_deepest_with_its_contacts) {
     EXPECT_NE(arrays->GetArray(name), nullptr) << name;
   }
   EXPECT_NEAR(arrays->GetArray("arc_length_mm")->GetTuple1(shaft - 1), 200, 0.1);
-  EXPECT_EQ(arrays->GetArray("contact")->GetTuple1(shaft), 3);  // the first contact made up is the tip
+  EXPECT_EQ(arrays->GetArray("contact")->GetTuple1(shaft), 3);  // the first synthetic contact is the tip
   EXPECT_NE(needle->GetFieldData()->GetAbstractArray("SPACE"), nullptr);
 }
 
@@ -248,7 +248,7 @@ TEST(ResultFolder, a_run_killed_at_any_moment_has_nothing_of_an_earlier_one_besi
     const TemporaryFolder folder;
     const auto start = std::chrono::steady_clock::now();
     ASSERT_TRUE(write_run(folder.path(), run).ok());
-    const auto lasted = std::chrono::steady_clock::now() - start;  // so long the later one takes as well
+    const auto lasted = std::chrono::steady_clock::now() - start;  // the later run takes about as long
     const pid_t child = fork();
     if (child == 0) _exit(write_run(folder.path(), later).ok() ? 0 : 1);
     std::this_thread::sleep_for(share(random) * std::chrono::duration<double>(lasted));
@@ -258,7 +258,7 @@ TEST(ResultFolder, a_run_killed_at_any_moment_has_nothing_of_an_earlier_one_besi
     killed += WIFSIGNALED(status) ? 1 : 0;
     const auto recording = read_recording(folder.path() / "run.h5");
     ASSERT_TRUE(recording.ok()) << recording.error().message();
-    if (recording->info.scenario_name != "later") {  // killed before the later one took the folder over
+    if (recording->info.scenario_name != "later") {  // the later run was killed before it replaced the earlier one
       EXPECT_TRUE(recording->summary.has_value());
       continue;
     }
@@ -318,7 +318,7 @@ TEST(ResultFolder, a_full_disk_fails_the_run_and_leaves_no_half_file) {
     for (const auto& frame : run.frames) {
       if (!(*writer)->add_frame(frame)) return 12;
     }
-    // Files cannot grow beyond this: enough for everything but the report, which has its script and the tissue in it.
+    // This limit on the size of files is sufficient for all files except the report, which contains script and tissue.
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{680000, 680000};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -352,7 +352,7 @@ TEST(ResultFolder, a_folder_that_cannot_be_written_is_refused_before_the_run) {
   fs::permissions(folder.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
   fs::permissions(folder.path(), fs::perms::all);
   const int status = in_child([&] {
-    constexpr uid_t kNobody = 65534;  // permissions do not bind root
+    constexpr uid_t kNobody = 65534;  // permissions do not apply to root
     if (geteuid() == 0 && seteuid(kNobody) != 0) return 10;
     const auto writer = ResultsWriter::open(folder.path() / "locked", run.info, run.mesh);
     return !writer.ok() && writer.error().kind == ErrorKind::input &&
@@ -379,8 +379,8 @@ TEST(ResultFolder, wrong_use_is_an_error_not_a_crash) {
   Step step;
   step.time_s = std::nan("");
   EXPECT_FALSE((*writer)->add_step(step).ok());
-  EXPECT_FALSE((*writer)->finish(run.summary).ok());  // no frame to show
-  EXPECT_FALSE((*writer)->finish(run.summary).ok());  // twice
+  EXPECT_FALSE((*writer)->finish(run.summary).ok());  // there is no frame to show
+  EXPECT_FALSE((*writer)->finish(run.summary).ok());  // finish() can be called only once
 }
 
 TEST(ResultFolder, a_needle_that_never_touches_anything_still_gives_a_report) {

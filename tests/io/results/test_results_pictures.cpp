@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the pictures show, staged but not drawn: drawing is part of the tests of the whole folder.
+// Tests of the content of pictures without drawing them; drawing is part of the tests of the result folder.
 #include "pictures/stage.hpp"
 #include "pictures/views.hpp"
 #include "report/moments.hpp"
@@ -18,7 +18,7 @@ using stylet::testing::synthetic_run;
 
 namespace {
 
-/// Stages every kind of picture of a run; returns the number of actors in all of them.
+/// Prepares every kind of picture of a run. @return total number of actors
 int stage_all(const RunRecording& run) {
   const auto regions = region_views(run.mesh, run.info.target_regions);
   const Frame& frame = run.frames[find_moments(run.frames).deepest];
@@ -57,7 +57,7 @@ TEST(PictureViews, a_framing_holds_all_points) {
     EXPECT_LE(std::abs((p - framing.centre).dot(view.right())), half_width * (1 + 1e-12));
     EXPECT_LE(std::abs((p - framing.centre).dot(view.up)), framing.half_height * (1 + 1e-12));
   }
-  EXPECT_DOUBLE_EQ(half_width, 50);  // no larger than it has to be
+  EXPECT_DOUBLE_EQ(half_width, 50);  // not larger than necessary
 }
 
 TEST(PictureViews, runs_without_needle_target_or_organs_can_be_staged) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// report.html: what it says, what its scripts get, and that it loads nothing from anywhere.
+// Tests of report.html: its text, the data of its scripts, and that it loads nothing from elsewhere.
 #include "report/narrative.hpp"
 #include "report/parameter_tables.hpp"
 #include "report/report_data.hpp"
@@ -37,7 +37,7 @@ nlohmann::json data_of(const RunRecording& run) {
       report_data(run, region_views(run.mesh, run.info.target_regions), find_moments(run.frames)));
 }
 
-/// Base 64 back to numbers, by the alphabet of RFC 4648.
+/// Decodes numbers from base 64 (RFC 4648).
 template <class Number>
 std::vector<Number> numbers(const std::string& text) {
   std::string bytes;
@@ -175,7 +175,7 @@ TEST(Report, loads_nothing_from_anywhere) {
   EXPECT_EQ(style.find("@import"), std::string::npos);
   EXPECT_EQ(style.find("url("), std::string::npos);
   EXPECT_EQ(page.find("<script src"), std::string::npos);
-  EXPECT_EQ(page.find("{{"), page.find("{{", page.find("report-data")));  // no slot is left before the scripts
+  EXPECT_EQ(page.find("{{"), page.find("{{", page.find("report-data")));  // no placeholder is left before the scripts
 }
 
 TEST(Report, text_from_the_user_cannot_break_the_page) {
@@ -223,7 +223,7 @@ TEST(Report, its_data_are_those_of_the_run) {
   EXPECT_EQ(data["events"].size(), run.summary.events.size());
   EXPECT_EQ(data["events"][1]["label"], "Skin punctured");
 
-  // Every surface node is a mesh node, and its displacement is that node's to half a step of the scale.
+  // Every surface node is a mesh node with the same displacement, up to half a step of the scale.
   const auto points = numbers<float>(data["surface"]["points_mm"]);
   const double scale = data["displacement_scale_mm"];
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
@@ -279,7 +279,7 @@ TEST(Report, tissue_parameters_are_one_line_per_region_with_unit_and_source) {
                                        {"tissue.element", "p1", "", "scenario"},
                                        {"needle.length_mm", "200", "mm", "scenario"}};
   const std::string html = parameter_tables(rows);
-  EXPECT_EQ(count(html, "<tr>"), 2U + 5U);  // two heads, three tissues, two of all
+  EXPECT_EQ(count(html, "<tr>"), 2U + 5U);  // two header rows, three tissues, two rows for all tissue
   EXPECT_NE(html.find("<code>young_<wbr>kPa</code><br>[kPa]"), std::string::npos);
   EXPECT_NE(html.find("<td>Prostate</td><td class=\"number\">40</td><td class=\"number\">0.25</td>"),
             std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// run.h5: what is written is read back, also when the writer is still at work or was killed.
+// Tests that run.h5 can be read, also while the writer is at work or after it was killed.
 #include "results/recorder.hpp"
 #include "results/run_file_format.hpp"
 #include "stylet/io/recording_io.hpp"
@@ -160,7 +160,7 @@ TEST(RunFile, of_the_first_version_has_its_steps_without_what_they_were_given) {
     Recorder recorder(std::move(*writer));
     ASSERT_TRUE(recorder.close(nullptr).ok());
   }
-  {  // its table of steps had no columns dt_s, base_x_mm … base_qz, and flags
+  {  // in earlier versions the table of steps had no columns dt_s, base_x_mm … base_qz and flags
     const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
     const h5::Handle now = step_row_type();
     const h5::Handle then(h5::check(H5Tcreate(H5T_COMPOUND, sizeof(StepRow)), "type"), H5Tclose);
@@ -224,7 +224,7 @@ TEST(RunFile, is_readable_half_a_second_behind_while_the_run_goes_on) {
   Recorder recorder(std::move(*writer));
   for (const auto& step : run.steps) ASSERT_TRUE(recorder.add_step(step).ok());
   ASSERT_TRUE(recorder.add_frame(stored(run.frames.front())).ok());
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the run is busy elsewhere and adds nothing more
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the run is busy and adds nothing
 
   int status = 0;
   const pid_t reader = fork();  // another process, as a viewer would be
@@ -266,7 +266,7 @@ TEST(RunFile, a_killed_run_stays_readable_and_loses_at_most_a_second) {
     }
     victims.push_back({pid, path, 0, 0});
   }
-  for (const Victim& victim : victims) {  // a run can be killed from the moment on that its file exists
+  for (const Victim& victim : victims) {  // a run may be killed as soon as its file exists
     for (int wait = 0; wait < 1000 && !read_recording(victim.path).ok(); ++wait) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -320,7 +320,7 @@ TEST(RunFile, takes_away_what_processes_that_were_killed_had_not_put_in_place) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   const fs::path left = folder.path() / (".run." + std::to_string(child) + ".part.h5");
-  const fs::path others = folder.path() / (".run." + std::to_string(getppid()) + ".part.h5");  // it lives
+  const fs::path others = folder.path() / (".run." + std::to_string(getppid()) + ".part.h5");  // of a living process
   const fs::path foreign = folder.path() / ".run.notes.part.h5";
   for (const fs::path& path : {left, others, foreign}) std::ofstream(path) << "half a run";
   auto writer = RunFileWriter::create(folder.path() / "run.h5", run.info, run.mesh);
@@ -353,7 +353,7 @@ TEST(RunFile, foreign_and_damaged_files_are_refused_with_a_message) {
 
 namespace {
 
-/// A finished recording, or one whose writer had not closed it.
+/// The bytes of a finished recording, or of one that the writer has not closed.
 std::string bytes_of(const stylet::testing::SyntheticRun& run, bool finished) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "run.h5";
@@ -381,7 +381,7 @@ void expect_same_run(const RunRecording& a, const RunRecording& b) {
   }
 }
 
-/// How many flips to try: STYLET_FLIPS, else a sample that takes seconds.
+/// Number of flips: STYLET_FLIPS in the environment, else a sample that takes seconds.
 int flips() {
   const char* wanted = std::getenv("STYLET_FLIPS");
   return wanted == nullptr ? 60 : std::atoi(wanted);
@@ -411,7 +411,7 @@ TEST(RunFile, with_any_bit_changed_is_refused_or_reads_as_it_was_written) {
       SCOPED_TRACE("byte " + std::to_string(at) + (finished ? " of a finished one" : " of an unfinished one"));
       if (back) {
         RunRecording same = *expected;
-        if (!finished) {  // it ends where it is whole up to
+        if (!finished) {  // the recording ends before the damaged row
           if (back->steps.size() + 1 == same.steps.size()) same.steps.pop_back();
           if (back->frames.size() + 1 == same.frames.size()) same.frames.pop_back();
           if (back->events.size() + 1 == same.events.size()) same.events.pop_back();
@@ -434,7 +434,7 @@ TEST(RunFile, of_earlier_versions_is_read_without_checks) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "run.h5";
   std::ofstream(path, std::ios::binary) << bytes_of(run, true);
-  {  // its texts had a length of their own each
+  {  // with texts of variable length, as in earlier versions
     const h5::Handle file(h5::check(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "open"), H5Fclose);
     h5::check(H5Adelete(file, "format_version"), "delete");
     h5::write_attribute(file, "format_version", std::array{2});
@@ -469,12 +469,12 @@ TEST(RunFile, a_damaged_head_is_refused_whether_or_not_the_run_has_ended) {
   const std::string growing = stylet::testing::file_text(path);
   ASSERT_TRUE(writer->close().ok());
   const std::string ended = stylet::testing::file_text(path);
-  constexpr std::size_t mark = 11;  // of a file that is being written: must differ, or one case is tested twice
+  constexpr std::size_t mark = 11;  // marks a file that is being written; must differ between the two cases
   EXPECT_NE(growing.at(mark), ended.at(mark));
   for (const std::string& whole : {growing, ended}) {
     std::ofstream(bad, std::ios::binary) << whole;
     EXPECT_TRUE(read_recording(bad).ok());
-    for (const std::size_t at : {12, 16, 24, 60, 100}) {  // of the superblock, then of the root group
+    for (const std::size_t at : {12, 16, 24, 60, 100}) {  // in the superblock, then in the root group
       std::string bytes = whole;
       bytes.at(at) ^= 64;
       std::ofstream(bad, std::ios::binary) << bytes;

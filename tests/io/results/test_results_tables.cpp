@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// forces.csv, gland.csv, map.csv and summary.json as text.
+// Tests of the texts of forces.csv, gland.csv, map.csv and summary.json.
 #include "results/forces_csv.hpp"
 #include "results/gland_csv.hpp"
 #include "results/summary_json.hpp"
@@ -45,7 +45,7 @@ TEST(ForcesCsv, one_line_per_step_with_fixed_digits) {
   step.time_s = 1.0005;
   step.base_depth_mm = -2.5;
   step.force_axial_N = 1.0 / 3;
-  step.force_sagittal_N = -1e-12;  // rounds to zero: no sign
+  step.force_sagittal_N = -1e-12;  // rounds to zero, which is printed without a sign
   step.force_lateral_N = -0.25;
   step.torque_Nmm = {1, -2, 3.5};
   step.tip_mm = {10, 20.125, -30};

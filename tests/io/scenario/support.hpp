@@ -14,7 +14,7 @@
 
 namespace stylet::test {
 
-/// A folder of its own for one test, gone with it.
+/// A folder for one test, removed afterwards.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -30,7 +30,7 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Writes a file and returns its full name.
+  /// Writes a file and returns its path.
   std::filesystem::path write(const std::string& name, const std::string& content) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream(path_ / name, std::ios::binary) << content;
@@ -41,13 +41,13 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// Every part must be in the message.
+/// Expects that the message contains every part.
 inline void expect_says(const std::string& message, std::initializer_list<const char*> parts) {
   for (const char* part : parts)
     EXPECT_NE(message.find(part), std::string::npos) << '"' << part << "\" is not in:\n" << message;
 }
 
-/// An error a person can act on: the input's fault, one line, a place, a value and a cure.
+/// Expects a helpful input error: one line with a place, a value and a cure.
 template <class T>
 std::string refusal(const Result<T>& result) {
   if (result) {

@@ -16,7 +16,7 @@ Result<std::vector<MotionSample>> read_motion(const std::string& content) {
   return read_motion_csv(folder.write("hand.csv", content));
 }
 
-/// What a motion whose second sample is this line is refused with.
+/// The message of the error for a motion with this line as its second sample.
 std::string refused_sample(const std::string& line) {
   const std::string message = refusal(read_motion(kHeader + "0,0,0,-250,1,0,0,0\n" + line + "\n"));
   expect_says(message, {"hand.csv, line 3"});
@@ -81,7 +81,7 @@ TEST(MotionCsv, what_is_no_motion_is_refused) {
   expect_says(refusal(read_motion_csv(folder.write("e.csv", ""))), {"e.csv", "empty"});
   expect_says(refusal(read_motion_csv(folder.write("m.csv", "NRRD0004\n"))), {"m.csv: this is an NRRD image", "CSV"});
   expect_says(refusal(read_motion_csv(folder.write("b.csv", std::string("time\0", 5)))),
-              {"b.csv, line 1", "no line of a text table"});
+              {"b.csv, line 1", "not a line of text"});
   expect_says(refusal(read_motion_csv(folder.write("l.csv", std::string(5000, 'x')))), {"l.csv, line 1"});
 }
 

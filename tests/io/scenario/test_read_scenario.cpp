@@ -14,14 +14,14 @@ Result<Scenario> read(const std::string& content) {
   return read_scenario(folder.write("case.toml", content));
 }
 
-/// What a file is refused with; it names the file.
+/// The message of the error for a file with this content; checks that it names the file.
 std::string refused(const std::string& content) {
   const std::string message = refusal(read(content));
   expect_says(message, {"case.toml"});
   return message;
 }
 
-/// The same with one line put where a complete scenario has its fourth.
+/// The message for a complete scenario with this line as its fourth line.
 std::string refused_line_4(const std::string& table, const std::string& line) {
   const std::string message = refused(kHead + table + "\n" + line + kTail);
   expect_says(message, {"case.toml, line 4"});
@@ -124,7 +124,7 @@ TEST(ReadScenario, relative_names_start_in_the_scenarios_folder) {
   ASSERT_TRUE(scenario.ok()) << scenario.error().message();
   EXPECT_EQ(scenario->patient.source, (folder.path() / "data/case.dcm").string());
   EXPECT_EQ(scenario->insertions[0].motion, (folder.path() / "scenarios/hand.csv").string());
-  // However the scenario itself is named.
+  // The paths are absolute even if the scenario's own path is relative.
   const auto relative = read_scenario(std::filesystem::relative(file));
   ASSERT_TRUE(relative.ok());
   EXPECT_EQ(relative->insertions[0].motion, (folder.path() / "scenarios/hand.csv").string());
@@ -173,10 +173,10 @@ TEST(ReadScenario, refuses_bad_toml_with_line_column_and_cure) {
 
 TEST(ReadScenario, refuses_what_word_processors_make_of_toml) {
   expect_says(refused("[[insertion]]\nhole = \u201CD4\u201D\n"),
-              {"case.toml, line 2, column 8: \u201C is no quotation mark of TOML", "straight quotation marks"});
+              {"case.toml, line 2, column 8: \u201C is not a quotation mark of TOML", "straight quotation marks"});
   expect_says(refused("[needle]\nlength_mm\u00A0= 150\n"), {"line 2, column 10: there is a no-break space"});
   expect_says(refused("[needle]\nl\u00E4nge = 150\n"), {"line 2, column 2: the character \u00E4 stands outside"});
-  expect_says(refused("[needle]\nl\xE4nge = 150\n"), {"line 2, column 2: this is no text in UTF-8"});
+  expect_says(refused("[needle]\nl\xE4nge = 150\n"), {"line 2, column 2: this is not text in UTF-8"});
 }
 
 TEST(ReadScenario, refuses_what_the_parser_cannot_bear) {
@@ -283,7 +283,7 @@ TEST(ReadScenario, refuses_values_of_another_type) {
   expect_says(refused_line_4("[fixed]", "regions = \"pubic_arch\""), {"not a list of texts", "[\"pubic_arch\"]"});
   expect_says(refused_line_4("[fixed]", "box_mm = 3"), {"fixed.box_mm = 3 is not a list of numbers"});
   expect_says(refused_line_4("[fixed]", "box_mm = [1, \"2\"]"), {"fixed.box_mm is a list of numbers and texts mixed"});
-  expect_says(refused_line_4("[fixed]", "box_mm = [[1, 2], [3, 4]]"), {"fixed.box_mm is a list of something else"});
+  expect_says(refused_line_4("[fixed]", "box_mm = [[1, 2], [3, 4]]"), {"fixed.box_mm is a list of other values"});
   expect_says(refused_line_4("[mesh]", "nodes = 2024-02-29"), {"mesh.nodes is a date"});
   expect_says(refused_line_4("[patient.regions]", "1 = 2"), {"patient.regions.1 = 2 is not a text in quotes"});
 }
@@ -297,7 +297,7 @@ TEST(ReadScenario, refuses_values_out_of_range) {
   expect_says(refused_line_4("[fixed]", "box_mm = [1, 2, 3]"), {"fixed.box_mm = [1, 2, 3] is 3 numbers long, not 6"});
   expect_says(refused_line_4("[fixed]", "outer = \"side\""), {"fixed.outer = \"side\"", "did you mean \"sides\"?"});
   expect_says(refused_line_4("[coupling]", "method = \"near\""),
-              {"coupling.method = \"near\" is not one of its words", "\"near-field\", \"node-addition\""});
+              {"coupling.method = \"near\" is not an allowed word", "\"near-field\", \"node-addition\""});
   expect_says(refused_line_4("[template]", "columns = []"), {"template.columns", "too short"});
 }
 

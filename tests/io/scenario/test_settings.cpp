@@ -120,12 +120,12 @@ TEST(Settings, without_key_or_value_are_refused) {
   expect_says(refused_setting("needle.length_mm"), {"--set needle.length_mm", "no '='", "--set key=value"});
   expect_says(refused_setting("=3"), {"--set =3", "no key"});
   expect_says(refused_setting(""), {"--set", "no '='"});
-  expect_says(refused_setting("name=\x01"), {"--set name", "no printable text"});
+  expect_says(refused_setting("name=\x01"), {"--set name", "not printable text"});
   expect_says(refused_setting("name=Pr\xFC"
                               "f"),
               {"--set name", "UTF-8"});
   expect_says(refused_setting("..=3"), {"--set ..=3", "unknown key"});
   expect_says(refused_setting("[0].hole=3"), {"unknown key"});
   expect_says(refused_setting("insertion=3"), {"--set insertion=3"});
-  expect_says(refused_setting("name=\"a\"\nmesh.nodes=3"), {"--set name", "no printable text"});
+  expect_says(refused_setting("name=\"a\"\nmesh.nodes=3"), {"--set name", "not printable text"});
 }

@@ -30,7 +30,7 @@ const Roi& structure(const ContourSet& patient, const std::string& name) {
   return *std::find_if(patient.rois.begin(), patient.rois.end(), [&](const Roi& roi) { return roi.name == name; });
 }
 
-/// Even–odd rule.
+/// Whether a point is inside a contour, by the even–odd rule.
 bool inside(const Contour& contour, double x, double y) {
   bool in = false;
   for (std::size_t i = 0, j = contour.points.size() - 1; i < contour.points.size(); j = i++) {
@@ -80,7 +80,7 @@ TEST(ShippedScenarios, stay_complete_when_their_comments_are_taken_away) {
 }
 
 TEST(ShippedScenarios, show_keys_in_their_comments_that_exist) {
-  // What a newcomer may take the # away from: "# key = value" and "# [table]" in a comment.
+  // A user may remove the # from "# key = value" and "# [table]" in a comment.
   for (const auto& file : shipped()) {
     std::istringstream stream(content(file));
     std::string table;

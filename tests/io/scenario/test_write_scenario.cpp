@@ -36,7 +36,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The schema with every key's # taken away.
+/// The schema without the # before each key.
 std::string uncommented(const std::string& text) {
   std::string out;
   for (const std::string& line : lines_of(text)) {
@@ -123,7 +123,7 @@ TEST(ToToml, keeps_every_number_to_its_last_bit) {
     ASSERT_TRUE(set.ok()) << set.error().message();
   }
   s.coupling.spacing_mm = std::max(s.coupling.spacing_mm, s.needle.diameter_mm);
-  s.coupling.solver = CouplingSettings::Solver::staggered;  // damping belongs to it
+  s.coupling.solver = CouplingSettings::Solver::staggered;  // needed for damping
   EXPECT_EQ(read_back(to_toml(s)), s);
 }
 
@@ -135,7 +135,7 @@ TEST(ToToml, writes_every_key_that_has_a_value_with_its_unit) {
     if (key.standard == "none" || key.path.ends_with(".direction") || key.path == "template.centre_mm" ||
         key.path == "patient.regions.<name>" || key.path == "tissue.creep")
       continue;
-    if (key.path.starts_with("needle.") && !scenario_value(s, key.path)) continue;  // unset: follows from others
+    if (key.path.starts_with("needle.") && !scenario_value(s, key.path)) continue;  // computed from other keys
     const std::string name = key.path.substr(key.path.rfind('.') + 1) + " = ";
     const auto line =
         std::find_if(lines.begin(), lines.end(), [&](const std::string& l) { return l.starts_with(name); });
@@ -165,7 +165,7 @@ TEST(Schema, has_every_key_once) {
 
 TEST(Schema, names_unit_range_default_and_meaning_of_every_key) {
   std::string text = schema_text();
-  // Without the line breaks of long comments.
+  // Remove the line breaks of long comments.
   for (auto at = text.find("\n# "); at != std::string::npos; at = text.find("\n# ", at)) text.replace(at, 3, " ");
   const auto lines = lines_of(text);
   for (const ScenarioKey& key : scenario_keys()) {
@@ -211,13 +211,13 @@ TEST(Schema, runs_once_source_and_hole_are_uncommented) {
 
 TEST(Schema, shows_values_that_are_taken) {
   std::string text = uncommented(schema_text());
-  // Of the ways to say where the needle goes one is left.
+  // Keep only one of the keys that determine the needle's way.
   for (const char* other : {"\nentry_mm", "\ndirection", "\ntarget_mm", "\nmotion"})
     text.insert(text.find(other) + 1, "#");
   const Scenario s = read_back(text);
   EXPECT_EQ(s.tissue.at("prostate"), default_tissue("prostate"));
   EXPECT_EQ(s.insertions, minimal().insertions);
-  Scenario::NeedleChoice needle = s.needle;  // what is unset by default has an example
+  Scenario::NeedleChoice needle = s.needle;  // for keys that are unset by default, the schema shows an example
   EXPECT_TRUE(needle.lumen_diameter_mm && needle.stylet_diameter_mm && needle.bending_stiffness_Nmm2);
   needle.lumen_diameter_mm.reset();
   needle.stylet_diameter_mm.reset();

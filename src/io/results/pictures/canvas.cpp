@@ -25,10 +25,10 @@ namespace stylet::results {
 namespace {
 
 Error no_picture(const std::string& what) {
-  return failure("pictures", what, "Install the packages libegl1, libegl-mesa0 and libgl1-mesa-dri.");
+  return failure("pictures", what, "Install the packages libegl1, libegl-mesa0 and libgl1-mesa-dri");
 }
 
-/// Averages squares of kOversampling × kOversampling pixels.
+/// Reduces a picture by averaging squares of kOversampling × kOversampling pixels.
 void average_down(const vtkUnsignedCharArray& large, vtkImageData& picture) {
   constexpr int k = Canvas::kOversampling;
   picture.SetDimensions(Canvas::kWidth, Canvas::kHeight, 1);
@@ -52,11 +52,11 @@ void average_down(const vtkUnsignedCharArray& large, vtkImageData& picture) {
 
 }  // namespace
 
-/// An OpenGL 3.2 core context that draws nowhere but into its own framebuffers. Part of Canvas::Parts, so not in the
-/// anonymous namespace.
+/// An OpenGL 3.2 core context that draws only into its own framebuffers. It is a member of Canvas::Parts and therefore
+/// not in the anonymous namespace.
 class SurfacelessContext {
  public:
-  /// @return what went wrong, or empty
+  /// Opens the context. @return the error, or empty
   std::string open() {
     display_ = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (display_ == EGL_NO_DISPLAY) return "EGL has no surfaceless display";
@@ -88,7 +88,7 @@ class SurfacelessContext {
 };
 
 struct Canvas::Parts {
-  SurfacelessContext context;  ///< first: outlives the window
+  SurfacelessContext context;  ///< first member, because it must outlive the window
   vtkNew<vtkGenericOpenGLRenderWindow> window;
 };
 
@@ -98,7 +98,8 @@ Canvas::~Canvas() = default;
 Result<std::unique_ptr<Canvas>> Canvas::open() {
   auto parts = std::make_unique<Parts>();
   if (const std::string reason = parts->context.open(); !reason.empty()) return no_picture(reason);
-  // VTK reports that GLEW finds no X display; the functions are loaded all the same, and draw() checks what it drew.
+  // VTK would report that GLEW finds no X display. The OpenGL functions are loaded nevertheless, and draw() checks its
+  // result.
   vtkObject::GlobalWarningDisplayOff();
   vtkGenericOpenGLRenderWindow& window = *parts->window;
   vtkNew<vtkCallbackCommand> is_current;

@@ -17,15 +17,15 @@ namespace stylet::results {
 /// Pictures are drawn at twice their size and averaged down, which smooths edges and text and works with depth peeling.
 class Canvas {
  public:
-  static constexpr int kWidth = 1440, kHeight = 1080;  ///< of a picture, pixels
-  static constexpr int kOversampling = 2;              ///< lines and text have to be this much larger
+  static constexpr int kWidth = 1440, kHeight = 1080;  ///< size of a picture [pixels]
+  static constexpr int kOversampling = 2;              ///< lines and text must be drawn larger by this factor
 
   static Result<std::unique_ptr<Canvas>> open();
   ~Canvas();
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
-  /// Draws renderers one after the other, each over its own part of the picture.
+  /// Draws renderers one after the other, each on its own part of the picture.
   /// @return the bytes of a PNG file
   Result<std::string> draw(std::span<const vtkSmartPointer<vtkRenderer>> layers);
 

@@ -32,7 +32,7 @@ constexpr detail::ChildLimits kLimits{.cpu_s = 300, .wall_s = 180, .memory_bytes
 
 using Drawing = std::function<Layers()>;
 
-/// The drawings of the pictures in the order of kNames.
+/// The functions that draw the pictures, in the order of kNames.
 std::vector<Drawing> drawings(const PictureInput& input, const Moments& moments) {
   const Section sagittal = sagittal_section(input), transverse = transverse_section(input);
   std::vector<Drawing> list;
@@ -47,7 +47,7 @@ std::vector<Drawing> drawings(const PictureInput& input, const Moments& moments)
   return list;
 }
 
-// What a child sends: "ok", then "<size>:<bytes>" for each picture; or the reason why it could not draw.
+// A child sends "ok", then "<size>:<bytes>" for each picture; or the reason why it could not draw.
 constexpr std::string_view kOk = "ok";
 
 std::string draw_some(std::span<const Drawing> list) {
@@ -66,7 +66,7 @@ std::string draw_some(std::span<const Drawing> list) {
   }
 }
 
-/// Takes the next picture off the parcel; false when it is not whole.
+/// Takes the next picture from the received bytes; false if it is incomplete.
 bool take_picture(std::string_view& parcel, std::string& png) {
   std::size_t size = 0;
   const auto number = std::from_chars(parcel.data(), parcel.data() + parcel.size(), size);
@@ -91,7 +91,7 @@ std::string reason_of(const detail::ChildOutcome& outcome) {
     case detail::ChildEnd::timed_out:
       return "drawing took too long";
     case detail::ChildEnd::not_started:
-      return std::string("no process to draw in: ") + std::strerror(outcome.code);
+      return std::string("no process could be started for drawing: ") + std::strerror(outcome.code);
   }
   return {};
 }
@@ -104,7 +104,8 @@ Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regi
                        const Progress& progress) {
   const PictureInput input{run, regions, run.frames[moments.deepest]};
   const std::vector<Drawing> list = drawings(input, moments);
-  constexpr std::size_t kPerChild = 3;  // one moment: few contexts to set up, yet progress is seen
+  // The pictures of one moment: few OpenGL contexts to set up, and still visible progress.
+  constexpr std::size_t kPerChild = 3;
   Pictures pictures;
   for (std::size_t first = 0; first < list.size(); first += kPerChild) {
     report(progress, "pictures", static_cast<double>(first) / static_cast<double>(list.size()));
@@ -114,7 +115,7 @@ Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regi
     if (outcome.end != detail::ChildEnd::finished || !parcel.starts_with(kOk)) return {{}, reason_of(outcome)};
     parcel.remove_prefix(kOk.size());
     for (std::size_t k = 0; k < batch.size(); ++k) {
-      if (!take_picture(parcel, pictures.png[kNames[first + k]])) return {{}, "a picture got lost on its way"};
+      if (!take_picture(parcel, pictures.png[kNames[first + k]])) return {{}, "a picture was not received completely"};
     }
   }
   report(progress, "pictures", 1.0);

@@ -12,19 +12,19 @@
 
 namespace stylet::results {
 
-/// The still pictures of a run: bytes of a PNG file under each name of picture_names(), or none and the reason.
+/// The still pictures of a run: the bytes of a PNG file for each name of picture_names(), or none and the reason.
 struct Pictures {
   std::map<std::string, std::string> png;
-  std::string why_not;  ///< empty when all pictures were drawn
-  bool wanted = true;   ///< false: the scenario asks for none
+  std::string why_not;  ///< reason why there are no pictures; empty if all were drawn
+  bool wanted = true;   ///< false: the scenario does not want pictures
 };
 
-/// For the moments before, deepest and after view_MOMENT.png, sagittal_MOMENT.png and transverse_MOMENT.png;
-/// sagittal_displacement.png and transverse_displacement.png for the deepest.
+/// File names of the pictures: view_MOMENT.png, sagittal_MOMENT.png and transverse_MOMENT.png for the moments before,
+/// deepest and after; sagittal_displacement.png and transverse_displacement.png for the deepest.
 std::span<const char* const> picture_names();
 
-/// Draws all pictures, in child processes with limits, since an OpenGL driver can take its process down: whatever
-/// happens there, this call returns.
+/// Draws all pictures. This is done in child processes with limits, because an OpenGL driver can crash its process;
+/// this call returns in any case.
 /// @param run has at least one frame
 Pictures draw_pictures(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                        const Progress& progress);

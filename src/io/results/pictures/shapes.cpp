@@ -62,7 +62,7 @@ vtkSmartPointer<vtkPolyData> region_surface(const RegionView& view, vtkPoints* p
 vtkSmartPointer<vtkPolyData> with_normals(vtkPolyData* surface) {
   vtkNew<vtkPolyDataNormals> normals;
   normals->SetInputData(surface);
-  normals->ConsistencyOff();  // the triangles are oriented already
+  normals->ConsistencyOff();  // the triangles already have a consistent orientation
   normals->AutoOrientNormalsOff();
   normals->SetFeatureAngle(70);
   normals->Update();
@@ -82,7 +82,8 @@ vtkSmartPointer<vtkPolyData> polyline(std::span<const Vec3> points) {
 }
 
 vtkSmartPointer<vtkPolyData> needle_tube(std::span<const Vec3> centreline, double diameter) {
-  // The last diameter of length narrows to a point: cut there and let the radius fall to zero.
+  // The conical tip is one diameter long: insert a point at its beginning and let the radius decrease to zero from
+  // there.
   std::vector<Vec3> points(centreline.begin(), centreline.end());
   std::vector<double> radii(points.size(), diameter / 2);
   double left = diameter;

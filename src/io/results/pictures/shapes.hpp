@@ -13,7 +13,7 @@ class vtkPoints;
 class vtkPolyData;
 class vtkUnstructuredGrid;
 
-/// The anatomy and the needle of one frame as VTK data, [mm] LPS.
+/// Conversion of the anatomy and the needle of one frame to VTK data, [mm] LPS.
 namespace stylet::results {
 
 /// Node positions moved by `displacement` [mm] (3n).
@@ -24,7 +24,7 @@ vtkSmartPointer<vtkUnstructuredGrid> deformed_grid(const TetMesh& mesh, const Ve
 
 /// A region's surface on given points.
 vtkSmartPointer<vtkPolyData> region_surface(const RegionView& view, vtkPoints* points);
-/// The same with normals for smooth shading; points on sharp edges appear once per side.
+/// A surface with normals for smooth shading; points on sharp edges are duplicated, one for each side.
 vtkSmartPointer<vtkPolyData> with_normals(vtkPolyData* surface);
 
 /// A tube of the needle's diameter along its centreline, closed, with a conical tip one diameter long.

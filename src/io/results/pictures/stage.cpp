@@ -30,7 +30,7 @@
 namespace stylet::results {
 namespace {
 
-/// Drawing is larger than the finished picture by this.
+/// Factor by which the drawing is larger than the finished picture.
 constexpr int kScale = Canvas::kOversampling;
 
 /// Samples of viridis (Smith & van der Walt 2015), equally spaced.
@@ -45,7 +45,7 @@ constexpr std::array<Colour, 10> kViridis{{{0.267, 0.005, 0.329},
                                            {0.710, 0.871, 0.169},
                                            {0.993, 0.906, 0.144}}};
 
-/// Letter of the patient direction (LPS) that a vector mostly points to.
+/// Letter of the patient direction that is closest to a vector in LPS.
 const char* letter(const Vec3& direction) {
   Eigen::Index axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);

@@ -14,7 +14,7 @@
 namespace stylet::results {
 namespace {
 
-/// Where something happens: the organs, the entry and the deepest tip.
+/// Points that the picture has to show: the organs, the entry and the deepest tip.
 std::vector<Vec3> places_of_interest(const PictureInput& input) {
   const bool only_background = input.regions.size() == 1;
   std::vector<Vec3> places;

@@ -27,12 +27,13 @@
 namespace stylet::results {
 namespace {
 
-// Order of the layers towards the viewer [mm]; the projection is parallel, so this moves nothing in the picture.
+// Offsets of the layers towards the viewer [mm], which determine what covers what. Since the projection is parallel,
+// they move nothing in the picture.
 constexpr double kInitialLayer = 0.5, kOutlineLayer = 1.0, kNeedleLayer = 60.0;
 
 vtkSmartPointer<vtkPolyData> cut(vtkDataSet* data, const Section& section) {
   vtkNew<vtkPlane> plane;
-  // A plane through nodes would cut elements into slivers and twice: stay a hair beside them.
+  // A plane exactly through nodes would cut elements into slivers, and some of them twice; a small offset avoids that.
   const Vec3 origin = section.origin + 1.7e-4 * section.view.towards_viewer;
   plane->SetOrigin(origin.x(), origin.y(), origin.z());
   const Vec3& normal = section.view.towards_viewer;
@@ -50,7 +51,7 @@ void lift(vtkActor* actor, const Section& section, double layer) {
   actor->SetPosition(offset.x(), offset.y(), offset.z());
 }
 
-/// The line moved into the plane of section.
+/// The line projected onto the plane of section.
 std::vector<Vec3> projected(const std::vector<Vec3>& line, const Section& section) {
   std::vector<Vec3> flat;
   for (const Vec3& p : line) {
@@ -59,7 +60,7 @@ std::vector<Vec3> projected(const std::vector<Vec3>& line, const Section& sectio
   return flat;
 }
 
-/// Where the needle crosses the plane of section.
+/// The point at which the needle crosses the plane of section, if it does.
 std::optional<Vec3> crossing(const std::vector<Vec3>& line, const Section& section) {
   for (std::size_t k = 1; k < line.size(); ++k) {
     const double a = (line[k - 1] - section.origin).dot(section.view.towards_viewer);
@@ -80,7 +81,7 @@ void add_disc(vtkRenderer* stage, const Vec3& centre, double radius, const Colou
   lift(add_flat(stage, disc->GetOutput(), colour), section, layer);
 }
 
-/// A needle along the plane is drawn at its full length, one across it as a point.
+/// Draws the needle: at its full length if it runs along the plane, as a point if it crosses the plane.
 void add_needle(vtkRenderer* stage, const PictureInput& input, const Frame& frame, const Section& section) {
   if (frame.needle.size() < 2) return;
   const double diameter = input.run.info.needle_diameter_mm;
@@ -96,7 +97,7 @@ void add_needle(vtkRenderer* stage, const PictureInput& input, const Frame& fram
 // Margins for letters, scale bar and colour bar.
 constexpr Area kSectionArea{0.055, 0.085, 0.945, 0.925}, kMapArea{0.055, 0.085, 0.835, 0.925};
 
-/// The organs, and the path of the needle where it lies in the plane.
+/// The framing that shows the organs, and the needle's path if it lies in the plane.
 Framing framing_of(const PictureInput& input, const Section& section, const Area& area) {
   std::vector<Vec3> places;
   const auto points = deformed_points(input.run.mesh, VecX::Zero(3 * input.run.mesh.node_count()));

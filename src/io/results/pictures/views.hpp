@@ -7,14 +7,14 @@
 /// The views that the pictures of a report show. Every function makes one stage, ready to draw.
 namespace stylet::results {
 
-/// What all pictures of one run have in common.
+/// Data that all pictures of one run share.
 struct PictureInput {
   const RunRecording& run;
   std::span<const RegionView> regions;
-  const Frame& deepest;  ///< sets framing and the range of the displacement colours
+  const Frame& deepest;  ///< determines the framing and the range of the displacement colours
 };
 
-/// A plane through the anatomy that is seen from one side.
+/// A plane through the anatomy, seen from one side.
 struct Section {
   Viewpoint view;
   Vec3 origin = Vec3::Zero();  ///< [mm] LPS
@@ -24,13 +24,14 @@ Section transverse_section(const PictureInput& input);  ///< through the target'
 
 Viewpoint oblique_viewpoint();  ///< from the patient's left, front and a little below
 
-/// Layers of a picture, first drawn first.
+/// Layers of a picture, in the order in which they are drawn.
 using Layers = std::vector<vtkSmartPointer<vtkRenderer>>;
 
 Layers view_3d(const PictureInput& input, const Frame& frame);
-/// Regions filled and outlined as deformed, their initial outlines thin, the needle projected onto the plane.
+/// A section with the deformed regions filled and outlined, their undeformed outlines as thin lines, and the needle
+/// projected onto the plane.
 Layers view_section(const PictureInput& input, const Frame& frame, const Section& section);
-/// The same section coloured by the magnitude of displacement.
+/// A section coloured by the magnitude of displacement.
 Layers view_displacement(const PictureInput& input, const Frame& frame, const Section& section);
 
 }  // namespace stylet::results

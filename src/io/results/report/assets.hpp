@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-/// Pages, style sheets and scripts (web/report/), which the build puts into the library: the report of an insertion and
-/// the pages of stylet reproduce and stylet validate.
+/// Pages, style sheets and scripts of web/report/, which the build embeds into the library: for the report of an
+/// insertion and for the pages of stylet reproduce and stylet validate.
 namespace stylet::results {
 
 std::string_view report_template();  ///< HTML with {{slots}}

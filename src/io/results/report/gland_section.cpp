@@ -12,7 +12,7 @@
 namespace stylet::results {
 namespace {
 
-constexpr int kGlandDigits = 3;  // mm, degrees, per cent
+constexpr int kGlandDigits = 3;  // of shifts [mm], turns [°] and the volume change [%]
 
 std::string number_cell(double value) { return "<td class=\"number\">" + fixed(value, kGlandDigits) + "</td>"; }
 
@@ -38,7 +38,7 @@ std::string turn_rows(const GlandMotion& gland) {
   return html;
 }
 
-/// The gland's story in two or three sentences.
+/// Two or three sentences about the gland's motion.
 std::string tell(const RunRecording& run, const GlandMotion& gland) {
   std::string text;
   if (gland.shift_at_break_mm) {
@@ -69,13 +69,12 @@ std::string gland_section(const RunRecording& run) {
   const std::string plots =
       run.summary->gland_path.empty()
           ? ""
-          : "<p>Its path, as means over its volume: shift to the left (LR), to posterior (AP) and to superior (SI); "
-            "the other way is negative. The same numbers, with its rotation, are in <code>gland.csv</code>.</p>"
-            "<div class=\"legend\" id=\"gland-legend\"></div><div class=\"plots\">"
-            "<figure><figcaption>Shift of the gland against depth of the needle’s base</figcaption>"
-            "<div class=\"plot\" id=\"gland-depth\"></div></figure>"
-            "<figure><figcaption>Shift of the gland against time</figcaption>"
-            "<div class=\"plot\" id=\"gland-time\"></div></figure></div>";
+          : "<p>The path of the gland, as means over its volume. The shift is positive to the left (LR), to posterior "
+            "(AP) and to superior (SI). The same numbers, with its rotation, are in <code>gland.csv</code>.</p><div "
+            "class=\"legend\" id=\"gland-legend\"></div><div class=\"plots\"><figure><figcaption>Shift of the gland "
+            "against depth of the needle’s base</figcaption><div class=\"plot\" "
+            "id=\"gland-depth\"></div></figure><figure><figcaption>Shift of the gland against time</figcaption><div "
+            "class=\"plot\" id=\"gland-time\"></div></figure></div>";
   return "<section aria-labelledby=\"gland\"><h2 id=\"gland\">How the gland moved</h2><p>" +
          html_prose(tell(run, gland)) + "</p>" + plots +
          "<div class=\"columns\"><div><h3>Shift</h3><div class=\"scroll\"><table><thead><tr><th>Gland</th>"
@@ -83,11 +82,11 @@ std::string gland_section(const RunRecording& run) {
          "<th class=\"number\">AP, + posterior [mm]</th><th class=\"number\">SI, + superior [mm]</th></tr></thead>"
          "<tbody>" +
          shift_rows(gland) +
-         "</tbody></table></div></div><div><h3>Rotation</h3><div class=\"scroll\"><table><thead><tr><th>Plane</th>"
-         "<th class=\"number\">Angle [°]</th><th>Which way</th></tr></thead><tbody>" +
+         "</tbody></table></div></div><div><h3>Rotation</h3><div class=\"scroll\"><table><thead><tr><th>Plane</th><th "
+         "class=\"number\">Angle [°]</th><th>Direction</th></tr></thead><tbody>" +
          turn_rows(gland) + "</tbody></table></div><p>Its volume had changed by " +
          fixed(gland.volume_change_percent, kGlandDigits) +
-         "&nbsp;%. Thirds, rotation and volume are those of the moment of its largest shift.</p></div></div></section>";
+         "&nbsp;%. Thirds, rotation and volume belong to the moment of its largest shift.</p></div></div></section>";
 }
 
 }  // namespace stylet::results

@@ -16,8 +16,8 @@ std::string map_cell(const std::optional<double>& mm, int digits) {
 std::optional<double> length(const std::optional<Vec3>& v) { return v ? std::optional(v->norm()) : std::nullopt; }
 
 std::string rows(const HoleMap& map) {
-  constexpr int kWayDigits = 1;    // mm: of straight ways
-  constexpr int kShiftDigits = 2;  // mm: of what is predicted
+  constexpr int kWayDigits = 1;    // lengths along straight ways [mm]
+  constexpr int kShiftDigits = 2;  // predicted shifts [mm]
   std::string html;
   for (const HoleRow& row : map.holes) {
     const bool has_way = row.depth_mm > 0.0;
@@ -48,32 +48,28 @@ std::string tell_missing(const HoleMap& map) {
 std::string map_section(const HoleMap& map) {
   return "<section aria-labelledby=\"map\"><h2 id=\"map\">A map before the needle</h2><p>" +
          html_prose(fmt::format(
-             "What a needle through each hole of the template comes near to on its straight way, and what it does: the "
-             "same needle was inserted through each of the {} holes that lead into the gland. The straight way of the "
-             "other {} misses the gland; they are small dots. In every picture dark is what to beware of, and the "
-             "number is the value in millimetres.",
+             "For each hole of the template, the map shows how near the straight way comes to organs, and what a "
+             "needle through the hole does: the same needle was inserted through each of the {} holes that lead into "
+             "the gland. The straight way of the other {} misses the gland; they are small dots. In every picture a "
+             "dark colour is a warning, and the number is the value in millimetres.",
              map.holes.size(), map.missing)) +
          html_escaped(tell_missing(map)) +
          "</p><p>Seen from the patient’s feet: the patient’s right is on the left, anterior is up. The planned hole "
-         "has a frame. Hold the pointer over a hole for all that is known of it.</p>"
-         "<div class=\"templates needs-script\" id=\"map-pictures\"></div>"
-         "<details open><summary>All numbers</summary><div class=\"scroll tall-table\"><table class=\"parameters "
-         "map\"><thead>"
-         "<tr><th rowspan=\"2\">Hole</th><th class=\"number\" rowspan=\"2\">Depth [mm]</th>"
-         "<th class=\"number\" rowspan=\"2\">In the gland [mm]</th><th colspan=\"3\">Clearance [mm] to</th>"
-         "<th colspan=\"2\">Shift of the gland [mm]</th><th class=\"number\" rowspan=\"2\">Tip error [mm]</th>"
-         "<th rowspan=\"2\">Remark</th></tr><tr><th class=\"number\">bone</th><th class=\"number\">urethra</th>"
-         "<th class=\"number\">rectum</th><th class=\"number\">at break</th><th class=\"number\">at most</th></tr>"
-         "</thead><tbody>" +
+         "has a frame. Hold the pointer over a hole to see all its values.</p><div class=\"templates needs-script\" "
+         "id=\"map-pictures\"></div><details open><summary>All numbers</summary><div class=\"scroll "
+         "tall-table\"><table class=\"parameters map\"><thead><tr><th rowspan=\"2\">Hole</th><th class=\"number\" "
+         "rowspan=\"2\">Depth [mm]</th><th class=\"number\" rowspan=\"2\">In the gland [mm]</th><th "
+         "colspan=\"3\">Clearance [mm] to</th><th colspan=\"2\">Shift of the gland [mm]</th><th class=\"number\" "
+         "rowspan=\"2\">Tip error [mm]</th><th rowspan=\"2\">Remark</th></tr><tr><th class=\"number\">bone</th><th "
+         "class=\"number\">urethra</th><th class=\"number\">rectum</th><th class=\"number\">at break</th><th "
+         "class=\"number\">at most</th></tr></thead><tbody>" +
          rows(map) +
-         "</tbody></table></div></details><p><em>Clearance</em> is between the needle’s surface and the structure, "
-         "along the whole straight way from the skin to the planned tip; 0 is through it. <em>Shift</em> is that of "
-         "the "
-         "gland as a whole just before its capsule breaks, and at most on the way in. <em>Tip error</em> is the "
-         "distance "
-         "in the tissue from where the tip was to be at its deepest to where it is. A dash: there is no such figure. "
-         "The "
-         "same numbers are in <code>map.csv</code>. Do not plan or judge a treatment by this map.</p></section>";
+         "</tbody></table></div></details><p><em>Clearance</em> is the distance between the needle’s surface and the "
+         "structure, along the whole straight way from the skin to the planned tip; 0 means that the way touches or "
+         "crosses it. <em>Shift</em> is the shift of the gland as a whole, just before its capsule breaks and at its "
+         "largest on the way in. <em>Tip error</em> is the distance in the tissue between the planned and the actual "
+         "place of the tip at its deepest. A dash means that there is no value. The same numbers are in "
+         "<code>map.csv</code>. Do not plan or judge a treatment by this map.</p></section>";
 }
 
 }  // namespace stylet::results

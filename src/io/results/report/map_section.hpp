@@ -7,7 +7,8 @@
 
 namespace stylet::results {
 
-/// The map of the template's holes: what it says, places for its pictures, and its table.
+/// HTML of the report's section about the map of the template's holes: sentences, boxes for its pictures, and its
+/// table.
 std::string map_section(const HoleMap& map);
 
 }  // namespace stylet::results

@@ -8,11 +8,11 @@
 
 namespace stylet::results {
 
-/// The three frames that stand for a run in pictures and text.
+/// Indices of the three frames that represent a run in pictures and text.
 struct Moments {
-  std::size_t before = 0;   ///< labelled "before", else the first
-  std::size_t deepest = 0;  ///< labelled "deepest", else the one with the largest base depth
-  std::size_t after = 0;    ///< labelled "after", else the last
+  std::size_t before = 0;   ///< the frame labelled "before", else the first
+  std::size_t deepest = 0;  ///< the frame labelled "deepest", else the one with the largest base depth
+  std::size_t after = 0;    ///< the frame labelled "after", else the last
 };
 
 /// @param frames at least one, in the order of time

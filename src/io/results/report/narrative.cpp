@@ -14,7 +14,7 @@
 namespace stylet::results {
 namespace {
 
-/// "a, b and c".
+/// Joins texts as "a, b and c".
 std::string join(const std::vector<std::string>& parts) {
   std::string text;
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -36,7 +36,7 @@ std::string spoken(const std::string& region) {
 /// breaks there is the skin.
 std::string surface(const std::string& region) { return is_surrounding(region) ? "skin" : region; }
 
-/// "0.42 N"; small forces without false digits.
+/// A force such as "0.42 N", with fewer digits for small forces.
 std::string newtons(double force) {
   return std::abs(force) < 0.005 ? "less than 0.01 N" : fmt::format("{:.2f} N", force);
 }
@@ -64,10 +64,10 @@ std::string tell_motion(const RunRecording& run, const Frame& deepest) {
   return text + ".";
 }
 
-/// Events on the way in, in the order they happened.
+/// Sentences about the events on the way in, in their order.
 std::string tell_events(const std::vector<Event>& events) {
   std::vector<std::string> clauses;
-  std::string pierced;  // region of the last puncture: its entry need not be told again
+  std::string pierced;  // region of the last puncture, whose region_entered event needs no further sentence
   for (const Event& e : events) {
     const std::string at = fmt::format(" at {:.1f} mm", e.depth_mm);
     const std::string force = " under an axial force of " + newtons(e.force_N);
@@ -124,7 +124,7 @@ std::string tell_target(const RunRecording& run) {
   const Summary& s = *run.summary;
   if (run.info.target_regions.empty()) return {};
   if (s.target_shift_max_mm < 0.05) {
-    return fmt::format("With the needle at its deepest, the {} lay where it was before.", target_name(run));
+    return fmt::format("With the needle at its deepest, the {} was at its initial place.", target_name(run));
   }
   return fmt::format(
       "With the needle at its deepest, the centre of the {} had moved by {:.2f} mm ({}); the point of it that moved "
@@ -133,7 +133,7 @@ std::string tell_target(const RunRecording& run) {
       s.target_shift_max_mm);
 }
 
-/// Where the tip came to lie in the tissue, beside where it was planned to be.
+/// A sentence about the tip error: the tip's place in the tissue compared with its planned place.
 std::string tell_tip_error(const RunRecording& run) {
   const auto& error = run.summary->tip_error_mm;
   if (!error) return {};
@@ -152,8 +152,9 @@ std::string tell_retraction(const RunRecording& run, const Frame& after) {
     return e.kind == EventKind::slip_start && e.time_s >= back->time_s;
   });
   if (slip != events.end()) {
-    text += fmt::format(" For the first {:.1f} mm the tissue stuck to it and was taken along; then it began to slip.",
-                        back->depth_mm - slip->depth_mm);
+    text +=
+        fmt::format(" For the first {:.1f} mm the tissue stuck to it and moved with it; then the needle began to slip.",
+                    back->depth_mm - slip->depth_mm);
   }
   if (find(events, EventKind::withdrawn) != nullptr) {
     double left = 0;
@@ -241,7 +242,7 @@ std::vector<std::string> tell_what_happened(const RunRecording& run, const Momen
   };
   add({tell_motion(run, deepest), tell_events(s.events)});
   add({tell_forces(run), tell_target(run), tell_tip_error(run),
-       fmt::format("The tip came to lie at most {:.1f} mm beside the straight line it was aimed along.",
+       fmt::format("The tip was at most {:.1f} mm away from the straight line along which it was aimed.",
                    s.tip_deflection_mm)});
   add({tell_retraction(run, run.frames[moments.after])});
   return paragraphs;

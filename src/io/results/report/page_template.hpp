@@ -9,10 +9,11 @@
 
 namespace stylet::results {
 
-/// Texts to put in the places {{name}} of a page, by name.
+/// Texts for the placeholders {{name}} of a page, by name.
 using Slots = std::map<std::string, std::string, std::less<>>;
 
-/// Fills a page. A name nobody filled is a fault of the build. @param name of the page, for the message
+/// Fills the placeholders of a page. A placeholder without a text is an error of the build. @param name of the page for
+/// the message
 Result<std::string> fill_page(std::string_view page, const Slots& slots, const std::string& name);
 
 }  // namespace stylet::results

@@ -20,7 +20,7 @@ struct Tissue {
   std::vector<const ParameterRow*> rows;
 };
 
-/// "young_kPa" of "tissue.prostate.young_kPa"; empty for "tissue.pubic_arch".
+/// The key of a row: "young_kPa" for "tissue.prostate.young_kPa"; empty for "tissue.pubic_arch".
 std::string key_of(const ParameterRow& row) {
   const std::size_t dot = row.name.find('.', kTissue.size());
   return dot == std::string::npos ? std::string() : row.name.substr(dot + 1);
@@ -30,14 +30,14 @@ std::string region_of(const ParameterRow& row) {
   return row.name.substr(kTissue.size(), row.name.find('.', kTissue.size()) - kTissue.size());
 }
 
-/// Of one tissue; "tissue.element", a key by itself, is of all.
+/// Whether a row belongs to one tissue. "tissue.element" and similar keys apply to all tissue.
 bool is_tissue(const ParameterRow& row) {
   const auto& keys = scenario_keys();
   return row.name.starts_with(kTissue) &&
          std::none_of(keys.begin(), keys.end(), [&](const ScenarioKey& key) { return key.path == row.name; });
 }
 
-/// One source as it is; several with the keys they belong to.
+/// The sources of a tissue's values; if there are several, each with its keys.
 std::string sources_of(const Tissue& tissue) {
   struct Source {
     std::string text, keys;
@@ -59,7 +59,7 @@ std::string sources_of(const Tissue& tissue) {
   return html;
 }
 
-/// A key that may be broken after each underscore.
+/// HTML of a key with possible line breaks after each underscore.
 std::string breakable(const std::string& key) {
   std::string html;
   for (const char c : html_escaped(key)) html += c == '_' ? "_<wbr>" : std::string(1, c);
@@ -67,7 +67,7 @@ std::string breakable(const std::string& key) {
 }
 
 std::string tissue_table(const std::vector<Tissue>& tissues) {
-  std::vector<const ParameterRow*> columns;  // the first row with each key
+  std::vector<const ParameterRow*> columns;  // for each key the first row that has it
   for (const Tissue& tissue : tissues) {
     for (const ParameterRow* row : tissue.rows) {
       const auto same = [&](const ParameterRow* c) { return key_of(*c) == key_of(*row); };
@@ -83,7 +83,7 @@ std::string tissue_table(const std::vector<Tissue>& tissues) {
   html += "<th>Source</th></tr></thead><tbody>";
   for (const Tissue& tissue : tissues) {
     html += "<tr><td>" + html_escaped(readable_name(tissue.region)) + "</td>";
-    const bool whole = key_of(*tissue.rows.front()).empty();  // said of the region, such as "held"
+    const bool whole = key_of(*tissue.rows.front()).empty();  // the row describes the whole region, such as "held"
     if (whole) {
       html += "<td colspan=\"" + std::to_string(std::max<std::size_t>(1, columns.size())) + "\">" +
               html_escaped(tissue.rows.front()->value) + "</td>";

@@ -8,8 +8,9 @@
 
 namespace stylet::results {
 
-/// The parameters of a run as HTML tables: tissue properties with one line per region and one column per key, and below
-/// it all others with one line each. Names are the scenario's keys, so that a reader can look them up and change them.
+/// The parameters of a run as HTML tables: tissue properties with one line per region and one column per key, then all
+/// other parameters with one line each. The names are keys of the scenario, so that a reader can look them up and
+/// change them.
 std::string parameter_tables(std::span<const ParameterRow> parameters);
 
 }  // namespace stylet::results

@@ -21,10 +21,11 @@ static_assert(std::endian::native == std::endian::little, "typed arrays in the r
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostSteps = 40000;                // curve points
-constexpr std::size_t kMostDisplacementBytes = 6 << 20;  // before base 64
+constexpr std::size_t kMostSteps = 40000;                // largest number of points of a curve
+constexpr std::size_t kMostDisplacementBytes = 6 << 20;  // largest size of all displacements, before base 64
 
-/// Steps to show: all, or of every bucket of neighbours those with the smallest and the largest axial force.
+/// Indices of the steps to show: all, or the steps with the smallest and the largest axial force of each group of
+/// consecutive steps.
 std::vector<std::size_t> thin_out(const std::vector<Step>& steps) {
   std::vector<std::size_t> kept;
   if (steps.size() <= kMostSteps) {
@@ -62,7 +63,7 @@ Json steps_json(const std::vector<Step>& steps) {
           {"lateral_N", column(steps, kept, [](const Step& s) { return s.force_lateral_N; })}};
 }
 
-/// The gland's shift after the steps of steps_json(); null without a target.
+/// The gland's shift after each step of steps_json(); null without a target.
 Json gland_json(const RunRecording& run) {
   const std::vector<GlandStep>& path = run.summary->gland_path;
   if (path.size() != run.steps.size() || path.empty()) return nullptr;
@@ -73,7 +74,7 @@ Json gland_json(const RunRecording& run) {
   return {{"LR_mm", shift(0)}, {"AP_mm", shift(1)}, {"SI_mm", shift(2)}};
 }
 
-/// Counts of step times in bins of equal ratio.
+/// Histogram of the step times, with bins of equal ratio.
 Json histogram_json(const std::vector<Step>& steps) {
   constexpr int kBinsPerDecade = 20;
   std::vector<double> times;
@@ -94,10 +95,10 @@ Json histogram_json(const std::vector<Step>& steps) {
   return {{"edges_us", edges}, {"counts", counts}};
 }
 
-/// The surface nodes of all regions, numbered anew.
+/// The nodes on the surfaces of all regions, renumbered consecutively.
 struct SurfaceNodes {
-  std::vector<Index> nodes;           ///< mesh number of each
-  std::vector<std::uint32_t> number;  ///< (n) new number of a mesh node
+  std::vector<Index> nodes;           ///< number in the mesh, by the new number
+  std::vector<std::uint32_t> number;  ///< (n) new number, by the number in the mesh
 
   SurfaceNodes(const TetMesh& mesh, std::span<const RegionView> regions) : number(mesh.nodes.size(), kNone) {
     for (const RegionView& view : regions) {
@@ -149,7 +150,7 @@ Json surface_json(const TetMesh& mesh, std::span<const RegionView> regions, cons
   return {{"points_mm", base64_of<float>(points)}, {"regions", list}};
 }
 
-/// Frames whose displacements fit into the page: those with a label first, then evenly among the others.
+/// Chooses frames whose displacements fit into the page: first labelled ones, then evenly spaced ones of the others.
 std::vector<std::size_t> choose_frames(const std::vector<Frame>& frames, std::size_t surface_nodes) {
   const std::size_t room =
       std::max<std::size_t>(3, kMostDisplacementBytes / (6 * std::max<std::size_t>(1, surface_nodes)));

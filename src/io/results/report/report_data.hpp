@@ -11,11 +11,11 @@
 
 namespace stylet::results {
 
-/// What the report's scripts draw, as JSON; web/report/src/data.ts describes every field. Numbers come as base64 of
-/// little-endian arrays. Only surface nodes are kept, displacements as 16-bit integers with one common scale; steps and
-/// frames are thinned where there are too many for a page of some 15 MB.
-/// @param run has at least one frame and a summary
-/// @param map of the template's holes; null where there is none
+/// The data for the report's scripts as JSON; web/report/src/data.ts describes every field. Numbers are base 64 of
+/// little-endian arrays. Only surface nodes are included, with displacements as 16-bit integers with one common scale;
+/// steps and frames are thinned out if they are too many for a page of about 15 MB.
+/// @param run must have a summary and at least one frame
+/// @param map of the template's holes; null if there is none
 std::string report_data(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                         const HoleMap* map = nullptr);
 

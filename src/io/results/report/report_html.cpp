@@ -102,10 +102,10 @@ std::string moment_name(const std::string& word, const Frame& frame) {
 
 std::string picture_section(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                             const Pictures& pictures) {
-  if (!pictures.wanted) return "<p class=\"note\">The scenario asks for no still pictures.</p>";
+  if (!pictures.wanted) return "<p class=\"note\">The scenario does not ask for still pictures.</p>";
   if (!pictures.why_not.empty()) {
     return "<p class=\"note\">The still pictures could not be drawn on this machine: " +
-           html_escaped(pictures.why_not) + " The interactive view above shows the same scene.</p>";
+           html_escaped(pictures.why_not) + ". The interactive view above shows the same scene.</p>";
   }
   const std::array<std::pair<const char*, std::string>, 3> columns{
       {{"before", moment_name("Before", run.frames[moments.before])},

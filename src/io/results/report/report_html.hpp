@@ -13,10 +13,10 @@
 
 namespace stylet::results {
 
-/// The whole report.html: text, pictures, data, style and script in one page that loads nothing.
-/// @param run has at least one frame and a summary
-/// @param pictures what draw_pictures() returned
-/// @param map of the template's holes; null where there is none
+/// The complete report.html: text, pictures, data, style and script in one page that loads nothing from elsewhere.
+/// @param run must have a summary and at least one frame
+/// @param pictures from draw_pictures()
+/// @param map of the template's holes; null if there is none
 Result<std::string> report_html(const RunRecording& run, std::span<const RegionView> regions, const Moments& moments,
                                 const Pictures& pictures, const HoleMap* map = nullptr);
 

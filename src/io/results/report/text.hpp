@@ -5,23 +5,24 @@
 #include <string>
 #include <string_view>
 
-/// Small conversions for HTML pages.
+/// Text conversions for HTML pages.
 namespace stylet::results {
 
-/// Text for an element or a quoted attribute: & < > " ' become entities.
+/// Escapes a text for an element or a quoted attribute: & < > " ' become entities.
 std::string html_escaped(std::string_view text);
 
-/// Escaped text whose numbers stay on one line with their units ("0.42 N").
+/// Escapes a text and keeps numbers and their units on one line ("0.42 N").
 std::string html_prose(std::string_view text);
 
-/// Source text for a <script> element. Inside one, "</script" would end it and "<!--" would change how it is read; both
-/// get a backslash, which changes no JavaScript string, template or regular expression.
+/// Converts JavaScript for a <script> element, in which "</script" would end the element and "<!--" would change its
+/// parsing. Both get a backslash, which does not change any JavaScript string, template or regular expression.
 std::string script_safe(std::string_view javascript);
 
-/// JSON for a <script> element: every "<" written as an escape, which JSON allows inside strings, its only place.
+/// Converts JSON for a <script> element: every "<" becomes an escape sequence. JSON allows that in strings, and "<"
+/// cannot occur elsewhere.
 std::string json_script_safe(std::string_view json);
 
-/// RFC 4648 base 64, with padding.
+/// Base 64 (RFC 4648) with padding.
 std::string base64(std::span<const std::byte> bytes);
 
 template <class Number>
