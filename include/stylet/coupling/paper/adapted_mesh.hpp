@@ -54,10 +54,11 @@ class AdaptedMesh {
   static constexpr double kSmallestShare = 0.1;
   std::optional<Change> move_node(Index node, const Vec3& to);
 
-  /// split_inside() splits an element into four at an inner point. split_face() splits the two elements that share a
-  /// face (at the outer surface: one, second = −1) into three each, at a point of the face.
-  /// @param local1, local2 local number of the vertex opposite the face
+  /// Splits an element into four at an inner point.
   Change split_inside(Index element, const Vec3& x);
+  /// Splits the two elements that share a face (at the outer surface: one, second = −1) into three each, at a point of
+  /// the face.
+  /// @param local1, local2 local number of the vertex opposite the face
   Change split_face(Index first, int local1, Index second, int local2, const Vec3& x);
 
   void reset();
