@@ -15,7 +15,7 @@ volatile double denormal = std::numeric_limits<double>::denorm_min();
 bool results_are_zero() { return smallest / 4 == 0.0; }
 bool operands_are_zero() { return denormal * 1e300 == 0.0; }
 
-TEST(FlushDenormals, HoldsWhileItLivesAndTheModeBeforeComesBack) {
+TEST(FlushDenormals, holds_while_it_lives_and_the_mode_before_comes_back) {
   if (!FlushDenormals::available()) GTEST_SKIP() << "not on this processor";
   EXPECT_FALSE(results_are_zero() || operands_are_zero());
   {

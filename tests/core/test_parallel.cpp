@@ -11,7 +11,7 @@
 namespace stylet {
 namespace {
 
-TEST(Parallel, EveryPieceIsDoneOnceOnAnyNumberOfThreads) {
+TEST(Parallel, every_piece_is_done_once_on_any_number_of_threads) {
   for (const int threads : {0, 1, 2, 7}) {
     set_worker_threads(threads);
     for (const std::size_t count : {0, 1, 5, 1000}) {
@@ -23,7 +23,7 @@ TEST(Parallel, EveryPieceIsDoneOnceOnAnyNumberOfThreads) {
   set_worker_threads(0);
 }
 
-TEST(Parallel, ProgressComesInTheCallersThreadAndEndsAtOne) {
+TEST(Parallel, progress_comes_in_the_callers_thread_and_ends_at_one) {
   set_worker_threads(3);
   const auto caller = std::this_thread::get_id();
   double last = 0.0;
@@ -40,7 +40,7 @@ TEST(Parallel, ProgressComesInTheCallersThreadAndEndsAtOne) {
   set_worker_threads(0);
 }
 
-TEST(Parallel, AnExceptionReachesTheCallerAndEndsTheWork) {
+TEST(Parallel, an_exception_reaches_the_caller_and_ends_the_work) {
   for (const int threads : {1, 4}) {
     set_worker_threads(threads);
     std::atomic<int> done = 0;

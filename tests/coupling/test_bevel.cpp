@@ -65,7 +65,7 @@ Vec3 drawn(const BlockOptions& options, double roll_deg = 0.0, double dt = 2e-3)
 
 class BevelledTip : public testing::TestWithParam<Bevel::Law> {};
 
-TEST_P(BevelledTip, IsDrawnToItsSharpSideAndTheDeflectionTurnsWithTheRoll) {
+TEST_P(BevelledTip, is_drawn_to_its_sharp_side_and_the_deflection_turns_with_the_roll) {
   const Vec3 at_zero = drawn(tissue(25.0, GetParam()));
   EXPECT_GT(at_zero.x(), GetParam() == Bevel::Law::offset ? 0.3 : 0.03);
   EXPECT_LT(std::abs(at_zero.y()), 0.15 * at_zero.x());
@@ -75,7 +75,7 @@ TEST_P(BevelledTip, IsDrawnToItsSharpSideAndTheDeflectionTurnsWithTheRoll) {
   }
 }
 
-TEST_P(BevelledTip, AHalfTurnHalfWayMakesAnS) {
+TEST_P(BevelledTip, a_half_turn_half_way_makes_an_s) {
   const auto s = way(tissue(25.0, GetParam()), 0.0, 2e-3, kDepth / 2);
   const auto straight_on = way(tissue(25.0, GetParam()));
   const auto symmetric = way(tissue(0.0, GetParam()));
@@ -93,13 +93,13 @@ TEST_P(BevelledTip, AHalfTurnHalfWayMakesAnS) {
   EXPECT_LT(bent(s, last), 0.7 * bent(straight_on, last));
 }
 
-TEST_P(BevelledTip, DoesNotDependOnTheTimeStep) {
+TEST_P(BevelledTip, does_not_depend_on_the_time_step) {
   const Vec3 fine = drawn(tissue(25.0, GetParam()), 0.0, 5e-4);
   const Vec3 coarse = drawn(tissue(25.0, GetParam()), 0.0, 2e-3);
   EXPECT_LT((coarse - fine).norm(), 0.01 * fine.norm());
 }
 
-TEST_P(BevelledTip, HardlyDependsOnTheSpacingOfContacts) {
+TEST_P(BevelledTip, hardly_depends_on_the_spacing_of_contacts) {
   // Elements as large as the spacing, and a node for every contact.
   const auto at_spacing = [](double spacing) {
     BlockOptions options = tissue(25.0, GetParam());
@@ -112,7 +112,7 @@ TEST_P(BevelledTip, HardlyDependsOnTheSpacingOfContacts) {
   for (const double spacing : {4.0, 8.0}) EXPECT_NEAR(at_spacing(spacing), usual, 0.2 * usual) << spacing;
 }
 
-TEST_P(BevelledTip, SolversInTurnAndInOneSystemAgree) {
+TEST_P(BevelledTip, solvers_in_turn_and_in_one_system_agree) {
   BlockOptions options = tissue(25.0, GetParam());
   const auto coupled = way(options, 30.0);
   options.coupling.solver = CouplingSettings::Solver::staggered;
@@ -123,7 +123,7 @@ TEST_P(BevelledTip, SolversInTurnAndInOneSystemAgree) {
   EXPECT_LT(largest, 1e-5);
 }
 
-TEST_P(BevelledTip, LeavesActionAndReactionEqual) {
+TEST_P(BevelledTip, leaves_action_and_reaction_equal) {
   NeedleInBlock run(tissue(25.0, GetParam()));
   run.aim({1, 2, 0});
   run.go(40.0);
@@ -140,7 +140,7 @@ TEST_P(BevelledTip, LeavesActionAndReactionEqual) {
 INSTANTIATE_TEST_SUITE_P(Laws, BevelledTip, testing::Values(Bevel::Law::offset, Bevel::Law::force),
                          [](const auto& tested) { return tested.param == Bevel::Law::offset ? "offset" : "force"; });
 
-TEST(BevelOffset, MoreBevelDrawsMore) {
+TEST(BevelOffset, more_bevel_draws_more) {
   double last = 0.0;
   for (const double angle : {5.0, 15.0, 30.0}) {
     const double now = drawn(tissue(angle)).x();
@@ -151,7 +151,7 @@ TEST(BevelOffset, MoreBevelDrawsMore) {
   EXPECT_NEAR(drawn(tissue(1.0)).x() / drawn(tissue(2.0)).x(), 0.5, 0.05);
 }
 
-TEST(BevelForce, TheTipIsPushedByItsShareOfTheAxialForce) {
+TEST(BevelForce, the_tip_is_pushed_by_its_share_of_the_axial_force) {
   NeedleInBlock run(tissue(20.0, Bevel::Law::force));
   run.aim({1, 2, 0});
   run.go(50.0);
@@ -181,7 +181,7 @@ double sideways(const BlockOptions& options, double roll_deg) {
   return run.report.tip_mm.x();
 }
 
-TEST(SymmetricTip, GoesStraightInASymmetricBlockWhateverTheRollAndTheLaw) {
+TEST(SymmetricTip, goes_straight_in_a_symmetric_block_whatever_the_roll_and_the_law) {
   for (const Bevel::Law law : {Bevel::Law::offset, Bevel::Law::force}) {
     for (const double roll : {0.0, 65.0}) EXPECT_NEAR(sideways(symmetric_block(0.0, law), roll), 0.0, 1e-7) << roll;
     EXPECT_GT(sideways(symmetric_block(20.0, law), 0.0), 0.02);

@@ -50,7 +50,7 @@ class EmbeddedPoints : public testing::TestWithParam<Element> {
   MatX forces;
 };
 
-TEST_P(EmbeddedPoints, moveAsTheirElementDoes) {
+TEST_P(EmbeddedPoints, move_as_their_element_does) {
   const VecX u = solved();
   ASSERT_EQ(track.points(), static_cast<int>(places.size()));
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -60,7 +60,7 @@ TEST_P(EmbeddedPoints, moveAsTheirElementDoes) {
   }
 }
 
-TEST_P(EmbeddedPoints, deformTheTissueAroundTheTipAsTheElementSays) {
+TEST_P(EmbeddedPoints, deform_the_tissue_around_the_tip_as_the_element_says) {
   const VecX u = solved();
   Mat3 expected;
   constexpr double step = 1e-3;
@@ -71,7 +71,7 @@ TEST_P(EmbeddedPoints, deformTheTissueAroundTheTipAsTheElementSays) {
   EXPECT_LT((track.gradient_at_tip(forces) - expected).norm(), 1e-8 * expected.norm());
 }
 
-TEST_P(EmbeddedPoints, moveTheMeshsNodesAndPullOnTheSupportsByWhatActsOnThem) {
+TEST_P(EmbeddedPoints, move_the_meshs_nodes_and_pull_on_the_supports_by_what_acts_on_them) {
   const VecX u = solved();
   const VecX of_nodes = track.displacement(forces);
   ASSERT_EQ(of_nodes.size(), 3 * block.tissue->mesh().node_count());

@@ -20,7 +20,7 @@ std::vector<Yield> yields(int grips, int yielding) {
   return result;
 }
 
-TEST(GripRows, OnlyRowsWithoutYieldAcrossTheNeedleAreSettled) {
+TEST(GripRows, only_rows_without_yield_across_the_needle_are_settled) {
   GripRows rows(10);
   rows.arrange(yields(8, 2), kSpringRows);
   EXPECT_EQ(rows.grips(), 8);
@@ -35,7 +35,7 @@ TEST(GripRows, OnlyRowsWithoutYieldAcrossTheNeedleAreSettled) {
   }
 }
 
-TEST(GripRows, EveryRowHasAPlaceOfItsOwnAndTheSpringsStandBetween) {
+TEST(GripRows, every_row_has_a_place_of_its_own_and_the_springs_stand_between) {
   GripRows rows(10);
   rows.arrange(yields(8, 2), kSpringRows);
   rows.append(Vec3::UnitX());
@@ -52,7 +52,7 @@ TEST(GripRows, EveryRowHasAPlaceOfItsOwnAndTheSpringsStandBetween) {
   EXPECT_EQ(*places.rbegin(), rows.count() - 1);
 }
 
-TEST(GripRows, AnAddedContactComesLastAndLeavesAllOthersInPlace) {
+TEST(GripRows, an_added_contact_comes_last_and_leaves_all_others_in_place) {
   GripRows rows(10);
   rows.arrange(yields(8, 2), kSpringRows);
   const GripRows before = rows;
@@ -67,7 +67,7 @@ TEST(GripRows, AnAddedContactComesLastAndLeavesAllOthersInPlace) {
   }
 }
 
-TEST(GripRows, FramesAreOrthonormalWithTheContactsDirectionLast) {
+TEST(GripRows, frames_are_orthonormal_with_the_contacts_direction_last) {
   GripRows rows(8);
   const auto all = yields(8, -1);
   rows.arrange(all, 0);
@@ -78,7 +78,7 @@ TEST(GripRows, FramesAreOrthonormalWithTheContactsDirectionLast) {
   }
 }
 
-TEST(GripRows, OrderTurnsEachContactIntoItsFrameAndRestoreTurnsItBack) {
+TEST(GripRows, order_turns_each_contact_into_its_frame_and_restore_turns_it_back) {
   GripRows rows(8);
   rows.arrange(yields(8, 2), kSpringRows);
   const MatX Y = VecX::LinSpaced(3 * rows.count(), -1.0, 1.0).reshaped(rows.count(), 3);

@@ -47,7 +47,7 @@ void expect_balance(const NeedleInBlock& run) {
   EXPECT_LT(torque.norm(), 1e-7);
 }
 
-TEST(Guide, HoldsTheShaftInAnInsertionAndItsForceIsTheHandsToo) {
+TEST(Guide, holds_the_shaft_in_an_insertion_and_its_force_is_the_hands_too) {
   NeedleInBlock run(guided());
   aim_through_template(run);
   run.go(25.0);
@@ -67,7 +67,7 @@ TEST(Guide, HoldsTheShaftInAnInsertionAndItsForceIsTheHandsToo) {
   EXPECT_EQ(run.flags, 0u);
 }
 
-TEST(Guide, HoldsAShaftThatRunsRoundTheEdgeOfItsHole) {
+TEST(Guide, holds_a_shaft_that_runs_round_the_edge_of_its_hole) {
   for (const double bow : {0.0, 0.3}) {
     for (const int back : {200, 1200}) {
       SCOPED_TRACE(testing::Message() << "bow " << bow << " mm, back in " << back << " steps");
@@ -97,7 +97,7 @@ TEST(Guide, HoldsAShaftThatRunsRoundTheEdgeOfItsHole) {
   }
 }
 
-TEST(Guide, KeepsTheShaftStraightWhereTheHandsPushWouldBendIt) {
+TEST(Guide, keeps_the_shaft_straight_where_the_hands_push_would_bend_it) {
   // The needle is pushed by more than a free needle bears, slightly out of line. With the template, only the 10 mm in
   // front of the skin are free.
   const auto deflection = [](BlockOptions options) {
@@ -115,7 +115,7 @@ TEST(Guide, KeepsTheShaftStraightWhereTheHandsPushWouldBendIt) {
   EXPECT_LT(deflection(guided()), 0.5 * deflection(free));
 }
 
-TEST(Guide, WithoutSidewaysLoadNothingChanges) {
+TEST(Guide, without_sideways_load_nothing_changes) {
   const auto forces = [](BlockOptions options) {
     options.region_at = [](const Vec3&) { return 0; };
     options.needle_length = 200.0;
@@ -135,7 +135,7 @@ TEST(Guide, WithoutSidewaysLoadNothingChanges) {
   EXPECT_EQ(forces(roomy), forces(free));
 }
 
-TEST(Guide, ABowedNeedleLeansOnItsHoleInTheAirAndComesOutAgain) {
+TEST(Guide, a_bowed_needle_leans_on_its_hole_in_the_air_and_comes_out_again) {
   NeedleInBlock run(guided(4.0));
   aim_through_template(run);
   run.step(1e-3);

@@ -57,7 +57,7 @@ void pierce(NeedleInBlock& run, double depth) {
 /// Moves the base by `way` (negative: back), with one sub-step per step.
 void move(NeedleInBlock& run, double way, double speed) { run.go(run.depth + way, speed, 0.25 / speed); }
 
-TEST(Friction, IsCoulombAndViscousPerLengthUpToASpeedAndConstantBeyond) {
+TEST(Friction, is_coulomb_and_viscous_per_length_up_to_a_speed_and_constant_beyond) {
   NeedleInBlock run(slab(40.0, 4, 4.0));
   pierce(run, 50.0);
   for (const double speed : {0.5, 5.0, 20.0, 49.0, 60.0, 100.0, 200.0}) {
@@ -75,7 +75,7 @@ TEST(Friction, IsCoulombAndViscousPerLengthUpToASpeedAndConstantBeyond) {
   EXPECT_EQ(run.flags, 0u);
 }
 
-TEST(Friction, IsThatOfEachRegionOverTheLengthInIt) {
+TEST(Friction, is_that_of_each_region_over_the_length_in_it) {
   const FrictionLaw deep{36e-3, 30e-3, 100e-6, 50.0};
   const double interface_mm = 3.0 * 40.0 / 7.0;
   const double law =
@@ -105,7 +105,7 @@ TEST(Friction, IsThatOfEachRegionOverTheLengthInIt) {
   }
 }
 
-TEST(Friction, HoldsANeedleAtRestUpToTheStaticLimitAndThenComesDownToCoulombs) {
+TEST(Friction, holds_a_needle_at_rest_up_to_the_static_limit_and_then_comes_down_to_coulombs) {
   const double length = 16.0;
   NeedleInBlock run(slab(length, 4, length));  // one contact, which has the whole length
   pierce(run, 45.0);
@@ -133,7 +133,7 @@ TEST(Friction, HoldsANeedleAtRestUpToTheStaticLimitAndThenComesDownToCoulombs) {
   EXPECT_EQ(run.flags, 0u);
 }
 
-TEST(Friction, HasTheStaticLimitOfEachRegion) {
+TEST(Friction, has_the_static_limit_of_each_region) {
   const FrictionLaw deep{24e-3, 11e-3, 250e-6, 50.0};
   NeedleInBlock run(layered_slab(32.0, 4, 16.0, 16.0, deep));  // one contact in each region
   pierce(run, 60.0);
@@ -161,7 +161,7 @@ TEST(Friction, HasTheStaticLimitOfEachRegion) {
   EXPECT_EQ(run.report.sliding_share, 1.0);
 }
 
-TEST(Friction, OfManyContactsLetsGoBetweenCoulombsAndTheStaticLimit) {
+TEST(Friction, of_many_contacts_lets_go_between_coulombs_and_the_static_limit) {
   // The tissue distributes a load unevenly: some contacts reach the static limit, and then fall to Coulomb friction,
   // before the others.
   NeedleInBlock run(slab(40.0, 4, 4.0));
@@ -185,7 +185,7 @@ TEST(Friction, OfManyContactsLetsGoBetweenCoulombsAndTheStaticLimit) {
   EXPECT_LT(peak, 40.0 * kFriction.static_N_per_mm);
 }
 
-TEST(ZeroBand, ANeedleAtRestIsHeldAndItsForceStays) {
+TEST(ZeroBand, a_needle_at_rest_is_held_and_its_force_stays) {
   NeedleInBlock run(slab(40.0, 4, 4.0));
   pierce(run, 60.0);
   run.wait(1.0, 0.05);
@@ -209,7 +209,7 @@ std::vector<double> creep(NeedleInBlock& run, double way, double speed, double d
   return {run.forces.begin() + before, run.forces.end()};
 }
 
-TEST(ZeroBand, JustAboveItTheSlidingLawHoldsAtAnyTimeStep) {
+TEST(ZeroBand, just_above_it_the_sliding_law_holds_at_any_time_step) {
   const CouplingSettings defaults;
   const double speed = 1.2 * defaults.zero_band_mm_per_s;
   const double law = 40.0 * sliding_N_per_mm(kFriction, speed);
@@ -220,7 +220,7 @@ TEST(ZeroBand, JustAboveItTheSlidingLawHoldsAtAnyTimeStep) {
   }
 }
 
-TEST(ZeroBand, BelowItAContactSticksAndSlipsBetweenStaticLimitAndCoulombAtAnyTimeStep) {
+TEST(ZeroBand, below_it_a_contact_sticks_and_slips_between_static_limit_and_coulomb_at_any_time_step) {
   const CouplingSettings defaults;
   const double speed = 0.8 * defaults.zero_band_mm_per_s;
   for (const double dt : {0.05, 0.2, 1.0}) {
@@ -240,7 +240,7 @@ TEST(ZeroBand, BelowItAContactSticksAndSlipsBetweenStaticLimitAndCoulombAtAnyTim
   }
 }
 
-TEST(ZeroBand, WithoutOneTheSlidingLawGoesOn) {
+TEST(ZeroBand, without_one_the_sliding_law_goes_on) {
   BlockOptions options = slab(16.0, 4, 16.0);
   options.coupling.zero_band_mm_per_s = 0.0;
   NeedleInBlock run(options);
@@ -289,7 +289,7 @@ std::vector<Drop> drops(double speed, double dt) {
   return found;
 }
 
-TEST(Membrane, ForceOfTheHandDropsToCuttingAndFrictionWhenSkinAndCapsuleBreakTheSameAtAnyTimeStep) {
+TEST(Membrane, force_of_the_hand_drops_to_cutting_and_friction_when_skin_and_capsule_break_the_same_at_any_time_step) {
   const BlockOptions options = organ_under_skin();
   const double speed = 20.0;
   const std::vector<Drop> fine = drops(speed, 0.25e-3);
@@ -316,7 +316,7 @@ TEST(Membrane, ForceOfTheHandDropsToCuttingAndFrictionWhenSkinAndCapsuleBreakThe
 
 class OrganWithoutMembrane : public testing::TestWithParam<double> {};
 
-TEST_P(OrganWithoutMembrane, OfTheSameTissueMightAsWellNotBeThere) {
+TEST_P(OrganWithoutMembrane, of_the_same_tissue_might_as_well_not_be_there) {
   // In the dent of the skin, and below it.
   const double depth_mm = GetParam();
   BlockOptions options = organ_under_skin(depth_mm);
@@ -353,7 +353,7 @@ TEST_P(OrganWithoutMembrane, OfTheSameTissueMightAsWellNotBeThere) {
 INSTANTIATE_TEST_SUITE_P(Depths, OrganWithoutMembrane, testing::Values(4.0, 8.0, 20.0),
                          [](const auto& tested) { return std::to_string(static_cast<int>(tested.param)) + "_mm"; });
 
-TEST(Membrane, ASecondPassAlongTheTrackNeedsFrictionOnly) {
+TEST(Membrane, a_second_pass_along_the_track_needs_friction_only) {
   NeedleInBlock run(organ_under_skin());
   run.aim({3, 2, 0});
   run.go(40, 20.0, 5e-3);
@@ -398,7 +398,7 @@ double sideways(bool bevelled, Bevel::Law law, double roll, double spacing_mm = 
 
 class TipInTheNearField : public testing::TestWithParam<Bevel::Law> {};
 
-TEST_P(TipInTheNearField, IsDrawnToTheSideRollSaysAndNowhereWithoutABevel) {
+TEST_P(TipInTheNearField, is_drawn_to_the_side_roll_says_and_nowhere_without_a_bevel) {
   const double bevel = sideways(true, GetParam(), 0.0);
   EXPECT_GT(bevel, 0.1);
   // The two differ only by the side of the plane to which the elements around the entry are assigned.
@@ -407,7 +407,7 @@ TEST_P(TipInTheNearField, IsDrawnToTheSideRollSaysAndNowhereWithoutABevel) {
   EXPECT_NEAR(sideways(false, GetParam(), 1.0), 0.0, 1e-9 * bevel);
 }
 
-TEST(BevelledTipInTheNearField, IsDrawnAsideAsFarWhateverTheSpacingOfContacts) {
+TEST(BevelledTipInTheNearField, is_drawn_aside_as_far_whatever_the_spacing_of_contacts) {
   const double usual = sideways(true, Bevel::Law::offset, 0.0);
   for (const double spacing_mm : {2.0, 3.0, 6.0, 8.0})
     EXPECT_NEAR(sideways(true, Bevel::Law::offset, 0.0, spacing_mm), usual, 0.05 * usual) << spacing_mm << " mm";

@@ -11,7 +11,7 @@ namespace {
 
 const Vec3 kAlong = Vec3(0.2, -0.3, 1.0).normalized();
 
-TEST(LentSprings, OnlyContactsWithASpringTakePlace) {
+TEST(LentSprings, only_contacts_with_a_spring_take_place) {
   LentSprings springs(4);
   springs.take(std::vector<LentSpring>{{kAlong, 0.0}, {kAlong, 0.5}, {kAlong, 0.0}, {kAlong, 2.0}});
   ASSERT_EQ(springs.count(), 2);
@@ -24,7 +24,7 @@ TEST(LentSprings, OnlyContactsWithASpringTakePlace) {
   EXPECT_FALSE(springs.are_among_first(3));
 }
 
-TEST(LentSprings, AreReplacedByTheNextOnes) {
+TEST(LentSprings, are_replaced_by_the_next_ones) {
   LentSprings springs(2);
   springs.take(std::vector<LentSpring>{{kAlong, 1.0}, {kAlong, 1.0}});
   springs.take({});
@@ -32,7 +32,7 @@ TEST(LentSprings, AreReplacedByTheNextOnes) {
   EXPECT_TRUE(springs.are_among_first(0));
 }
 
-TEST(LentSprings, TheTwoDirectionsSpanWhatASpringHolds) {
+TEST(LentSprings, the_two_directions_span_what_a_spring_holds) {
   // E Eᵀ is the projection I − t tᵀ of LentSpring::matrix().
   LentSprings springs(1);
   for (const Vec3& along : {kAlong, Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())}) {
@@ -43,7 +43,7 @@ TEST(LentSprings, TheTwoDirectionsSpanWhatASpringHolds) {
   }
 }
 
-TEST(LentSprings, ForcesAndComponentsBelongToTheSpringsContacts) {
+TEST(LentSprings, forces_and_components_belong_to_the_springs_contacts) {
   LentSprings springs(3);
   springs.take(std::vector<LentSpring>{{kAlong, 0.0}, {kAlong, 0.5}, {Vec3::UnitY(), 2.0}});
   VecX y = VecX::LinSpaced(9, -1.0, 2.0);

@@ -51,7 +51,7 @@ double creep(double time, double h) {
   return memory.displacement(compliance, 0).x();
 }
 
-TEST(TissueMemory, CreepsUnderAConstantForceAsAStandardLinearSolidDoesToFirstOrderInTime) {
+TEST(TissueMemory, creeps_under_a_constant_force_as_a_standard_linear_solid_does_to_first_order_in_time) {
   for (const double time : {0.1, 0.2, 0.6}) {
     const double exact = 0.5 * (kCreep.factor - 1.0) * (1.0 - std::exp(-time / kTau_s));
     const double coarse = creep(time, 2e-3) - exact;
@@ -61,7 +61,7 @@ TEST(TissueMemory, CreepsUnderAConstantForceAsAStandardLinearSolidDoesToFirstOrd
   }
 }
 
-TEST(TissueMemory, RelaxesUnderAConstantDisplacementWithTheTimeConstantOverTheFactor) {
+TEST(TissueMemory, relaxes_under_a_constant_displacement_with_the_time_constant_over_the_factor) {
   // u = A (f + p), with p by the law, solved for f: G(t) = [1 + (r − 1) exp(−r t/τ)] / (r A).
   const TwoPoints compliance;
   const double own = compliance.matrix()(0, 0);
@@ -87,7 +87,7 @@ TEST(TissueMemory, RelaxesUnderAConstantDisplacementWithTheTimeConstantOverTheFa
   EXPECT_NEAR(force_after(20.0 * kTau_s, 1e-3), 1.0 / (r * own), 1e-6 / own) << "in the end r times softer";
 }
 
-TEST(TissueMemory, GoesBackWhenTheForceIsGoneAndThenIsRelaxed) {
+TEST(TissueMemory, goes_back_when_the_force_is_gone_and_then_is_relaxed) {
   const TwoPoints compliance;
   TissueMemory memory(kCreep, 2);
   MatX forces = MatX::Zero(3, 2);
@@ -103,7 +103,7 @@ TEST(TissueMemory, GoesBackWhenTheForceIsGoneAndThenIsRelaxed) {
   EXPECT_TRUE(memory.relaxed(compliance));
 }
 
-TEST(TissueMemory, HandsOverForceWithoutLosingAny) {
+TEST(TissueMemory, hands_over_force_without_losing_any) {
   TissueMemory memory(kCreep, 2);
   MatX forces = MatX::Zero(3, 2);
   forces(1, 0) = 4.0;
@@ -115,7 +115,7 @@ TEST(TissueMemory, HandsOverForceWithoutLosingAny) {
   EXPECT_DOUBLE_EQ(memory.past(1)[1], 0.25 * all);
 }
 
-TEST(TissueMemory, RemembersNothingWithoutCreep) {
+TEST(TissueMemory, remembers_nothing_without_creep) {
   const TwoPoints compliance;
   TissueMemory memory({1.0, kTau_s}, 2);
   memory.begin(1e-3);
@@ -156,7 +156,7 @@ NeedleInBlock pressed(const Creep& creep, double softer, double deep, double spe
   return run;
 }
 
-TEST(ViscousTissue, IsElasticOfItsOwnModulusForAFastNeedleAndOfOneRTimesSmallerForASlowOne) {
+TEST(ViscousTissue, is_elastic_of_its_own_modulus_for_a_fast_needle_and_of_one_r_times_smaller_for_a_slow_one) {
   constexpr double deep = 4.0;
   const double elastic = pressed({}, 1.0, deep, 20.0, 1e-3).last_force.z();
   const double softer = pressed({}, 3.0, deep, 20.0, 1e-3).last_force.z();
@@ -164,7 +164,7 @@ TEST(ViscousTissue, IsElasticOfItsOwnModulusForAFastNeedleAndOfOneRTimesSmallerF
   EXPECT_NEAR(pressed({3.0, 1e-3}, 1.0, deep, 2.0, 1e-2).last_force.z(), softer, 3e-3 * softer);
 }
 
-TEST(ViscousTissue, AHeldDentRelaxesAsAStandardLinearSolidDoes) {
+TEST(ViscousTissue, a_held_dent_relaxes_as_a_standard_linear_solid_does) {
   constexpr double deep = 4.0;
   NeedleInBlock held = pressed({3.0, kQuick_s}, 1.0, deep, 4000.0, 1e-3);
   const double at_once = deep / held.insertion->compliance().matrix()(2, 2);
@@ -177,7 +177,7 @@ TEST(ViscousTissue, AHeldDentRelaxesAsAStandardLinearSolidDoes) {
   }
 }
 
-TEST(ViscousTissue, AStuckNeedleMovedSidewaysRelaxes) {
+TEST(ViscousTissue, a_stuck_needle_moved_sideways_relaxes) {
   // Sideways, contacts are bilateral and the problem is linear: the tissue's first response is that of elastic tissue,
   // and the final one is up to r times softer, less so because the needle bends. The two tracks differ a little,
   // because a tip that pushed creeping tissue ahead of it has cut less far.
@@ -199,7 +199,7 @@ TEST(ViscousTissue, AStuckNeedleMovedSidewaysRelaxes) {
   EXPECT_GT(settled, all / 3.0);
 }
 
-TEST(ViscousTissue, SpringsBackAtOnceByWhatIsElasticAndTheRestRelaxes) {
+TEST(ViscousTissue, springs_back_at_once_by_what_is_elastic_and_the_rest_relaxes) {
   NeedleInBlock run = pressed({3.0, 0.2}, 1.0, 4.0, 20.0, 1e-3);
   run.wait(2.0);
   const double force = run.last_force.z();
@@ -213,7 +213,7 @@ TEST(ViscousTissue, SpringsBackAtOnceByWhatIsElasticAndTheRestRelaxes) {
   EXPECT_LT((run.insertion->displacement() - std::exp(-1.0) * left).norm(), 5e-3 * left.norm());
 }
 
-TEST(ViscousTissue, TheNeedlesOwnDentDoesNotCreepAndSkinBreaksAtNearlyTheSameDentAtAnySpeed) {
+TEST(ViscousTissue, the_needles_own_dent_does_not_creep_and_skin_breaks_at_nearly_the_same_dent_at_any_speed) {
   const auto broke = [](const Creep& creep, double speed) {
     BlockOptions options = creeping(creep, CouplingSettings::Method::near_field);
     NeedleInBlock run(options);
@@ -231,7 +231,7 @@ TEST(ViscousTissue, TheNeedlesOwnDentDoesNotCreepAndSkinBreaksAtNearlyTheSameDen
   EXPECT_LT(slow, 1.25 * elastic) << "the wide part is a small part of a dent";
 }
 
-TEST(ViscousTissue, CurvesOfDifferentTimeStepsApproachEachOtherToFirstOrder) {
+TEST(ViscousTissue, curves_of_different_time_steps_approach_each_other_to_first_order) {
   const auto curve = [](double dt) {
     BlockOptions options = creeping({3.0, 0.02});
     options.region_at = [](const Vec3&) { return 0; };
@@ -272,7 +272,7 @@ NeedleInBlock near_field_in(const Creep& creep, double dt, double stiffening_MPa
   return run;
 }
 
-TEST(ViscousTissue, WithTheNearFieldNoStepShowsAForceThatIsNotThere) {
+TEST(ViscousTissue, with_the_near_field_no_step_shows_a_force_that_is_not_there) {
   // With creep times of 5 to 200 ms, a dent recovers before, while, and long after the tip passes it.
   for (const double stiffening_MPa : {0.0, 0.06}) {
     const double elastic = near_field_in({}, 2e-3, stiffening_MPa).peak();
@@ -287,7 +287,7 @@ TEST(ViscousTissue, WithTheNearFieldNoStepShowsAForceThatIsNotThere) {
   }
 }
 
-TEST(ViscousTissue, HandForceBalancesContactForcesAndSupports) {
+TEST(ViscousTissue, hand_force_balances_contact_forces_and_supports) {
   for (const auto method : {CouplingSettings::Method::embedded, CouplingSettings::Method::node_addition}) {
     NeedleInBlock run = pushed_in({3.0, kQuick_s}, 2e-3, method);
     Vec3 contacts = Vec3::Zero();
@@ -300,7 +300,7 @@ TEST(ViscousTissue, HandForceBalancesContactForcesAndSupports) {
   }
 }
 
-TEST(ViscousTissue, ComesBackAfterWithdrawalAndThenIsAsNew) {
+TEST(ViscousTissue, comes_back_after_withdrawal_and_then_is_as_new) {
   NeedleInBlock run = pushed_in({3.0, kQuick_s}, 2e-3);
   run.go(-2.0, 40.0, 2e-3);
   ASSERT_EQ(run.count(EventKind::withdrawn), 1);
@@ -314,7 +314,7 @@ TEST(ViscousTissue, ComesBackAfterWithdrawalAndThenIsAsNew) {
   EXPECT_EQ(run.insertion->compliance().points(), 1);
 }
 
-TEST(ViscousTissue, CanBeEnteredAgainBeforeItHasRelaxed) {
+TEST(ViscousTissue, can_be_entered_again_before_it_has_relaxed) {
   NeedleInBlock run = pushed_in({3.0, kQuick_s}, 2e-3, CouplingSettings::Method::node_addition);
   run.go(-2.0, 40.0, 2e-3);
   ASSERT_EQ(run.count(EventKind::withdrawn), 1);
@@ -326,7 +326,7 @@ TEST(ViscousTissue, CanBeEnteredAgainBeforeItHasRelaxed) {
   EXPECT_EQ(run.insertion->displacement().cwiseAbs().maxCoeff(), 0.0);
 }
 
-TEST(ViscousTissue, StaggeredAndCoupledSolversAgree) {
+TEST(ViscousTissue, staggered_and_coupled_solvers_agree) {
   BlockOptions options = creeping({3.0, kQuick_s}, CouplingSettings::Method::node_addition);
   options.coupling.tolerance = 1e-9;  // the staggered solver leaves an error many times larger than this
   NeedleInBlock coupled(options);
@@ -356,7 +356,7 @@ VecX displaced_by_forces(const NeedleInBlock& run) {
   return run.tissue->solve(load);
 }
 
-TEST(ViscousTissue, HasForcesForAllThatItIsDisplacedByAlsoWhenTheNeedleIsOutOrInAgain) {
+TEST(ViscousTissue, has_forces_for_all_that_it_is_displaced_by_also_when_the_needle_is_out_or_in_again) {
   NeedleInBlock run(creeping({3.0, 0.5}, CouplingSettings::Method::near_field));
   run.aim({2.0, 3.0, 0.0});
   const auto expect_all = [&](const char* when) {
@@ -376,7 +376,7 @@ TEST(ViscousTissue, HasForcesForAllThatItIsDisplacedByAlsoWhenTheNeedleIsOutOrIn
   expect_all("in again");
 }
 
-TEST(ViscousTissue, StepsDoNotAllocate) {
+TEST(ViscousTissue, steps_do_not_allocate) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "under a sanitizer the memory functions cannot be replaced";
   NeedleInBlock run(creeping({3.0, kQuick_s}, CouplingSettings::Method::near_field));
   run.aim({2.0, 3.0, 0.0});

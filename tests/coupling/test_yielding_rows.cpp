@@ -75,7 +75,7 @@ class Rows {
   VecX d_;
 };
 
-TEST(YieldingRows, SolveWithAndWithoutSprings) {
+TEST(YieldingRows, solve_with_and_without_springs) {
   for (const Eigen::Index springs : {0, 2, 8, 20}) {
     for (const Eigen::Index contacts : {30, 55, 90}) {
       Rows rows(contacts, springs);
@@ -89,7 +89,7 @@ TEST(YieldingRows, SolveWithAndWithoutSprings) {
   }
 }
 
-TEST(YieldingRows, TakeInAnotherYieldOfAnyRow) {
+TEST(YieldingRows, take_in_another_yield_of_any_row) {
   for (const Eigen::Index springs : {0, 8}) {
     Rows rows(70, springs);
     ASSERT_TRUE(rows.factorise());
@@ -102,7 +102,7 @@ TEST(YieldingRows, TakeInAnotherYieldOfAnyRow) {
   }
 }
 
-TEST(YieldingRows, AFactorFromTheFirstChangeOnIsThatOfTheWhole) {
+TEST(YieldingRows, a_factor_from_the_first_change_on_is_that_of_the_whole) {
   Rows changed(70, 8);
   ASSERT_TRUE(changed.factorise());
   Rows fresh(70, 8);
@@ -116,7 +116,7 @@ TEST(YieldingRows, AFactorFromTheFirstChangeOnIsThatOfTheWhole) {
   EXPECT_EQ(a, b);
 }
 
-TEST(YieldingRows, TakeInRowsThatComeAndGo) {
+TEST(YieldingRows, take_in_rows_that_come_and_go) {
   Rows rows(60, 8);
   ASSERT_TRUE(rows.factorise());
   for (int k = 0; k < 3; ++k) rows.add_row();
@@ -131,7 +131,7 @@ TEST(YieldingRows, TakeInRowsThatComeAndGo) {
   EXPECT_LT(rows.error(), kRounding);
 }
 
-TEST(YieldingRows, SayWhereTheContactsBlockIsNotDefiniteAndRecover) {
+TEST(YieldingRows, say_where_the_contacts_block_is_not_definite_and_recover) {
   Rows rows(60, 4);
   ASSERT_TRUE(rows.factorise());
   rows.set_yield(40, -50.0);

@@ -20,7 +20,7 @@ Mat3 solved(const Tissue& tissue, Index a, Index b) {
   return tissue.solve(f).middleRows<3>(3 * Eigen::Index{a});
 }
 
-TEST(ComplianceStore, BlocksAreThoseOfTheFactorHoweverTheyWereAdded) {
+TEST(ComplianceStore, blocks_are_those_of_the_factor_however_they_were_added) {
   const auto tissue = two_regions();
   ComplianceStore store(tissue);
   std::vector<Index> nodes;
@@ -43,7 +43,7 @@ TEST(ComplianceStore, BlocksAreThoseOfTheFactorHoweverTheyWereAdded) {
   }
 }
 
-TEST(ComplianceStore, IsSymmetricToTheLastBitAndPositiveDefinite) {
+TEST(ComplianceStore, is_symmetric_to_the_last_bit_and_positive_definite) {
   const auto tissue = two_regions();
   ComplianceStore store(tissue);
   std::vector<Index> nodes;
@@ -59,7 +59,7 @@ TEST(ComplianceStore, IsSymmetricToTheLastBitAndPositiveDefinite) {
   EXPECT_EQ(A.llt().info(), Eigen::Success);
 }
 
-TEST(ComplianceStore, NodesInTheMiddleOfAnEdgeAreStoredWithItsEnds) {
+TEST(ComplianceStore, nodes_in_the_middle_of_an_edge_are_stored_with_its_ends) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {50, 50, 50}, {3, 3, 3}, 0.15);
   const auto fixed = test::nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
   const auto tissue = std::make_shared<const Tissue>(test::build(mesh, {{0.01, 0.49}}, fixed, Element::p2));
@@ -79,7 +79,7 @@ TEST(ComplianceStore, NodesInTheMiddleOfAnEdgeAreStoredWithItsEnds) {
   }
 }
 
-TEST(ComplianceStore, FixedNodesAreStoredAndDoNotMove) {
+TEST(ComplianceStore, fixed_nodes_are_stored_and_do_not_move) {
   const auto tissue = two_regions();
   ComplianceStore store(tissue);
   const Index fixed = tissue->fixed_nodes().front();
@@ -97,7 +97,7 @@ TEST(ComplianceStore, FixedNodesAreStoredAndDoNotMove) {
   EXPECT_NEAR(store.megabytes(), 9 * 8.0 / 1048576.0, 1e-15);
 }
 
-TEST(ComplianceStore, ReportsProgressFromZeroToOne) {
+TEST(ComplianceStore, reports_progress_from_zero_to_one) {
   const auto tissue = two_regions();
   ComplianceStore store(tissue);
   std::vector<Index> nodes;

@@ -140,23 +140,23 @@ Order order_of(Element element, double poisson, int cells) {
   return {std::log2(coarse / fine), fine};
 }
 
-TEST(TissueConvergence, LinearTetrahedraConvergeWithOrderTwoInL2) {
+TEST(TissueConvergence, linear_tetrahedra_converge_with_order_two_in_l2) {
   const Order result = order_of(Element::p1, 0.3, 10);
   EXPECT_NEAR(result.order, 2.0, 0.1);
   EXPECT_LT(result.fine, 0.02);
 }
 
-TEST(TissueConvergence, AveragedPressureConvergesWithOrderTwoInL2) {
+TEST(TissueConvergence, averaged_pressure_converges_with_order_two_in_l2) {
   EXPECT_NEAR(order_of(Element::nodal_pressure, 0.45, 8).order, 2.0, 0.1);
   // The order is still falling towards two, because the error starts from a larger value.
   EXPECT_GT(order_of(Element::nodal_pressure, 0.499, 8).order, 1.9);
 }
 
-TEST(TissueConvergence, QuadraticTetrahedraConvergeWithOrderThreeInL2) {
+TEST(TissueConvergence, quadratic_tetrahedra_converge_with_order_three_in_l2) {
   EXPECT_NEAR(order_of(Element::p2, 0.3, 5).order, 3.0, 0.1);
 }
 
-TEST(TissueConvergence, LinearTetrahedraLockAsPoissonApproachesOneHalf) {
+TEST(TissueConvergence, linear_tetrahedra_lock_as_poisson_approaches_one_half) {
   double before = 1.0;
   for (const double poisson : {0.3, 0.45, 0.49, 0.499, 0.4999}) {
     const Material material{0.02, poisson};
@@ -178,7 +178,7 @@ double lost_compliance(Element element, int cells, double poisson) {
   return 1.0 - after / before;
 }
 
-TEST(TissueConvergence, AveragedPressureAndQuadraticTetrahedraDoNotLock) {
+TEST(TissueConvergence, averaged_pressure_and_quadratic_tetrahedra_do_not_lock) {
   EXPECT_LT(lost_compliance(Element::nodal_pressure, 12, 0.499), 0.02);
   EXPECT_LT(lost_compliance(Element::p2, 10, 0.499), 0.05);
 }
@@ -187,7 +187,7 @@ double indentation(const Material& material, int cells, Element element) {
   return validate::press_block(material, cells, element).value().dent_mm;
 }
 
-TEST(NearlyIncompressibleBlock, IsAsSoftAsAFineMeshSaysWithEveryElementButTheLinear) {
+TEST(NearlyIncompressibleBlock, is_as_soft_as_a_fine_mesh_says_with_every_element_but_the_linear) {
   const Material nearly{0.02, 0.499};
   const double reference = indentation(nearly, 12, Element::p2);
   const double averaged = indentation(nearly, 16, Element::nodal_pressure);
@@ -205,7 +205,7 @@ TEST(NearlyIncompressibleBlock, IsAsSoftAsAFineMeshSaysWithEveryElementButTheLin
 
 // The displacement does not restrain pressures that alternate from node to node (equal orders are not stable in the
 // sense of Babuška and Brezzi). On a smooth problem such pressures must not appear.
-TEST(TissueConvergence, AveragedPressureItselfConverges) {
+TEST(TissueConvergence, averaged_pressure_itself_converges) {
   const Material material{0.02, 0.499};
   const double coarse = solve(bubble(material), material, 8, Element::nodal_pressure).pressure;
   const double fine = solve(bubble(material), material, 16, Element::nodal_pressure).pressure;

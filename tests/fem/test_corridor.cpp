@@ -57,7 +57,7 @@ double difference(const TetMesh& mesh, Element element, const std::vector<Index>
 class CorridorCompliance : public test::ElementTest {};
 STYLET_FOR_EVERY_ELEMENT(CorridorCompliance);
 
-TEST_P(CorridorCompliance, IsThatOfSolvesAroundALine) {
+TEST_P(CorridorCompliance, is_that_of_solves_around_a_line) {
   const TetMesh mesh = mesh_of(5);
   const auto near = test::nodes_where(mesh, [](const Vec3& x) { return (x - Vec3(25, 25, 25)).head<2>().norm() < 12; });
   ASSERT_TRUE(
@@ -65,7 +65,7 @@ TEST_P(CorridorCompliance, IsThatOfSolvesAroundALine) {
   EXPECT_LE(difference(mesh, GetParam(), near), 1e-12);
 }
 
-TEST_P(CorridorCompliance, IsThatOfSolvesInTwoPiecesInAnyOrder) {
+TEST_P(CorridorCompliance, is_that_of_solves_in_two_pieces_in_any_order) {
   const TetMesh mesh = mesh_of(5);
   auto near = test::nodes_where(mesh, [](const Vec3& x) { return x.x() < 12 || x.x() > 38; });
   std::reverse(near.begin(), near.end());
@@ -73,7 +73,7 @@ TEST_P(CorridorCompliance, IsThatOfSolvesInTwoPiecesInAnyOrder) {
   EXPECT_LE(difference(mesh, GetParam(), near), 1e-12);
 }
 
-TEST_P(CorridorCompliance, IsTheWholeInverseWhereTheCorridorIsTheMesh) {
+TEST_P(CorridorCompliance, is_the_whole_inverse_where_the_corridor_is_the_mesh) {
   const TetMesh mesh = mesh_of(3);
   const auto all = test::nodes_where(mesh, [](const Vec3&) { return true; });
   EXPECT_LE(difference(mesh, GetParam(), all), 1e-12);
@@ -83,7 +83,7 @@ TEST_P(CorridorCompliance, IsTheWholeInverseWhereTheCorridorIsTheMesh) {
   EXPECT_LE((unit - MatX::Identity(unit.rows(), unit.cols())).norm(), 1e-9);
 }
 
-TEST_P(CorridorCompliance, IsEmptyWithoutACorridorAndWhereItIsHeld) {
+TEST_P(CorridorCompliance, is_empty_without_a_corridor_and_where_it_is_held) {
   const TetMesh mesh = mesh_of(3);
   for (const auto& corridor : {std::vector<Index>{}, floor_of(mesh)}) {
     const Tissue tissue = with_corridor(mesh, GetParam(), corridor);
@@ -96,7 +96,7 @@ TEST_P(CorridorCompliance, IsEmptyWithoutACorridorAndWhereItIsHeld) {
   }
 }
 
-TEST_P(CorridorCompliance, GrowsInTheStoreByOtherNodes) {
+TEST_P(CorridorCompliance, grows_in_the_store_by_other_nodes) {
   const TetMesh mesh = mesh_of(4);
   const auto near = test::nodes_where(mesh, [](const Vec3& x) { return x.x() < 15; });
   const auto more = test::nodes_where(mesh, [](const Vec3& x) { return x.x() > 10 && x.y() < 30; });
@@ -117,7 +117,7 @@ TEST_P(CorridorCompliance, GrowsInTheStoreByOtherNodes) {
   }
 }
 
-TEST(TissueLater, MakesItsFactorOnceWhenAskedByWhicheverThread) {
+TEST(TissueLater, makes_its_factor_once_when_asked_by_whichever_thread) {
   const TetMesh mesh = mesh_of(4);
   const auto near = test::nodes_where(mesh, [](const Vec3& x) { return x.x() < 15; });
   auto later = Tissue::build_later(mesh, kMaterials, floor_of(mesh), Element::p1, near);

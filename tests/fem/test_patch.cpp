@@ -34,7 +34,7 @@ Patch loose(const Tissue& tissue, const std::vector<Index>& tets, const Material
 using Patches = test::ElementTest;
 STYLET_FOR_EVERY_ELEMENT(Patches);
 
-TEST_P(Patches, OfAllElementsHaveTheTissuesStiffness) {
+TEST_P(Patches, of_all_elements_have_the_tissues_stiffness) {
   const Tissue tissue = body(kSoftTissue, GetParam());
   std::vector<Index> all;
   for (Index t = 0; t < tissue.mesh().tet_count(); ++t) all.push_back(t);
@@ -50,7 +50,7 @@ TEST_P(Patches, OfAllElementsHaveTheTissuesStiffness) {
   }
 }
 
-TEST_P(Patches, HaveNoKernelButTheSixRigidMotionsAndTheirOwnMaterial) {
+TEST_P(Patches, have_no_kernel_but_the_six_rigid_motions_and_their_own_material) {
   const Tissue tissue = body({1.0, 0.1}, GetParam());
   const std::vector<Index> tets{42, 36, 37, 38, 39, 40, 41, 43, 44, 45, 46, 47};  // two neighbouring cells
   const Patch patch = loose(tissue, tets, kSoftTissue);
@@ -73,7 +73,7 @@ TEST_P(Patches, HaveNoKernelButTheSixRigidMotionsAndTheirOwnMaterial) {
   EXPECT_LT((stiffer.K - 2 * patch.K).norm(), 1e-12 * stiffer.K.norm());
 }
 
-TEST_P(Patches, HaveTheRowsOfTheNodesThatMoveWithTheOthersBehind) {
+TEST_P(Patches, have_the_rows_of_the_nodes_that_move_with_the_others_behind) {
   const Tissue tissue = body(kSoftTissue, GetParam());
   const std::vector<Index> tets{42, 36, 37, 38, 39, 40, 41, 43, 44, 45, 46, 47};
   const std::vector<Index> nodes = nodes_of(tissue, tets);
@@ -97,7 +97,7 @@ TEST_P(Patches, HaveTheRowsOfTheNodesThatMoveWithTheOthersBehind) {
   }
 }
 
-TEST_P(Patches, CarryALinearFieldOnFromTheNodesWhoseDisplacementIsGivenAndBalanceForces) {
+TEST_P(Patches, carry_a_linear_field_on_from_the_nodes_whose_displacement_is_given_and_balance_forces) {
   const Tissue tissue = body(kSoftTissue, GetParam());
   std::vector<Index> all;
   for (Index t = 0; t < tissue.mesh().tet_count(); ++t) all.push_back(t);

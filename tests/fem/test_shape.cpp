@@ -15,7 +15,7 @@ Tissue body(Element element) {
 using Shapes = test::ElementTest;
 STYLET_FOR_EVERY_ELEMENT(Shapes);
 
-TEST_P(Shapes, InterpolatesLinearFieldsAndTheirGradientsExactly) {
+TEST_P(Shapes, interpolates_linear_fields_and_their_gradients_exactly) {
   const Tissue tissue = body(GetParam());
   Mat3 gradient;
   gradient << 0.1, -0.2, 0.3, 0.05, 0.4, -0.1, 0.2, 0.15, -0.3;
@@ -37,7 +37,7 @@ TEST_P(Shapes, InterpolatesLinearFieldsAndTheirGradientsExactly) {
   }
 }
 
-TEST_P(Shapes, IsOneAtItsOwnNodeAndNamesTheElementsNodes) {
+TEST_P(Shapes, is_one_at_its_own_node_and_names_the_elements_nodes) {
   const Tissue tissue = body(GetParam());
   const auto nodes = tissue.nodes_of(5);
   for (int corner = 0; corner < 4; ++corner) {

@@ -77,7 +77,7 @@ struct Held {
 using EveryElement = test::ElementTest;
 STYLET_FOR_EVERY_ELEMENT(EveryElement);
 
-TEST_P(EveryElement, StiffnessIsSymmetricToTheLastBitAndPositiveDefinite) {
+TEST_P(EveryElement, stiffness_is_symmetric_to_the_last_bit_and_positive_definite) {
   const Tissue tissue = two_regions(GetParam());
   const Eigen::SparseMatrix<double>& K = tissue.stiffness();
   const Eigen::SparseMatrix<double> difference = K - Eigen::SparseMatrix<double>(K.transpose());
@@ -89,7 +89,7 @@ TEST_P(EveryElement, StiffnessIsSymmetricToTheLastBitAndPositiveDefinite) {
   }
 }
 
-TEST(Tissue, ElementBlockIsTheSecondDerivativeOfTheStrainEnergy) {
+TEST(Tissue, element_block_is_the_second_derivative_of_the_strain_energy) {
   const TetMesh mesh = jittered();
   const auto g = barycentric_gradients(mesh, 77);
   const double volume = tet_volume(mesh, 77);
@@ -115,7 +115,7 @@ TEST(Tissue, ElementBlockIsTheSecondDerivativeOfTheStrainEnergy) {
   }
 }
 
-TEST_P(EveryElement, PatchTestEveryLinearFieldIsInEquilibriumWithItsTractions) {
+TEST_P(EveryElement, patch_test_every_linear_field_is_in_equilibrium_with_its_tractions) {
   const Held body(kGland, GetParam());
   for (int entry = 0; entry < 9; ++entry) {
     Mat3 gradient = Mat3::Zero();
@@ -131,7 +131,7 @@ TEST_P(EveryElement, PatchTestEveryLinearFieldIsInEquilibriumWithItsTractions) {
   }
 }
 
-TEST_P(EveryElement, PatchTestALinearFieldIsReproducedUnderItsTractions) {
+TEST_P(EveryElement, patch_test_a_linear_field_is_reproduced_under_its_tractions) {
   const Tissue tissue = build(jittered(), {kGland}, floor_nodes(jittered()), GetParam());
   const TetMesh& mesh = tissue.mesh();
   for (const Vec3& c : {Vec3(0.03, 0, 0), Vec3(0, -0.02, 0), Vec3(0, 0, 0.01), Vec3(0.01, 0.02, -0.03)}) {
@@ -147,7 +147,7 @@ TEST_P(EveryElement, PatchTestALinearFieldIsReproducedUnderItsTractions) {
   }
 }
 
-TEST_P(EveryElement, RigidMotionsGiveNoStressAndNoForces) {
+TEST_P(EveryElement, rigid_motions_give_no_stress_and_no_forces) {
   const Held body(kFat, GetParam());
   for (int mode = 0; mode < 6; ++mode) {
     const Vec3 axis = Vec3::Unit(mode % 3);
@@ -161,7 +161,7 @@ TEST_P(EveryElement, RigidMotionsGiveNoStressAndNoForces) {
   }
 }
 
-TEST_P(EveryElement, UniaxialBarStretchesByForceTimesLengthOverStiffness) {
+TEST_P(EveryElement, uniaxial_bar_stretches_by_force_times_length_over_stiffness) {
   // Without lateral contraction, the held end does not disturb the field.
   const Material material{0.020, 0.0};
   TetMesh mesh = box_mesh({0, 0, 0}, {10, 15, 100}, {2, 3, 20}, 0.15);
@@ -176,7 +176,7 @@ TEST_P(EveryElement, UniaxialBarStretchesByForceTimesLengthOverStiffness) {
   EXPECT_LT(relative_error(u, expected), 1e-10);
 }
 
-TEST_P(EveryElement, UniaxialStressWithLateralContractionIsInEquilibrium) {
+TEST_P(EveryElement, uniaxial_stress_with_lateral_contraction_is_in_equilibrium) {
   const Held body(kGland, GetParam());
   Mat3 gradient = Mat3::Zero();
   gradient.diagonal() << -kGland.poisson, -kGland.poisson, 1.0;
@@ -193,7 +193,7 @@ TEST_P(EveryElement, UniaxialStressWithLateralContractionIsInEquilibrium) {
   EXPECT_LT(relative_error(body.forces(u), expected), 1e-10);
 }
 
-TEST_P(EveryElement, TwoMaterialsInSeriesCarryTheSameTraction) {
+TEST_P(EveryElement, two_materials_in_series_carry_the_same_traction) {
   // Jitter only across the bar, so that the interface between the materials stays flat.
   TetMesh mesh = box_mesh({0, 0, 0}, {20, 20, 60}, {4, 4, 12}, 0.15);
   const TetMesh flat = box_mesh({0, 0, 0}, {20, 20, 60}, {4, 4, 12});
@@ -218,7 +218,7 @@ TEST_P(EveryElement, TwoMaterialsInSeriesCarryTheSameTraction) {
   EXPECT_LT(relative_error(tissue.solve(test::traction_by_region(tissue, stress)), expected), 1e-10);
 }
 
-TEST_P(EveryElement, SupportForcesBalanceTheLoads) {
+TEST_P(EveryElement, support_forces_balance_the_loads) {
   const Tissue tissue = two_regions(GetParam());
   VecX f = random_forces(tissue, 3);
   for (const Index a : tissue.fixed_nodes()) f.segment<3>(3 * Eigen::Index{a}).setZero();
@@ -232,7 +232,7 @@ TEST_P(EveryElement, SupportForcesBalanceTheLoads) {
   }
 }
 
-TEST_P(EveryElement, SolvesManyLoadsAtOnceAsOneByOneAndIgnoresLoadsOnSupports) {
+TEST_P(EveryElement, solves_many_loads_at_once_as_one_by_one_and_ignores_loads_on_supports) {
   const Tissue tissue = build(jittered(), {kGland}, floor_nodes(jittered()), GetParam());
   MatX f(3 * Eigen::Index{tissue.displacement_nodes()}, 200);
   for (Eigen::Index k = 0; k < f.cols(); ++k) f.col(k) = random_forces(tissue, static_cast<unsigned>(k));
@@ -247,7 +247,7 @@ TEST_P(EveryElement, SolvesManyLoadsAtOnceAsOneByOneAndIgnoresLoadsOnSupports) {
   EXPECT_EQ(tissue.solve(MatX(f.rows(), 0)).cols(), 0);
 }
 
-TEST_P(EveryElement, GivesTheSameBitsInEveryBuildAndInEveryThread) {
+TEST_P(EveryElement, gives_the_same_bits_in_every_build_and_in_every_thread) {
   const Tissue first = build(jittered(), {kGland}, floor_nodes(jittered()), GetParam());
   const Tissue second = build(jittered(), {kGland}, floor_nodes(jittered()), GetParam());
   const VecX f = random_forces(first, 1);
@@ -265,7 +265,7 @@ TEST_P(EveryElement, GivesTheSameBitsInEveryBuildAndInEveryThread) {
   for (const MatX& out : seen) EXPECT_EQ((out - u).norm(), 0.0);
 }
 
-TEST_P(EveryElement, ElementsOfFixedNodesOnlyAreLegal) {
+TEST_P(EveryElement, elements_of_fixed_nodes_only_are_legal) {
   const TetMesh mesh = jittered();
   const auto fixed = nodes_where(mesh, [](const Vec3& x) { return x.z() < 52.0; });
   const Tissue tissue = build(mesh, {kGland}, fixed, GetParam());
@@ -274,7 +274,7 @@ TEST_P(EveryElement, ElementsOfFixedNodesOnlyAreLegal) {
   EXPECT_TRUE(tissue.solve(random_forces(tissue, 5)).allFinite());
 }
 
-TEST(Tissue, RepeatedAndUnsortedSupportsAreTakenOnce) {
+TEST(Tissue, repeated_and_unsorted_supports_are_taken_once) {
   const TetMesh mesh = jittered();
   auto fixed = floor_nodes(mesh);
   const auto sorted = fixed;

@@ -46,34 +46,34 @@ TetMesh join(TetMesh mesh, const TetMesh& other, bool weld) {
   return mesh;
 }
 
-TEST(TissueErrors, MaterialsMustMatchTheRegions) {
+TEST(TissueErrors, materials_must_match_the_regions) {
   expect_refused(cube(), {kSoft, kSoft}, nodes_at_zero(cube()), {"2 materials", "1 regions"});
 }
 
-TEST(TissueErrors, YoungsModulusMustBePositiveAndFinite) {
+TEST(TissueErrors, youngs_modulus_must_be_positive_and_finite) {
   for (const double young : {0.0, -0.01, HUGE_VAL, std::nan("")}) {
     expect_refused(cube(), {{young, 0.4}}, nodes_at_zero(cube()), {"region 'body'", "Young's modulus", "kPa"});
   }
   expect_refused(cube(), {{-0.01, 0.4}}, nodes_at_zero(cube()), {"is -10 kPa"});
 }
 
-TEST(TissueErrors, PoissonRatioMustBeBelowOneHalf) {
+TEST(TissueErrors, poisson_ratio_must_be_below_one_half) {
   for (const double poisson : {0.5, 0.7, -1.0, std::nan("")}) {
     expect_refused(cube(), {{0.01, poisson}}, nodes_at_zero(cube()), {"region 'body'", "Poisson ratio", "below 0.5"});
   }
   expect_refused(cube(), {{0.01, 0.5}}, nodes_at_zero(cube()), {"is 0.5,"});
 }
 
-TEST(TissueErrors, WithoutSupportsTheTissueIsNotHeld) {
+TEST(TissueErrors, without_supports_the_tissue_is_not_held) {
   expect_refused(cube(), {kSoft}, {}, {"not held", "none of its nodes is fixed", "at least three nodes"});
 }
 
-TEST(TissueErrors, OneAndTwoNodesDoNotHold) {
+TEST(TissueErrors, one_and_two_nodes_do_not_hold) {
   expect_refused(cube(), {kSoft}, {7}, {"not held", "only 1 of its nodes"});
   expect_refused(cube(), {kSoft}, {7, 20, 20}, {"not held", "only 2 of its nodes"});
 }
 
-TEST(TissueErrors, NodesOnALineDoNotHold) {
+TEST(TissueErrors, nodes_on_a_line_do_not_hold) {
   const auto edge = nodes_where(cube(), [](const Vec3& x) { return x.x() == 0.0 && x.y() == 0.0; });
   ASSERT_EQ(edge.size(), 5u);
   expect_refused(cube(), {kSoft}, edge, {"not held", "5 fixed nodes lie on one line"});
@@ -82,7 +82,7 @@ TEST(TissueErrors, NodesOnALineDoNotHold) {
   EXPECT_TRUE(Tissue::build(cube(), {kSoft}, plane));
 }
 
-TEST(TissueErrors, EveryConnectedPartMustBeHeld) {
+TEST(TissueErrors, every_connected_part_must_be_held) {
   const TetMesh mesh = join(cube(), box_mesh({60, 0, 0}, {70, 10, 10}, {2, 2, 2}), false);
   ASSERT_TRUE(check_mesh(mesh, "two bodies"));
   auto fixed = nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0 && x.x() < 50.0; });
@@ -91,7 +91,7 @@ TEST(TissueErrors, EveryConnectedPartMustBeHeld) {
   EXPECT_TRUE(Tissue::build(mesh, {kSoft}, fixed));
 }
 
-TEST(TissueErrors, APartThatHangsOnByAnEdgeIsFoundLoose) {
+TEST(TissueErrors, a_part_that_hangs_on_by_an_edge_is_found_loose) {
   // Welded only along the edge x = 40, z = 40: the second body can turn about it.
   const TetMesh mesh =
       join(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}), box_mesh({40, 0, 40}, {60, 40, 60}, {2, 4, 2}), true);
@@ -109,16 +109,16 @@ TEST(TissueErrors, APartThatHangsOnByAnEdgeIsFoundLoose) {
   }
 }
 
-TEST(TissueErrors, AllNodesFixedIsRefused) {
+TEST(TissueErrors, all_nodes_fixed_is_refused) {
   expect_refused(cube(), {kSoft}, nodes_where(cube(), [](const Vec3&) { return true; }), {"all 125 nodes are fixed"});
 }
 
-TEST(TissueErrors, FixedNodesMustExist) {
+TEST(TissueErrors, fixed_nodes_must_exist) {
   expect_refused(cube(), {kSoft}, {0, 1, 2, 125}, {"fixed node number 125", "0 to 124"});
   expect_refused(cube(), {kSoft}, {-1, 0, 1, 2}, {"fixed node number -1"});
 }
 
-TEST(TissueErrors, AMeshThatWasNotCheckedIsRefusedNotRead) {
+TEST(TissueErrors, a_mesh_that_was_not_checked_is_refused_not_read) {
   TetMesh mesh = cube();
   mesh.tets[3][2] = 4000;
   expect_refused(mesh, {kSoft}, {0, 1, 5}, {"tetrahedron 3 names node 4000", "check_mesh()"});
@@ -128,7 +128,7 @@ TEST(TissueErrors, AMeshThatWasNotCheckedIsRefusedNotRead) {
   expect_refused(TetMesh{}, {}, {}, {"no tetrahedra"});
 }
 
-TEST(TissueErrors, StiffAndSoftAndSlenderBodiesAreNotMistakenForLooseOnes) {
+TEST(TissueErrors, stiff_and_soft_and_slender_bodies_are_not_mistaken_for_loose_ones) {
   TetMesh mesh = box_mesh({0, 0, 0}, {2, 2, 200}, {1, 1, 100});
   assign_regions(mesh, {"bone", "fat"}, [](const Vec3& x) { return x.z() > 100 ? 0 : 1; });
   const auto tissue = Tissue::build(mesh, {{1e4, 0.3}, {0.001, 0.4999}}, nodes_at_zero(mesh));

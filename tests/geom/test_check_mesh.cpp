@@ -21,9 +21,9 @@ void expect_refused(const TetMesh& mesh, const std::vector<std::string>& parts) 
   for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message;
 }
 
-TEST(CheckMesh, AcceptsAGoodMesh) { EXPECT_TRUE(check_mesh(good(), "case.msh")); }
+TEST(CheckMesh, accepts_a_good_mesh) { EXPECT_TRUE(check_mesh(good(), "case.msh")); }
 
-TEST(CheckMesh, RefusesAnEmptyMesh) {
+TEST(CheckMesh, refuses_an_empty_mesh) {
   expect_refused(TetMesh{}, {"empty", "0 nodes"});
   TetMesh mesh = good();
   mesh.tets.clear();
@@ -31,7 +31,7 @@ TEST(CheckMesh, RefusesAnEmptyMesh) {
   expect_refused(mesh, {"empty", "125 nodes and 0 tetrahedra"});
 }
 
-TEST(CheckMesh, RefusesMissingRegions) {
+TEST(CheckMesh, refuses_missing_regions) {
   TetMesh mesh = good();
   mesh.tet_region.pop_back();
   expect_refused(mesh, {"383 of 384"});
@@ -40,13 +40,13 @@ TEST(CheckMesh, RefusesMissingRegions) {
   expect_refused(mesh, {"0 regions"});
 }
 
-TEST(CheckMesh, RefusesBadRegionNumbers) {
+TEST(CheckMesh, refuses_bad_region_numbers) {
   TetMesh mesh = good();
   mesh.tet_region[17] = 1;
   expect_refused(mesh, {"tetrahedron 17", "region number 1", "expected 0 to 0"});
 }
 
-TEST(CheckMesh, RefusesNodeNumbersOutOfRange) {
+TEST(CheckMesh, refuses_node_numbers_out_of_range) {
   TetMesh mesh = good();
   mesh.tets[20][2] = 125;
   expect_refused(mesh, {"tetrahedron 20", "node number 125", "expected 0 to 124"});
@@ -54,7 +54,7 @@ TEST(CheckMesh, RefusesNodeNumbersOutOfRange) {
   expect_refused(mesh, {"tetrahedron 20", "node number -1"});
 }
 
-TEST(CheckMesh, RefusesNotANumberAndInfinity) {
+TEST(CheckMesh, refuses_not_a_number_and_infinity) {
   TetMesh mesh = good();
   mesh.nodes[31].y() = std::nan("");
   expect_refused(mesh, {"node 31", "not a finite number", "nan"});
@@ -62,7 +62,7 @@ TEST(CheckMesh, RefusesNotANumberAndInfinity) {
   expect_refused(mesh, {"node 31", "not a finite number", "inf"});
 }
 
-TEST(CheckMesh, RefusesUnitsOffByAThousand) {
+TEST(CheckMesh, refuses_units_off_by_a_thousand) {
   TetMesh mesh = good();
   for (Vec3& x : mesh.nodes) x /= 1000.0;
   expect_refused(mesh, {"0.04 mm across", "metres", "millimetres"});
@@ -71,13 +71,13 @@ TEST(CheckMesh, RefusesUnitsOffByAThousand) {
   expect_refused(mesh, {"40000 mm across", "micrometres"});
 }
 
-TEST(CheckMesh, RefusesANodeNamedTwice) {
+TEST(CheckMesh, refuses_a_node_named_twice) {
   TetMesh mesh = good();
   mesh.tets[9][3] = mesh.tets[9][1];
   expect_refused(mesh, {"tetrahedron 9", "node " + std::to_string(mesh.tets[9][1]) + " is named twice"});
 }
 
-TEST(CheckMesh, RefusesDuplicateTetrahedra) {
+TEST(CheckMesh, refuses_duplicate_tetrahedra) {
   TetMesh mesh = good();
   const auto [a, b, c, d] = mesh.tets[3];
   mesh.tets.push_back({b, c, a, d});
@@ -85,20 +85,20 @@ TEST(CheckMesh, RefusesDuplicateTetrahedra) {
   expect_refused(mesh, {"tetrahedron 384", "duplicate of tetrahedron 3"});
 }
 
-TEST(CheckMesh, RefusesInvertedTetrahedra) {
+TEST(CheckMesh, refuses_inverted_tetrahedra) {
   TetMesh mesh = good();
   std::swap(mesh.tets[50][0], mesh.tets[50][1]);
   std::swap(mesh.tets[60][0], mesh.tets[60][1]);
   expect_refused(mesh, {"tetrahedron 50", "inverted", "-166.667 mm³", "1 more like it"});
 }
 
-TEST(CheckMesh, RefusesAMeshListedInTheOppositeOrderWithItsOwnMessage) {
+TEST(CheckMesh, refuses_a_mesh_listed_in_the_opposite_order_with_its_own_message) {
   TetMesh mesh = good();
   for (auto& tet : mesh.tets) std::swap(tet[0], tet[1]);
   expect_refused(mesh, {"all 384 tetrahedra are inverted", "opposite order"});
 }
 
-TEST(CheckMesh, RefusesFlatTetrahedra) {
+TEST(CheckMesh, refuses_flat_tetrahedra) {
   TetMesh mesh = good();
   const auto& tet = mesh.tets[70];
   mesh.nodes.push_back((mesh.nodes[tet[0]] + mesh.nodes[tet[1]] + mesh.nodes[tet[2]]) / 3.0);
@@ -107,7 +107,7 @@ TEST(CheckMesh, RefusesFlatTetrahedra) {
   expect_refused(mesh, {"tetrahedron 384", "it is flat", "longest edge"});
 }
 
-TEST(CheckMesh, RefusesAFaceOfThreeTetrahedra) {
+TEST(CheckMesh, refuses_a_face_of_three_tetrahedra) {
   TetMesh mesh = good();
   // Attach a tetrahedron to a face inside the box, like a fin.
   const auto& tet = mesh.tets[150];
@@ -118,7 +118,7 @@ TEST(CheckMesh, RefusesAFaceOfThreeTetrahedra) {
   expect_refused(mesh, {"face of nodes", "shared by 3 tetrahedra", "384"});
 }
 
-TEST(CheckMesh, RefusesTetrahedraOverlappingAtAFace) {
+TEST(CheckMesh, refuses_tetrahedra_overlapping_at_a_face) {
   TetMesh mesh;
   mesh.regions = {"body"};
   mesh.nodes = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}, {2, 2, 10}};
@@ -127,7 +127,7 @@ TEST(CheckMesh, RefusesTetrahedraOverlappingAtAFace) {
   expect_refused(mesh, {"face of nodes 0, 1, 2", "tetrahedra 0 and 1", "same side"});
 }
 
-TEST(CheckMesh, RefusesUnreferencedNodes) {
+TEST(CheckMesh, refuses_unreferenced_nodes) {
   TetMesh mesh = good();
   mesh.nodes.push_back({1, 2, 3});
   mesh.nodes.push_back({4, 5, 6});

@@ -79,7 +79,7 @@ double meet(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b, cons
   return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0 && t <= 1.0 ? t : -1.0;
 }
 
-TEST(Locator, FindsRandomPointsWithAndWithoutHint) {
+TEST(Locator, finds_random_points_with_and_without_hint) {
   const Body body(rough_ball());
   Random random;
   for (int i = 0; i < 20000; ++i) {
@@ -92,7 +92,7 @@ TEST(Locator, FindsRandomPointsWithAndWithoutHint) {
   }
 }
 
-TEST(Locator, FindsNodesEdgesAndFacesOfAllElements) {
+TEST(Locator, finds_nodes_edges_and_faces_of_all_elements) {
   const Body body(rough_ball());
   Random random;
   for (Index t = 0; t < body.mesh.tet_count(); ++t) {
@@ -114,7 +114,7 @@ TEST(Locator, FindsNodesEdgesAndFacesOfAllElements) {
   }
 }
 
-TEST(Locator, FindsNothingOutsideAConcaveMeshAndEverythingInside) {
+TEST(Locator, finds_nothing_outside_a_concave_mesh_and_everything_inside) {
   const Body body(bracket());
   ASSERT_TRUE(check_mesh(body.mesh, "bracket"));
   Random random;
@@ -127,7 +127,7 @@ TEST(Locator, FindsNothingOutsideAConcaveMeshAndEverythingInside) {
   EXPECT_FALSE(body.locator.find(Vec3::Constant(std::nan(""))));
 }
 
-TEST(Locator, TiesAreBrokenByTheDirectionOfTravel) {
+TEST(Locator, ties_are_broken_by_the_direction_of_travel) {
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
   assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
   const Body body(std::move(mesh));
@@ -147,7 +147,7 @@ TEST(Locator, TiesAreBrokenByTheDirectionOfTravel) {
   }
 }
 
-TEST(Locator, FirstCrossingAgreesWithBruteForce) {
+TEST(Locator, first_crossing_agrees_with_brute_force) {
   const Body body(rough_ball());
   Random random;
   int met = 0;
@@ -182,7 +182,7 @@ TEST(Locator, FirstCrossingAgreesWithBruteForce) {
   EXPECT_GT(met, 2400);
 }
 
-TEST(Locator, PathsThroughEdgesAndNodesStopWhereTheRegionChanges) {
+TEST(Locator, paths_through_edges_and_nodes_stop_where_the_region_changes) {
   // Without jitter, paths between grid nodes run along edges, through nodes and inside faces all the way.
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
   assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
@@ -215,7 +215,7 @@ TEST(Locator, PathsThroughEdgesAndNodesStopWhereTheRegionChanges) {
   }
 }
 
-TEST(Locator, APathThatStartsOnAnInterfaceFollowsItsDirection) {
+TEST(Locator, a_path_that_starts_on_an_interface_follows_its_direction) {
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8});
   assign_regions(mesh, {"near", "far"}, [](const Vec3& x) { return x.x() < 20 ? 0 : 1; });
   const Body body(std::move(mesh));
@@ -289,7 +289,7 @@ int follow(const Body& body, const Vec3& from, const Vec3& to) {
   }
 }
 
-TEST(Locator, PathsThroughAMosaicOfRegionsAreFollowedPieceByPiece) {
+TEST(Locator, paths_through_a_mosaic_of_regions_are_followed_piece_by_piece) {
   // Every tetrahedron gets one of three regions at random: faces, edges and nodes are all interfaces.
   Random random;
   const auto mosaic = [&random](double jitter) {
@@ -311,7 +311,7 @@ TEST(Locator, PathsThroughAMosaicOfRegionsAreFollowedPieceByPiece) {
   EXPECT_GT(pieces, 5000);
 }
 
-TEST(Locator, FirstEntryAgreesWithBruteForceOnAConcaveBody) {
+TEST(Locator, first_entry_agrees_with_brute_force_on_a_concave_body) {
   const Body body(bracket());
   Random random;
   int met = 0;
@@ -336,7 +336,7 @@ TEST(Locator, FirstEntryAgreesWithBruteForceOnAConcaveBody) {
   EXPECT_GT(met, 900);
 }
 
-TEST(Locator, EntryThroughEdgesAndNodesOfTheSkinIsNotMissed) {
+TEST(Locator, entry_through_edges_and_nodes_of_the_skin_is_not_missed) {
   const Body body(box_mesh({0, 0, 0}, {40, 40, 40}, {8, 8, 8}));
   for (int i = 0; i <= 8; ++i) {
     for (int j = 0; j <= 8; ++j) {
@@ -354,7 +354,7 @@ TEST(Locator, EntryThroughEdgesAndNodesOfTheSkinIsNotMissed) {
   }
 }
 
-TEST(Locator, APathThatOnlyTouchesAnEdgeDoesNotEnter) {
+TEST(Locator, a_path_that_only_touches_an_edge_does_not_enter) {
   const Body body(box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}));
   EXPECT_FALSE(body.locator.first_entry({-10, 20, 10}, {10, 20, -10}));  // the path only touches the edge x = z = 0
   EXPECT_FALSE(body.locator.first_entry({-10, -10, 20}, {-10, 50, 20}));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegree = 180.0 / std::numbers::pi;
 
-TEST(MeshQuality, RegularTetrahedronIsPerfect) {
+TEST(MeshQuality, regular_tetrahedron_is_perfect) {
   TetMesh mesh;
   mesh.regions = {"body"};
   const double a = 10.0;
@@ -31,7 +31,7 @@ TEST(MeshQuality, RegularTetrahedronIsPerfect) {
   EXPECT_EQ(quality.dihedral_histogram[7], 6);
 }
 
-TEST(MeshQuality, KuhnCellHasItsKnownAnglesEdgesAndRadii) {
+TEST(MeshQuality, kuhn_cell_has_its_known_angles_edges_and_radii) {
   TetMesh mesh = box_mesh({0, 0, 0}, {30, 20, 20}, {3, 2, 2});
   assign_regions(mesh, {"left", "right"}, [](const Vec3& x) { return x.x() < 10 ? 0 : 1; });
   const MeshQuality quality = mesh_quality(mesh);
@@ -49,7 +49,7 @@ TEST(MeshQuality, KuhnCellHasItsKnownAnglesEdgesAndRadii) {
   EXPECT_EQ(std::accumulate(quality.dihedral_histogram.begin(), quality.dihedral_histogram.end(), 0), 6 * 72);
 }
 
-TEST(NearlyFlatTets, TheWorstIsNamedWithItsAngleAndPlace) {
+TEST(NearlyFlatTets, the_worst_is_named_with_its_angle_and_place) {
   TetMesh mesh = box_mesh({0, 0, 0}, {30, 20, 20}, {3, 2, 2});
   assign_regions(mesh, {"left", "right"}, [](const Vec3& x) { return x.x() < 10 ? 0 : 1; });
   EXPECT_EQ(nearly_flat_tets(mesh).count, 0);
@@ -74,7 +74,7 @@ TEST(NearlyFlatTets, TheWorstIsNamedWithItsAngleAndPlace) {
     EXPECT_NE(warning.find(part), std::string::npos) << warning << "\n  lacks: " << part;
 }
 
-TEST(NearlyFlatTets, BeginBelowFiveDegrees) {
+TEST(NearlyFlatTets, begin_below_five_degrees) {
   for (const auto& [angle, count] : {std::pair(4.99, 1), std::pair(5.01, 0)}) {
     TetMesh mesh;
     mesh.regions = {"body"};
@@ -85,7 +85,7 @@ TEST(NearlyFlatTets, BeginBelowFiveDegrees) {
   }
 }
 
-TEST(MeshQuality, SliversAreCounted) {
+TEST(MeshQuality, slivers_are_counted) {
   TetMesh mesh;
   mesh.regions = {"body"};
   mesh.nodes = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0.1}};  // four corners of a nearly flat square

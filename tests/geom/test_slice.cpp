@@ -80,7 +80,7 @@ void expect_sound(const Slicer& slicer, const Vec3& origin, const Vec3& normal) 
   for (const auto& [edge, count] : edges) ASSERT_EQ(count, 1) << "a piece lies twice, or looks the other way";
 }
 
-TEST(Slice, AnyPlaneThroughABoxHasTheAreaOfItsSection) {
+TEST(Slice, any_plane_through_a_box_has_the_area_of_its_section) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {5, 5, 5}, 0.15);
   Slicer slicer(mesh);
   std::mt19937 random(7);
@@ -94,7 +94,7 @@ TEST(Slice, AnyPlaneThroughABoxHasTheAreaOfItsSection) {
   }
 }
 
-TEST(Slice, APlaneThroughNodesAndFacesTakesNothingTwiceAndLeavesNothingOut) {
+TEST(Slice, a_plane_through_nodes_and_faces_takes_nothing_twice_and_leaves_nothing_out) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4});
   Slicer slicer(mesh);
   for (const double z : {10.0, 20.0, 30.0}) {  // whole layers of faces lie in these planes
@@ -121,7 +121,7 @@ TEST(Slice, APlaneThroughNodesAndFacesTakesNothingTwiceAndLeavesNothingOut) {
   EXPECT_TRUE(slicer.triangles().empty());
 }
 
-TEST(Slice, SectionsOfABallAreDiscsAndAddUpToItsVolume) {
+TEST(Slice, sections_of_a_ball_are_discs_and_add_up_to_its_volume) {
   const double R = 30.0;
   const TetMesh mesh = ball(R, 24);
   double volume = 0.0;
@@ -141,7 +141,7 @@ TEST(Slice, SectionsOfABallAreDiscsAndAddUpToItsVolume) {
   EXPECT_NEAR(sum, volume, 1e-3 * volume);
 }
 
-TEST(Slice, RegionsKeepTheirSharesOfTheSection) {
+TEST(Slice, regions_keep_their_shares_of_the_section) {
   TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4});
   assign_regions(mesh, {"left", "right"}, [](const Vec3& x) { return x.x() < 10.0 ? 0 : 1; });
   Slicer slicer(mesh);
@@ -150,7 +150,7 @@ TEST(Slice, RegionsKeepTheirSharesOfTheSection) {
   EXPECT_NEAR(area(slicer, Vec3::UnitZ(), 1), 1200, 1e-2);
 }
 
-TEST(Slice, MovesWithTheMaterial) {
+TEST(Slice, moves_with_the_material) {
   const TetMesh mesh = box_mesh({0, 0, 0}, {40, 40, 40}, {4, 4, 4}, 0.1);
   Slicer slicer(mesh);
   slicer.cut({20, 20, 20}, {0.3, 0.2, 1});

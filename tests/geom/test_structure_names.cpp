@@ -8,7 +8,7 @@ namespace {
 
 using Found = std::vector<std::size_t>;
 
-TEST(StructureNames, AnEqualNameGoesBeforeOneThatDiffersInCase) {
+TEST(StructureNames, an_equal_name_goes_before_one_that_differs_in_case) {
   const std::vector<std::string> names{"PTV", "ptv", "Rectum", "rectum "};
   EXPECT_EQ(find_named(names, "ptv"), (Found{1}));
   EXPECT_EQ(find_named(names, "PTV"), (Found{0}));
@@ -17,7 +17,7 @@ TEST(StructureNames, AnEqualNameGoesBeforeOneThatDiffersInCase) {
   EXPECT_TRUE(find_named(names, "PTV 1").empty());
 }
 
-TEST(StructureNames, AnEmptyWordMeansNoStructure) {
+TEST(StructureNames, an_empty_word_means_no_structure) {
   const std::vector<std::string> names{"PTV", "", " "};
   for (const char* word : {"", " ", "\t"}) {
     EXPECT_TRUE(find_named(names, word).empty());
@@ -25,7 +25,7 @@ TEST(StructureNames, AnEmptyWordMeansNoStructure) {
   }
 }
 
-TEST(StructureNames, ListedNamesDifferInNothingButCase) {
+TEST(StructureNames, listed_names_differ_in_nothing_but_case) {
   const std::vector<std::string> words{"rectum", "X1"};
   EXPECT_TRUE(is_listed("Rectum", words));
   EXPECT_TRUE(is_listed("x1", words));
@@ -33,7 +33,7 @@ TEST(StructureNames, ListedNamesDifferInNothingButCase) {
   EXPECT_FALSE(is_listed("", words));
 }
 
-TEST(StructureNames, TheAdviceToLeaveAStructureOutSaysItsName) {
+TEST(StructureNames, the_advice_to_leave_a_structure_out_says_its_name) {
   EXPECT_NE(or_skip("Rectum").find("skip = [\"Rectum\"] below [patient]"), std::string::npos);
 }
 

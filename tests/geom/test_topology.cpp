@@ -22,7 +22,7 @@ Vec3 area_vector(const TetMesh& mesh, const Face& face) {
   return 0.5 * (mesh.nodes[face.nodes[1]] - a).cross(mesh.nodes[face.nodes[2]] - a);
 }
 
-TEST(Topology, NeighboursAreMutualAndShareThreeNodes) {
+TEST(Topology, neighbours_are_mutual_and_share_three_nodes) {
   const TetMesh mesh = layered_box();
   const Topology topology(mesh);
   for (Index t = 0; t < mesh.tet_count(); ++t) {
@@ -40,7 +40,7 @@ TEST(Topology, NeighboursAreMutualAndShareThreeNodes) {
   }
 }
 
-TEST(Topology, BoundaryIsClosedOutwardAndComplete) {
+TEST(Topology, boundary_is_closed_outward_and_complete) {
   const TetMesh mesh = layered_box();
   const Topology topology(mesh);
   EXPECT_EQ(topology.boundary.size(), 2u * 2 * (4 * 3 + 3 * 2 + 2 * 4));
@@ -57,7 +57,7 @@ TEST(Topology, BoundaryIsClosedOutwardAndComplete) {
   EXPECT_NEAR(six_volumes / 6.0, 40.0 * 30.0 * 20.0, 1e-8);
 }
 
-TEST(Topology, InterfacesAreListedOnceFromTheLowerRegion) {
+TEST(Topology, interfaces_are_listed_once_from_the_lower_region) {
   const TetMesh mesh = layered_box();
   const Topology topology(mesh);
   std::set<std::array<Index, 3>> seen;
@@ -76,7 +76,7 @@ TEST(Topology, InterfacesAreListedOnceFromTheLowerRegion) {
   EXPECT_LT((total - Vec3(0, 0, -40.0 * 30.0)).norm(), 1e-9);
 }
 
-TEST(Topology, NodeTetsListEveryElementOfEveryNode) {
+TEST(Topology, node_tets_list_every_element_of_every_node) {
   const TetMesh mesh = layered_box();
   const Topology topology(mesh);
   std::size_t entries = 0;

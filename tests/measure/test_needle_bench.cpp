@@ -10,7 +10,7 @@
 namespace stylet::measure {
 namespace {
 
-TEST(NeedleBench, EveryModelsDefaultIsWithinTheAccuracyPromised) {
+TEST(NeedleBench, every_models_default_is_within_the_accuracy_promised) {
   const auto rows = bench_needles();
   ASSERT_TRUE(rows.ok());
   std::map<std::string, int> defaults;
@@ -27,7 +27,7 @@ TEST(NeedleBench, EveryModelsDefaultIsWithinTheAccuracyPromised) {
   EXPECT_EQ(defaults, (std::map<std::string, int>{{"beam", 1}, {"springs", 1}, {"tet", 1}}));
 }
 
-TEST(NeedleBench, BeamAndSpringsConvergeWithTheSquareOfTheElementsNumber) {
+TEST(NeedleBench, beam_and_springs_converge_with_the_square_of_the_elements_number) {
   const auto rows = bench_needles();
   ASSERT_TRUE(rows.ok());
   for (std::size_t k = 1; k < rows->size(); ++k) {

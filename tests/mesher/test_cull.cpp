@@ -18,7 +18,7 @@ double distance_to_polygon(const Vec3& p, const Contour& c) {
   return best;
 }
 
-TEST(Cull, EveryPointReadLiesWithinTheToleranceOfWhatIsLeft) {
+TEST(Cull, every_point_read_lies_within_the_tolerance_of_what_is_left) {
   Contour c;
   for (int i = 0; i < 400; ++i) {
     const double a = 2 * std::numbers::pi * i / 400;
@@ -33,7 +33,7 @@ TEST(Cull, EveryPointReadLiesWithinTheToleranceOfWhatIsLeft) {
   EXPECT_LT(cull(c, 1.0).points.size(), cull(c, 0.05).points.size());
 }
 
-TEST(Cull, PointsOnStraightSidesAreSuperfluousAndCornersAreNot) {
+TEST(Cull, points_on_straight_sides_are_superfluous_and_corners_are_not) {
   Contour square;
   for (int side = 0; side < 4; ++side) {
     const Vec3 from(side == 1 || side == 2 ? 10 : 0, side >= 2 ? 10 : 0, 0);
@@ -43,7 +43,7 @@ TEST(Cull, PointsOnStraightSidesAreSuperfluousAndCornersAreNot) {
   EXPECT_EQ(cull(square, 0.1).points.size(), 4U);
 }
 
-TEST(Cull, WhatIsLeftIsInTheOrderReadAndCullingAgainChangesNothing) {
+TEST(Cull, what_is_left_is_in_the_order_read_and_culling_again_changes_nothing) {
   const Contour c = testing::circle(Vec3(3, 4, 5), 10, 200);
   const Contour once = cull(c, 0.2);
   const Contour twice = cull(once, 0.2);
@@ -55,7 +55,7 @@ TEST(Cull, WhatIsLeftIsInTheOrderReadAndCullingAgainChangesNothing) {
   }
 }
 
-TEST(Cull, APolygonThinnerThanTheToleranceStaysAPolygon) {
+TEST(Cull, a_polygon_thinner_than_the_tolerance_stays_a_polygon) {
   Contour sliver;
   sliver.points = {Vec3(0, 0, 0), Vec3(5, 0.01, 0), Vec3(10, 0, 0), Vec3(5, -0.01, 0)};
   EXPECT_GE(cull(sliver, 0.3).points.size(), 3U);

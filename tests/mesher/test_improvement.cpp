@@ -99,7 +99,7 @@ double volume_of(const RawMesh& m, int label) {
   return sum;
 }
 
-TEST(TetQuality, IsTheAngleInTwelfthsOfADegreeForFlatAndLargestForTheRegularTetrahedron) {
+TEST(TetQuality, is_the_angle_in_twelfths_of_a_degree_for_flat_and_largest_for_the_regular_tetrahedron) {
   const Vec3 a(1, 1, 1), b(1, -1, -1), c(-1, 1, -1), d(-1, -1, 1);
   const double regular = tet_quality(a, c, b, d) > 0 ? tet_quality(a, c, b, d) : tet_quality(a, b, c, d);
   EXPECT_NEAR(regular, 70.5288 / 12, 1e-4);
@@ -107,7 +107,7 @@ TEST(TetQuality, IsTheAngleInTwelfthsOfADegreeForFlatAndLargestForTheRegularTetr
   EXPECT_EQ(tet_quality(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)), 0);
 }
 
-TEST(Improvement, RaisesTheWorstElementAndKeepsVolumesAndSurfaces) {
+TEST(Improvement, raises_the_worst_element_and_keeps_volumes_and_surfaces) {
   const int n = 6;
   EditableMesh m(shaken_cube(n, 0.33));
   const RawMesh before = m.result();

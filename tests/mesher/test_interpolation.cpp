@@ -9,7 +9,7 @@ namespace {
 
 std::vector<Slice> slices_of(const Roi& roi) { return to_slices(roi.contours, SliceFrame{}); }
 
-TEST(SliceInterpolation, ASphereFromSlicesHasItsVolumeAndItsDistances) {
+TEST(SliceInterpolation, a_sphere_from_slices_has_its_volume_and_its_distances) {
   const double radius = 20;
   const Roi roi = testing::ellipsoid("sphere", Vec3::Zero(), Vec3::Constant(radius), 4);
   const auto shape = interpolate_slices(slices_of(roi), SliceFrame{}, 0.9, 0.5);
@@ -23,7 +23,7 @@ TEST(SliceInterpolation, ASphereFromSlicesHasItsVolumeAndItsDistances) {
   EXPECT_NEAR(shape->inner_radius(), radius, 2.0);
 }
 
-TEST(SliceInterpolation, TheSurfacePassesThroughTheContours) {
+TEST(SliceInterpolation, the_surface_passes_through_the_contours) {
   const Roi roi = testing::ellipsoid("e", Vec3(3, 2, 1), Vec3(22, 15, 18), 5);
   const auto shape = interpolate_slices(slices_of(roi), SliceFrame{}, 0.8, 0.0);
   for (std::size_t k = 1; k + 1 < roi.contours.size(); ++k) {
@@ -31,7 +31,7 @@ TEST(SliceInterpolation, TheSurfacePassesThroughTheContours) {
   }
 }
 
-TEST(SliceInterpolation, AStructureEndsHalfASliceBeyondItsLastContour) {
+TEST(SliceInterpolation, a_structure_ends_half_a_slice_beyond_its_last_contour) {
   const Roi roi = testing::tube("tube", Vec3::Zero(), 20, 10, 4);
   const auto shape = interpolate_slices(slices_of(roi), SliceFrame{}, 0.5, 0.0);
   EXPECT_LT(shape->distance(Vec3(0, 0, 21.7)), 0);
@@ -41,7 +41,7 @@ TEST(SliceInterpolation, AStructureEndsHalfASliceBeyondItsLastContour) {
   EXPECT_GT(shape->distance(Vec3(9.5, 0, 21.7)), 0) << "the cap is rounded";
 }
 
-TEST(SliceInterpolation, AnInnerContourIsAHole) {
+TEST(SliceInterpolation, an_inner_contour_is_a_hole) {
   Roi roi = testing::tube("outer", Vec3::Zero(), 20, 12, 4);
   for (const Contour& c : testing::tube("inner", Vec3::Zero(), 20, 5, 4).contours) roi.contours.push_back(c);
   const std::vector<Slice> slices = slices_of(roi);
@@ -53,7 +53,7 @@ TEST(SliceInterpolation, AnInnerContourIsAHole) {
   EXPECT_GT(shape->distance(Vec3(14, 0, 10)), 1);
 }
 
-TEST(SliceInterpolation, AMissingSliceIsBridgedAndAWideGapIsNot) {
+TEST(SliceInterpolation, a_missing_slice_is_bridged_and_a_wide_gap_is_not) {
   Roi roi = testing::tube("tube", Vec3::Zero(), 40, 8, 4);
   roi.contours.erase(roi.contours.begin() + 5);
   EXPECT_LT(interpolate_slices(slices_of(roi), SliceFrame{}, 0.6, 0)->distance(Vec3(0, 0, 20)), -5);
@@ -64,7 +64,7 @@ TEST(SliceInterpolation, AMissingSliceIsBridgedAndAWideGapIsNot) {
   EXPECT_LT(two->distance(Vec3(0, 0, 86)), -5);
 }
 
-TEST(MaskDistance, IsExactBetweenPixelCentres) {
+TEST(MaskDistance, is_exact_between_pixel_centres) {
   const int nx = 31, ny = 23;
   const double dx = 0.7, dy = 1.1;
   std::vector<bool> mask(nx * ny, false);
@@ -88,7 +88,7 @@ TEST(MaskDistance, IsExactBetweenPixelCentres) {
   EXPECT_TRUE(mask_distance(std::vector<bool>(nx * ny, false), nx, ny, dx, dy).empty());
 }
 
-TEST(Redistance, KeepsTheSurfaceAndMakesDistances) {
+TEST(Redistance, keeps_the_surface_and_makes_distances) {
   GridShape g;
   g.low = Vec3::Constant(-15);
   g.spacing = Vec3(0.8, 1.0, 1.2);
@@ -112,7 +112,7 @@ TEST(Redistance, KeepsTheSurfaceAndMakesDistances) {
   }
 }
 
-TEST(Superquadric, VolumeAndDistanceAgreeWithCounting) {
+TEST(Superquadric, volume_and_distance_agree_with_counting) {
   const Vec3 half(10, 8, 6);
   const Superquadric body(Vec3(1, 2, 3), half);
   EXPECT_NEAR(body.distance(Vec3(14, 2, 3)), 3, 1e-9);

@@ -21,7 +21,7 @@ const Result<MeshedAnatomy>& simple(Index n = 700) {
   return n == 700 ? small : large;
 }
 
-TEST(MeshContours, AGlandAloneGetsABodyWithPerinealSkinAndABand) {
+TEST(MeshContours, a_gland_alone_gets_a_body_with_perineal_skin_and_a_band) {
   const auto& m = simple();
   ASSERT_TRUE(m.ok()) << m.error().message();
   testing::expect_kept(*m, 700);
@@ -35,7 +35,7 @@ TEST(MeshContours, AGlandAloneGetsABodyWithPerinealSkinAndABand) {
   EXPECT_NEAR(apex - lowest, 28, 4) << "perineal skin to apex";
 }
 
-TEST(MeshContours, TheBandTouchesTheGlandAndTheOuterBoundary) {
+TEST(MeshContours, the_band_touches_the_gland_and_the_outer_boundary) {
   const auto& m = simple();
   ASSERT_TRUE(m.ok());
   const int band = m->mesh.region_index("band");
@@ -54,7 +54,7 @@ TEST(MeshContours, TheBandTouchesTheGlandAndTheOuterBoundary) {
   EXPECT_LT(middle.z(), 10) << "in its inferior half";
 }
 
-TEST(MeshContours, TheBandCanBeLeftOut) {
+TEST(MeshContours, the_band_can_be_left_out) {
   MeshOptions o = nodes(600);
   o.stiff_band = false;
   const auto m = mesh_contours(set_of({gland()}), o);
@@ -62,7 +62,7 @@ TEST(MeshContours, TheBandCanBeLeftOut) {
   EXPECT_FALSE(testing::has_region(*m, "band"));
 }
 
-TEST(MeshContours, TheSameInputGivesTheSameMesh) {
+TEST(MeshContours, the_same_input_gives_the_same_mesh) {
   const auto& a = simple();
   const auto b = mesh_contours(set_of({gland()}), nodes(700));
   ASSERT_TRUE(a.ok() && b.ok());
@@ -71,7 +71,7 @@ TEST(MeshContours, TheSameInputGivesTheSameMesh) {
   EXPECT_EQ(a->mesh.tet_region, b->mesh.tet_region);
 }
 
-TEST(MeshContours, FacesLieOnEveryBoundaryAndNodesAreShared) {
+TEST(MeshContours, faces_lie_on_every_boundary_and_nodes_are_shared) {
   const auto& m = simple(1500);
   ASSERT_TRUE(m.ok());
   const Topology topology(m->mesh);
@@ -92,7 +92,7 @@ TEST(MeshContours, FacesLieOnEveryBoundaryAndNodesAreShared) {
   EXPECT_NEAR(area, 4060, 0.05 * 4060) << "surface of the ellipsoid, Thomsen's formula";
 }
 
-TEST(MeshContours, ElementsAreFinerInTheTargetThanOutside) {
+TEST(MeshContours, elements_are_finer_in_the_target_than_outside) {
   const auto& m = simple(1500);
   ASSERT_TRUE(m.ok());
   const auto mean_size = [&](const std::string& name) {
@@ -102,7 +102,7 @@ TEST(MeshContours, ElementsAreFinerInTheTargetThanOutside) {
   EXPECT_LT(2 * mean_size("prostate"), mean_size("body"));
 }
 
-TEST(MeshContours, TheTargetTakesWhatItSharesWithOtherOrgansAndTheUrethraWhatItSharesWithTheTarget) {
+TEST(MeshContours, the_target_takes_what_it_shares_with_other_organs_and_the_urethra_what_it_shares_with_the_target) {
   const auto m = mesh_contours(set_of({gland(), testing::tube("Urethra", Vec3(5, -20, -10), 40, 2.7, 2),
                                        testing::ellipsoid("Bladder", Vec3(5, -22, 44), Vec3(25, 22, 20), 3)}),
                                nodes(1400));
@@ -114,7 +114,7 @@ TEST(MeshContours, TheTargetTakesWhatItSharesWithOtherOrgansAndTheUrethraWhatItS
   EXPECT_TRUE(testing::has_note(*m, "'prostate' and 'bladder' overlap"));
 }
 
-TEST(MeshContours, ABodyOfTheInputIsTheOuterBoundary) {
+TEST(MeshContours, a_body_of_the_input_is_the_outer_boundary) {
   const auto m =
       mesh_contours(set_of({gland(), testing::ellipsoid("BODY", Vec3(5, -10, 0), Vec3(60, 50, 55), 5)}), nodes(900));
   ASSERT_TRUE(m.ok()) << m.error().message();
@@ -123,7 +123,7 @@ TEST(MeshContours, ABodyOfTheInputIsTheOuterBoundary) {
   EXPECT_FALSE(testing::has_note(*m, "No body contour"));
 }
 
-TEST(MeshContours, AVeryLongBodyIsCroppedAroundTheAnatomyAndSaysSo) {
+TEST(MeshContours, a_very_long_body_is_cropped_around_the_anatomy_and_says_so) {
   const auto m = mesh_contours(set_of({gland(), testing::tube("External", Vec3(0, 0, -120), 700, 90, 10)}), nodes(900));
   ASSERT_TRUE(m.ok()) << m.error().message();
   EXPECT_TRUE(testing::has_note(*m, "cropped"));
@@ -131,7 +131,7 @@ TEST(MeshContours, AVeryLongBodyIsCroppedAroundTheAnatomyAndSaysSo) {
   testing::expect_kept(*m, 900);
 }
 
-TEST(MeshContours, AnArmBesideTheTrunkIsLeftOut) {
+TEST(MeshContours, an_arm_beside_the_trunk_is_left_out) {
   Roi body = testing::tube("BODY", Vec3(0, 0, -60), 150, 70, 5);
   for (const Contour& c : testing::tube("", Vec3(150, 0, -60), 150, 20, 5).contours) body.contours.push_back(c);
   const auto m = mesh_contours(set_of({gland(), body}), nodes(900));
@@ -141,7 +141,7 @@ TEST(MeshContours, AnArmBesideTheTrunkIsLeftOut) {
   testing::expect_kept(*m, 900);
 }
 
-TEST(MeshContours, AContourWrittenTwiceCountsOnce) {
+TEST(MeshContours, a_contour_written_twice_counts_once) {
   Roi twice = gland();
   for (const Contour& c : gland().contours) twice.contours.push_back(c);
   const auto m = mesh_contours(set_of({twice}), nodes(700));
@@ -149,7 +149,7 @@ TEST(MeshContours, AContourWrittenTwiceCountsOnce) {
   EXPECT_EQ(m->mesh.nodes, simple()->mesh.nodes);
 }
 
-TEST(MeshContours, AnOrganWithAHoleKeepsTheHole) {
+TEST(MeshContours, an_organ_with_a_hole_keeps_the_hole) {
   Roi ring = testing::tube("Rectum", Vec3(5, 20, -10), 40, 11, 4);
   for (const Contour& c : testing::tube("", Vec3(5, 20, -10), 40, 6, 4).contours) ring.contours.push_back(c);
   const auto m = mesh_contours(set_of({gland(), ring}), nodes(1400));
@@ -165,7 +165,7 @@ TEST(MeshContours, AnOrganWithAHoleKeepsTheHole) {
   }
 }
 
-TEST(MeshContours, ContoursOnObliqueSlicesGiveTheMovedGland) {
+TEST(MeshContours, contours_on_oblique_slices_give_the_moved_gland) {
   const Mat3 turn = Eigen::AngleAxisd(0.4, Vec3(1, 0.3, 0.2).normalized()).toRotationMatrix();
   ContourSet set = set_of({gland()});
   for (Contour& c : set.rois[0].contours) {
@@ -180,7 +180,7 @@ TEST(MeshContours, ContoursOnObliqueSlicesGiveTheMovedGland) {
   EXPECT_LT((centre - turn * Vec3(5, -20, 10)).norm(), 1.5);
 }
 
-TEST(MeshContours, APlanningVolumeStandsInOnlyWhereTheGlandIsNotDrawn) {
+TEST(MeshContours, a_planning_volume_stands_in_only_where_the_gland_is_not_drawn) {
   const auto both = mesh_contours(set_of({gland(), gland("PTV")}), nodes(600));
   ASSERT_TRUE(both.ok());
   EXPECT_FALSE(testing::has_region(*both, "ptv"));
@@ -193,7 +193,7 @@ TEST(MeshContours, APlanningVolumeStandsInOnlyWhereTheGlandIsNotDrawn) {
   EXPECT_TRUE(testing::has_note(*alone, "'PTV' is taken as the gland"));
 }
 
-TEST(MeshContours, RegionsAreTakenByTheNamesTheUserGives) {
+TEST(MeshContours, regions_are_taken_by_the_names_the_user_gives) {
   MeshOptions o = nodes(600);
   o.regions = {{"my volume", "prostate"}};
   const Roi bladder = testing::ellipsoid("Bladder", Vec3(5, -22, 48), Vec3(18, 16, 14), 3);
@@ -203,7 +203,7 @@ TEST(MeshContours, RegionsAreTakenByTheNamesTheUserGives) {
   EXPECT_TRUE(testing::has_region(*m, "bladder"));
 }
 
-TEST(MeshContours, ZonesThatMakeUpTheGlandShareItWithoutGaps) {
+TEST(MeshContours, zones_that_make_up_the_gland_share_it_without_gaps) {
   Roi front = testing::ellipsoid("TZ", Vec3(5, -20, 10), Vec3(20, 16, 18), 3);
   Roi back = testing::ellipsoid("PZ", Vec3(5, -20, 10), Vec3(20, 16, 18), 3);
   for (Contour& c : front.contours) {
@@ -220,7 +220,7 @@ TEST(MeshContours, ZonesThatMakeUpTheGlandShareItWithoutGaps) {
   EXPECT_TRUE(testing::has_note(*m, "zones make up the prostate"));
 }
 
-TEST(MeshContours, ThePaperPresetMeshesTheGlandAndItsSurroundingsOnly) {
+TEST(MeshContours, the_paper_preset_meshes_the_gland_and_its_surroundings_only) {
   MeshOptions o;
   o.preset = MeshPreset::paper;
   const auto m =
@@ -231,7 +231,7 @@ TEST(MeshContours, ThePaperPresetMeshesTheGlandAndItsSurroundingsOnly) {
   testing::expect_kept(*m, 570, {.smallest_angle = 9.9, .largest_angle = 168, .total_volume = 0.1});
 }
 
-TEST(MeshContours, ReportCountsContourPointsAndDistances) {
+TEST(MeshContours, report_counts_contour_points_and_distances) {
   const auto& m = simple();
   ASSERT_TRUE(m.ok());
   EXPECT_EQ(m->report.contour_points, 12 * 48);

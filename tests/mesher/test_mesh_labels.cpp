@@ -12,7 +12,7 @@ MeshOptions zones(Index n) {
   return o;
 }
 
-TEST(MeshLabels, TwoZonesShareTheirBoundaryAndKeepTheirVolumes) {
+TEST(MeshLabels, two_zones_share_their_boundary_and_keep_their_volumes) {
   const auto m = mesh_labels(testing::two_zones(), zones(1000));
   ASSERT_TRUE(m.ok()) << m.error().message();
   testing::expect_kept(*m, 1000);
@@ -26,7 +26,7 @@ TEST(MeshLabels, TwoZonesShareTheirBoundaryAndKeepTheirVolumes) {
   EXPECT_GT(between, 50);
 }
 
-TEST(MeshLabels, AnObliqueLeftHandedFrameGivesTheMovedZones) {
+TEST(MeshLabels, an_oblique_left_handed_frame_gives_the_moved_zones) {
   const Mat3 turn = Eigen::AngleAxisd(0.3, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
   Mat3 mirrored = turn;
   mirrored.col(0) *= -1;
@@ -54,7 +54,7 @@ TEST(MeshLabels, AnObliqueLeftHandedFrameGivesTheMovedZones) {
   EXPECT_GT(right, 0.97 * all);
 }
 
-TEST(MeshLabels, TheSliceAxisMayBeAnyImageAxis) {
+TEST(MeshLabels, the_slice_axis_may_be_any_image_axis) {
   const LabelImage image = testing::two_zones();
   LabelImage turned = image;  // (i, j, k) → (k, i, j)
   turned.size = {14, 64, 56};
@@ -76,7 +76,7 @@ TEST(MeshLabels, TheSliceAxisMayBeAnyImageAxis) {
   EXPECT_EQ(a->mesh.tets, b->mesh.tets);
 }
 
-TEST(MeshLabels, UnnamedLabelsAreAllTheTarget) {
+TEST(MeshLabels, unnamed_labels_are_all_the_target) {
   MeshOptions o;
   o.nodes = 900;
   const auto m = mesh_labels(testing::two_zones(), o);
@@ -86,7 +86,7 @@ TEST(MeshLabels, UnnamedLabelsAreAllTheTarget) {
   EXPECT_TRUE(testing::has_note(*m, "all labels together count as the target"));
 }
 
-TEST(MeshLabels, NamesInTheFileAreUsed) {
+TEST(MeshLabels, names_in_the_file_are_used) {
   LabelImage image = testing::two_zones();
   image.names = {{1, "PZ"}, {2, "Transition Zone"}};
   MeshOptions o;
@@ -97,7 +97,7 @@ TEST(MeshLabels, NamesInTheFileAreUsed) {
   EXPECT_TRUE(testing::has_region(*m, "transition_zone"));
 }
 
-TEST(MeshLabels, ALabelledBodyIsTheOuterBoundary) {
+TEST(MeshLabels, a_labelled_body_is_the_outer_boundary) {
   LabelImage image = testing::two_zones();
   image.size = {64, 56, 14};
   std::size_t n = 0;
@@ -117,7 +117,7 @@ TEST(MeshLabels, ALabelledBodyIsTheOuterBoundary) {
   testing::expect_kept(*m, 1200);
 }
 
-TEST(MeshLabels, ALesionLabelledInTheGlandLeavesNoHoleInIt) {
+TEST(MeshLabels, a_lesion_labelled_in_the_gland_leaves_no_hole_in_it) {
   LabelImage image = testing::two_zones();
   const LabelImage without = image;
   for (int k = 6; k < 9; ++k) {
@@ -135,7 +135,7 @@ TEST(MeshLabels, ALesionLabelledInTheGlandLeavesNoHoleInIt) {
   EXPECT_TRUE(testing::has_note(*m, "'GTV' is taken as part of transition_zone"));
 }
 
-TEST(MeshLabels, ALabelLeftOutOfABodyIsTissueOfTheBody) {
+TEST(MeshLabels, a_label_left_out_of_a_body_is_tissue_of_the_body) {
   LabelImage image = testing::two_zones();
   std::size_t n = 0;
   for (int k = 0; k < 14; ++k) {
@@ -164,7 +164,7 @@ TEST(MeshLabels, ALabelLeftOutOfABodyIsTissueOfTheBody) {
   EXPECT_NEAR(b.volume_cc, a.volume_cc, 0.01 * a.volume_cc);
 }
 
-TEST(MeshLabels, StrayVoxelsAndLabelsThinnerThanAVoxelAreLeftOutWithANote) {
+TEST(MeshLabels, stray_voxels_and_labels_thinner_than_a_voxel_are_left_out_with_a_note) {
   LabelImage image = testing::two_zones();
   image.labels[(2 * 56 + 3) * 64 + 4] = 2;    // far from the gland
   image.labels[(7 * 56 + 28) * 64 + 50] = 9;  // in the middle of the gland, a label of one voxel
@@ -180,7 +180,7 @@ TEST(MeshLabels, StrayVoxelsAndLabelsThinnerThanAVoxelAreLeftOutWithANote) {
   EXPECT_LT(box.sizes().x(), 45);
 }
 
-TEST(MeshLabels, ThePaperPresetJoinsTheZones) {
+TEST(MeshLabels, the_paper_preset_joins_the_zones) {
   MeshOptions o = zones(0);
   o.preset = MeshPreset::paper;
   const auto m = mesh_labels(testing::two_zones(), o);

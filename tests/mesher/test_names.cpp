@@ -6,7 +6,7 @@
 namespace stylet {
 namespace {
 
-TEST(CanonicalRegion, UsualNamesAreRecognisedWhateverTheirCaseAndSeparators) {
+TEST(CanonicalRegion, usual_names_are_recognised_whatever_their_case_and_separators) {
   const std::vector<std::pair<std::string, std::string>> names{{"Prostate", "prostate"},
                                                                {"PROS", "prostate"},
                                                                {"prostate_gland", "prostate"},
@@ -42,7 +42,7 @@ TEST(CanonicalRegion, UsualNamesAreRecognisedWhateverTheirCaseAndSeparators) {
   for (const auto& [name, canonical] : names) EXPECT_EQ(canonical_region(name), canonical) << name;
 }
 
-TEST(CanonicalRegion, ZonesAreRecognisedAsPeopleWriteThem) {
+TEST(CanonicalRegion, zones_are_recognised_as_people_write_them) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> names{
       {"peripheral_zone",
        {"peripheral", "PZ", "pz", "peripheral zone", "Peripheral_Zone", "PeripheralZone", "PZ_left", "L PZ", "PZ-R",
@@ -64,7 +64,7 @@ TEST(CanonicalRegion, ZonesAreRecognisedAsPeopleWriteThem) {
   }
 }
 
-TEST(CanonicalRegion, ACanonicalNameIsItsOwnSynonym) {
+TEST(CanonicalRegion, a_canonical_name_is_its_own_synonym) {
   for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "central_zone", "anterior_stroma",
                                  "urethra", "bladder", "rectum", "pubic_arch", "femur_left", "femur_right", "band",
                                  "body", "seminal_vesicles", "ctv", "target", "ptv", "gtv"}) {
@@ -72,7 +72,7 @@ TEST(CanonicalRegion, ACanonicalNameIsItsOwnSynonym) {
   }
 }
 
-TEST(CanonicalRegion, PlanningHelpersAndChannelsAreNotAnatomy) {
+TEST(CanonicalRegion, planning_helpers_and_channels_are_not_anatomy) {
   for (const std::string name :
        {"optBladder", "optRectum", "X1", "XApprox", "a5.5", "B4.5", "Prostate+5mm", "PTV-Rectum", "Vessels - left",
         "ring", "", "  ", "Rectum_in_PTV", "Femoral Head", "PTVboost"}) {
@@ -80,7 +80,7 @@ TEST(CanonicalRegion, PlanningHelpersAndChannelsAreNotAnatomy) {
   }
 }
 
-TEST(TargetRegion, GlandAndZonesAndPlanningVolumesAreTargetsAndOrgansAreNot) {
+TEST(TargetRegion, gland_and_zones_and_planning_volumes_are_targets_and_organs_are_not) {
   for (const std::string name : {"prostate", "peripheral_zone", "transition_zone", "ctv", "target", "ptv", "gtv"}) {
     EXPECT_TRUE(is_target_region(name)) << name;
   }

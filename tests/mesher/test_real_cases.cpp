@@ -76,9 +76,11 @@ constexpr const char* kCases[] = {"prostate_00", "prostate_14",  "prostate_17", 
                                   "prostate_25", "prostate_41",  "prostate_44", "prostate_46",
                                   "rando",       "robustbrachy", "demo"};
 
-TEST_P(RealCase, AtDefaultSizeAnglesAre12To165DegreesAndVolumesMet) { expect_promise(3000, MeshPreset::standard, {}); }
+TEST_P(RealCase, at_default_size_angles_are_12_to_165_degrees_and_volumes_met) {
+  expect_promise(3000, MeshPreset::standard, {});
+}
 
-TEST_P(RealCase, ThePaperPresetHas570NodesAndAnglesAbove9Degrees) {
+TEST_P(RealCase, the_paper_preset_has_570_nodes_and_angles_above_9_degrees) {
   expect_promise(
       570, MeshPreset::paper,
       {.smallest_angle = 9.9, .largest_angle = 170, .region_volume = 0.1, .total_volume = 0.1, .nodes = 0.026});
@@ -90,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(All, RealCase, ::testing::ValuesIn(kCases),
 /// Angles and node count are guaranteed at any size, volumes from the default size upwards.
 class AnySize : public RealCase {};
 
-TEST_P(AnySize, AnglesAndNodeCountHoldFrom1000To10000Nodes) {
+TEST_P(AnySize, angles_and_node_count_hold_from_1000_to_10000_nodes) {
   for (const Index nodes : {1000, 10000}) {
     const double volume = nodes < 3000 ? 0.2 : 0.08;
     expect_promise(nodes, MeshPreset::standard,
@@ -101,7 +103,7 @@ TEST_P(AnySize, AnglesAndNodeCountHoldFrom1000To10000Nodes) {
 INSTANTIATE_TEST_SUITE_P(Some, AnySize, ::testing::Values("prostate_41", "robustbrachy", "rando", "demo"),
                          [](const auto& i) { return std::string(i.param); });
 
-TEST(RealMask, MeshingTwiceGivesTheSameMesh) {
+TEST(RealMask, meshing_twice_gives_the_same_mesh) {
   if (!std::filesystem::exists(data_folder() / path_of("prostate_00")))
     GTEST_SKIP() << "no real cases at " << data_folder() << " (set STYLET_SHARED_DATA to their folder)";
   const auto a = mesh_case("prostate_00", {});

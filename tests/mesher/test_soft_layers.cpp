@@ -63,7 +63,7 @@ double volume(const MeshedAnatomy& m, const std::string& name) {
   return sum;
 }
 
-TEST(SoftLayers, AllAreMadeAndTheMeshIsAsGoodAsWithoutThem) {
+TEST(SoftLayers, all_are_made_and_the_mesh_is_as_good_as_without_them) {
   const auto& m = pelvis();
   ASSERT_TRUE(m.ok()) << m.error().message();
   testing::expect_kept(*m, kNodes);
@@ -74,7 +74,7 @@ TEST(SoftLayers, AllAreMadeAndTheMeshIsAsGoodAsWithoutThem) {
   EXPECT_TRUE(testing::has_note(*m, "7 mm of fat around the gland")) << "the user is told what was added";
 }
 
-TEST(SoftLayers, EachLiesWhereItBelongs) {
+TEST(SoftLayers, each_lies_where_it_belongs) {
   const auto& m = pelvis();
   ASSERT_TRUE(m.ok());
   constexpr double kOff = 2.5;  // [mm] because faces are flat and the ellipsoid's distance is of first order
@@ -100,7 +100,7 @@ TEST(SoftLayers, EachLiesWhereItBelongs) {
 
 /// The volume of the shell between two ellipsoids, without what neighbours of the gland take of it, which is little
 /// here.
-TEST(SoftLayers, TheFatRoundTheGlandIsAsThickAsAskedFor) {
+TEST(SoftLayers, the_fat_round_the_gland_is_as_thick_as_asked_for) {
   MeshOptions o;
   o.nodes = kNodes;
   o.stiff_band = false;
@@ -115,7 +115,7 @@ TEST(SoftLayers, TheFatRoundTheGlandIsAsThickAsAskedFor) {
 }
 
 /// From the skin inwards along the axis, the first layer is fat of the wanted thickness.
-TEST(SoftLayers, TheFatUnderTheSkinIsAsThickAsAskedFor) {
+TEST(SoftLayers, the_fat_under_the_skin_is_as_thick_as_asked_for) {
   const auto& m = pelvis();
   ASSERT_TRUE(m.ok());
   const Topology topology(m->mesh);
@@ -139,7 +139,7 @@ TEST(SoftLayers, TheFatUnderTheSkinIsAsThickAsAskedFor) {
   EXPECT_NEAR(sum / ways, kSkinFat, 0.8);
 }
 
-TEST(SoftLayers, WhatTheInputHasIsNotMade) {
+TEST(SoftLayers, what_the_input_has_is_not_made) {
   const auto m = mesh_contours(
       set_of({gland(), testing::ellipsoid("Levator ani", kCentre + Vec3(0, 0, -26), {22, 12, 4}, 1.5)}), with_layers());
   ASSERT_TRUE(m.ok()) << m.error().message();
@@ -148,7 +148,7 @@ TEST(SoftLayers, WhatTheInputHasIsNotMade) {
   EXPECT_TRUE(testing::has_region(*m, "periprostatic_fat"));
 }
 
-TEST(SoftLayers, ZeroLeavesALayerOut) {
+TEST(SoftLayers, zero_leaves_a_layer_out) {
   MeshOptions o = with_layers();
   o.layers.levator_mm = 0;
   o.layers.rectal_wall_mm = 0;
@@ -159,7 +159,7 @@ TEST(SoftLayers, ZeroLeavesALayerOut) {
   EXPECT_TRUE(testing::has_region(*m, "periprostatic_fat"));
 }
 
-TEST(SoftLayers, TheRectumKeepsItsOuterVolume) {
+TEST(SoftLayers, the_rectum_keeps_its_outer_volume) {
   const auto& m = pelvis();
   ASSERT_TRUE(m.ok());
   constexpr int kCorners = 24, kSlices = 19;  // of testing::tube(), 3 mm apart
@@ -168,7 +168,7 @@ TEST(SoftLayers, TheRectumKeepsItsOuterVolume) {
   EXPECT_NEAR((volume(*m, "rectum") + volume(*m, "rectal_lumen")) / whole, 1.0, 0.05);
 }
 
-TEST(SoftLayers, ARectumTooThinForAWallIsMeshedAsOneAndThatIsSaid) {
+TEST(SoftLayers, a_rectum_too_thin_for_a_wall_is_meshed_as_one_and_that_is_said) {
   const auto m =
       mesh_contours(set_of({gland(), tube("Rectum", kRectumAxis + Vec3(0, 0, -25), 55, 5, 3)}), with_layers());
   ASSERT_TRUE(m.ok()) << m.error().message();
@@ -176,14 +176,14 @@ TEST(SoftLayers, ARectumTooThinForAWallIsMeshedAsOneAndThatIsSaid) {
   EXPECT_TRUE(testing::has_note(*m, "too thin for a wall"));
 }
 
-TEST(SoftLayers, MasksGetThemToo) {
+TEST(SoftLayers, masks_get_them_too) {
   const auto m = mesh_labels(testing::two_zones(), with_layers());
   ASSERT_TRUE(m.ok()) << m.error().message();
   for (const char* name : {"periprostatic_fat", "levator", "ischiorectal_fat", "subcutaneous_fat"})
     EXPECT_TRUE(testing::has_region(*m, name)) << name;
 }
 
-TEST(SoftLayers, ThePresetOfThePaperHasNone) {
+TEST(SoftLayers, the_preset_of_the_paper_has_none) {
   MeshOptions o;
   o.preset = MeshPreset::paper;
   const auto m = mesh_contours(set_of({gland()}), o);

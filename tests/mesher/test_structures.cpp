@@ -43,25 +43,25 @@ bool says(const StructureChoice& choice, const std::string& text) {
 
 using Regions = std::vector<std::string>;
 
-TEST(Structures, APlanningVolumeIsTheGlandWhereNoneIsDrawnAndThisIsSaid) {
+TEST(Structures, a_planning_volume_is_the_gland_where_none_is_drawn_and_this_is_said) {
   const StructureChoice choice = chosen({roi("PTV", "PTV"), roi("Bladder", "AVOIDANCE")});
   EXPECT_EQ(regions(choice), (Regions{"prostate", "bladder"}));
   EXPECT_TRUE(choice.has_target);
   EXPECT_TRUE(says(choice, "structure 'PTV' (type PTV) is taken as the gland, since no structure is named prostate"));
 }
 
-TEST(Structures, TheTypeTellsAPlanningVolumeWhoseNameDoesNot) {
+TEST(Structures, the_type_tells_a_planning_volume_whose_name_does_not) {
   const StructureChoice choice = chosen({roi("P+SV 76", "CTV"), roi("Rectum", "PTV")});
   EXPECT_EQ(regions(choice), (Regions{"prostate", "rectum"})) << "a name that is recognised counts more than a type";
   EXPECT_TRUE(says(choice, "'P+SV 76' (type CTV) is taken as the gland"));
 }
 
-TEST(Structures, AStructureCalledTargetIsOne) {
+TEST(Structures, a_structure_called_target_is_one) {
   for (const char* name : {"Target", "target", "TARGET_1", "Zielvolumen"})
     EXPECT_EQ(regions(chosen({roi(name)})), Regions{"prostate"}) << name;
 }
 
-TEST(Structures, TheLikeliestGlandIsPreferredAndTheOthersAreLeftOut) {
+TEST(Structures, the_likeliest_gland_is_preferred_and_the_others_are_left_out) {
   const StructureChoice choice = chosen({roi("GTV"), roi("PTV"), roi("Target"), roi("CTV 2"), roi("CTV")});
   EXPECT_EQ(regions(choice), (Regions{"", "", "", "", "prostate"}));
   EXPECT_TRUE(
@@ -71,12 +71,12 @@ TEST(Structures, TheLikeliestGlandIsPreferredAndTheOthersAreLeftOut) {
   EXPECT_TRUE(says(chosen({roi("GTV")}), "only a lesion"));
 }
 
-TEST(Structures, AVolumeNamedAfterTheGlandGoesBeforeOthersOfAnyKind) {
+TEST(Structures, a_volume_named_after_the_gland_goes_before_others_of_any_kind) {
   EXPECT_EQ(regions(chosen({roi("CTV_LN", "CTV"), roi("PTV1_prostate", "PTV")})), (Regions{"", "prostate"}));
   EXPECT_EQ(regions(chosen({roi("CTV"), roi("CTVprostate")})), (Regions{"", "prostate"}));
 }
 
-TEST(Structures, VolumesOfNodesAndBoostsStandInOnlyWhereThereIsNoOther) {
+TEST(Structures, volumes_of_nodes_and_boosts_stand_in_only_where_there_is_no_other) {
   for (const char* name : {"CTV_LN", "LN1", "CTV nodal", "PelvicNodes", "CTV-Boost", "CTV_prost_boost"})
     EXPECT_EQ(regions(chosen({roi(name, "CTV"), roi("GTV")})), (Regions{"", "prostate"})) << name;
   EXPECT_EQ(regions(chosen({roi("CTV_LN", "CTV"), roi("Prost boost", "CTV")})), (Regions{"", "prostate"}));
@@ -84,7 +84,7 @@ TEST(Structures, VolumesOfNodesAndBoostsStandInOnlyWhereThereIsNoOther) {
   EXPECT_EQ(regions(chosen({roi("PlanVol", "CTV"), roi("GTV")})), (Regions{"prostate", ""})) << "ln as a word only";
 }
 
-TEST(Structures, AnEmptyPlanningVolumeIsNoGland) {
+TEST(Structures, an_empty_planning_volume_is_no_gland) {
   Roi empty;
   empty.name = "CTV";
   ContourSet set = set_of({empty, roi("PTV")});
@@ -97,19 +97,19 @@ TEST(Structures, AnEmptyPlanningVolumeIsNoGland) {
   EXPECT_TRUE(says(*choice, "structure is left out (only open curves or points): 'needle A5'"));
 }
 
-TEST(Structures, PlanningVolumesAreLeftOutWhereTheGlandIsDrawn) {
+TEST(Structures, planning_volumes_are_left_out_where_the_gland_is_drawn) {
   const StructureChoice choice = chosen({roi("Prostate", "CTV"), roi("PTV", "PTV"), roi("Boost", "GTV")});
   EXPECT_EQ(regions(choice), (Regions{"prostate", "", ""}));
   EXPECT_TRUE(says(choice, "left out (planning volume, and the gland is drawn): 'PTV', 'Boost'"));
 }
 
-TEST(Structures, OfTypeExternalIsTheBodyUnderAnyName) {
+TEST(Structures, of_type_external_is_the_body_under_any_name) {
   EXPECT_EQ(regions(chosen({roi("Prostate"), roi("Outer 3", "EXTERNAL")})), (Regions{"prostate", "body"}));
   EXPECT_EQ(regions(chosen({roi("Prostate"), roi("Outer 3", "EXTERNAL"), roi("BODY")})),
             (Regions{"prostate", "", "body"}));
 }
 
-TEST(Structures, NamingOneLeavesTheOthersRecognised) {
+TEST(Structures, naming_one_leaves_the_others_recognised) {
   MeshOptions options;
   options.regions = {{"my volume", "prostate"}};
   const StructureChoice choice =
@@ -120,7 +120,7 @@ TEST(Structures, NamingOneLeavesTheOthersRecognised) {
   EXPECT_TRUE(says(choice, "'PTV'"));
 }
 
-TEST(Structures, NamingOneHalfKeepsTheOther) {
+TEST(Structures, naming_one_half_keeps_the_other) {
   MeshOptions options;
   options.regions = {{"PZ_left", "peripheral_zone"}};
   const StructureChoice choice = chosen({roi("PZ_left"), roi("PZ_right"), roi("PZ"), roi("L PZ")}, options);
@@ -133,7 +133,7 @@ TEST(Structures, NamingOneHalfKeepsTheOther) {
       << "another drawing of the same side";
 }
 
-TEST(Structures, NamesAreFoundWhateverTheirCase) {
+TEST(Structures, names_are_found_whatever_their_case) {
   MeshOptions options;
   options.regions = {{"MY VOLUME", "target"}};
   options.skip = {"bladder"};
@@ -142,7 +142,7 @@ TEST(Structures, NamesAreFoundWhateverTheirCase) {
   EXPECT_TRUE(says(choice, "left out (named in [patient] skip): 'Bladder'"));
 }
 
-TEST(Structures, SkippedStructuresAreNoTargetEither) {
+TEST(Structures, skipped_structures_are_no_target_either) {
   MeshOptions options;
   options.skip = {"CTV"};
   EXPECT_EQ(regions(chosen({roi("CTV"), roi("PTV")}, options)), (Regions{"", "prostate"}));
@@ -150,7 +150,7 @@ TEST(Structures, SkippedStructuresAreNoTargetEither) {
   EXPECT_FALSE(chosen({roi("CTV"), roi("PTV")}, options).has_target);
 }
 
-TEST(Structures, ANameToSkipThatIsNotThereIsRefusedWithTheNearest) {
+TEST(Structures, a_name_to_skip_that_is_not_there_is_refused_with_the_nearest) {
   MeshOptions options;
   options.skip = {"Rektum"};
   EXPECT_NE(refusal({roi("Prostate"), roi("Rectum")}, options).find("Did you mean 'Rectum'?"), std::string::npos);
@@ -160,7 +160,7 @@ TEST(Structures, ANameToSkipThatIsNotThereIsRefusedWithTheNearest) {
             std::string::npos);
 }
 
-TEST(Structures, AnEmptyNameToSkipIsRefused) {
+TEST(Structures, an_empty_name_to_skip_is_refused) {
   MeshOptions options;
   options.skip = {""};
   EXPECT_NE(refusal({roi("Prostate"), roi("Rectum")}, options).find("patient.skip: there is no structure ''"),
@@ -168,7 +168,7 @@ TEST(Structures, AnEmptyNameToSkipIsRefused) {
       << "it must not mean all of them";
 }
 
-TEST(Structures, WhatThePaperPresetLeavesOutIsSaid) {
+TEST(Structures, what_the_paper_preset_leaves_out_is_said) {
   MeshOptions options;
   options.preset = MeshPreset::paper;
   const StructureChoice choice = chosen({roi("PZ"), roi("TZ"), roi("Bladder"), roi("Band")}, options);
@@ -184,7 +184,7 @@ LabelImage named_mask(const std::map<int, std::string>& names) {
   return image;
 }
 
-TEST(Structures, LabelsAreSkippedByNameOrNumber) {
+TEST(Structures, labels_are_skipped_by_name_or_number) {
   const LabelImage image = named_mask({{1, "PZ"}, {2, "TZ"}, {3, "Bladder"}});
   MeshOptions options;
   options.skip = {"BLADDER", "4"};
@@ -198,7 +198,7 @@ TEST(Structures, LabelsAreSkippedByNameOrNumber) {
   EXPECT_NE(wrong.error().message().find("Did you mean 'Bladder'?"), std::string::npos);
 }
 
-TEST(Structures, ALabelThatTheReaderHasSkippedIsSaidToBe) {
+TEST(Structures, a_label_that_the_reader_has_skipped_is_said_to_be) {
   LabelImage image = testing::two_zones();
   image.names = {{1, "PZ"}, {2, "TZ"}, {3, "Urethra"}};
   MeshOptions options;
@@ -212,7 +212,7 @@ TEST(Structures, ALabelThatTheReaderHasSkippedIsSaidToBe) {
   EXPECT_NE(both.error().message().find("patient.skip and in patient.regions"), std::string::npos);
 }
 
-TEST(Structures, NamingOneLabelLeavesTheOthersRecognised) {
+TEST(Structures, naming_one_label_leaves_the_others_recognised) {
   MeshOptions options;
   options.regions = {{"1", "prostate"}};
   const auto choice = choose_structures(named_mask({{1, "blob"}, {2, "Bladder"}}), options);
@@ -221,7 +221,7 @@ TEST(Structures, NamingOneLabelLeavesTheOthersRecognised) {
   EXPECT_TRUE(says(*choice, "left out (name not recognised): '3', '4'"));
 }
 
-TEST(Structures, LabelsOfOneRegionAreUnitedWhereOneOfThemIsNamed) {
+TEST(Structures, labels_of_one_region_are_united_where_one_of_them_is_named) {
   MeshOptions options;
   options.regions = {{"1", "peripheral_zone"}};
   const auto choice =
@@ -231,7 +231,7 @@ TEST(Structures, LabelsOfOneRegionAreUnitedWhereOneOfThemIsNamed) {
   EXPECT_TRUE(says(*choice, "label 'PZ_right' is taken as peripheral_zone together with 'PZ_left'"));
 }
 
-TEST(Structures, ALabelCalledTargetIsTheGland) {
+TEST(Structures, a_label_called_target_is_the_gland) {
   const auto choice = choose_structures(named_mask({{1, "Target"}, {2, "Rectum"}}), {});
   ASSERT_TRUE(choice.ok()) << choice.error().message();
   EXPECT_EQ(regions(*choice), (Regions{"prostate", "rectum", "label_3", "label_4"}));
@@ -250,7 +250,7 @@ void fill(LabelImage& image, int label, const std::array<int, 3>& from, const st
   }
 }
 
-TEST(Structures, APlanningLabelWithinTheGlandIsPartOfIt) {
+TEST(Structures, a_planning_label_within_the_gland_is_part_of_it) {
   LabelImage image = testing::two_zones();
   fill(image, 3, {28, 32, 6}, {36, 46, 9});  // most of it is in the posterior zone
   fill(image, 5, {30, 36, 7}, {32, 40, 8});  // within the other planning volume
@@ -264,7 +264,7 @@ TEST(Structures, APlanningLabelWithinTheGlandIsPartOfIt) {
   EXPECT_TRUE(says(*choice, "left out (planning volume, and the gland is drawn): 'PTV'"));
 }
 
-TEST(Structures, PlanningLabelsAroundTheGlandStayLeftOut) {
+TEST(Structures, planning_labels_around_the_gland_stay_left_out) {
   LabelImage image = testing::two_zones();
   fill(image, 0, {0, 0, 0}, {64, 56, 14});
   fill(image, 3, {10, 10, 2}, {50, 46, 12});
@@ -276,7 +276,7 @@ TEST(Structures, PlanningLabelsAroundTheGlandStayLeftOut) {
   EXPECT_EQ(regions(*choice), (Regions{"prostate", "", ""})) << "a margin is no part of the gland";
 }
 
-TEST(Structures, APlanningLabelWithinTheOneTakenAsTheGlandIsPartOfIt) {
+TEST(Structures, a_planning_label_within_the_one_taken_as_the_gland_is_part_of_it) {
   LabelImage image = testing::two_zones();
   for (std::uint16_t& label : image.labels) label = label == 0 ? 0 : 1;
   fill(image, 2, {28, 24, 6}, {36, 32, 9});

@@ -61,7 +61,7 @@ auto difference(BeamShape shape, Eigen::Index i, double h, Function&& function) 
   return Value((8.0 * (near_plus - near_minus) - (far_plus - far_minus)) / (12.0 * h));
 }
 
-TEST(StumpffFunctions, MeetTheirRecurrenceAndTheCircularFunctionsAtAnySize) {
+TEST(StumpffFunctions, meet_their_recurrence_and_the_circular_functions_at_any_size) {
   for (const double x : {0.0, 1e-12, 1e-4, 0.3, 1.0, 3.999, 4.001, 20.0, 400.0}) {
     const auto c = beam::stumpff(x);
     const double theta = std::sqrt(x);
@@ -75,7 +75,7 @@ TEST(StumpffFunctions, MeetTheirRecurrenceAndTheCircularFunctionsAtAnySize) {
   }
 }
 
-TEST(RotationTerms, AgreeWithTheAngleAxisFormulaAndItsMean) {
+TEST(RotationTerms, agree_with_the_angle_axis_formula_and_its_mean) {
   for (const double angle : {1e-9, 1e-3, 0.3, 1.5, 2.5, 7.0}) {
     const Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
     const RotationTerms terms(angle * axis);
@@ -96,7 +96,7 @@ TEST(RotationTerms, AgreeWithTheAngleAxisFormulaAndItsMean) {
   }
 }
 
-TEST(BeamDerivatives, GradientIsTheDerivativeOfThePotentialEnergy) {
+TEST(BeamDerivatives, gradient_is_the_derivative_of_the_potential_energy) {
   const auto loads = assorted_loads();
   for (const double angle : {0.0, 1e-6, 0.05, 0.3, 1.0, 2.4}) {
     const BeamShape shape = curved(8, angle);
@@ -109,7 +109,7 @@ TEST(BeamDerivatives, GradientIsTheDerivativeOfThePotentialEnergy) {
   }
 }
 
-TEST(BeamDerivatives, HessianIsTheDerivativeOfTheGradientAndSymmetric) {
+TEST(BeamDerivatives, hessian_is_the_derivative_of_the_gradient_and_symmetric) {
   const auto loads = assorted_loads();
   for (const double angle : {0.0, 1e-6, 0.05, 0.3, 1.0, 2.4}) {
     const BeamShape shape = curved(8, angle);
@@ -123,7 +123,7 @@ TEST(BeamDerivatives, HessianIsTheDerivativeOfTheGradientAndSymmetric) {
   }
 }
 
-TEST(BeamDerivatives, ResidualIsTheLargestElementGradientPerUnitLength) {
+TEST(BeamDerivatives, residual_is_the_largest_element_gradient_per_unit_length) {
   const auto loads = assorted_loads();
   const BeamShape shape = curved(8, 0.3);
   const VecX g = gradient(shape, tilted(), loads);
@@ -133,7 +133,7 @@ TEST(BeamDerivatives, ResidualIsTheLargestElementGradientPerUnitLength) {
   EXPECT_NEAR(tangent.largest_imbalance(shape, tilted(), loads), largest, 1e-11 * largest);
 }
 
-TEST(BeamTangent, CompliancesAndStepsEqualTheDenseFormulae) {
+TEST(BeamTangent, compliances_and_steps_equal_the_dense_formulae) {
   const auto loads = assorted_loads();
   for (const int elements : {5, 8, 24, 40}) {
     BeamShape shape = curved(elements, 0.1);
@@ -178,7 +178,7 @@ TEST(BeamTangent, CompliancesAndStepsEqualTheDenseFormulae) {
   }
 }
 
-TEST(BeamTangent, StaysPositiveDefiniteFarBeyondBuckling) {
+TEST(BeamTangent, stays_positive_definite_far_beyond_buckling) {
   for (const double push : {3.0, 20.0, 500.0}) {
     BeamShape shape = curved(24, 0.01);
     BeamTangent tangent(shape, 2);

@@ -20,7 +20,7 @@ struct Elastica : stylet::Elastica {
 
 double slope(const Needle& needle, double s) { return std::asin(needle.tangent(s).x()); }
 
-TEST(BeamLargeDeflection, FollowsTheElasticaToSixtyDegreesWithinOnePercent) {
+TEST(BeamLargeDeflection, follows_the_elastica_to_sixty_degrees_within_one_percent) {
   const auto needle = test::beam(24);
   for (const double degrees : {5.0, 20.0, 40.0, 60.0}) {
     const Elastica exact(degrees * kDegree);
@@ -35,7 +35,7 @@ TEST(BeamLargeDeflection, FollowsTheElasticaToSixtyDegreesWithinOnePercent) {
 }
 
 /// Computes a table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
-TEST(BeamLargeDeflection, ErrorFallsWithTheSquareOfTheElementLength) {
+TEST(BeamLargeDeflection, error_falls_with_the_square_of_the_element_length) {
   const Elastica exact(60.0 * kDegree);
   const std::vector<PointLoad> loads = {{kLength, {exact.force, 0, 0}}};
   double previous = 0.0;
@@ -63,7 +63,7 @@ double lateral_compliance(double push) {
   return test::compliance_of(*needle, loads)(0, 0);
 }
 
-TEST(BeamBuckling, LateralComplianceFollowsTheBeamColumnAndDivergesAtEulersLoad) {
+TEST(BeamBuckling, lateral_compliance_follows_the_beam_column_and_diverges_at_eulers_load) {
   const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
   for (const double share : {0.2, 0.5, 0.8}) {
     const double push = share * euler;
@@ -80,7 +80,7 @@ TEST(BeamBuckling, LateralComplianceFollowsTheBeamColumnAndDivergesAtEulersLoad)
   EXPECT_NEAR(critical, euler, 0.01 * euler);
 }
 
-TEST(BeamBuckling, PushedPastEulersLoadItFindsTheBentEquilibrium) {
+TEST(BeamBuckling, pushed_past_eulers_load_it_finds_the_bent_equilibrium) {
   const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
   // Post-buckling elastica whose tip slope is 60° to the axis: P/P_E = (2 K(sin 30°)/π)².
   const double k = std::sin(30.0 * kDegree);
@@ -158,7 +158,7 @@ class ShootingRod {
   double twist_ = 0.0;
 };
 
-TEST(BeamLargeDeflection, BentOutOfPlaneItAgreesWithAShootingSolutionAndDoesNotTwist) {
+TEST(BeamLargeDeflection, bent_out_of_plane_it_agrees_with_a_shooting_solution_and_does_not_twist) {
   // Forces in different planes make the centreline a space curve. With the same stiffness in every direction and no
   // couple at the tip, m·t is constant along the shaft, so the twist is zero although the curve has torsion.
   const std::vector<PointLoad> loads = {{90.0, {3.0, 0, 0}}, {150.0, {0, -2.4, 0.1}}, {kLength, {0.4, 1.8, -0.1}}};
@@ -188,7 +188,7 @@ TEST(BeamLargeDeflection, BentOutOfPlaneItAgreesWithAShootingSolutionAndDoesNotT
   }
 }
 
-TEST(BeamLargeDeflection, ConstantCurvatureAndTwistIsExactlyAHelix) {
+TEST(BeamLargeDeflection, constant_curvature_and_twist_is_exactly_a_helix) {
   const auto needle = test::beam(7);
   const Vec3 kappa(0.012, -0.009, 0.02);
   needle->set_state(kappa.replicate(7, 1));

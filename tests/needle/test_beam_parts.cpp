@@ -53,7 +53,7 @@ auto derivative(BeamShape shape, Eigen::Index i, Function&& function) {
   return Value((above - below) / (2.0 * h));
 }
 
-TEST(VirtualWork, IsTheDerivativeOfTheLoadsWorkWithRespectToCurvature) {
+TEST(VirtualWork, is_the_derivative_of_the_loads_work_with_respect_to_curvature) {
   const auto loads = some_loads();
   for (const ElementKind kind : {ElementKind::arc, ElementKind::rod}) {
     const BeamShape shape = curved(kind);
@@ -74,7 +74,7 @@ TEST(VirtualWork, IsTheDerivativeOfTheLoadsWorkWithRespectToCurvature) {
   }
 }
 
-TEST(VirtualWork, FollowsEveryChangeOfShapeBaseAndLoads) {
+TEST(VirtualWork, follows_every_change_of_shape_base_and_loads) {
   BeamShape shape = curved(ElementKind::arc);
   auto loads = some_loads();
   Mat3 base = Mat3::Identity();
@@ -100,7 +100,7 @@ TEST(VirtualWork, FollowsEveryChangeOfShapeBaseAndLoads) {
   EXPECT_TRUE(agrees());
 }
 
-TEST(LoadPulls, OfALoadPullTogetherAsTheLoadDoesAtItsPoint) {
+TEST(LoadPulls, of_a_load_pull_together_as_the_load_does_at_its_point) {
   for (const ElementKind kind : {ElementKind::arc, ElementKind::rod}) {
     const BeamShape shape = curved(kind);
     LoadPulls pulls;
@@ -130,7 +130,7 @@ TEST(LoadPulls, OfALoadPullTogetherAsTheLoadDoesAtItsPoint) {
   }
 }
 
-TEST(LoadPulls, KeepTheFirstLoadsAsTheyAre) {
+TEST(LoadPulls, keep_the_first_loads_as_they_are) {
   const BeamShape shape = curved(ElementKind::rod);
   LoadPulls pulls;
   const auto loads = some_loads();
@@ -147,7 +147,7 @@ TEST(LoadPulls, KeepTheFirstLoadsAsTheyAre) {
   EXPECT_TRUE(pulls.all().empty());
 }
 
-TEST(ScaledChain, ItsScalesMakeTheElasticEnergyHalfASumOfSquares) {
+TEST(ScaledChain, its_scales_make_the_elastic_energy_half_a_sum_of_squares) {
   for (const ElementKind kind : {ElementKind::arc, ElementKind::rod}) {
     const BeamShape shape = curved(kind);
     const ScaledChain chain(shape);
@@ -157,7 +157,7 @@ TEST(ScaledChain, ItsScalesMakeTheElasticEnergyHalfASumOfSquares) {
   }
 }
 
-TEST(ScaledChain, RowsRunFromTheTipToTheBase) {
+TEST(ScaledChain, rows_run_from_the_tip_to_the_base) {
   const ScaledChain chain(curved(ElementKind::arc));
   EXPECT_EQ(chain.elements(), kElements);
   EXPECT_EQ(chain.rows(), 3 * kElements);
@@ -166,7 +166,7 @@ TEST(ScaledChain, RowsRunFromTheTipToTheBase) {
   EXPECT_EQ(chain.row(-1), chain.rows());
 }
 
-TEST(ScaledChain, MotionIsTheDerivativeOfALoadsPoint) {
+TEST(ScaledChain, motion_is_the_derivative_of_a_loads_point) {
   for (const ElementKind kind : {ElementKind::arc, ElementKind::rod}) {
     const BeamShape shape = curved(kind);
     ScaledChain chain(shape);
@@ -200,7 +200,7 @@ MatX with_least_eigenvalue(double least) {
   return Q * VecX::LinSpaced(n, least, 2.0).asDiagonal() * Q.transpose();
 }
 
-TEST(ShiftedFactor, SolvesWithADefiniteMatrixAsItIs) {
+TEST(ShiftedFactor, solves_with_a_definite_matrix_as_it_is) {
   const MatX H = with_least_eigenvalue(0.1);
   ShiftedFactor factor(H.rows());
   EXPECT_FALSE(factor.factorised());
@@ -217,7 +217,7 @@ TEST(ShiftedFactor, SolvesWithADefiniteMatrixAsItIs) {
   EXPECT_LT((H * Y - b).norm(), 1e-12 * b.norm());
 }
 
-TEST(ShiftedFactor, ShiftsAnIndefiniteMatrixByMoreThanItsLeastEigenvalue) {
+TEST(ShiftedFactor, shifts_an_indefinite_matrix_by_more_than_its_least_eigenvalue) {
   for (const double least : {-0.01, -0.3, -7.0}) {
     const MatX H = with_least_eigenvalue(least);
     ShiftedFactor factor(H.rows());
@@ -233,7 +233,7 @@ TEST(ShiftedFactor, ShiftsAnIndefiniteMatrixByMoreThanItsLeastEigenvalue) {
   }
 }
 
-TEST(ShiftedFactor, GivesUpAnIndefiniteMatrixWhereItIsToldTo) {
+TEST(ShiftedFactor, gives_up_an_indefinite_matrix_where_it_is_told_to) {
   ShiftedFactor factor(60);
   factor.matrix() = with_least_eigenvalue(-0.3);
   EXPECT_FALSE(factor.factorise(Indefinite::give_up));
@@ -243,7 +243,7 @@ TEST(ShiftedFactor, GivesUpAnIndefiniteMatrixWhereItIsToldTo) {
   EXPECT_TRUE(factor.factorised());
 }
 
-TEST(ShiftedFactor, EndsWithAFiniteFactorWhenTheMatrixIsNotFinite) {
+TEST(ShiftedFactor, ends_with_a_finite_factor_when_the_matrix_is_not_finite) {
   ShiftedFactor factor(6);
   factor.matrix().setIdentity();
   factor.matrix()(3, 1) = std::numeric_limits<double>::quiet_NaN();

@@ -21,7 +21,7 @@ double error_of_tip(int elements, const std::vector<PointLoad>& loads, double ex
   return needle->point(kLength).x() / expected - 1.0;
 }
 
-TEST(BeamSmallDeflection, EndLoadWithinHalfAPercentAndSecondOrder) {
+TEST(BeamSmallDeflection, end_load_within_half_a_percent_and_second_order) {
   const double expected = kForce * std::pow(kLength, 3) / (3.0 * kEI);
   const std::vector<PointLoad> loads = {{kLength, {kForce, 0, 0}}};
   const double at_12 = error_of_tip(12, loads, expected);
@@ -30,7 +30,7 @@ TEST(BeamSmallDeflection, EndLoadWithinHalfAPercentAndSecondOrder) {
   EXPECT_NEAR(std::log2(at_12 / at_24), 2.0, 0.05);
 }
 
-TEST(BeamSmallDeflection, LoadInsideAnElementBendsTheWholeShaftWithinHalfAPercent) {
+TEST(BeamSmallDeflection, load_inside_an_element_bends_the_whole_shaft_within_half_a_percent) {
   const auto needle = test::beam();
   for (const double a : {73.0, 100.0, 131.7}) {
     needle->straighten();
@@ -42,7 +42,7 @@ TEST(BeamSmallDeflection, LoadInsideAnElementBendsTheWholeShaftWithinHalfAPercen
   }
 }
 
-TEST(BeamSmallDeflection, DistributedLoadWithinHalfAPercentAndSecondOrder) {
+TEST(BeamSmallDeflection, distributed_load_within_half_a_percent_and_second_order) {
   // Midpoint rule over 50 strips. Summing the exact deflections of its point loads eliminates its own error against q
   // L⁴/(8 EI).
   std::vector<PointLoad> loads;
@@ -59,7 +59,7 @@ TEST(BeamSmallDeflection, DistributedLoadWithinHalfAPercentAndSecondOrder) {
   EXPECT_NEAR(std::log2(at_12 / at_24), 2.0, 0.15);
 }
 
-TEST(BeamSmallDeflection, MomentOfAForceCoupleBendsIntoACircle) {
+TEST(BeamSmallDeflection, moment_of_a_force_couple_bends_into_a_circle) {
   // Two opposite forces at a distance d at the tip give a constant moment F d over the rest of the shaft.
   constexpr double d = 2.0;
   const auto needle = test::beam();
@@ -72,13 +72,13 @@ TEST(BeamSmallDeflection, MomentOfAForceCoupleBendsIntoACircle) {
   }
 }
 
-TEST(BeamSmallDeflection, AxialLoadChangesNothingBelowBuckling) {
+TEST(BeamSmallDeflection, axial_load_changes_nothing_below_buckling) {
   const auto needle = test::beam();
   test::settle(*needle, std::vector<PointLoad>{{kLength, {0, 0, -0.5}}});
   EXPECT_LT((needle->point(kLength) - Vec3(0, 0, kLength)).norm(), 1e-12);
 }
 
-TEST(BeamSmallDeflection, LateralStiffnessIsTheSameInEveryDirection) {
+TEST(BeamSmallDeflection, lateral_stiffness_is_the_same_in_every_direction) {
   const auto needle = test::beam();
   double first = 0.0;
   for (int k = 0; k < 12; ++k) {

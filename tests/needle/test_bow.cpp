@@ -23,7 +23,7 @@ class BowedNeedle : public test::NeedleModelTest {
   }
 };
 
-TEST_P(BowedNeedle, UnloadedHasItsTipWhereTheBowSaysAndStoresNothing) {
+TEST_P(BowedNeedle, unloaded_has_its_tip_where_the_bow_says_and_stores_nothing) {
   for (const double degrees : {0.0, 90.0, 213.0}) {
     const auto needle = bowed(kBow, degrees);
     const double angle = degrees * std::numbers::pi / 180.0;
@@ -40,7 +40,7 @@ TEST_P(BowedNeedle, UnloadedHasItsTipWhereTheBowSaysAndStoresNothing) {
   }
 }
 
-TEST_P(BowedNeedle, ComesBackToItsBowFromAnyShape) {
+TEST_P(BowedNeedle, comes_back_to_its_bow_from_any_shape) {
   const auto needle = bowed(kBow, 30.0);
   const Vec3 tip = needle->point(kLength);
   const VecX unloaded = needle->state();
@@ -58,7 +58,7 @@ TEST_P(BowedNeedle, ComesBackToItsBowFromAnyShape) {
               0.03 * needle->energy());
 }
 
-TEST_P(BowedNeedle, SuperposedSmallLoadsBendItAsTheyBendAStraightOne) {
+TEST_P(BowedNeedle, superposed_small_loads_bend_it_as_they_bend_a_straight_one) {
   const auto straight = make();
   const auto needle = bowed(kBow, 0.0);
   const Vec3 tip = needle->point(kLength);
@@ -72,7 +72,7 @@ TEST_P(BowedNeedle, SuperposedSmallLoadsBendItAsTheyBendAStraightOne) {
   }
 }
 
-TEST_P(BowedNeedle, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
+TEST_P(BowedNeedle, compliance_is_how_equilibrium_positions_follow_the_loads) {
   const auto needle = bowed(10.0, 75.0);
   const std::vector<PointLoad> loads{{kLength, {0.1, 0.2, -0.1}}, {111.0, {-0.2, 0.1, 0.0}}};
   settle(*needle, loads);

@@ -17,21 +17,21 @@ SectionStiffness of(const Cannula& cannula) {
   return stiffness.ok() ? *stiffness : SectionStiffness{};
 }
 
-TEST(Cannula, EighteenGaugeTubesOfThreeLumensAndASolidRodAreAsStiffAsPublished) {
+TEST(Cannula, eighteen_gauge_tubes_of_three_lumens_and_a_solid_rod_are_as_stiff_as_published) {
   EXPECT_NEAR(of({.lumen_diameter_mm = 0.838}).bending_Nmm2, 20.7e3, 100.0);
   EXPECT_NEAR(of({.lumen_diameter_mm = 1.0}).bending_Nmm2, 15.7e3, 100.0);
   EXPECT_NEAR(of({.lumen_diameter_mm = 1.07}).bending_Nmm2, 12.7e3, 100.0);
   EXPECT_NEAR(of({.lumen_diameter_mm = 0.0}).bending_Nmm2, 25.5e3, 100.0);
 }
 
-TEST(Cannula, TheModelsDefaultSectionIsTheDefaultTube) {
+TEST(Cannula, the_models_default_section_is_the_default_tube) {
   const SectionStiffness tube = of({});
   EXPECT_NEAR(NeedleSection{}.bending_stiffness_Nmm2, tube.bending_Nmm2, 0.5);
   EXPECT_NEAR(NeedleSection{}.torsion_stiffness_Nmm2, tube.torsion_Nmm2, 0.5);
   EXPECT_NEAR(tube.axial_N, 200e3 * 0.48137, 5.0);
 }
 
-TEST(Cannula, AStyletAddsItsOwnBendingStiffnessOnly) {
+TEST(Cannula, a_stylet_adds_its_own_bending_stiffness_only) {
   const SectionStiffness tube = of({});
   const SectionStiffness with = of({.stylet_diameter_mm = 0.9});
   const SectionStiffness wire = of({.outer_diameter_mm = 0.9, .lumen_diameter_mm = 0.0});
@@ -44,7 +44,7 @@ TEST(Cannula, AStyletAddsItsOwnBendingStiffnessOnly) {
   EXPECT_GT(of({.stylet_diameter_mm = 0.9, .stylet_young_MPa = 50e3}).bending_Nmm2, tube.bending_Nmm2);
 }
 
-TEST(Cannula, WhatDoesNotFitIsRefusedWithWhatWasExpected) {
+TEST(Cannula, what_does_not_fit_is_refused_with_what_was_expected) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const auto& [cannula, says] :
        {std::pair{Cannula{.outer_diameter_mm = 0.0}, "outer diameter"},

@@ -35,7 +35,7 @@ class NeedleInAGuide : public test::NeedleModelTest {
 
 constexpr double kHard = 1e5;  // [N/mm] so hard that it stands for the rigid support of theory
 
-TEST_P(NeedleInAGuide, IsAProppedCantileverAsInTheory) {
+TEST_P(NeedleInAGuide, is_a_propped_cantilever_as_in_theory) {
   constexpr double P = 1e-3;
   for (const double a : {40.0, 75.0, 120.0}) {
     for (const double clearance : {0.0, 0.002}) {
@@ -53,7 +53,7 @@ TEST_P(NeedleInAGuide, IsAProppedCantileverAsInTheory) {
   }
 }
 
-TEST_P(NeedleInAGuide, IsFreeInsideTheClearanceAndHeldBeyondIt) {
+TEST_P(NeedleInAGuide, is_free_inside_the_clearance_and_held_beyond_it) {
   const GuideHole hole{0.3, 100.0};
   const auto with = guided(hole, 60.0);
   const auto without = make();
@@ -74,7 +74,7 @@ TEST_P(NeedleInAGuide, IsFreeInsideTheClearanceAndHeldBeyondIt) {
   EXPECT_GT(with->guide_load().force.norm(), 0.5);
 }
 
-TEST_P(NeedleInAGuide, TheHoleNeverPullsAlongTheShaft) {
+TEST_P(NeedleInAGuide, the_hole_never_pulls_along_the_shaft) {
   const auto needle = guided({0.05, 100.0}, 70.0, {1.0, -2.0, 0.0});
   test::settle(*needle, std::vector<PointLoad>{{kLength, {0.3, 0.1, -0.2}}}, tolerance());
   const PointLoad guide = needle->guide_load();
@@ -82,7 +82,7 @@ TEST_P(NeedleInAGuide, TheHoleNeverPullsAlongTheShaft) {
   EXPECT_NEAR(guide.force.dot(needle->tangent(guide.s)), 0.0, 1e-12);
 }
 
-TEST(BeamInAGuide, HandGuideAndLoadsAreInBalance) {
+TEST(BeamInAGuide, hand_guide_and_loads_are_in_balance) {
   // The moment at the clamp, which the hand bears, equals the moment of loads and guide about the base. It is read from
   // the shape: at the clamp, the curvature of the shaft is moment / EI.
   const auto needle = std::make_unique<GuidedNeedle>(test::beam(48), GuideHole{0.05, 100.0}, 16);
@@ -97,7 +97,7 @@ TEST(BeamInAGuide, HandGuideAndLoadsAreInBalance) {
   EXPECT_NEAR(kEI * curvature, moment.x(), 1e-3 * std::abs(moment.x()));
 }
 
-TEST_P(NeedleInAGuide, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
+TEST_P(NeedleInAGuide, compliance_is_how_equilibrium_positions_follow_the_loads) {
   const auto needle = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
   needle->set_base({Vec3(0.1, 0.2, 3.0), Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Vec3::UnitX()))});
   std::vector<PointLoad> loads{{kLength, {0.1, 0.02, -0.1}}, {120.0, {0.05, 0.1, 0}}};
@@ -110,7 +110,7 @@ TEST_P(NeedleInAGuide, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
     EXPECT_LT((differences - compliance).col(column).norm(), 2e-3 * compliance.norm()) << column;
 }
 
-TEST_P(NeedleInAGuide, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
+TEST_P(NeedleInAGuide, a_load_that_is_appended_is_as_if_it_had_been_there) {
   const auto needle = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
   const auto other = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
   const std::vector<PointLoad> loads{{kLength, {0.1, 0.02, -0.1}}, {120.0, {0.05, 0.1, 0}}, {90.0, {0, 0, 0}}};
@@ -132,7 +132,7 @@ TEST_P(NeedleInAGuide, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
   EXPECT_LT((free - expected_free).norm(), 1e-11 * expected.norm());
 }
 
-TEST_P(NeedleInAGuide, IsPartOfATangentThatIsPrepared) {
+TEST_P(NeedleInAGuide, is_part_of_a_tangent_that_is_prepared) {
   const auto needle = guided({0.05, 100.0}, 70.0, {0.5, 0.2, 0.0});
   constexpr int kLoads = 15;
   std::vector<PointLoad> loads;
@@ -159,7 +159,7 @@ TEST_P(NeedleInAGuide, IsPartOfATangentThatIsPrepared) {
   EXPECT_LT((free - expected_free).norm(), 1e-11 * expected.norm());
 }
 
-TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
+TEST_P(NeedleInAGuide, holds_the_shaft_against_buckling) {
   // A shaft that is clamped and propped half way bears more than a free one: Euler's load of the free half alone is
   // four times as high, and the two halves turn each other.
   const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
@@ -174,7 +174,7 @@ TEST_P(NeedleInAGuide, HoldsTheShaftAgainstBuckling) {
   EXPECT_FALSE(free->linearise(loads, compliance, motion));
 }
 
-TEST_P(NeedleInAGuide, GivesUpOnATangentThatTheHoleDoesNotMakeDefinite) {
+TEST_P(NeedleInAGuide, gives_up_on_a_tangent_that_the_hole_does_not_make_definite) {
   const auto needle = guided({0.05, 100.0}, 60.0, {0.4, 0.0, 0.0});
   const std::vector<PointLoad> loads = {{kLength, {0.0, 0.0, -4.0}}, {150.0, {0, 0, -0.2}}};
   const std::vector<Mat3> springs(2, Vec3(0.4, 0.4, 0.0).asDiagonal());
@@ -192,7 +192,7 @@ TEST_P(NeedleInAGuide, GivesUpOnATangentThatTheHoleDoesNotMakeDefinite) {
   EXPECT_TRUE(needle->relax(loads, free));
 }
 
-TEST_P(NeedleInAGuide, OnSpringsBeyondBucklingNewtonReachesTheEquilibriumInFewSteps) {
+TEST_P(NeedleInAGuide, on_springs_beyond_buckling_newton_reaches_the_equilibrium_in_few_steps) {
   const auto needle = guided({0.05, 100.0}, 60.0, {0.4, 0.0, 0.0});
   const std::vector<PointLoad> given = {{kLength, {0.02, 0.01, -4.0}}, {150.0, {0, 0, -0.2}}};
   const std::vector<Mat3> springs(2, Vec3(0.4, 0.4, 0.0).asDiagonal());
@@ -214,7 +214,7 @@ TEST_P(NeedleInAGuide, OnSpringsBeyondBucklingNewtonReachesTheEquilibriumInFewSt
   EXPECT_GT(needle->guide_load().force.norm(), 0.1);
 }
 
-TEST_P(NeedleInAGuide, ABowedShaftIsStraightenedByIt) {
+TEST_P(NeedleInAGuide, a_bowed_shaft_is_straightened_by_it) {
   const auto needle = guided({0.0, kHard}, 120.0, {0, 0, 0}, 5.0);
   EXPECT_NEAR(needle->offset(), 5.0 * 0.36, 0.05);
   settle(*needle, {});
@@ -224,7 +224,7 @@ TEST_P(NeedleInAGuide, ABowedShaftIsStraightenedByIt) {
   EXPECT_GT(needle->energy(), 0.0);
 }
 
-TEST_P(NeedleInAGuide, NothingHoldsBeforeTheTipComesOrWhenTheBaseHasPassed) {
+TEST_P(NeedleInAGuide, nothing_holds_before_the_tip_comes_or_when_the_base_has_passed) {
   for (const double at : {-5.0, 201.0}) {
     const auto needle = guided({0.0, 100.0}, at, {3.0, 0.0, 0.0});
     EXPECT_EQ(settle(*needle, {}), 0);
@@ -233,7 +233,7 @@ TEST_P(NeedleInAGuide, NothingHoldsBeforeTheTipComesOrWhenTheBaseHasPassed) {
   }
 }
 
-TEST_P(NeedleInAGuide, NoCallAllocates) {
+TEST_P(NeedleInAGuide, no_call_allocates) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
   const auto needle = guided({0.0, 100.0}, 70.0, {0.5, 0.2, 0.0});
   std::vector<PointLoad> loads;

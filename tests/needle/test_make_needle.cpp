@@ -19,7 +19,7 @@ struct Refused {
 
 class NeedleBuild : public testing::TestWithParam<Refused> {};
 
-TEST_P(NeedleBuild, RefusesNonsenseSayingWhatWasExpected) {
+TEST_P(NeedleBuild, refuses_nonsense_saying_what_was_expected) {
   const Refused& bad = GetParam();
   for (const std::string& model : needle_models()) {
     const auto result = make_needle(model, bad.section, bad.elements, bad.capacity);
@@ -43,12 +43,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"elements", {}, 3, 10, "4…500"}, Refused{"capacity", {}, 24, 0, "at least 1"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
-TEST(MakeNeedle, AcceptsTheStiffestSolidNeedle) {
+TEST(MakeNeedle, accepts_the_stiffest_solid_needle) {
   for (const std::string& model : needle_models())
     EXPECT_TRUE(make_needle(model, {.bending_stiffness_Nmm2 = 26800.0}, 0, 10).ok());
 }
 
-TEST(MakeNeedle, AnUnknownModelIsRefusedWithTheNearestName) {
+TEST(MakeNeedle, an_unknown_model_is_refused_with_the_nearest_name) {
   const auto result = make_needle("spring", {}, 0, 10);
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().message().find("Did you mean 'springs'?"), std::string::npos) << result.error().message();

@@ -30,7 +30,7 @@ Pose somewhere() {
   return {Vec3(310.0, -95.0, 720.0), Eigen::Quaterniond(Eigen::AngleAxisd(2.1, Vec3(0.2, 0.9, -0.4).normalized()))};
 }
 
-TEST_P(NeedleContract, MovingBaseAndLoadsTogetherMovesTheSolutionRigidly) {
+TEST_P(NeedleContract, moving_base_and_loads_together_moves_the_solution_rigidly) {
   const auto fixed = make();
   const auto moved = make();
   const Pose pose = somewhere();
@@ -52,7 +52,7 @@ TEST_P(NeedleContract, MovingBaseAndLoadsTogetherMovesTheSolutionRigidly) {
             (model() == "tet" ? 1e-9 : 1e-10) * here.norm());
 }
 
-TEST_P(NeedleContract, SettingTheBaseKeepsTheShape) {
+TEST_P(NeedleContract, setting_the_base_keeps_the_shape) {
   const auto needle = make();
   settle(*needle, spread_loads(5));
   const Vec3 tip = needle->point(kLength);
@@ -63,7 +63,7 @@ TEST_P(NeedleContract, SettingTheBaseKeepsTheShape) {
   EXPECT_EQ(needle->base().origin, somewhere().origin);
 }
 
-TEST_P(NeedleContract, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
+TEST_P(NeedleContract, compliance_is_how_equilibrium_positions_follow_the_loads) {
   const auto needle = make();
   needle->set_base(somewhere());
   const auto loads = spread_loads(6);
@@ -74,7 +74,7 @@ TEST_P(NeedleContract, ComplianceIsHowEquilibriumPositionsFollowTheLoads) {
     EXPECT_LT((differences - compliance).col(column).norm(), 2e-6 * compliance.norm()) << column;
 }
 
-TEST_P(NeedleContract, FreeMotionAndComplianceForetellTheStepToFirstOrder) {
+TEST_P(NeedleContract, free_motion_and_compliance_foretell_the_step_to_first_order) {
   const auto needle = make();
   auto loads = spread_loads(4);
   settle(*needle, loads);
@@ -109,7 +109,7 @@ TEST_P(NeedleContract, FreeMotionAndComplianceForetellTheStepToFirstOrder) {
   }
 }
 
-TEST_P(NeedleContract, NewtonConvergesQuadratically) {
+TEST_P(NeedleContract, newton_converges_quadratically) {
   const auto needle = make();
   const auto loads = spread_loads(9);
   MatX compliance(27, 27);
@@ -121,7 +121,7 @@ TEST_P(NeedleContract, NewtonConvergesQuadratically) {
     residuals.push_back(needle->residual(loads));
   }
   ASSERT_LE(residuals.back(), tolerance());
-  if (model() == "tet") return;  // it passes through stretched shapes, see TetNeedle.NewtonConvergesQuadratically
+  if (model() == "tet") return;  // it passes through stretched shapes, see TetNeedle.newton_converges_quadratically
   // Near the solution, at least one step squares the size of the residual (moments here are tens of N mm).
   bool near = false;
   for (std::size_t i = 1; i < residuals.size(); ++i) {
@@ -133,7 +133,7 @@ TEST_P(NeedleContract, NewtonConvergesQuadratically) {
   EXPECT_TRUE(near || residuals.size() <= 6);
 }
 
-TEST_P(NeedleContract, RelaxingAtTheShapeAndLoadsOfTheTangentChangesNothing) {
+TEST_P(NeedleContract, relaxing_at_the_shape_and_loads_of_the_tangent_changes_nothing) {
   const auto needle = make();
   const auto other = make();
   needle->set_base(somewhere());
@@ -155,7 +155,7 @@ TEST_P(NeedleContract, RelaxingAtTheShapeAndLoadsOfTheTangentChangesNothing) {
   EXPECT_LT((needle->state() - other->state()).norm(), 1e-9 * needle->state().norm());
 }
 
-TEST_P(NeedleContract, RelaxingConvergesToTheEquilibriumOfOtherLoadsAtOtherPlacesUnderTheOldTangent) {
+TEST_P(NeedleContract, relaxing_converges_to_the_equilibrium_of_other_loads_at_other_places_under_the_old_tangent) {
   const auto needle = make();
   const auto loads = spread_loads(6);
   settle(*needle, loads);
@@ -182,7 +182,7 @@ TEST_P(NeedleContract, RelaxingConvergesToTheEquilibriumOfOtherLoadsAtOtherPlace
   EXPECT_FALSE(needle->relax(spread_loads(7), more)) << "one that the tangent does not know";
 }
 
-TEST_P(NeedleContract, RelaxingUnderTheFirstLoadsOnlyIsTheSameAsIfThereHadBeenNoOthers) {
+TEST_P(NeedleContract, relaxing_under_the_first_loads_only_is_the_same_as_if_there_had_been_no_others) {
   const auto needle = make();
   const auto other = make();
   const auto loads = spread_loads(6);
@@ -208,7 +208,7 @@ TEST_P(NeedleContract, RelaxingUnderTheFirstLoadsOnlyIsTheSameAsIfThereHadBeenNo
   EXPECT_LT((needle->point(kLength) - other->point(kLength)).norm(), 1e-3);
 }
 
-TEST_P(NeedleContract, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
+TEST_P(NeedleContract, a_load_that_is_appended_is_as_if_it_had_been_there) {
   const auto needle = make();
   const auto other = make();
   const auto loads = spread_loads(6);
@@ -246,7 +246,7 @@ TEST_P(NeedleContract, ALoadThatIsAppendedIsAsIfItHadBeenThere) {
   EXPECT_FALSE(needle->append(spread_loads(8), two)) << "two at once";
 }
 
-TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
+TEST_P(NeedleContract, a_tangent_that_is_prepared_changes_nothing_until_it_is_taken) {
   const auto needle = make();
   const auto other = make();
   const auto loads = spread_loads(20);
@@ -280,7 +280,7 @@ TEST_P(NeedleContract, ATangentThatIsPreparedChangesNothingUntilItIsTaken) {
   EXPECT_LT((needle->state() - other->state()).norm(), 1e-12 * other->state().norm());
 }
 
-TEST_P(NeedleContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
+TEST_P(NeedleContract, elastic_energy_is_the_work_of_slowly_applied_loads) {
   const auto needle = make();
   const auto full = spread_loads(7);
   // Simpson's rule for W = ∫ f(t)·du with f = t f₁, integrated by parts: W = f₁·u₁ - ∫ f₁·u dt.
@@ -301,7 +301,7 @@ TEST_P(NeedleContract, ElasticEnergyIsTheWorkOfSlowlyAppliedLoads) {
   EXPECT_NEAR(last - integral, needle->energy(), 1e-7 * needle->energy());
 }
 
-TEST_P(NeedleContract, TangentIsContinuousUnitLengthAndTheDerivativeOfThePoint) {
+TEST_P(NeedleContract, tangent_is_continuous_unit_length_and_the_derivative_of_the_point) {
   // Rods preserve their own length, not the length of the curve through their joints.
   const double stretch = model() == "beam" ? 1e-8 : 1e-3;
   const auto needle = make();
@@ -319,7 +319,7 @@ TEST_P(NeedleContract, TangentIsContinuousUnitLengthAndTheDerivativeOfThePoint) 
   }
 }
 
-TEST_P(NeedleContract, LoadsAtAndBeforeTheClampDoNothing) {
+TEST_P(NeedleContract, loads_at_and_before_the_clamp_do_nothing) {
   const auto with = make();
   const auto without = make();
   const std::vector<PointLoad> tip = {{kLength, {0.3, 0.1, -0.2}}};
@@ -336,7 +336,7 @@ TEST_P(NeedleContract, LoadsAtAndBeforeTheClampDoNothing) {
   EXPECT_EQ(with->point(-12.0), Vec3(0, 0, -12.0));
 }
 
-TEST_P(NeedleContract, NoLoadsAtAllLeavesAStraightNeedleStraight) {
+TEST_P(NeedleContract, no_loads_at_all_leaves_a_straight_needle_straight) {
   const auto needle = make();
   EXPECT_EQ(settle(*needle, {}), 0);
   needle->set_state(VecX::Constant(needle->state().size(), 1e-3));
@@ -344,7 +344,7 @@ TEST_P(NeedleContract, NoLoadsAtAllLeavesAStraightNeedleStraight) {
   EXPECT_LT((needle->point(kLength) - Vec3(0, 0, kLength)).norm(), 1e-9);
 }
 
-TEST_P(NeedleContract, StateAndStraightenRestoreTheShapeExactly) {
+TEST_P(NeedleContract, state_and_straighten_restore_the_shape_exactly) {
   const auto needle = make();
   settle(*needle, spread_loads(3));
   const VecX saved = needle->state();
@@ -356,7 +356,7 @@ TEST_P(NeedleContract, StateAndStraightenRestoreTheShapeExactly) {
   EXPECT_EQ(needle->point(kLength), tip);
 }
 
-TEST_P(NeedleContract, NoCallAfterBuildAllocates) {
+TEST_P(NeedleContract, no_call_after_build_allocates) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
   for (const int elements : {4, 24, 120}) {
     for (const int count : {1, 7, 40}) {
@@ -393,7 +393,7 @@ TEST_P(NeedleContract, NoCallAfterBuildAllocates) {
   }
 }
 
-TEST(AllocationCount, SeesMallocNewEigenAndWhatIsGivenBack) {
+TEST(AllocationCount, sees_malloc_new_eigen_and_what_is_given_back) {
   if (!test::AllocationCount::available()) GTEST_SKIP() << "the heap belongs to a sanitizer";
   // Called through volatile pointers, so that the compiler cannot remove the pairs of calls.
   void* (*volatile allocate)(std::size_t) = std::malloc;
@@ -420,7 +420,7 @@ TEST(AllocationCount, SeesMallocNewEigenAndWhatIsGivenBack) {
   EXPECT_EQ(allocations.count(), 6);
 }
 
-TEST(FindEquilibrium, SaysWhatIsLeftAndWhatToDoWhenItCannotConverge) {
+TEST(FindEquilibrium, says_what_is_left_and_what_to_do_when_it_cannot_converge) {
   const auto needle = test::beam();
   const auto result = find_equilibrium(*needle, std::vector<PointLoad>{{kLength, {5.0, 0, 0}}}, 1e-9, 1);
   ASSERT_FALSE(result.ok());
@@ -431,7 +431,7 @@ TEST(FindEquilibrium, SaysWhatIsLeftAndWhatToDoWhenItCannotConverge) {
   EXPECT_FALSE(find_equilibrium(*needle, std::vector<PointLoad>{{kLength, {nan, 0, 0}}}).ok());
 }
 
-TEST_P(NeedleContract, EquilibriumUnderStrongLoadsIsReachedFromTheStraightNeedleAndKeptWarm) {
+TEST_P(NeedleContract, equilibrium_under_strong_loads_is_reached_from_the_straight_needle_and_kept_warm) {
   const auto needle = make();
   std::vector<PointLoad> loads = {{kLength, {20.0, 3.0, -8.0}}, {90.0, {-11.0, 6.0, 2.0}}};
   test::settle(*needle, loads, 1e-8);
@@ -446,7 +446,7 @@ struct Held {
   std::vector<Mat3> springs = std::vector<Mat3>(3, Vec3(0.4, 0.4, 0.0).asDiagonal());
 };
 
-TEST_P(NeedleContract, OnSpringsItIsDefiniteBeyondBuckling) {
+TEST_P(NeedleContract, on_springs_it_is_definite_beyond_buckling) {
   const auto needle = make();
   const Held held;
   MatX compliance(9, 9);
@@ -462,7 +462,7 @@ TEST_P(NeedleContract, OnSpringsItIsDefiniteBeyondBuckling) {
   EXPECT_GE(compliance.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9);
 }
 
-TEST_P(NeedleContract, GivingUpOnAnIndefiniteTangentLeavesTheNextOneAsItWouldBe) {
+TEST_P(NeedleContract, giving_up_on_an_indefinite_tangent_leaves_the_next_one_as_it_would_be) {
   const auto needle = make();
   const auto other = make();
   const Held held;
@@ -490,7 +490,7 @@ TEST_P(NeedleContract, GivingUpOnAnIndefiniteTangentLeavesTheNextOneAsItWouldBe)
   EXPECT_EQ(free, expected_free);
 }
 
-TEST_P(NeedleContract, ComplianceOnSpringsIsThatOfTheNeedleAndTheSpringsTogether) {
+TEST_P(NeedleContract, compliance_on_springs_is_that_of_the_needle_and_the_springs_together) {
   // Below the buckling load both compliances exist, with (N⁻¹ + G)⁻¹ = (I + N G)⁻¹ N.
   const auto needle = make();
   const Held held;
@@ -511,7 +511,7 @@ TEST_P(NeedleContract, ComplianceOnSpringsIsThatOfTheNeedleAndTheSpringsTogether
   EXPECT_LT((free - lu.solve(free_alone)).norm(), 1e-8 * free_alone.norm());
 }
 
-TEST_P(NeedleContract, TheStepOnSpringsReachesTheSameEquilibriumQuadratically) {
+TEST_P(NeedleContract, the_step_on_springs_reaches_the_same_equilibrium_quadratically) {
   // The caller includes the springs' forces in its own equations; in this test they are real springs at the load
   // points.
   const auto needle = make();
@@ -538,7 +538,7 @@ TEST_P(NeedleContract, TheStepOnSpringsReachesTheSameEquilibriumQuadratically) {
   EXPECT_LE(iterations, 9);
 }
 
-TEST_P(NeedleContract, TheModelIsTheOneNamed) { EXPECT_EQ(make()->model(), model()); }
+TEST_P(NeedleContract, the_model_is_the_one_named) { EXPECT_EQ(make()->model(), model()); }
 
 STYLET_FOR_EVERY_NEEDLE_MODEL(NeedleContract);
 

@@ -23,7 +23,7 @@ class NeedleTheory : public test::NeedleModelTest {
 
 double deflection(double F, double a, double s) { return cantilever_deflection(F, a, s, kEI); }
 
-TEST_P(NeedleTheory, SmallDeflectionsAreEulerBernoullisWhereverTheLoad) {
+TEST_P(NeedleTheory, small_deflections_are_euler_bernoullis_wherever_the_load) {
   const auto needle = make();
   for (const double a : {40.0, 73.0, 100.0, 131.7, kLength}) {
     needle->straighten();
@@ -36,7 +36,7 @@ TEST_P(NeedleTheory, SmallDeflectionsAreEulerBernoullisWhereverTheLoad) {
   }
 }
 
-TEST_P(NeedleTheory, ACoupleBendsItIntoACircle) {
+TEST_P(NeedleTheory, a_couple_bends_it_into_a_circle) {
   // Two opposite forces at the tip give a constant moment over the rest of the shaft.
   constexpr double d = 40.0;
   const auto needle = make();
@@ -49,7 +49,7 @@ TEST_P(NeedleTheory, ACoupleBendsItIntoACircle) {
   }
 }
 
-TEST_P(NeedleTheory, LateralStiffnessIsTheSameInEveryDirectionAndNothingGoesSideways) {
+TEST_P(NeedleTheory, lateral_stiffness_is_the_same_in_every_direction_and_nothing_goes_sideways) {
   const auto needle = make();
   double first = 0.0;
   for (int k = 0; k < 12; ++k) {
@@ -66,7 +66,7 @@ TEST_P(NeedleTheory, LateralStiffnessIsTheSameInEveryDirectionAndNothingGoesSide
   }
 }
 
-TEST_P(NeedleTheory, FollowsTheElasticaToSixtyDegreesWithinOnePercent) {
+TEST_P(NeedleTheory, follows_the_elastica_to_sixty_degrees_within_one_percent) {
   const auto needle = make();
   for (const double degrees : {5.0, 20.0, 40.0, 60.0}) {
     const Elastica exact(degrees * kDegree, kLength, kEI);
@@ -78,7 +78,7 @@ TEST_P(NeedleTheory, FollowsTheElasticaToSixtyDegreesWithinOnePercent) {
   }
 }
 
-TEST_P(NeedleTheory, BucklesAtEulersLoad) {
+TEST_P(NeedleTheory, buckles_at_eulers_load) {
   const double euler = std::numbers::pi * std::numbers::pi * kEI / (4.0 * kLength * kLength);
   const auto needle = make();
   MatX compliance(3, 3);

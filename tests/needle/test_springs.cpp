@@ -29,13 +29,13 @@ double softness(double clamp_weight, int rods) {
   return compliance(0, 0) / (std::pow(kLength, 3) / (3.0 * kEI));
 }
 
-TEST(SpringsNeedle, TheClampsJointIsTwiceAsStiffOrTwentyRodsAreSevenPercentTooSoft) {
+TEST(SpringsNeedle, the_clamps_joint_is_twice_as_stiff_or_twenty_rods_are_seven_percent_too_soft) {
   // The sum over the joints of (L - x)²/k, computed by hand: 2870 and 2670 over 8000/3.
   EXPECT_NEAR(softness(1.0, 20), 2870.0 / (8000.0 / 3.0), 1e-9);  // 7.6 %
   EXPECT_NEAR(softness(2.0, 20), 2670.0 / (8000.0 / 3.0), 1e-9);  // 0.125 %
 }
 
-TEST(SpringsNeedle, ErrorFallsWithTheSquareOfTheRodLength) {
+TEST(SpringsNeedle, error_falls_with_the_square_of_the_rod_length) {
   EXPECT_NEAR((softness(2.0, 12) - 1.0) / (softness(2.0, 24) - 1.0), 4.0, 0.05);
 }
 
@@ -51,7 +51,7 @@ double potential(const BeamShape& shape, const Mat3& base, const std::vector<Poi
   return value;
 }
 
-TEST(SpringsDerivatives, GradientAndHessianMatchFiniteDifferencesOfThePotential) {
+TEST(SpringsDerivatives, gradient_and_hessian_match_finite_differences_of_the_potential) {
   const Mat3 base = Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   const auto loads = assorted_loads();
   BeamShape shape(8, kLength, kEI, 12100.0, ElementKind::rod);

@@ -32,7 +32,7 @@ Mat3 tip_compliance(TetNeedle& needle) {
   return test::compliance_of(needle, std::vector<PointLoad>{{needle.length(), Vec3::Zero()}});
 }
 
-TEST(TetSegment, FillsTheBarWithoutGapOrOverlap) {
+TEST(TetSegment, fills_the_bar_without_gap_or_overlap) {
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
     const auto mesh = tet::make_segment(kind, 1.3, 2.1);
     double volume = 0.0;
@@ -54,7 +54,7 @@ TetShape deformed(Segment kind, int segments = 4) {
   return shape;
 }
 
-TEST(TetDerivatives, ForceAndStiffnessMatchFiniteDifferencesOfTheEnergy) {
+TEST(TetDerivatives, force_and_stiffness_match_finite_differences_of_the_energy) {
   const std::vector<PointLoad> loads = {{3.1, {0.3, -0.2, 0.5}}, {8.0, {-0.1, 0.4, 0.2}}, {0.0, {1.0, 1.0, 1.0}}};
   const Mat3 base = Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
@@ -90,7 +90,7 @@ TEST(TetDerivatives, ForceAndStiffnessMatchFiniteDifferencesOfTheEnergy) {
   }
 }
 
-TEST(TetDerivatives, EliminationAndBandSolveWhatADenseFactorSolves) {
+TEST(TetDerivatives, elimination_and_band_solve_what_a_dense_factor_solves) {
   const std::vector<PointLoad> loads = {{3.1, {0.3, -0.2, 0.5}}, {8.0, {-0.1, 0.4, 0.2}}};
   const Mat3 base = Eigen::AngleAxisd(0.7, Vec3(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   const std::vector<Mat3> springs = {Vec3(3.0, 2.0, 0.0).asDiagonal(), Vec3(0.0, 5.0, 1.0).asDiagonal()};
@@ -135,7 +135,7 @@ TEST(TetDerivatives, EliminationAndBandSolveWhatADenseFactorSolves) {
   }
 }
 
-TEST(TetCalibration, TipDeflectsAsTheorySaysForAnyNumberOfSegmentsAndSection) {
+TEST(TetCalibration, tip_deflects_as_theory_says_for_any_number_of_segments_and_section) {
   for (const int segments : {4, 24, 60, 120}) {
     for (const NeedleSection& section :
          {NeedleSection{},
@@ -150,7 +150,7 @@ TEST(TetCalibration, TipDeflectsAsTheorySaysForAnyNumberOfSegmentsAndSection) {
   }
 }
 
-TEST(TetCalibration, LinearTetrahedraBendFarTooStifflyTheMoreSoTheLongerTheSegments) {
+TEST(TetCalibration, linear_tetrahedra_bend_far_too_stiffly_the_more_so_the_longer_the_segments) {
   // 1/stiffening, as a function of segment length / width.
   double before = 1.0;
   for (const auto& [segments, least, most] : {std::tuple{157, 0.5, 0.65}, {60, 0.2, 0.25}, {24, 0.03, 0.05}}) {
@@ -162,13 +162,13 @@ TEST(TetCalibration, LinearTetrahedraBendFarTooStifflyTheMoreSoTheLongerTheSegme
   }
 }
 
-TEST(TetCalibration, AlongItsAxisTheNeedleStaysFarStifferThanTissue) {
+TEST(TetCalibration, along_its_axis_the_needle_stays_far_stiffer_than_tissue) {
   EXPECT_GT(tets()->axial_stiffness(), 100.0);  // [N/mm]; tissue around a needle has about 1 N/mm
   EXPECT_NEAR(tip_compliance(*tets())(2, 2) * tets()->axial_stiffness(), 1.0, 1e-6);
 }
 
 /// Computes a table of docs/theory/needle.md: run this test with --gtest_filter and read its output.
-TEST(TetCalibration, AWiderSectionStretchesMoreAndNewtonGainsLittle) {
+TEST(TetCalibration, a_wider_section_stretches_more_and_newton_gains_little) {
   double before = 1e300;
   std::printf("width mm | stiffening | E MPa | axial N/mm | Newton steps to 0.1 N at the tip\n");
   for (const double width : {1.0, 1.27, 2.0, 3.0, 4.0}) {
@@ -206,7 +206,7 @@ Lateral lateral(TetNeedle& needle) {
   return found;
 }
 
-TEST(TetSegment, SymmetricOneBendsAlikeInEveryDirectionAsymmetricOneDoesNotAndGoesSideways) {
+TEST(TetSegment, symmetric_one_bends_alike_in_every_direction_asymmetric_one_does_not_and_goes_sideways) {
   const Lateral good = lateral(*tets(60, Segment::symmetric));
   EXPECT_LT(good.spread, 1e-6);
   EXPECT_LT(good.sideways, 1e-6);
@@ -215,7 +215,7 @@ TEST(TetSegment, SymmetricOneBendsAlikeInEveryDirectionAsymmetricOneDoesNotAndGo
   EXPECT_GT(bad.sideways, 0.15);  // and is not along the force
 }
 
-TEST(TetNeedle, NewtonConvergesQuadraticallyFromANearbyShape) {
+TEST(TetNeedle, newton_converges_quadratically_from_a_nearby_shape) {
   const auto needle = tets();
   std::vector<PointLoad> loads = {{kLength, {0.3, 0.1, -0.2}}, {120.0, {-0.2, 0.3, 0.0}}};
   test::settle(*needle, loads, 1e-8);
@@ -232,7 +232,7 @@ TEST(TetNeedle, NewtonConvergesQuadraticallyFromANearbyShape) {
   EXPECT_LE(residuals.size(), 4U);
 }
 
-TEST(TetNeedle, RoundingLeavesLessThanTheCoupledSolverAsksFor) {
+TEST(TetNeedle, rounding_leaves_less_than_the_coupled_solver_asks_for) {
   // The limit is a tenth of the solver's tolerance (1e-9 … 1e-8) × largest force or 1 N × length, for short and long
   // needles, nearly straight and strongly bent.
   for (const double length : {20.0, 100.0, 200.0, 400.0}) {

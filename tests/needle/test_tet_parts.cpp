@@ -28,7 +28,7 @@ TetShape deformed_bar(Segment kind) {
   return shape;
 }
 
-TEST(BarStiffness, IsTheDerivativeOfTheNodalForces) {
+TEST(BarStiffness, is_the_derivative_of_the_nodal_forces) {
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
     TetShape shape = deformed_bar(kind);
     BarStiffness stiffness(shape);
@@ -49,7 +49,7 @@ TEST(BarStiffness, IsTheDerivativeOfTheNodalForces) {
   }
 }
 
-TEST(BarStiffness, FollowsTheShape) {
+TEST(BarStiffness, follows_the_shape) {
   TetShape shape = deformed_bar(Segment::symmetric);
   BarStiffness kept(shape);
   kept.assemble(shape);
@@ -74,7 +74,7 @@ MatX whole(const SegmentStiffness& K, int nodes, double shift) {
   return full;
 }
 
-TEST(MiddleNodes, LeaveTheLayersTheSchurComplement) {
+TEST(MiddleNodes, leave_the_layers_the_schur_complement) {
   const TetShape shape = deformed_bar(Segment::symmetric);
   BarStiffness stiffness(shape);
   stiffness.assemble(shape);
@@ -115,7 +115,7 @@ VecX solve(MiddleNodes& middle, const BarStiffness& stiffness, const VecX& force
   return displacement;
 }
 
-TEST(MiddleNodes, ReduceAndMoveSolveTheWholeBar) {
+TEST(MiddleNodes, reduce_and_move_solve_the_whole_bar) {
   // The asymmetric segment has no middle nodes.
   for (const Segment kind : {Segment::symmetric, Segment::asymmetric}) {
     const TetShape shape = deformed_bar(kind);
@@ -128,7 +128,7 @@ TEST(MiddleNodes, ReduceAndMoveSolveTheWholeBar) {
   }
 }
 
-TEST(MiddleNodes, SayWhereTheStiffnessIsNotDefinite) {
+TEST(MiddleNodes, say_where_the_stiffness_is_not_definite) {
   const TetShape shape = deformed_bar(Segment::symmetric);
   BarStiffness stiffness(shape);
   stiffness.assemble(shape);
@@ -138,7 +138,7 @@ TEST(MiddleNodes, SayWhereTheStiffnessIsNotDefinite) {
   EXPECT_FALSE(middle.eliminate(0, K, 0.0));
 }
 
-TEST(MiddleNodes, DisconnectedOnesMoveByTheirOwnForceOnly) {
+TEST(MiddleNodes, disconnected_ones_move_by_their_own_force_only) {
   const TetShape shape = deformed_bar(Segment::symmetric);
   MiddleNodes middle(shape.mesh(), kSegments);
   middle.disconnect();

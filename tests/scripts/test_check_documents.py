@@ -10,8 +10,8 @@ from pathlib import Path
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "check_documents"
 SOUND = {"README.md": "# A\n", "CONTRIBUTING.md": "# B\n", "CHANGELOG.md": "# C\n",
          "docs/index.md": "# Index\n[one](one.md#a-first-heading)\n",
-         "docs/one.md": "# One\n## A `first` heading\n| " + "wide " * 40 + "|\n\n    code\n[two](sub/two.md)\n",
-         "docs/sub/two.md": "# Two\n```\n" + "long " * 40 + "\n```\n[back](../index.md)\n"}
+         "docs/one.md": "# One\n## A `first` heading\n| " + "wide " * 20 + "|\n\n    code\n[two](sub/two.md)\n",
+         "docs/sub/two.md": "# Two\n```\n" + "long " * 20 + "\n```\n[back](../index.md)\n"}
 
 
 class Documents(unittest.TestCase):
@@ -36,6 +36,20 @@ class Documents(unittest.TestCase):
 
     def test_a_long_line_is_named_with_its_length(self):
         self.refused({"README.md": "# A\n" + "word " * 24 + "x\n"}, "README.md:2: 121 columns")
+
+    def test_a_long_row_of_a_table_and_long_code_are_no_exception(self):
+        self.refused({"README.md": "# A\n| " + "wide " * 24 + "|\n```\n" + "long " * 25 + "\n```\n"},
+                     "README.md:2: 123 columns", "README.md:4: 125 columns")
+
+    def test_a_file_that_is_not_there_is_named(self):
+        self.refused({"README.md": "# A\nSee `src/none.cpp`.\n"}, "README.md:2: there is no src/none.cpp")
+
+    def test_a_module_without_its_readme_is_named(self):
+        self.refused({"src/core/a.cpp": ""}, "src/core/README.md:1: a module says")
+
+    def test_a_test_named_in_camel_case_is_named(self):
+        self.refused({"tests/a.cpp": "TEST(Needle, BendsUnderLoad) {}\nTEST(Needle, weighs_2_kN_at_D4) {}\n"},
+                     "tests/a.cpp:1: the test's name BendsUnderLoad")
 
     def test_a_link_to_no_file_or_no_heading_is_named(self):
         self.refused({"README.md": "# A\n[x](docs/none.md) and [y](docs/one.md#another)\n"},

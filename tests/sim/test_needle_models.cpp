@@ -30,7 +30,7 @@ const ParameterRow* row(const RunInfo& info, const std::string& name) {
 
 }  // namespace
 
-TEST(NeedleModels, AnInsertionIsTheSameWithEach) {
+TEST(NeedleModels, an_insertion_is_the_same_with_each) {
   const Finished beam(compiled(thin_needle("beam")));
   double peak = 0.0;
   for (const Step& step : beam.kept.steps) peak = std::max(peak, force(step).norm());
@@ -65,7 +65,7 @@ TEST(NeedleModels, AnInsertionIsTheSameWithEach) {
   }
 }
 
-TEST(NeedleModels, AReportShowsTheModelItsElementsAndTheCalibrationOfTetrahedra) {
+TEST(NeedleModels, a_report_shows_the_model_its_elements_and_the_calibration_of_tetrahedra) {
   const RunInfo tet = compiled(thin_needle("tet"))->info(0);
   ASSERT_NE(row(tet, "needle.tet.calibration"), nullptr);
   EXPECT_GT(std::stod(row(tet, "needle.tet.calibration")->value), 0.1);
@@ -77,7 +77,7 @@ TEST(NeedleModels, AReportShowsTheModelItsElementsAndTheCalibrationOfTetrahedra)
   EXPECT_EQ(row(beam, "needle.elements")->value, "24");
 }
 
-TEST(NeedleSectionOfAScenario, StyletAndLumenDecideTheStiffnessUnlessItIsGiven) {
+TEST(NeedleSectionOfAScenario, stylet_and_lumen_decide_the_stiffness_unless_it_is_given) {
   const auto stiffness = [](const Scenario& s) {
     const RunInfo info = compiled(s)->info();
     return std::stod(row(info, "needle.bending_stiffness_Nmm2")->value);
@@ -98,7 +98,7 @@ TEST(NeedleSectionOfAScenario, StyletAndLumenDecideTheStiffnessUnlessItIsGiven) 
   EXPECT_SAYS(refused(s).message(), "lumen diameter");
 }
 
-TEST(NeedleSectionOfAScenario, TheTubesWallDecidesHowMuchItStretches) {
+TEST(NeedleSectionOfAScenario, the_tubes_wall_decides_how_much_it_stretches) {
   Scenario s = box_scenario();
   const double thin = compiled(s)->coupling().axial_compliance_mm_per_N;
   EXPECT_NEAR(thin, 120.0 / (200e3 * 0.48137), 1e-7);
@@ -109,7 +109,7 @@ TEST(NeedleSectionOfAScenario, TheTubesWallDecidesHowMuchItStretches) {
   EXPECT_NEAR(compiled(s)->coupling().axial_compliance_mm_per_N, 120.0 / (200e3 * 1.266769), 1e-7);
 }
 
-TEST(GuideTemplate, HoldsTheNeedleOfARunAndIsPartOfItsBalance) {
+TEST(GuideTemplate, holds_the_needle_of_a_run_and_is_part_of_its_balance) {
   for (const char* model : {"beam", "tet"}) {
     SCOPED_TRACE(model);
     Scenario s = thin_needle(model);
@@ -134,7 +134,7 @@ TEST(GuideTemplate, HoldsTheNeedleOfARunAndIsPartOfItsBalance) {
   }
 }
 
-TEST(GuideTemplate, TheBaseStopsBeforeIt) {
+TEST(GuideTemplate, the_base_stops_before_it) {
   Scenario s = box_scenario();
   s.insertions[0].depth_mm = 30.0;
   s.grid.guide = true;
@@ -150,7 +150,7 @@ Vec3 deepest_tip(const Scenario& s, const std::vector<std::vector<MotionSample>>
   return deepest->tip_mm - Vec3(4.0, 7.0, deepest->tip_mm.z());
 }
 
-TEST(BevelOfAScenario, RollTurnsItInPlannedAndInRecordedMotions) {
+TEST(BevelOfAScenario, roll_turns_it_in_planned_and_in_recorded_motions) {
   Scenario s = box_scenario();
   const Vec3 straight = deepest_tip(s);
   s.needle.bevel_deg = 25.0;
@@ -171,7 +171,7 @@ TEST(BevelOfAScenario, RollTurnsItInPlannedAndInRecordedMotions) {
   EXPECT_SAYS(refused(follows, box_patient(), {recorded}).what, "recorded motion and roll_deg");
 }
 
-TEST(BevelOfAScenario, TheLawIsTheOneNamed) {
+TEST(BevelOfAScenario, the_law_is_the_one_named) {
   Scenario s = box_scenario();
   s.needle.bevel_deg = 20.0;
   EXPECT_TRUE(compiled(s)->coupling().bevel.offsets());

@@ -24,7 +24,7 @@ struct Base {
 
 }  // namespace
 
-TEST(TurnWatch, TellsOfATurnWhereItWas) {
+TEST(TurnWatch, tells_of_a_turn_where_it_was) {
   Base base;
   EXPECT_FALSE(base.to(10.0));
   EXPECT_FALSE(base.to(20.0));
@@ -40,14 +40,14 @@ TEST(TurnWatch, TellsOfATurnWhereItWas) {
   EXPECT_FALSE(base.watch.retracting());
 }
 
-TEST(TurnWatch, TakesATremorForNone) {
+TEST(TurnWatch, takes_a_tremor_for_none) {
   Base base;
   base.to(20.0);
   for (int k = 0; k < 100; ++k) EXPECT_FALSE(base.to(k % 2 == 0 ? 19.96 : 20.0)) << k;
   EXPECT_FALSE(base.watch.retracting());
 }
 
-TEST(TurnWatch, AddsUpSmallStepsBack) {
+TEST(TurnWatch, adds_up_small_steps_back) {
   Base base;
   base.to(20.0);
   int turns = 0;
@@ -55,7 +55,7 @@ TEST(TurnWatch, AddsUpSmallStepsBack) {
   EXPECT_EQ(turns, 1);
 }
 
-TEST(TurnWatch, ABaseThatStandsStillHasNotTurned) {
+TEST(TurnWatch, a_base_that_stands_still_has_not_turned) {
   Base base;
   base.to(20.0);
   for (int k = 0; k < 100; ++k) EXPECT_FALSE(base.to(20.0));

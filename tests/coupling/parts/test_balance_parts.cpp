@@ -53,7 +53,7 @@ struct NeedleInTissue {
   Contacts contacts;
 };
 
-TEST(Contacts, AreNumberedFromTheTip) {
+TEST(Contacts, are_numbered_from_the_tip) {
   NeedleInTissue needle;
   ASSERT_EQ(needle.contacts.count(), 4);
   EXPECT_EQ(needle.contacts.point(0), ContactCompliance::kTip);
@@ -63,7 +63,7 @@ TEST(Contacts, AreNumberedFromTheTip) {
   EXPECT_EQ(needle.contacts.arc(1), 0.0);
 }
 
-TEST(ContactStates, AStickingContactSlidesTheWayItIsPushedBeyondItsLimit) {
+TEST(ContactStates, a_sticking_contact_slides_the_way_it_is_pushed_beyond_its_limit) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
@@ -81,7 +81,7 @@ TEST(ContactStates, AStickingContactSlidesTheWayItIsPushedBeyondItsLimit) {
   EXPECT_EQ(report.pivots, 2);
 }
 
-TEST(ContactStates, ASlidingContactThatTurnsRoundIsHeldWhereItWas) {
+TEST(ContactStates, a_sliding_contact_that_turns_round_is_held_where_it_was) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
@@ -98,7 +98,7 @@ TEST(ContactStates, ASlidingContactThatTurnsRoundIsHeldWhereItWas) {
   EXPECT_EQ(contact.s, contact.s_start);
 }
 
-TEST(ContactStates, FrictionStopsGrowingBeyondItsSpeedAndGrowsAgainBelow) {
+TEST(ContactStates, friction_stops_growing_beyond_its_speed_and_grows_again_below) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
@@ -116,7 +116,7 @@ TEST(ContactStates, FrictionStopsGrowingBeyondItsSpeedAndGrowsAgainBelow) {
   EXPECT_EQ(contact.state, State::forward);
 }
 
-TEST(ContactStates, AContactThatHardlySlidSticksWhicheverWayItWent) {
+TEST(ContactStates, a_contact_that_hardly_slid_sticks_whichever_way_it_went) {
   const double h = 1e-3, zero_band = 0.005;
   std::array<ShaftContact, 4> contacts;
   const std::array<double, 4> slid{0.9 * zero_band * h, -0.9 * zero_band * h, 1.1 * zero_band * h,
@@ -131,7 +131,7 @@ TEST(ContactStates, AContactThatHardlySlidSticksWhicheverWayItWent) {
   EXPECT_EQ(contacts[3].state, ShaftContact::State::backward);
 }
 
-TEST(ContactStates, AContactThatChangesTooOftenKeepsItsStateAndTheStepIsFlagged) {
+TEST(ContactStates, a_contact_that_changes_too_often_keeps_its_state_and_the_step_is_flagged) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(2);
@@ -145,7 +145,7 @@ TEST(ContactStates, AContactThatChangesTooOftenKeepsItsStateAndTheStepIsFlagged)
   EXPECT_EQ(states.contradiction(1, {.axial = 100.0, .slides = -1.0}), 0.0);
 }
 
-TEST(ContactStates, TheTipCutsAboveItsLimitAndComesAwayWherePulled) {
+TEST(ContactStates, the_tip_cuts_above_its_limit_and_comes_away_where_pulled) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
@@ -164,7 +164,7 @@ TEST(ContactStates, TheTipCutsAboveItsLimitAndComesAwayWherePulled) {
   EXPECT_EQ(tip.state(), TipContact::State::open);
 }
 
-TEST(ContactStates, ASurfaceAheadBreaksOnABalanceOnly) {
+TEST(ContactStates, a_surface_ahead_breaks_on_a_balance_only) {
   NeedleInTissue needle;
   ContactStates states(needle.contacts);
   states.begin(6);
@@ -199,7 +199,7 @@ double expected_gain(Predictor& predictor, NeedleInTissue& needle, double way) {
   return needle.tip.force.z() - force;
 }
 
-TEST(Predictor, GoesOnInProportionToTheBasesMotion) {
+TEST(Predictor, goes_on_in_proportion_to_the_bases_motion) {
   NeedleInTissue needle;
   Predictor predictor(needle.block.needle.state().size());
   pass(predictor, needle, 0.1, 0.02);
@@ -209,14 +209,14 @@ TEST(Predictor, GoesOnInProportionToTheBasesMotion) {
   for (const ShaftContact& contact : needle.shaft.all()) EXPECT_NEAR(contact.force.z(), 0.07, 1e-12);
 }
 
-TEST(Predictor, ChangesItsPaceAsItDidBefore) {
+TEST(Predictor, changes_its_pace_as_it_did_before) {
   NeedleInTissue needle;
   Predictor predictor(needle.block.needle.state().size());
   for (int k = 1; k <= 4; ++k) pass(predictor, needle, 0.1, 0.01 * k);
   EXPECT_NEAR(expected_gain(predictor, needle, 0.1), 0.05, 1e-12) << "0.01, 0.02, 0.03, 0.04, …";
 }
 
-TEST(Predictor, ExpectsNothingAfterATurnAndAfterAStepWithoutABalance) {
+TEST(Predictor, expects_nothing_after_a_turn_and_after_a_step_without_a_balance) {
   NeedleInTissue needle;
   Predictor predictor(needle.block.needle.state().size());
   for (int k = 0; k < 3; ++k) pass(predictor, needle, 0.1, 0.02);
@@ -226,7 +226,7 @@ TEST(Predictor, ExpectsNothingAfterATurnAndAfterAStepWithoutABalance) {
   EXPECT_EQ(expected_gain(predictor, needle, 0.1), 0.0);
 }
 
-TEST(Predictor, GoesBackToWhereTheSubStepBegan) {
+TEST(Predictor, goes_back_to_where_the_sub_step_began) {
   NeedleInTissue needle;
   Predictor predictor(needle.block.needle.state().size());
   for (int k = 0; k < 3; ++k) pass(predictor, needle, 0.1, 0.02);
@@ -240,7 +240,7 @@ TEST(Predictor, GoesBackToWhereTheSubStepBegan) {
   EXPECT_EQ(needle.contact(1).s, s);
 }
 
-TEST(NeedleDamping, GrowsWithTheTimeOnBoneUpToItsMost) {
+TEST(NeedleDamping, grows_with_the_time_on_bone_up_to_its_most) {
   NeedleDamping damping(3e-3);
   EXPECT_EQ(damping.begin(1e-3, false), 0.0);
   EXPECT_NEAR(damping.begin(1e-3, true), 1e-4, 1e-12);
@@ -250,7 +250,7 @@ TEST(NeedleDamping, GrowsWithTheTimeOnBoneUpToItsMost) {
   EXPECT_EQ(damping.begin(1e-3, false), 0.0);
 }
 
-TEST(NeedleDamping, GrowsWhereNoBalanceIsFoundAndWearsOffAgain) {
+TEST(NeedleDamping, grows_where_no_balance_is_found_and_wears_off_again) {
   NeedleDamping damping(3e-3);
   double before = 0.0;
   for (int k = 0; k < 4; ++k) {
@@ -268,7 +268,7 @@ TEST(NeedleDamping, GrowsWhereNoBalanceIsFoundAndWearsOffAgain) {
   EXPECT_EQ(before, 0.0);
 }
 
-TEST(HandForce, BearsWhatAllContactsLeave) {
+TEST(HandForce, bears_what_all_contacts_leave) {
   NeedleInTissue needle;
   HandForce hand(needle.block.needle.base(), needle.block.needle);
   needle.tip.force = Vec3(0, 0.1, 0.5);
@@ -276,7 +276,7 @@ TEST(HandForce, BearsWhatAllContactsLeave) {
   EXPECT_NEAR((hand.now(needle.contacts.forces()) - Vec3(0.03, 0.1, 0.8)).norm(), 0.0, 1e-12);
 }
 
-TEST(HandForce, AtAPunctureIsFoundBetweenTheBalances) {
+TEST(HandForce, at_a_puncture_is_found_between_the_balances) {
   NeedleInTissue needle;
   HandForce hand(needle.block.needle.base(), needle.block.needle);
   needle.tip.force = Vec3(0, 0, 0.6);
@@ -289,7 +289,7 @@ TEST(HandForce, AtAPunctureIsFoundBetweenTheBalances) {
   EXPECT_NEAR(hand.when_tip_reached(1.0, start, needle.contacts.forces()), 2.0, 1e-12) << "none was there before";
 }
 
-TEST(Iterate, IsComeBackTo) {
+TEST(Iterate, is_come_back_to) {
   NeedleInTissue needle;
   Iterate kept(needle.block.needle.state().size(), needle.block.settings.capacity);
   needle.tip.force = Vec3(1, 2, 3);
@@ -317,7 +317,7 @@ void fill(MatX& A, int points, unsigned seed) {
     for (Eigen::Index j = 0; j <= i; ++j) A(i, j) = A(j, i) = number(random);
 }
 
-TEST(NeedleSide, AContactThatIsAddedHasItsRowsInBothTriangles) {
+TEST(NeedleSide, a_contact_that_is_added_has_its_rows_in_both_triangles) {
   NeedleSide side(5);
   side.count = 2;
   fill(side.N, 2, 1);
@@ -332,7 +332,7 @@ TEST(NeedleSide, AContactThatIsAddedHasItsRowsInBothTriangles) {
   EXPECT_EQ(side.compliance(), side.compliance().transpose());
 }
 
-TEST(NeedleSide, LendsItsSpringsOnlyWhereItIsSupported) {
+TEST(NeedleSide, lends_its_springs_only_where_it_is_supported) {
   NeedleSide side(4);
   side.count = 4;
   side.spring[0].stiffness = side.spring[2].stiffness = 1.0;
@@ -344,7 +344,7 @@ TEST(NeedleSide, LendsItsSpringsOnlyWhereItIsSupported) {
   EXPECT_TRUE(side.lends_at_tip());
 }
 
-TEST(TissueBlock, IsTheCompliancesBlockOfThePresentContacts) {
+TEST(TissueBlock, is_the_compliances_block_of_the_present_contacts) {
   NeedleInTissue needle;
   ContactRows rows(needle.block.settings, 10);
   ContactSystem system(rows, 10);
@@ -372,7 +372,7 @@ TEST(TissueBlock, IsTheCompliancesBlockOfThePresentContacts) {
   expect_whole();
 }
 
-TEST(TissueBlock, ForeseesHowGapsChangeWithACutThatLeadsAside) {
+TEST(TissueBlock, foresees_how_gaps_change_with_a_cut_that_leads_aside) {
   NeedleInTissue needle;
   ContactRows rows(needle.block.settings, 10);
   ContactSystem system(rows, 10);
@@ -386,7 +386,7 @@ TEST(TissueBlock, ForeseesHowGapsChangeWithACutThatLeadsAside) {
       << "this tissue is the same everywhere";
 }
 
-TEST(DampedNeedle, BendsIntoTheShapeThatItsLoadsAloneWouldGiveIt) {
+TEST(DampedNeedle, bends_into_the_shape_that_its_loads_alone_would_give_it) {
   const std::vector<PointLoad> loads{{150.0, Vec3(0.2, 0, 0)}, {80.0, Vec3(0, -0.3, 0)}};
   const auto free = BeamNeedle::build({150.0, 1.27, 15700, 12100}, 20, 4).value();
   ASSERT_TRUE(find_equilibrium(*free, loads, 1e-10));
@@ -401,7 +401,7 @@ TEST(DampedNeedle, BendsIntoTheShapeThatItsLoadsAloneWouldGiveIt) {
   EXPECT_NEAR((needle->point(150.0) - free->point(150.0)).norm(), 0.0, 1e-7);
 }
 
-TEST(CondensedTissue, IsTheTissuesComplianceWhileAllRowsAreForces) {
+TEST(CondensedTissue, is_the_tissues_compliance_while_all_rows_are_forces) {
   NeedleInTissue needle;
   paper::CondensedTissue tissue(10);
   std::vector<Mat3> frames(10, Mat3::Identity());
@@ -412,7 +412,7 @@ TEST(CondensedTissue, IsTheTissuesComplianceWhileAllRowsAreForces) {
   }
 }
 
-TEST(CondensedTissue, KeepsEveryContactsRowsApartWhenTheTipMovesOnAndFramesTurn) {
+TEST(CondensedTissue, keeps_every_contacts_rows_apart_when_the_tip_moves_on_and_frames_turn) {
   NeedleInTissue needle;
   paper::CondensedTissue tissue(10);
   std::vector<Mat3> frames(10, Mat3::Identity());

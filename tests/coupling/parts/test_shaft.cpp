@@ -36,7 +36,7 @@ struct ShaftInTrack {
   Step report;
 };
 
-TEST(Marks, AreLaidAtTheirSpacing) {
+TEST(Marks, are_laid_at_their_spacing) {
   const ShaftInTrack needle(15.0);
   ASSERT_EQ(needle.track.marks.size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -45,7 +45,7 @@ TEST(Marks, AreLaidAtTheirSpacing) {
   }
 }
 
-TEST(Marks, WaitForComplianceThatIsNotThere) {
+TEST(Marks, wait_for_compliance_that_is_not_there) {
   ShaftInTrack needle(15.0);
   needle.track.marks.clear();
   needle.marks.go_on_from({}, 2.0);
@@ -60,7 +60,7 @@ TEST(Marks, WaitForComplianceThatIsNotThere) {
   EXPECT_GE(needle.track.marks[0].point, 0);
 }
 
-TEST(ShaftContacts, ComeAliveWhereTheTipHasPassedAndGoWhereItHasGoneBack) {
+TEST(ShaftContacts, come_alive_where_the_tip_has_passed_and_go_where_it_has_gone_back) {
   ShaftInTrack needle(15.0);
   needle.wake();
   EXPECT_EQ(needle.shaft.count(), 4u);
@@ -70,7 +70,7 @@ TEST(ShaftContacts, ComeAliveWhereTheTipHasPassedAndGoWhereItHasGoneBack) {
   EXPECT_EQ(needle.shaft.count(), 2u);
 }
 
-TEST(ShaftContacts, StandForTheWholeShaftInTheTissue) {
+TEST(ShaftContacts, stand_for_the_whole_shaft_in_the_tissue) {
   for (const double depth : {2.5, 6.3, 9.0, 15.0, 19.9}) {
     ShaftInTrack needle(depth);
     needle.wake();
@@ -83,7 +83,7 @@ TEST(ShaftContacts, StandForTheWholeShaftInTheTissue) {
   }
 }
 
-TEST(ShaftContacts, AreBornSoftAndGrowHardOverThreeDiameters) {
+TEST(ShaftContacts, are_born_soft_and_grow_hard_over_three_diameters) {
   ShaftInTrack needle(15.0);
   const double three_diameters = 6.0 * needle.block.settings.needle_radius_mm;
   needle.wake();
@@ -94,7 +94,7 @@ TEST(ShaftContacts, AreBornSoftAndGrowHardOverThreeDiameters) {
   EXPECT_EQ(needle.shaft.all().front().softness, 0.0);
 }
 
-TEST(ShaftContacts, TakeOverTheTipsLateralHoldAsTheFirstOneAges) {
+TEST(ShaftContacts, take_over_the_tips_lateral_hold_as_the_first_one_ages) {
   double before = 0.0;
   for (double depth = 2.1; depth < 6.5; depth += 0.2) {
     ShaftInTrack needle(depth);
@@ -106,7 +106,7 @@ TEST(ShaftContacts, TakeOverTheTipsLateralHoldAsTheFirstOneAges) {
   EXPECT_EQ(before, 1.0);
 }
 
-TEST(TissueResponse, IsElasticWithoutCreep) {
+TEST(TissueResponse, is_elastic_without_creep) {
   ShaftInTrack needle(15.0);
   needle.wake();
   for (ShaftContact& contact : needle.shaft.all()) contact.force = Vec3(0, 0, contact.xi);
@@ -123,7 +123,7 @@ TEST(TissueResponse, IsElasticWithoutCreep) {
   EXPECT_NEAR(tissue.energy(forces), energy, 1e-12);
 }
 
-TEST(TissueResponse, YieldsAtOnceThenCreepsAndGoesBackAtOnceByWhatIsElastic) {
+TEST(TissueResponse, yields_at_once_then_creeps_and_goes_back_at_once_by_what_is_elastic) {
   ShaftInTrack needle(15.0, {3.0, 0.5});
   TissueResponse& tissue = *needle.block.tissue;
   const Vec3 force(0, 0, 1);
@@ -149,7 +149,7 @@ TEST(TissueResponse, YieldsAtOnceThenCreepsAndGoesBackAtOnceByWhatIsElastic) {
   EXPECT_EQ(tissue.displacement(ContactCompliance::kTip, {none, {}}), none);
 }
 
-TEST(TissueResponse, HandsWhatTheTipLeavesBehindToTheTrackWithoutLosingAny) {
+TEST(TissueResponse, hands_what_the_tip_leaves_behind_to_the_track_without_losing_any) {
   ShaftInTrack needle(15.0, {3.0, 0.5});
   TissueResponse& tissue = *needle.block.tissue;
   const Vec3 force(0, 0, 1);

@@ -16,7 +16,7 @@ std::vector<EventKind> kinds(const TipPath& path) {
   return result;
 }
 
-TEST(Cut, GoesWhereItIsAimedAndStopsAtASurface) {
+TEST(Cut, goes_where_it_is_aimed_and_stops_at_a_surface) {
   SimpleTissue block;
   Cut cut(*block.locator, *block.tissue);
   const Vec3 from(1, 2, 18.5);
@@ -33,7 +33,7 @@ TEST(Cut, GoesWhereItIsAimedAndStopsAtASurface) {
   EXPECT_EQ(cut.advance(), 0.0) << "rather nothing than up to the surface";
 }
 
-TEST(Cut, CountsItsWayFromWhereTheSubStepBegan) {
+TEST(Cut, counts_its_way_from_where_the_sub_step_began) {
   SimpleTissue block;
   Cut cut(*block.locator, *block.tissue);
   cut.put(Vec3(1, 2, 5), block.at(Vec3(1, 2, 5)));
@@ -46,7 +46,7 @@ TEST(Cut, CountsItsWayFromWhereTheSubStepBegan) {
   EXPECT_NEAR(cut.x().z(), 5.6, 1e-12);
 }
 
-TEST(Cut, TellsThatCompliancesOfAnotherPlaceStandIn) {
+TEST(Cut, tells_that_compliances_of_another_place_stand_in) {
   SimpleTissue block;
   Cut cut(*block.locator, *block.tissue);
   block.compliance->has_all = false;
@@ -57,14 +57,14 @@ TEST(Cut, TellsThatCompliancesOfAnotherPlaceStandIn) {
   EXPECT_FALSE(cut.is_stale());
 }
 
-TEST(CuttingLaw, ItsForceAndItsWayAreInversesAndNothingIsCutAtItsStart) {
+TEST(CuttingLaw, its_force_and_its_way_are_inverses_and_nothing_is_cut_at_its_start) {
   const CuttingLaw law{.start_N = 0.25, .slip_mm_per_N = 3.0};
   EXPECT_EQ(law.way(0.25), 0.0);
   EXPECT_LT(law.way(0.2), 0.0) << "too little to cut";
   for (const double way : {-0.1, 0.0, 0.004, 1.7}) EXPECT_NEAR(law.way(law.force(way)), way, 1e-12);
 }
 
-TEST(Resistance, OfTheSkinGivesAboveItsLimitToATipThatIsNotFlat) {
+TEST(Resistance, of_the_skin_gives_above_its_limit_to_a_tip_that_is_not_flat) {
   Resistance ahead;
   ahead.be_outer_surface(3, 1, Vec3::UnitZ(), 1.0, 0.3);
   EXPECT_FALSE(ahead.gives(0.99, Vec3::UnitZ(), 0.17));
@@ -76,13 +76,13 @@ TEST(Resistance, OfTheSkinGivesAboveItsLimitToATipThatIsNotFlat) {
   EXPECT_FALSE(ahead.gives(5.0, Vec3::UnitZ(), 0.17)) << "tissue is cut, it does not break";
 }
 
-TEST(Resistance, OfSkinThatIsWeakerThanTheTissueBehindItIsThatOfTheTissue) {
+TEST(Resistance, of_skin_that_is_weaker_than_the_tissue_behind_it_is_that_of_the_tissue) {
   Resistance ahead;
   ahead.be_outer_surface(3, 1, Vec3::UnitZ(), 0.1, 0.3);
   EXPECT_EQ(ahead.limit(), 0.3);
 }
 
-TEST(Tracks, JoinAnEarlierOneThatBeginsNearbyInTheSameDirection) {
+TEST(Tracks, join_an_earlier_one_that_begins_nearby_in_the_same_direction) {
   Tracks tracks(10, 1.27);
   ASSERT_FALSE(tracks.begin(Vec3::Zero(), Vec3::UnitZ()));
   tracks.now.end_xi = 30.0;
@@ -96,7 +96,7 @@ TEST(Tracks, JoinAnEarlierOneThatBeginsNearbyInTheSameDirection) {
   EXPECT_FALSE(tracks.begin(Vec3::Zero(), Vec3(1, 0, 1).normalized())) << "another direction";
 }
 
-TEST(Tracks, BeginAJoinedOneAtTheNewCrossingAndKeepTheOldEntry) {
+TEST(Tracks, begin_a_joined_one_at_the_new_crossing_and_keep_the_old_entry) {
   Tracks tracks(10, 1.27);
   tracks.begin(Vec3::Zero(), Vec3::UnitZ());
   tracks.now.end_xi = 30.0;
@@ -112,7 +112,7 @@ TEST(Tracks, BeginAJoinedOneAtTheNewCrossingAndKeepTheOldEntry) {
   EXPECT_EQ(tracks.earlier()[0].end_xi, 30.0);
 }
 
-TEST(Tracks, AreForgottenWithoutLengthAndTheOldestWhereThereIsNoRoom) {
+TEST(Tracks, are_forgotten_without_length_and_the_oldest_where_there_is_no_room) {
   Tracks tracks(10, 1.27);
   tracks.begin(Vec3::Zero(), Vec3::UnitZ());
   tracks.finish();
@@ -151,7 +151,7 @@ class TipOnItsWay : public testing::Test {
   Step report;
 };
 
-TEST_F(TipOnItsWay, PressesOnTheSkinItMeets) {
+TEST_F(TipOnItsWay, presses_on_the_skin_it_meets) {
   EXPECT_TRUE(path.in_air());
   meet_skin();
   EXPECT_EQ(path.phase(), TipState::pressing);
@@ -162,7 +162,7 @@ TEST_F(TipOnItsWay, PressesOnTheSkinItMeets) {
   EXPECT_EQ(block.compliance->forced, 1);
 }
 
-TEST_F(TipOnItsWay, DoesNotEnterWhereNoComplianceIsThere) {
+TEST_F(TipOnItsWay, does_not_enter_where_no_compliance_is_there) {
   block.compliance->has_all = false;
   block.put_tip(Vec3(1, 2, 0.2));
   EXPECT_FALSE(path.move_through_air(report));
@@ -172,7 +172,7 @@ TEST_F(TipOnItsWay, DoesNotEnterWhereNoComplianceIsThere) {
   EXPECT_NEAR(path.whereabouts().tip.z(), 0.0, 1e-12) << "that is where it is needed";
 }
 
-TEST_F(TipOnItsWay, GrazesASurfaceThatItMeetsFlat) {
+TEST_F(TipOnItsWay, grazes_a_surface_that_it_meets_flat) {
   const Vec3 axis = Vec3(1.0, 0.0, 0.1).normalized();
   block.put_tip(Vec3(0, 2, -0.1), axis);
   path.place_in_air(path.tip_now());
@@ -182,7 +182,7 @@ TEST_F(TipOnItsWay, GrazesASurfaceThatItMeetsFlat) {
   EXPECT_EQ(kinds(path), std::vector{EventKind::grazed});
 }
 
-TEST_F(TipOnItsWay, BreaksTheSkinAndCutsOnBehindIt) {
+TEST_F(TipOnItsWay, breaks_the_skin_and_cuts_on_behind_it) {
   meet_skin();
   path.tip.force = Vec3(0, 0, 0.9);
   EXPECT_FALSE(path.tip.breaks_surface());
@@ -200,7 +200,7 @@ TEST_F(TipOnItsWay, BreaksTheSkinAndCutsOnBehindIt) {
   EXPECT_NEAR(path.tracks.now.end_xi, 2.0, 1e-12);
 }
 
-TEST_F(TipOnItsWay, StopsAtTheOrgansCapsuleAndLaysMarksBeforeIt) {
+TEST_F(TipOnItsWay, stops_at_the_organs_capsule_and_lays_marks_before_it) {
   meet_skin();
   path.break_surface(1.0, report);
   for (int k = 0; k < 12; ++k) cut(2.0);
@@ -213,7 +213,7 @@ TEST_F(TipOnItsWay, StopsAtTheOrgansCapsuleAndLaysMarksBeforeIt) {
     EXPECT_NEAR(marks[k].xi, (static_cast<double>(k) + 0.5) * block.settings.spacing_mm, 1e-9);
 }
 
-TEST_F(TipOnItsWay, GoesOutAtTheFarSideAndComesBackIntoItsTrack) {
+TEST_F(TipOnItsWay, goes_out_at_the_far_side_and_comes_back_into_its_track) {
   meet_skin();
   path.break_surface(1.0, report);
   for (int k = 0; k < 30 && path.phase() != TipState::exited; ++k) {
@@ -230,7 +230,7 @@ TEST_F(TipOnItsWay, GoesOutAtTheFarSideAndComesBackIntoItsTrack) {
   EXPECT_EQ(kinds(path), std::vector{EventKind::re_entered});
 }
 
-TEST_F(TipOnItsWay, HasLeftOnlyOnTheWayOut) {
+TEST_F(TipOnItsWay, has_left_only_on_the_way_out) {
   meet_skin();
   path.break_surface(1.0, report);
   cut(2.0);
@@ -245,7 +245,7 @@ TEST_F(TipOnItsWay, HasLeftOnlyOnTheWayOut) {
   EXPECT_EQ(path.tracks.earlier().size(), 1u);
 }
 
-TEST_F(TipOnItsWay, TheShaftTakesOverItsLateralHold) {
+TEST_F(TipOnItsWay, the_shaft_takes_over_its_lateral_hold) {
   meet_skin();
   TipContact& tip = path.tip;
   EXPECT_TRUE(tip.has_lateral_rows());

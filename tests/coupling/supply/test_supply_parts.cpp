@@ -49,7 +49,7 @@ std::vector<ComplianceRow> rows_for(const RowLedger& ledger, std::span<const Ind
   return rows;
 }
 
-TEST(RowLedger, HasAsManyFreeSlotsAsAreToSpare) {
+TEST(RowLedger, has_as_many_free_slots_as_are_to_spare) {
   Block block;
   RowLedger ledger(block.nodes);
   ledger.read(*block.empty, 10);
@@ -60,7 +60,7 @@ TEST(RowLedger, HasAsManyFreeSlotsAsAreToSpare) {
   for (const Index node : nodes) EXPECT_TRUE(ledger.has_row(node));
 }
 
-TEST(RowLedger, GetsBackWhatTheStepGivesUpAndDoesNotAskAgainForWhatItKeeps) {
+TEST(RowLedger, gets_back_what_the_step_gives_up_and_does_not_ask_again_for_what_it_keeps) {
   Block block;
   RowLedger ledger(block.nodes);
   ledger.read(*block.empty, 3);
@@ -81,7 +81,7 @@ TEST(RowLedger, GetsBackWhatTheStepGivesUpAndDoesNotAskAgainForWhatItKeeps) {
   EXPECT_EQ(ledger.dispensable({}).size(), 2u) << "contacts may have left it by now";
 }
 
-TEST(RowMaker, MakesTheRowsThatANeedleIsAboutToNeedAndThenNoMore) {
+TEST(RowMaker, makes_the_rows_that_a_needle_is_about_to_need_and_then_no_more) {
   Block block;
   RowMaker maker(block.tissue, block.empty, nullptr, *block.locator);
   RowReceiver receiver(block.nodes, block.empty, nullptr);
@@ -104,7 +104,7 @@ TEST(RowMaker, MakesTheRowsThatANeedleIsAboutToNeedAndThenNoMore) {
     EXPECT_TRUE(block.empty->has(node)) << "where the tip is";
 }
 
-TEST(RowMaker, AsksForTheFurthestSlotsWhereNoneIsFree) {
+TEST(RowMaker, asks_for_the_furthest_slots_where_none_is_free) {
   constexpr Index kRoom = 40;  // enough for one place of the tip, not for five
   Block block;
   RowMaker maker(block.tissue, block.empty, nullptr, *block.locator);
@@ -127,7 +127,7 @@ TEST(RowMaker, AsksForTheFurthestSlotsWhereNoneIsFree) {
   }
 }
 
-TEST(RowReceiver, KeepsTheRowsThatAContactNeeds) {
+TEST(RowReceiver, keeps_the_rows_that_a_contact_needs) {
   Block block;
   const std::vector<Index> tet_nodes = [&] {
     const auto& tet = block.tissue->mesh().tets[static_cast<std::size_t>(block.in_the_middle().tet)];
@@ -155,7 +155,7 @@ TEST(RowReceiver, KeepsTheRowsThatAContactNeeds) {
   EXPECT_FALSE(block.empty->has(other));
 }
 
-TEST(SupplyHandOver, GoesToAndFro) {
+TEST(SupplyHandOver, goes_to_and_fro) {
   SupplyHandOver hand_over;
   EXPECT_TRUE(hand_over.with_step());
   hand_over.give_to_worker({.tip = Vec3(1, 2, 3), .direction = Vec3::UnitZ(), .tet = 7});
@@ -166,7 +166,7 @@ TEST(SupplyHandOver, GoesToAndFro) {
   EXPECT_FALSE(hand_over.failed());
 }
 
-TEST(SupplyHandOver, ACallIsAnsweredByARoundThatKnewOfItAndFoundNoMoreWork) {
+TEST(SupplyHandOver, a_call_is_answered_by_a_round_that_knew_of_it_and_found_no_more_work) {
   SupplyHandOver hand_over;
   hand_over.give_to_worker({});
   hand_over.call();

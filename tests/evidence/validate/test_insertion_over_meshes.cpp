@@ -20,7 +20,7 @@ std::vector<CouplingRow> of(const std::vector<CouplingRow>& rows, const std::str
 
 }  // namespace
 
-TEST(InsertionOverMeshes, ComesNearTheSameForceWithTheNearFieldOn500Nodes) {
+TEST(InsertionOverMeshes, comes_near_the_same_force_with_the_near_field_on_500_nodes) {
   const auto rows = bench_coupling({.largest = 2000, .mesh_only = true});
   ASSERT_TRUE(rows) << rows.error().message();
   const auto near_field = of(*rows, "near-field");

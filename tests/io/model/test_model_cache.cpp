@@ -43,7 +43,7 @@ std::uintmax_t size_of_one() {
 
 }  // namespace
 
-TEST(ModelCache, AKeyFollowsFromEverythingAModelIsMadeOf) {
+TEST(ModelCache, a_key_follows_from_everything_a_model_is_made_of) {
   const Folder folder;
   const fs::path patient = folder.path() / "patient.json";
   const fs::path motion = folder.path() / "motion.csv";
@@ -66,7 +66,7 @@ TEST(ModelCache, AKeyFollowsFromEverythingAModelIsMadeOf) {
   EXPECT_NE(key(s), first);
 }
 
-TEST(ModelCache, AKeyFollowsFromTheBuildIdOfTheCodeAndNotFromTheProgramsFile) {
+TEST(ModelCache, a_key_follows_from_the_build_id_of_the_code_and_not_from_the_programs_file) {
   const std::string id = detail::build_id();
   EXPECT_EQ(id.size(), 40u);  // of SHA-1
   EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
@@ -78,7 +78,7 @@ TEST(ModelCache, AKeyFollowsFromTheBuildIdOfTheCodeAndNotFromTheProgramsFile) {
   EXPECT_NE(program.find(bytes), std::string::npos);
 }
 
-TEST(ModelCache, AKeyOfAFolderKnowsItsFilesByNameAndContent) {
+TEST(ModelCache, a_key_of_a_folder_knows_its_files_by_name_and_content) {
   const Folder folder;
   fs::create_directories(folder.path() / "slices" / "more");
   write(folder.path() / "slices" / "1.dcm", "one");
@@ -94,7 +94,7 @@ TEST(ModelCache, AKeyOfAFolderKnowsItsFilesByNameAndContent) {
   EXPECT_NE(key(s), first);
 }
 
-TEST(ModelCache, APatientThatIsNotThereHasNoKey) {
+TEST(ModelCache, a_patient_that_is_not_there_has_no_key) {
   Scenario s = saved_box();
   s.patient.source = "/nowhere/patient.json";
   const auto made = model_key(s);
@@ -102,7 +102,7 @@ TEST(ModelCache, APatientThatIsNotThereHasNoKey) {
   EXPECT_NE(made.error().message().find("/nowhere/patient.json"), std::string::npos);
 }
 
-TEST(ModelCache, APatientInSeveralFilesHasNoKey) {
+TEST(ModelCache, a_patient_in_several_files_has_no_key) {
   const Folder folder;
   const auto says_so = [&](const char* name, const std::string& header) {
     write(folder.path() / name, header);
@@ -127,7 +127,7 @@ TEST(ModelCache, APatientInSeveralFilesHasNoKey) {
   EXPECT_FALSE(says_so("m.img", "ObjectType = Image\nElementDataFile = LOCAL\nvoxels"));
 }
 
-TEST(ModelCache, FindsWhatWasKept) {
+TEST(ModelCache, finds_what_was_kept) {
   const Folder folder;
   const ModelCache cache(folder.path() / "new" / "models");
   EXPECT_FALSE(cache.find("box"));
@@ -141,14 +141,14 @@ TEST(ModelCache, FindsWhatWasKept) {
   EXPECT_EQ(content->mesh.nodes.size(), box_model()->mesh().nodes.size());
 }
 
-TEST(ModelCache, LooksIntoOtherFoldersToo) {
+TEST(ModelCache, looks_into_other_folders_too) {
   const Folder folder;
   keep(ModelCache(folder.path() / "given"), "box");
   EXPECT_EQ(ModelCache({}, {folder.path() / "given"}).find("box"), folder.path() / "given" / "box.stylet");
   EXPECT_FALSE(ModelCache({}, {folder.path()}).find("box"));
 }
 
-TEST(ModelCache, ForgetsTheOneNotUsedForLongest) {
+TEST(ModelCache, forgets_the_one_not_used_for_longest) {
   const Folder folder;
   const ModelCache cache(folder.path(), {}, 2 * size_of_one() + 1000);
   keep(cache, "first");
@@ -164,19 +164,19 @@ TEST(ModelCache, ForgetsTheOneNotUsedForLongest) {
   EXPECT_TRUE(fs::exists(folder.path() / "notes.txt"));
 }
 
-TEST(ModelCache, KeepsNoneThatIsLargerThanAllMayBe) {
+TEST(ModelCache, keeps_none_that_is_larger_than_all_may_be) {
   const Folder folder;
   const ModelCache cache(folder.path(), {}, 1000);
   keep(cache, "box");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(ModelCache, WithoutAFolderNothingIsKept) {
+TEST(ModelCache, without_a_folder_nothing_is_kept) {
   keep(ModelCache({}), "box");
   EXPECT_FALSE(ModelCache({}).find("box"));
 }
 
-TEST(ModelCache, SaysWhichFolderRefuses) {
+TEST(ModelCache, says_which_folder_refuses) {
   const Folder folder;
   write(folder.path() / "taken", "a file");
   const auto kept = ModelCache(folder.path() / "taken").keep(*box_model(), "box");

@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, SavedModels, testing::Values("p1", "nodal-pre
   return name;
 });
 
-TEST_P(SavedModels, StepAsTheCompiledOneToTheLastBitWithoutAFactor) {
+TEST_P(SavedModels, step_as_the_compiled_one_to_the_last_bit_without_a_factor) {
   const Folder folder;
   Scenario scenario = saved_box();
   scenario.tissue_model.element = choice<ElementChoice>(GetParam()).value();
@@ -103,7 +103,7 @@ TEST(SavedModel, cannot_hold_a_part_of_the_program) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "own.stylet"));
 }
 
-TEST(SavedModel, MakesTheFactorForWhatIsNotInIt) {
+TEST(SavedModel, makes_the_factor_for_what_is_not_in_it) {
   const Folder folder;
   Scenario scenario = saved_box();
   scenario.coupling.corridor_mm = 1.0;
@@ -121,7 +121,7 @@ TEST(SavedModel, MakesTheFactorForWhatIsNotInIt) {
   EXPECT_TRUE(model->tissue().has_factor());
 }
 
-TEST(SavedModel, KeepsRecordedMotionsSeveralNeedlesAndNotes) {
+TEST(SavedModel, keeps_recorded_motions_several_needles_and_notes) {
   const Folder folder;
   Scenario scenario = saved_box();
   scenario.insertions.push_back(scenario.insertions.front());
@@ -142,7 +142,7 @@ TEST(SavedModel, KeepsRecordedMotionsSeveralNeedlesAndNotes) {
   EXPECT_EQ(file->notes, (std::vector<std::string>{"one thing", "another"}));
 }
 
-TEST(SavedModel, TakesSettingsThatLeaveItsComplianceAsItIs) {
+TEST(SavedModel, takes_settings_that_leave_its_compliance_as_it_is) {
   const Folder folder;
   const Scenario scenario = saved_box();
   save(*test::compiled(scenario), folder / "box.stylet");
@@ -157,7 +157,7 @@ TEST(SavedModel, TakesSettingsThatLeaveItsComplianceAsItIs) {
   EXPECT_SAYS(refusal(folder / "box.stylet", std::vector<std::string>{"coupling.spacin_mm=3"}), "spacing_mm");
 }
 
-TEST(SavedModel, OfAnotherMeshOrMaterialIsRefused) {
+TEST(SavedModel, of_another_mesh_or_material_is_refused) {
   const Folder folder;
   save(*test::compiled(saved_box()), folder / "box.stylet");
   const auto file = read_model_file(folder / "box.stylet");
@@ -187,7 +187,7 @@ void save_small(const std::filesystem::path& path) {
   save(*test::compiled(scenario), path);
 }
 
-TEST(SavedModel, WithAnyBitChangedIsRefused) {
+TEST(SavedModel, with_any_bit_changed_is_refused) {
   const Folder folder;
   save_small(folder / "whole.stylet");
   const std::string whole = test::content_of(folder / "whole.stylet");
@@ -209,7 +209,7 @@ TEST(SavedModel, WithAnyBitChangedIsRefused) {
   }
 }
 
-TEST(SavedModel, MadeToDeceiveIsRefusedOrReadButNeverEndsTheProgram) {
+TEST(SavedModel, made_to_deceive_is_refused_or_read_but_never_ends_the_program) {
   const Folder folder;
   save_small(folder / "whole.stylet");
   const std::string whole = test::content_of(folder / "whole.stylet");
@@ -251,7 +251,7 @@ TEST(SavedModel, MadeToDeceiveIsRefusedOrReadButNeverEndsTheProgram) {
   }
 }
 
-TEST(SavedModel, HasTheSameBytesEachTime) {
+TEST(SavedModel, has_the_same_bytes_each_time) {
   const Folder folder;
   save_small(folder / "one.stylet");
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's time stamps have a resolution of 1 s
@@ -259,7 +259,7 @@ TEST(SavedModel, HasTheSameBytesEachTime) {
   EXPECT_EQ(test::content_of(folder / "one.stylet"), test::content_of(folder / "two.stylet"));
 }
 
-TEST(SavedModel, IsAnHdf5FileForOthers) {
+TEST(SavedModel, is_an_hdf5_file_for_others) {
   const Folder folder;
   save_small(folder / "box.stylet");
   const h5::LibraryTurn turn;
@@ -272,7 +272,7 @@ TEST(SavedModel, IsAnHdf5FileForOthers) {
   EXPECT_EQ(h5::extents(h5::dataset(file, "mesh/nodes_mm")), (std::vector<hsize_t>{model->mesh.nodes.size(), 3}));
 }
 
-TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
+TEST(SavedModel, other_files_and_versions_are_named) {
   const Folder folder;
   EXPECT_SAYS(refusal(folder / "none.stylet"), "no such file");
   test::write_file(folder / "text.stylet", "[patient]\n");
@@ -293,7 +293,7 @@ TEST(SavedModel, OtherFilesAndVersionsAreNamed) {
   EXPECT_SAYS(refusal(folder / "newer.stylet"), "version 4 of the format");
 }
 
-TEST(SavedModel, ADamagedOneIsKnownByItsName) {
+TEST(SavedModel, a_damaged_one_is_known_by_its_name) {
   const Folder folder;
   save(*test::compiled(saved_box()), folder / "box.stylet");
   const std::string whole = test::content_of(folder / "box.stylet");
@@ -311,7 +311,7 @@ TEST(SavedModel, ADamagedOneIsKnownByItsName) {
   EXPECT_FALSE(is_meant_as_model(folder / "none.stylet"));
 }
 
-TEST(SavedModel, IsNotWrittenWhereItWouldNotBeWhole) {
+TEST(SavedModel, is_not_written_where_it_would_not_be_whole) {
   const Folder folder;
   Scenario scenario = saved_box();
   scenario.coupling.engine = CouplingSettings::Engine::woodbury;
