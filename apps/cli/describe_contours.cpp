@@ -3,8 +3,7 @@
 #include "describe.hpp"
 #include "table.hpp"
 
-#include "stylet/io/contours_io.hpp"
-#include "stylet/mesher/structures.hpp"
+#include "stylet/patient/judged_contours.hpp"
 
 #include <fmt/format.h>
 
@@ -19,13 +18,13 @@ Description describe(const ContourSet& contours) {
   Table table(
       {"structure", "taken as", "type", "slices", "contours", "points", "spacing mm", "extent mm", "volume cc"});
   std::vector<std::string> notes = contours.notes;
-  const StructureChoice choice = *choose_structures(contours, {});  // refuses wrong wishes only, and there are none
-  auto use = choice.uses.begin();
-  for (const Roi& roi : contours.rois) {
-    if (const Result<> sound = check_roi(roi, contours.source); !sound) notes.push_back(sound.error().message());
-    if (auto note = long_closing_side(roi)) notes.push_back(*std::move(note));
+  const JudgedContours judged = *judge_contours(contours, {});  // the only errors are about wishes, and there are none
+  for (const JudgedStructure& structure : judged.structures) {
+    const Roi& roi = *structure.roi;
+    if (structure.fault) notes.push_back(structure.fault->message());
+    if (structure.oddity) notes.push_back(*structure.oddity);
     const RoiMeasures size = measure(roi);
-    const std::string region = roi.contours.empty() ? "" : (use++)->region;
+    const std::string& region = structure.use.region;
     out.json["structures"].push_back({{"name", roi.name},
                                       {"number", roi.number},
                                       {"type", roi.type},
@@ -47,7 +46,7 @@ Description describe(const ContourSet& contours) {
   if (!contours.label.empty()) facts.add("label", contours.label);
   if (!contours.frame_of_reference.empty()) facts.add("frame of reference", contours.frame_of_reference);
   out.text = facts.text() + "\n\n" + table.text();
-  notes.insert(notes.end(), choice.notes.begin(), choice.notes.end());
+  notes.insert(notes.end(), judged.choice.notes.begin(), judged.choice.notes.end());
   for (const std::string& note : notes) out.text += "\n  note: " + note;
   out.json["notes"] = notes;
   return out;

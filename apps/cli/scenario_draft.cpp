@@ -4,7 +4,7 @@
 #include "contour_measures.hpp"
 
 #include "stylet/core/version.hpp"
-#include "stylet/mesher/structures.hpp"
+#include "stylet/patient/judged_contours.hpp"
 #include "stylet/sim/scenario.hpp"
 
 #include <fmt/format.h>
@@ -102,22 +102,18 @@ std::string remark_of(const StructureUse& use, double volume_cc) {
   return use.why.empty() ? size_text(volume_cc) : fmt::format("{}; {}", size_text(volume_cc), use.why);
 }
 
-/// Structures that the mesher would use and that cannot be used, until none is left.
-Result<StructureChoice> choose_sound(const ContourSet& contours, MeshOptions& options, Contents& out) {
+/// Leaves out the structures that the mesher would use and that have a fault, until no such structure is left: another
+/// one may be used in place of one that is left out.
+Result<JudgedContours> judge_sound(const ContourSet& contours, MeshOptions& options, Contents& out) {
   for (;;) {
-    auto choice = choose_structures(contours, options);
-    if (!choice) return choice.error();
-    const std::size_t before = options.skip.size();
-    auto use = choice->uses.begin();
-    for (const Roi& roi : contours.rois) {
-      if (roi.contours.empty() || (use++)->region.empty()) continue;
-      const Result<> sound = check_roi(roi, contours.source);
-      if (sound) continue;
-      options.skip.push_back(roi.name);
-      out.skip.push_back(roi.name);
-      out.why_skip.push_back(sound.error().what);
+    auto judged = judge_contours(contours, options);
+    if (!judged || judged->fault() == nullptr) return judged;
+    for (const JudgedStructure& structure : judged->structures) {
+      if (!structure.is_used() || !structure.fault) continue;
+      options.skip.push_back(structure.roi->name);
+      out.skip.push_back(structure.roi->name);
+      out.why_skip.push_back(structure.fault->what);
     }
-    if (options.skip.size() == before) return choice;
   }
 }
 
@@ -134,25 +130,21 @@ MeshOptions leave_out(const std::vector<std::string>& skip, Contents& out) {
 Result<Contents> contents_of(const ContourSet& contours, const std::vector<std::string>& skip) {
   Contents out;
   MeshOptions options = leave_out(skip, out);
-  const auto choice = choose_sound(contours, options, out);
-  if (!choice) return choice.error();
+  const auto judged = judge_sound(contours, options, out);
+  if (!judged) return judged.error();
+  const StructureChoice* choice = &judged->choice;
   out.kind = fmt::format("contours of {} structure{}", contours.rois.size(), contours.rois.size() == 1 ? "" : "s");
   out.about_regions =
       "What each structure is taken as. Change a region here, or write skip = [\"NAME\"] above to leave one out.";
   out.remarks = contours.notes;
-  auto use = choice->uses.begin();
-  for (const Roi& roi : contours.rois) {
-    if (roi.contours.empty()) continue;
-    const StructureUse& taken = *use++;
-    if (taken.region.empty()) continue;
-    const RoiMeasures size = measure(roi);
-    if (is_target_region(taken.region)) out.target.extend(size.box);
-    out.regions.push_back({roi.name, taken.region, remark_of(taken, size.volume_cc)});
-    if (auto note = long_closing_side(roi)) out.remarks.push_back(*std::move(note));
+  for (const JudgedStructure& structure : judged->structures) {
+    if (!structure.is_used()) continue;
+    const RoiMeasures size = measure(*structure.roi);
+    if (is_target_region(structure.use.region)) out.target.extend(size.box);
+    out.regions.push_back({structure.roi->name, structure.use.region, remark_of(structure.use, size.volume_cc)});
+    if (structure.oddity) out.remarks.push_back(*structure.oddity);
   }
-  for (const std::string& note : choice->notes) {
-    if (note.find("left out") != std::string::npos) out.left_out.push_back(note);
-  }
+  out.left_out = choice->left_out;
   if (!choice->has_target) {
     out.warnings.emplace_back("no structure is recognised as the gland: say which one it is below [patient.regions]");
     out.about_regions = "No structure is recognised as the gland. Say which one it is: \"NAME\" = \"prostate\"";
@@ -204,9 +196,7 @@ Result<Contents> contents_of(const LabelImage& image, const std::vector<std::str
     if (use.name != number) remark = fmt::format("'{}', {}", use.name, remark);
     out.regions.push_back({number, choice->has_target ? use.region : "", remark});
   }
-  for (const std::string& note : choice->notes) {
-    if (note.find("left out") != std::string::npos) out.left_out.push_back(note);
-  }
+  out.left_out = choice->left_out;
   return out;
 }
 

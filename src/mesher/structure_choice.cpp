@@ -294,7 +294,8 @@ StructureChoice told(std::vector<StructureUse> uses, const std::vector<Candidate
                                          type.empty() ? "" : fmt::format(" (type {})", type), uses[i].why));
     }
   }
-  for (std::string& note : tell_left_out(uses, kind)) choice.notes.push_back(std::move(note));
+  choice.left_out = tell_left_out(uses, kind);
+  choice.notes.insert(choice.notes.end(), choice.left_out.begin(), choice.left_out.end());
   for (std::size_t i = 0; i < uses.size(); ++i) {
     choice.has_target = choice.has_target || is_target_region(uses[i].region);
     (candidates[i].nothing.empty() ? choice.uses : choice.empty).push_back(std::move(uses[i]));

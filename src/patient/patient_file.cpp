@@ -3,7 +3,7 @@
 
 #include "stylet/core/nearest_name.hpp"
 #include "stylet/geom/structure_names.hpp"
-#include "stylet/mesher/structures.hpp"
+#include "stylet/patient/judged_contours.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,19 +13,6 @@
 namespace stylet {
 
 namespace {
-
-/// Checks the structures that the mesher will use (check_roi()), and adds a note for each that looks odd.
-Result<> check_used(const ContourSet& contours, const MeshOptions& options, std::vector<std::string>& notes) {
-  const auto choice = choose_structures(contours, options);
-  if (!choice) return choice.error();
-  auto use = choice->uses.begin();
-  for (const Roi& roi : contours.rois) {
-    if (roi.contours.empty() || (use++)->region.empty()) continue;
-    if (Result<> sound = check_roi(roi, contours.source); !sound) return sound;
-    if (auto note = long_closing_side(roi)) notes.push_back(*std::move(note));
-  }
-  return Ok{};
-}
 
 Result<> drop_skipped(std::vector<Surface>& surfaces, const std::vector<std::string>& skip, const std::string& where) {
   std::vector<std::string> names;
@@ -59,7 +46,10 @@ Result<PatientFile> read_patient(const std::filesystem::path& path, const MeshRe
   if (!input) return input.error();
   file.content = std::move(*input);
   if (const auto* contours = std::get_if<ContourSet>(&file.content)) {
-    if (Result<> sound = check_used(*contours, mesh_options, file.notes); !sound) return sound.error();
+    const auto judged = judge_contours(*contours, mesh_options);
+    if (!judged) return judged.error();
+    if (const Error* fault = judged->fault()) return *fault;
+    for (std::string& note : judged->oddities()) file.notes.push_back(std::move(note));
   }
   if (auto* surfaces = std::get_if<std::vector<Surface>>(&file.content)) {
     if (Result<> done = drop_skipped(*surfaces, mesh_options.skip, path.string()); !done) return done.error();

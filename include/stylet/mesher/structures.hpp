@@ -17,9 +17,10 @@ struct StructureUse {
 struct StructureChoice {
   std::vector<StructureUse> uses;   ///< structures with contours, in their order, or labels, ascending
   std::vector<StructureUse> empty;  ///< structures without anything to mesh; all are left out
-  /// Messages to the user: which structure stands in for another one, and what is left out and why.
+  /// Messages to the user: which structure stands in for another one, then those of `left_out`.
   std::vector<std::string> notes;
-  bool has_target = false;  ///< whether one of the regions is the target
+  std::vector<std::string> left_out;  ///< messages to the user: which structures are left out, and why
+  bool has_target = false;            ///< whether one of the regions is the target
 };
 
 /// Decides how the structures of a contour set are used: by MeshOptions::skip, then by MeshOptions::regions, then by

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/mesher/structures.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stylet {
+
+/// Judgement of one structure of a contour set: its use, and what is wrong with it.
+struct JudgedStructure {
+  const Roi* roi = nullptr;    ///< the structure in the contour set
+  StructureUse use;            ///< the region that it becomes, or why it is left out
+  std::optional<Error> fault;  ///< why its contours cannot be a structure (check_roi()); matters only if it is used
+  std::optional<std::string> oddity;  ///< note for the user about contours that look odd (long_closing_side())
+
+  [[nodiscard]] bool is_used() const { return !use.region.empty(); }
+};
+
+/// Judgement of all structures of a contour set.
+struct JudgedContours {
+  std::vector<JudgedStructure> structures;  ///< one for each Roi of the set, in their order
+  StructureChoice choice;                   ///< the uses again, with notes about them
+
+  /// The first fault of a structure that is used; null if all of them can be meshed.
+  [[nodiscard]] const Error* fault() const;
+  /// Notes for the user about structures that are used and look odd.
+  [[nodiscard]] std::vector<std::string> oddities() const;
+};
+
+/// Judges the structures of a contour set: choose_structures(), check_roi() and long_closing_side() together. Reading a
+/// patient, `stylet info` and its draft of a scenario all ask here.
+/// @param contours must outlive the result
+/// Errors: those of choose_structures(). Faults of structures are no errors here.
+Result<JudgedContours> judge_contours(const ContourSet& contours, const MeshOptions& options);
+
+}  // namespace stylet
