@@ -29,7 +29,7 @@ bool holds_only_its_recording(const fs::path& folder) {
   return !code;
 }
 
-/// Those the live page made, oldest first.
+/// The recordings that the live page made, oldest first.
 std::vector<Recording> recordings_in(const fs::path& folder) {
   std::vector<Recording> found;
   std::error_code code;
@@ -63,7 +63,7 @@ std::string gigabytes(std::uintmax_t bytes) {
 std::uintmax_t free_bytes(const fs::path& folder) {
   std::error_code code;
   const fs::space_info space = fs::space(folder, code);
-  return code ? std::numeric_limits<std::uintmax_t>::max() : space.available;  // writing will tell
+  return code ? std::numeric_limits<std::uintmax_t>::max() : space.available;  // a full disk shows when writing fails
 }
 
 RoomReport make_room(const fs::path& folder, const RecordingRoom& room,

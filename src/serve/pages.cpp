@@ -53,14 +53,14 @@ HttpResponse Pages::refusal(const HttpRequest& request, http::status status, con
   return response(request, status, "text/plain; charset=utf-8", why + "\n");
 }
 
-/// The list is of names only: to open each would take seconds.
+/// The list holds names only, because opening each recording would take seconds.
 HttpResponse Pages::recordings(const HttpRequest& request) const {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const std::string& name : shelf_.names()) list.push_back({{"name", name}});
   return response(request, http::status::ok, "application/json", list.dump());
 }
 
-/// @param path NAME/forces.csv
+/// The force curve of a recording. @param path NAME/forces.csv
 HttpResponse Pages::recording(const HttpRequest& request, std::string_view path) const {
   const auto slash = path.find('/');
   if (slash == std::string_view::npos || path.substr(slash) != "/forces.csv")

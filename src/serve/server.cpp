@@ -102,7 +102,7 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
 
 }  // namespace
 
-/// Everything here happens in the io thread, but for the Audience's calls, which only post to it.
+/// Everything here happens in the thread of `io`, except the Audience's calls, which only post work to it.
 struct Server::Parts final : public Audience, public ViewerDesk {
   Parts(ServerSettings settings_, Access access_)
       : settings(std::move(settings_)),
@@ -122,14 +122,14 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers;
   std::uint64_t last_id = 0;
   std::shared_ptr<const Scene> scene;
-  std::string map;  ///< as it is sent; empty until there is one
+  std::string map;  ///< JSON text of the map; empty until there is a map
   SessionStatus status;
-  std::deque<std::string> events;  ///< since the start of the insertion
+  std::deque<std::string> events;  ///< JSON texts of the events since the start of the insertion
   Session session;
   std::thread thread;
-  asio::thread_pool readers{1};  ///< last: ended before what its work needs
+  asio::thread_pool readers{1};  ///< last member, so that it ends before the members that its work uses
 
-  // Audience: from the session's thread.
+  // Audience: called from the session's thread.
   void show(std::shared_ptr<const Scene> made) override {
     asio::post(io, [this, made = std::move(made)] {
       scene = made;
@@ -174,7 +174,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     });
   }
 
-  // ViewerDesk.
+  // ViewerDesk: called from the thread of `io`.
   void arrived(const std::shared_ptr<Viewer>& viewer) override {
     viewers[viewer->id()] = viewer;
     if (scene) viewer->send(scene);
@@ -210,7 +210,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       viewer.send(wire::Kind::notice, text_of({{"text", "too many requests are waiting"}, {"cure", "Try again"}}));
   }
 
-  /// A copy: sending may close a viewer, which takes it out.
+  /// A copy of the viewers, because sending may close a viewer and so remove it from the map.
   [[nodiscard]] std::map<std::uint64_t, std::shared_ptr<Viewer>> each() const { return viewers; }
 
   void say_status() {
@@ -264,7 +264,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       accept();
     });
   }
-  /// After an error that would come again at once, such as too many open files.
+  /// Accepts again after a pause. Used after an error that would recur at once, such as too many open files.
   void accept_later() {
     retry.expires_after(kAcceptAgain);
     retry.async_wait([this](beast::error_code error) {
@@ -293,7 +293,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     if (beast::websocket::is_upgrade(request) && viewers.size() >= settings.viewers)
       return write(stream,
                    Pages::refusal(request, http::status::service_unavailable, "There are too many viewers already."));
-    // Reading a recording takes a while: not here, where all viewers would wait.
+    // Reading a recording takes a while, so another thread does it; here all viewers would have to wait.
     stream->expires_never();
     asio::post(readers, [this, stream, request] {
       asio::post(io, [this, stream, response = pages.answer(request)] { write(stream, response); });
@@ -313,7 +313,8 @@ struct Server::Parts final : public Audience, public ViewerDesk {
 
 namespace {
 
-/// Who may come in. Who names a token may let a proxy ask for the page under another name.
+/// Makes the access rules from the settings. With a given token the server answers under any host name, so that a proxy
+/// can forward requests to it.
 Result<Access> access_for(const ServerSettings& settings, bool is_loopback) {
   const std::string& given = settings.token;
   if (!settings.asks_for_token) {

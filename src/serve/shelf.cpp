@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Letters, digits, points and dashes of a name; anything else becomes a dash.
+/// Keeps the letters, digits and dots of a name and replaces each run of other characters by a dash.
 std::string tame(const std::string& name) {
   std::string out;
   for (const char c : name) {
