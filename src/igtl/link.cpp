@@ -16,7 +16,7 @@
 
 namespace stylet::igtl {
 
-/// The context goes last of what uses it: what still waits in it holds sockets.
+/// `io` is declared before the members that use it. Its queue may hold sockets, so it must be destroyed after them.
 struct Link::Parts {
   explicit Parts(const LinkSettings& s) : settings(s), hub(settings), sender(io, settings, hub) {}
 
@@ -49,7 +49,7 @@ Result<std::unique_ptr<Link>> Link::open(const LinkSettings& settings) {
 
 Link::~Link() {
   Parts& p = *parts_;
-  // In the thread itself, which owns the sockets; it ends there, whatever is still under way.
+  // Everything is closed in the link's thread, which owns the sockets; messages that are being sent are dropped.
   boost::asio::post(p.io, [&p] {
     p.transport->stop();
     p.sender.stop();

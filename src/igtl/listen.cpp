@@ -35,7 +35,7 @@ class Listener final : public Transport {
   }
 
  private:
-  /// Out of file descriptors, say: asking again at once would spin.
+  /// Accepts again after a pause. After an error such as too many open files, an immediate retry would loop.
   void rest(const std::string& problem) {
     hub_.set_problem("accepting a connection: " + problem);
     pause_.expires_after(std::chrono::milliseconds(200));
@@ -58,7 +58,7 @@ Result<std::unique_ptr<Transport>> listen(asio::io_context& io, const LinkSettin
   tcp::acceptor acceptor(io);
   error_code error;
   acceptor.open(at.protocol(), error);
-  // Without it the port stays taken for a minute after the last connection.
+  // Without this option the port stays in use for a minute after the last connection.
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(at, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);

@@ -22,7 +22,7 @@ Error garbage(std::string what) {
   return input_error("OpenIGTLink message", std::move(what), "let the other side send OpenIGTLink, version 1 to 3");
 }
 
-/// Text up to its zero or the field's end.
+/// The text of a field, up to a zero byte or the end of the field.
 std::string_view text(const char* field, std::size_t room) { return {field, strnlen(field, room)}; }
 
 bool is_type(std::string_view type) {
@@ -66,7 +66,7 @@ Result<> MessageReader::read_body(Incoming& message) {
   if (crc64(body_.data(), body_.size(), 0) != crc_) return garbage("a body that does not match its checksum");
   std::span<const std::uint8_t> content(body_);
   if (version_ == 2) {
-    // Extended header: its own length, the lengths of the metadata's two parts at the end, a number.
+    // Extended header: its own length, the lengths of the two parts of the metadata at the end, a message number.
     if (body_.size() < 12) return garbage("a body shorter than its extended header");
     const std::size_t before = big16(body_.data());
     const std::size_t after = big16(body_.data() + 2) + big32(body_.data() + 4);

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Keeps every step and the labelled frames.
+/// Stores every step and the labelled frames of a run.
 class Keeper final : public RunObserver {
  public:
   explicit Keeper(RecordedRun& run) : run_(run) {}

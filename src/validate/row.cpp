@@ -101,7 +101,7 @@ Row measure(const RowSpec& spec, Context& context) {
     } else {
       crash(found.error().message());
     }
-  } catch (const std::exception& unexpected) {  // one row must not take the others with it
+  } catch (const std::exception& unexpected) {  // a failure of one row must not stop the others
     crash(fmt::format("unexpected failure: {}", unexpected.what()));
   }
   row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array kGroups{Group::analysis, Group::other_code, Group::measurements, Group::independence};
 
-/// Word, sign and colour: any one of them is enough.
+/// The verdict as word, sign and colour, each of which is sufficient by itself.
 std::string badge(Verdict verdict) {
   const auto make = [&](const char* style, const char* sign) {
     return fmt::format("<span class=\"verdict {}\"><i>{}</i>{}</span>", style, sign, to_string(verdict));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle in tissue led around closed loops: nobody gets energy out of it.
+// A hand moves a needle in tissue around closed loops. It must not gain energy.
 #include "../hand_loops.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -23,7 +23,7 @@ constexpr int kSteps = 500;
 constexpr double kBevel_deg = 20.0;
 constexpr int kDemoNodes = 2000;
 
-/// The block, with a symmetric tip or a bevelled one.
+/// The block, with a symmetric or a bevelled tip.
 Result<std::shared_ptr<const Model>> block_of(TissuePreset preset, bool bevelled) {
   Block block;
   block.direction = {0.05, 0.1, 1.0};
@@ -32,7 +32,7 @@ Result<std::shared_ptr<const Model>> block_of(TissuePreset preset, bool bevelled
   return block.compile();
 }
 
-/// The demo's patient, with the demo's needle and template.
+/// The demo patient with the demo's needle and template.
 Result<std::shared_ptr<const Model>> demo() {
   auto meshed = mesh_demo(kDemoNodes, {});
   if (!meshed) return meshed.error();

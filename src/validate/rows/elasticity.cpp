@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tissue against closed solutions of linear elasticity, and against CalculiX.
+// Compares the tissue with closed-form solutions of linear elasticity and with CalculiX.
 #include "../rows.hpp"
 #include "../solids.hpp"
 #include "stylet/fem/tissue.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 const Material kGland{0.040, 0.45};
 
-/// Nodal forces [N] of one stress on all outer faces.
+/// Nodal forces [N] of a uniform stress on all outer faces.
 VecX uniform_traction(const Tissue& tissue, const Mat3& stress) {
   return traction(tissue, [&](const Vec3&, int) { return stress; });
 }
@@ -54,7 +54,7 @@ Result<Finding> rigid_motions(Context&) {
   for (int mode = 0; mode < 6; ++mode) {
     const Vec3 axis = Vec3::Unit(mode % 3);
     const VecX u = sample(*tissue, [&](const Vec3& x) { return mode < 3 ? axis : Vec3(axis.cross(x) / 60.0); });
-    // Relative to the stress that a strain of the same motion over 1 mm would make.
+    // The scale is the stress of a strain that has the size of the displacement over a length of 1 mm.
     const double scale = kGland.lambda() * u.cwiseAbs().maxCoeff();
     finding.value = worse(finding.value, tissue->stress(u).cwiseAbs().maxCoeff() / scale);
   }
@@ -63,7 +63,7 @@ Result<Finding> rigid_motions(Context&) {
 }
 
 Result<Finding> uniaxial_bar(Context&) {
-  // Without lateral contraction the held end does not disturb the field.
+  // With ν = 0 there is no lateral contraction, so the held end does not disturb the field.
   const Material material{0.020, 0.0};
   TetMesh mesh = box_mesh({0, 0, 0}, {10, 15, 100}, {2, 3, 20}, 0.15);
   const auto floor = nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
@@ -90,7 +90,7 @@ Result<Finding> same_as_calculix(Element element, const std::array<int, 3>& cell
   const auto tissue = Tissue::build(std::move(mesh), {{0.008, 0.45}, {0.060, 0.40}}, fixed, {}, element);
   if (!tissue) return tissue.error();
 
-  // A press on the top and pushes and pulls at a third of the free nodes.
+  // Loads: a force on all nodes of the top, and random forces on a third of the free nodes.
   const Index nodes = tissue->displacement_nodes();
   VecX f = VecX::Zero(3 * Eigen::Index{nodes});
   std::mt19937 random(11);

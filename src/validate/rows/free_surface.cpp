@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tip at the skin and a little below it.
+// The compliance of the tip at the skin and a little below it.
 #include "../medium_block.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -17,7 +17,7 @@ namespace stylet::validate {
 
 namespace {
 
-/// Stiffness that the hand feels while the tip presses on the skin, and that of a flat punch [N/mm].
+/// Stiffness at the hand while the tip presses on the skin, and stiffness under a flat punch [N/mm].
 struct Pressed {
   double ours = 0.0;
   double punch = 0.0;
@@ -85,18 +85,19 @@ Result<Finding> flat_punch(Context&) {
   return finding;
 }
 
-/// Kelvin’s solution and what the surface adds, by superposition [mm/N].
+/// Kelvin’s solution plus the contribution of the free surface, by superposition [mm/N].
 Mat3 point_force(const Vec3& x, const Vec3& source, const Medium& medium) {
   constexpr double point_mm = 1e-6;
   return kelvinlet(x - source, point_mm, medium) + surface_part(x, source, medium);
 }
 
-/// A block with a free face at z = −50 mm whose other faces move as a half space’s material does.
+/// A block with a free face at z = −50 mm whose other faces move as in a half space.
 struct HalfSpace {
   MediumBlock block;
-  const Vec3 up{0.0, 0.0, MediumBlock::kHalf_mm};  ///< from the block’s places to those of the half space z ≥ 0
+  const Vec3 up{0.0, 0.0,
+                MediumBlock::kHalf_mm};  ///< shift from the block’s coordinates to those of the half space z ≥ 0
 
-  /// The held nodes’ motion under a force at a place.
+  /// Displacement of the held nodes per force at `source`.
   [[nodiscard]] std::vector<Mat3> far_field(const Vec3& source) const {
     std::vector<Mat3> field;
     for (const Index node : block.fixed)
@@ -105,8 +106,8 @@ struct HalfSpace {
   }
 };
 
-/// Stiffness of the flat end of a rod in its hole, so far below a free surface, over E R: by finite elements, at ν =
-/// 0.45 (python3 tests/reference/rod_end.py --shallow).
+/// Stiffness of the flat end of a rod in its hole at a depth below a free surface, divided by E R. By finite elements
+/// with ν = 0.45 (python3 tests/reference/rod_end.py --shallow).
 struct RodEnd {
   double depth_mm;
   double stiffness;
@@ -116,7 +117,7 @@ constexpr std::array<RodEnd, 7> kRodEnds{
 
 Result<Finding> mindlin(Context&) {
   const NeedleKernel needle;
-  const NeedleKernel point{.radius_mm = 0.05};  // a point, as far as its neighbours can tell
+  const NeedleKernel point{.radius_mm = 0.05};  // small enough to be a point force for its neighbours
   Finding finding;
   double tip_off = 0.0;
   double field_off = 0.0;

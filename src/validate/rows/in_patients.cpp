@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The defaults against what was measured in patients and cadavers: the demo, and a gland drawn as a mask.
+// Compares the default values with measurements in patients and cadavers, for the demo and for a gland drawn as a mask.
 #include "../patients.hpp"
 #include "../rows.hpp"
 #include "published_values.hpp"
@@ -23,7 +23,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Measure = Result<Finding> (*)(Context&, Patients&, PatientCase);
 
-/// The gland's shift when its surface breaks, or nothing where it does not.
+/// The gland's shift when its surface breaks; empty if it does not break.
 std::optional<Vec3> shift_at_break(const RecordedRun& run) {
   return run.summary.gland ? run.summary.gland->shift_at_break_mm : std::nullopt;
 }
@@ -33,7 +33,7 @@ double norm_at_break(const RecordedRun& run) {
   return shift ? shift->norm() : kNone;
 }
 
-/// The break of the skin, which is the first surface that the needle breaks; null where it breaks none.
+/// The puncture of the skin, which is the first puncture of a run; null if there is none.
 const Event* skin_break(const RecordedRun& run) { return run.event(EventKind::puncture); }
 
 Plot force_plot(const RecordedRun& run) {
@@ -216,7 +216,7 @@ Result<Finding> axis_ratio(Context& context, Patients& patients, PatientCase pat
   }
   const double over_left = mean.z() / mean.x();
   const double over_posterior = mean.z() / mean.y();
-  // Of the two ratios the one that is further from the middle of what is accepted.
+  // The worse of the two ratios is the one that is further from the middle of the accepted range.
   const auto off = [](double ratio) { return std::abs(std::log(ratio / std::sqrt(1.5 * 8.0))); };
   const double further = off(over_left) > off(over_posterior) ? over_left : over_posterior;
   Finding finding;

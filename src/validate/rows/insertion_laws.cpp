@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole insertion against what its laws say in closed form.
+// Compares whole insertions with closed forms of the laws of cutting and friction.
 #include "../rows.hpp"
 #include "../scene.hpp"
 
@@ -13,7 +13,7 @@ namespace stylet::validate {
 
 namespace {
 
-/// A block of one tissue: its forces have closed forms.
+/// A block of one tissue, whose forces have closed forms.
 Block one_tissue() {
   Block block;
   block.gland_radius_mm = 0.0;
@@ -26,7 +26,7 @@ Curve force_curve(const Drive& drive, const std::string& label) {
           .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
-/// Force against time, for motions that go back and forth.
+/// Force against time, for motions in and out.
 Curve force_over_time(const Drive& drive, const std::string& label) {
   return {.label = label, .x = column(drive.steps(), &Step::time_s), .y = column(drive.steps(), &Step::force_axial_N)};
 }
@@ -110,7 +110,7 @@ Result<Finding> second_pass(Context&) {
 
 Result<Finding> withdrawal(Context&) {
   Block block;
-  block.scenario.tissue_model.creep = 1.0;  // what creeps is left for seconds
+  block.scenario.tissue_model.creep = 1.0;  // no creep, whose displacement would last for seconds
   const auto model = block.compile({{-9, 7, 0}});
   if (!model) return model.error();
   Drive used(*model);
@@ -187,7 +187,7 @@ Result<Finding> moved_scene(Context&) {
 
 Result<Finding> contact_changes(Context&) {
   Block block = one_tissue();
-  block.scenario.tissue_model.creep = 1.0;  // forces that relax in the pauses are no jumps of contacts
+  block.scenario.tissue_model.creep = 1.0;  // no creep, because relaxing forces would look like jumps
   block.direction = {0.1, 0.05, 1.0};
   const auto model = block.compile();
   if (!model) return model.error();
@@ -216,7 +216,7 @@ Result<Finding> contact_changes(Context&) {
   }
   Finding finding;
   finding.value = 100.0 * worst / drive.peak_N();
-  if (changes < 10) finding.value = std::numeric_limits<double>::quiet_NaN();  // nothing was shown
+  if (changes < 10) finding.value = std::numeric_limits<double>::quiet_NaN();  // too few changes to judge
   finding.note = fmt::format(
       "{} contacts laid or dropped on an oblique way in and out; the step of the force at each, less the mean of the "
       "steps "
@@ -237,7 +237,7 @@ Result<Finding> energy(Context&) {
   Curve work{.label = "work of the hand", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   Curve stored{.label = "stored energy", .x = {}, .y = {}};
   double from = 0.0;
-  // Finely at first: until the skin breaks next to nothing is lost, and the two must agree.
+  // The first millimetre is checked finely: until the skin breaks nearly no energy is lost, and both must agree.
   for (const auto& [to, looks] : {std::pair{1.0, 20}, {20.0, 20}, {50.0, 20}, {30.0, 20}, {60.0, 20}, {20.0, 20}}) {
     for (int k = 1; k <= looks; ++k) {
       drive.go(from + (to - from) * k / looks);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole insertion must not hang on the mesh.
+// The results of a whole insertion must not depend on the mesh.
 #include "../rows.hpp"
 
 #include <fmt/format.h>
@@ -12,10 +12,10 @@ namespace stylet::validate {
 namespace {
 
 constexpr const char* kDefault = "near-field";
-/// Meshes that are coarser are shown, and not judged.
+/// Coarser meshes are shown but not judged.
 constexpr Index kCoarsest = 1500;
 
-/// The force of the hand, a point every 20 ms.
+/// The force of the hand, with a point every 20 ms.
 Curve curve_of(const CouplingRow& row) {
   Curve curve{.label = fmt::format("{}, {} nodes", row.method, row.nodes), .x = {}, .y = {}};
   if (row.method != kDefault) curve.kind = Curve::Kind::reference;

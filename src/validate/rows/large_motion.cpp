@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gland's motion, which is linear in the forces but for its turn, against a solid with large displacements.
+// Compares the gland's motion with a solid with large displacements. In the model the motion is linear in the forces,
+// except for the gland's rotation, which is exact.
 #include "../quadrature.hpp"
 #include "../rows.hpp"
 #include "stylet/fem/volume_motion.hpp"
@@ -23,8 +24,8 @@ namespace {
 constexpr std::array<const char*, 3> kHoles{"e3.5", "c3.5", "D4.5"};
 constexpr double kFurthest_mm = 6.0;
 constexpr Index kNodes = 1000;
-/// Standard deviation of the cloud of points over which a force is spread: at a point, neo-Hookean tissue gives way
-/// without bound.
+/// Standard deviation of the distribution over which a force is spread. Under a point force, the displacement of
+/// neo-Hookean tissue is unbounded.
 constexpr double kSpread_mm = 3.0;
 
 struct PointForce {
@@ -40,7 +41,8 @@ Vec3 position(const TetMesh& mesh, const MaterialPoint& point) {
   return x;
 }
 
-/// A force spread over a cloud around its point; what of the cloud would lie outside the tissue is left out.
+/// Spreads a force with a normal distribution around its point. The part outside the tissue is left out and the rest is
+/// scaled to the whole force.
 std::vector<PointForce> spread(const TetMesh& mesh, const MaterialPoint& at, const Vec3& force) {
   static const auto rule = tetrahedron_rule(3);
   const Vec3 centre = position(mesh, at);
@@ -61,7 +63,7 @@ std::vector<PointForce> spread(const TetMesh& mesh, const MaterialPoint& at, con
   return cloud;
 }
 
-/// The forces on the tissue when the gland has gone furthest on the way in.
+/// The forces on the tissue at the largest shift of the gland on the way in.
 Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<const Model>& model) {
   auto motion = TargetMotion::of(*model);
   if (!motion) return motion.error();
@@ -87,7 +89,7 @@ Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<c
   return forces;
 }
 
-/// Mean shift of the volume of some regions and of its thirds, by the displacement of a tissue's nodes [mm].
+/// Mean shift [mm] of a volume and of its thirds along z, computed from the displacements of nodes.
 struct Seen {
   Vec3 shift = Vec3::Zero();
   std::array<Vec3, 3> third{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -148,7 +150,8 @@ class GlandOf {
   double height_ = 1.0;
 };
 
-/// The largest error of shift and thirds, of what is allowed: 0.5 mm or a tenth, whichever is more.
+/// The largest error of the shift and of the thirds' shifts, divided by the allowed error: 0.5 mm or a tenth of the
+/// shift, whichever is larger.
 double error_of(const VolumeMotion& ours, const Seen& theirs) {
   const auto one = [](const Vec3& value, const Vec3& expected) {
     return (value - expected).norm() / std::max(0.5, 0.1 * expected.norm());
@@ -167,13 +170,13 @@ VolumeMotion times(VolumeMotion motion, double share) {
 }
 
 struct HoleResult {
-  double at_points_mm = 0.0;  ///< the gland's largest shift as the simulation has it
-  double factor = 1.0;        ///< of the forces, for kFurthest_mm
-  double worst = 0.0;         ///< error_of, all moments
-  double worst_linear = 0.0;  ///< the same without the exact turn
-  double worst_needle = 0.0;  ///< error_of, moments up to the needle's own forces
-  double reached_mm = 0.0;
-  double turn_deg = 0.0;
+  double at_points_mm = 0.0;  ///< the gland's shift under the needle's forces, which act at points
+  double factor = 1.0;        ///< factor of the forces that gives a shift of kFurthest_mm
+  double worst = 0.0;         ///< largest error_of() of all increments
+  double worst_linear = 0.0;  ///< the same without the exact rotation
+  double worst_needle = 0.0;  ///< largest error_of() of the increments up to the needle's own forces
+  double reached_mm = 0.0;    ///< shift at the last increment
+  double turn_deg = 0.0;      ///< rotation at the last increment
   Curve ours, theirs;
 };
 

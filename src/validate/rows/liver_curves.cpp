@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force over depth before the puncture of liver, as a whole: the dent that stiffens against linear tissue.
+// The force over depth before the puncture of liver, with a stiffening dent and with linear tissue.
 #include "../number_table.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -18,16 +18,16 @@ namespace {
 
 using namespace published;
 
-/// The curve is compared from here on: nearer to the contact its own start is uncertain.
+/// Curves are compared from this depth on, because the depth of the contact is uncertain.
 constexpr double kFrom_mm = 2.0;
-/// κ is fitted up to here, about half of the way to the puncture.
+/// κ is fitted up to this depth, about half of the depth of the puncture.
 constexpr double kFittedTo_mm = 8.0;
 constexpr double kReference_kPa = 30.0;
 constexpr double kUnbreakable_N = 50.0;
 
 using Law = std::function<double(double)>;  ///< force [N] at a depth [mm]
 
-/// The tip pressed on liver that has a modulus and stiffens.
+/// Presses the tip into liver with a modulus and a stiffening κ.
 Result<Drive> press(double young_kPa, double stiffening, double puncture_N) {
   Block block;
   block.scenario.tissue_model.preset = TissuePreset::linear;
@@ -63,7 +63,7 @@ std::vector<double> compared_depths() {
   return depths;
 }
 
-/// Over the depths that are compared, in % of the published force at the mean depth of the puncture.
+/// Root mean square difference over the compared depths, in % of the published force at the mean depth of the puncture.
 double rms_percent(const Curve& curve, const Law& published) {
   const std::vector<double> depths = compared_depths();
   const double sum = std::accumulate(depths.begin(), depths.end(), 0.0, [&](double so_far, double z) {
@@ -72,7 +72,8 @@ double rms_percent(const Curve& curve, const Law& published) {
   return 100.0 * std::sqrt(sum / static_cast<double>(depths.size())) / published(okamura::kPunctureDepth.mean);
 }
 
-/// At a depth force goes with the modulus: the curve of the modulus that fits best, by least squares.
+/// Scales a curve to the best fit by least squares. At a given depth the force is proportional to the modulus, so this
+/// gives the modulus too.
 Curve scaled_to(const Law& published, Curve curve, std::string label, double& young_kPa) {
   double both = 0.0;
   double own = 0.0;
@@ -86,7 +87,7 @@ Curve scaled_to(const Law& published, Curve curve, std::string label, double& yo
   return curve;
 }
 
-/// κ and modulus by which the law has the published forces at kFrom_mm and kFittedTo_mm.
+/// κ and modulus with which the law gives the published forces at kFrom_mm and kFittedTo_mm.
 struct Fit {
   double stiffening = 0.0;
   double young_kPa = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nearly incompressible tissue: what elements make of it that lock, and that do not.
+// Nearly incompressible tissue with elements that lock and with elements that do not.
 #include "../rows.hpp"
 #include "../solids.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 struct Case {
   Element element;
   const char* label;
-  std::vector<int> cells;  ///< the last is the one that is judged
+  std::vector<int> cells;  ///< cells along an edge; the last mesh is judged
 };
 
 Result<Finding> locking(Context&) {

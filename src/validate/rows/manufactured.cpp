@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Convergence of the tissue with the mesh, on a manufactured solution.
+// Convergence of the tissue with mesh refinement, for a manufactured solution.
 #include "../quadrature.hpp"
 #include "../rows.hpp"
 #include "../solids.hpp"
@@ -25,7 +25,8 @@ Vec3 exact(const Vec3& x) {
   return s.prod() * kAmplitude;
 }
 
-/// The body force that holds it [N/mm³]: −div σ = −(λ+μ) H d − μ tr(H) d with H the Hessian of the product.
+/// The body force of this displacement [N/mm³]: −div σ = −(λ+μ) H d − μ tr(H) d, where H is the Hessian of the product
+/// of sines.
 Vec3 body_force(const Vec3& x) {
   const double k = std::numbers::pi / kCube_mm;
   const Vec3 s = (k * x).array().sin();
@@ -80,7 +81,7 @@ Result<double> error_of(int cells, Element element) {
   return std::sqrt(error / norm);
 }
 
-/// @param cells ascending, the last twice the one before the last but one
+/// Measures the order of convergence. @param cells ascending; the last must be twice the third-last
 Result<Finding> order(Element element, const std::string& label, int expected, const std::vector<int>& cells) {
   Curve ours{.label = label, .x = {}, .y = {}};
   Curve slope{.label = fmt::format("order {}", expected), .x = {}, .y = {}, .kind = Curve::Kind::reference};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle that is moved as a whole: against a bonded rigid cylinder, and over meshes and spacings.
+// A needle that is moved as a whole, compared with a bonded rigid cylinder and between meshes and spacings.
 #include "../bonded_cylinder.hpp"
 #include "../medium_block.hpp"
 #include "../rows.hpp"
@@ -20,7 +20,7 @@ namespace {
 using Method = NeedleLine::Method;
 constexpr double kSide_mm = 2.0 * MediumBlock::kHalf_mm;
 
-/// One curve of forces for each way of moving the needle.
+/// One curve of forces for each direction in which the needle is moved.
 struct Forces {
   Curve lateral;
   Curve axial;
@@ -34,10 +34,10 @@ struct Forces {
   [[nodiscard]] const Curve& of(bool is_lateral) const { return is_lateral ? lateral : axial; }
 };
 
-/// Curves of several methods over mesh or spacing, measured once for the rows that look at them.
+/// Curves of several methods over mesh size or spacing. They are measured once for several rows.
 struct Study {
-  std::vector<Forces> ours;       ///< the near field first
-  std::vector<Forces> reference;  ///< where there is one
+  std::vector<Forces> ours;       ///< the near field is the first
+  std::vector<Forces> reference;  ///< may be empty
   double largest_factor_mb = 0.0;
 
   [[nodiscard]] Plot plot(const std::string& over, bool lateral) const {
@@ -48,7 +48,7 @@ struct Study {
   }
 };
 
-/// Measured when first asked for.
+/// A study that is measured at its first use.
 class Lazy {
  public:
   explicit Lazy(Result<Study> (*measure)(Context&)) : measure_(measure) {}
@@ -62,14 +62,14 @@ class Lazy {
   std::optional<Result<Study>> study_;
 };
 
-constexpr Element kDefaultElement = Element::nodal_pressure;  ///< what coupling.method = "near-field" takes
-constexpr int kFinestOfOthers = 20;                           ///< cells along an edge
+constexpr Element kDefaultElement = Element::nodal_pressure;  ///< default element of coupling.method = "near-field"
+constexpr int kFinestOfOthers = 20;  ///< finest mesh of the other methods, in cells along an edge
 const std::string kNearField = "near field";
 const std::string kNodeAddition = "node addition";
 const std::string kEmbedded = "embedded";
 
-/// Forces on a needle line in a block, added to the curves: the near field on its default element, the other methods
-/// on the linear tetrahedra that they need.
+/// Adds the forces on a needle line in a block to the curves: the near field for its default element, the other methods
+/// for the linear tetrahedra that they need.
 void measure_methods(MediumBlock& block, NeedleLine::Options options, double x, Study& study) {
   const bool near_field = block.tissue->element() == kDefaultElement;
   for (const auto& [method, curve] :
@@ -81,7 +81,8 @@ void measure_methods(MediumBlock& block, NeedleLine::Options options, double x, 
   }
 }
 
-/// The needle line in one block after the other. The finest mesh is for the near field alone, which is what is judged.
+/// Measures the needle line in one block after the other. Only the near field is measured on the finest mesh, because
+/// only the near field is judged.
 Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbounded) {
   Study study;
   study.ours = {Forces(kNearField), Forces(kNodeAddition), Forces(kEmbedded)};
@@ -99,7 +100,7 @@ Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbound
   return study;
 }
 
-/// Largest over smallest of a curve, in percent.
+/// Ratio of the largest to the smallest value of a curve, minus 1, in percent.
 double spread(const Curve& curve) {
   double most = 0.0;
   for (const double high : curve.y) {
@@ -113,7 +114,7 @@ std::string range(const Curve& curve) {
   return fmt::format("{:.2f} … {:.2f} N {}", *low, *high, curve.label);
 }
 
-/// Ranges of all methods.
+/// The ranges of forces of all methods, as text.
 std::string ranges(const Study& study, bool lateral) {
   std::string text;
   for (const Forces& forces : study.ours) text += (text.empty() ? "" : ", ") + range(forces.of(lateral));
@@ -161,7 +162,7 @@ Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
       kNeedle, cylinder, slender, from_slender, ranges(*study, lateral));
   finding.why_missed = "The kernel on the axis stands for a slender cylinder: ends and R/L are left out.";
   finding.plot = study->plot("element size [mm]", lateral);
-  finding.plot.curves.pop_back();  // the slender body's, which no eye tells from the cylinder's
+  finding.plot.curves.pop_back();  // removes the slender body's curve, which would cover the cylinder's
   return finding;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The needle models against beam theory.
+// Compares the needle models with beam theory.
 #include "../rows.hpp"
 #include "stylet/needle/make_needle.hpp"
 #include "stylet/needle/theory.hpp"
@@ -13,11 +13,11 @@ namespace stylet::validate {
 
 namespace {
 
-constexpr double kForce = 1e-5;  ///< [N] geometry stays linear to 1e-6
+constexpr double kForce = 1e-5;  ///< [N] small enough for linear geometry to within 1e-6
 constexpr double kBalance_Nmm = 1e-8;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Shape under a lateral load, against Euler and Bernoulli's, everywhere along the needle.
+/// Compares the shape under a lateral load with the Euler–Bernoulli beam along the whole needle.
 Result<Finding> small_deflection(const std::string& model) {
   const NeedleSection section;
   auto needle = make_needle(model, section, 0, 8);
@@ -51,7 +51,7 @@ Result<Finding> small_deflection(const std::string& model) {
   return finding;
 }
 
-/// The tip under a dead load, up to a slope of 60 degrees.
+/// Compares the tip's displacement under a dead load with the elastica, up to a slope of 60 degrees.
 Result<Finding> large_deflection(const std::string& model) {
   const NeedleSection section;
   auto needle = make_needle(model, section, 0, 8);

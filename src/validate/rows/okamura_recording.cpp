@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recorded insertion into liver: the shape of the force over depth.
+// Compares the shape of the force over depth with a recorded insertion into liver.
 #include "../number_table.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -21,15 +21,15 @@ constexpr const char* kFile = "force_okamura_insertion/depth_force.csv";
 constexpr double kBin_mm = 1.0;
 constexpr double kSoftest_kPa = 2.0;
 constexpr double kStiffest_kPa = 400.0;
-constexpr double kContact_N = 0.15;  ///< more than the noise of free travel
+constexpr double kContact_N = 0.15;  ///< larger than the noise before contact
 
-/// The recording, mean force in bins of depth, depth counted from contact.
+/// The recording as mean forces in bins of depth; the depth is measured from the contact.
 struct OkamuraRecording {
   std::vector<double> depth_mm;
   std::vector<double> force_N;
-  double first_peak_N = 0.0;  ///< before the first drop
+  double first_peak_N = 0.0;  ///< largest force before the first drop
   double first_peak_mm = 0.0;
-  double contact_mm = 0.0;  ///< on the recording's own scale
+  double contact_mm = 0.0;  ///< depth of the contact on the recording's own scale
 };
 
 Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
@@ -40,7 +40,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
   const auto& depth = (*columns)[0];
   const auto& force = (*columns)[1];
   const double most = *std::max_element(depth.begin(), depth.end());
-  // The points are not in order and several forces share a depth: bins.
+  // The points are not sorted and several forces have the same depth, so they are averaged in bins.
   const auto bins = static_cast<std::size_t>(1e3 * most / kBin_mm) + 1;
   std::vector<double> sum(bins, 0.0);
   std::vector<int> count(bins, 0);
@@ -61,7 +61,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
     out.depth_mm.push_back(z - out.contact_mm);
     out.force_N.push_back(f);
   }
-  // The first peak is the largest force before the first fall by half.
+  // The first peak is the largest force before the force falls to half of it for the first time.
   for (std::size_t i = 0; i < out.force_N.size(); ++i) {
     if (out.force_N[i] > out.first_peak_N) {
       out.first_peak_N = out.force_N[i];
@@ -75,7 +75,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
   return out;
 }
 
-/// A run with the literature's parameters and the two that are fitted.
+/// Simulates the insertion with published parameters and the two fitted ones.
 Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
   Block block;
   block.scenario.tissue_model.preset = TissuePreset::linear;
@@ -108,7 +108,7 @@ Result<Finding> force_over_depth(Context& context) {
   if (!path) return Finding::skip(context.no_data(kFile));
   const auto recording = read_recording_of(*path);
   if (!recording) return recording.error();
-  // The puncture's force is read off the recording; the modulus is fitted, on a logarithmic scale, finer and finer.
+  // The puncture force is taken from the recording. The modulus is fitted on a logarithmic grid that is refined twice.
   const double depth = recording->depth_mm.back();
   double best_rms = 1e300;
   double best_kPa = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step costs here and elsewhere, on meshes that others were timed on.
+// Computing time of a step here and in other software, on the same meshes.
 #include "../rows.hpp"
 #include "stylet/io/mesh_io.hpp"
 #include "stylet/reproduce/measure.hpp"
@@ -13,8 +13,8 @@ namespace stylet::validate {
 
 namespace {
 
-/// CPU time of a step by other software on the two meshes [ms], SOFA v26.06.00 with one thread, as measured for the
-/// shared data (sphere_in_box/SOURCE.md): not on this machine.
+/// CPU time of a step of other software on the two meshes [ms]: SOFA v26.06.00 with one thread. It was measured for the
+/// shared data (sphere_in_box/SOURCE.md) on another machine.
 struct Other {
   const char* name;
   double small_ms;
@@ -33,7 +33,7 @@ struct Timed {
   int contacts = 0;
 };
 
-/// A needle through the ball from the face opposite to the one that is held; every step counts once it is half way in.
+/// Times a needle through the ball, from the face opposite to the held face. Steps count from half of the depth on.
 Result<Timed> time_steps(const std::filesystem::path& file, const Progress& progress) {
   auto mesh = read_tet_mesh(file, {.scale = 1000.0});
   if (!mesh) return mesh.error();

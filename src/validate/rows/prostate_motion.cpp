@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the demo patient's prostate moves, against what was seen in patients and phantoms.
+// Compares the motion of the demo patient's prostate with observations in patients and phantoms.
 #include "../rows.hpp"
 #include "published_values.hpp"
 
@@ -25,11 +25,11 @@ Result<RecordedRun> run_demo(Context& context, const Scenario& scenario) {
   return record_run(*model, context.progress());
 }
 
-/// Needles through holes on all sides of the gland, one after the other.
+/// Results of needles through holes on all sides of the gland, one after the other.
 struct TemplateRun {
   std::vector<std::string> holes;
   std::vector<Vec3> centroid_mm;   ///< shift of the gland's centroid at each needle's deepest point
-  Vec3 largest_mm = Vec3::Zero();  ///< of any node of the gland, by axis
+  Vec3 largest_mm = Vec3::Zero();  ///< largest displacement of any node of the gland, per axis
 };
 
 Result<TemplateRun> through_template(Context& context) {

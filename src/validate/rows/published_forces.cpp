@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces against published measurements: liver ex vivo with its measured parameters, a gel, and the demo patient with
-// this program's defaults.
+// Compares forces with published measurements: liver ex vivo with its measured parameters, a gel, and the demo patient
+// with the default values.
 #include "../rows.hpp"
 #include "../scene.hpp"
 #include "published_values.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace published;
 
-/// Liver as Okamura et al. measured it, one tissue.
+/// A block of one tissue with the values that Okamura et al. measured in liver.
 Block liver() {
   Block block;
   block.scenario.tissue_model.preset = TissuePreset::linear;
@@ -37,7 +37,7 @@ Curve force_curve(const Drive& drive) {
           .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
-/// Goes in at 3 mm/s until 8 mm beyond the puncture.
+/// Inserts a needle at 3 mm/s until 8 mm beyond the puncture.
 Result<Drive> puncture_liver() {
   const auto model = liver().compile();
   if (!model) return model.error();
@@ -101,8 +101,7 @@ Result<Finding> gel_force(Context&) {
   return finding;
 }
 
-// The demo patient with this program's defaults.
-
+/// The force on the tip in the demo patient with default values.
 Result<Finding> demo_cutting_force(Context& context) {
   const auto run = context.demo_run();
   if (!run) return run.error();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results must not hang on the time step or on the solver's tolerance.
+// Results must not depend on the time step or on the solver's tolerance.
 #include "../rows.hpp"
 #include "../scene.hpp"
 #include "stylet/validate/force_curve.hpp"
@@ -43,7 +43,7 @@ Result<Finding> force_over_time_steps(Context&) {
   return finding;
 }
 
-/// How far a needle that goes in by friction takes the tissue with it [mm].
+/// Largest displacement of the tissue by the friction of a needle that goes in.
 struct Drag {
   double largest_mm = 0.0;
   unsigned flags = 0;
@@ -59,7 +59,7 @@ Result<Drag> drag(double tolerance, double dt_s) {
   return Drag{drive.insertion().displacement().cwiseAbs().maxCoeff(), drive.flags()};
 }
 
-/// @param over what is varied, in words
+/// Measures how the drag depends on a setting. @param over the varied setting, as label of the plot
 Result<Finding> drag_over(const std::string& over, const std::vector<double>& values,
                           const std::function<Result<Drag>(double)>& measure) {
   Finding finding;

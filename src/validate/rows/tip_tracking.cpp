@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorded bevelled needles that nobody steered: fitted on two recordings, predicted for the other two.
+// Recorded insertions of bevelled, unsteered needles: the model is fitted to two recordings and predicts the other two.
 #include "../number_table.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -22,21 +22,21 @@ constexpr double kDeepest_mm = 100.0;
 constexpr double kEvery_mm = 5.0;
 constexpr double kInsertionSpeed_mm_per_s = 2.0;  ///< 100 mm in about a minute
 
-/// Lateral place of the tip over depth, from where it entered.
+/// Lateral position of the tip over depth, relative to the entry point.
 struct TipRecording {
   std::string name;
   std::vector<double> depth_mm;
   std::vector<double> lateral_mm;
 };
 
-/// @return the recording every 5 mm of depth
+/// Reads a recording. @return the recording, sampled every 5 mm of depth
 Result<TipRecording> read(const std::filesystem::path& file) {
   const auto columns = read_number_table(file, {"Tip x", "Tip y"});
   if (!columns) return columns.error();
   std::vector<std::pair<double, double>> samples;  // depth, lateral
   for (std::size_t i = 0; i < columns->front().size(); ++i) {
     const double y = (*columns)[1][i];
-    if (y != 0.0) samples.emplace_back(-y, (*columns)[0][i]);  // exactly 0: no reading yet
+    if (y != 0.0) samples.emplace_back(-y, (*columns)[0][i]);  // exactly 0 marks samples without a reading
   }
   std::sort(samples.begin(), samples.end());
   std::vector<double> depth;
@@ -57,7 +57,7 @@ Result<TipRecording> read(const std::filesystem::path& file) {
   return out;
 }
 
-/// Lateral place of the simulated tip every 5 mm of depth.
+/// Lateral position of the simulated tip, every 5 mm of depth.
 Result<std::vector<double>> simulate(double bevel_deg) {
   Block block;
   block.hi.z() = 125.0;
@@ -76,7 +76,7 @@ Result<std::vector<double>> simulate(double bevel_deg) {
   return lateral;
 }
 
-/// Bevel angle and heading, and how far off they leave the recordings they were fitted on.
+/// Fitted bevel angle and heading, and the remaining error for the fitted recordings.
 struct Fit {
   double bevel_deg = 0.0;
   double heading = 0.0;  ///< slope of the guide against the tracker's axis
@@ -94,7 +94,7 @@ double rms(const std::vector<double>& lateral, const std::vector<TipRecording>& 
   return std::sqrt(sum / count);
 }
 
-/// The best heading for a bevel angle follows by least squares.
+/// Computes the best heading for a bevel angle by least squares.
 Result<Fit> fit_heading(double bevel_deg, const std::vector<TipRecording>& recordings) {
   auto lateral = simulate(bevel_deg);
   if (!lateral) return lateral.error();

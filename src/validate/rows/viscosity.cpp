@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue that creeps against the closed forms of a standard linear solid.
+// Compares creeping tissue with closed forms of the standard linear solid.
 #include "../rows.hpp"
 #include "../scene.hpp"
 
@@ -37,7 +37,7 @@ Result<Finding> viscosity(Context&) {
   for (const auto* model : {&elastic, &viscous, &soft})
     if (!*model) return model->error();
 
-  // Pressed in at constant speed and held.
+  // The tip is pressed in at constant speed and then held.
   Drive at_rest(*elastic, 0.0);
   at_rest.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   const double held_N = at_rest.last().record.force_axial_N;
@@ -46,7 +46,9 @@ Result<Finding> viscosity(Context&) {
   pressing.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   pressing.wait(kTau_s, kStep_s);
   const double moving_s = kDent_mm / kPressSpeed_mm_per_s;
-  // The dent is f/k + F (r − 1) m, and m + τ ṁ = f: so τ ṁ = k dent − β m, first of a dent that grows evenly.
+  // dent = f/k + F (r − 1) m and m + τ ṁ = f, so τ ṁ = k dent − β m, where f is the force, k the stiffness, F the wide
+  // compliance, r the creep and m the memory. `remembered` gives m for a dent that grows at constant speed and then
+  // stays.
   const Vec3 axis = pressing.insertion().needle().tangent(0.0);
   const double wide = axis.dot(pressing.insertion().compliance().wide(0, 0) * axis);
   const double beta = 1.0 + stiffness * wide * (kCreep - 1.0);
@@ -70,7 +72,7 @@ Result<Finding> viscosity(Context&) {
     force_law.add(time / kTau_s, law);
   }
 
-  // In, out, and left alone.
+  // The needle goes in and out, and the tissue relaxes.
   Drive drive(*soft);
   drive.go(30.0, 20.0, kStep_s);
   drive.go(-2.0, 40.0, kStep_s);
