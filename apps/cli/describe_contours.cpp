@@ -19,7 +19,8 @@ Description describe(const ContourSet& contours) {
   Table table(
       {"structure", "taken as", "type", "slices", "contours", "points", "spacing mm", "extent mm", "volume cc"});
   std::vector<std::string> notes = contours.notes;
-  const StructureChoice choice = *choose_structures(contours, {});  // refuses wrong wishes only, and there are none
+  const StructureChoice choice =
+      *choose_structures(contours, {});  // fails only for invalid options, and there are none
   auto use = choice.uses.begin();
   for (const Roi& roi : contours.rois) {
     if (const Result<> sound = check_roi(roi, contours.source); !sound) notes.push_back(sound.error().message());
