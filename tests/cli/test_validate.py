@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet validate: the table of claims, as a page, JSON and curves."""
+"""stylet validate: the table of claims as a page, JSON and curves."""
 import csv
 import json
 import os
@@ -18,7 +18,7 @@ class Validate(InFolder):
     def setUp(self):
         super().setUp()
         self.shared = os.environ.get("STYLET_SHARED_DATA")
-        os.environ["STYLET_SHARED_DATA"] = str(self.folder)  # nothing is there
+        os.environ["STYLET_SHARED_DATA"] = str(self.folder)  # a folder without data
 
     def tearDown(self):
         if self.shared is None:

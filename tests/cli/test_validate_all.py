@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet validate, every row: the README names those that miss."""
+"""stylet validate with all rows: the README names the rows that are missed."""
 import json
 import subprocess
 import unittest

@@ -19,7 +19,7 @@ Picture picture(double time_s) {
   return p;
 }
 
-/// A net of n × n points that lies at z.
+/// A grid of n × n points in the plane z.
 Surface net(std::uint32_t n, float z) {
   Surface s;
   for (std::uint32_t i = 0; i < n * n; ++i)
@@ -81,7 +81,7 @@ TEST(Link, a_picture_that_is_no_longer_renewed_has_no_force_and_no_poses) {
     const Repeat publisher([&] { link->publish(picture(1.0)); });
     ASSERT_TRUE(peer.next("NDARRAY", "BaseForce", pressing));
   }
-  // What was sent before comes first; then there are only forces of nothing, and texts that say so.
+  // Messages sent before come first. Then there are only zero forces, and texts with "fresh": false.
   int forces = 0;
   EXPECT_TRUE(comes_true([&] {
     const auto message = peer.next();

@@ -80,8 +80,8 @@ export class Plane {
   }
 
   /**
-   * Sets the range of the plane. A plane that follows the tip starts at the target's near end (its apex), because that is
-   * the most useful picture before the needle arrives.
+   * Sets the range of the plane. A plane that follows the tip starts at the target's near end (its apex), because that
+   * is the most useful picture before the needle arrives.
    * @param again whether the same patient was shown before; then a plane that the user has moved stays
    */
   private setRange(scene: Scene, again: boolean): void {
