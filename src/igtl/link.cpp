@@ -42,7 +42,7 @@ Result<std::unique_ptr<Link>> Link::open(const LinkSettings& settings) {
   try {
     p.thread = std::thread([&io = p.io] { io.run(); });
   } catch (const std::system_error& error) {
-    return failure("OpenIGTLink", fmt::format("no thread to be had: {}", error.what()), "end other programs");
+    return failure("OpenIGTLink", fmt::format("no thread can be started: {}", error.what()), "End other programs");
   }
   return std::unique_ptr<Link>(new Link(std::move(parts)));
 }
@@ -73,15 +73,16 @@ Result<> Link::publish_surface(Surface surface) {
   const std::size_t bytes = 12 * surface.points.size() + 16 * triangles;
   if (bytes > most)
     return input_error("OpenIGTLink, surface",
-                       fmt::format("{} points and {} triangles", surface.points.size(), triangles),
-                       "send a coarser surface, or fewer regions");
+                       fmt::format("{} points and {} triangles are more than 64 MiB", surface.points.size(), triangles),
+                       "Send a coarser surface, or fewer regions");
   if (triangles > 0) {
     std::uint32_t last = 0;
     for (const auto& t : *surface.triangles) last = std::max({last, t[0], t[1], t[2]});
     if (last >= surface.points.size())
-      return input_error("OpenIGTLink, surface",
-                         fmt::format("a triangle names point {} of {}", last, surface.points.size()),
-                         "number the points from 0");
+      return input_error(
+          "OpenIGTLink, surface",
+          fmt::format("a triangle has the corner {}, but there are {} points", last, surface.points.size()),
+          "Number the points from 0");
   }
   parts_->sender.publish(std::move(surface));
   return Ok{};

@@ -65,8 +65,8 @@ Result<std::unique_ptr<Transport>> listen(asio::io_context& io, const LinkSettin
   if (error) {
     const std::string where = fmt::format("OpenIGTLink, {} port {}", settings.host, settings.port);
     if (error == asio::error::address_in_use)
-      return failure(where, "another program listens there", "end it, or give another port");
-    return failure(where, error.message(), "give an address of this machine and a port that its user may open");
+      return failure(where, "another program uses this port", "End that program, or give another port");
+    return failure(where, error.message(), "Give an address of this machine and a port that you may open");
   }
   hub.set_port(acceptor.local_endpoint(error).port());
   return std::unique_ptr<Transport>(std::make_unique<Listener>(std::move(acceptor), io, hub));

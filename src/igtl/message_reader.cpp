@@ -19,7 +19,7 @@ namespace {
 static_assert(sizeof(igtl_header) == IGTL_HEADER_SIZE);
 
 Error garbage(std::string what) {
-  return input_error("OpenIGTLink message", std::move(what), "let the other side send OpenIGTLink, version 1 to 3");
+  return input_error("OpenIGTLink message", std::move(what), "Let the other program send OpenIGTLink, version 1 to 3");
 }
 
 /// The text of a field, up to a zero byte or the end of the field.
@@ -47,7 +47,7 @@ Result<> MessageReader::read_header() {
   const std::string_view name = text(h.device_name, sizeof h.device_name);
   if (h.version != 1 && h.version != 2)
     return garbage(fmt::format("a header of version {}", static_cast<unsigned>(h.version)));
-  if (!is_type(type) || !is_name(name)) return garbage("a header whose type or name is no text");
+  if (!is_type(type) || !is_name(name)) return garbage("a header whose type or name is not text");
   if (h.body_size > longest_) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
   message_ = {};
   if (type == "TRANSFORM") message_.kind = Incoming::Kind::transform;

@@ -80,12 +80,12 @@ RoomReport make_room(const fs::path& folder, const RecordingRoom& room,
       report.removed.push_back(recording.folder.filename().string());
     }
     if (bytes > room.most_bytes)
-      report.stop = fmt::format("recordings in use take {}, and all may take {} (--keep)", gigabytes(bytes),
-                                gigabytes(room.most_bytes));
+      report.stop = fmt::format("the recordings in use take {}, and the limit for all recordings is {} (--keep)",
+                                gigabytes(bytes), gigabytes(room.most_bytes));
   }
   const std::uintmax_t left = free(folder);
   if (left < room.full_bytes) {
-    report.stop = fmt::format("the disk of {} is nearly full, {} are free", folder.string(), gigabytes(left));
+    report.stop = fmt::format("the disk of {} is nearly full: {} are free", folder.string(), gigabytes(left));
   } else if (left < room.low_bytes) {
     report.warning = fmt::format("only {} are free on the disk of {}", gigabytes(left), folder.string());
   }

@@ -242,7 +242,8 @@ std::string LiveRun::device_problem(const Companion& companion) const {
   if (!other_ || has_pose) return {};
   const auto away = other_->away();
   if (!away) return companion.why_no_pose();
-  return fmt::format("the handle is {:.0f} mm and {:.0f} degrees from the needle: bring it there", away->mm, away->deg);
+  return fmt::format("the handle is {:.0f} mm and {:.0f} degrees away from the needle: move it there", away->mm,
+                     away->deg);
 }
 
 std::vector<std::string> LiveRun::inside() const {

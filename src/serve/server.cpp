@@ -204,7 +204,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     }
     if (command.what != drawn && holding.holder() != viewer.id())
       return viewer.send(wire::Kind::notice,
-                         text_of({{"text", "somebody else holds the needle"}, {"cure", "Ask for it"}}));
+                         text_of({{"text", "another viewer holds the needle"}, {"cure", "Ask for the needle"}}));
     const auto kind = request_kind(command.what);
     if (kind && !session.ask({.kind = *kind, .viewer = viewer.id(), .text = command.text, .number = command.number}))
       viewer.send(wire::Kind::notice, text_of({{"text", "too many requests are waiting"}, {"cure", "Try again"}}));
@@ -319,14 +319,16 @@ Result<Access> access_for(const ServerSettings& settings, bool is_loopback) {
   const std::string& given = settings.token;
   if (!settings.asks_for_token) {
     if (is_loopback && given.empty()) return Access("");
-    return input_error("stylet serve",
-                       given.empty() ? fmt::format("everybody who reaches {} could move the needle", settings.address)
-                                     : "a token is given, and is not to be asked for",
-                       given.empty() ? "Ask for a token (leave --no-token away), or listen on 127.0.0.1"
-                                     : "Give either --token or --no-token");
+    return input_error(
+        "stylet serve",
+        given.empty()
+            ? fmt::format("without a token, everybody who can reach {} could move the needle", settings.address)
+            : "--token and --no-token exclude each other",
+        given.empty() ? "Leave --no-token out, or listen on 127.0.0.1" : "Give either --token or --no-token");
   }
   if (!given.empty() && !is_plain_token(given))
-    return input_error("stylet serve", fmt::format("the token '{}' cannot stand in an address", given),
+    return input_error("stylet serve",
+                       fmt::format("the token '{}' has characters that a web address cannot hold", given),
                        "Use letters, digits and -._~ only");
   if (!given.empty()) return Access(given, Access::Names::any);
   return is_loopback ? Access(kept_token(settings.token_file)) : Access(random_token(), Access::Names::any);
@@ -342,22 +344,22 @@ Result<std::unique_ptr<Server>> Server::open(ServerSettings settings) {
   const auto address = asio::ip::make_address(settings.address, error);
   if (error)
     return input_error(where, fmt::format("'{}' is not an IP address", settings.address),
-                       "Give one such as 127.0.0.1 (this machine only) or 0.0.0.0 (every network it is in)");
+                       "Give an address such as 127.0.0.1 (this machine only) or 0.0.0.0 (all its networks)");
   auto access = access_for(settings, address.is_loopback());
   if (!access) return access.error();
   auto parts = std::make_unique<Parts>(std::move(settings), std::move(*access));
   const tcp::endpoint endpoint(address, parts->settings.port);
   const auto refused = [&](const char* what) {
     return failure(where, fmt::format("cannot {}: {}", what, error.message()),
-                   "Choose another port with --port (0: any that is free), or end what uses this one");
+                   "Choose another port with --port (0: any free port), or end the program that uses this one");
   };
   parts->acceptor.open(endpoint.protocol(), error);
   if (error) return refused("open a socket");
   parts->acceptor.set_option(asio::socket_base::reuse_address(true), error);
   parts->acceptor.bind(endpoint, error);
-  if (error) return refused("listen there");
+  if (error) return refused("listen at this address and port");
   parts->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) return refused("listen there");
+  if (error) return refused("listen at this address and port");
   return std::unique_ptr<Server>(new Server(std::move(parts)));
 }
 

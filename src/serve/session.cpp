@@ -465,7 +465,8 @@ void Session::Parts::carry_out(const Request& request) {
   using Kind = Request::Kind;
   const auto number = static_cast<std::size_t>(std::max(0.0, request.number));
   const auto missing = [&](const char* what, std::size_t count) {
-    refuse(request, input_error(what, fmt::format("there is no number {}, only {}", number, count), "Choose another"));
+    refuse(request, input_error(what, fmt::format("there is no number {}; there are {}, counted from 0", number, count),
+                                "Choose another one"));
   };
   switch (request.kind) {
     case Kind::predict:

@@ -63,7 +63,7 @@ std::vector<LoadedMoment> read_moments(const fs::path& file, Index nodes) {
 /// Solves a deck with ccx. The exit status is ignored. @return the increments that it printed completely
 Result<std::vector<LoadedMoment>> run_calculix(const Tissue& tissue, const std::string& deck) {
   if (!calculix_installed())
-    return failure("CalculiX", "the program ccx is not there", "Install the Debian package calculix-ccx");
+    return failure("CalculiX", "the program ccx is not installed", "Install the Debian package calculix-ccx");
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "case.inp";
   std::ofstream(file) << deck << std::flush;
@@ -74,7 +74,8 @@ Result<std::vector<LoadedMoment>> run_calculix(const Tissue& tissue, const std::
     moments = read_moments(folder.path() / "case.dat", tissue.displacement_nodes());
   while (!moments.empty() && !moments.back().u.allFinite()) moments.pop_back();
   if (moments.empty())
-    return failure("CalculiX", "ccx printed no displacement for some nodes", "Run a deck of its own to see why");
+    return failure("CalculiX", "ccx did not print all displacements",
+                   "Run ccx on the input of calculix_deck() to see why");
   return moments;
 }
 

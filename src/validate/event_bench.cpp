@@ -239,7 +239,8 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
   time_by_turns(ways, options);
   for (Way& way : ways) {
     if (way.refused > 0)
-      return failure("timing changes of the mesh", "a node was refused where it had been laid before", "Report this");
+      return failure("timing changes of the mesh", "a node was refused at a place where it had been added before",
+                     "Please report this");
     if (way.rule == "woodbury") {
       bench.woodbury_nodes = ground.model->mesh().node_count();
       bench.woodbury_us = spread(std::move(way.warm_s));

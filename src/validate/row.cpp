@@ -28,13 +28,13 @@ const char* to_string(Group group) {
 const char* title(Group group) {
   switch (group) {
     case Group::analysis:
-      return "Against analysis";
+      return "Comparison with analysis";
     case Group::other_code:
-      return "Against independent code";
+      return "Comparison with independent code";
     case Group::measurements:
-      return "Against published measurements";
+      return "Comparison with published measurements";
     case Group::independence:
-      return "Independence of mesh, step and solver";
+      return "Independence of mesh, time step and solver";
   }
   return "";
 }

@@ -68,8 +68,8 @@ class Study {
     out_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (auto done = base(); !done) return done.error();
     for (const Parameter& p : parameters()) move(p);
-    choose("fixed.outer", "what holds the body: only the pubic arch", "none");
-    choose("fixed.outer", "what holds the body: all outer faces, perineum too", "all");
+    choose("fixed.outer", "support of the body: only the pubic arch", "none");
+    choose("fixed.outer", "support of the body: all outer faces, including the perineum", "all");
     if (!quick_) choose("coupling.method", "coupling: interpolated contacts", "embedded");
     carry_out();
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -24,7 +24,7 @@ Result<> check_ids(const std::vector<RowSpec>& rows, const std::vector<std::stri
     if (std::find(known.begin(), known.end(), id) != known.end()) continue;
     const std::string near = nearest_name(id, known);
     return input_error("--only", fmt::format("there is no row '{}'", id),
-                       near.empty() ? "--list prints all rows" : fmt::format("Did you mean '{}'?", near));
+                       near.empty() ? "Print all rows with --list" : fmt::format("Did you mean '{}'?", near));
   }
   return Ok{};
 }

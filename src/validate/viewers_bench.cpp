@@ -66,7 +66,7 @@ class Viewer {
     if (!error) socket.handshake("localhost:" + std::to_string(port), "/live", error);
     if (error)
       return failure("viewer of the live session", "cannot connect: " + error.message(),
-                     "See whether something forbids connections to 127.0.0.1");
+                     "Check whether a firewall forbids connections to 127.0.0.1");
     viewer->thread_ = std::jthread([v = viewer.get()] { v->read(); });
     return viewer;
   }
@@ -164,7 +164,8 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
       if (std::exchange(last_s, script->time_s()) != last_s) moved = Clock::now();
       report(progress, "real time", last_s / all_s);
       if (std::chrono::duration<double>(Clock::now() - moved).count() > kPatience_s)
-        return failure("live session", "its loop does not go on", "See whether stylet serve runs on this machine");
+        return failure("live session", "its real-time loop does not advance",
+                       "Check whether stylet serve runs on this machine");
     }
     return Ok{};
   };

@@ -43,7 +43,7 @@ class Validate(InFolder):
         self.assertEqual(result["missed"], sum(row["pass"] is False for row in rows.values()))
         self.assertIs(rows["patch_test"]["pass"], True)
         self.assertIs(rows["contact_changes"]["pass"], True)
-        self.assertIn("is not there", rows["step_time"]["note"])
+        self.assertIn("does not exist", rows["step_time"]["note"])
         self.assertIs(rows["step_time"]["skipped"], True)
         page = (out / "validate.html").read_text(encoding="utf-8")
         for row in rows.values():

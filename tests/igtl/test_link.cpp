@@ -233,7 +233,7 @@ TEST(Link, a_port_that_is_taken_is_an_error_that_says_so) {
   const auto second = Link::open(same);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().where.find(std::to_string(same.port)), std::string::npos);
-  EXPECT_NE(second.error().what.find("another program listens"), std::string::npos);
+  EXPECT_NE(second.error().what.find("another program uses this port"), std::string::npos);
 }
 
 TEST(Link, a_port_can_be_opened_again_at_once) {
@@ -284,7 +284,7 @@ TEST(Link, surfaces_that_are_none_are_refused) {
   s.points.pop_back();
   const auto missing = link->publish_surface(std::move(s));
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().what.find("names point 8 of 8"), std::string::npos) << missing.error().message();
+  EXPECT_NE(missing.error().what.find("the corner 8, but there are 8 points"), std::string::npos) << missing.error().message();
   Surface large;
   large.points.resize(6'000'000);
   EXPECT_FALSE(link->publish_surface(std::move(large)));

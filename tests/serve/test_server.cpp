@@ -542,10 +542,10 @@ TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
   EXPECT_SAYS(serve::Server::open(s).error().message(), "nowhere");
   s.address = "0.0.0.0";
   s.asks_for_token = false;
-  EXPECT_SAYS(serve::Server::open(s).error().message(), "everybody who reaches 0.0.0.0");
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "everybody who can reach 0.0.0.0");
   s.asks_for_token = true;
   s.token = "a b";
-  EXPECT_SAYS(serve::Server::open(s).error().message(), "'a b' cannot stand in an address");
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "'a b' has characters that a web address cannot hold");
   s.token.clear();
   const Serving serving;
   s.address = "127.0.0.1";

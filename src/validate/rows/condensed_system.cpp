@@ -77,8 +77,8 @@ Result<Finding> switches_and_rotations(Context&) {
     curve.x.push_back(k);
     curve.y.push_back(error);
   }
-  finding.note = fmt::format("{} points, {} switches and {} rotations in random order; the worst of {} looks.", kPoints,
-                             kChanges - rotations, rotations, kChanges / kEvery);
+  finding.note = fmt::format("{} points, {} switches and {} rotations in random order; the largest error of {} checks.",
+                             kPoints, kChanges - rotations, rotations, kChanges / kEvery);
   finding.plot = {.x_label = "switches and rotations", .y_label = "relative error", .log_y = true, .curves = {curve}};
   return finding;
 }
@@ -86,7 +86,8 @@ Result<Finding> switches_and_rotations(Context&) {
 }  // namespace
 
 std::vector<RowSpec> condensed_system_rows() {
-  return {{"condensed_system", Group::analysis, "K_W follows boundary condition switches and rotations of its frames",
+  return {{"condensed_system", Group::analysis,
+           "K_W stays correct after boundary condition switches and rotations of its frames",
            "direct solution of the mixed problem", "", Accepted::at_most(1e-9), true, switches_and_rotations}};
 }
 

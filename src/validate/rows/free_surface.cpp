@@ -37,7 +37,7 @@ Result<Pressed> press_skin(const std::string& method, int cells, const std::arra
   Drive drive(*model, 0.0);
   drive.go(depth_mm, 1.0);
   if (drive.event(EventKind::puncture) != nullptr)
-    return failure("flat_punch", "the skin broke under less than a tenth of a millimetre", "Press less deep");
+    return failure("flat_punch", "the skin broke at a depth below 0.1 mm", "Press less deep");
   return Pressed{drive.last().record.force_axial_N / depth_mm,
                  2.0 * (*model)->coupling().needle_radius_mm * skin.young_MPa / (1.0 - skin.poisson * skin.poisson)};
 }
@@ -73,12 +73,13 @@ Result<Finding> flat_punch(Context&) {
     finding.plot.curves.push_back(std::move(curve));
   }
   finding.note = fmt::format(
-      "The hand presses the tip 0.1 mm into the skin of the block, at three places on meshes of four sizes; worst of "
-      "all. Punch {:.4f} N/mm, {}. That the tip at a surface is as stiff as a flat punch was set, by its kernel’s "
-      "radius, from this very formula; what is not set and shows here is that mesh, place in the mesh and a whole "
-      "insertion’s set-up do not change it. The block is 100 mm wide and held around, a half space is not.",
+      "The hand presses the tip 0.1 mm into the skin of the block, at three places on meshes of four sizes; the value "
+      "is the largest difference. The punch has {:.4f} N/mm; {}. The radius of the tip’s kernel was chosen so that "
+      "the tip at a surface is as stiff as a flat punch by this formula. So the row shows only that mesh, place in "
+      "the mesh and the set-up of a whole insertion do not change this stiffness. The block is 100 mm wide and held "
+      "on its sides, unlike a half space.",
       stiffness, finding.note);
-  finding.why_missed = "A block that is held all around is stiffer than a half space.";
+  finding.why_missed = "A block that is held on its sides is stiffer than a half space.";
   punch.x = {finding.plot.curves.front().x.front(), finding.plot.curves.front().x.back()};
   punch.y = {stiffness, stiffness};
   finding.plot.curves.push_back(std::move(punch));
@@ -122,7 +123,7 @@ Result<Finding> mindlin(Context&) {
   double tip_off = 0.0;
   double field_off = 0.0;
   finding.plot = {.x_label = "depth below the face [mm]", .y_label = "compliance [mm/N]"};
-  Curve reference{.label = "end of a rod, by finite elements", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve reference{.label = "end of a rod by finite elements", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (const int cells : {7, 14}) {
     auto built = MediumBlock::build({.cells = cells, .skin = true, .element = Element::nodal_pressure});
     if (!built) return built.error();
@@ -150,27 +151,27 @@ Result<Finding> mindlin(Context&) {
   finding.plot.curves.push_back(std::move(reference));
   finding.value = worse(tip_off, field_off);
   finding.note = fmt::format(
-      "1 … 10 mm below a free face, two meshes: the tip’s own compliance along the normal within {:.1f} % of that of "
-      "the "
-      "flat end of a rod in its hole by finite elements, the displacement at four points 3 … 7 mm away from a point "
-      "force, "
-      "all nine components, within {:.1f} % of the half space’s. The coupling uses Mindlin’s formula; the reference "
-      "does "
-      "not: Kelvin’s tractions on the face are taken off by Boussinesq’s and Cerruti’s solutions, integrated over the "
-      "plane. The other faces of the block move as the reference says.",
+      "At depths of 1 … 10 mm below a free face, in two meshes: the tip’s own compliance along the normal differs by "
+      "at most {:.1f} % from that of the flat end of a rod in its hole by finite elements. The displacement at four "
+      "points 3 … 7 mm away from a point force, all nine components, differs by at most {:.1f} % from that of the half "
+      "space. The coupling uses Mindlin’s formula; the reference does not: it removes Kelvin’s tractions on the face "
+      "with Boussinesq’s and Cerruti’s solutions, integrated over the plane. The other faces of the block move as in "
+      "the reference.",
       tip_off, field_off);
-  finding.why_missed = "At a depth of a radius or two the kernel does not know the shape of the tip.";
+  finding.why_missed =
+      "At a depth of one or two radii the shape of the tip matters, which the kernel does not represent.";
   return finding;
 }
 
 }  // namespace
 
 std::vector<RowSpec> free_surface_rows() {
-  return {{"flat_punch", Group::analysis, "Before the puncture the skin is as stiff as under a flat punch",
-           "2RE/(1−ν²) on a half space", "%", Accepted::at_most(10.0), true, flat_punch},
-          {"mindlin", Group::analysis, "A force just below the skin moves the tissue as in a half space",
-           "Mindlin’s problem, by superposition of Kelvin, Boussinesq and Cerruti; the end of a rod, by CalculiX", "%",
-           Accepted::at_most(10.0), true, mindlin}};
+  return {
+      {"flat_punch", Group::analysis, "Before the puncture the skin is as stiff under the tip as under a flat punch",
+       "2RE/(1−ν²) on a half space", "%", Accepted::at_most(10.0), true, flat_punch},
+      {"mindlin", Group::analysis, "A force just below the skin moves the tissue as in a half space",
+       "Mindlin’s problem, by superposition of Kelvin, Boussinesq and Cerruti; the end of a rod, by CalculiX", "%",
+       Accepted::at_most(10.0), true, mindlin}};
 }
 
 }  // namespace stylet::validate

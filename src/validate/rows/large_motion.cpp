@@ -85,7 +85,7 @@ Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<c
     forces = simulation.insertion().tissue_forces();
   }
   if (forces.empty())
-    return failure("large motion", "the needle has not moved the gland", "Run stylet insert to see why");
+    return failure("large motion", "the needle did not move the gland", "Run stylet insert to see why");
   return forces;
 }
 
@@ -249,26 +249,27 @@ Result<Finding> large_motion(Context& context) {
   if (!meshed) return meshed.error();
   Finding finding;
   finding.value = 0.0;
-  finding.plot = {.x_label = "forces over the needle’s own", .y_label = "shift of the gland’s base [mm]"};
+  finding.plot = {.x_label = "forces / needle’s own forces", .y_label = "shift of the gland’s base [mm]"};
   for (const char* hole : kHoles) {
     const auto result = through(meshed->mesh, hole, context.progress());
     if (!result) return result.error();
     constexpr double enough = 0.9 * kFurthest_mm;
     finding.value = worse(finding.value, result->reached_mm >= enough ? result->worst : std::nan(""));
     finding.note += fmt::format(
-        "Hole {}: {:.1f} mm and {:.0f}° reached, with {:.2f} times the needle’s own forces, which move the gland by "
-        "{:.1f} mm; worst error {:.2f} of what is allowed, {:.2f} without the exact turn, {:.2f} up to the needle’s "
-        "own forces. ",
+        "Hole {}: a shift of {:.1f} mm and a turn of {:.0f}° are reached with {:.2f} times the needle’s own forces, "
+        "which move the gland by {:.1f} mm. The largest error is {:.2f} of the allowed one, {:.2f} without the exact "
+        "rotation, {:.2f} up to the needle’s own forces. ",
         hole, result->reached_mm, result->turn_deg, result->factor, result->at_points_mm, result->worst,
         result->worst_linear, result->worst_needle);
     finding.plot.curves.push_back(result->ours);
     finding.plot.curves.push_back(result->theirs);
   }
   finding.note += fmt::format(
-      "The forces on the tissue when the gland has gone furthest, lasting ones included, each spread over {:g} mm, "
-      "grow "
-      "in proportion until the gland is {:g} mm away; its mean shift and those of its thirds are compared, allowed are "
-      "0.5 mm or a tenth, whichever is more. Same mesh of {} nodes, quadratic elements in both.",
+      "The forces on the tissue at the largest shift of the gland, including those kept by creep, are each spread over "
+      "{:g} mm and increased in proportion until the gland’s shift is {:g} mm. The mean shifts of the gland and of its "
+      "thirds are compared; the allowed error is 0.5 mm or a tenth of the shift, whichever is larger. Both use the "
+      "same "
+      "mesh of {} nodes with quadratic elements.",
       kSpread_mm, kFurthest_mm, meshed->mesh.node_count());
   return finding;
 }
@@ -279,8 +280,8 @@ std::vector<RowSpec> large_motion_rows() {
   return {
       {"large_motion", Group::other_code,
        "The gland moves as in a solid with large displacements, up to 6 mm, through three holes",
-       "CalculiX, neo-Hookean C3D10 elements, large displacements", "of what is allowed", Accepted::at_most(1.0), false,
-       large_motion},
+       "CalculiX, neo-Hookean C3D10 elements, large displacements", "of the allowed error", Accepted::at_most(1.0),
+       false, large_motion},
   };
 }
 

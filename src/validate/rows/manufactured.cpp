@@ -94,9 +94,10 @@ Result<Finding> order(Element element, const std::string& label, int expected, c
   }
   Finding finding;
   finding.value = std::log(ours.y[2] / ours.y[0]) / std::log(ours.x[2] / ours.x[0]);
-  finding.note = fmt::format("Irregular meshes of {0}³ … {1}³ cells, six tetrahedra each; order between {2}³ and {1}³.",
-                             cells.front(), cells.back(), cells[cells.size() - 3]);
-  finding.why_missed = "The order is that of meshes fine enough; these are on their way to it.";
+  finding.note = fmt::format(
+      "Irregular meshes of {0}³ … {1}³ cells with six tetrahedra each. The value is the order between {2}³ and {1}³.",
+      cells.front(), cells.back(), cells[cells.size() - 3]);
+  finding.why_missed = "The order is reached on sufficiently fine meshes; these meshes are coarser.";
   finding.plot = {.x_label = "cell size [mm]",
                   .y_label = "relative error in L2",
                   .log_x = true,

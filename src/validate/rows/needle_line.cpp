@@ -155,12 +155,13 @@ Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
     from_slender = std::max(from_slender, 100.0 * std::abs(force / slender - 1.0));
   }
   finding.note = fmt::format(
-      "{} whose outer nodes move as they would in an unbounded medium; worst of five meshes. Boundary elements give "
-      "{:.2f} N, the formula for slender bodies {:.2f} N (worst {:.1f} % from it); {}. The boundary elements share "
-      "nothing with the coupling but Kelvin’s solution; the outer nodes’ motion is taken from the coupling’s own "
-      "kernel, which is Kelvin’s at that distance.",
+      "{} whose outer nodes move as in an unbounded medium. The value is the largest difference on five meshes. "
+      "Boundary elements give {:.2f} N, the formula for slender bodies {:.2f} N (largest difference {:.1f} %); {}. The "
+      "boundary elements share only Kelvin’s solution with the coupling. The motion of the outer nodes is computed "
+      "with "
+      "the coupling’s own kernel, which agrees with Kelvin’s solution at this distance.",
       kNeedle, cylinder, slender, from_slender, ranges(*study, lateral));
-  finding.why_missed = "The kernel on the axis stands for a slender cylinder: ends and R/L are left out.";
+  finding.why_missed = "The kernel on the axis represents a slender cylinder and neglects its ends and R/L.";
   finding.plot = study->plot("element size [mm]", lateral);
   finding.plot.curves.pop_back();  // removes the slender body's curve, which would cover the cylinder's
   return finding;
@@ -173,11 +174,11 @@ Result<Finding> over_mesh_size(const Result<Study>& study, bool lateral) {
   Finding finding;
   finding.value = spread(study->ours.front().of(lateral));
   finding.note = fmt::format(
-      "{}, outer faces held; 512 … 50,653 nodes, largest over smallest force; the other methods up to 9,261 nodes. {}. "
-      "The factor of the finest mesh takes {:.1f} GB.",
+      "{} whose outer faces are held, with 512 … 50,653 nodes; the other methods up to 9,261 nodes. The value is the "
+      "ratio of the largest to the smallest force, minus 1. {}. The factor of the finest mesh takes {:.1f} GB.",
       kNeedle, ranges(*study, lateral), 1e-3 * study->largest_factor_mb);
   finding.why_missed =
-      "What is left is the far field: supports and the cube’s size are represented by elements, and those of 14 mm are "
+      "The remaining difference is that of the far field: it is represented by elements, and elements of 14 mm are "
       "stiffer than fine ones.";
   finding.plot = study->plot("element size [mm]", lateral);
   return finding;
@@ -201,10 +202,10 @@ Result<Finding> over_spacing(Context& context) {
   const double axial = spread(study.ours.front().axial);
   finding.value = worse(lateral, axial);
   finding.note = fmt::format(
-      "The needle line in the held cube on 4,913 nodes, contacts 2 … 8 mm apart: {:.2f} % laterally, {:.2f} % axially "
-      "between largest and smallest force, the larger counts. Lateral: {}. Axial: {}.",
+      "The needle line in the held cube with 4,913 nodes and contacts 2 … 8 mm apart. The largest force exceeds the "
+      "smallest by {:.2f} % laterally and {:.2f} % axially; the larger counts. Lateral: {}. Axial: {}.",
       lateral, axial, ranges(study, true), ranges(study, false));
-  finding.why_missed = "Pieces of a needle as long as the spacing are taken to share their force evenly.";
+  finding.why_missed = "The force is assumed to be uniform over pieces of the needle that are as long as the spacing.";
   finding.plot = study.plot("contact spacing [mm]", true);
   return finding;
 }
@@ -216,20 +217,20 @@ std::vector<RowSpec> needle_line_rows() {
   const auto box = std::make_shared<Lazy>(box_study);
   const std::string cylinder = "bonded rigid cylinder, boundary elements; slender body";
   return {
-      {"needle_line_lateral", Group::analysis, "A needle moved sideways meets the force of a bonded rigid cylinder",
-       cylinder, "%", Accepted::at_most(3.0), true,
-       [unbounded](Context& c) { return against_cylinder((*unbounded)(c), true); }},
-      {"needle_line_axial", Group::analysis, "A needle moved along itself meets the force of a bonded rigid cylinder",
-       cylinder, "%", Accepted::at_most(3.0), true,
-       [unbounded](Context& c) { return against_cylinder((*unbounded)(c), false); }},
-      {"line_mesh_size_lateral", Group::independence, "The lateral force on a needle does not hang on the mesh",
-       "each other, 512 … 50,653 nodes", "%", Accepted::at_most(3.0), false,
+      {"needle_line_lateral", Group::analysis,
+       "A needle that is moved sideways needs the force of a bonded rigid cylinder", cylinder, "%",
+       Accepted::at_most(3.0), true, [unbounded](Context& c) { return against_cylinder((*unbounded)(c), true); }},
+      {"needle_line_axial", Group::analysis,
+       "A needle that is moved along its axis needs the force of a bonded rigid cylinder", cylinder, "%",
+       Accepted::at_most(3.0), true, [unbounded](Context& c) { return against_cylinder((*unbounded)(c), false); }},
+      {"line_mesh_size_lateral", Group::independence, "The lateral force on a needle does not depend on the mesh",
+       "meshes of 512 … 50,653 nodes", "%", Accepted::at_most(3.0), false,
        [box](Context& c) { return over_mesh_size((*box)(c), true); }},
-      {"line_mesh_size_axial", Group::independence, "The axial force on a needle does not hang on the mesh",
-       "each other, 512 … 50,653 nodes", "%", Accepted::at_most(6.0), false,
+      {"line_mesh_size_axial", Group::independence, "The axial force on a needle does not depend on the mesh",
+       "meshes of 512 … 50,653 nodes", "%", Accepted::at_most(6.0), false,
        [box](Context& c) { return over_mesh_size((*box)(c), false); }},
-      {"line_spacing", Group::independence, "The force on a needle does not hang on how closely it is held",
-       "each other, contacts every 2 … 8 mm", "%", Accepted::at_most(3.0), false, over_spacing},
+      {"line_spacing", Group::independence, "The force on a needle does not depend on the spacing of contacts",
+       "contacts every 2 … 8 mm", "%", Accepted::at_most(3.0), false, over_spacing},
   };
 }
 

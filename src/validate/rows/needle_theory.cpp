@@ -47,7 +47,9 @@ Result<Finding> small_deflection(const std::string& model) {
   }
   finding.plot.x_label = "arc length [mm]";
   finding.plot.y_label = "deflection [µm]";
-  finding.note = "200 mm needle, a lateral load at three places; largest error of the shape over the tip’s deflection.";
+  finding.note =
+      "A 200 mm needle with a lateral load at three places. The value is the largest error of the shape, relative to "
+      "the tip’s deflection.";
   return finding;
 }
 
@@ -74,7 +76,9 @@ Result<Finding> large_deflection(const std::string& model) {
     theory.y.push_back(exact.deflection);
   }
   finding.plot = {.x_label = "force [N]", .y_label = "tip deflection [mm]", .curves = {ours, theory}};
-  finding.note = "Dead load across the tip, slope of the tip 5° to 60°; largest error of deflection and shortening.";
+  finding.note =
+      "A dead load across the tip with slopes of the tip from 5° to 60°. The value is the largest error of deflection "
+      "and shortening.";
   return finding;
 }
 
@@ -84,7 +88,7 @@ std::vector<RowSpec> needle_theory_rows() {
   std::vector<RowSpec> rows;
   for (const std::string& model : needle_models()) {
     rows.push_back({"needle_small_" + model, Group::analysis,
-                    fmt::format("Needle model “{}” bends as a thin beam under small loads", model),
+                    fmt::format("Needle model “{}” bends like a thin beam under small loads", model),
                     "Euler–Bernoulli cantilever", "%", Accepted::at_most(0.5), true,
                     [model](Context&) { return small_deflection(model); }});
   }

@@ -119,9 +119,9 @@ Result<Finding> node_additions(Context&) {
     }
   }
   finding.note = fmt::format(
-      "{} nodes added at random to {} nodes, by both rules and three engines: shortcut and bordered update "
-      "(condensed), "
-      "Woodbury’s formula, boundary condition switches. The worst of all.",
+      "{} nodes are added at random places to a mesh of {} nodes, with both rules and three engines: shortcut and "
+      "bordered update (condensed), Woodbury’s formula, and boundary condition switches. The value is the largest "
+      "error.",
       kNodes, cube->tissue->mesh().node_count());
   return finding;
 }
@@ -129,7 +129,7 @@ Result<Finding> node_additions(Context&) {
 }  // namespace
 
 std::vector<RowSpec> node_addition_rows() {
-  return {{"node_additions", Group::analysis, "After 100 node additions the compliance is that of the new mesh",
+  return {{"node_additions", Group::analysis, "After 100 node additions the compliance equals that of the new mesh",
            "the new mesh, factorised from scratch", "", Accepted::at_most(1e-8), true, node_additions}};
 }
 

@@ -36,7 +36,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
   const auto columns = read_number_table(file);
   if (!columns) return columns.error();
   if (columns->size() < 2)
-    return input_error(file.string(), "two columns are expected", "Use the file as it was published");
+    return input_error(file.string(), "there are fewer than two columns", "Use the file as it was published");
   const auto& depth = (*columns)[0];
   const auto& force = (*columns)[1];
   const double most = *std::max_element(depth.begin(), depth.end());
@@ -71,7 +71,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
     }
   }
   if (out.force_N.size() < 10)
-    return input_error(file.string(), "there is no rise of the force", "Use the file as it was published");
+    return input_error(file.string(), "the force does not rise", "Use the file as it was published");
   return out;
 }
 
@@ -138,20 +138,15 @@ Result<Finding> force_over_depth(Context& context) {
   Finding finding;
   finding.value = 100.0 * best_rms / peak;
   finding.note = fmt::format(
-      "Fitted: puncture {:.2f} N (study: 2.30 ± 0.83 N, {}) and modulus {:.0f} kPa{} (its measured stiffness by the "
-      "flat "
-      "punch: "
-      "{:.0f} kPa). From the literature: cutting 0.94 N, friction 18.5 and 10.6 N/m, 212 N s/m². RMS difference over "
-      "the "
-      "recording’s largest force.",
-      recording->first_peak_N, plausible ? "within two deviations" : "outside two deviations", best_kPa,
-      at_edge ? ", the edge of what was searched" : "", punch_kPa);
+      "Fitted: puncture force {:.2f} N (study: 2.30 ± 0.83 N, {}) and modulus {:.0f} kPa{} (from the study’s stiffness "
+      "and a flat punch: {:.0f} kPa). From the literature: cutting force 0.94 N, friction 18.5 and 10.6 N/m and "
+      "212 N s/m². The value is the RMS difference, relative to the largest force of the recording.",
+      recording->first_peak_N, plausible ? "within two standard deviations" : "outside two standard deviations",
+      best_kPa, at_edge ? ", at the end of the searched range" : "", punch_kPa);
   finding.why_missed =
       "The recording shows two layers, each with a membrane: the force falls to 0.2 N, below the cutting force of "
-      "liver, and "
-      "rises over 17 mm to a second puncture. The model has one layer here, its tissue does not stiffen, and a second "
-      "layer "
-      "would need more than two fitted values.";
+      "liver, and rises over 17 mm to a second puncture. The model has one layer here and its tissue does not stiffen. "
+      "A second layer would need more than two fitted values.";
   finding.plot = {
       .x_label = "depth from contact [mm]",
       .y_label = "axial force [N]",
@@ -163,9 +158,9 @@ Result<Finding> force_over_depth(Context& context) {
 }  // namespace
 
 std::vector<RowSpec> okamura_recording_rows() {
-  return {{"liver_recording", Group::measurements, "A recorded insertion into liver: shape of the force over depth",
-           "recording of Okamura et al. 2004, digitised", "% of peak", Accepted::at_most(15.0), false,
-           force_over_depth}};
+  return {
+      {"liver_recording", Group::measurements, "The force over depth has the shape of a recorded insertion into liver",
+       "recording of Okamura et al. 2004, digitised", "% of peak", Accepted::at_most(15.0), false, force_over_depth}};
 }
 
 }  // namespace stylet::validate

@@ -84,7 +84,7 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
 
 Result<Finding> step_time(Context& context) {
   Finding finding;
-  Curve ours{.label = "Stylet, here: insertion", .x = {}, .y = {}};
+  Curve ours{.label = "Stylet on this machine: insertion", .x = {}, .y = {}};
   std::string each;
   for (const char* name : {"sphere_in_box_573.msh", "sphere_in_box_5037.msh"}) {
     const std::string file = std::string("sphere_in_box/") + name;
@@ -99,9 +99,9 @@ Result<Finding> step_time(Context& context) {
                         timed->median_ms, timed->worst_ms, timed->contacts);
   }
   finding.note =
-      "Processor time of a step with half of the needle in and more." + each +
-      " The others’ figures are of another machine and of other models, elastic and dynamic; they are here for "
-      "their order.";
+      "Processor time of a step from half of the depth on." + each +
+      " The times of the other software are from another machine and for other models, elastic and dynamic; only their "
+      "order of magnitude can be compared.";
   finding.plot = {
       .x_label = "nodes", .y_label = "processor time of a step [ms]", .log_x = true, .log_y = true, .curves = {ours}};
   for (const Other& other : kOthers)
@@ -113,7 +113,7 @@ Result<Finding> step_time(Context& context) {
 }  // namespace
 
 std::vector<RowSpec> other_software_rows() {
-  return {{"step_time", Group::other_code, "What a step costs hardly grows with the mesh",
+  return {{"step_time", Group::other_code, "The time of a step hardly grows with the mesh",
            "SOFA v26.06.00 on the same two meshes (573 and 5,037 nodes)", "ms", Accepted::information(), true,
            step_time}};
 }
