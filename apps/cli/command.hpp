@@ -9,14 +9,15 @@
 
 namespace stylet::cli {
 
-/// A command of the program. `options` outlives the command line's reading because `run` holds it.
+/// A command of the program. `run` owns the options that the command line sets, so that they exist when it is called.
 struct Command {
-  CLI::App* app = nullptr;  ///< parses its options
-  /// Does the work. An Error becomes a message and exit status 2 (input) or 1 (failed); must not throw on bad input.
+  CLI::App* app = nullptr;  ///< parses the options of the command
+  /// Does the work. An Error becomes a message and exit status 2 (input) or 1 (failed). Must not throw on bad input.
   std::function<Result<>(Console&)> run;
 };
 
-/// Each adds its command to the program. To add one: a file command_NAME.cpp, a line here, a line in main.cpp.
+/// Each function adds its command to the program. To add a command, write a file command_NAME.cpp and add a line here
+/// and in main.cpp.
 Command add_phantom_command(CLI::App& program);
 Command add_mesh_command(CLI::App& program);
 Command add_info_command(CLI::App& program);

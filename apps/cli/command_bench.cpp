@@ -62,7 +62,7 @@ Result<> run_needle(Console& console) {
 }
 
 Json coupling_json(const measure::CouplingRow& row) {
-  constexpr double every_s = 0.01;  // of the curve, for a picture
+  constexpr double every_s = 0.01;  // time between samples of the curve in the file
   Json curve = Json::array();
   const auto every = static_cast<std::size_t>(std::max(1L, std::lround(every_s / row.curve.dt_s)));
   for (std::size_t k = every; k <= row.curve.force_N.size(); k += every) curve.push_back(row.curve.force_N[k - 1]);
@@ -133,7 +133,7 @@ Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   return console.write_json(json);
 }
 
-/// Refuses an option that what is measured does not take: it would change nothing.
+/// Refuses options that the chosen benchmark does not use.
 Result<> check_options(const BenchArguments& arguments) {
   struct Option {
     const char* name;

@@ -39,7 +39,7 @@ Result<Description> description_of(const InfoArguments& arguments) {
   return std::visit([](const auto& content) { return describe(content); }, *input);
 }
 
-/// Writes a scenario to start from.
+/// Writes a drafted scenario.
 Result<> run_draft(const InfoArguments& arguments, Console& console) {
   if (is_meant_as_model(arguments.file) || is_hdf5_file(arguments.file)) {
     return input_error(arguments.file, "a saved model or a recording holds its scenario already",

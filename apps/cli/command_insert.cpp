@@ -29,12 +29,13 @@ struct InsertArguments {
   std::string scenario;
   std::string output;
   std::vector<std::string> settings;
-  bool map = false;  ///< of the template's holes
+  bool map = false;  ///< --map: the map of the template's holes
   bool print_schema = false;
   bool print_tissues = false;
 };
 
-/// What became of the mesh, in words: "9 nodes moved (ΔK of order 42…54), 4 added (order 15) …"; empty when nothing.
+/// The changes of the mesh in words, such as "9 nodes moved (ΔK of order 42…54); 4 nodes added (ΔK of order 15)"; empty
+/// without changes.
 std::string mesh_changes_text(const Summary& summary) {
   struct Tally {
     int count = 0;
@@ -80,10 +81,10 @@ std::string title(EventKind kind, const std::string& region) {
   return region.empty() ? text : text + " (" + name + ")";
 }
 
-/// A number with three digits; one that rounds to nothing has no sign.
+/// A number with three decimals; a number that rounds to 0 has no sign.
 std::string thousandths(double value) { return fmt::format("{:.3f}", std::abs(value) < 5e-4 ? 0.0 : value); }
 
-/// The gland's motion as clinics report it: its shifts as a table, its turn and its volume.
+/// The gland's motion in clinical terms: a table of its shifts, its rotation and its change of volume.
 std::string gland_text(const GlandMotion& gland) {
   Table shifts({"gland moved", "total [mm]", "left", "posterior", "superior"});
   for (const NamedShift& shift : named_shifts(gland)) {
@@ -107,7 +108,7 @@ std::string gland_text(const GlandMotion& gland) {
 std::string summary_text(const Summary& summary) {
   Table events({"event", "time [s]", "base depth [mm]", "axial force [N]"});
   for (const Event& event : summary.events) {
-    // A force that rounds to nothing has no sign.
+    // A force that rounds to 0 has no sign.
     const double force = std::abs(event.force_N) < 5e-4 ? 0.0 : event.force_N;
     events.row({title(event.kind, event.region), fmt::format("{:.3f}", event.time_s),
                 fmt::format("{:.2f}", event.depth_mm), fmt::format("{:.3f}", force)});
@@ -140,7 +141,7 @@ std::string summary_text(const Summary& summary) {
   return events.text() + "\n\n" + gland + facts.text();
 }
 
-/// The properties of every tissue and what they mean for a needle of the scenario.
+/// A table of all tissues with their properties and the tenting and cutting lag that follow for the scenario's needle.
 std::string tissues_text(const Scenario& scenario) {
   const double diameter = scenario.needle.diameter_mm;
   Table table(
@@ -163,7 +164,7 @@ std::string tissues_text(const Scenario& scenario) {
   return table.text() + "\n\nSources of the defaults" + sources;
 }
 
-/// The tissue table of --print-tissues: the defaults, or the values of a scenario.
+/// The table of --print-tissues: the default values, or the values of a scenario.
 Result<std::string> tissues_text(const InsertArguments& arguments) {
   if (!arguments.scenario.empty()) {
     const auto scenario = read_scenario(arguments.scenario, arguments.settings);
@@ -175,7 +176,7 @@ Result<std::string> tissues_text(const InsertArguments& arguments) {
   return tissues_text(Scenario{});
 }
 
-/// The summary.json of the result folder.
+/// Reads summary.json from the result folder.
 Result<Json> written_summary(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "summary.json";
   std::ifstream file(path);
@@ -186,7 +187,7 @@ Result<Json> written_summary(const std::filesystem::path& folder) {
 
 bool is_recording(const std::string& file) { return is_hdf5_file(file) && !is_meant_as_model(file); }
 
-/// A recording with its steps, or a scenario or saved model without any.
+/// Prepares the input: a recording with its steps, or a scenario or saved model, which has no steps.
 Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress& progress) {
   if (is_recording(arguments.scenario)) return recorded_run(arguments.scenario, arguments.settings, progress);
   auto prepared = prepare_model_file(arguments.scenario, arguments.settings, progress);
@@ -196,7 +197,7 @@ Result<RecordedRun> what_to_run(const InsertArguments& arguments, const Progress
   return run;
 }
 
-/// The JSON document that --json prints: the summary, and the map where there is one.
+/// The JSON document of --json: the summary, and the map if there is one.
 Result<Json> result_json(const std::filesystem::path& folder, const std::optional<HoleMap>& map) {
   Result<Json> json = written_summary(folder);
   if (json && map) (*json)["map"] = Json::parse(hole_map_json(*map));
@@ -277,7 +278,7 @@ Command add_insert_command(CLI::App& program) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  // What a reader of Goksel et al. 2005 will want to change, by one word.
+  // Short options for the settings in which this program and Goksel et al. 2005 differ.
   const auto shorthand = [&](const char* option, const char* key, const char* meaning) {
     app->add_option_function<std::string>(
            option,

@@ -36,7 +36,7 @@ struct MeshArguments {
   bool no_band = false;
 };
 
-/// "NAME=CANONICAL" arguments as a map.
+/// Parses arguments NAME=CANONICAL.
 Result<RegionNames> parse_regions(const std::vector<std::string>& arguments) {
   RegionNames regions;
   for (const std::string& argument : arguments) {
@@ -52,13 +52,13 @@ Result<RegionNames> parse_regions(const std::vector<std::string>& arguments) {
   return regions;
 }
 
-/// An option that means nothing for this kind of input.
+/// The error for an option that has no meaning for this kind of input.
 Error pointless(const MeshArguments& arguments, const char* option, const char* kind) {
   return input_error(arguments.input, fmt::format("{} has no meaning for {}", option, kind),
                      fmt::format("Leave {} out", option));
 }
 
-/// Options of the mesher from the command line.
+/// Options of the mesher, from the command line.
 MeshOptions mesher_options(const MeshArguments& arguments, const RegionNames& regions) {
   MeshOptions options;
   options.preset = choice<MeshPreset>(arguments.preset).value_or(MeshPreset::standard);
@@ -83,7 +83,7 @@ Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arg
   return mesh_labels(image, options, console.progress());
 }
 
-/// A third-party mesh is taken as it is; its regions may get new names.
+/// A mesh from a file is used without changes, but its regions may get other names.
 Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, const MeshOptions& options,
                                Console&) {
   constexpr const char* kind = "a tetrahedral mesh, which is taken as it is";

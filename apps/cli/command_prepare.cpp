@@ -23,14 +23,14 @@ struct PrepareArguments {
   std::vector<std::string> settings;
 };
 
-/// Most memory this process ever had [MB].
+/// Peak memory of this process [MB].
 double peak_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// The file to write; in a folder it is named by what the model is of.
+/// The file to write. If a folder is given, the file's name is the model's key, by which `stylet serve` finds it.
 Result<std::filesystem::path> output_file(const PrepareArguments& arguments) {
   const std::filesystem::path output = arguments.output;
   std::error_code code;

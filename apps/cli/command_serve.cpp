@@ -34,15 +34,15 @@ struct ServeArguments {
   IgtlArguments igtl;
 };
 
-/// Models that came with the program or were made when it was built.
+/// Folder of the models that are installed with the program or were made when it was built.
 fs::path models_beside_program() {
   std::error_code code;
   const fs::path program = fs::read_symlink("/proc/self/exe", code);
   return program.parent_path().parent_path() / "share" / "stylet" / "models";
 }
 
-/// A scenario or a saved model as a case of the page. A scenario is read now, so that what is wrong with it is said
-/// before anything is opened.
+/// Makes a case of the page from a scenario or a saved model. A scenario is read here, so that its errors are reported
+/// before the server starts.
 Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments, Console& console) {
   std::string title = file.stem().string();
   if (!is_hdf5_file(file) && !is_meant_as_model(file)) {
@@ -63,7 +63,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
       }};
 }
 
-/// All scenarios and saved models in a folder, by name; those that cannot be read are left out and said.
+/// All scenarios and saved models of a folder, sorted by name. Files that cannot be read are left out with a warning.
 std::vector<serve::CaseSource> cases_in(const fs::path& folder, const ServeArguments& arguments, Console& console) {
   std::vector<fs::path> files;
   std::error_code code;
@@ -107,15 +107,15 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
   return Ok{};
 }
 
-/// Of a limit in gigabytes, 0 for none: a limit however small stays one.
+/// Converts a limit in gigabytes to bytes; 0 means no limit. Rounds up, so that a small limit does not become 0.
 std::uintmax_t keep_bytes(double keep_GB) {
   return keep_GB > 0.0 ? static_cast<std::uintmax_t>(std::ceil(1e9 * keep_GB)) : 0;
 }
 
-/// Waits until the user or the system wants the program to end.
+/// Waits for SIGINT or SIGTERM.
 class EndSignal {
  public:
-  /// Before any other thread starts, so that none of them gets it.
+  /// Blocks the signals. Must be called before any other thread starts, so that no thread receives them.
   EndSignal() {
     sigemptyset(&signals_);
     sigaddset(&signals_, SIGINT);
@@ -125,7 +125,7 @@ class EndSignal {
   void wait() {
     int signal = 0;
     sigwait(&signals_, &signal);
-    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // a second one ends the program at once
+    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // a second signal ends the program at once
   }
 
  private:

@@ -29,7 +29,8 @@ struct ValidateArguments {
   bool sensitivity = false;
 };
 
-/// Where the shared data are: --data, else the environment, else beside the repository when run from it.
+/// Folder of the shared data: --data, else $STYLET_SHARED_DATA, else a folder beside the current one, which is right if
+/// that is the repository.
 fs::path data_folder(const ValidateArguments& arguments) {
   if (!arguments.data.empty()) return arguments.data;
   if (const char* named = std::getenv("STYLET_SHARED_DATA"); named != nullptr && *named != '\0') return named;

@@ -16,7 +16,7 @@ namespace stylet::cli {
 
 namespace {
 
-/// Writes all of it to a file descriptor; false with errno set when that fails.
+/// Writes the whole text to a file descriptor. @return false with errno set if that fails
 bool write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
@@ -36,11 +36,11 @@ bool stderr_is_terminal() {
 struct Console::Parts {
   CommonOptions options;
   bool output_is_open = true;
-  std::string output_lost;                 ///< why standard output takes no more
-  int json_descriptor = -1;                ///< the real standard output while --json - keeps everyone else off it
-  std::weak_ptr<ProgressDisplay> display;  ///< lives as long as someone may report progress to it
+  std::string output_lost;                 ///< why standard output cannot be written; empty: it can
+  int json_descriptor = -1;                ///< the real standard output while --json - redirects stdout to stderr
+  std::weak_ptr<ProgressDisplay> display;  ///< exists while progress may be reported
 
-  /// @return why it could not be printed; empty when it was
+  /// Prints a line. @return the reason if it could not be printed, otherwise empty
   std::string line(std::FILE* stream, std::string_view prefix, std::string_view text) const {
     const std::string all = fmt::format("{}{}\n", prefix, text);
     std::string reason;
@@ -68,7 +68,7 @@ Result<> Console::configure(const CommonOptions& options) {
   parts_->options = options;
   if (options.json.empty()) return Ok{};
   if (options.json != "-") return check_output_file(options.json);
-  // From here on what this program or a library prints to standard output lands on standard error.
+  // From here on, everything that this program or a library prints to standard output goes to standard error.
   std::fflush(stdout);
   if (parts_->output_is_open) parts_->json_descriptor = ::dup(STDOUT_FILENO);
   if (parts_->json_descriptor < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {

@@ -14,16 +14,16 @@ namespace stylet::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Options every command has.
+/// Options that every command has.
 struct CommonOptions {
   bool quiet = false;
   bool verbose = false;
-  int threads = 0;   ///< most threads a library may use, 0 = one per core
-  std::string json;  ///< file for the machine-readable result, "-" = standard output, empty = none
+  int threads = 0;   ///< largest number of threads of a library; 0: one per core
+  std::string json;  ///< file for the result as JSON; "-": standard output; empty: none
 };
 
-/// All talk with the user. Results go to standard output, everything else to standard error; with `--json -` standard
-/// output carries the JSON and nothing else, whoever prints.
+/// All output to the user. Results go to standard output, everything else to standard error. With `--json -` standard
+/// output carries only the JSON, even if a library prints something.
 class Console {
  public:
   /// @param output_is_open whether the program was started with a standard output (standard_streams.hpp)
@@ -32,25 +32,24 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Takes the options into account; called once, after the command line has been read.
+  /// Applies the options. Called once, after the command line has been parsed.
   Result<> configure(const CommonOptions& options);
 
-  /// A result, one or more lines without the last line end. Nothing with --quiet.
-  /// Where standard output takes no more (a full disk, a reader that has gone), that is said once on standard error,
-  /// and the work goes on.
+  /// Prints a result: one or more lines without the last line end. Prints nothing with --quiet.
+  /// If standard output cannot be written (a full disk, a closed pipe), a warning is printed once and work continues.
   void say(std::string_view text);
-  /// For commands whose result is what they say: an error where some of it was lost.
+  /// For commands whose only result is their text: an error if some of it could not be printed.
   [[nodiscard]] Result<> said() const;
-  /// Something only the curious want to know; only with --verbose.
+  /// Prints a detail on standard error; only with --verbose.
   void detail(std::string_view text);
   void warn(std::string_view text);
   void error(std::string_view text);
 
-  /// For long work: a bar when standard error is a terminal, now and then a plain line otherwise; nothing in the first
-  /// second, nothing with --quiet. Shown until the last copy of the returned function is gone.
+  /// Shows the progress of long work: a bar if standard error is a terminal, otherwise plain lines from time to time.
+  /// Shows nothing in the first second and with --quiet. Ends when the last copy of the returned function is destroyed.
   [[nodiscard]] Progress progress();
 
-  /// Writes the machine-readable result where --json says; does nothing without --json. A file appears whole or not at
+  /// Writes the result as JSON to the target of --json; does nothing without --json. A file appears complete or not at
   /// all.
   Result<> write_json(const Json& json);
 

@@ -21,7 +21,7 @@ Vec3 area_vector(const Contour& contour) {
   return 0.5 * sum;
 }
 
-/// Whether p lies in the polygon, both seen along the normal, by the parity of crossings of a ray.
+/// Whether p lies in the polygon when both are projected along the normal. Uses the parity of crossings of a ray.
 bool inside(const Vec3& p, const Contour& contour, const Vec3& normal) {
   const Vec3 u = normal.unitOrthogonal();
   const Vec3 v = normal.cross(u);
@@ -92,7 +92,7 @@ RoiMeasures measure(const Roi& roi) {
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   out.slice_spacing_mm = sorted[sorted.size() / 2];
 
-  // A slice stands for half of the gap on either side, the first and last one for half a usual gap outwards.
+  // A slice represents half of the gap on either side. The first and the last represent half a median gap outwards.
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const double below = i > 0 ? gaps[i - 1] : out.slice_spacing_mm;
     const double above = i < gaps.size() ? gaps[i] : out.slice_spacing_mm;

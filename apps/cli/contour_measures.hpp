@@ -7,7 +7,7 @@
 
 namespace stylet::cli {
 
-/// Size of a structure as its contours tell it.
+/// Size of a structure, computed from its contours.
 struct RoiMeasures {
   Index slices = 0;
   Index points = 0;

@@ -18,11 +18,11 @@
 
 namespace stylet::cli {
 
-/// What is in something a user brought, for machines and for people.
+/// Description of a file's content, as JSON and as text.
 struct Description {
   Json json;
   std::string text;
-  std::vector<std::string> warnings{};  ///< what is wrong with it though it can be used
+  std::vector<std::string> warnings{};  ///< faults that do not prevent its use
 };
 
 Description describe(const ContourSet& contours);
@@ -32,7 +32,7 @@ Description describe(const std::vector<Surface>& surfaces);
 Description describe(const RunRecording& run);
 Description describe(const ModelFile& file);
 
-/// Keys that every description of a mesh shares: nodes, tets, dihedral_deg, edge_mm, radius_ratio_min.
+/// The JSON keys common to all descriptions of a mesh: nodes, tets, dihedral_deg, edge_mm, radius_ratio_min, …
 Json quality_json(const MeshQuality& quality);
 
 /// {"min": [x, y, z], "max": [x, y, z]} [mm] LPS; null for an empty box.

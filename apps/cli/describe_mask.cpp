@@ -66,7 +66,7 @@ Description describe(const LabelImage& image) {
               {"labels", Json::array()}};
 
   std::map<int, std::string> taken_as;
-  const StructureChoice choice = *choose_structures(image, {});  // refuses wrong wishes only, and there are none
+  const StructureChoice choice = *choose_structures(image, {});  // fails only for invalid options, and there are none
   for (const StructureUse& use : choice.uses) taken_as[use.number] = use.region;
 
   Table table({"label", "name", "taken as", "voxels", "extent mm", "volume cc"});

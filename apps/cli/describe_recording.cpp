@@ -18,7 +18,8 @@ struct Peaks {
   double depth_mm = 0;
 };
 
-/// Largest absolute forces and the deepest base position; from the steps, since a killed run has no summary.
+/// Largest absolute forces and largest base depth. Computed from the steps, because a run that was killed has no
+/// summary.
 Peaks peaks_of(const std::vector<Step>& steps) {
   Peaks peaks;
   for (const Step& step : steps) {

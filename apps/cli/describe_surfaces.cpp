@@ -13,8 +13,8 @@ namespace stylet::cli {
 
 namespace {
 
-/// Number of edges that do not have exactly two triangles; points at the same place count as one, since STL repeats
-/// them for every triangle.
+/// Number of edges that do not belong to exactly two triangles. Points at the same place count as one, because STL
+/// repeats them for every triangle.
 Index open_edges(const Surface& surface) {
   std::map<std::array<double, 3>, Index> number;
   std::vector<Index> merged;

@@ -12,10 +12,10 @@ namespace stylet::cli {
 
 namespace {
 
-/// As it is written in front of a port.
+/// A host as it is written in front of a port: an IPv6 address gets brackets.
 std::string bracketed(const std::string& host) { return host.find(':') == std::string::npos ? host : "[" + host + "]"; }
 
-/// A link as a session sees it.
+/// Makes an igtl::Link a companion of a session.
 class LinkCompanion final : public serve::Companion {
  public:
   LinkCompanion(std::unique_ptr<igtl::Link> link, igtl::LinkSettings settings, bool has_hand)
@@ -39,8 +39,8 @@ class LinkCompanion final : public serve::Companion {
   std::unique_ptr<igtl::Link> link_;
   igtl::LinkSettings settings_;
   bool has_hand_;
-  Eigen::Matrix3Xf at_rest_;    ///< [mm] LPS
-  Eigen::Matrix3Xf displaced_;  ///< [mm] as published last
+  Eigen::Matrix3Xf at_rest_;    ///< [mm] LPS, points of the undeformed scene
+  Eigen::Matrix3Xf displaced_;  ///< [mm] displacement that was published last
   std::shared_ptr<const igtl::Surface::Triangles> triangles_;
 };
 
@@ -66,7 +66,7 @@ void LinkCompanion::show(const serve::Scene& scene) {
   publish_surface();
 }
 
-/// What has not changed is not sent again; how often the rest is, is the link's business.
+/// An unchanged displacement is not published again. The link limits the rate.
 void LinkCompanion::show(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement) {
   if (displacement.cols() != at_rest_.cols() || displacement == displaced_) return;
   displaced_ = displacement;
@@ -81,12 +81,13 @@ void LinkCompanion::publish_surface() {
     const Eigen::Vector3f x = at_rest_.col(static_cast<Eigen::Index>(k)) + displaced_.col(static_cast<Eigen::Index>(k));
     surface.points[k] = {x.x(), x.y(), x.z()};
   }
-  (void)link_->publish_surface(std::move(surface));  // refuses one beyond all bounds: the rest is still shown
+  (void)link_->publish_surface(
+      std::move(surface));  // fails only for a surface that is too large; then the needle is still sent
 }
 
 bool only_digits(const std::string& text) { return text.find_first_not_of("0123456789") == std::string::npos; }
 
-/// "PORT", "HOST", "HOST:PORT" or "[IPv6]:PORT" into host and port. A server needs the port, a client the host.
+/// Parses "PORT", "HOST", "HOST:PORT" or "[IPv6]:PORT". A server needs the port, a client the host.
 Result<> read_place(const std::string& option, const std::string& text, igtl::LinkSettings& into) {
   const bool server = into.role == igtl::Role::server;
   const auto wrong = [&](const std::string& what) {

@@ -12,26 +12,27 @@
 
 namespace stylet::cli {
 
-/// How `stylet serve` is to speak OpenIGTLink.
+/// Command-line arguments of `stylet serve` for OpenIGTLink.
 struct IgtlArguments {
   std::string listen;         ///< [IP:]PORT
   std::string connect;        ///< HOST[:PORT]
-  std::string hand = "page";  ///< or "igtl"
+  std::string hand = "page";  ///< what moves the needle: "page" or "igtl"
 };
 void add_igtl_options(CLI::App& app, IgtlArguments& arguments);
 
-/// An open link, for a live session.
+/// An open OpenIGTLink connection for a live session.
 struct IgtlCompanion {
-  std::shared_ptr<serve::Companion> companion;  ///< null: none was asked for
-  std::string said;                             ///< where it is
-  std::string warning;                          ///< of others in the network; may be empty
-  Json json;                                    ///< the same for programs
+  std::shared_ptr<serve::Companion> companion;  ///< null: OpenIGTLink is not used
+  std::string said;                             ///< its address and role, for the terminal
+  std::string warning;                          ///< warning about access from the network; may be empty
+  Json json;                                    ///< its address and role as JSON
 };
 
-/// Settings of a runner whose hand comes over OpenIGTLink: samples of 30 to 60 Hz are not late.
+/// RunnerSettings::late_after_s when the hand's poses come over OpenIGTLink: poses at 30 to 60 Hz do not count as late.
 inline constexpr double kIgtlLateAfter_s = 0.1;
 
-/// Errors: a place that is none, a port that is taken, a host that is not known, a program built without OpenIGTLink.
+/// Opens the connection. Errors: an invalid address, a port in use, an unknown host, a program built without
+/// OpenIGTLink.
 Result<IgtlCompanion> open_igtl(const IgtlArguments& arguments);
 
 }  // namespace stylet::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stylet program: reads the command line, runs one command, turns its outcome into an exit status.
+// The stylet program: parses the command line, runs one command, and returns an exit status.
 #include "command.hpp"
 #include "standard_streams.hpp"
 #include "threads.hpp"
@@ -21,7 +21,7 @@ namespace {
 using namespace stylet;
 using namespace stylet::cli;
 
-// Exit statuses, part of the command line's contract.
+// Exit statuses; docs/command_line.md documents them.
 constexpr int kOk = 0;
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
@@ -56,7 +56,7 @@ int run(int argc, char** argv, Console& console) {
   const std::array commands{add_phantom_command(program), add_mesh_command(program),     add_info_command(program),
                             add_prepare_command(program), add_insert_command(program),   add_reproduce_command(program),
                             add_bench_command(program),   add_validate_command(program), add_serve_command(program)};
-  add_common_options(program, common);  // they may stand before the command and behind it
+  add_common_options(program, common);  // common options may stand before or after the command
   for (const Command& command : commands) add_common_options(*command.app, common);
 
   try {

@@ -7,8 +7,8 @@
 
 namespace stylet::cli {
 
-/// The text that `stylet insert --map` prints: a table with a line for each hole, what the numbers mean, and what has
-/// to be said of single holes. Without the last line end.
+/// The text that `stylet insert --map` prints: a table with a line for each hole, an explanation of the numbers, and
+/// remarks on single holes. Without the last line end.
 std::string map_text(const HoleMap& map);
 
 }  // namespace stylet::cli

@@ -7,10 +7,10 @@
 
 namespace stylet::cli {
 
-/// What `stylet mesh` prints for people.
+/// The text that `stylet mesh` prints.
 std::string report_text(const MeshReport& report);
 
-/// What `stylet mesh --json` writes (docs/command_line.md).
+/// The JSON that `stylet mesh --json` writes (docs/command_line.md).
 Json report_json(const MeshReport& report);
 
 }  // namespace stylet::cli

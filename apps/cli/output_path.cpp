@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The folder a relative file name without folder lies in is the current one.
+/// The folder of a file; the current folder for a file name without folder.
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 constexpr const char* kCure = "Choose another place with -o or --json";
@@ -21,7 +21,7 @@ constexpr const char* kCure = "Choose another place with -o or --json";
 
 Result<> check_output_folder(const fs::path& path) {
   if (path.empty()) return input_error("output folder", "the name is empty", kCure);
-  // The first part of the path that is there decides whether the rest can be made.
+  // The deepest part of the path that exists decides whether the rest can be made.
   fs::path existing = fs::absolute(path).lexically_normal();
   std::error_code code;
   while (!fs::exists(fs::status(existing, code)) && existing.has_relative_path()) existing = existing.parent_path();
@@ -57,7 +57,8 @@ Result<> make_folder(const fs::path& path) {
 Result<> write_text_file(const fs::path& path, std::string_view text) {
   if (Result<> made = make_folder(folder_of(path)); !made) return made;
   std::error_code code;
-  if (fs::exists(path, code) && !fs::is_regular_file(path, code)) {  // a pipe or a device stays what it is
+  if (fs::exists(path, code) &&
+      !fs::is_regular_file(path, code)) {  // a pipe or a device must not be replaced by a file
     std::ofstream stream(path, std::ios::binary);
     stream << text << std::flush;
     if (!stream) return failure(path.string(), "writing failed", kCure);

@@ -8,17 +8,17 @@
 
 namespace stylet::cli {
 
-/// Refuses, before any work is done, a file that cannot be written: a folder of that name, or a place that does not
-/// exist and cannot be made or is not writable. Creates nothing.
+/// Checks, before any work is done, that a file can be written. Creates nothing. Errors: a folder of this name exists,
+/// or the file's folder does not exist and cannot be made, or is not writable.
 Result<> check_output_file(const std::filesystem::path& path);
 
-/// The same for a folder, which may exist or not.
+/// Checks that a folder exists or can be made, and is writable. Creates nothing.
 Result<> check_output_folder(const std::filesystem::path& path);
 
-/// Makes a folder with all above it; does nothing when it is there.
+/// Makes a folder and its parent folders; does nothing if it exists.
 Result<> make_folder(const std::filesystem::path& path);
 
-/// Writes a text file that appears whole or not at all, and the folder it is to lie in.
+/// Writes a text file, which appears complete or not at all, and makes its folder.
 Result<> write_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace stylet::cli

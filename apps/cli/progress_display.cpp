@@ -14,12 +14,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kSilence = 1s;  ///< shorter work shows nothing
+constexpr auto kSilence = 1s;  ///< work that takes less time shows no progress
 constexpr auto kRedrawEvery = 100ms;
-constexpr auto kLineEvery = 10s;  ///< plain lines within a stage
+constexpr auto kLineEvery = 10s;  ///< time between plain lines within a stage
 constexpr int kStageWidth = 30;
 
-/// A standard error that takes no more is no reason to stop.
+/// Prints to standard error. Errors are ignored, because work can continue without this output.
 void print(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);

@@ -11,9 +11,9 @@
 
 namespace stylet::cli {
 
-/// Shows on standard error, as long as it lives, how far long work has come: on a terminal a bar that redraws itself,
-/// elsewhere a line when a stage begins and every ten seconds. Silent in the first second. A thread of its own keeps it
-/// going through stages that report nothing for a while.
+/// Shows the progress of long work on standard error as long as it exists: on a terminal a bar that is redrawn,
+/// elsewhere a line at the start of a stage and every ten seconds. It shows nothing in the first second. A thread of
+/// its own updates it even if a stage reports nothing for a while.
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(bool terminal);
@@ -21,25 +21,25 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// @param fraction done of the stage, 0…1
+  /// Reports progress. @param fraction part of the stage that is done, 0…1
   void update(std::string_view stage, double fraction);
-  /// Prints something else, with the bar out of the way.
+  /// Removes the bar and prints something else.
   void interrupt(const std::function<void()>& print);
 
  private:
   using Clock = std::chrono::steady_clock;
-  void run();  ///< the thread
+  void run();  ///< function of the thread
   void show();
   void draw_bar();
   void clear_bar();
 
   const bool terminal_;
   const Clock::time_point start_ = Clock::now();
-  std::mutex mutex_;  ///< guards all below
+  std::mutex mutex_;  ///< guards the members below
   std::string stage_;
   double fraction_ = 0;
   bool bar_visible_ = false;
-  std::string announced_;  ///< stage whose beginning has been printed as a line
+  std::string announced_;  ///< the last stage whose start was printed as a line
   Clock::time_point last_line_;
   bool finished_ = false;
   std::condition_variable wake_;

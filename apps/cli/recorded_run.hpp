@@ -10,18 +10,18 @@
 
 namespace stylet::cli {
 
-/// A recording to be carried out again, and the model it was made with.
+/// A recording that is to be repeated, and its model.
 struct RecordedRun {
   std::vector<Step> steps;
   PreparedModel prepared;
 };
 
 /// Reads a run.h5 and compiles its scenario for its mesh.
-/// @param settings of --set: with any, the same hand moves another needle or tissue
+/// @param settings arguments of --set; with these the recorded motion of the hand moves another needle or tissue
 Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std::string>& settings,
                                  const Progress& progress);
 
-/// How the forces of a repeated run compare with the recorded ones, in words: to the last bit, or where not.
+/// Compares the forces of a repeated run with the recorded forces, bit by bit. @return the result in words
 std::string compare_forces(std::span<const Step> recorded, std::span<const Step> repeated);
 
 }  // namespace stylet::cli

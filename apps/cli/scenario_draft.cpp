@@ -27,7 +27,7 @@ std::string toml_text(const std::string& text) {
   return to_string(ScenarioValue{.type = ScenarioValue::Type::text, .text = text});
 }
 
-/// Bytes of the character that starts here, by UTF-8's rules; 0 where it breaks them.
+/// Number of bytes of the first UTF-8 character of `rest`; 0 if it is not valid UTF-8.
 std::size_t character_length(std::string_view rest) {
   const auto first = static_cast<unsigned char>(rest.front());
   const std::size_t length = first < 0x80                    ? 1
@@ -41,7 +41,7 @@ std::size_t character_length(std::string_view rest) {
   return whole ? length : 0;
 }
 
-/// Text as a comment can hold it: no line ends or other control characters, and UTF-8 throughout.
+/// Makes a text safe for a comment: replaces line ends, other control characters and bytes that are not UTF-8.
 std::string harmless(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -59,7 +59,7 @@ std::string harmless(std::string_view text) {
 
 bool is_text(const std::string& name) { return harmless(name) == name; }
 
-/// Lines of a comment.
+/// The text as a comment of one or more lines.
 std::string comment(const std::string& text) {
   std::string out, line = "#";
   std::string rest = harmless(text);
@@ -76,23 +76,23 @@ std::string comment(const std::string& text) {
   return out + line + '\n';
 }
 
-/// A line below [patient.regions].
+/// A line of the table [patient.regions].
 struct RegionLine {
   std::string key;     ///< name or number in the file
-  std::string region;  ///< empty: to be filled in by the user, commented out
+  std::string region;  ///< empty: the line is commented out and the user has to complete it
   std::string remark;
 };
 
 /// The parts of a draft that depend on the kind of file that the patient comes from.
 struct Contents {
-  std::string kind;                  ///< "contours of 6 structures"
-  std::vector<std::string> remarks;  ///< behind the source
+  std::string kind;                  ///< kind of file, such as "contours of 6 structures"
+  std::vector<std::string> remarks;  ///< comments below the source
   std::vector<std::string> skip;
-  std::vector<std::string> why_skip;  ///< one for each of `skip`
+  std::vector<std::string> why_skip;  ///< the reason for each of `skip`
   std::vector<RegionLine> regions;
-  std::vector<std::string> left_out;  ///< below the regions
-  std::string about_regions;          ///< above them
-  Eigen::AlignedBox3d target;         ///< [mm] LPS; empty without one
+  std::vector<std::string> left_out;  ///< comments below the regions
+  std::string about_regions;          ///< comment above the regions
+  Eigen::AlignedBox3d target;         ///< [mm] LPS, box of the gland; empty if there is none
   std::vector<std::string> warnings;
 };
 
@@ -157,7 +157,7 @@ Result<Contents> contents_of(const ContourSet& contours, const std::vector<std::
 
 struct LabelSize {
   std::int64_t voxels = 0;
-  Eigen::AlignedBox3d box;  ///< [mm] LPS, of the voxels' centres
+  Eigen::AlignedBox3d box;  ///< [mm] LPS, box of the voxels' centres
 };
 
 std::map<int, LabelSize> sizes_of(const LabelImage& image) {
@@ -218,7 +218,7 @@ Result<Contents> contents_of(const TetMesh& mesh, const std::vector<std::string>
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::string& name = mesh.regions[r];
     std::string region = region_meant(name);
-    if (region != name && !taken.insert(region).second) region = name;  // another one has that name
+    if (region != name && !taken.insert(region).second) region = name;  // another region has this name
     const bool known = !canonical_region(name).empty();
     if (is_target_region(region)) out.target.extend(box[r]);
     has_target = has_target || is_target_region(region) || region.starts_with("label_");
@@ -247,7 +247,7 @@ Result<Contents> contents_of(const std::vector<Surface>& surfaces, const std::ve
   return out;
 }
 
-/// A hole half way between the target's middle and its left side, beside the urethra.
+/// A hole half way between the target's centre and its left side, so that the needle passes beside the urethra.
 struct Hole {
   std::string name;
   double left_mm = 0.0;

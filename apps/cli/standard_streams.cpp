@@ -12,7 +12,8 @@ namespace stylet::cli {
 bool prepare_standard_streams() {
   const bool output_is_open = ::fcntl(STDOUT_FILENO, F_GETFD) >= 0;
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // gets the lowest free number: this one
+    if (::fcntl(stream, F_GETFD) < 0)
+      (void)::open("/dev/null", O_RDWR);  // gets the lowest free number, which is `stream`
   }
   std::signal(SIGPIPE, SIG_IGN);
   return output_is_open;

@@ -3,9 +3,9 @@
 
 namespace stylet::cli {
 
-/// To be called before anything else. Standard streams that are closed become /dev/null, since a file that is opened
-/// would get their number, and whatever is printed would go into it. A reader who goes away is an error of writing, not
-/// the end of the program.
+/// Must be called before anything else. Opens closed standard streams as /dev/null: otherwise the next opened file
+/// would get the number of a standard stream and printed text would go into it. Also ignores SIGPIPE, so that a closed
+/// pipe is an error of writing and does not end the program.
 /// @return whether standard output was open
 bool prepare_standard_streams();
 

@@ -7,7 +7,7 @@ namespace stylet::cli {
 
 namespace {
 
-/// Characters of UTF-8 text as a terminal shows them, one column each.
+/// Number of characters of UTF-8 text; a terminal shows each in one column.
 std::size_t columns(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

@@ -6,13 +6,13 @@
 
 namespace stylet::cli {
 
-/// A table for people: columns as wide as their widest cell, numbers to the right, words to the left.
+/// A text table. Columns are as wide as their widest cell; numbers are aligned to the right, words to the left.
 class Table {
  public:
   explicit Table(std::vector<std::string> header) : header_(std::move(header)) {}
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
 
-  /// Lines of the table, indented by two blanks, without the last line end.
+  /// The lines of the table, indented by two blanks, without the last line end.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -20,7 +20,7 @@ class Table {
   std::vector<std::vector<std::string>> rows_;  ///< each as long as the header
 };
 
-/// "name  value" lines with the values aligned, for facts that are no table.
+/// Lines "name  value" with aligned values.
 class Facts {
  public:
   void add(std::string name, std::string value) { rows_.emplace_back(std::move(name), std::move(value)); }

@@ -8,7 +8,7 @@
 namespace stylet::cli {
 
 void limit_threads(int most) {
-  // Looked up at run time: which BLAS and which OpenMP there is, is the system's choice.
+  // The functions are looked up at run time, because the system decides which BLAS and which OpenMP are used.
   for (const char* name : {"openblas_set_num_threads", "omp_set_num_threads"}) {
     if (auto set = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, name))) set(most);
   }

@@ -3,8 +3,8 @@
 
 namespace stylet::cli {
 
-/// Bounds the helper threads of the numerical libraries (OpenBLAS, OpenMP) of this process.
-/// @param most [threads] ≥ 1
+/// Limits the number of threads of the numerical libraries (OpenBLAS, OpenMP) in this process.
+/// @param most largest number of threads, ≥ 1
 void limit_threads(int most);
 
 }  // namespace stylet::cli

@@ -11,7 +11,7 @@ namespace stylet::cli {
 
 namespace {
 
-/// The command whose options were being read, or the program itself before any command.
+/// The command whose options were being parsed; the program itself if there was no command.
 const CLI::App& active(const CLI::App& program) {
   const auto commands = program.get_subcommands();
   return commands.empty() ? program : *commands.front();
@@ -37,7 +37,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
-/// What is wrong with the first word the parser could not place.
+/// Explains the first word that the parser could not assign.
 std::string explain_word(const CLI::App& program, const CLI::App& app, const std::vector<std::string>& words) {
   const auto option =
       std::find_if(words.begin(), words.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
@@ -56,7 +56,8 @@ std::string explain_word(const CLI::App& program, const CLI::App& app, const std
 std::string explain(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App& app = active(program);
   const std::string name = &app == &program ? program.get_name() : program.get_name() + ' ' + app.get_name();
-  // An unknown word is told before a missing one: the missing one is often the unknown one, mistyped.
+  // An unknown word is reported before a missing one, because the unknown word is often the missing one with a typing
+  // error.
   const std::vector<std::string> words = program.remaining(true);
   std::string what;
   if (!words.empty()) {

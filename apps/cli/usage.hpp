@@ -7,8 +7,8 @@
 
 namespace stylet::cli {
 
-/// One sentence on what is wrong with the command line: for an unknown option or command the nearest known one, else
-/// the parser's own words, and where to read more.
+/// Explains an error of the command line: names the nearest known option or command for an unknown one, otherwise gives
+/// the parser's message; refers to --help.
 /// @param program the program after its parse() threw
 std::string explain(const CLI::ParseError& error, const CLI::App& program);
 

@@ -13,7 +13,7 @@ namespace stylet::cli {
 
 namespace {
 
-/// The text as a number when all of it is one.
+/// Parses a number. @return false unless the whole text is one
 template <class Number>
 bool parse(const std::string& text, Number& number) {
   const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
@@ -24,7 +24,7 @@ bool parse(const std::string& text, Number& number) {
 
 }  // namespace
 
-// A validator answers with the reason of its refusal, or with nothing.
+// A validator returns an error message, or an empty text if the value is accepted.
 
 CLI::Validator number_between(double lo, double hi, const std::string& unit) {
   return {[=](const std::string& text) {

@@ -8,17 +8,17 @@
 
 namespace stylet::cli {
 
-/// Accepts a number from `lo` to `hi`; the refusal names the value and the range.
-/// @param unit what follows the range in the message, e.g. "mm"; may be empty
+/// Accepts a number from `lo` to `hi`; the error names the value and the range.
+/// @param unit unit after the range in the error, e.g. "mm"; may be empty
 CLI::Validator number_between(double lo, double hi, const std::string& unit = {});
 
 /// Accepts a whole number from `lo` to `hi`.
 CLI::Validator whole_number_between(long long lo, long long hi);
 
-/// Accepts one of these words; the refusal names them all and the nearest.
+/// Accepts one of these words; the error names all of them and the nearest.
 CLI::Validator one_of(std::vector<std::string> words);
 
-/// Adds --volume, which chooses one volume of a mask file that holds several.
+/// Adds the option --volume, which chooses one volume of a mask file with several.
 void add_volume_option(CLI::App& app, int& volume);
 
 }  // namespace stylet::cli

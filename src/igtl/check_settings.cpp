@@ -15,7 +15,7 @@ namespace {
 Result<> in_range(const char* key, double value, double low, double high, const char* unit) {
   if (value >= low && value <= high) return Ok{};
   return input_error(fmt::format("OpenIGTLink, {}", key),
-                     fmt::format("{} {} is not within {}…{}", value, unit, low, high), "give a value within the range");
+                     fmt::format("{} {} is not within {}…{}", value, unit, low, high), "Give a value within the range");
 }
 
 Result<> check_names(const LinkSettings& s) {
@@ -29,11 +29,12 @@ Result<> check_names(const LinkSettings& s) {
                                   {"status", &s.status}}) {
     const std::string where = fmt::format("OpenIGTLink, name {}", key);
     if (name->empty() || std::any_of(name->begin(), name->end(), [](char c) { return c <= ' ' || c > '~'; }))
-      return input_error(where, fmt::format("'{}' is no name", *name), "give letters, digits and signs, no spaces");
+      return input_error(where, fmt::format("'{}' is not a valid name", *name),
+                         "Use letters, digits and signs without spaces");
     if (!seen.insert(cut_name(*name)).second)
       return input_error(
           where, fmt::format("'{}' is used twice (an OpenIGTLink name has {} bytes)", cut_name(*name), kNameBytes),
-          "give every message a name of its own, what comes in another one than what goes out");
+          "Give every message a different name, the received one too");
   }
   return Ok{};
 }
@@ -44,8 +45,9 @@ Result<> check(const LinkSettings& s) {
   const int lowest = s.role == Role::server ? 0 : 1;
   if (s.port < lowest || s.port > 65535)
     return input_error("OpenIGTLink, port", fmt::format("{} is not within {}…65535", s.port, lowest),
-                       "give a port within the range; 18944 is the usual one");
-  if (s.host.empty()) return input_error("OpenIGTLink, host", "no host", "give an address, 127.0.0.1 for this machine");
+                       "Give a port within the range; 18944 is usual");
+  if (s.host.empty())
+    return input_error("OpenIGTLink, host", "there is no host", "Give an address such as 127.0.0.1 for this machine");
   if (auto ok = in_range("poses_hz", s.poses_hz, 1.0, 1000.0, "Hz"); !ok) return ok;
   if (auto ok = in_range("surface_hz", s.surface_hz, 0.1, s.poses_hz, "Hz"); !ok) return ok;
   if (auto ok = in_range("fresh_s", s.fresh_s, 0.01, 10.0, "s"); !ok) return ok;

@@ -5,7 +5,7 @@
 
 namespace stylet::igtl {
 
-/// What is wrong with the settings, if anything.
+/// Checks the settings. Errors: values out of range, names that are empty, invalid or used twice.
 Result<> check(const LinkSettings& settings);
 
 }  // namespace stylet::igtl

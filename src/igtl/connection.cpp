@@ -14,8 +14,8 @@ using boost::system::error_code;
 
 namespace {
 
-/// Small messages leave at once, little waits in the kernel for a slow reader, and a machine that vanished without a
-/// word is noticed.
+/// Sends small messages without delay, limits the kernel's send buffer so that a slow receiver gets no outdated data,
+/// and detects a machine that has disappeared without closing its connection.
 void set_options(Connection::Socket& socket) {
   using Timeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
   constexpr int timeout_ms = 10'000;

@@ -11,8 +11,8 @@
 
 namespace stylet::igtl {
 
-/// One connection, in the link's thread. For each kind of content it keeps the newest that is not under way yet, so a
-/// slow reader costs no memory and sees the newest; what is shared with other connections exists once.
+/// One connection, used in the link's thread only. Of each kind of content only the newest message waits to be sent, so
+/// a slow receiver takes little memory and gets the newest state. All connections share the bytes of a message.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Socket = boost::asio::ip::tcp::socket;
@@ -22,17 +22,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   struct Events {
     std::function<void(const Incoming&)> message;
-    /// Nothing comes from it afterwards. @param garbage what was wrong with its bytes; empty: it just ended
+    /// Called once; no event follows. @param garbage what was wrong with the received bytes; empty: nothing was wrong
     std::function<void(const std::string& garbage)> closed;
   };
 
   Connection(Socket socket, Events events);
-  void start();  ///< reading
-  /// @return false when it took the place of something that was not sent
+  void start();  ///< starts reading
+  /// Queues a message. @return false if it replaced a waiting message of the same content
   bool offer(Content content, Shared bytes);
-  /// Closes, and says so, unless it is closed.
+  /// Closes the connection and calls Events::closed; does nothing if it is closed already.
   void close(const std::string& garbage = {});
-  /// Since when a send has not come to its end.
+  /// Whether data are being sent. @param start set to the time at which this send started
   [[nodiscard]] bool sending_since(Clock::time_point& start) const;
 
  private:

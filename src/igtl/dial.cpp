@@ -32,7 +32,7 @@ class Dialer final : public Transport {
  private:
   void connect() {
     socket_ = tcp::socket(io_);
-    // A machine that is off answers nothing for minutes; closing the socket ends the attempt.
+    // A machine that is switched off does not answer for minutes; closing the socket ends the attempt.
     timer_.expires_after(std::chrono::seconds(5));
     timer_.async_wait([this](const error_code& error) {
       if (error || stopped_) return;
@@ -52,7 +52,8 @@ class Dialer final : public Transport {
     });
   }
 
-  /// Where nobody listens, the kernel may choose the very port it connects to, and the socket then hears itself.
+  /// Whether the socket is connected to itself. If no program listens on this machine, the kernel may choose as the
+  /// local port the one that it connects to.
   [[nodiscard]] bool to_itself() const {
     error_code error;
     const auto local = socket_.local_endpoint(error);

@@ -25,7 +25,7 @@ void Hub::add(Connection::Socket socket, std::function<void()> on_end) {
 
 void Hub::turn_away() {
   ++counted_.turned_away;
-  counted_.problem = "more connections than max_connections; the last one was turned away";
+  counted_.problem = "there are max_connections connections already, so another one was refused";
 }
 
 void Hub::ended(ConnectionId id, const std::string& garbage) {
@@ -54,7 +54,7 @@ void Hub::give_up(Connection::Clock::time_point now) {
   }
   for (const auto& connection : stuck) {
     ++counted_.given_up;
-    counted_.problem = "a connection took nothing for longer than give_up_s and was closed";
+    counted_.problem = "a connection accepted no data for longer than give_up_s and was closed";
     connection->close();
   }
 }

@@ -10,31 +10,31 @@
 
 namespace stylet::igtl {
 
-/// All connections of a link and what they have come to. Everything but state() belongs to the link's thread.
+/// All connections of a link and their counters. All functions except state() must be called in the link's thread.
 class Hub {
  public:
   explicit Hub(const LinkSettings& settings);
 
-  /// Takes a connection over. @param ended called once when it is over; may be empty
+  /// Takes a connection over. @param ended called once when the connection has ended; may be empty
   void add(Connection::Socket socket, std::function<void()> ended);
   [[nodiscard]] bool full() const { return connections_.size() >= static_cast<std::size_t>(settings_.max_connections); }
   [[nodiscard]] bool empty() const { return connections_.empty(); }
   void turn_away();
 
   void send(Connection::Content content, const Connection::Shared& bytes);
-  /// What a connection gets when it is made, besides what follows.
+  /// Sets the message that every new connection is sent first, for one kind of content.
   void greet_with(Connection::Content content, Connection::Shared bytes) { greeting_.at(content) = std::move(bytes); }
-  /// Closes those that have taken nothing for too long.
+  /// Closes the connections that have accepted no data for longer than give_up_s.
   void give_up(Connection::Clock::time_point now);
 
-  /// Where the handle's poses go from now on.
+  /// Sets the channel that receives the handle's poses.
   void feed(std::shared_ptr<PoseChannel> channel) { input_.feed(std::move(channel)); }
-  /// Closes all.
+  /// Closes all connections.
   void close();
 
   void set_port(int port);
   void set_problem(const std::string& problem) { counted_.problem = problem; }
-  /// Makes the present counts the ones that state() tells.
+  /// Copies the current counters to the state that state() returns.
   void show_state();
   [[nodiscard]] LinkState state() const;
 
@@ -49,7 +49,7 @@ class Hub {
   ConnectionId last_id_ = 0;
   LinkState counted_;
   mutable std::mutex mutex_;
-  LinkState shown_;  ///< under the mutex
+  LinkState shown_;  ///< guarded by the mutex
 };
 
 }  // namespace stylet::igtl

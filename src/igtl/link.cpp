@@ -16,7 +16,7 @@
 
 namespace stylet::igtl {
 
-/// The context goes last of what uses it: what still waits in it holds sockets.
+/// `io` is declared before the members that use it. Its queue may hold sockets, so it must be destroyed after them.
 struct Link::Parts {
   explicit Parts(const LinkSettings& s) : settings(s), hub(settings), sender(io, settings, hub) {}
 
@@ -42,14 +42,14 @@ Result<std::unique_ptr<Link>> Link::open(const LinkSettings& settings) {
   try {
     p.thread = std::thread([&io = p.io] { io.run(); });
   } catch (const std::system_error& error) {
-    return failure("OpenIGTLink", fmt::format("no thread to be had: {}", error.what()), "end other programs");
+    return failure("OpenIGTLink", fmt::format("no thread can be started: {}", error.what()), "End other programs");
   }
   return std::unique_ptr<Link>(new Link(std::move(parts)));
 }
 
 Link::~Link() {
   Parts& p = *parts_;
-  // In the thread itself, which owns the sockets; it ends there, whatever is still under way.
+  // Everything is closed in the link's thread, which owns the sockets; messages that are being sent are dropped.
   boost::asio::post(p.io, [&p] {
     p.transport->stop();
     p.sender.stop();
@@ -73,15 +73,16 @@ Result<> Link::publish_surface(Surface surface) {
   const std::size_t bytes = 12 * surface.points.size() + 16 * triangles;
   if (bytes > most)
     return input_error("OpenIGTLink, surface",
-                       fmt::format("{} points and {} triangles", surface.points.size(), triangles),
-                       "send a coarser surface, or fewer regions");
+                       fmt::format("{} points and {} triangles are more than 64 MiB", surface.points.size(), triangles),
+                       "Send a coarser surface, or fewer regions");
   if (triangles > 0) {
     std::uint32_t last = 0;
     for (const auto& t : *surface.triangles) last = std::max({last, t[0], t[1], t[2]});
     if (last >= surface.points.size())
-      return input_error("OpenIGTLink, surface",
-                         fmt::format("a triangle names point {} of {}", last, surface.points.size()),
-                         "number the points from 0");
+      return input_error(
+          "OpenIGTLink, surface",
+          fmt::format("a triangle has the corner {}, but there are {} points", last, surface.points.size()),
+          "Number the points from 0");
   }
   parts_->sender.publish(std::move(surface));
   return Ok{};

@@ -35,7 +35,7 @@ class Listener final : public Transport {
   }
 
  private:
-  /// Out of file descriptors, say: asking again at once would spin.
+  /// Accepts again after a pause. After an error such as too many open files, an immediate retry would loop.
   void rest(const std::string& problem) {
     hub_.set_problem("accepting a connection: " + problem);
     pause_.expires_after(std::chrono::milliseconds(200));
@@ -58,15 +58,15 @@ Result<std::unique_ptr<Transport>> listen(asio::io_context& io, const LinkSettin
   tcp::acceptor acceptor(io);
   error_code error;
   acceptor.open(at.protocol(), error);
-  // Without it the port stays taken for a minute after the last connection.
+  // Without this option the port stays in use for a minute after the last connection.
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(at, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error) {
     const std::string where = fmt::format("OpenIGTLink, {} port {}", settings.host, settings.port);
     if (error == asio::error::address_in_use)
-      return failure(where, "another program listens there", "end it, or give another port");
-    return failure(where, error.message(), "give an address of this machine and a port that its user may open");
+      return failure(where, "another program uses this port", "End that program, or give another port");
+    return failure(where, error.message(), "Give an address of this machine and a port that you may open");
   }
   hub.set_port(acceptor.local_endpoint(error).port());
   return std::unique_ptr<Transport>(std::make_unique<Listener>(std::move(acceptor), io, hub));

@@ -18,7 +18,7 @@ Result<Endpoints> look_up(boost::asio::io_context& io, const LinkSettings& setti
   if (endpoints.empty())
     return input_error("OpenIGTLink, host",
                        fmt::format("'{}' is not known ({})", settings.host, error ? error.message() : "no address"),
-                       "give a name or an address of this network, 127.0.0.1 for this machine");
+                       "Give a host name or an IP address, such as 127.0.0.1 for this machine");
   return endpoints;
 }
 

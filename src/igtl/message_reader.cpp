@@ -19,10 +19,10 @@ namespace {
 static_assert(sizeof(igtl_header) == IGTL_HEADER_SIZE);
 
 Error garbage(std::string what) {
-  return input_error("OpenIGTLink message", std::move(what), "let the other side send OpenIGTLink, version 1 to 3");
+  return input_error("OpenIGTLink message", std::move(what), "Let the other program send OpenIGTLink, version 1 to 3");
 }
 
-/// Text up to its zero or the field's end.
+/// The text of a field, up to a zero byte or the end of the field.
 std::string_view text(const char* field, std::size_t room) { return {field, strnlen(field, room)}; }
 
 bool is_type(std::string_view type) {
@@ -47,7 +47,7 @@ Result<> MessageReader::read_header() {
   const std::string_view name = text(h.device_name, sizeof h.device_name);
   if (h.version != 1 && h.version != 2)
     return garbage(fmt::format("a header of version {}", static_cast<unsigned>(h.version)));
-  if (!is_type(type) || !is_name(name)) return garbage("a header whose type or name is no text");
+  if (!is_type(type) || !is_name(name)) return garbage("a header whose type or name is not text");
   if (h.body_size > longest_) return garbage(fmt::format("a {} of {} bytes", type, std::uint64_t{h.body_size}));
   message_ = {};
   if (type == "TRANSFORM") message_.kind = Incoming::Kind::transform;
@@ -66,7 +66,7 @@ Result<> MessageReader::read_body(Incoming& message) {
   if (crc64(body_.data(), body_.size(), 0) != crc_) return garbage("a body that does not match its checksum");
   std::span<const std::uint8_t> content(body_);
   if (version_ == 2) {
-    // Extended header: its own length, the lengths of the metadata's two parts at the end, a number.
+    // Extended header: its own length, the lengths of the two parts of the metadata at the end, a message number.
     if (body_.size() < 12) return garbage("a body shorter than its extended header");
     const std::size_t before = big16(body_.data());
     const std::size_t after = big16(body_.data() + 2) + big32(body_.data() + 4);

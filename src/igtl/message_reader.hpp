@@ -13,24 +13,26 @@
 
 namespace stylet::igtl {
 
-/// A message from outside, as far as a link is interested.
+/// The parts of a received message that a link uses.
 struct Incoming {
   enum class Kind { transform, status, other } kind = Kind::other;
   std::string name;
   RasMatrix matrix{};      ///< of a TRANSFORM
-  std::uint16_t code = 0;  ///< of a STATUS; 1 is good
+  std::uint16_t code = 0;  ///< of a STATUS; 1 means OK
 };
 
-/// Takes a connection's bytes as they come and makes messages of them. Trusts nothing: a header's length is looked at
-/// before a byte of the body is kept, and only bodies of at most kKept bytes are; other types pass by without being
-/// stored. Reads header versions 1 and 2 (protocols 1 to 3); passes over metadata.
+/// Decodes messages from the bytes of a connection, in pieces of any size. The bytes are not trusted: the length in the
+/// header is checked before the body is stored, and only bodies of at most kKept bytes are stored. Bodies of other
+/// types are skipped. Reads header versions 1 and 2 (protocols 1 to 3); skips metadata.
 class MessageReader {
  public:
   static constexpr std::size_t kKept = 65536;
-  /// @param longest [bytes] body of any type; images are large
+  /// @param longest [bytes] longest body of any type; large, because images may be sent
   explicit MessageReader(std::uint64_t longest = std::uint64_t{1} << 28) : longest_(longest) {}
 
-  /// @return an error at the first thing that is no message; the connection is then out of step and to be closed
+  /// Decodes the next bytes and passes complete messages to `sink`.
+  /// @return an error if the bytes are not a message; where the next message starts is then unknown, so the connection
+  /// must be closed
   Result<> take(std::span<const std::uint8_t> bytes, const std::function<void(const Incoming&)>& sink);
 
  private:
@@ -43,7 +45,7 @@ class MessageReader {
   Incoming message_;
   std::uint16_t version_ = 0;
   std::uint64_t crc_ = 0;
-  std::uint64_t body_left_ = 0;  ///< bytes still to come
+  std::uint64_t body_left_ = 0;  ///< bytes of the body that have not been received
   bool keep_ = false;
   std::vector<std::uint8_t> body_;
 };

@@ -18,8 +18,8 @@
 #include <chrono>
 #include <cstring>
 
-// The library's C functions, not its message classes: those of 1.11 free an NDARRAY's memory with the wrong delete, and
-// allocate a list for every triangle.
+// This file uses the C functions of the OpenIGTLink library, not its message classes: the classes of version 1.11 free
+// the memory of an NDARRAY with the wrong delete and allocate a list for every triangle.
 
 namespace stylet::igtl {
 
@@ -29,7 +29,7 @@ void copy_text(char* to, std::size_t room, const std::string& text) {
   std::copy_n(text.data(), std::min(room, text.size()), to);
 }
 
-/// Seconds since 1970 and a binary fraction, 32 bits each.
+/// The time: seconds since 1970 in the upper 32 bits and a binary fraction in the lower 32 bits.
 std::uint64_t now_stamp() {
   using namespace std::chrono;
   const auto ns = duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
@@ -38,13 +38,13 @@ std::uint64_t now_stamp() {
   return (seconds << 32) | ((rest << 32) / 1'000'000'000);
 }
 
-/// Grows `out` by a message whose body is still empty. @return the body's place
+/// Extends `out` by a message with an empty body. @return position of the body
 std::size_t begin(Bytes& out, std::size_t body_bytes) {
   out.resize(out.size() + IGTL_HEADER_SIZE + body_bytes);
   return out.size() - body_bytes;
 }
 
-/// Writes the header in front of a finished body, which goes to the end.
+/// Writes the header of a message whose body is complete. The body starts at `body` and reaches to the end of `out`.
 void finish(Bytes& out, std::size_t body, const char* type, const std::string& name) {
   igtl_header header{};
   header.version = 1;
@@ -116,7 +116,7 @@ void add_surface(Bytes& out, const std::string& name, const Surface& surface) {
   for (const auto& p : surface.points) points.insert(points.end(), {-p[0], -p[1], p[2]});
   std::vector<igtl_uint32> cells;
   cells.reserve(4 * triangles.size());
-  // Half a turn about z is no mirror: triangles stay counter-clockwise seen from outside.
+  // LPS to RAS is a rotation (half a turn about z), so triangles stay counter-clockwise seen from outside.
   for (const auto& t : triangles) cells.insert(cells.end(), {3, t[0], t[1], t[2]});
   igtl_polydata_info info{};
   info.header.npoints = static_cast<igtl_uint32>(surface.points.size());
@@ -130,7 +130,7 @@ void add_surface(Bytes& out, const std::string& name, const Surface& surface) {
 }
 
 void add_status(Bytes& out, const std::string& name, StatusCode code, const std::string& text) {
-  // Code (16 bits), sub-code (64 bits), name of the error (20 bytes), text with its zero.
+  // Layout: code (16 bits), sub-code (64 bits), name of the error (20 bytes), text with a zero byte at its end.
   constexpr std::size_t fixed = 30;
   const std::size_t body = begin(out, fixed + text.size() + 1);
   const std::uint16_t wire = boost::endian::native_to_big(static_cast<std::uint16_t>(code));

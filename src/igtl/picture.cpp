@@ -5,7 +5,7 @@ namespace stylet::igtl {
 
 namespace {
 
-/// Turns `rotation` by the least that takes its z axis to `direction`; not at all when that has no length.
+/// Turns `rotation` by the smallest rotation that takes its z axis to `direction`; does nothing if `direction` is zero.
 void carry(Eigen::Quaterniond& rotation, const Vec3& direction) {
   if (!(direction.squaredNorm() > 1e-18)) return;
   rotation = (Eigen::Quaterniond::FromTwoVectors(rotation * Vec3::UnitZ(), direction) * rotation).normalized();
@@ -20,7 +20,8 @@ Pose tip_pose(const Pose& base, std::span<const Triple> centreline) {
     carry(tip.rotation, vec3(centreline[k]) - vec3(centreline[k - 1]));
   const std::size_t n = centreline.size() - 1;
   tip.origin = vec3(centreline[n]);
-  // The last chord is the tangent half a spacing before the tip; this is the one at the tip, to second order.
+  // The last chord is the tangent half a spacing before the tip. This difference formula gives the tangent at the tip,
+  // to second order.
   if (n >= 2) carry(tip.rotation, 3.0 * vec3(centreline[n]) - 4.0 * vec3(centreline[n - 1]) + vec3(centreline[n - 2]));
   return tip;
 }

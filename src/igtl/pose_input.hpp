@@ -12,28 +12,29 @@ namespace stylet::igtl {
 
 using ConnectionId = std::uint64_t;  ///< 0: none
 
-/// Decides whose pose the handle is, and whether it can be used. One connection at a time has the handle: whoever sends
-/// its pose first, until it leaves or has been silent for a second; two hands on one needle would tear it to and fro.
-/// A pose is invalid when it is no rigid motion, and while the last STATUS under any name of its connection is not OK.
+/// Decides which connection moves the handle and whether its poses are usable. One connection at a time has the handle:
+/// the first that sends its pose, until it ends or has sent none for a second. Otherwise two senders would move the
+/// needle back and forth. A pose is invalid if it is no rigid motion, or while the last STATUS of any name from its
+/// connection is not OK.
 class PoseInput {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds kSilent{1};
-  static constexpr std::size_t kComplaints = 16;  ///< names with a bad STATUS that are remembered, for each connection
+  static constexpr std::size_t kComplaints = 16;  ///< most names with a bad STATUS that are stored per connection
 
   explicit PoseInput(std::string name) : name_(std::move(name)) {}
 
-  /// Where poses go from now on. It hears of the present state only by the next message.
+  /// Sets the channel that receives the poses. It gets nothing until the next message.
   void feed(std::shared_ptr<PoseChannel> channel) { channel_ = std::move(channel); }
 
   void hear(ConnectionId from, const Incoming& message, Clock::time_point now);
   void closed(ConnectionId connection);
 
   struct Counts {
-    std::int64_t poses = 0;           ///< usable
-    std::int64_t unusable = 0;        ///< no rigid motion, or its sender was not OK
-    std::int64_t of_others = 0;       ///< from a connection that does not have the handle
-    std::int64_t other_messages = 0;  ///< other types and names
+    std::int64_t poses = 0;           ///< usable poses
+    std::int64_t unusable = 0;        ///< poses that were no rigid motion, or whose sender was not OK
+    std::int64_t of_others = 0;       ///< poses from a connection that does not have the handle
+    std::int64_t other_messages = 0;  ///< messages of other types and names
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] bool tracked() const { return tracked_; }

@@ -9,10 +9,10 @@
 
 namespace stylet::igtl {
 
-// OpenIGTLink speaks RAS: x to the patient's right, y to anterior, z to superior. From our LPS that is half a turn
-// about z, F = diag(−1, −1, 1), its own inverse. It turns the reference frame only: an axis of the needle (z along it,
-// x and y of the bevel) is the same axis on both sides, so a pose R, p becomes F R, F p, not F R F. This file is the
-// only place where the two frames meet.
+// OpenIGTLink uses the frame RAS: x to the patient's right, y to anterior, z to superior. LPS becomes RAS by half a
+// turn about z, F = diag(−1, −1, 1), which is its own inverse. F turns the reference frame only. The axes of the needle
+// (z along it, x and y of the bevel) are the same in both, so a pose R, p becomes F R, F p, not F R F. This file is the
+// only place where the two frames are converted.
 
 /// Positions, forces and torques: LPS to RAS, and back. (F is a rotation, so torques turn like forces.)
 [[nodiscard]] inline Vec3 ras(const Vec3& v) { return {-v.x(), -v.y(), v.z()}; }
@@ -29,11 +29,11 @@ using RasMatrix = std::array<float, 12>;
   return m;
 }
 
-/// How far columns may be from length 1 and right angles: a thousand times the rounding of single precision, and less
-/// than any scaling or shear that somebody meant.
+/// Largest entry of |RᵀR − 1| of a rigid motion: far above the rounding of single precision, and below any
+/// intended scaling or shear.
 inline constexpr double kRigidTolerance = 1e-3;
 
-/// The pose that a RAS matrix says, LPS; nothing when it is no rigid motion: not finite, scaled, sheared or mirrored.
+/// The pose (LPS) of a RAS matrix; empty if it is no rigid motion, that is not finite, scaled, sheared or mirrored.
 [[nodiscard]] inline std::optional<Pose> pose_of(const RasMatrix& m) {
   for (const float x : m)
     if (!std::isfinite(x)) return {};

@@ -52,7 +52,7 @@ void Sender::wait() {
     if (error) return;
     const auto now = Clock::now();
     turn(now);
-    // On a grid, without making up for turns that were missed.
+    // The times lie on a regular grid; missed turns are not made up for.
     timer_.expires_at(std::max(timer_.expiry() + period(settings_.poses_hz), now));
     wait();
   });
@@ -92,7 +92,8 @@ void Sender::turn(Clock::time_point now) {
   hub_.show_state();
 }
 
-/// Poses only of a picture that is fresh: an old one would look alive. The force then is nothing, and says so.
+/// Poses are sent only of a fresh picture, because an old one would look like a running simulation. Without a fresh
+/// picture the force is sent as zero with "fresh": false.
 Bytes Sender::poses(bool fresh) const {
   const Picture& p = picture_.value();
   Bytes out;

@@ -11,7 +11,7 @@
 
 namespace stylet::igtl {
 
-/// Turns pictures into messages, on a timer of the link's thread.
+/// Encodes pictures as messages and sends them, on a timer in the link's thread.
 class Sender {
  public:
   Sender(boost::asio::io_context& io, const LinkSettings& settings, Hub& hub)
@@ -20,9 +20,9 @@ class Sender {
   void start();
   void stop() { timer_.cancel(); }
 
-  /// The publishing thread.
+  /// Call it from one thread, the publishing thread.
   void publish(const Picture& picture) { picture_.write(picture); }
-  /// Any thread.
+  /// May be called from any thread.
   void publish(Surface surface);
 
  private:
@@ -41,7 +41,7 @@ class Sender {
   Clock::time_point surface_due_;
   Clock::time_point heartbeat_due_;
   std::mutex mutex_;
-  std::optional<Surface> surface_;  ///< under the mutex: the newest not sent yet
+  std::optional<Surface> surface_;  ///< guarded by the mutex: the newest surface that has not been sent
 };
 
 }  // namespace stylet::igtl

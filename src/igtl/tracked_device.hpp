@@ -9,16 +9,17 @@
 
 namespace stylet::igtl {
 
-/// What the other side last said of the handle: plain data.
+/// The last state of the handle that was received: plain data.
 struct TrackedPose {
   bool valid = false;
   PlainPose pose;  ///< LPS
 };
 
-/// From the link's thread to the loop's.
+/// Passes the pose from the link's thread to the real-time loop.
 using PoseChannel = LatestValue<TrackedPose>;
 
-/// A handle that somebody tracks at the other end of a link. It feels nothing: its force goes out as messages.
+/// A handle that is tracked by the program at the other end of a link. It gives no force feedback itself; the force is
+/// sent as messages.
 class TrackedDevice final : public Device {
  public:
   TrackedDevice(std::string name, std::shared_ptr<PoseChannel> channel)
@@ -26,8 +27,8 @@ class TrackedDevice final : public Device {
 
   [[nodiscard]] DeviceTraits traits() const override { return {.name = name_}; }
 
-  /// A sample is stamped with the turn before the one that finds it: it arrived between the two, so it is never taken
-  /// for younger than it is. What is there at the first turn is of unknown age, and no sample.
+  /// A sample gets the time of the call before the one that finds it. It arrived between the two calls, so its age is
+  /// never underestimated. A pose found by the first call has an unknown age and is not valid.
   DeviceInput read(const DeviceTime& time) noexcept override {
     if (channel_->fetch()) {
       known_age_ = turned_;

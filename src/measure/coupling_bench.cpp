@@ -21,11 +21,11 @@ namespace {
 
 constexpr const char* kNearField = "near-field";
 constexpr const char* kNodeAddition = "node-addition";
-/// A needle in the demo strays by less, and elements that touch the corridor reach further; a narrow one keeps the time
-/// before the first step short on fine meshes.
+/// A narrow corridor keeps the time before the first step short on fine meshes. It suffices, because the demo's needle
+/// leaves its planned way by less, and elements that touch the corridor extend beyond it.
 constexpr double kCorridor_mm = 3.0;
 
-/// One insertion to be carried out.
+/// One insertion to be simulated.
 struct Case {
   CouplingStudy study{};
   Index nodes = 3000;
@@ -35,7 +35,7 @@ struct Case {
   double dt_ms = Scenario{}.run.dt_ms;
 };
 
-/// All of them, the finest of each study and method first.
+/// All insertions of the benchmark; of each study and method the finest comes first.
 std::vector<Case> cases(Index largest, bool mesh_only) {
   std::vector<Case> all;
   for (const char* method : {kNearField, kNodeAddition}) {
@@ -72,7 +72,7 @@ Scenario scenario_of(const Case& one, double depth_mm) {
   return scenario;
 }
 
-/// Where the target begins and ends on the needle's line, from the skin on.
+/// Finds the depths at which the target begins and ends on the needle's line, measured from the skin.
 void find_gland(const Model& model, CouplingRow& row) {
   constexpr double step = 0.05;
   const PlannedInsertion& plan = model.insertions().front();
@@ -90,7 +90,7 @@ void find_gland(const Model& model, CouplingRow& row) {
   }
 }
 
-/// Depth of the base when a surface breaks: the first of the target's, or the first of all others.
+/// Base depth [mm] of the first puncture of a target region, or of any other region; NaN if there is none.
 double puncture_mm(const RecordedRun& run, bool of_target) {
   const TetMesh& mesh = run.model->mesh();
   for (const Event& event : run.summary.events) {
@@ -103,15 +103,14 @@ double puncture_mm(const RecordedRun& run, bool of_target) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The steps of a run without the rest after withdrawal: there is no force there, and the mean of any difference would
-/// look smaller by it.
+/// The steps of a run without the rest after withdrawal, whose zero forces would reduce the mean of any difference.
 std::span<const Step> while_moving(std::span<const Step> steps) {
   std::size_t count = steps.size();
   while (count > 1 && steps[count - 2].base.origin == steps.back().base.origin) --count;
   return steps.first(count);
 }
 
-/// What the needle's way needs of one mesh: the same for every spacing of contacts and every time step.
+/// The precomputed compliance of one mesh, which is the same for every spacing of contacts and every time step.
 struct Offline {
   ModelCompliance compliance;
   double seconds = 0.0;
@@ -188,7 +187,7 @@ Result<std::vector<CouplingRow>> bench_coupling(const CouplingBenchOptions& opti
     }
     auto row = carry_out(one, anatomy, options.depth_mm, known, progress);
     if (!row) return row.error();
-    // The finest comes first; of the meshes' shapes it is the finest mesh of all.
+    // The finest row comes first. The study of geometry is compared with the finest mesh of the study of meshes.
     const auto finest = std::find_if(rows.begin(), rows.end(), [&](const CouplingRow& r) {
       const bool same = one.study == CouplingStudy::geometry ? r.study == CouplingStudy::mesh : r.study == one.study;
       return same && r.method == one.method;

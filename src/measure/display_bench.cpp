@@ -20,10 +20,10 @@ namespace {
 constexpr int kContacts = 40;
 constexpr double kFrames = 60;
 constexpr double kWay_mm = 90.0;
-constexpr double kBeside_mm = 10.0;  ///< the planned way, as far as surfaces are drawn finer
+constexpr double kBeside_mm = 10.0;  ///< surfaces are refined along the planned way extended by this at both ends
 constexpr double kDisplayedSpeed_mm_per_s = 20.0;
 constexpr double kDt_s = 1e-3;
-constexpr Index kNodalPressureFits = 50000;  ///< nodes; above, its factor is too large for most machines
+constexpr Index kNodalPressureFits = 50000;  ///< with more nodes, the factor for nodal pressure needs too much memory
 
 Vec3 place_of(const TetMesh& mesh, const MaterialPoint& at) {
   Vec3 x = Vec3::Zero();
@@ -33,7 +33,8 @@ Vec3 place_of(const TetMesh& mesh, const MaterialPoint& at) {
   return x;
 }
 
-/// The other design: the displacement of a coarse mesh, interpolated at the nodes of the fine one.
+/// The alternative to a DisplayField: the displacement is computed on a coarse mesh and interpolated at the nodes of
+/// the fine mesh.
 class CoarseMesh {
  public:
   CoarseMesh(std::shared_ptr<const Model> coarse, const TetMesh& fine) : coarse_(std::move(coarse)) {
@@ -43,7 +44,7 @@ class CoarseMesh {
     }
   }
 
-  /// Largest difference [mm] at nodes that lie in the coarse mesh, too.
+  /// Largest difference from `exact` [mm] at the nodes of the fine mesh that lie in the coarse mesh.
   [[nodiscard]] double error(const TetMesh& fine, std::span<const TissueForce> forces, const VecX& exact) const {
     const Tissue& tissue = coarse_->tissue();
     MatX f = MatX::Zero(3 * Eigen::Index{tissue.displacement_nodes()}, 1);
@@ -72,7 +73,7 @@ class CoarseMesh {
   std::vector<MaterialPoint> at_;  ///< (fine nodes)
 };
 
-/// Points of all surfaces, finer along the needle's way.
+/// Points of all surfaces, refined along the needle's way.
 std::vector<SurfacePoint> fine_surface(const Model& model, std::span<const Index> nodes) {
   std::vector<std::array<Index, 3>> triangles;
   for (const auto* faces : {&model.topology().boundary, &model.topology().interfaces}) {
@@ -89,7 +90,7 @@ std::vector<SurfacePoint> fine_surface(const Model& model, std::span<const Index
   return points;
 }
 
-/// All that one display needs, and what its frames cost.
+/// A display of the deformed patient that times its frames.
 class Display {
  public:
   Display(const std::shared_ptr<const Model>& model, const DisplayField& field)
@@ -102,7 +103,7 @@ class Display {
         u_(3, mesh_.node_count()),
         x_(3, 2 * mesh_.tet_count()) {}
 
-  /// The surfaces, a slice, and both, each from forces it has not seen.
+  /// Computes and times the surfaces, a slice, and both; each starts with setting the forces.
   void show(std::span<const TissueForce> forces, const Vec3& origin, const Vec3& normal) {
     const auto timed = [&](std::vector<double>& us, auto&& picture) {
       const double started = measure::thread_cpu_s();
@@ -120,7 +121,7 @@ class Display {
     triangles_ = std::max(triangles_, static_cast<int>(slicer_.triangles().size()));
   }
 
-  /// Of all nodes against the exact displacement [mm].
+  /// Largest difference of all nodes from the exact displacement [mm].
   double error(std::span<const TissueForce> forces, const VecX& exact) {
     std::vector<Index> all(static_cast<std::size_t>(mesh_.node_count()));
     std::iota(all.begin(), all.end(), 0);

@@ -19,10 +19,10 @@ constexpr double kBackAndForth_mm = 15.0;
 constexpr double kFurther_mm = 1.0;
 constexpr int kCycles = 3;
 constexpr double kDeepest_mm = kDrivenDepth_mm + kCycles * kFurther_mm;
-/// Steps with fewer of the most contacts are not of that number.
+/// Steps with less than this share of the largest number of contacts do not count as full.
 constexpr double kShare = 0.85;
 
-/// Time spent in each phase itself, not in phases within it.
+/// Measures the time spent in each phase, without the phases nested in it.
 class PhaseClock final : public PhaseObserver {
  public:
   void start() {
@@ -58,8 +58,8 @@ class PhaseClock final : public PhaseObserver {
   Clock::time_point last_;
 };
 
-/// Once in, back and forth, and out.
-/// @param place number of the first step, DrivenStep::place
+/// Simulates one insertion: in, back and forth, and out.
+/// @param place DrivenStep::place of the first step
 void drive(Simulation& simulation, bool phases, long least, long place, std::vector<DrivenStep>& steps,
            const Progress& progress, const FixedWork* fixed) {
   PhaseClock clock;
@@ -71,7 +71,8 @@ void drive(Simulation& simulation, bool phases, long least, long place, std::vec
   const std::vector<double> way = driven_depths(start);
   const double wanted = static_cast<double>(std::max(least, static_cast<long>(way.size())));
   if (steps.empty()) {
-    // Memory that is moved or first written between steps is the system's work long afterwards, within them.
+    // Touches the memory of all steps beforehand. Memory that is moved or first written between steps makes work for
+    // the system, which would lengthen later steps.
     steps.resize(static_cast<std::size_t>(least) + way.size());
     steps.clear();
   }
@@ -138,7 +139,7 @@ int most_driven_contacts() { return 1 + static_cast<int>(kDeepest_mm / demo_scen
 Scenario driven_scenario(int contacts) {
   Scenario scenario = demo_scenario();
   scenario.tissue_model.preset = TissuePreset::firm;
-  scenario.coupling.spacing_mm = kDeepest_mm / (contacts - 1);  // the tip is one of them
+  scenario.coupling.spacing_mm = kDeepest_mm / (contacts - 1);  // the tip is a contact too
   scenario.coupling.contacts = std::max(scenario.coupling.contacts, contacts + 20);
   scenario.insertions.front().depth_mm = kDeepest_mm;
   scenario.output.frames_per_s = 0.0;

@@ -12,40 +12,41 @@
 
 namespace stylet::measure {
 
-/// The insertion that steps are timed with: 90 mm in, back and forth by 15 mm at the deepest point, further in each
-/// time, and out. Steps with nearly all contacts are what a row of a benchmark is about.
+/// The insertion whose steps the benchmarks time: 90 mm in, back and forth by 15 mm at the deepest point, further in
+/// each time, and out. A row of a benchmark reports the steps that have nearly all contacts (full_steps()).
 
 inline constexpr double kDrivenStep_s = 1e-3;
 
-/// Depth of the base after every step, from where the insertion starts.
+/// Base depth [mm] after every step. @param start_mm base depth at the start
 std::vector<double> driven_depths(double start_mm);
 
-/// The same again and again for so long, as a motion of the base.
+/// The same motion, repeated until `seconds` of simulated time have passed.
 BaseMotion driven_motion(const PlannedInsertion& plan, double start_mm, double seconds);
 
-/// The default scenario in firm tissue, with contacts as near each other as give so many of them. In fat of the typical
-/// preset not all of sixty contacts are laid, and on coarse meshes the contacts there overtake each other.
+/// The default scenario in firm tissue, with the spacing that gives `contacts` contacts. In the fat of the typical
+/// preset not all of 60 contacts are laid, and on coarse meshes contacts there overtake each other.
 Scenario driven_scenario(int contacts);
 
 struct DrivenStep {
-  long place = 0;  ///< in the way there and back of a needle that is new and then goes again: the same work each time
+  long place = 0;  ///< number of the step in two insertions of a new needle; steps of one number do the same work
   int contacts = 0;
   int iterations = 0;
   int events = 0;
   bool flagged = false;
-  double cpu_us = 0.0;  ///< of the thread
+  double cpu_us = 0.0;  ///< thread CPU time
   double wall_us = 0.0;
-  double fixed_us = 0.0;                       ///< processor time of FixedWork right after the step, if any
-  std::array<double, kStepPhases> phase_us{};  ///< wall clock; of a run with phases
+  double fixed_us = 0.0;  ///< thread CPU time of FixedWork directly after the step, if there is any
+  std::array<double, kStepPhases> phase_us{};  ///< wall-clock time in each phase, if phases are timed
 };
 
-/// @param fixed done and timed after each step, or nothing
-/// @param phases the clock is read whenever a step goes from one phase to another, which costs time itself
-/// @param least steps: the way is gone again until there are so many, by the same needle and a new one by turns
+/// Simulates the insertion and times its steps.
+/// @param phases reads the clock at every change of phase, which takes time itself
+/// @param least least number of steps; the insertion is repeated, in turn with the same needle and a new one
+/// @param fixed run and timed after each step; may be null
 std::vector<DrivenStep> drive_needle(const std::shared_ptr<const Model>& model, bool phases, long least,
                                      const Progress& progress, const FixedWork* fixed = nullptr);
 
-/// Which of the steps have nearly all contacts.
+/// Indices of the steps with at least 85 % of the largest number of contacts.
 std::vector<std::size_t> full_steps(const std::vector<DrivenStep>& steps);
 
 StepTimes quantiles(std::vector<double> us);

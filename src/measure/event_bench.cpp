@@ -22,7 +22,7 @@ namespace {
 constexpr double kDepth_mm = 90.0;
 constexpr double kSpacing_mm = 2.25;
 constexpr int kMostPoints = 40;
-/// The tip has passed a face when the node is laid there: half of a step at 50 mm/s and 1 kHz.
+/// Distance of the tip beyond a face when a node is laid on it: half of a step at 50 mm/s and 1 kHz.
 constexpr double kBeyondFace_mm = 0.025;
 
 Spread spread(std::vector<double> seconds) {
@@ -35,7 +35,7 @@ Spread spread(std::vector<double> seconds) {
   return {at(0.05), at(0.5), at(0.95), 1e6 * seconds.back()};
 }
 
-/// Goes through more memory than the caches hold, so that nothing else is left in them.
+/// Empties the processor's caches by writing more memory than they hold.
 class ColdCaches {
  public:
   ColdCaches() {
@@ -52,14 +52,14 @@ class ColdCaches {
   std::vector<unsigned char> bytes_;
 };
 
-/// A place where a contact is laid.
+/// A place at which a contact is laid.
 struct Place {
-  Index hint = -1;  ///< element the tip is in
+  Index hint = -1;  ///< element that contains the tip
   Vec3 x = Vec3::Zero();
   MaterialPoint at;
 };
 
-/// One mesh with all that an insertion needs, for node addition and for the near field.
+/// One mesh with the models of the insertion for node addition and for the near field.
 struct Ground {
   std::shared_ptr<const Model> model;       ///< method = "node-addition": linear tetrahedra
   std::shared_ptr<const Model> near_field;  ///< the default
@@ -107,18 +107,18 @@ Result<Ground> ground_of(const TetMesh& mesh, const Progress& progress) {
   return ground;
 }
 
-/// One way of changing what the needle holds, place after place.
+/// A rule by which contacts are laid, place after place.
 struct Way {
   std::string rule;
   std::size_t places = 0;
-  std::function<void()> begin;            ///< nothing is laid
-  std::function<bool(std::size_t)> come;  ///< the tip comes to the k-th place, as in every step; false: it cannot
-  std::function<bool(std::size_t)> lay;   ///< what is timed; false where nothing could be laid
+  std::function<void()> begin;            ///< removes all contacts
+  std::function<bool(std::size_t)> come;  ///< moves the tip to the k-th place; false: it cannot
+  std::function<bool(std::size_t)> lay;   ///< lays the k-th contact, which is timed; false: it cannot
   std::vector<double> warm_s{};
   std::vector<double> cold_s{};
   int refused = 0;
 
-  /// @param seconds gets what each event took @param cold if given, empties the caches before each
+  /// Lays all contacts. @param seconds receives the time of each event @param cold empties the caches before each event
   void go(std::vector<double>& seconds, ColdCaches* cold) {
     begin();
     for (std::size_t k = 0; k < places; ++k) {
@@ -131,12 +131,12 @@ struct Way {
   }
 };
 
-/// Goes all ways by turns: what else the machine does then falls on all alike.
+/// Times all rules in turn, so that disturbances by other programs affect all of them alike.
 void time_by_turns(std::vector<Way>& ways, const EventBenchOptions& options) {
   constexpr int rounds_in_turn = 5;
   for (int turn = 0; turn < options.turns; ++turn) {
     for (Way& way : ways) {
-      std::vector<double> after_another_way;  // which leaves little of this one in the caches
+      std::vector<double> after_another_way;  // not counted: the caches hold data of another rule
       way.go(after_another_way, nullptr);
       for (int round = 0; round < rounds_in_turn; ++round) way.go(way.warm_s, nullptr);
     }
@@ -147,15 +147,15 @@ void time_by_turns(std::vector<Way>& ways, const EventBenchOptions& options) {
   }
 }
 
-/// How many places each rule has, the same on every mesh, for the cost grows with their number.
+/// Number of places of each rule. It is the same on every mesh, because the time of an event grows with it.
 struct Places {
   std::size_t inside = kMostPoints;
   std::size_t on_faces = kMostPoints;
   std::size_t near_field = kMostPoints;
 };
 
-/// Contacts as Insertion lays them: the search starts where the tip is. And, where it is asked for, nodes on faces in
-/// the full inverse.
+/// Times contacts as Insertion lays them: the search starts at the tip's element. With `with_woodbury`, also times
+/// nodes on faces with an update of the full inverse.
 Result<> measure(const Ground& ground, const Places& places, const EventBenchOptions& options, bool with_woodbury,
                  EventBench& bench) {
   const Locator& locator = ground.model->locator();
@@ -188,7 +188,7 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
                   .lay =
                       [&](std::size_t k) {
                         const measure::AddedNode& node = ground.on_faces[k];
-                        // The march of the tip tells through which element's face it goes.
+                        // The tip's path through the elements gives the element whose face is crossed.
                         const MaterialPoint at{node.at.tet, locator.weights(node.at.tet, node.x)};
                         return on_faces.add(at, node.x, Placement::face, travel).point > 0;
                       }});
@@ -212,7 +212,7 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
                         int count = 0;
                         for (int point = added.point - 1; point > 0 && count < ContactCompliance::kNeighbours; --point)
                           neighbours[static_cast<std::size_t>(count++)] = point;
-                        // Insertion takes a contact back that follows from its neighbours.
+                        // Insertion removes a contact whose compliance follows from its neighbours, so it tests this.
                         const std::span<const int> near(neighbours.data(), static_cast<std::size_t>(count));
                         return near_field.independence(added.point, near) > 0.0;
                       }});
@@ -239,7 +239,8 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
   time_by_turns(ways, options);
   for (Way& way : ways) {
     if (way.refused > 0)
-      return failure("timing changes of the mesh", "a node was refused where it had been laid before", "Report this");
+      return failure("timing changes of the mesh", "a node was refused at a place where it had been added before",
+                     "Please report this");
     if (way.rule == "woodbury") {
       bench.woodbury_nodes = ground.model->mesh().node_count();
       bench.woodbury_us = spread(std::move(way.warm_s));

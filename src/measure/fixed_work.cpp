@@ -25,7 +25,7 @@ double FixedWork::run() const {
 }
 
 void FixedWork::work() const {
-  // Volatile at both ends, or the compiler would know the result.
+  // Volatile input and output prevent the compiler from computing the result in advance.
   volatile double outside = 2.0;
   double x = outside;
   for (long k = 0; k < turns_; ++k) x = 0.999 * x + 0.001;

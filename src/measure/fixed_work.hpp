@@ -3,14 +3,14 @@
 
 namespace stylet::measure {
 
-/// Arithmetic of always the same amount: what its time varies by is the machine's doing. It
-/// stays within the processor's registers, so whoever comes after it finds the caches as they were.
+/// A fixed amount of arithmetic. Its time varies only by disturbances on the machine. It uses processor registers only,
+/// so it leaves the caches unchanged.
 class FixedWork {
  public:
-  /// @param about_us [µs] of processor time, on this machine now
+  /// @param about_us [µs] processor time that the work takes on this machine; calibrated here
   explicit FixedWork(double about_us);
 
-  /// @return [µs] processor time of the thread
+  /// Does the work. @return its thread CPU time [µs]
   [[nodiscard]] double run() const;
 
  private:

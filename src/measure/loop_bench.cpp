@@ -31,7 +31,7 @@ Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& p
   const Clock::time_point begin = Clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   while (passed() < options.seconds) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(16));  // as a display would
+    std::this_thread::sleep_for(std::chrono::milliseconds(16));  // as a display does
     (*runner)->fetch_snapshot();
     report.contacts_max = std::max(report.contacts_max, (*runner)->snapshot().contact_count);
     stylet::report(progress, "real time", passed() / options.seconds);

@@ -22,7 +22,7 @@ struct Counts {
   std::vector<int> elements;
 };
 
-/// Deflections under small loads, from the straight needle's compliance.
+/// Measures deflections under small loads, from the compliance of the straight needle.
 void measure_small(Needle& needle, const NeedleSection& section, NeedleRow& row) {
   const double L = section.length_mm;
   const std::array<PointLoad, 2> places{PointLoad{L / 3.0, Vec3::Zero()}, PointLoad{L, Vec3::Zero()}};
@@ -48,7 +48,7 @@ Result<> measure_large(Needle& needle, const NeedleSection& section, NeedleRow& 
   return Ok{};
 }
 
-/// A solve as the coupling asks for it: loads over the outer half, which change a little every time.
+/// Times solves as in the coupling: the loads act on the outer half of the needle and change a little every time.
 void measure_time(Needle& needle, const NeedleSection& section, NeedleRow& row) {
   needle.straighten();
   std::vector<PointLoad> loads;

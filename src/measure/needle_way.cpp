@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFineStep_mm = 0.05;
 
-/// The vertex of an element that the other does not have; −1 unless the two share a face.
+/// The local number of the corner of `element` that `other` does not have; −1 unless the two share a face.
 int opposite(const std::array<Index, 4>& element, const std::array<Index, 4>& other) {
   int found = -1;
   for (int i = 0; i < 4; ++i) {
@@ -25,7 +25,7 @@ int opposite(const std::array<Index, 4>& element, const std::array<Index, 4>& ot
   return found;
 }
 
-/// Walks the way and keeps the places where a node can be added.
+/// Follows the way and keeps the places at which a node can be added.
 class Walk {
  public:
   Walk(const NeedleWay& way, const RemeshCostOptions& options)
@@ -50,7 +50,7 @@ class Walk {
     for (double s = 0.5 * options_.spacing_mm; s < length_ && !full(); s += options_.spacing_mm) try_add_near(at(s));
   }
 
-  /// Too near a face there is no room for a node: then a little beside the way.
+  /// Adds a node at x, or a little beside the way if x is too near a face.
   void try_add_near(const Vec3& x) {
     const Vec3 u = direction_.unitOrthogonal();
     const Vec3 v = direction_.cross(u);
@@ -140,7 +140,7 @@ MatX stiffness_change(const Tissue& tissue, const AddedNode& node) {
   const auto k = static_cast<Eigen::Index>(node.dofs.size());
   MatX change = MatX::Zero(k, k);
   const auto add = [&](const paper::AdaptedMesh::Element& element, double sign) {
-    std::array<Eigen::Index, 4> at{};  // place of each corner's rows in ΔK, −1 where it is held
+    std::array<Eigen::Index, 4> at{};  // position of each corner's rows in ΔK, −1 if it is held
     for (std::size_t i = 0; i < 4; ++i) {
       const Index a = element.nodes[i];
       const Index first = a < base ? tissue.first_dof(a) : tissue.free_dofs() + 3 * (a - base);

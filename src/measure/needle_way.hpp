@@ -6,20 +6,21 @@
 
 namespace stylet::measure {
 
-/// A node that the needle's way adds, with all that the methods need to know.
+/// A node that is added on the needle's way, with the data that the methods need.
 struct AddedNode {
-  MaterialPoint at;  ///< in the base mesh
+  MaterialPoint at;  ///< its place in the initial mesh
   Vec3 x = Vec3::Zero();
   Vec3 travel = Vec3::Zero();
   paper::AdaptedMesh::Change change;
-  std::vector<Index> dofs;  ///< (k) rows of K that ΔK belongs to; those of the new node are the last three
+  std::vector<Index> dofs;  ///< (k) rows of K that ΔK changes; the last three belong to the new node
 };
 
-/// Nodes along the way, each accepted by TrackCompliance: inside elements every `spacing_mm`, up to 3 mm beside the way
-/// where a face is too near, or on the faces crossed, at least `spacing_mm` apart.
+/// Nodes along the way, each accepted by TrackCompliance. With Placement::interior they lie inside elements every
+/// `spacing_mm`, up to 3 mm beside the way where a face is too near. With Placement::face they lie on the crossed
+/// faces, at least `spacing_mm` apart.
 std::vector<AddedNode> nodes_along(const NeedleWay& way, const RemeshCostOptions& options);
 
-/// ΔK [N/mm] (k × k): the elements put in their place, less those taken away. @param dofs as in AddedNode
+/// ΔK [N/mm] (k × k): the stiffness of the new elements minus that of the removed elements, on AddedNode::dofs.
 MatX stiffness_change(const Tissue& tissue, const AddedNode& node);
 
 }  // namespace stylet::measure

@@ -5,7 +5,7 @@ namespace stylet::measure {
 
 namespace {
 
-/// Keeps every step and the labelled frames.
+/// Stores every step and the labelled frames of a run.
 class Keeper final : public RunObserver {
  public:
   explicit Keeper(RecordedRun& run) : run_(run) {}

@@ -11,7 +11,7 @@ namespace stylet::measure {
 namespace {
 
 constexpr double kSide_mm = 100.0;
-constexpr double kJitter = 0.12;  // of the grid, so that the way meets no edge or node
+constexpr double kJitter = 0.12;  // random shift of nodes, relative to the grid, so that the way meets no edge or node
 constexpr double kAround_mm = 0.35 * kSide_mm;
 
 /// Nodes within a distance of the way.

@@ -22,7 +22,7 @@ RemeshCost::Times times(const std::vector<double>& seconds) {
   return {median(seconds), *std::max_element(seconds.begin(), seconds.end())};
 }
 
-/// Times one way through the tissue, round by round; the methods take turns with each other.
+/// Times the changes along one way through the tissue, round by round, with all methods in turn.
 class Trial {
  public:
   Trial(const NeedleWay& way, const RemeshCostOptions& options, std::vector<AddedNode> nodes)
@@ -46,7 +46,7 @@ class Trial {
     }
   }
 
-  /// An update of the full inverse before each event puts everything else out of the caches.
+  /// As round_of_ours(), but an update of the full inverse before each event removes all other data from the caches.
   void round_of_ours_cold() {
     ours_.reset();
     woodbury_.reset();
@@ -66,7 +66,7 @@ class Trial {
   void round_of_woodbury() { round_of(woodbury_, woodbury_s_, &woodbury_update_s_); }
   void round_of_bcs() { round_of(bcs_, bcs_s_, nullptr); }
 
-  /// The lemma on the whole matrix, and the rank-k update of one triangle that BLAS offers.
+  /// Times the lemma on the whole matrix, and the rank-k update of one triangle by BLAS.
   void round_of_matrices() {
     const Eigen::Index old = way_.inverse->rows();
     const Eigen::Index size = old + 3 * static_cast<Eigen::Index>(nodes_.size());
@@ -92,7 +92,7 @@ class Trial {
     full_error_ = (M.bottomRightCorner(size - old, size - old) - ours()).cwiseAbs().maxCoeff() / scale();
   }
 
-  /// K of the mesh with all nodes in it, inverted from scratch.
+  /// Times the assembly of K with all added nodes and its inversion from scratch.
   void round_of_inverse() {
     const Eigen::Index old = way_.inverse->rows();
     const Eigen::Index size = old + 3 * static_cast<Eigen::Index>(nodes_.size());
@@ -111,7 +111,7 @@ class Trial {
     inverse_error_ = (K.bottomRightCorner(size - old, size - old) - ours()).cwiseAbs().maxCoeff() / scale();
   }
 
-  /// The bare stiffness, many times over since the clock is too coarse for it.
+  /// Times the computation of stiffnesses alone. It is repeated many times, because the clock is too coarse for it.
   void round_of_stiffness() {
     constexpr int times_over = 200;
     for (const AddedNode& node : nodes_) {
@@ -126,7 +126,7 @@ class Trial {
       Vec4 weights = element.weights(node.x).cwiseMax(0.01);
       hat_s_.push_back(cpu_seconds([&] {
                          for (int i = 0; i < times_over; ++i) {
-                           weights[0] += 1e-9;  // so that the compiler cannot take it out of the loop
+                           weights[0] += 1e-9;  // so that the compiler cannot move the computation out of the loop
                            sum += hat_stiffness(element.gradients, element.volume, material, weights)(0, 0);
                          }
                        }) /
@@ -173,7 +173,7 @@ class Trial {
     }
   }
 
-  /// Compliance among the added nodes [mm/N], as ours has it.
+  /// Compliance among the added nodes [mm/N] by the default's method.
   [[nodiscard]] MatX ours() const {
     const auto size = 3 * static_cast<Eigen::Index>(nodes_.size());
     return ours_.matrix().block(3, 3, size, size);  // the tip comes first
@@ -185,7 +185,7 @@ class Trial {
     const Index old = inverse.dofs() - size;
     const MatX expected = ours();
     double worst = 0.0;
-    if (old < tissue_.free_dofs()) return worst;  // was not asked to run
+    if (old < tissue_.free_dofs()) return worst;  // this method was not run
     for (Index i = 0; i < size; ++i)
       for (Index j = 0; j < size; ++j) worst = std::max(worst, std::abs(inverse(old + i, old + j) - expected(i, j)));
     return worst / scale();
@@ -202,7 +202,7 @@ class Trial {
       stiffness_s_, hat_s_;
   double full_error_ = 0.0;
   double inverse_error_ = 0.0;
-  double kept_ = 0.0;  ///< what the timed loops compute, so that they are not left out
+  double kept_ = 0.0;  ///< uses the results of the timed loops, so that the compiler does not remove them
 };
 
 }  // namespace
@@ -237,7 +237,7 @@ Result<RemeshCost> measure_remeshing(const NeedleWay& way, const RemeshCostOptio
 
 CountedCost count_operations(int N, int k, int added) {
   using paper::Counted;
-  // A diagonal inverse and change: what is counted does not depend on the numbers.
+  // Diagonal matrices suffice, because the number of operations does not depend on the values.
   std::vector<Index> dofs;
   const Index old = N - added;
   for (Index i = 0; i < k - added; ++i) dofs.push_back(i * (old / std::max(1, k - added)));
@@ -251,7 +251,7 @@ CountedCost count_operations(int N, int k, int added) {
   };
   CountedCost cost;
   paper::Matrix<Counted> M = identity();
-  for (Index i = old; i < N; ++i) M(i, i) = 0.0;  // nothing is known of the new ones yet
+  for (Index i = old; i < N; ++i) M(i, i) = 0.0;  // the new degrees of freedom are not in the inverse yet
   Counted::reset();
   paper::update_by_switches<Counted>(M, dofs, change, old);
   cost.switches = static_cast<double>(Counted::multiplications);

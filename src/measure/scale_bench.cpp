@@ -23,7 +23,7 @@ double resident_mb() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
-/// The median of the repeats of each step, by DrivenStep::place; NaN where there are fewer than three.
+/// The median time of the repeats of each step, by DrivenStep::place; NaN with fewer than three repeats.
 std::vector<double> medians_of_repeats(const std::vector<DrivenStep>& steps) {
   std::vector<std::vector<double>> repeats;
   for (const DrivenStep& step : steps) {
@@ -40,7 +40,7 @@ std::vector<double> medians_of_repeats(const std::vector<DrivenStep>& steps) {
   return medians;
 }
 
-/// NaN with a NaN among them: not known of all is not known.
+/// The largest value; NaN if one of them is NaN or there are none.
 double longest(const std::vector<double>& us) {
   double most = -std::numeric_limits<double>::infinity();
   for (const double one : us) most = std::isnan(one) || one > most ? one : most;
@@ -48,7 +48,7 @@ double longest(const std::vector<double>& us) {
 }
 
 constexpr double kDeadline_us = 1000.0;
-constexpr double kFixedWork_us = 100.0;  ///< as a step with 40 contacts takes
+constexpr double kFixedWork_us = 100.0;  ///< about the time of a step with 40 contacts
 
 Result<ScaleRow> measure(const MeshedAnatomy& anatomy, int contacts, long least, const FixedWork& fixed,
                          const Progress& progress) {

@@ -11,8 +11,8 @@ namespace stylet::measure {
 
 namespace {
 
-constexpr double kSlow = 0.01;  ///< share of steps that count as the slowest
-constexpr int kRuns = 4;        ///< with the clock in the phases, and as many without
+constexpr double kSlow = 0.01;  ///< share of the steps that count as the slowest
+constexpr int kRuns = 4;        ///< number of runs with timed phases, and number of runs without
 
 using Phases = std::array<double, kStepPhases>;
 
@@ -43,8 +43,8 @@ double sum(const Phases& phases) { return std::accumulate(phases.begin(), phases
 Result<StepRow> measure(const TetMesh& mesh, int contacts, const Progress& progress) {
   const auto model = Model::compile(driven_scenario(contacts), mesh, "the demo", {}, progress);
   if (!model) return model.error();
-  // By turns, so that a machine that becomes slower meets both kinds; of each kind the shortest of a step, which
-  // nothing else came between.
+  // The two kinds of runs alternate, so that a machine that becomes slower affects both. Of each kind the shortest time
+  // of a step is kept, which has the fewest interruptions.
   const std::vector<DrivenStep> plain = drive_needle(*model, false, 0, progress);
   std::vector<DrivenStep> phased = drive_needle(*model, true, 0, progress);
   std::vector<double> plain_us = cpu_us_of(plain), phased_us = cpu_us_of(phased);
@@ -72,7 +72,7 @@ Result<StepRow> measure(const TetMesh& mesh, int contacts, const Progress& progr
   row.cpu_us = quantiles(std::move(cpu));
   row.phase_us = mean_phases(phased, full);
   row.clock_share = sum_of(phased_us, full) / sum_of(plain_us, full) - 1.0;
-  // The slowest of both kinds: slow for what they do, not for what else the machine did.
+  // The slowest steps are those that are slow in both kinds of runs, so that interruptions do not count.
   std::sort(full.begin(), full.end(), [&](std::size_t a, std::size_t b) {
     return std::min(plain_us[a], sum(phased[a].phase_us)) > std::min(plain_us[b], sum(phased[b].phase_us));
   });

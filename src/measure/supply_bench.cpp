@@ -19,7 +19,7 @@ constexpr double kFrom_mm = -5.0;
 constexpr double kTo_mm = 40.0;
 constexpr double kStep_s = 1e-3;
 
-/// Base poses of the steps.
+/// Poses of the base in all steps.
 std::vector<Pose> way_beside(const Model& model, double speed_mm_per_s) {
   const PlannedInsertion& plan = model.insertions().front();
   const Pose planned = plan.motion.at(0.0);
@@ -42,7 +42,7 @@ void place(Simulation& simulation, const Pose& base) {
   simulation.prepare();
 }
 
-/// Axial forces with all compliance there.
+/// Axial forces when each step waits for its compliance.
 std::vector<double> forces_without_haste(const std::shared_ptr<const Model>& model, const std::vector<Pose>& way) {
   Simulation simulation(model);
   place(simulation, way.front());

@@ -14,7 +14,7 @@ namespace stylet::measure {
 
 namespace {
 
-/// The value of the first line "key : value" of a file; empty where there is none.
+/// The value of the first line "key : value" of a file; empty if there is none.
 std::string line_of(const char* file, const std::string& key) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {
@@ -25,7 +25,8 @@ std::string line_of(const char* file, const std::string& key) {
   return {};
 }
 
-/// What OpenBLAS says of itself; looked up at run time since BLAS is chosen by the system's alternatives.
+/// Calls a function of OpenBLAS that returns a text. The function is looked up at run time, because the system's
+/// alternatives may select another BLAS.
 std::string asked(const char* function) {
   const auto call = reinterpret_cast<const char* (*)()>(dlsym(RTLD_DEFAULT, function));
   return call == nullptr ? std::string() : std::string(call());

@@ -31,10 +31,10 @@ namespace fs = std::filesystem;
 namespace beast = boost::beast;
 using boost::asio::ip::tcp;
 
-constexpr double kChange_s = 0.5;     ///< after viewers came or went, not counted
-constexpr double kPatience_s = 60.0;  ///< for a loop that does not go on
+constexpr double kChange_s = 0.5;     ///< simulated time after viewers connect or leave that is not counted
+constexpr double kPatience_s = 60.0;  ///< wall-clock time after which a loop that does not advance is an error
 
-/// Moves the needle by a script, and knows what time it is in the simulation.
+/// Moves the needle by a script and keeps the simulated time.
 class Script final : public serve::Companion {
  public:
   explicit Script(BaseMotion motion) : motion_(std::move(motion)) {}
@@ -52,7 +52,7 @@ class Script final : public serve::Companion {
   std::atomic<double> time_s_ = 0.0;
 };
 
-/// A viewer that reads all there is, as fast as it comes.
+/// A viewer that reads all messages as fast as they arrive.
 class Viewer {
  public:
   static Result<std::unique_ptr<Viewer>> open(std::uint16_t port) {
@@ -66,7 +66,7 @@ class Viewer {
     if (!error) socket.handshake("localhost:" + std::to_string(port), "/live", error);
     if (error)
       return failure("viewer of the live session", "cannot connect: " + error.message(),
-                     "See whether something forbids connections to 127.0.0.1");
+                     "Check whether a firewall forbids connections to 127.0.0.1");
     viewer->thread_ = std::jthread([v = viewer.get()] { v->read(); });
     return viewer;
   }
@@ -94,17 +94,17 @@ class Viewer {
   beast::websocket::stream<tcp::socket> socket_;
   std::atomic<std::int64_t> pictures_ = 0;
   std::atomic<std::int64_t> bytes_ = 0;
-  std::jthread thread_;  ///< last: joined while the others exist
+  std::jthread thread_;  ///< last member, so that it is joined while the others exist
 };
 
-/// A part of the session in simulated time.
+/// A section of the session in simulated time, with or without viewers.
 struct Turn {
   double from_s = 0.0;
   double to_s = 0.0;
   bool watched = false;
 };
 
-/// A folder that goes with the benchmark.
+/// A temporary folder that is removed by its destructor.
 struct Folder {
   fs::path path = fs::temp_directory_path() / ("stylet-viewers-" + std::to_string(::getpid()));
   ~Folder() {
@@ -152,7 +152,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   settings.session.cases = {{"the demo", [&](const Progress&) { return Result(serve::LoadedCase{*model, {}}); }}};
   settings.session.recordings = folder.path;
   settings.session.companion = script;
-  settings.session.field_waits_s = 0.0;  // made before the first turn begins
+  settings.session.field_waits_s = 0.0;  // the field is prepared before the first turn begins
   auto server = serve::Server::open(std::move(settings));
   if (!server) return server.error();
   (*server)->start();
@@ -164,7 +164,8 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
       if (std::exchange(last_s, script->time_s()) != last_s) moved = Clock::now();
       report(progress, "real time", last_s / all_s);
       if (std::chrono::duration<double>(Clock::now() - moved).count() > kPatience_s)
-        return failure("live session", "its loop does not go on", "See whether stylet serve runs on this machine");
+        return failure("live session", "its real-time loop does not advance",
+                       "Check whether stylet serve runs on this machine");
     }
     return Ok{};
   };
@@ -174,7 +175,7 @@ Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Pr
   result.viewers = options.viewers;
   std::vector<Turn> turns;
   double watched_s = 0.0;
-  // Not the first one: the skin breaks once only, and the tissue's picture is being prepared.
+  // The first turn is not counted, because the skin breaks only then and the displacement field is being prepared.
   if (auto waited = wait_until(turn_s); !waited) return waited.error();
   for (int turn = 0; turn < 2 * pairs; ++turn) {
     const bool watched = turn % 2 == 1;

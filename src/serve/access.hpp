@@ -6,20 +6,21 @@
 
 namespace stylet::serve {
 
-/// Who may come in: who knows the token, but no page of another origin, and on the loopback interface under no name
-/// that somebody else has pointed here. There, other users of this machine are kept out by the token alone.
+/// Decides which requests are answered. A request needs the token. A request from a page of another origin is refused.
+/// On the loopback interface a Host header other than localhost is refused too, because another site's name may have
+/// been pointed at this machine (DNS rebinding); other users of this machine are kept out by the token alone.
 class Access {
  public:
   enum class Names { loopback, any };
-  /// @param token empty: none is asked for
-  /// @param names under which the server answers; a name that is not this machine's own needs a token
+  /// @param token empty: no token is needed
+  /// @param names host names under which the server answers; any names other than the loopback names need a token
   explicit Access(std::string token, Names names = Names::loopback) : token_(std::move(token)), names_(names) {}
 
   enum class Verdict { granted, foreign, no_token };
-  /// @param target of the request, with its query
-  /// @param host, origin of the request's headers; empty where it has none
+  /// @param target target of the request, with its query
+  /// @param host, origin headers of the request; empty where it has none
   [[nodiscard]] Verdict check(std::string_view target, std::string_view host, std::string_view origin) const;
-  /// The same for what anybody may see who reaches the server: the page itself.
+  /// The check for the page itself, which needs no token.
   [[nodiscard]] Verdict check_open(std::string_view host) const;
 
   [[nodiscard]] const std::string& token() const { return token_; }
@@ -31,11 +32,11 @@ class Access {
 
 /// The path of a request's target, without its query.
 std::string_view path_of(std::string_view target);
-/// The value of `key` in a target's query, percent signs as they are; empty where there is none.
+/// The value of `key` in a target's query, not percent-decoded; empty where there is none.
 std::string_view query_value(std::string_view target, std::string_view key);
-/// 32 hexadecimal digits nobody can guess.
+/// 32 random hexadecimal digits.
 std::string random_token();
-/// Whether a token is the same in an address: letters, digits and -._~, at least one.
+/// Whether a token stays the same in a URL: at least one character, all of them letters, digits and -._~
 bool is_plain_token(std::string_view token);
 
 }  // namespace stylet::serve

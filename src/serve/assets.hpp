@@ -3,10 +3,10 @@
 
 #include <string_view>
 
-/// The live page (web/live/), which the build puts into the library.
+/// The files of the live page (web/live/), which the build embeds into the library.
 namespace stylet::serve {
 
-std::string_view page();    ///< index.html, which asks for /live.js and /live.css
+std::string_view page();    ///< index.html, which loads /live.js and /live.css
 std::string_view script();  ///< live.js
 std::string_view style();   ///< live.css
 

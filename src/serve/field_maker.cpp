@@ -11,8 +11,8 @@ namespace stylet::serve {
 
 namespace {
 
-constexpr int kNice = 10;        ///< the loop, the pictures and a browser beside it come first
-constexpr double kStages = 2.0;  ///< that the field is prepared in
+constexpr int kNice = 10;        ///< lower priority than the loop, the pictures and a browser on this machine
+constexpr double kStages = 2.0;  ///< stages of DisplayField::prepare(), for fraction()
 
 struct GivenUp {};
 
@@ -54,7 +54,7 @@ void FieldMaker::make(std::shared_ptr<const Model> model) {
   try {
     if (given_up_) throw GivenUp();
     if (auto field = DisplayField::prepare(std::move(model), {}, progress)) made_ = std::move(*field);
-  } catch (const GivenUp&) {  // nobody waits for it
+  } catch (const GivenUp&) {  // nobody needs the field
   } catch (const std::bad_alloc&) {
   }
   done_.store(true, std::memory_order_release);

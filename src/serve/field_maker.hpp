@@ -12,25 +12,25 @@
 
 namespace stylet::serve {
 
-/// Prepares the displacement field of a model, which must be one that has such a field (DisplayField::check), in a
-/// thread of low priority, while the needle moves already. It waits a while before it starts: a browser that opens the
-/// page needs the processors as well, and priorities count only among the threads of one session or control group.
+/// Prepares the displacement field of a model in a thread of low priority, while the needle can already move. The model
+/// must have such a field (DisplayField::check). The thread waits before it starts, because a browser that opens the
+/// page needs the processors too, and priorities count only among the threads of one session or control group.
 class FieldMaker {
  public:
-  /// @param longest_wait until begin()
+  /// @param longest_wait longest time to wait for begin()
   FieldMaker(std::shared_ptr<const Model> model, std::chrono::duration<double> longest_wait);
-  ~FieldMaker();  ///< gives up, and waits until the thread has seen it
+  ~FieldMaker();  ///< calls give_up() and waits for the thread to end
   /// Ends the wait.
   void begin();
-  /// Ends at the next report of progress; done() then, without a field.
+  /// Makes the thread end at its next report of progress; done() is then true and there is no field.
   void give_up();
   FieldMaker(const FieldMaker&) = delete;
   FieldMaker& operator=(const FieldMaker&) = delete;
 
-  /// 0…1, of how much is done.
+  /// The part of the work that is done, 0…1.
   [[nodiscard]] double fraction() const { return fraction_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool done() const { return done_.load(std::memory_order_acquire); }
-  /// When it is done. Empty: given up, or there was too little memory.
+  /// The field. Read it only when done() is true. Empty: the work was given up, or there was too little memory.
   [[nodiscard]] const std::shared_ptr<const DisplayField>& field() const { return made_; }
 
  private:
@@ -44,7 +44,7 @@ class FieldMaker {
   std::atomic<bool> given_up_ = false;
   std::atomic<bool> done_ = false;
   std::shared_ptr<const DisplayField> made_;
-  std::jthread thread_;  ///< last: starts when the others exist
+  std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 
 }  // namespace stylet::serve

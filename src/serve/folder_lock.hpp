@@ -6,13 +6,14 @@
 
 namespace stylet::serve {
 
-/// Says to all processes of this machine that a recording's folder is in use, for as long as it lives or its process
-/// does. Many may use a folder at once; who wants to remove it must have it alone.
+/// A lock that tells all processes of this machine that a recording's folder is in use. It is released by its
+/// destructor or when its process ends. Several users share a folder with Kind::shared; removing the folder needs
+/// Kind::alone.
 class FolderLock {
  public:
   enum class Kind { shared, alone };
   FolderLock() = default;
-  /// Does not wait: see is_held().
+  /// Tries to lock, without waiting; is_held() tells whether it succeeded.
   FolderLock(const std::filesystem::path& folder, Kind kind);
   ~FolderLock();
   FolderLock(FolderLock&& other) noexcept : folder_(std::exchange(other.folder_, -1)) {}
@@ -21,7 +22,7 @@ class FolderLock {
     return *this;
   }
 
-  /// False: somebody else's lock is in the way, or the folder or its file system cannot be locked.
+  /// False: another lock excludes this one, or the folder or its file system cannot be locked.
   [[nodiscard]] bool is_held() const { return folder_ >= 0; }
 
  private:

@@ -15,14 +15,14 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 
 double towards(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
 
-/// A planned insertion starts so far before the skin.
+/// Depth at which a planned insertion starts [mm]; negative in front of the skin.
 double start_depth(const PlannedInsertion& plan, double needle_length_mm) {
   const Pose base = plan.motion.at(0.0);
   const Vec3 tip = base.origin + needle_length_mm * (base.rotation * Vec3::UnitZ());
   return (tip - plan.entry).dot(plan.direction);
 }
 
-/// Unit vectors across a needle, towards where a hub is tilted.
+/// Unit vectors perpendicular to a needle, in the two directions in which a hub is tilted.
 struct Sides {
   Vec3 left, anterior;
   explicit Sides(const Vec3& along)
@@ -33,7 +33,7 @@ struct Sides {
   static Vec3 across(const Vec3& along, const Vec3& side) { return (side - side.dot(along) * along).normalized(); }
 };
 
-/// Orientation of a needle that was planned along one axis and is tilted to another one, without roll.
+/// Orientation, without roll, of a needle that was planned along `along` and is tilted so that it lies along `axis`.
 Eigen::Quaterniond tilted(const Vec3& along, const Vec3& axis) {
   return Eigen::Quaterniond::FromTwoVectors(along, axis) * pose_along(Vec3::Zero(), along).rotation;
 }
@@ -49,7 +49,7 @@ HandLimits hand_limits(const Scenario& scenario) {
 Pose hand_pose(const HandTarget& hand, const PlannedInsertion& plan, double needle_length_mm) {
   const Vec3& along = plan.direction;
   const Sides sides(along);
-  // The tip's end goes the other way than the hub.
+  // When the hub is tilted to one side, the tip moves to the other side.
   const Vec3 axis = (along - std::tan(hand.tilt_left_deg * kRadians) * sides.left -
                      std::tan(hand.tilt_anterior_deg * kRadians) * sides.anterior)
                         .normalized();
@@ -63,13 +63,13 @@ HandTarget hand_angles(const Pose& base, const PlannedInsertion& plan) {
   const double forward = axis.dot(along);
   HandTarget hand;
   if (forward > 0.0) {
-    // The axis is along − a left − b anterior, but for its length; the two sides need not be at right angles.
+    // axis ∝ along − a·left − b·anterior. The two sides need not be perpendicular, so a and b solve a 2 × 2 system.
     const Sides sides(along);
     const double both = sides.left.dot(sides.anterior);
     const double left = -axis.dot(sides.left) / forward;
     const double anterior = -axis.dot(sides.anterior) / forward;
     const double apart = 1.0 - both * both;
-    constexpr double kOneSide = 1e-6;  // left and anterior are the same: all of a tilt is called left
+    constexpr double kOneSide = 1e-6;  // below this, left and anterior coincide and the whole tilt is called left
     hand.tilt_left_deg = std::atan(apart < kOneSide ? left : (left - both * anterior) / apart) / kRadians;
     hand.tilt_anterior_deg = std::atan(apart < kOneSide ? 0.0 : (anterior - both * left) / apart) / kRadians;
   }

@@ -9,37 +9,38 @@
 
 namespace stylet::serve {
 
-/// Where a hand at a page wants the needle's base: about the skin point of a planned insertion.
+/// The pose of the base that a hand at a page asks for, relative to the entry point of a planned insertion.
 struct HandTarget {
   double depth_mm = 0.0;           ///< as Step::base_depth_mm
-  double speed_mm_per_s = 20.0;    ///< to get there with
+  double speed_mm_per_s = 20.0;    ///< speed at which the base moves there
   double roll_deg = 0.0;           ///< about the axis, from local x to local y
-  double tilt_left_deg = 0.0;      ///< the hub towards the patient's left
-  double tilt_anterior_deg = 0.0;  ///< the hub towards anterior
-  bool rest = false;               ///< stay where the base is, whatever the rest says
+  double tilt_left_deg = 0.0;      ///< tilt of the hub towards the patient's left
+  double tilt_anterior_deg = 0.0;  ///< tilt of the hub towards anterior
+  bool rest = false;               ///< the base stays where it is; the other fields are ignored
 };
 
-/// How far a hand may go.
+/// The limits of the motion of a hand at a page.
 struct HandLimits {
-  double depth_mm = 0.0;    ///< deepest
-  double behind_mm = 30.0;  ///< furthest before the skin
+  double depth_mm = 0.0;    ///< largest depth
+  double behind_mm = 30.0;  ///< largest distance in front of the skin
   double speed_mm_per_s = 200.0;
   double tilt_deg = 10.0;
-  double turn_deg_per_s = 90.0;  ///< roll
+  double turn_deg_per_s = 90.0;  ///< rate of roll
   double tilt_deg_per_s = 20.0;
 };
 HandLimits hand_limits(const Scenario& scenario);
 
-/// The pose of the base for a place of the hand.
-/// @param plan its skin point and direction
+/// The pose of the base that belongs to a target of the hand.
+/// @param plan gives the entry point and the direction
 Pose hand_pose(const HandTarget& hand, const PlannedInsertion& plan, double needle_length_mm);
-/// Roll and tilts of a base that is anywhere: those of the place whose pose has this orientation.
-/// @return the roll in −180…180 degrees; no tilt where the base points back
+/// The roll and tilts of any pose of the base: the inverse of hand_pose() for its orientation. Other fields are
+/// default.
+/// @return the roll in −180…180 degrees; zero tilts where the base points backwards
 HandTarget hand_angles(const Pose& base, const PlannedInsertion& plan);
 
-/// A mouse, keyboard or gamepad at a page, seen as a device: it goes from where it is to the newest target, no faster
-/// than that asks for and the limits allow, in simulated time. So a page that sends sixty targets a second makes a
-/// motion without steps, and a pause stops it.
+/// A mouse, keyboard or gamepad at a page as a device. In simulated time the base moves from where it is to the newest
+/// target, at the target's speed but within the limits. So a page that sends sixty targets per second gives a smooth
+/// motion, and a pause stops it.
 class PageDevice final : public Device {
  public:
   PageDevice(const PlannedInsertion& plan, const Scenario& scenario);
@@ -48,9 +49,9 @@ class PageDevice final : public Device {
   DeviceInput read(const DeviceTime& time) noexcept override;
   void write(const Wrench& /*on_hand*/) noexcept override {}
 
-  /// From the one thread that hears the page.
+  /// Sets the target. Call it from one thread only, the thread that receives the page's messages.
   void aim(const HandTarget& target) { target_.write(target); }
-  /// Where it is now, for the one thread that shows it.
+  /// Where the base is. Call it from one thread only, the thread that makes pictures.
   [[nodiscard]] const HandTarget& place() {
     shown_.fetch();
     return shown_.value();
@@ -61,12 +62,12 @@ class PageDevice final : public Device {
   double needle_length_mm_;
   HandLimits limits_;
   HandTarget now_;
-  double last_s_ = 0.0;  ///< simulated
+  double last_s_ = 0.0;  ///< simulated time of the last read()
   LatestValue<HandTarget> target_;
   LatestValue<HandTarget> shown_;
 };
 
-/// A device that somebody else keeps as well.
+/// Gives a RealtimeRunner, which owns its device, a device that is also used elsewhere.
 class SharedDevice final : public Device {
  public:
   explicit SharedDevice(std::shared_ptr<Device> device) : device_(std::move(device)) {}

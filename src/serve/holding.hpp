@@ -6,16 +6,16 @@
 
 namespace stylet::serve {
 
-/// Who of the viewers holds the needle, and who has asked for it.
+/// Records which viewer holds the needle and which viewers have asked for it.
 class Holding {
  public:
   using Viewer = std::uint64_t;  ///< 0: nobody
 
-  /// The needle, if nobody holds it; else its holder learns of the wish.
+  /// Gives the viewer the needle if nobody holds it; otherwise puts the viewer at the end of the queue.
   void take(Viewer viewer);
-  /// Gives it to who has asked longest. Of who does not hold it: withdraws the wish.
+  /// If the viewer holds the needle, passes it to the first of the queue; otherwise takes the viewer out of the queue.
   void release(Viewer viewer);
-  /// @return whether the viewer held the needle
+  /// Removes a viewer that has disconnected. @return whether the viewer held the needle
   bool leave(Viewer viewer);
 
   [[nodiscard]] Viewer holder() const { return holder_; }

@@ -29,7 +29,7 @@ bool holds_only_its_recording(const fs::path& folder) {
   return !code;
 }
 
-/// Those the live page made, oldest first.
+/// The recordings that the live page made, oldest first.
 std::vector<Recording> recordings_in(const fs::path& folder) {
   std::vector<Recording> found;
   std::error_code code;
@@ -63,7 +63,7 @@ std::string gigabytes(std::uintmax_t bytes) {
 std::uintmax_t free_bytes(const fs::path& folder) {
   std::error_code code;
   const fs::space_info space = fs::space(folder, code);
-  return code ? std::numeric_limits<std::uintmax_t>::max() : space.available;  // writing will tell
+  return code ? std::numeric_limits<std::uintmax_t>::max() : space.available;  // a full disk shows when writing fails
 }
 
 RoomReport make_room(const fs::path& folder, const RecordingRoom& room,
@@ -80,12 +80,12 @@ RoomReport make_room(const fs::path& folder, const RecordingRoom& room,
       report.removed.push_back(recording.folder.filename().string());
     }
     if (bytes > room.most_bytes)
-      report.stop = fmt::format("recordings in use take {}, and all may take {} (--keep)", gigabytes(bytes),
-                                gigabytes(room.most_bytes));
+      report.stop = fmt::format("the recordings in use take {}, and the limit for all recordings is {} (--keep)",
+                                gigabytes(bytes), gigabytes(room.most_bytes));
   }
   const std::uintmax_t left = free(folder);
   if (left < room.full_bytes) {
-    report.stop = fmt::format("the disk of {} is nearly full, {} are free", folder.string(), gigabytes(left));
+    report.stop = fmt::format("the disk of {} is nearly full: {} are free", folder.string(), gigabytes(left));
   } else if (left < room.low_bytes) {
     report.warning = fmt::format("only {} are free on the disk of {}", gigabytes(left), folder.string());
   }

@@ -9,29 +9,29 @@
 
 namespace stylet::serve {
 
-/// How much room recordings may take.
+/// Limits of the disk space for recordings.
 struct RecordingRoom {
   static constexpr std::uintmax_t kGigabyte = 1'000'000'000;
-  std::uintmax_t most_bytes = 5 * kGigabyte;  ///< all recordings together; 0: no limit
-  std::uintmax_t low_bytes = kGigabyte;       ///< less than this free on the disk: people are warned
-  std::uintmax_t full_bytes = kGigabyte / 5;  ///< less than this: nothing is recorded, so that others can go on writing
+  std::uintmax_t most_bytes = 5 * kGigabyte;  ///< limit of all recordings together; 0: no limit
+  std::uintmax_t low_bytes = kGigabyte;       ///< with less free disk space than this, users are warned
+  std::uintmax_t full_bytes = kGigabyte / 5;  ///< with less, recording stops so that other programs can still write
 };
 
-/// What a look at the recordings has found, in words; empty where all is well.
+/// Result of make_room(), in words; everything is empty if there is enough space.
 struct RoomReport {
-  std::string warning;               ///< recording goes on
-  std::string stop;                  ///< why it cannot
-  std::vector<std::string> removed;  ///< recordings that had to go
+  std::string warning;               ///< a warning; recording continues
+  std::string stop;                  ///< why recording must stop
+  std::vector<std::string> removed;  ///< names of the recordings that were removed
 };
 
-/// Free bytes of the disk that a folder is on.
+/// Free bytes of the disk that holds a folder; the largest number if the system does not tell.
 std::uintmax_t free_bytes(const std::filesystem::path& folder);
 
-/// Keeps recordings within their room: the oldest ones go first. Only what the live page recorded is ever removed,
-/// under the name that it gave (Shelf::new_name) and with nothing else in its folder, and nothing that anybody is
-/// writing or replaying (FolderLock). So a recording that is to stay is renamed.
-/// @param folder with the recordings
-/// @param free as free_bytes()
+/// Removes the oldest recordings until all together are within the limit. It removes only recordings of the live page
+/// that still have their original name (Shelf::new_name), have no other file in their folder, and are not being written
+/// or replayed (FolderLock). To keep a recording for good, rename it.
+/// @param folder the folder with the recordings
+/// @param free returns the free bytes of the disk, as free_bytes() does
 RoomReport make_room(const std::filesystem::path& folder, const RecordingRoom& room,
                      const std::function<std::uintmax_t(const std::filesystem::path&)>& free = free_bytes);
 

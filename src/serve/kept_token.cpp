@@ -56,7 +56,7 @@ std::string token_in(const fs::path& path) {
   return whole ? token : std::string();
 }
 
-/// Whole or not at all.
+/// Stores the token in a temporary file and renames that, so that the file is never incomplete.
 void keep(const std::string& token, const fs::path& path) {
   std::error_code code;
   fs::create_directories(path.parent_path(), code);

@@ -6,9 +6,10 @@
 
 namespace stylet::serve {
 
-/// The token in a file that only this user can read; a new one, kept there, if there is none yet or others could have
-/// read it. So the address stays the same from start to start, and a page that is open finds the next server.
-/// @param file empty, or one that cannot be written: the token is good for this start only
+/// Reads the token from a file that only this user can read. If there is none, or others could have read the file,
+/// makes a new token and stores it there. So the address stays the same from start to start, and an open page can
+/// connect to the next server.
+/// @param file if it is empty or cannot be written, the token is new at every start
 std::string kept_token(const std::filesystem::path& file);
 
 }  // namespace stylet::serve

@@ -18,10 +18,10 @@ namespace stylet::serve {
 
 namespace {
 
-constexpr std::size_t kCurve = 8000;      ///< samples kept for who comes later
-constexpr double kShareOfTime = 0.3;      ///< of this thread's time goes into displacements for pages
-constexpr double kStill_N = 1e-4;         ///< a force that changes less has not changed
-constexpr double kShareForFrames = 0.05;  ///< … and for the recording
+constexpr std::size_t kCurve = 8000;      ///< samples of the curve kept for viewers that connect later
+constexpr double kShareOfTime = 0.3;      ///< share of this thread's time for displacements that pages show
+constexpr double kStill_N = 1e-4;         ///< a smaller change of the axial force counts as none
+constexpr double kShareForFrames = 0.05;  ///< share of this thread's time for frames of the recording
 
 std::vector<SurfacePoint> nodes_as_points(const TetMesh& mesh) {
   std::vector<SurfacePoint> points;
@@ -75,12 +75,12 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
 
   RunInfo info = open.model->info(insertion);
   Scenario scenario = open.model->scenario();
-  scenario.insertions = {scenario.insertions[insertion]};  // the one that this recording is of
+  scenario.insertions = {scenario.insertions[insertion]};  // only the insertion that is recorded
   info.scenario_text = to_toml(scenario);
   info.warnings = open.warnings();
   make_private_folder(folder.parent_path());
   make_private_folder(folder);
-  run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);  // before there is a recording to be removed
+  run->in_use_ = FolderLock(folder, FolderLock::Kind::shared);  // first, so that nobody removes the new recording
   auto recorder = RunRecorder::open(folder / "run.h5", info, open.model->mesh());
   if (recorder) {
     make_private(folder / "run.h5");
@@ -112,7 +112,7 @@ void LiveRun::record_step(const std::optional<Step>& step) {
 void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
   while (const std::size_t count = runner_->take_steps(step_room_)) {
     for (const Step& step : std::span(step_room_).first(count)) {
-      if (!rests_.follows(step)) {  // steps are missing in between: the rest before them ends there
+      if (!rests_.follows(step)) {  // steps are missing: end the rest before the gap
         record_step(rests_.end());
         rests_ = {};
       }
@@ -132,12 +132,12 @@ void LiveRun::pump(const std::function<void(const LiveEvent&)>& tell) {
       const std::string region = e.region < 0 ? std::string() : regions[static_cast<std::size_t>(e.region)];
       if (recorder_) record(recorder_->add_event({e.kind, e.time_s, e.depth_mm, e.force_N, region}));
       tell({to_string(e.kind), e.time_s, e.depth_mm, e.force_N, region});
-      next_frame_s_ = 0.0;  // a picture of it
+      next_frame_s_ = 0.0;  // record a frame of the event
     }
   }
 }
 
-/// Whether there is a displacement that no picture has had yet, and time for it.
+/// Whether the newest displacement has not been computed and the share of time for displacements allows it.
 bool LiveRun::displacement_is_due() const { return load_ && owed_ && now_s() >= picture_after_s_; }
 
 void LiveRun::compute_displacement() {
@@ -153,7 +153,8 @@ void LiveRun::compute_displacement() {
   picture_after_s_ = after + (after - before) * (1.0 / kShareOfTime - 1.0);
 }
 
-/// A needle at rest makes no frames; when it moves again, first its last one at the time until which it rested.
+/// Records a frame unless the needle rests. When a needle moves again after a rest, its last frame is recorded once
+/// more with the time at which the rest ended, so that interpolation between frames shows the rest.
 void LiveRun::record_frame(const Snapshot& snapshot) {
   if (last_frame_ && snapshot.step.base.origin == last_base_.origin &&
       snapshot.step.base.rotation.coeffs() == last_base_.rotation.coeffs() &&
@@ -189,7 +190,8 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   const bool fresh = runner_->fetch_snapshot();
   seen_ = seen_ || fresh;
   owed_ = owed_ || fresh;
-  // While paused there is no fresh one: what it lacked comes by itself, what it had is there for who joins.
+  // While paused there is no fresh snapshot, but its displacement may still be due, and a viewer that has just
+  // connected needs the picture again.
   const bool due = displacement_is_due();
   if (!fresh && !whole_curve && !due) return nullptr;
   const Snapshot& s = runner_->snapshot();
@@ -214,7 +216,7 @@ std::shared_ptr<const LiveFrame> LiveRun::picture(bool whole_curve) {
   frame->tip_error = s.tip_error;
   frame->contacts.assign(s.contacts.begin(), s.contacts.begin() + s.contact_count);
   if (due) compute_displacement();
-  if (load_) frame->left_out_N = std::max(load_->left_out_N(), near_.left_out_N());  // of the same forces
+  if (load_) frame->left_out_N = std::max(load_->left_out_N(), near_.left_out_N());  // both of the same forces
   if (due || (load_ && whole_curve)) set_displacement(*frame, shown_);
   if (whole_curve) {
     frame->curve = curve_;
@@ -240,7 +242,8 @@ std::string LiveRun::device_problem(const Companion& companion) const {
   if (!other_ || has_pose) return {};
   const auto away = other_->away();
   if (!away) return companion.why_no_pose();
-  return fmt::format("the handle is {:.0f} mm and {:.0f} degrees from the needle: bring it there", away->mm, away->deg);
+  return fmt::format("the handle is {:.0f} mm and {:.0f} degrees away from the needle: move it there", away->mm,
+                     away->deg);
 }
 
 std::vector<std::string> LiveRun::inside() const {

@@ -22,15 +22,15 @@
 
 namespace stylet::serve {
 
-/// A model that can be shown.
+/// An open model and what is needed to show it.
 struct OpenModel {
   std::shared_ptr<const Model> model;
   std::vector<std::string> notes;             ///< LoadedCase::notes
   std::shared_ptr<const DisplayField> field;  ///< empty until it is prepared
-  ScenePoints points;                         ///< of the scene
-  std::size_t way = 0;                        ///< insertion along whose way the scene is drawn finer
+  ScenePoints points;                         ///< points of the scene
+  std::size_t way = 0;  ///< index of the insertion along whose planned way the scene is drawn finer
 
-  /// All that a user should know: the notes, then the model's warnings.
+  /// All warnings for the user: the notes, then the model's warnings.
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> all = notes;
     all.insert(all.end(), model->warnings().begin(), model->warnings().end());
@@ -38,43 +38,45 @@ struct OpenModel {
   }
 };
 
-/// One insertion at a page: the real-time loop from a needle before the skin until the next one starts, and its
-/// recording. All calls from one thread.
+/// One insertion of the live page: the real-time loop, from the needle in front of the skin until the next insertion
+/// starts, and its recording. All calls from one thread.
 class LiveRun {
  public:
-  /// @param folder of this recording; made. A disk that refuses does not keep anybody from inserting:
-  /// recording_problem() says so.
-  /// @param other moves the needle; null: a hand at a page does
+  /// Starts the loop and the recording.
+  /// @param folder folder of this recording; it is created. If it cannot be written, the insertion runs without a
+  /// recording and recording_problem() gives the reason.
+  /// @param other device that moves the needle; null: a hand at a page moves it
   static Result<std::unique_ptr<LiveRun>> start(const OpenModel& open, std::size_t insertion,
                                                 const std::filesystem::path& folder, const RunnerSettings& settings,
                                                 double recorded_frames_per_s, std::unique_ptr<Device> other);
 
-  ~LiveRun();  ///< the recording is whole afterwards
+  ~LiveRun();  ///< completes the recording
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  /// From here on pictures show how the tissue moves, and the recording has frames.
+  /// Sets the displacement field. From then on pictures show the motion of the tissue and the recording has frames.
   void set_field(std::shared_ptr<const DisplayField> field);
-  /// Passes on what has happened since: to the recording, and the events to `tell`. Often enough that no step is lost.
+  /// Fetches the new steps and events, records them and passes the events to `tell`. Must be called before the runner's
+  /// buffer of steps is full; otherwise steps are lost.
   void pump(const std::function<void(const LiveEvent&)>& tell);
-  /// The newest picture, if there is something in it that was not fetched yet. Its displacement may come later, in a
+  /// The newest picture; null if nothing is new since the last call. The displacement may follow later, in another
   /// picture of the same moment.
-  /// @param whole_curve with all samples instead of the new ones, and the newest displacement there is
+  /// @param whole_curve the picture holds all samples of the curve instead of the new ones, and the newest displacement
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
-  /// What the last picture shows, and its displacement where that was computed.
+  /// Passes the state that the last picture shows to a companion, and its displacement if there is a new one.
   void show_to(Companion& companion);
 
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
-  /// Null: another device moves the needle.
+  /// The hand at a page; null if another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
-  /// Why the companion's device does not move the needle, as of the last show_to(); empty: it does, or a page.
+  /// Why the companion's device did not move the needle at the last show_to(); empty if it did, or if a page moves it.
   [[nodiscard]] std::string device_problem(const Companion& companion) const;
   [[nodiscard]] SessionStatus::Loop loop() const;
-  /// Ends the recording, and only that; what was recorded is whole.
+  /// Completes and ends the recording; the loop continues.
   void stop_recording(const std::string& why);
   [[nodiscard]] const std::string& recording_problem() const { return problem_; }
   [[nodiscard]] double time_s() const { return time_s_; }
-  /// Regions that the needle is in as of the last picture, that of the tip first.
+  /// Regions that contained the needle in the last picture, the region of the tip first.
   [[nodiscard]] std::vector<std::string> inside() const;
 
  private:
@@ -86,34 +88,34 @@ class LiveRun {
   void compute_displacement();
 
   OpenModel open_;
-  const PlannedInsertion& plan_;  ///< of the model
+  const PlannedInsertion& plan_;  ///< part of the model
   std::shared_ptr<PageDevice> hand_;
-  std::shared_ptr<PickUp> other_;  ///< the one of the two that is there moves the needle
+  std::shared_ptr<PickUp> other_;  ///< either hand_ or other_ is set; it moves the needle
   std::unique_ptr<RealtimeRunner> runner_;
-  FolderLock in_use_;  ///< the recording
+  FolderLock in_use_;  ///< locks the folder of the recording
   std::unique_ptr<RunRecorder> recorder_;
   Rests rests_;
-  std::string problem_;                     ///< of the recording
-  std::optional<DisplayField::Load> load_;  ///< with a field
-  DisplayNearField near_;                   ///< of the scene's points
-  DisplayNearField near_nodes_;             ///< of the mesh's nodes, for the recording
-  Eigen::Matrix3Xf shown_;                  ///< (3 × points of the scene)
-  bool seen_ = false;                       ///< there has been a snapshot
-  bool owed_ = false;                       ///< the newest snapshot's displacement
-  bool shown_anew_ = false;                 ///< since show_to()
-  std::vector<Index> all_nodes_;            ///< of the mesh
-  std::vector<TissueForce> room_;           ///< for forces
-  std::vector<Step> step_room_;
-  std::vector<Step> unsent_;  ///< since the last picture
-  std::vector<Step> curve_;   ///< since the start, thinned
+  std::string problem_;                     ///< why nothing is recorded
+  std::optional<DisplayField::Load> load_;  ///< set if there is a field
+  DisplayNearField near_;                   ///< near field at the points of the scene
+  DisplayNearField near_nodes_;             ///< near field at the nodes of the mesh, for the recording
+  Eigen::Matrix3Xf shown_;                  ///< [mm] (3 × points of the scene) the displacement that is shown
+  bool seen_ = false;                       ///< a snapshot has been fetched
+  bool owed_ = false;                       ///< the displacement of the newest snapshot has not been computed
+  bool shown_anew_ = false;                 ///< shown_ has changed since show_to()
+  std::vector<Index> all_nodes_;            ///< all node indices of the mesh
+  std::vector<TissueForce> room_;           ///< buffer for forces
+  std::vector<Step> step_room_;             ///< buffer for steps
+  std::vector<Step> unsent_;                ///< steps since the last picture
+  std::vector<Step> curve_;                 ///< steps since the start, thinned
   double time_s_ = 0.0;
-  double frame_every_s_;             ///< of the recording, at least
-  double next_frame_s_ = 0.0;        ///< simulated time
-  std::optional<Frame> last_frame_;  ///< recorded
-  Pose last_base_;                   ///< of it
-  double last_force_N_ = 0.0;        ///< of it, axial
-  double resting_until_s_ = 0.0;     ///< nothing has moved since it
-  double picture_after_s_ = 0.0;     ///< wall: the next displacement for the page
+  double frame_every_s_;             ///< least simulated time between recorded frames
+  double next_frame_s_ = 0.0;        ///< simulated time of the next recorded frame
+  std::optional<Frame> last_frame_;  ///< the last recorded frame
+  Pose last_base_;                   ///< base in last_frame_
+  double last_force_N_ = 0.0;        ///< axial force in last_frame_
+  double resting_until_s_ = 0.0;     ///< nothing has moved from last_frame_ until this simulated time
+  double picture_after_s_ = 0.0;     ///< wall-clock time after which the next displacement is computed for the page
 };
 
 }  // namespace stylet::serve

@@ -11,10 +11,10 @@ namespace stylet::serve {
 
 namespace {
 
-/// The loop, the pictures, the field of displacements and a browser beside it come first.
+/// Lower priority than the loop, the pictures, the displacement field and a browser on this machine.
 constexpr int kNiceOfMaps = 15;
 
-/// Nobody wants what is being made.
+/// Thrown to stop a simulation that nobody needs.
 struct Unwanted {};
 
 }  // namespace
@@ -25,9 +25,10 @@ MapMaker::MapMaker(const std::shared_ptr<const Model>& model, PlanOfHole plan_of
       mesh_(model->mesh()),
       own_(model->own_parts()),
       thread_([this, model = model]() mutable {
-        (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceOfMaps);  // threads that it starts inherit it
+        (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()),
+                          kNiceOfMaps);  // the threads that it starts inherit it
         make(model);
-        model.reset();  // its compliance takes room that only the needle that moves needs
+        model.reset();  // frees its compliance, which the map does not need
         while (const auto hole = next_hole()) predict(*hole);
         done_.store(true, std::memory_order_release);
       }) {}
@@ -71,13 +72,13 @@ void MapMaker::make(const std::shared_ptr<const Model>& model) {
   changed_ = true;
 }
 
-/// Waits until a hole is to be predicted. Empty: none ever will.
+/// Waits until a hole is to be simulated and returns its index. Empty: the thread should end.
 std::optional<std::size_t> MapMaker::next_hole() {
   std::unique_lock lock(mutex_);
   woken_.wait(lock, [this] { return given_up_ || wanted_; });
   if (given_up_ || !state_.map) return std::nullopt;
   const auto& holes = state_.map->holes;
-  // The planned hole is what somebody looks at first.
+  // The planned hole comes first, because users look at it first.
   std::optional<std::size_t> next;
   for (std::size_t i = 0; i < holes.size(); ++i) {
     if (holes[i].prediction || !holes[i].failed.empty()) continue;

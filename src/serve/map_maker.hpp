@@ -13,25 +13,25 @@
 
 namespace stylet::serve {
 
-/// Makes the map of a case's template in a thread of low priority, while the needle moves: the clearances at once, and
-/// what a needle through each hole would do when it is asked for. It keeps the case's mesh, not its model.
+/// Makes the map of the template's holes in a thread of low priority, while the needle moves: first the clearances,
+/// then on request the simulated insertion through each hole. It keeps the mesh of the case, not its model.
 class MapMaker {
  public:
-  /// @param plan_of called in the maker's thread
+  /// @param plan_of gives the insertion through a hole; called in the maker's thread
   MapMaker(const std::shared_ptr<const Model>& model, PlanOfHole plan_of);
-  ~MapMaker();  ///< gives up, and waits until the thread has seen it
+  ~MapMaker();  ///< calls give_up() and waits for the thread to end
   MapMaker(const MapMaker&) = delete;
   MapMaker& operator=(const MapMaker&) = delete;
 
-  /// Whether a needle is to be inserted through each hole that has no prediction yet. A hole that is begun when they
-  /// are no longer wanted is begun again when they are.
+  /// Starts or stops the simulated insertions through the holes that have no prediction. A hole whose simulation is
+  /// stopped is simulated from its start next time.
   void want_predictions(bool wanted);
-  /// Ends at the next report of progress.
+  /// Makes the thread end at its next report of progress.
   void give_up();
   /// Whether the thread has ended.
   [[nodiscard]] bool done() const { return done_.load(std::memory_order_acquire); }
 
-  /// What there is by now, if it has changed since the last call.
+  /// The map as far as it is made; empty if it has not changed since the last call.
   [[nodiscard]] std::optional<LiveMap> news();
 
  private:
@@ -43,15 +43,15 @@ class MapMaker {
   Scenario scenario_;
   TetMesh mesh_;
   OwnParts own_;
-  KnownTargets targets_;  ///< the thread's own
+  KnownTargets targets_;  ///< used by the thread only
   std::atomic<bool> given_up_ = false;
   std::atomic<bool> wanted_ = false;
   std::atomic<bool> done_ = false;
-  std::mutex mutex_;  ///< guards what follows
+  std::mutex mutex_;  ///< guards the members below
   std::condition_variable woken_;
   LiveMap state_;
   bool changed_ = false;
-  std::jthread thread_;  ///< last: starts when the others exist
+  std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 
 }  // namespace stylet::serve

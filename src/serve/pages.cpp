@@ -53,14 +53,14 @@ HttpResponse Pages::refusal(const HttpRequest& request, http::status status, con
   return response(request, status, "text/plain; charset=utf-8", why + "\n");
 }
 
-/// The list is of names only: to open each would take seconds.
+/// The list holds names only, because opening each recording would take seconds.
 HttpResponse Pages::recordings(const HttpRequest& request) const {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const std::string& name : shelf_.names()) list.push_back({{"name", name}});
   return response(request, http::status::ok, "application/json", list.dump());
 }
 
-/// @param path NAME/forces.csv
+/// The force curve of a recording. @param path NAME/forces.csv
 HttpResponse Pages::recording(const HttpRequest& request, std::string_view path) const {
   const auto slash = path.find('/');
   if (slash == std::string_view::npos || path.substr(slash) != "/forces.csv")
@@ -76,7 +76,7 @@ HttpResponse Pages::recording(const HttpRequest& request, std::string_view path)
 
 HttpResponse Pages::answer(const HttpRequest& request) const {
   if (request.method() != http::verb::get && request.method() != http::verb::head)
-    return refusal(request, http::status::method_not_allowed, "Only GET is answered.");
+    return refusal(request, http::status::method_not_allowed, "Only GET and HEAD requests are answered.");
   if (access_.check_open(header(request, http::field::host)) != Access::Verdict::granted)
     return refusal(request, http::status::forbidden, "This server answers to localhost only.");
   const std::string_view path = path_of(target(request));
@@ -92,7 +92,8 @@ HttpResponse Pages::answer(const HttpRequest& request) const {
   if (path == "/recordings") return recordings(request);
   constexpr std::string_view kRecordings = "/recordings/";
   if (path.substr(0, kRecordings.size()) == kRecordings) return recording(request, path.substr(kRecordings.size()));
-  if (path == "/live") return refusal(request, http::status::upgrade_required, "This is a WebSocket.");
+  if (path == "/live")
+    return refusal(request, http::status::upgrade_required, "This address is for WebSocket connections only.");
   return refusal(request, http::status::not_found, "There is no such page.");
 }
 

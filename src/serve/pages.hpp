@@ -10,7 +10,7 @@ namespace stylet::serve {
 /// Target and headers of a request.
 std::string_view target(const HttpRequest& request);
 
-/// What the server has beside the live connection: the page, and the recordings.
+/// Answers HTTP requests: the page and the recordings. The live connection is a WebSocket and handled elsewhere.
 class Pages {
  public:
   Pages(const Access& access, Shelf shelf) : access_(access), shelf_(std::move(shelf)) {}

@@ -19,7 +19,7 @@ DeviceInput PickUp::read(const DeviceTime& time) noexcept {
     away_mm_ = mm;
     away_deg_ = deg;
     input.valid = !is_away;
-    // While paused the needle stays, and so does where it has to be taken up.
+    // While paused the needle stays, and so does the place at which it has to be taken up.
     if (input.valid && time.simulated_s > last_s_) last_ = now;
   }
   is_away_ = is_away;

@@ -9,33 +9,33 @@
 
 namespace stylet::serve {
 
-/// A handle that takes the needle up where the needle is, and nowhere else: a pose counts if it is near the last one
-/// that did, at first near the needle's start. So a needle does not tear through the patient to a handle that is
-/// somewhere else when an insertion starts, a pause ends or the handle is found again.
+/// A handle that can take the needle up only where the needle is. A pose of the handle is accepted if it is near the
+/// last accepted one, at first near the start of the needle. So the needle does not jump through the patient when an
+/// insertion starts, a pause ends or the handle is tracked again while the handle is somewhere else.
 class PickUp final : public Device {
  public:
-  static constexpr double kNear_mm = 20.0;   ///< between the base points
-  static constexpr double kNear_deg = 20.0;  ///< between the axes; a needle may be taken up with any roll
+  static constexpr double kNear_mm = 20.0;   ///< largest distance between the base points
+  static constexpr double kNear_deg = 20.0;  ///< largest angle between the axes; the roll may be any
 
-  /// @param start of the base
+  /// @param start pose of the base at the start
   PickUp(std::unique_ptr<Device> handle, const Pose& start) : handle_(std::move(handle)), last_(start) {}
 
   [[nodiscard]] DeviceTraits traits() const override { return handle_->traits(); }
   DeviceInput read(const DeviceTime& time) noexcept override;
   void write(const Wrench& on_hand) noexcept override { handle_->write(on_hand); }
 
-  /// How far a handle that says a pose is from where it has to be.
+  /// How far a tracked handle is from where it has to be.
   struct Away {
     double mm = 0.0;
     double deg = 0.0;
   };
-  /// Any thread. @return nothing where the needle is in hand, or the handle says no pose
+  /// May be called from any thread. @return empty if the handle moves the needle, or gives no valid pose
   [[nodiscard]] std::optional<Away> away() const;
 
  private:
   std::unique_ptr<Device> handle_;
-  Pose last_;            ///< of the handle, that counted
-  double last_s_ = 0.0;  ///< simulated
+  Pose last_;            ///< last accepted pose of the handle
+  double last_s_ = 0.0;  ///< simulated time of the last read()
   std::atomic<bool> is_away_ = false;
   std::atomic<double> away_mm_ = 0.0;
   std::atomic<double> away_deg_ = 0.0;

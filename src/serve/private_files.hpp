@@ -5,10 +5,10 @@
 
 namespace stylet::serve {
 
-/// Makes a folder that only this user can enter, whatever the umask; leaves one that is there as it is. Folders above
-/// it are made as usual. What fails shows when something is to be written there.
+/// Makes a folder that only this user can enter, whatever the umask; does not change a folder that exists. Its parent
+/// folders are made with default permissions. Errors are not reported here: they show when a file is written there.
 void make_private_folder(const std::filesystem::path& folder);
-/// From now on only this user can read a file, whatever the umask.
+/// Makes an existing file readable and writable for this user only.
 void make_private(const std::filesystem::path& file);
 
 }  // namespace stylet::serve

@@ -41,7 +41,8 @@ void Replay::advance(double dt_s) {
   if (time_s_ >= duration_s()) rate_ = 0.0;
 }
 
-/// The last one at or before now, before the first that one: the needle was never anywhere else. Null: there is none.
+/// The last step at or before the current moment; before the first step, the first, because the needle was at its place
+/// then. Null if there are no steps.
 const Step* Replay::step() const {
   const auto& steps = recording_.steps;
   if (steps.empty()) return nullptr;
@@ -50,7 +51,7 @@ const Step* Replay::step() const {
   return after == steps.begin() ? &steps.front() : &*(after - 1);
 }
 
-/// Before the first frame: a straight needle, and tissue that was not recorded.
+/// Before the first frame there is no recorded shape: shows a straight needle and undeformed tissue.
 void Replay::put_needle(LiveFrame& out) const {
   set_displacement(out, Eigen::Matrix3Xf::Zero(3, points_.count()));
   if (recording_.steps.empty()) return;
@@ -62,7 +63,7 @@ void Replay::put_needle(LiveFrame& out) const {
   out.left_out_N = Vec3(s.force_axial_N, s.force_sagittal_N, s.force_lateral_N).norm();
 }
 
-/// Needle, contacts and displacement of now.
+/// Needle, contacts and displacement at the current moment.
 void Replay::put_frame(LiveFrame& out) const {
   const auto& frames = recording_.frames;
   if (frames.empty() || time_s_ < frames.front().time_s) return put_needle(out);
@@ -77,7 +78,7 @@ void Replay::put_frame(LiveFrame& out) const {
     const Vec3 point = k < b.needle.size() ? Vec3(from + share * (b.needle[k] - from)) : from;
     for (const double value : point) out.centreline.push_back(static_cast<float>(value));
   }
-  if (!a.needle.empty()) out.step.tip_mm = a.needle.back();  // until the first step says it exactly
+  if (!a.needle.empty()) out.step.tip_mm = a.needle.back();  // the first step has the exact value
   for (const ContactView& c : (share < 0.5 ? a : b).contacts) out.contacts.push_back(plain_contact(c));
   Eigen::Matrix3Xf u(3, points_.count());
   for (std::size_t k = 0; k < points_.nodes.size(); ++k) {
@@ -118,7 +119,7 @@ std::shared_ptr<const LiveFrame> Replay::picture(bool whole_curve) {
     if ((s->flags & Step::kDistrusted) != 0) frame->bits &= ~static_cast<std::uint32_t>(LiveFrame::trusted);
     frame->steps = static_cast<std::uint32_t>(steps_.last_at(time_s_)) + 1;
     if (time_s_ < s->time_s && !frame->centreline.empty()) frame->step.tip_mm = shown_tip;
-    if (!s->base.origin.allFinite()) frame->step.base = shown_base;  // recordings of the first version have none
+    if (!s->base.origin.allFinite()) frame->step.base = shown_base;  // recordings of format 1 have none
   }
   if (whole_curve) {
     frame->curve = with_ends_of_rests(recording_.steps);

@@ -11,11 +11,11 @@
 
 namespace stylet::serve {
 
-/// A recording that is shown again: pictures of any of its moments, between recorded frames by interpolation. Forces
-/// and positions of the base and the tip are those of the step nearest before, at the start those of the first.
+/// Shows a recording again: makes pictures of any moment, with interpolation between recorded frames. Forces and the
+/// positions of base and tip are taken from the last step before the moment, at the start from the first step.
 class Replay {
  public:
-  /// @param points those of the scene
+  /// @param points points of the scene
   Replay(RunRecording recording, ScenePoints points);
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
@@ -26,15 +26,15 @@ class Replay {
   [[nodiscard]] const RunRecording& recording() const { return recording_; }
 
   void seek(double time_s);
-  void play(double rate);  ///< times as fast as it was; from the start again where it has ended; 0 stands
-  /// Goes on with playing. @param dt_s [s] on the wall
+  void play(double rate);  ///< rate × real time; 0 stops; starts again from the beginning if the replay has ended
+  /// Advances the replay. @param dt_s [s] wall-clock time since the last call
   void advance(double dt_s);
 
-  /// Regions that the needle is in, that of the tip first: as its events tell, those that it entered and has not been
-  /// drawn back out of, by the depth of the base.
+  /// Regions that contain the needle, the region of the tip first. Derived from the events: regions that were entered
+  /// at a depth that the base has not been drawn back from.
   [[nodiscard]] std::vector<std::string> inside() const;
 
-  /// The picture of now, if it has changed since the last one.
+  /// The picture of the current moment; null if it has not changed since the last call.
   std::shared_ptr<const LiveFrame> picture(bool whole_curve);
 
  private:
@@ -43,7 +43,7 @@ class Replay {
   void put_needle(LiveFrame& out) const;
 
   RunRecording recording_;
-  RecordedSteps steps_;  ///< of it
+  RecordedSteps steps_;  ///< of the recording
   ScenePoints points_;
   double time_s_ = 0.0;
   double rate_ = 0.0;

@@ -14,7 +14,7 @@ bool Rests::follows(const Step& step) const {
 
 std::optional<Step> Rests::add(const Step& step) {
   last_ = step;
-  // Compared with the record, not with the step before, so that no drift can add up.
+  // Compared with the recorded step, not with the previous step, so that small changes cannot add up to a drift.
   if (record_ && is_at_rest(*record_, step)) {
     ++resting_;
     return std::nullopt;

@@ -7,22 +7,22 @@
 
 namespace stylet::serve {
 
-/// Leaves out of a recording what a needle at rest repeats: steps that were given what the last record was given, bit
-/// for bit, and came to the same (is_at_rest). They are only counted (Step::rest_steps), so whoever repeats a
-/// recording still takes every step that there was.
+/// Leaves the repeated steps of a resting needle out of a recording: steps with the same input, bit for bit, and the
+/// same result as the last recorded step (is_at_rest). They are counted in Step::rest_steps, so that a recording can
+/// still be repeated with every step.
 class Rests {
  public:
-  /// Whether a step is the one after the last that was added, with none missing in between.
+  /// Whether a step directly follows the last step that was added, with no step missing.
   [[nodiscard]] bool follows(const Step& step) const;
-  /// @return the record to write, with the steps at rest before it; nothing: the step is one of those
+  /// Adds a step. @return the step to record, with the number of steps at rest before it; empty if this step is at rest
   std::optional<Step> add(const Step& step);
-  /// Nothing comes any more. @return the last step, if it is at rest
+  /// Ends the sequence of steps. @return the last step, if it was at rest and has not been recorded
   std::optional<Step> end();
 
  private:
-  std::optional<Step> record_;  ///< the last one
-  Step last_;                   ///< step
-  std::int64_t resting_ = 0;    ///< steps since the last record
+  std::optional<Step> record_;  ///< the last recorded step
+  Step last_;                   ///< the last step
+  std::int64_t resting_ = 0;    ///< number of steps since record_
 };
 
 }  // namespace stylet::serve

@@ -29,8 +29,8 @@ RoomReport RoomWatch::report() const {
 void RoomWatch::tell(const RoomReport& before, const RoomReport& now) const {
   if (!say_) return;
   for (const std::string& name : now.removed)
-    say_("The recording " + name + " was removed: it was the oldest (--keep).");
-  if (before.warning.empty() && !now.warning.empty()) say_("For recordings " + now.warning + ".");
+    say_("The recording " + name + " was removed to keep all recordings within their limit (--keep).");
+  if (before.warning.empty() && !now.warning.empty()) say_("Recordings may stop soon: " + now.warning + ".");
 }
 
 void RoomWatch::run(const std::stop_token& stop) {

@@ -10,17 +10,18 @@
 
 namespace stylet::serve {
 
-/// Calls make_room() again and again while something is recorded, in a thread of its own: a disk may take its time.
+/// Calls make_room() periodically while something is recorded. It has a thread of its own, because a disk may be slow.
 class RoomWatch {
  public:
   using Look = std::function<RoomReport()>;
-  /// @param look as make_room() of the recordings' folder
-  /// @param say tells people what was removed, and a new warning; from the thread; may be empty
+  /// @param look calls make_room() for the recordings' folder
+  /// @param say receives messages about removed recordings and new warnings, from the thread; may be empty
+  /// @param every period of the calls
   RoomWatch(Look look, std::function<void(const std::string&)> say, std::chrono::milliseconds every);
 
-  /// Whether something is recorded; from then on looks, at once and then again and again.
+  /// Starts the periodic calls, the first one at once, or stops them. Clears the report.
   void set_recording(bool is_recording);
-  /// The newest report since something is recorded.
+  /// The newest report since set_recording(); empty if there is none.
   [[nodiscard]] RoomReport report() const;
 
  private:
@@ -33,9 +34,9 @@ class RoomWatch {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   bool is_recording_ = false;
-  int turn_ = 0;  ///< counts recordings
+  int turn_ = 0;  ///< number of calls of set_recording()
   RoomReport report_;
-  std::jthread thread_;  ///< last: starts when the others exist
+  std::jthread thread_;  ///< last member, so that it starts when the others exist
 };
 
 }  // namespace stylet::serve

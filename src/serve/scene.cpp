@@ -35,15 +35,15 @@ std::string hex(const results::Colour& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
 }
 
-constexpr double kBefore_mm = 5.0;   ///< the skin, as far as a needle's way is drawn finer
-constexpr double kBeyond_mm = 10.0;  ///< the planned depth
+constexpr double kBefore_mm = 5.0;   ///< surfaces are refined from this distance in front of the entry point …
+constexpr double kBeyond_mm = 10.0;  ///< … to this distance beyond the planned depth
 
-/// Surface triangles by the two regions they part, in the numbers of the scene's points.
+/// Surface triangles, grouped by the two regions that they separate. Corners are indices of the scene's points.
 struct Surfaces {
   std::map<std::pair<int, int>, std::vector<std::array<Index, 3>>> patches;  ///< (inside, outside)
   std::vector<Index> nodes;
-  std::vector<SurfacePoint> fines;  ///< further points, between numbers in `nodes`
-  std::vector<Vec3> positions;      ///< of both
+  std::vector<SurfacePoint> fines;  ///< further points; their `node` are indices in `nodes`
+  std::vector<Vec3> positions;      ///< [mm] LPS of nodes and fines
 
   Surfaces(const TetMesh& mesh, const PlannedInsertion* way) : slot_(mesh.nodes.size(), -1) {
     const Topology topology(mesh);
@@ -112,7 +112,7 @@ Json regions_json(const TetMesh& mesh, const std::vector<int>& targets) {
   return regions;
 }
 
-/// Middle of the template [mm] LPS x and y: as in the scenario, else the target's centroid.
+/// Centre of the template [mm] LPS x and y: from the scenario, else the target's centroid.
 std::array<double, 2> template_centre(const TetMesh& mesh, const std::vector<int>& targets, const TemplateGrid& grid) {
   if (grid.centre_mm) return *grid.centre_mm;
   const Vec3 centre = centroid(mesh, targets);
@@ -185,7 +185,7 @@ MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const
       {"dt_ms", cases.dt_ms},
       {"warnings", warnings},
       {"notice", "Not a medical device. For research and training; not for planning or treating patients."}};
-  // Names come from files of all sorts: what is not UTF-8 is replaced, not refused.
+  // Names come from files of many kinds, so bytes that are not UTF-8 are replaced, not refused.
   scene->text = text.dump(-1, ' ', false, Json::error_handler_t::replace);
   return {scene, {std::move(surfaces.nodes), std::move(surfaces.fines)}};
 }

@@ -11,22 +11,22 @@
 
 namespace stylet::serve {
 
-/// A scene and where its points are in the mesh.
+/// A scene and the place of each of its points in the mesh.
 struct MadeScene {
   std::shared_ptr<const Scene> scene;
   ScenePoints points;  ///< (n)
 };
 
-/// Which cases can be opened.
+/// The cases that can be opened.
 struct CaseList {
   std::vector<std::string> titles;
-  std::size_t open = 0;
-  double dt_ms = 1.0;  ///< of the loop that runs them
+  std::size_t open = 0;  ///< index of the open case
+  double dt_ms = 1.0;    ///< period of the real-time loop
 };
 
-/// All surfaces between regions and around the patient, each once, and what a page has to know about the case.
+/// Makes the scene: all surfaces between regions and around the patient, each once, and the text that a page needs.
 /// @param targets indices of the target regions
-/// @param way of the needle, along which surfaces are drawn finer than the mesh has them; null: nowhere
+/// @param way planned way of the needle, along which surfaces are refined beyond the mesh; null: no refinement
 MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const Scenario& scenario,
                      const std::vector<PlannedInsertion>& insertions, const std::vector<std::string>& warnings,
                      const CaseList& cases, const PlannedInsertion* way);

@@ -5,15 +5,16 @@
 
 namespace stylet::serve {
 
-/// The points of a scene: nodes of the mesh, then points between these where the surfaces are drawn finer.
+/// The points of a scene: nodes of the mesh, then points between them where surfaces are refined.
 struct ScenePoints {
-  std::vector<Index> nodes;         ///< of the mesh
-  std::vector<SurfacePoint> fines;  ///< between numbers in `nodes`
+  std::vector<Index> nodes;         ///< node indices of the mesh
+  std::vector<SurfacePoint> fines;  ///< their `node` are indices in `nodes`
 
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(nodes.size() + fines.size()); }
-  /// All points, between nodes of the mesh.
+  /// All points as surface points whose `node` are node indices of the mesh.
   [[nodiscard]] std::vector<SurfacePoint> on_mesh() const;
-  /// Moves the finer points along with the nodes they lie between. @param u [mm] (3 × points), there for the nodes
+  /// Interpolates the displacement of the finer points from the nodes around them.
+  /// @param u [mm] (3 × points); the columns of the nodes are given, the others are computed
   void carry_along(Eigen::Ref<Eigen::Matrix3Xf> u) const;
 };
 

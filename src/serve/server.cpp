@@ -102,7 +102,7 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
 
 }  // namespace
 
-/// Everything here happens in the io thread, but for the Audience's calls, which only post to it.
+/// Everything here happens in the thread of `io`, except the Audience's calls, which only post work to it.
 struct Server::Parts final : public Audience, public ViewerDesk {
   Parts(ServerSettings settings_, Access access_)
       : settings(std::move(settings_)),
@@ -122,14 +122,14 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers;
   std::uint64_t last_id = 0;
   std::shared_ptr<const Scene> scene;
-  std::string map;  ///< as it is sent; empty until there is one
+  std::string map;  ///< JSON text of the map; empty until there is a map
   SessionStatus status;
-  std::deque<std::string> events;  ///< since the start of the insertion
+  std::deque<std::string> events;  ///< JSON texts of the events since the start of the insertion
   Session session;
   std::thread thread;
-  asio::thread_pool readers{1};  ///< last: ended before what its work needs
+  asio::thread_pool readers{1};  ///< last member, so that it ends before the members that its work uses
 
-  // Audience: from the session's thread.
+  // Audience: called from the session's thread.
   void show(std::shared_ptr<const Scene> made) override {
     asio::post(io, [this, made = std::move(made)] {
       scene = made;
@@ -174,7 +174,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     });
   }
 
-  // ViewerDesk.
+  // ViewerDesk: called from the thread of `io`.
   void arrived(const std::shared_ptr<Viewer>& viewer) override {
     viewers[viewer->id()] = viewer;
     if (scene) viewer->send(scene);
@@ -204,13 +204,13 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     }
     if (command.what != drawn && holding.holder() != viewer.id())
       return viewer.send(wire::Kind::notice,
-                         text_of({{"text", "somebody else holds the needle"}, {"cure", "Ask for it"}}));
+                         text_of({{"text", "another viewer holds the needle"}, {"cure", "Ask for the needle"}}));
     const auto kind = request_kind(command.what);
     if (kind && !session.ask({.kind = *kind, .viewer = viewer.id(), .text = command.text, .number = command.number}))
       viewer.send(wire::Kind::notice, text_of({{"text", "too many requests are waiting"}, {"cure", "Try again"}}));
   }
 
-  /// A copy: sending may close a viewer, which takes it out.
+  /// A copy of the viewers, because sending may close a viewer and so remove it from the map.
   [[nodiscard]] std::map<std::uint64_t, std::shared_ptr<Viewer>> each() const { return viewers; }
 
   void say_status() {
@@ -264,7 +264,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       accept();
     });
   }
-  /// After an error that would come again at once, such as too many open files.
+  /// Accepts again after a pause. Used after an error that would recur at once, such as too many open files.
   void accept_later() {
     retry.expires_after(kAcceptAgain);
     retry.async_wait([this](beast::error_code error) {
@@ -293,7 +293,7 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     if (beast::websocket::is_upgrade(request) && viewers.size() >= settings.viewers)
       return write(stream,
                    Pages::refusal(request, http::status::service_unavailable, "There are too many viewers already."));
-    // Reading a recording takes a while: not here, where all viewers would wait.
+    // Reading a recording takes a while, so another thread does it; here all viewers would have to wait.
     stream->expires_never();
     asio::post(readers, [this, stream, request] {
       asio::post(io, [this, stream, response = pages.answer(request)] { write(stream, response); });
@@ -313,19 +313,22 @@ struct Server::Parts final : public Audience, public ViewerDesk {
 
 namespace {
 
-/// Who may come in. Who names a token may let a proxy ask for the page under another name.
+/// Makes the access rules from the settings. With a given token the server answers under any host name, so that a proxy
+/// can forward requests to it.
 Result<Access> access_for(const ServerSettings& settings, bool is_loopback) {
   const std::string& given = settings.token;
   if (!settings.asks_for_token) {
     if (is_loopback && given.empty()) return Access("");
-    return input_error("stylet serve",
-                       given.empty() ? fmt::format("everybody who reaches {} could move the needle", settings.address)
-                                     : "a token is given, and is not to be asked for",
-                       given.empty() ? "Ask for a token (leave --no-token away), or listen on 127.0.0.1"
-                                     : "Give either --token or --no-token");
+    return input_error(
+        "stylet serve",
+        given.empty()
+            ? fmt::format("without a token, everybody who can reach {} could move the needle", settings.address)
+            : "--token and --no-token exclude each other",
+        given.empty() ? "Leave --no-token out, or listen on 127.0.0.1" : "Give either --token or --no-token");
   }
   if (!given.empty() && !is_plain_token(given))
-    return input_error("stylet serve", fmt::format("the token '{}' cannot stand in an address", given),
+    return input_error("stylet serve",
+                       fmt::format("the token '{}' has characters that a web address cannot hold", given),
                        "Use letters, digits and -._~ only");
   if (!given.empty()) return Access(given, Access::Names::any);
   return is_loopback ? Access(kept_token(settings.token_file)) : Access(random_token(), Access::Names::any);
@@ -341,22 +344,22 @@ Result<std::unique_ptr<Server>> Server::open(ServerSettings settings) {
   const auto address = asio::ip::make_address(settings.address, error);
   if (error)
     return input_error(where, fmt::format("'{}' is not an IP address", settings.address),
-                       "Give one such as 127.0.0.1 (this machine only) or 0.0.0.0 (every network it is in)");
+                       "Give an address such as 127.0.0.1 (this machine only) or 0.0.0.0 (all its networks)");
   auto access = access_for(settings, address.is_loopback());
   if (!access) return access.error();
   auto parts = std::make_unique<Parts>(std::move(settings), std::move(*access));
   const tcp::endpoint endpoint(address, parts->settings.port);
   const auto refused = [&](const char* what) {
     return failure(where, fmt::format("cannot {}: {}", what, error.message()),
-                   "Choose another port with --port (0: any that is free), or end what uses this one");
+                   "Choose another port with --port (0: any free port), or end the program that uses this one");
   };
   parts->acceptor.open(endpoint.protocol(), error);
   if (error) return refused("open a socket");
   parts->acceptor.set_option(asio::socket_base::reuse_address(true), error);
   parts->acceptor.bind(endpoint, error);
-  if (error) return refused("listen there");
+  if (error) return refused("listen at this address and port");
   parts->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) return refused("listen there");
+  if (error) return refused("listen at this address and port");
   return std::unique_ptr<Server>(new Server(std::move(parts)));
 }
 

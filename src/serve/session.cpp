@@ -35,7 +35,7 @@ constexpr std::size_t kRequests = 256;
 constexpr std::size_t kMostEvents = 1000;
 constexpr auto kStatusEvery = std::chrono::milliseconds(500);
 constexpr auto kProgressEvery = std::chrono::milliseconds(50);
-// What is missing while it is ready.
+// SessionStatus::stage while the session is ready and a part of the picture is missing.
 constexpr const char* kFieldStage = "the picture of the tissue's motion";
 constexpr const char* kNoField = "there is too little memory to show how the tissue moves";
 
@@ -45,7 +45,8 @@ HandTarget resting() {
   return rest;
 }
 
-/// A needle through a hole: as the case plans it, or like its first one otherwise, to the far end of the target.
+/// The insertion through a hole: the case's own if it plans one, otherwise a copy of its first insertion through this
+/// hole, to the far end of the target.
 InsertionPlan plan_for(const std::vector<InsertionPlan>& plans, const std::string& hole) {
   const auto known = std::find_if(plans.begin(), plans.end(), [&](const auto& p) { return p.hole == hole; });
   if (known != plans.end()) return *known;
@@ -64,49 +65,49 @@ struct Session::Parts {
         room([this] { return look_after_room(); }, settings.say,
              std::chrono::milliseconds(std::lround(1e3 * settings.room_every_s))) {}
 
-  // What other threads reach.
+  // Guarded by the mutex: other threads use these members.
   std::mutex mutex;
   std::condition_variable_any wake;
   std::deque<Request> requests;
-  std::shared_ptr<PageDevice> hand;  ///< of the run that goes on
-  std::optional<HandTarget> wanted;  ///< before there is one
+  std::shared_ptr<PageDevice> hand;  ///< of the current live run
+  std::optional<HandTarget> wanted;  ///< not used
 
-  // The session thread's own.
+  // Used by the session's thread only.
   SessionSettings settings;
   Audience& audience;
   Shelf shelf;
   std::size_t open_case = 0;
-  OpenModel open;                                      ///< without a model: none could be opened
-  std::unique_ptr<FieldMaker> field_maker;             ///< of the model that is open, until its field is there
-  std::vector<std::unique_ptr<FieldMaker>> abandoned;  ///< of others, which have not ended yet
-  std::unique_ptr<MapMaker> map_maker;                 ///< of the case that is open
-  std::vector<std::unique_ptr<MapMaker>> former_maps;  ///< of others, whose threads have not ended yet
-  LiveMap map;                                         ///< what it had last
-  bool map_is_shown = false;                           ///< to those who watch
-  /// What the case itself plans; the model that is open may be of another hole.
+  OpenModel open;                                      ///< has no model if none could be opened
+  std::unique_ptr<FieldMaker> field_maker;             ///< of the open model, until its field is complete
+  std::vector<std::unique_ptr<FieldMaker>> abandoned;  ///< of earlier models; their threads have not ended
+  std::unique_ptr<MapMaker> map_maker;                 ///< of the open case
+  std::vector<std::unique_ptr<MapMaker>> former_maps;  ///< of earlier cases; their threads have not ended
+  LiveMap map;                                         ///< the latest map of map_maker
+  bool map_is_shown = false;                           ///< the viewers have the map
+  /// What the open case plans; the open model may have an insertion through another hole.
   struct Planned {
     Scenario scenario;
     std::vector<PlannedInsertion> insertions;
   } planned;
   std::size_t insertion = 0;
-  bool page_has_drawn = false;  ///< any, ever: then no field waits
+  bool page_has_drawn = false;  ///< some page has drawn its first picture; then a FieldMaker does not wait
   std::unique_ptr<LiveRun> live;
-  /// The live run while a recording is replayed in its place: it stands, and goes on from there.
+  /// The live run while a recording is replayed: it is paused and continues afterwards.
   struct SetAside {
     std::unique_ptr<LiveRun> run;
     SessionStatus status;
   };
   std::optional<SetAside> aside;
-  std::vector<LiveEvent> happened;  ///< in the live run
+  std::vector<LiveEvent> happened;  ///< events of the live run
   std::unique_ptr<Replay> replay;
-  FolderLock replayed;  ///< the recording that is replayed is not removed
+  FolderLock replayed;  ///< keeps the replayed recording from being removed
   SessionStatus status;
   bool whole_curve = true;
   Clock::time_point next_status;
   Clock::time_point last_progress;
   RoomWatch room;
 
-  std::jthread thread;  ///< last: starts when the others exist
+  std::jthread thread;  ///< last member, so that it starts when the others exist
 
   void run(const std::stop_token& stop);
   void carry_out(const Request& request);
@@ -194,12 +195,12 @@ void Session::Parts::set_hand(std::shared_ptr<PageDevice> device) {
 void Session::Parts::pump() {
   live->pump([this](const LiveEvent& event) {
     happened.push_back(event);
-    if (happened.size() > kMostEvents) happened.erase(happened.begin() + 1);  // not the start
+    if (happened.size() > kMostEvents) happened.erase(happened.begin() + 1);  // keeps the first event, "started"
     audience.tell(event);
   });
 }
 
-/// The loop ends, its recording is whole.
+/// Ends the loop and completes its recording.
 void Session::Parts::end_live() {
   set_hand(nullptr);
   if (live) pump();
@@ -212,7 +213,7 @@ void Session::Parts::end_live() {
   status.device_problem.clear();
 }
 
-/// The live run, if there is one, stands where it is, with nobody's hand on it, until go_on().
+/// Pauses the live run, if there is one, and takes the hand off the needle until go_on().
 void Session::Parts::hold_live() {
   if (!live) return;
   set_hand(nullptr);
@@ -227,7 +228,7 @@ void Session::Parts::go_on() {
   if (!status.paused) live->runner().resume();
 }
 
-/// The live run stands where it is until back_to_live().
+/// Pauses the live run until back_to_live().
 void Session::Parts::set_live_aside() {
   if (!live) return;
   hold_live();
@@ -275,7 +276,7 @@ void Session::Parts::say_status() {
   next_status = Clock::now() + kStatusEvery;
 }
 
-/// The loop with the needle before the skin of one of the model's insertions.
+/// Starts the loop for one of the model's insertions, with the needle in front of the skin.
 void Session::Parts::place(const Request& request, std::size_t which) {
   end_live();
   replay.reset();
@@ -308,7 +309,7 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   audience.tell(happened.front());
 }
 
-/// Scene of the model that is open, finer along the way of one of its insertions.
+/// Shows the scene of the open model, with finer surfaces along the planned way of one of its insertions.
 void Session::Parts::show_model(std::size_t which) {
   const Model& model = *open.model;
   MadeScene made = make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions,
@@ -319,7 +320,7 @@ void Session::Parts::show_model(std::size_t which) {
   if (settings.companion) settings.companion->show(*made.scene);
 }
 
-/// The displacement field, once it is there; until then how much of it is.
+/// Takes the displacement field over when it is complete; until then updates the fraction that is done.
 void Session::Parts::take_field() {
   std::erase_if(abandoned, [](const auto& maker) { return maker->done(); });
   if (!field_maker) return;
@@ -335,14 +336,14 @@ void Session::Parts::take_field() {
   if (aside) aside->run->set_field(open.field);
 }
 
-/// Nobody waits for a field any more: what is being made of it may be a whole factor, which takes long.
+/// Stops the preparation of a field without waiting for its thread, which may be factorising, and that takes long.
 void Session::Parts::abandon_field() {
   if (!field_maker) return;
   field_maker->give_up();
   abandoned.push_back(std::move(field_maker));
 }
 
-/// The map of another case begins.
+/// Starts the map of a newly opened case.
 void Session::Parts::begin_map() {
   if (map_maker) {
     map_maker->give_up();
@@ -354,7 +355,8 @@ void Session::Parts::begin_map() {
   map_is_shown = false;
 }
 
-/// What is new of the map. A replay is of another needle, perhaps of another patient: there is no map of it.
+/// Sends the map to the viewers when it has changed. During a replay they get an empty map, because a replay shows
+/// another needle, perhaps in another patient.
 void Session::Parts::show_map() {
   std::erase_if(former_maps, [](const auto& maker) { return maker->done(); });
   std::optional<LiveMap> news = map_maker ? map_maker->news() : std::nullopt;
@@ -365,7 +367,7 @@ void Session::Parts::show_map() {
   audience.show(is_to_be_shown ? map : LiveMap{});
 }
 
-/// Opens a model in the place of the one that is open. If it cannot be had, what was there goes on as it was.
+/// Opens a model in place of the open one. If that fails, the open model continues.
 void Session::Parts::open_model(const Request& request, std::size_t case_number,
                                 const std::function<Result<LoadedCase>(const Progress&)>& load) {
   const SessionStatus before = status;
@@ -405,8 +407,7 @@ void Session::Parts::choose_hole(const Request& request) {
   choose_plan(request, plan_for(planned.scenario.insertions, request.text), "hole " + request.text);
 }
 
-/// The same patient with the needle where a plan has it. What its way needs is computed, unless the model that is open
-/// has it.
+/// Starts an insertion by a plan in the same patient. The model is compiled for this plan unless the open model has it.
 void Session::Parts::choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where) {
   const auto& there = open.model->scenario().insertions;
   for (std::size_t i = 0; i < there.size(); ++i) {
@@ -414,7 +415,7 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
   }
   Scenario scenario = planned.scenario;
   scenario.insertions = {plan};
-  // What cannot be is refused before the needle that is there is taken away.
+  // An impossible plan is refused before the current insertion ends.
   if (auto good = check_scenario(scenario, where); !good) return refuse(request, good.error());
   if (auto good = plan_insertion(*open.model, plan, where); !good) return refuse(request, good.error());
   open_model(request, open_case, [this, &scenario, &where](const Progress& progress) -> Result<LoadedCase> {
@@ -426,8 +427,10 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
 }
 
 Result<> Session::Parts::start_replay(const std::string& name) {
-  FolderLock in_use(shelf.folder(name), FolderLock::Kind::shared);  // before the live run lets go of it
-  if (live) live->runner().pause();  // nobody takes its steps away while a long recording is read
+  FolderLock in_use(
+      shelf.folder(name),
+      FolderLock::Kind::shared);  // first: the recording may be that of the live run, which holds the lock until then
+  if (live) live->runner().pause();  // its steps are not fetched while a long recording is read
   auto recording = shelf.read(name);
   auto scenario = recording ? parse_scenario(recording->info.scenario_text, name) : Result<Scenario>(recording.error());
   Result<> shown = scenario ? Result<>(Ok{}) : Result<>(scenario.error());
@@ -463,7 +466,8 @@ void Session::Parts::carry_out(const Request& request) {
   using Kind = Request::Kind;
   const auto number = static_cast<std::size_t>(std::max(0.0, request.number));
   const auto missing = [&](const char* what, std::size_t count) {
-    refuse(request, input_error(what, fmt::format("there is no number {}, only {}", number, count), "Choose another"));
+    refuse(request, input_error(what, fmt::format("there is no number {}; there are {}, counted from 0", number, count),
+                                "Choose another one"));
   };
   switch (request.kind) {
     case Kind::predict:
@@ -571,7 +575,7 @@ void Session::Parts::tick(double dt_s) {
     const bool playing = replay->rate() > 0.0;
     replay->advance(dt_s);
     frame = replay->picture(whole_curve);
-    if (playing && replay->rate() == 0.0) next_status = {};  // it has come to its end
+    if (playing && replay->rate() == 0.0) next_status = {};  // the replay has reached its end: send the status at once
   }
   if (frame) {
     whole_curve = false;
@@ -604,7 +608,7 @@ void Session::Parts::run(const std::stop_token& stop) {
       if (!stop.stop_requested()) carry_out(request);
     }
     const auto now = Clock::now();
-    before += now - begun;  // a replay stands while a case is read
+    before += now - begun;  // a replay does not advance while requests are carried out
     if (now < before + period) continue;
     tick(std::chrono::duration<double>(now - before).count());
     before = now;

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Letters, digits, points and dashes of a name; anything else becomes a dash.
+/// Keeps the letters, digits and dots of a name and replaces each run of other characters by a dash.
 std::string tame(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -63,8 +63,9 @@ std::vector<std::string> Shelf::names() const {
 Result<RunRecording> Shelf::read(const std::string& name) const {
   const auto all = names();
   if (std::find(all.begin(), all.end(), name) == all.end())
-    return input_error(fmt::format("recording '{}'", name), fmt::format("not among those in {}", folder_.string()),
-                       "Choose one of the list");
+    return input_error(fmt::format("recording '{}'", name),
+                       fmt::format("there is no such recording in {}", folder_.string()),
+                       "Choose one from the list of recordings");
   return read_recording(folder(name) / "run.h5");
 }
 

@@ -10,21 +10,22 @@
 
 namespace stylet::serve {
 
-/// The folder with the recordings, one folder for each, with its run.h5; and maybe another one, which is only read.
+/// The folder of recordings; each recording is a folder with run.h5. There may be an archive, a second such folder that
+/// is only read.
 class Shelf {
  public:
   explicit Shelf(std::filesystem::path folder, std::filesystem::path archive = {})
       : folder_(std::move(folder)), archive_(std::move(archive)) {}
 
-  /// A name that nothing has yet: local date and time, and what it is of.
+  /// An unused name: local date and time, and `of`, the name of the insertion.
   [[nodiscard]] std::string new_name(const std::string& of) const;
-  /// Whether new_name() makes such names.
+  /// Whether a name has the form that new_name() makes.
   [[nodiscard]] static bool is_own_name(const std::string& name);
-  /// That of a recording, there or to be made.
+  /// The folder of a recording that exists or is to be made.
   [[nodiscard]] std::filesystem::path folder(const std::string& name) const;
-  /// Newest first.
+  /// The names of all recordings, newest first.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// Errors: no such recording (a name is never a path), and those of read_recording().
+  /// Reads a recording. Errors: no recording of this name (a path is not a name), and the errors of read_recording().
   [[nodiscard]] Result<RunRecording> read(const std::string& name) const;
 
  private:

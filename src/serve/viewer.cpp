@@ -14,9 +14,9 @@ namespace websocket = beast::websocket;
 namespace {
 
 constexpr double kMessagesPerSecond = 400.0;
-constexpr std::int64_t kMostDropped = 4000;  ///< then the connection is closed
-constexpr std::size_t kMostWaiting = 2000;   ///< messages but pictures and states
-constexpr std::size_t kMostSamples = 2000;   ///< in a picture
+constexpr std::int64_t kMostDropped = 4000;  ///< after this many dropped messages the connection is closed
+constexpr std::size_t kMostWaiting = 2000;   ///< with this many waiting messages the connection is closed
+constexpr std::size_t kMostSamples = 2000;   ///< most samples of the curve in a picture
 
 }  // namespace
 
@@ -30,9 +30,9 @@ Viewer::Viewer(std::uint64_t id, beast::tcp_stream stream, ViewerDesk& desk, dou
       last_message_(std::chrono::steady_clock::now()) {}
 
 void Viewer::accept(const HttpRequest& request) {
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has a timeout of its own
   auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
-  timeout.idle_timeout = silence_;  // a ping at half of it
+  timeout.idle_timeout = silence_;  // Beast sends a ping after half of it
   timeout.keep_alive_pings = true;
   socket_.set_option(timeout);
   socket_.set_option(websocket::stream_base::decorator(
@@ -95,7 +95,7 @@ void Viewer::hear(std::span<const std::byte> message) {
 }
 
 void Viewer::send(std::shared_ptr<const Scene> scene) {
-  frame_.reset();  // of the scene before
+  frame_.reset();  // it belongs to the previous scene
   curve_.clear();
   waiting_.push_back({wire::Kind::scene, std::move(scene), {}});
   write();
@@ -103,7 +103,7 @@ void Viewer::send(std::shared_ptr<const Scene> scene) {
 
 void Viewer::send(wire::Kind kind, std::string json) {
   if (kind == wire::Kind::map) std::erase_if(waiting_, [](const Waiting& w) { return w.kind == wire::Kind::map; });
-  if (waiting_.size() >= kMostWaiting) return close();  // it does not read any more
+  if (waiting_.size() >= kMostWaiting) return close();  // the page does not read its messages
   waiting_.push_back({kind, nullptr, std::move(json)});
   write();
 }
@@ -126,7 +126,7 @@ void Viewer::send(std::shared_ptr<const LiveFrame> frame) {
   write();
 }
 
-/// Makes the next message. @return whether there is one
+/// Encodes the next message into outgoing_. @return false if nothing waits
 bool Viewer::next_message() {
   if (!waiting_.empty()) {
     const Waiting next = std::move(waiting_.front());

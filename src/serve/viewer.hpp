@@ -17,7 +17,7 @@ namespace stylet::serve {
 
 class Viewer;
 
-/// What a viewer's messages lead to.
+/// Receives the messages of viewers; implemented by the server.
 class ViewerDesk {
  public:
   virtual ~ViewerDesk() = default;
@@ -27,18 +27,18 @@ class ViewerDesk {
   virtual void heard(Viewer& viewer, const wire::Command& command) = 0;
 };
 
-/// A WebSocket with a page behind it. Everything happens in the server's thread. What a page has to get waits in a
-/// queue, of pictures and states only the newest.
+/// The connection to one page, over a WebSocket. Everything happens in the server's thread. Messages to the page wait
+/// in a queue; of pictures and states only the newest waits.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  /// @param silence_s a page that has neither said anything nor answered a ping for so long is gone [s]
+  /// @param silence_s [s] a page that has neither sent a message nor answered a ping for this time is disconnected
   Viewer(std::uint64_t id, boost::beast::tcp_stream stream, ViewerDesk& desk, double silence_s);
   void accept(const HttpRequest& request);
   void close();
 
   void send(std::shared_ptr<const Scene> scene);
   void send(std::shared_ptr<const LiveFrame> frame);
-  /// @param kind event, notice or map; of a map only the newest waits
+  /// @param kind event, notice or map; of maps only the newest waits
   void send(wire::Kind kind, std::string json);
   void send_status(std::string json);
 
@@ -62,7 +62,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   bool open_ = false;
   bool ended_ = false;
   std::int64_t dropped_ = 0;
-  double allowance_;  ///< messages that may come now
+  double allowance_;  ///< number of messages that the page may send at this moment; refills with time
   std::chrono::steady_clock::time_point last_message_;
 
   struct Waiting {
@@ -73,11 +73,11 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   std::deque<Waiting> waiting_;
   std::optional<std::string> status_;
   std::shared_ptr<const LiveFrame> frame_;
-  std::vector<Step> curve_;   ///< not sent yet
-  bool whole_curve_ = false;  ///< they are all
+  std::vector<Step> curve_;   ///< samples that have not been sent
+  bool whole_curve_ = false;  ///< curve_ starts at the beginning of the insertion
   std::int64_t skipped_ = 0;
   std::uint32_t sent_ = 0;
-  wire::Bytes outgoing_;  ///< while it is written
+  wire::Bytes outgoing_;  ///< the message that is being written
   bool writing_ = false;
 };
 

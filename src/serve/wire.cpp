@@ -72,11 +72,11 @@ std::optional<HandTarget> decode_hand(std::span<const std::byte> message) {
       .depth_mm = v[0], .speed_mm_per_s = v[1], .roll_deg = v[2], .tilt_left_deg = v[3], .tilt_anterior_deg = v[4]};
 }
 
-/// What a command needs beside its name.
+/// The argument that a command needs.
 struct Need {
   Command::Do what;
-  const char* key;  ///< empty: nothing
-  bool text;
+  const char* key;  ///< JSON key of the argument; empty: no argument
+  bool text;        ///< the argument is a string, otherwise a number
 };
 
 const std::map<std::string, Need>& commands() {

@@ -14,12 +14,12 @@
 #include <variant>
 #include <vector>
 
-/// The messages of docs/live_protocol.md, to bytes and back.
+/// Encodes and decodes the messages of docs/live_protocol.md.
 namespace stylet::serve::wire {
 
-inline constexpr int kProtocol = 2;  ///< its version
+inline constexpr int kProtocol = 2;  ///< version of the protocol
 inline constexpr const char* kSubprotocol = "stylet-live-2";
-inline constexpr std::size_t kLongestMessage = 1024;  ///< of a page [bytes]
+inline constexpr std::size_t kLongestMessage = 1024;  ///< [bytes] longest message of a page
 
 enum class Kind : std::uint32_t {
   scene = 1,
@@ -34,15 +34,15 @@ enum class Kind : std::uint32_t {
 
 using Bytes = std::vector<std::byte>;
 
-/// @param number counts the messages of a connection
+/// @param number sequence number of the message on its connection
 Bytes encode(const Scene& scene, std::uint32_t number);
-/// @param samples those that this connection has not got yet, instead of the frame's own
-/// @param whole_curve they are all there are
+/// @param curve samples that this connection has not received; they replace those of the frame
+/// @param whole_curve whether `curve` starts at the beginning of the insertion
 Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
-/// status, event, notice or map
+/// Encodes a message of kind status, event, notice or map.
 Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
-/// What a page asks for, by the names of the protocol.
+/// A command of a page, named as in the protocol.
 struct Command {
   enum class Do {
     take,
@@ -62,14 +62,16 @@ struct Command {
     drawn
   };
   Do what{};
-  std::string text;     ///< of hole and replay
-  double number = 0.0;  ///< of insertion, step, case, seek, play and predict
+  std::string text;     ///< argument of hole and replay
+  double number = 0.0;  ///< argument of insertion, step, case, seek, play and predict
 };
 
-/// Empty for what is malformed: wrong length, unknown kind or command, numbers that are not finite or out of range.
+/// Decodes a message of a page. Empty if it is malformed: wrong length, unknown kind or command, numbers that are not
+/// finite or out of range.
 std::optional<std::variant<HandTarget, Command>> decode(std::span<const std::byte> message);
 
-/// At most `most` samples: of each of equal runs the ones with the least and the largest axial force, in their order.
+/// Reduces a curve to at most `most` samples: divides it into equal parts and keeps of each the samples with the least
+/// and the largest axial force, in their order.
 void thin(std::vector<Step>& curve, std::size_t most);
 
 }  // namespace stylet::serve::wire

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The other side of an OpenIGTLink, as the protocol's header version 1 describes it: a tracker or a display for tests."""
+"""A client for OpenIGTLink with header version 1, used by tests as a tracker or a display."""
 import json
 import socket
 import struct
@@ -22,7 +22,7 @@ def message(kind, name, body):
 
 
 class Client:
-    """One connection; positions in mm, RAS."""
+    """A connection. Positions are in mm, RAS."""
 
     def __init__(self, connection):
         self.connection = connection
@@ -36,7 +36,7 @@ class Client:
         self.connection.close()
 
     def send_transform(self, name, columns):
-        """@param columns: three axes and the origin, three numbers each."""
+        """Sends a TRANSFORM. @param columns: three axes and the origin, three numbers each."""
         body = struct.pack(">12f", *(value for column in columns for value in column))
         self.connection.sendall(message("TRANSFORM", name, body))
 
@@ -50,7 +50,7 @@ class Client:
         return bytes(data)
 
     def next(self, kind, name):
-        """Body of the next message of this type and name."""
+        """The body of the next message of this type and name."""
         while True:
             _, its_kind, its_name, _, size, checksum = HEADER.unpack(self.read(HEADER.size))
             body = self.read(size)
@@ -61,20 +61,20 @@ class Client:
             return body
 
     def transform(self, name):
-        """Three axes and the origin."""
+        """The next TRANSFORM of this name: three axes and the origin."""
         numbers = struct.unpack(">12f", self.next("TRANSFORM", name))
         return [numbers[3 * k:3 * k + 3] for k in range(4)]
 
     def force(self):
-        """What BaseForce says, as JSON."""
+        """The next text of BaseForce, parsed as JSON."""
         return json.loads(self.next("STRING", "BaseForce")[4:].decode())
 
     def status(self):
-        """Code of the next heartbeat: 1 OK, 13 not ready."""
+        """The code of the next heartbeat: 1 OK, 13 not ready."""
         return struct.unpack(">H", self.next("STATUS", "Stylet")[:2])[0]
 
     def surface(self):
-        """Points of the next surface as they come, three big-endian floats each, and its number of triangles."""
+        """The points of the next surface as bytes (three big-endian floats each), and its number of triangles."""
         body = self.next("POLYDATA", "TissueSurface")
         header = struct.unpack(">10I", body[:40])
         return body[40:40 + 12 * header[0]], header[5]

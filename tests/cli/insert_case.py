@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenarios for tests of stylet insert, and what every finished one must have left behind."""
+"""Scenarios for tests of stylet insert, and checks of the result files that every finished run must have."""
 import csv
 import json
 import math
 from pathlib import Path
 
-# A case small enough to run in a second or two.
+# A small case that runs in one or two seconds.
 FAST = ("--set", "run.dt_ms=4", "--set", "output.pictures=false", "--set", "output.frames_per_s=2")
 SMALL = ("--set", "mesh.nodes=800", *FAST)
 
@@ -29,8 +29,8 @@ FULL_INSERTION = ["skin_contact", "puncture", "region_entered", "retraction_star
 
 
 def block_mesh(path, cells=4, size=60.0, names=("tissue", "lump"), last_layer=None):
-    """gmsh MSH 2.2 in mm: a cube from (0, 0, 0), six tetrahedra a cell; the second region is its middle. The cells
-    furthest along z are `last_layer` thick, where that is given."""
+    """A gmsh MSH 2.2 file in mm: a cube from (0, 0, 0) with six tetrahedra per cell; the second region is its centre.
+    If `last_layer` is given, it is the thickness of the last layer of cells along z."""
     n = cells + 1
     step = size / cells
     heights = [k * step for k in range(n)]
@@ -71,7 +71,7 @@ retract_speed_mm_per_s = 40
 
 
 def forces(folder):
-    """The lines of forces.csv, numbers as numbers."""
+    """The rows of forces.csv, with numbers converted."""
     with open(Path(folder) / "forces.csv", newline="", encoding="utf-8") as file:
         lines = list(csv.DictReader(file))
     for line in lines:
@@ -82,19 +82,19 @@ def forces(folder):
 
 
 def without_step_times(folder):
-    """forces.csv as text, its last column left out."""
+    """The text of forces.csv without its last column."""
     text = (Path(folder) / "forces.csv").read_text(encoding="utf-8")
     return [line.rsplit(",", 1)[0] for line in text.splitlines()]
 
 
 def gland_path(folder):
-    """The lines of gland.csv, numbers as numbers."""
+    """The rows of gland.csv, with numbers converted."""
     with open(Path(folder) / "gland.csv", newline="", encoding="utf-8") as file:
         return [{key: float(value) for key, value in line.items()} for line in csv.DictReader(file)]
 
 
 def check_gland(test, folder, summary):
-    """What summary.json says of the gland is what gland.csv says, and where the tables of steps and events put it."""
+    """Checks that the gland's motion in summary.json agrees with gland.csv and with the steps and events."""
     gland, path, steps = summary["gland"], gland_path(folder), forces(folder)
     test.assertEqual([(p["time_s"], p["base_depth_mm"]) for p in path],
                      [(s["time_s"], s["base_depth_mm"]) for s in steps])
@@ -125,7 +125,7 @@ def kinds(summary):
 
 
 def check_results(test, folder, summary=None, pictures=False):
-    """Every result file of the contract is there and sound. Returns the summary."""
+    """Checks that every documented result file exists and is valid. Returns the summary."""
     folder = Path(folder)
     for name in ("summary.json", "forces.csv", "tissue.pvd", "needle.vtp", "run.h5", "report.html"):
         test.assertTrue((folder / name).is_file(), name)
@@ -157,7 +157,7 @@ def check_results(test, folder, summary=None, pictures=False):
     test.assertEqual(set(written["capacity"]), {"contacts", "spare_nodes", "tracks", "events"})
     for use in written["capacity"].values():
         test.assertLessEqual(use["most"], use["room"])
-    shaft = written["capacity"]["contacts"]["most"]  # the tip is not among them
+    shaft = written["capacity"]["contacts"]["most"]  # without the tip
     test.assertTrue(written["contacts_max"] - 1 <= shaft <= written["contacts_max"], written["capacity"])
 
     report = (folder / "report.html").read_text(encoding="utf-8")

@@ -14,14 +14,14 @@ PATIENCE_S = 120
 
 
 class Serve(InFolder):
-    """A folder with case.toml, and servers in it that end with the test."""
+    """A folder with case.toml, in which servers run until the end of the test."""
 
     def setUp(self):
         super().setUp()
         (self.folder / "case.toml").write_text(PHANTOM)
 
     def start(self, *arguments):
-        """A server on a port that is free, and its address."""
+        """Starts a server on a free port. Returns it and its address."""
         server = subprocess.Popen([os.environ["STYLET"], "serve", *arguments, "--port", "0", "--json", "-"], cwd=self.folder,
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(server.stdout.close)
@@ -37,17 +37,17 @@ class Serve(InFolder):
         return server, self.said["url"]
 
     def end(self, server):
-        """Asks the server to end and waits until it has. Whatever it wrote lies still from now on."""
+        """Ends the server and waits until it has ended. Its files do not change any more afterwards."""
         server.terminate()
         self.assertEqual(server.wait(PATIENCE_S), 0)
 
     def address(self, path):
-        """Of a path of the server, with its token."""
+        """The address of a path of the server, with its token."""
         at = urlsplit(self.said["url"])
         return urlunsplit(at._replace(path="/" + path))
 
     def viewer(self):
-        """One who holds the needle."""
+        """A viewer that holds the needle."""
         viewer = LiveViewer(self.said["url"])
         self.addCleanup(viewer.close)
         viewer.command(do="take")
@@ -65,15 +65,16 @@ class Serve(InFolder):
         return sorted((self.folder / "out" / "live").glob("*/run.h5"))
 
     def push(self, viewer, depth_mm, speed_mm_per_s, steps):
-        """Has the viewer's hand push until the recording holds more than so many steps. The hand says what it wants again and again,
-        as a page does: the server forgets what it hears before the needle is there, which is later than the recording is."""
+        """Pushes with the viewer's hand until the recording has more than this number of steps. The target is sent
+        again and again, as by a page, because the server ignores targets before the needle exists, and the recording
+        exists earlier than the needle."""
         def pushed():
             viewer.hand(depth_mm, speed_mm_per_s)
             return self.steps() > steps
         self.until(pushed)
 
     def steps(self):
-        """Number of steps that are in the recording now."""
+        """The number of steps in the recording."""
         try:
             return self.json_of("info", str(self.recordings()[-1]))["steps"]
         except (AssertionError, KeyError, IndexError):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A viewer of stylet serve (docs/live_protocol.md) that says what its hand does and reads nothing, so it answers no ping either."""
+"""A viewer of stylet serve (docs/live_protocol.md) that only sends the target of its hand. It reads nothing, so it
+answers no ping either."""
 import base64
 import json
 import os
@@ -12,7 +13,7 @@ HAND, COMMAND = 16, 17
 
 class LiveViewer:
     def __init__(self, url):
-        """url: as the server printed it. Raises ConnectionError where the server lets nobody in."""
+        """url: the address that the server printed. Raises ConnectionError if the server refuses the connection."""
         at = urlsplit(url)
         self.socket = socket.create_connection((at.hostname, at.port))
         key = base64.b64encode(os.urandom(16)).decode()
@@ -28,7 +29,7 @@ class LiveViewer:
         self.socket.close()
 
     def _send(self, kind, body):
-        """One masked binary frame of less than 64 KB."""
+        """Sends one masked binary frame of less than 64 KB."""
         data = struct.pack("<II", kind, 0) + body
         mask = os.urandom(4)
         size = bytes([0x80 | len(data)]) if len(data) < 126 else bytes([0x80 | 126]) + struct.pack(">H", len(data))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the README says of `stylet validate`."""
+"""Reads the README's statements about `stylet validate`."""
 import re
 from pathlib import Path
 
@@ -7,6 +7,6 @@ README = Path(__file__).resolve().parents[2] / "README.md"
 
 
 def not_to_trust():
-    """Ids of rows that the section "What not to trust yet" names, in its order."""
+    """The ids of the rows in the section "What not to trust yet", in their order."""
     section = README.read_text(encoding="utf-8").split("\n## What not to trust yet\n")[1].split("\n## ")[0]
     return re.findall(r"^- `([a-z0-9_]+)`: ", section, re.MULTILINE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small input files, written from nothing."""
+"""Small input files for tests."""
 import gzip
 import json
 import math
@@ -7,13 +7,13 @@ import struct
 
 
 def ellipse(z, a, b, points=24):
-    """Closed polygon in the plane z [mm] with half axes a and b [mm]."""
+    """A closed polygon in the plane z [mm], inscribed in an ellipse with half axes a and b [mm]."""
     angles = [2 * math.pi * k / points for k in range(points)]
     return [[a * math.cos(t), b * math.sin(t), z] for t in angles]
 
 
 def contour_json(path, names=("Prostate",)):
-    """Ellipsoid-like glands of 40 × 30 × 35 mm side by side, one for each name, contours every 5 mm."""
+    """Ellipsoidal glands of 40 × 30 × 35 mm side by side, one for each name, with contours every 5 mm."""
     structures = []
     for number, name in enumerate(names, start=1):
         contours = []
@@ -27,7 +27,7 @@ def contour_json(path, names=("Prostate",)):
 
 
 def nifti_mask(path):
-    """Mask of two boxes, labels 1 (10 × 10 × 5 voxels) and 2 (5 × 5 × 5), spacing 1 × 1 × 2 mm, as .nii.gz."""
+    """A .nii.gz mask of two boxes, labels 1 (10 × 10 × 5 voxels) and 2 (5 × 5 × 5), with a spacing of 1 × 1 × 2 mm."""
     size = (30, 30, 12)
     voxels = bytearray(size[0] * size[1] * size[2])
     for label, (lo, hi) in {1: ((5, 5, 3), (15, 15, 8)), 2: ((20, 20, 3), (25, 25, 8))}.items():
@@ -49,7 +49,8 @@ def nifti_mask(path):
 
 
 def tet_mesh(path, unit=1.0, last_tet=(1, 2, 3, 4), names=("upper", "lower")):
-    """gmsh MSH 2.2: two tetrahedra on a common face, 10 mm edges in units of `unit` mm, physical groups 1 and 2."""
+    """A gmsh MSH 2.2 file with two tetrahedra that share a face, edges of 10 mm in units of `unit` mm, and physical
+    groups 1 and 2."""
     s = 10 / unit
     nodes = [(0, 0, -s), (0, 0, 0), (s, 0, 0), (0, s, 0), (0, 0, s)]
     tets = [(1, tuple(last_tet)), (2, (1, 3, 2, 0))]
@@ -65,7 +66,7 @@ def tet_mesh(path, unit=1.0, last_tet=(1, 2, 3, 4), names=("upper", "lower")):
 
 
 def stl_surface(path):
-    """ASCII STL of a tetrahedron with three edges of 10 mm at right angles: closed, 166.7 mm³."""
+    """An ASCII STL file of a closed tetrahedron with three perpendicular edges of 10 mm; its volume is 166.7 mm³."""
     p = [(0, 0, 0), (10, 0, 0), (0, 10, 0), (0, 0, 10)]
     lines = ["solid corner"]
     for triangle in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever is wrong with a file, both commands that read it say so, name it, and write nothing."""
+"""For every kind of faulty file, both commands that read it report the fault with the file's name and write nothing."""
 import gzip
 import json
 import os
@@ -111,7 +111,7 @@ class BadInput(InFolder):
             (self.folder / library.name).touch()
         with unittest.mock.patch.dict(os.environ, {"LD_LIBRARY_PATH": str(self.folder)}):
             done = run("info", "mesh.msh", cwd=self.folder)
-            self.assertEqual(done.returncode, 1)  # the file may be a good one
+            self.assertEqual(done.returncode, 1)  # not 2, because the file may be good
             self.assertRegex(done.stderr, r"\Astylet: error: libgmsh\.so[^\n]+ cannot be loaded [^\n]+ Install gmsh[^\n]+\n\Z")
             self.succeed("--version")
 

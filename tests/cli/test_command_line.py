@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line itself: help, version, mistakes, what goes to which stream."""
+"""The command line itself: help, version, mistakes, and the stream to which each output goes."""
 import json
 import os
 import subprocess

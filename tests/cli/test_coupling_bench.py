@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench coupling: one insertion over the spacing of contacts and over the time step, on the coarsest mesh."""
+"""stylet bench coupling: one insertion with several spacings of contacts and time steps, on the coarsest mesh."""
 import unittest
 
 from program import InFolder

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that crashed or hung programs are refused in one line and with little processor time, children included.
+"""Files that have crashed or hung programs are refused with one line and within little processor time, child processes
+included.
 
 They are not part of the repository: their folder is hostile/ in $STYLET_SHARED_DATA, by default ../shared/data beside
 it. Without one the tests are skipped (exit status 77)."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet info: right numbers for every kind of file."""
+"""stylet info: correct numbers for every kind of file."""
 import json
 import math
 import unittest
@@ -19,7 +19,7 @@ class Info(InFolder):
         self.assertEqual((prostate["taken_as"], nose["taken_as"]), ("prostate", ""))
         self.assertEqual((prostate["slices"], prostate["points"]), (7, 7 * 24))
         self.assertAlmostEqual(prostate["slice_spacing_mm"], 5)
-        # 24-gons of half axes 20 s and 15 s, s² = 1 − (z/20)², each 5 mm thick
+        # The volume of 24-gons with half axes 20 s and 15 s, s² = 1 − (z/20)², each 5 mm thick.
         polygon = 24 / 2 * math.sin(2 * math.pi / 24)
         volume = sum(5 * polygon * 20 * 15 * (1 - (5 * k / 20) ** 2) for k in range(-3, 4)) / 1000
         self.assertAlmostEqual(prostate["volume_cc"], volume, places=6)

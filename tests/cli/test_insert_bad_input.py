@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever is wrong with a scenario, stylet insert says where and what, and writes nothing."""
+"""For every kind of faulty scenario, stylet insert reports the place and the fault and writes nothing."""
 import unittest
 
 from insert_case import BLOCK, PHANTOM, block_mesh
@@ -24,7 +24,7 @@ class BadScenario(InFolder):
     def refuse_setting(self, setting, says, scenario="block.toml"):
         self.refuse("insert", scenario, "-o", "out", "--json", "-", "--set", setting, says=says)
 
-    # The command line.
+    # Faults of the command line.
 
     def test_no_scenario(self):
         self.refuse("insert", says=["no scenario", "scenarios/demo.toml"])
@@ -48,7 +48,7 @@ class BadScenario(InFolder):
         self.write("taken", "")
         self.refuse("insert", "block.toml", "-o", "out", "--json", "taken/s.json", says=["taken"])
 
-    # The file.
+    # Faults of the file.
 
     def test_no_toml(self):
         self.refuse_scenario("[patient\nsource = 1", ["line 1"])
@@ -104,7 +104,7 @@ class BadScenario(InFolder):
         self.refuse("insert", "block.toml", "-o", "out", "--engine", "woodbery",
                     says=["coupling.engine", "did you mean", "woodbury"])
 
-    # Settings.
+    # Faults of --set.
 
     def test_settings_out_of_range(self):
         for setting in ("insertion.speed_mm_per_s=-5", "insertion.depth_mm=-1", "needle.length_mm=-150",
@@ -119,7 +119,7 @@ class BadScenario(InFolder):
     def test_settings_without_a_value(self):
         self.refuse_setting("mesh.nodes", ["mesh.nodes", "="])
 
-    # What only the patient shows.
+    # Faults that appear only with the patient.
 
     def test_needle_that_misses_the_patient(self):
         self.refuse_scenario(BLOCK.replace("[31, 32, -10]", "[131, 32, -10]"),
@@ -156,7 +156,7 @@ class BadScenario(InFolder):
         (self.folder / "block.msh").write_text("\n".join(text) + "\n")
         self.refuse("insert", "block.toml", "-o", "out", says=["block.msh"])
 
-    # Recorded motions.
+    # Faults of recorded motions.
 
     def test_recorded_motion_that_is_not_there_or_broken(self):
         recorded = BLOCK.split("[[insertion]]")[0] + '[[insertion]]\nmotion = "motion.csv"\n'

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What run.sh shows at the end: the demo insertion, with every event and its report."""
+"""The demo insertion that run.sh runs at its end, with all events and its report."""
 import shutil
 import unittest
 from pathlib import Path
@@ -29,13 +29,13 @@ class Demo(InFolder):
         self.assertGreater(force["retraction_start", ""], 0, "still pushing when the retraction starts")
         self.assertLess(force["slip_start", ""], 0, "pulling the tissue along until it slips")
 
-        # The force grows before each puncture and falls behind it.
+        # The force rises before each puncture and falls after it.
         lines = forces(self.folder / "out/demo")
         for event in summary["events"]:
             if event["kind"] == "puncture":
                 after = [l["force_axial_N"] for l in lines if 0.05 < l["time_s"] - event["time_s"] < 0.06]
                 self.assertLess(max(after), event["force_N"])
-        # At the start of the retraction all of the tissue sticks; at the start of the slip most of it slides.
+        # At the start of the retraction all contacts stick; at the start of the slip most of them slide.
         start = next(e["time_s"] for e in summary["events"] if e["kind"] == "retraction_start")
         slip = next(e["time_s"] for e in summary["events"] if e["kind"] == "slip_start")
         stuck = [l for l in lines if start < l["time_s"] < slip]

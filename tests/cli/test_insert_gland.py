@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The demo: the gland moves as patients' glands are reported to."""
+"""The demo: the motion of the gland agrees with published motions of patients' glands."""
 import json
 import unittest
 from pathlib import Path

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet insert --map: what is known of every hole of the template before the needle goes in."""
+"""stylet insert --map: the map of all holes of the template before the insertion."""
 import csv
 import json
 import unittest
@@ -8,7 +8,7 @@ import unittest
 from insert_case import BLOCK, PHANTOM, SMALL, block_mesh
 from program import InFolder
 
-# Two columns and two rows of the template, around hole e3.5 of the whole one.
+# Two columns and two rows of the template, around hole e3.5.
 FEW_HOLES = """\
 [template]
 columns = ["E", "e"]
@@ -37,7 +37,7 @@ class Map(InFolder):
         self.insert("-o", "other", "--set", 'insertion.hole="E4"')
         self.same(holes["E4"], json.loads((self.folder / "other" / "summary.json").read_text()))
 
-        # The same on paper.
+        # The report has the same map.
         with open(self.folder / "out" / "map.csv", newline="", encoding="utf-8") as file:
             lines = {line["hole"]: line for line in csv.DictReader(file)}
         self.assertEqual(list(lines), list(holes))

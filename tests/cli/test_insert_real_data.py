@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ten lines of scenario are enough for a real patient or somebody else's mesh.
+"""A scenario of ten lines is enough for a real patient or a mesh of another program.
 
 The files are not part of the repository: their folder is $STYLET_SHARED_DATA, by default ../shared/data beside it.
 Without one the tests are skipped (exit status 77)."""
@@ -25,7 +25,7 @@ class RealPatients(InFolder):
         return summary, done
 
     def check_in_and_out(self, summary, regions):
-        """Through the skin into every region of `regions`, in that order, and out again."""
+        """Checks that the needle goes through the skin into every region of `regions`, in this order, and out again."""
         entered = [e["region"] for e in summary["events"] if e["kind"] == "region_entered"]
         self.assertEqual([region for region in entered if region in regions][:len(regions)], regions)
         for kind in ("skin_contact", "puncture", "retraction_start", "slip_start", "withdrawn"):

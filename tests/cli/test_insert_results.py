@@ -8,7 +8,7 @@ from insert_case import (BLOCK, FAST, FORCES_HEADER, FULL_INSERTION, PHANTOM, SM
                          kinds, without_step_times)
 from program import InFolder
 
-# The block's lump as the gland; without it there is no target.
+# Makes the block's inner region the gland; otherwise there is no target.
 GLAND = ("--set", 'patient.regions.lump="prostate"')
 
 
@@ -70,7 +70,7 @@ class Insert(InFolder):
             self.assertIn(text, table)
 
     def test_the_methods_of_the_2005_paper_are_one_word_away_and_agree_with_ours(self):
-        # In steps of 4 ms the two solvers take a snap through the capsule in different ways.
+        # With steps of 4 ms, the two solvers differ when the capsule breaks suddenly.
         addition = ("--method", "node-addition", "--rule", "paper", *SMALL, "--set", "run.dt_ms=2")
         ours = self.json_of("insert", "case.toml", "-o", "ours", *addition)
         for words in (("--engine", "woodbury"), ("--engine", "bcs"), ("--solver", "staggered")):
@@ -133,7 +133,7 @@ class Insert(InFolder):
                 self.assertEqual(kinds(summary)[-1], "withdrawn")
 
     def test_a_recorded_motion_moves_the_base(self):
-        # In 40 mm along z in one second and out again; the base is one needle's length behind the tip.
+        # The motion: 40 mm along z in one second and out again. The base is one needle length behind the tip.
         rows = ["time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz"]
         rows += [f"{t},31,32,{z - 100},1,0,0,0" for t, z in ((0, -3), (1.075, 40), (1.2, 40), (2.275, -3))]
         (self.folder / "motion.csv").write_text("\n".join(rows) + "\n")
@@ -155,7 +155,7 @@ class Insert(InFolder):
         self.succeed("insert", "block.toml", "-o", "out", "--quiet", *FAST)
         info = self.json_of("info", "out/run.h5")
         self.assertEqual(info["kind"], "recording")
-        # Its mesh is made: what would make another one is not taken as if it did.
+        # The mesh of a saved model exists already, so keys that would change it are refused.
         self.refuse("insert", "out/run.h5", "-o", "again", "--set", 'patient.skip=["lump"]',
                     says=["patient.skip", "out/run.h5 already has the finished mesh"])
 
@@ -180,7 +180,8 @@ class Insert(InFolder):
         *linear, tenting, lag = body()
         *stiff, less_tenting, less_lag = body("tissue.body.stiffening=2")
         self.assertEqual(stiff, [*linear[:2], 2.0, *linear[3:]])
-        # Of a punch on a surface 2 R E / (1 - nu^2); what is wider than 10 mm does not stiffen.
+        # The stiffness of a flat punch is 2 R E / (1 - nu^2); the part of the displacement that is wider than 10 mm
+        # does not stiffen.
         young, poisson, _, cutting, puncture = linear
         self.assertAlmostEqual(tenting, puncture * (1 - poisson**2) / (1.27 * 1e-3 * young), delta=0.06)
         self.assertLess(less_tenting, 0.5 * tenting)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks as clinics have them: layers, zones by name, one volume of several; and files that no program should open."""
+"""Masks as used in clinics: layers, named zones, one volume of several; and files that no program should open."""
 import gzip
 import os
 import socket
@@ -12,14 +12,14 @@ from program import InFolder, run
 
 
 def ball(centre, radius, size=(40, 40, 24), spacing=(1.5, 1.5, 2.5)):
-    """Voxels (0 or 1) of a ball, i fastest; centre and radius in mm from the middle of the grid."""
+    """Voxels (0 or 1) of a ball, with i as the fastest index; centre and radius in mm, from the centre of the grid."""
     middle = [(n - 1) / 2 * h for n, h in zip(size, spacing)]
     return bytes(int(sum((c * h - m - o) ** 2 for c, h, m, o in zip((i, j, k), spacing, middle, centre)) < radius ** 2)
                  for k in range(size[2]) for j in range(size[1]) for i in range(size[0]))
 
 
 def layered_nrrd(path, layers, keys, size=(40, 40, 24), spacing=(1.5, 1.5, 2.5)):
-    """A .seg.nrrd as 3D Slicer writes it when segments overlap."""
+    """A .seg.nrrd file as 3D Slicer writes it for overlapping segments."""
     header = ["NRRD0004", "type: unsigned char", "dimension: 4", "space: left-posterior-superior",
               "sizes: {} {} {} {}".format(len(layers), *size),
               "space directions: none ({},0,0) (0,{},0) (0,0,{})".format(*spacing), "kinds: list domain domain domain",
@@ -86,7 +86,7 @@ class SeveralVolumes(InFolder):
                                             '[mesh]\nnodes = 1500\n[[insertion]]\nentry_mm = [10, 10, -5]\n'
                                             'target_mm = [10, 10, 10]\n')
         self.refuse("prepare", "s.toml", "-o", "m.stylet", says=["two.nii.gz", "volume = 1 below [patient]"])
-        # The first volume is empty: its refusal shows that the key arrives.
+        # The first volume is empty; the error about it shows that the key is used.
         self.refuse("prepare", "s.toml", "-o", "m.stylet", "--set", "patient.volume=1", says=["every voxel is 0"])
 
     def test_it_has_no_meaning_for_contours(self):
@@ -95,7 +95,7 @@ class SeveralVolumes(InFolder):
 
 
 class NoRegularFile(InFolder):
-    """Opening a named pipe would wait for its other end: `run` would time out."""
+    """A named pipe must be refused. Opening it would wait for its other end, and `run` would time out."""
 
     def test_every_input_is_looked_at_before_it_is_opened(self):
         samples.contour_json(self.folder / "gland.json")

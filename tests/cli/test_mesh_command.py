@@ -15,7 +15,7 @@ from program import STYLET, InFolder
 
 class Mesh(InFolder):
     def check_report(self, report):
-        """Every key of the contract, and sums that must hold."""
+        """Checks that every documented key exists and that sums are correct."""
         self.assertTrue({"nodes", "tets", "regions", "dihedral_deg", "edge_mm", "radius_ratio_min",
                          "surface_distance_mm", "seconds"} <= set(report))
         for region in report["regions"].values():
@@ -138,7 +138,7 @@ class Mesh(InFolder):
             try:
                 while part := os.read(terminal, 65536):
                     shown += part
-            except OSError:  # the terminal is gone when the program ends
+            except OSError:  # the terminal is closed when the program ends
                 pass
         os.close(terminal)
         self.assertEqual(process.returncode, 0)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet phantom: two files with the same contours, another patient for another seed."""
+"""stylet phantom: writes two files with the same contours, and another patient for another seed."""
 import unittest
 
 from program import InFolder

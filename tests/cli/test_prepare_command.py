@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet prepare: a saved model runs like its scenario, is described, and is refused when it is not whole."""
+"""stylet prepare: a saved model runs like its scenario, can be described, and is refused if it is incomplete."""
 import csv
 import subprocess
 import time
@@ -15,10 +15,10 @@ class Prepare(InFolder):
         super().setUp()
         (self.folder / "case.toml").write_text(PHANTOM)
 
-    made = None  # what prepare told of the model that all tests share, and the model
+    made = None  # the model that all tests share, and the JSON of the command that made it
 
     def prepare(self):
-        """case.stylet, and what the command told of it. Compiled once: the same case gives the same bytes."""
+        """Makes case.stylet and returns the command's JSON. It is compiled once; the same case gives the same bytes."""
         if Prepare.made is None:
             told = self.json_of("prepare", "case.toml", "-o", "case.stylet", *SMALL)
             Prepare.made = told, (self.folder / "case.stylet").read_bytes()
@@ -48,7 +48,7 @@ class Prepare(InFolder):
 
     def test_the_same_case_gives_the_same_bytes(self):
         self.prepare()
-        time.sleep(1.1)  # no times are in the file, not even in seconds
+        time.sleep(1.1)  # the file must not contain any time, not even in seconds
         self.succeed("prepare", "case.toml", "-o", "again.stylet", *SMALL)
         self.assertEqual((self.folder / "case.stylet").read_bytes(), (self.folder / "again.stylet").read_bytes())
 
@@ -97,7 +97,7 @@ class Prepare(InFolder):
                 bad[at] ^= 64
                 yield f"bad_{at}", bytes(bad)
 
-        # refuse() sees to it that HDF5 itself says nothing.
+        # refuse() checks that HDF5 itself prints nothing.
         for file, ending, cure in (("case.stylet", "stylet", "stylet prepare"),
                                    ("out/run.h5", "h5", "run.h5 that `stylet insert` wrote")):
             for name, content in damaged(file):

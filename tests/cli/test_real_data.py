@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of real patients and of other programs load with the figures their keepers measured, or are refused rightly.
+"""Files of real patients and of other programs are read with the values that are published with them, or correctly
+refused.
 
 They are not part of the repository: their folder is $STYLET_SHARED_DATA, by default ../shared/data beside it. Without
 one the tests are skipped (exit status 77)."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet reproduce and stylet bench: the paper's figures and numbers, made again."""
+"""stylet reproduce and stylet bench: reproduced figures and numbers of the paper."""
 import csv
 import json
 import unittest
@@ -24,14 +24,15 @@ class Reproduce(InFolder):
         self.assertEqual(sorted(p.name for p in out.iterdir()), FILES)
         self.assertEqual(result, json.loads((out / "reproduce.json").read_text(encoding="utf-8")))
 
-        # Figure 5. Times are shown, not tested; what they come from is counted.
+        # Figure 5. Times are not checked; counted operations are.
         for row in result["fig5"]:
             for method in ("inverse_s", "bcs_s", "woodbury_s"):
                 self.assertGreater(row[method], 0)
             self.assertGreater(row["bcs_multiplications"], row["woodbury_multiplications"])
         self.assertLess(max(row["largest_error"] for row in result["fig5"]), 1e-8)
 
-        # Figure 6: same motion, every event, one row an iteration; nothing changes in the mesh on the way out.
+        # Figure 6: all variants have the same motion and all events, one row per iteration, and no change of the mesh
+        # on the way out.
         self.assertAlmostEqual(result["fig6"]["mesh"]["nodes"], 570, delta=0.03 * 570)
         runs = {run["id"]: run for run in result["fig6"]["runs"]}
         self.assertEqual(set(runs), set(result["fig6"]["curves"]))
@@ -86,7 +87,7 @@ class Bench(InFolder):
             for times in (event["warm_us"], event["cold_us"]):
                 self.assertTrue(0 < times["p5"] <= times["p50"] <= times["p95"] <= times["max"])
             ratios = result["event_ratios"][event["rule"]]
-            self.assertIsNone(ratios["warm"]["finest_over_coarsest"])  # of one mesh
+            self.assertIsNone(ratios["warm"]["finest_over_coarsest"])  # there is only one mesh
             self.assertGreater(ratios["warm"]["woodbury_over_event"], 1)
         self.assertEqual(result["event_woodbury"]["nodes"], result["events"][0]["nodes"])
 

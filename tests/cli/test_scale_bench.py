@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet bench scale: what its rows hold, on the coarsest mesh. Times are not tested: they are the machine's."""
+"""stylet bench scale: the contents of its rows on the coarsest mesh. Times are not checked."""
 import unittest
 
 from program import InFolder
@@ -23,17 +23,17 @@ class ScaleBench(InFolder):
             self.assertGreater(row["all_cpu_s"], 0)
             self.assertGreater(row["fixed_work_cpu_s"], 0)
             self.assertLessEqual(1e-3 * row["fixed_work_over_1ms"], row["fixed_work_cpu_s"])
-            self.assertIsNone(row["over_1ms_median_us"])  # no step has a repeat
+            self.assertIsNone(row["over_1ms_median_us"])  # no step is repeated
         again = self.json_of("bench", "scale", "--nodes", "570", "--contacts", "20", "--steps", "25000")["rows"]
         self.assertEqual([r["contacts"] for r in again], [20])
         self.assertGreaterEqual(again[0]["all_steps"], 25000)
         self.assertLess(again[0]["steps"], again[0]["all_steps"])
         self.assertGreaterEqual(again[0]["all_longest_us"], again[0]["step_cpu_us"]["max"])
-        # On so coarse a mesh, whose layers are thinner than an element, some steps of a cut have no balance.
+        # The layers of this coarse mesh are thinner than an element, so some steps that cut have no balance.
         self.assertLess(again[0]["flagged"], 0.01 * again[0]["steps"])
         self.assertIsNone(again[0]["all_longest_median_us"])  # too few repeats for a median
         self.refuse("bench", "scale", "--nodes", "570", "--contacts", "3", says=["--contacts", "'3'"])
-        # 93 mm deep, so many contacts are just further apart than the needle is thick, 1.27 mm.
+        # At 93 mm depth, the spacing of this many contacts is just above the needle's diameter of 1.27 mm.
         densest = self.json_of("bench", "scale", "--nodes", "570", "--contacts", "74")["rows"]
         self.assertGreaterEqual(densest[0]["spacing_mm"], 1.27)
         for bench in ("scale", "loop", "viewers"):

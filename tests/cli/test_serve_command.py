@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet serve: says where it listens, serves the page, ends when asked to, refuses what is wrong; its recordings, also of a killed
-server, are repeated by stylet insert to the last bit."""
+"""stylet serve: prints its address, serves the page, ends on a signal and refuses faulty input. stylet insert repeats
+its recordings, even those of a killed server, with bit-identical forces."""
 import os
 import signal
 import stat
@@ -88,7 +88,7 @@ class ServeCommand(Serve):
             self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700)
 
     def opened(self, *arguments):
-        """Starts a server, waits until the needle moves, and ends it."""
+        """Starts a server, waits until the needle moves, and ends the server."""
         before = len(self.recordings())
         server, _ = self.start("case.toml", *SMALL, *arguments)
         self.until(lambda: len(self.recordings()) > before)
@@ -103,7 +103,7 @@ class ServeCommand(Serve):
         made = kept[0].stat().st_ino
         self.opened("--models", "models")
         self.assertEqual(kept[0].stat().st_ino, made, "it was made again")
-        kept[0].write_bytes(kept[0].read_bytes()[:-1000])  # damaged: not used, and made again
+        kept[0].write_bytes(kept[0].read_bytes()[:-1000])  # damaged, so it must not be used but made again
         self.opened("--models", "models")
         self.assertNotEqual(kept[0].stat().st_ino, made)
         self.assertEqual(list(models.iterdir()), kept)

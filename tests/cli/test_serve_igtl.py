@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet serve with OpenIGTLink: a tracker moves the needle and a display sees it, over the loopback interface; they go and return."""
+"""stylet serve with OpenIGTLink over the loopback interface: a tracker moves the needle and a display shows it; both
+disconnect and reconnect."""
 import math
 import os
 import signal
@@ -18,7 +19,7 @@ OK, NOT_READY = 1, 13
 
 
 def along(pose, mm):
-    """The pose, so far along its z axis."""
+    """The pose, moved by this distance along its z axis."""
     return [*pose[:3], tuple(o + mm * z for o, z in zip(pose[3], pose[2]))]
 
 
@@ -28,7 +29,7 @@ def apart(a, b):
 
 class ServeIgtl(Serve):
     def link(self, *arguments):
-        """A server with a link on a port that is free. Returns it with the port."""
+        """Starts a server with a link on a free port. Returns it and the port."""
         server, _ = self.start("case.toml", "--igtl", "0", *arguments, *SMALL)
         return server, self.said["igtl"]["port"]
 
@@ -38,7 +39,7 @@ class ServeIgtl(Serve):
         return client
 
     def lead(self, tracker, display, start, mm):
-        """Takes the base along in small steps until it is so far from its start. Returns the largest force on the way."""
+        """Moves the base in small steps until it is this far from its start. Returns the largest force on the way."""
         most = 0.0
         handle = 0.0
         while True:
@@ -74,7 +75,7 @@ class ServeIgtl(Serve):
         tracker = self.client(port)
         self.lead(tracker, display, start, 50.0)
 
-        # Far from the needle a handle is not followed.
+        # The needle does not follow a handle that is far away from it.
         for _ in range(30):
             tracker.send_transform(HANDLE, along(start, 0.0))
             there = display.transform(BASE)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Standard streams that are closed, full or have nobody at the other end are no reason to stop, or to blame a file."""
+"""Standard streams that are closed, full or not read by any program do not stop the program and are not reported as an
+error of a file."""
 import itertools
 import json
 import os
@@ -20,7 +21,7 @@ class StandardStreams(InFolder):
         samples.contour_json(self.folder / "gland.json")
 
     def with_closed(self, closed, *arguments):
-        """Exit status of the program, started without the standard streams of these numbers."""
+        """The exit status of the program when it is started with these standard streams closed."""
         command = [STYLET, *map(str, arguments)]
         child = os.fork()
         if child == 0:

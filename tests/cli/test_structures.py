@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures as clinics have them: what is taken as what, what is left out, and that the user is told everywhere."""
+"""Structures as used in clinics: the region that each becomes, those that are left out, and that every output reports
+this."""
 import html
 import json
 import math
@@ -14,7 +15,8 @@ INSERTION = '[[insertion]]\nhole = "d4"\nspeed_mm_per_s = 80\nretract = false\nd
 
 
 def organ(name, kind, x, y, half, closed=True):
-    """An ellipsoid-like organ, contours every 5 mm; where not closed, its lower third in y is missing on every slice."""
+    """An ellipsoidal organ with contours every 5 mm. If it is not closed, its lower third in y is missing on every
+    slice."""
     contours = []
     for k in range(-3, 4):
         scale = math.sqrt(1 - (5 * k / 20) ** 2)
@@ -34,7 +36,8 @@ class Structures(InFolder):
         (self.folder / "case.toml").write_text(f'[patient]\nsource = "{name}"\n{lines}\n{INSERTION}')
 
     def insert(self, *options):
-        """Runs case.toml. Returns the warnings, which terminal, summary, report and recording must agree on."""
+        """Runs case.toml. Checks that terminal, summary, report and recording have the same warnings, and returns
+        these."""
         done = self.succeed("insert", "case.toml", "-o", "out", *SMALL, *options)
         return self.warnings_everywhere(done)
 
@@ -126,7 +129,7 @@ class Structures(InFolder):
 
 class DraftedScenarios(InFolder):
     def draft_and_insert(self, file, *options):
-        """info --scenario > patient.toml && insert patient.toml. Returns the scenario's text and the summary."""
+        """Runs info --scenario > patient.toml && insert patient.toml. Returns the scenario's text and the summary."""
         text = self.succeed("info", file, "--scenario", *options).stdout
         (self.folder / "patient.toml").write_text(text)
         self.succeed("insert", "patient.toml", "-o", "out", *SMALL)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""stylet validate: the table of claims, as a page, JSON and curves."""
+"""stylet validate: the table of claims as a page, JSON and curves."""
 import csv
 import json
 import os
@@ -18,7 +18,7 @@ class Validate(InFolder):
     def setUp(self):
         super().setUp()
         self.shared = os.environ.get("STYLET_SHARED_DATA")
-        os.environ["STYLET_SHARED_DATA"] = str(self.folder)  # nothing is there
+        os.environ["STYLET_SHARED_DATA"] = str(self.folder)  # a folder without data
 
     def tearDown(self):
         if self.shared is None:
@@ -43,7 +43,7 @@ class Validate(InFolder):
         self.assertEqual(result["missed"], sum(row["pass"] is False for row in rows.values()))
         self.assertIs(rows["patch_test"]["pass"], True)
         self.assertIs(rows["contact_changes"]["pass"], True)
-        self.assertIn("is not there", rows["step_time"]["note"])
+        self.assertIn("does not exist", rows["step_time"]["note"])
         self.assertIs(rows["step_time"]["skipped"], True)
         page = (out / "validate.html").read_text(encoding="utf-8")
         for row in rows.values():

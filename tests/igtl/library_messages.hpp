@@ -12,14 +12,14 @@ namespace stylet::test {
 
 using Raw = std::vector<std::uint8_t>;
 
-/// What the library itself packs.
+/// A message packed by the OpenIGTLink library.
 inline Raw packed(::igtl::MessageBase& message) {
   message.Pack();
   const auto* first = static_cast<const std::uint8_t*>(message.GetPackPointer());
   return {first, first + message.GetPackSize()};
 }
 
-/// @param m columns of the rotation, then the position
+/// A TRANSFORM. @param m columns of the rotation, then the position
 inline Raw library_transform(const char* name, const std::array<float, 12>& m) {
   auto message = ::igtl::TransformMessage::New();
   message->SetDeviceName(name);
@@ -40,7 +40,7 @@ inline Raw library_status(const char* name, int code) {
   return packed(*message);
 }
 
-/// The unit matrix at (x, y, z).
+/// A matrix with the unit rotation at (x, y, z).
 inline std::array<float, 12> at(float x, float y, float z) { return {1, 0, 0, 0, 1, 0, 0, 0, 1, x, y, z}; }
 
 }  // namespace stylet::test

@@ -24,7 +24,7 @@ namespace stylet::test {
 /// The other side of a link, with the sockets and messages of the OpenIGTLink library.
 class Peer {
  public:
-  /// A message whose checksum was right.
+  /// A received message with a correct checksum.
   struct Message {
     std::string type;
     std::string name;
@@ -33,7 +33,7 @@ class Peer {
 
   explicit Peer(::igtl::ClientSocket::Pointer socket) : socket_(std::move(socket)) {
     if (!socket_) throw std::runtime_error("nobody connected");
-    std::signal(SIGPIPE, SIG_IGN);  // the library's sockets raise it when the other side has gone
+    std::signal(SIGPIPE, SIG_IGN);  // the library's sockets raise it when the other side has disconnected
     socket_->SetReceiveTimeout(60'000);
   }
   static Peer to(int port) {
@@ -44,7 +44,7 @@ class Peer {
 
   bool send(const Raw& bytes) { return socket_->Send(bytes.data(), static_cast<int>(bytes.size())) != 0; }
 
-  /// The next message; nothing when the other side has closed.
+  /// The next message; empty if the other side has closed the connection.
   std::optional<Message> next() {
     auto header = ::igtl::MessageHeader::New();
     header->InitPack();
@@ -60,7 +60,7 @@ class Peer {
     return Message{header->GetDeviceType(), header->GetDeviceName(), Raw(first, first + size)};
   }
 
-  /// The next one of this type and name that is as wanted; nothing when it does not come.
+  /// The next message of this type and name that satisfies a condition; empty if there is none.
   std::optional<Message> next(const std::string& type, const std::string& name,
                               const std::function<bool(const Message&)>& wanted = {}) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
@@ -72,7 +72,7 @@ class Peer {
     return {};
   }
 
-  /// Whether the other side closes; what still comes is passed over.
+  /// Whether the other side closes the connection; messages before that are skipped.
   bool closes() {
     while (next()) {
     }
@@ -109,7 +109,7 @@ inline std::array<double, 6> wrench_of(const Peer::Message& m) {
 inline std::string text_of(const Peer::Message& m) { return {m.body.begin() + 4, m.body.end()}; }
 inline int code_of(const Peer::Message& m) { return 256 * m.body.at(0) + m.body.at(1); }
 
-/// A port of its own for every test.
+/// A different port for every test.
 inline stylet::igtl::LinkSettings any_port() {
   stylet::igtl::LinkSettings s;
   s.port = 0;
@@ -121,7 +121,7 @@ inline std::unique_ptr<stylet::igtl::Link> opened(const stylet::igtl::LinkSettin
   return std::move(*link);
 }
 
-/// Does something again and again in a thread of its own.
+/// Calls a function repeatedly in a thread of its own.
 class Repeat {
  public:
   explicit Repeat(std::function<void()> what)
@@ -143,7 +143,7 @@ class Repeat {
   std::thread thread_;
 };
 
-/// The library makes its list of message types at the first message, without a lock.
+/// Initialises the library's list of message types, which it otherwise makes at the first message without a lock.
 inline const bool kLibraryReady = [] {
   library_transform("", at(0, 0, 0));
   return true;

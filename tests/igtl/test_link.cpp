@@ -19,7 +19,7 @@ Picture picture(double time_s) {
   return p;
 }
 
-/// A net of n × n points that lies at z.
+/// A grid of n × n points in the plane z.
 Surface net(std::uint32_t n, float z) {
   Surface s;
   for (std::uint32_t i = 0; i < n * n; ++i)
@@ -81,7 +81,7 @@ TEST(Link, a_picture_that_is_no_longer_renewed_has_no_force_and_no_poses) {
     const Repeat publisher([&] { link->publish(picture(1.0)); });
     ASSERT_TRUE(peer.next("NDARRAY", "BaseForce", pressing));
   }
-  // What was sent before comes first; then there are only forces of nothing, and texts that say so.
+  // Messages sent before come first. Then there are only zero forces, and texts with "fresh": false.
   int forces = 0;
   EXPECT_TRUE(comes_true([&] {
     const auto message = peer.next();
@@ -233,7 +233,7 @@ TEST(Link, a_port_that_is_taken_is_an_error_that_says_so) {
   const auto second = Link::open(same);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().where.find(std::to_string(same.port)), std::string::npos);
-  EXPECT_NE(second.error().what.find("another program listens"), std::string::npos);
+  EXPECT_NE(second.error().what.find("another program uses this port"), std::string::npos);
 }
 
 TEST(Link, a_port_can_be_opened_again_at_once) {
@@ -284,7 +284,7 @@ TEST(Link, surfaces_that_are_none_are_refused) {
   s.points.pop_back();
   const auto missing = link->publish_surface(std::move(s));
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().what.find("names point 8 of 8"), std::string::npos) << missing.error().message();
+  EXPECT_NE(missing.error().what.find("the corner 8, but there are 8 points"), std::string::npos) << missing.error().message();
   Surface large;
   large.points.resize(6'000'000);
   EXPECT_FALSE(link->publish_surface(std::move(large)));

@@ -87,7 +87,7 @@ TEST(LinkClient, garbage_ends_the_connection_and_the_next_one_is_tried) {
 
 TEST(LinkClient, ends_while_it_tries) {
   for (int k = 0; k < 20; ++k) {
-    LinkSettings s = client_of(1);  // where hardly anybody listens
+    LinkSettings s = client_of(1);  // a port at which no program listens
     const auto link = opened(s);
     const auto device = link->device();
     EXPECT_FALSE(device->read({.now_s = 1.0}).valid);

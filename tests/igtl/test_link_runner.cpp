@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A running loop whose hand is at the other end of a link.
+// A running loop whose hand is tracked at the other end of a link.
 #include "peer.hpp"
 
 #include <mutex>
@@ -10,13 +10,13 @@ using namespace stylet::test;
 
 namespace {
 
-/// A spring whose base is moved by a TRANSFORM, and which shows itself through the same link.
+/// A spring whose base is moved by a TRANSFORM and whose state is sent through the same link.
 struct LinkedRun {
   std::unique_ptr<Link> link = opened(any_port());
   std::unique_ptr<RealtimeRunner> runner;
   std::unique_ptr<Repeat> display;
-  std::mutex mutex;   ///< of the runner's reading side
-  Snapshot snapshot;  ///< the display's newest, under the mutex
+  std::mutex mutex;   ///< guards the reading side of the runner
+  Snapshot snapshot;  ///< the newest snapshot, guarded by the mutex
   DeviceSnapshot at_device;
 
   explicit LinkedRun(double late_after_s = 0.5) {
@@ -54,7 +54,7 @@ struct LinkedRun {
 bool no_force(const Peer::Message& m) { return wrench_of(m) == std::array<double, 6>{}; }
 bool newtons(const Peer::Message& m, double fz) { return std::abs(wrench_of(m)[2] - fz) < 1e-9; }
 
-/// Sends the handle at a place until it is destroyed.
+/// Sends the handle's position repeatedly until it is destroyed.
 struct Hand {
   Repeat repeat;
   Hand(Peer& peer, const std::array<float, 12>& m)
@@ -66,7 +66,7 @@ struct Hand {
 TEST(LinkedRunner, a_pose_goes_in_moves_the_base_and_comes_out_again) {
   LinkedRun run;
   Peer peer = Peer::to(run.port());
-  // A third of a turn, so that no two axes are alike; RAS.
+  // A rotation by a third of a turn (RAS) moves every axis to another axis.
   const std::array<float, 12> where{0, -1, 0, 0, 0, 1, -1, 0, 0, -3, 5, 4};
   const Hand hand(peer, where);
   ASSERT_TRUE(comes_true([&] { return run.base() == Triple{3, -5, 4}; })) << "LPS";

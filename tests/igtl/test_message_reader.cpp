@@ -20,7 +20,7 @@ void put(Raw& to, std::size_t at, std::uint64_t value, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; ++k) to.at(at + k) = static_cast<std::uint8_t>(value >> (8 * (bytes - 1 - k)));
 }
 
-/// Puts length and checksum of the body into the header.
+/// Writes length and checksum of the body into the header.
 void seal(Raw& message) {
   put(message, 42, message.size() - 58, 8);
   put(message, 50, crc64(message.data() + 58, message.size() - 58, 0), 8);
@@ -31,8 +31,8 @@ struct Read {
   Result<> result = Ok{};
 };
 
-/// In pieces of so many bytes, until the first error; each piece is its own allocation, so that nothing beside it is
-/// read.
+/// Reads the bytes in pieces of this size until the first error. Each piece is allocated by itself, so that a sanitizer
+/// notices reading beyond it.
 Read read(const Raw& bytes, std::size_t piece = 1 << 20, MessageReader reader = MessageReader{}) {
   Read r;
   for (std::size_t first = 0; first < bytes.size() && r.result; first += piece) {
@@ -55,7 +55,7 @@ Raw library_string(const char* name) {
   return packed(*message);
 }
 
-/// Header version 2: an extended header of 12 bytes before the content, metadata after it.
+/// A message with header version 2: an extended header of 12 bytes before the content, and metadata after it.
 Raw version_2(const Raw& message, std::size_t metadata) {
   Raw m(message.begin(), message.begin() + 58);
   put(m, 0, 2, 2);

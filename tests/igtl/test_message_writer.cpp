@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is written, read by the library, which checks the checksums.
+// Written messages are read by the OpenIGTLink library, which checks the checksums.
 #include "igtl/message_writer.hpp"
 
 #include "library_messages.hpp"
@@ -20,7 +20,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// One whole message in `bytes`, as the library reads it.
+/// Reads one complete message in `bytes` with the library.
 template <class Message>
 typename Message::Pointer unpacked(const Bytes& bytes, const std::string& type, const std::string& name) {
   auto header = ::igtl::MessageHeader::New();
@@ -51,7 +51,7 @@ TEST(MessageWriter, transform) {
   const auto message = unpacked<::igtl::TransformMessage>(bytes, "TRANSFORM", "NeedleTipToReference");
   ::igtl::Matrix4x4 m;
   message->GetMatrix(m);
-  // x to posterior, y to superior, z to the left: in RAS −y, z, −x.
+  // The axes point to posterior, superior and the left, which are −y, z and −x in RAS.
   const float expected[4][4] = {{0, 0, -1, -10}, {-1, 0, 0, -20}, {0, 1, 0, 30}, {0, 0, 0, 1}};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) EXPECT_NEAR(m[i][j], expected[i][j], 1e-6) << i << ' ' << j;
@@ -67,7 +67,7 @@ TEST(MessageWriter, names_of_more_than_twenty_bytes_are_cut) {
 TEST(MessageWriter, force_and_torque) {
   Bytes bytes;
   add_wrench(bytes, "BaseForce", {{1, 2, 3}, {40, 50, 60}});
-  // The library's class for it frees memory with the wrong delete; its functions do not.
+  // The library's class for NDARRAY frees memory with the wrong delete, so its C functions are used.
   unpacked<::igtl::MessageBase>(bytes, "NDARRAY", "BaseForce");
   igtl_ndarray_info info;
   igtl_ndarray_init_info(&info);
@@ -110,7 +110,7 @@ TEST(MessageWriter, surface) {
   surface.triangles = std::make_shared<const Surface::Triangles>(Surface::Triangles{{0, 2, 1}, {0, 1, 3}});
   Bytes bytes;
   add_surface(bytes, "TissueSurface", surface);
-  // The library's class for it leaks what it reads; its functions do not.
+  // The library's class for this message leaks memory, so its C functions are used.
   unpacked<::igtl::MessageBase>(bytes, "POLYDATA", "TissueSurface");
   Bytes body(bytes.begin() + 58, bytes.end());
   igtl_polydata_info info;

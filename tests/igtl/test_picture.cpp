@@ -11,7 +11,7 @@ using namespace stylet::igtl;
 
 namespace {
 
-/// A quarter of a circle of radius r from the origin, along z at first, towards x.
+/// A quarter of a circle of radius r that starts at the origin along z and bends towards x.
 std::vector<Triple> quarter(double r, int points) {
   std::vector<Triple> line;
   for (int k = 0; k < points; ++k) {
@@ -38,9 +38,9 @@ TEST(TipPose, z_is_the_tangent_at_the_tip_and_the_bevel_keeps_its_side) {
     const Eigen::Quaterniond rolled(Eigen::AngleAxisd(roll, Vec3::UnitZ()));
     const Pose tip = tip_pose({Vec3::Zero(), rolled}, line);
     EXPECT_NEAR((tip.origin - Vec3(100, 0, 100)).norm(), 0.0, 1e-9);
-    // A chord would be half a spacing behind: 0.012 rad.
+    // The direction of the last chord would differ by half a spacing, 0.012 rad.
     EXPECT_NEAR((tip.rotation * Vec3::UnitZ() - Vec3::UnitX()).norm(), 0.0, 5e-4);
-    // A quarter turn about y takes z to x, x to −z, and leaves y; the roll stays about the needle's own axis.
+    // A quarter turn about y takes z to x and x to −z and leaves y. The roll about the needle's axis stays.
     const Vec3 x = std::cos(roll) * -Vec3::UnitZ() + std::sin(roll) * Vec3::UnitY();
     EXPECT_NEAR((tip.rotation * Vec3::UnitX() - x).norm(), 0.0, 5e-4) << "roll " << roll;
   }

@@ -32,7 +32,7 @@ struct Handle {
     message.code = code;
     input.hear(from, message, now);
   }
-  /// x of the pose that the loop would read, LPS; nothing when it is not valid.
+  /// x (LPS) of the pose that the loop would read; empty if the pose is not valid.
   std::optional<double> x() {
     channel->fetch();
     const TrackedPose& p = channel->value();

@@ -10,7 +10,7 @@ using namespace stylet::igtl;
 
 namespace {
 
-/// Columns of the rotation and the position, as a TRANSFORM has them.
+/// A TRANSFORM's matrix from the columns of the rotation and the position.
 RasMatrix matrix(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& p) {
   RasMatrix m{};
   std::size_t at = 0;
@@ -37,12 +37,12 @@ TEST(Ras, left_becomes_minus_right_posterior_minus_anterior_superior_stays) {
 }
 
 TEST(Ras, matrices_worked_out_by_hand) {
-  // As it is: its x axis points to the patient's left, which is −x in RAS.
+  // Without rotation, the x axis points to the patient's left, which is −x in RAS.
   expect_near(ras_matrix(turned(1, 0, 0, 0, {5, 7, -11})), matrix({-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {-5, -7, -11}));
-  // A quarter turn about the left: y to superior, z to anterior.
+  // After a quarter turn about the axis to the left, y points to superior and z to anterior.
   expect_near(ras_matrix(turned(kHalf, kHalf, 0, 0, {10, 20, 30})),
               matrix({-1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-10, -20, 30}));
-  // A third of a turn about (1, 1, 1): x to posterior, y to superior, z to the left.
+  // After a third of a turn about (1, 1, 1), x points to posterior, y to superior and z to the left.
   expect_near(ras_matrix(turned(0.5, 0.5, 0.5, 0.5, {-1, 2, -3})),
               matrix({0, -1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, -2, -3}));
 }

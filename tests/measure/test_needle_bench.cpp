@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of the needle models' accuracy: what it must show. Times are not judged.
+// Checks the errors in the table of the needle models. Times are not checked.
 #include "stylet/measure/needle_bench.hpp"
 
 #include <gtest/gtest.h>

@@ -65,7 +65,7 @@ TEST(RemeshCost, stiffness_of_a_node_inside_an_element_is_that_of_its_hat) {
 }
 
 TEST(RemeshCost, counted_multiplications_are_those_the_paper_states) {
-  // 2 (3m) (3n)² and 3m (3n)² + (3m)² 3n + 2 (3m)³, to the order they are stated to.
+  // The paper states 2 (3m) (3n)² and 3m (3n)² + (3m)² 3n + 2 (3m)³; the counts agree to leading order.
   for (const auto& [N, k] : {std::pair{300, 18}, std::pair{600, 18}, std::pair{600, 36}}) {
     const CountedCost counted = count_operations(N, k);
     EXPECT_NEAR(counted.switches / paper::cost_of_switches(N, k), 1.0, 2.0 / N) << N << ' ' << k;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/check_documents sees long lines, links that lead nowhere, pages that nothing leads to, and phrases without a noun."""
+"""scripts/check_documents finds long lines, broken links, pages without a link to them, and phrases without a noun."""
 import subprocess
 import sys
 import tempfile
@@ -16,7 +16,7 @@ SOUND = {"README.md": "# A\n", "CONTRIBUTING.md": "# B\n", "CHANGELOG.md": "# C\
 
 class Documents(unittest.TestCase):
     def complaints(self, changes):
-        """Exit status and output of the script on the sound documents with some others."""
+        """Exit status and output of the script for the correct documents plus some others."""
         with tempfile.TemporaryDirectory() as folder:
             for path, text in {**SOUND, **changes}.items():
                 file = Path(folder) / path

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/check_module_order sees an include against the direction of the modules, however it is written."""
+"""scripts/check_module_order finds includes against the direction of the modules in every notation."""
 import subprocess
 import sys
 import tempfile
@@ -12,7 +12,7 @@ SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "check_module_order"
 
 class ModuleOrder(unittest.TestCase):
     def check(self, files):
-        """Exit status and messages of the script on a tree with these files (path: text)."""
+        """Exit status and messages of the script for a tree with these files (path: text)."""
         with tempfile.TemporaryDirectory() as folder:
             for path, text in files.items():
                 file = Path(folder) / path

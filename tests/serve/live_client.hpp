@@ -72,7 +72,7 @@ class LiveClient {
     send(&message, sizeof message);
   }
 
-  /// Reads messages until something is true of them. @return false: not within a minute
+  /// Reads messages until a condition holds. @return false if it does not hold within a minute
   bool until(const std::function<bool()>& is_true) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!is_true()) {

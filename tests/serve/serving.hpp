@@ -12,7 +12,7 @@
 
 namespace stylet::test {
 
-/// A folder that goes with the test.
+/// A temporary folder that is removed at the end of the test.
 struct Folder {
   static std::filesystem::path of(pid_t process) {
     return std::filesystem::temp_directory_path() / ("stylet-serve-" + std::to_string(process));
@@ -25,7 +25,7 @@ struct Folder {
 inline Scenario hole_scenario() {
   Scenario s = box_scenario();
   s.insertions[0].entry_mm.reset();
-  s.tissue_model.creep = 1.0;  // elastic: at rest as soon as the needle is
+  s.tissue_model.creep = 1.0;  // elastic tissue comes to rest together with the needle
   s.insertions[0].hole = "D4";
   s.insertions[0].depth_mm = 30.0;
   return s;
@@ -39,7 +39,7 @@ inline serve::CaseSource box_case(const std::string& title) {
           }};
 }
 
-/// A server on a port that is free, with two cases; slow enough for sanitizers.
+/// A server on a free port with two cases. It runs slowly enough for builds with sanitizers.
 struct Serving {
   Folder folder;
   std::unique_ptr<serve::Server> server;
@@ -54,7 +54,7 @@ struct Serving {
     s.session.runner.late_after_s = 0.5;
     s.session.runner.realtime_scheduling = false;
     s.session.runner.lock_memory = false;
-    s.session.field_waits_s = 0.0;  // no page draws here, and recordings have frames once the field is there
+    s.session.field_waits_s = 0.0;  // no page draws in these tests, and recordings have frames only with a field
     if (change) change(s);
     auto opened = serve::Server::open(std::move(s));
     if (!opened) throw std::runtime_error(opened.error().message());
@@ -64,7 +64,7 @@ struct Serving {
   [[nodiscard]] std::uint16_t port() const { return server->port(); }
 };
 
-/// All that the page's session has recorded.
+/// Everything that the session has recorded.
 inline std::vector<std::filesystem::path> recordings_of(const Serving& serving) {
   std::vector<std::filesystem::path> folders;
   for (const auto& entry : std::filesystem::directory_iterator(serving.folder.path)) folders.push_back(entry.path());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session beside which another program sees the simulation, or moves the needle.
+// A session with a companion, another program that is shown the simulation or moves the needle.
 #include "serving.hpp"
 
 #include "stylet/realtime/latest_value.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using Matrix = Eigen::Matrix3Xf;
 
-/// Where the hand is; as a link, it passes poses to the loop without waiting.
+/// The position of the hand. Like an OpenIGTLink connection, it passes poses to the loop without waiting.
 using Channel = LatestValue<DeviceInput>;
 
 struct HandDevice final : Device {
@@ -29,7 +29,7 @@ struct HandDevice final : Device {
   void write(const Wrench& /*on_hand*/) noexcept override {}
 };
 
-/// Keeps what it is shown.
+/// A companion that stores what it is shown.
 class Friend final : public serve::Companion {
  public:
   explicit Friend(bool has_hand) : has_hand_(has_hand) {}
@@ -59,7 +59,7 @@ class Friend final : public serve::Companion {
     most_mm = std::max(most_mm, static_cast<double>(displacement.cwiseAbs().maxCoeff()));
   }
 
-  /// The hand: here, or not tracked.
+  /// Sets the hand's pose; without a pose, the hand is not tracked.
   void hand(const std::optional<Pose>& where) {
     const std::scoped_lock lock(mutex_);
     DeviceInput input;
@@ -101,7 +101,7 @@ struct WithFriend {
     return pose(companion->locked([](const Friend& f) { return f.base; }));
   }
   [[nodiscard]] std::string problem() const { return client->status.value("device_problem", "?"); }
-  /// Until the base is so far along its axis from `start`; the handle leads by a millimetre.
+  /// Moves the handle, one millimetre ahead of the base, until the base is this far from `start` along its axis.
   bool push(const Pose& start, double from_mm, double to_mm) {
     const Vec3 axis = start.rotation * Vec3::UnitZ();
     return client->until([&] {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::hours kNever(1000);
 
-/// Waits for the end; false: it does not come.
+/// Waits until the maker has ended. @return false if it does not end
 bool ends(const FieldMaker& maker) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (!maker.done() && std::chrono::steady_clock::now() < end)
@@ -40,7 +40,7 @@ TEST(FieldMaker, begins_by_itself_when_nobody_tells_it_to) {
 TEST(FieldMaker, gives_up_while_it_waits) {
   FieldMaker maker(compiled(hole_scenario()), kNever);
   const FieldMaker other(compiled(hole_scenario()), std::chrono::seconds(0));
-  ASSERT_TRUE(ends(other));  // by then it would have made some
+  ASSERT_TRUE(ends(other));  // in this time it would have made a part of its field
   EXPECT_FALSE(maker.done());
   EXPECT_EQ(maker.fraction(), 0.0);
   maker.give_up();
@@ -58,7 +58,7 @@ TEST(FieldMaker, of_a_server_begins_when_a_page_has_drawn_whoever_holds_the_need
   watcher->command(R"({"do":"drawn"})");
   EXPECT_TRUE(holder->until([&] { return holder->displaced_nodes > 0; }));
   EXPECT_TRUE(watcher->notices.empty());
-  // A page that has drawn needs no wait for another case.
+  // Once a page has drawn, the field of another case is prepared without waiting.
   holder->command(R"({"do":"case","index":1})");
   EXPECT_TRUE(holder->until([&] { return holder->scene["case"] == 1 && holder->status["stage"] == ""; }));
 }

@@ -23,7 +23,7 @@ PlannedInsertion plan_along(const Vec3& direction) {
 
 Vec3 tip(const Pose& base) { return base.origin + kLength_mm * (base.rotation * Vec3::UnitZ()); }
 
-/// The device after `seconds`, read a thousand times a second.
+/// Reads the device a thousand times per second for `seconds`. @return the last sample
 Pose after(PageDevice& device, double& now_s, double seconds) {
   DeviceInput input;
   const int turns = static_cast<int>(std::lround(1000.0 * seconds));
@@ -77,7 +77,7 @@ TEST(Hand, angles_of_a_base_are_those_it_was_placed_with) {
     const PlannedInsertion plan = plan_along(direction);
     const HandTarget placed{.depth_mm = 30.0, .roll_deg = -130.0, .tilt_left_deg = 7.0, .tilt_anterior_deg = -4.0};
     Pose base = hand_pose(placed, plan, kLength_mm);
-    base.origin += Vec3(50, -20, 10);  // wherever it is
+    base.origin += Vec3(50, -20, 10);  // the position must not matter
     const HandTarget found = hand_angles(base, plan);
     EXPECT_NEAR(found.roll_deg, placed.roll_deg, 1e-9);
     EXPECT_NEAR(found.tilt_left_deg, placed.tilt_left_deg, 1e-9);
@@ -119,7 +119,7 @@ TEST(PageDevice, goes_to_its_target_as_fast_as_asked_and_no_further) {
   EXPECT_NEAR(device.place().depth_mm, from + 10.0, 0.02);
   after(device, now, 10.0);
   EXPECT_NEAR(device.place().depth_mm, 20.0, 1e-12);
-  // Beyond what the needle reaches, and faster than anybody may.
+  // A target beyond the limits of depth and speed.
   device.aim({.depth_mm = 1e6, .speed_mm_per_s = 1e6});
   after(device, now, 0.1);
   const HandLimits limits = hand_limits(scenario);

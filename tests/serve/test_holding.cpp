@@ -19,7 +19,7 @@ TEST(Holding, goes_to_who_has_asked_longest_and_once_only) {
   holding.take(1);
   holding.take(2);
   holding.take(3);
-  holding.take(2);  // again: keeps its place
+  holding.take(2);  // asking again does not change the order
   EXPECT_EQ(holding.asking(), 2u);
   EXPECT_EQ(holding.holder(), 1u);
   holding.release(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A server that is killed while somebody inserts: its recording is there up to the last second.
+// A server that is killed during an insertion. Its recording must be complete up to the last second.
 #include "serving.hpp"
 
 #include "stylet/io/recording_io.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A server in a process of its own, which lives until it is killed.
+/// A server in a process of its own, which runs until it is killed.
 class ServingProcess {
  public:
   explicit ServingProcess(const std::shared_ptr<const Model>& model) {
@@ -74,7 +74,7 @@ TEST(KilledServer, loses_at_most_a_second_of_its_recording_a_hundred_times) {
     LiveClient client(server.port());
     ASSERT_TRUE(client.until([&] { return client.ready(); }));
     client.command(R"({"do": "take"})");
-    client.hand(40.0F, 20.0F);  // moves all the time: a rest is written when it ends
+    client.hand(40.0F, 20.0F);  // keeps moving, because a rest is recorded only at its end
     const double until_s = client.time_s + moment_s(random);
     ASSERT_TRUE(client.until([&] { return client.time_s >= until_s; }));
     server.kill();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What pictures of a run show while nothing moves.
+// Pictures of a run while nothing moves.
 #include "live_run.hpp"
 #include "serving.hpp"
 
@@ -17,7 +17,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// A needle that was pushed into the box, and is paused there.
+/// A run whose needle was pushed into the box and is paused.
 struct Paused {
   Folder folder;
   OpenModel open;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The map of the template's holes beside a needle that moves.
+// The map of the template's holes, made while a needle moves.
 #include "map_maker.hpp"
 #include "serving.hpp"
 
@@ -14,7 +14,7 @@ using namespace stylet::test;
 
 namespace {
 
-/// The box with two holes of a template before its gland, and a needle that goes in fast and not deep.
+/// The box with a template of two holes in front of its gland, and a fast and shallow insertion.
 Scenario two_holes() {
   Scenario s = hole_scenario();
   s.grid.columns = {"D", "E"};
@@ -27,7 +27,7 @@ PlanOfHole plans_of(const Scenario& scenario) {
   return [plan = scenario.insertions.front()](const std::string& hole) { return plan_through(plan, hole); };
 }
 
-/// What there is when something is true of it; what there is after a minute otherwise.
+/// Waits until a condition on the map holds, at most one minute. @return the newest map
 LiveMap when(MapMaker& maker, const std::function<bool(const LiveMap&)>& is_true) {
   LiveMap map;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -111,7 +111,7 @@ TEST(MapMaker, of_a_server_tells_every_page) {
   holder->command(R"({"do":"predict","on":0})");
   EXPECT_TRUE(holder->until([&] { return holder->map["predicting"] == false; }));
 
-  // Another hole is the same patient: what is known stays. Another case is not.
+  // With another hole of the same patient the map stays; with another case it does not.
   holder->command(R"({"do":"hole","hole":"d4"})");
   ASSERT_TRUE(holder->until([&] { return holder->status.value("hole", "") == "d4"; }));
   EXPECT_GE(holder->map.value("predicted", 0), 1);

@@ -10,7 +10,7 @@ using namespace stylet::serve;
 
 namespace {
 
-/// A handle that is where the test puts it.
+/// A handle whose pose the test sets.
 struct Handle final : Device {
   DeviceInput& says;
   Wrench& felt;

@@ -12,7 +12,8 @@ using namespace stylet::serve;
 
 namespace {
 
-/// Four nodes; ten steps of 0.1 s; frames at 0 and 1 s, between which everything moves evenly.
+/// A recording of four nodes, with ten steps of 0.1 s and frames at 0 and 1 s, between which everything moves
+/// uniformly.
 RunRecording recording() {
   RunRecording run;
   run.mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -142,7 +143,7 @@ TEST(Replay, gives_the_whole_curve_when_asked) {
 
 TEST(Replay, shows_a_straight_needle_where_no_frame_was_recorded_yet) {
   RunRecording late = recording();
-  late.frames.erase(late.frames.begin());  // the one that is left is of 1 s
+  late.frames.erase(late.frames.begin());  // the remaining frame is at 1 s
   for (Step& step : late.steps) {
     step.base.origin = {1, 2, step.base_depth_mm - 100.0};
     step.tip_mm = {1, 2, step.base_depth_mm};

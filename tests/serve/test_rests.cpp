@@ -12,7 +12,7 @@ using namespace stylet::serve;
 
 namespace {
 
-/// Steps of a millisecond with these forces, and what is recorded of them.
+/// Adds steps of 1 ms with these forces. @return the recorded steps
 std::vector<Step> recorded(const std::vector<double>& forces_N) {
   Rests rests;
   std::vector<Step> records;
@@ -64,7 +64,7 @@ TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
   step.dt_s = 1e-3;
   EXPECT_TRUE(rests.add(step));
   EXPECT_FALSE(rests.add(step));
-  step.dt_s = 2e-3;  // a step of another length may end elsewhere
+  step.dt_s = 2e-3;  // a step of another duration may have another result
   EXPECT_TRUE(rests.add(step));
   step.base.origin.z() = 1e-300;
   EXPECT_TRUE(rests.add(step));
@@ -76,7 +76,7 @@ TEST(Rests, what_a_step_was_given_is_compared_to_the_last_bit) {
   EXPECT_TRUE(rests.add(step));
   step.sticking = 1;
   EXPECT_TRUE(rests.add(step));
-  step.flags = Step::no_contact_inside;  // a warning begins with a step, and ends with one
+  step.flags = Step::no_contact_inside;  // the start and the end of a warning must be recorded
   EXPECT_TRUE(rests.add(step));
   EXPECT_FALSE(rests.add(step));
   step.flags = 0;
@@ -91,7 +91,7 @@ TEST(Rests, a_step_that_is_missing_ends_a_rest) {
     step.time_s = time_s;
     return step;
   };
-  EXPECT_TRUE(rests.follows(at(0.5)));  // nothing came before it
+  EXPECT_TRUE(rests.follows(at(0.5)));  // there is no step before it
   EXPECT_TRUE(rests.add(at(0.001)));
   EXPECT_TRUE(rests.follows(at(0.002)));
   EXPECT_FALSE(rests.add(at(0.002)));

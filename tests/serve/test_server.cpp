@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The server with real connections over the loopback interface: what docs/live_protocol.md promises.
+// The server with real connections over the loopback interface, as docs/live_protocol.md describes it.
 #include "serving.hpp"
 
 #include "stylet/io/recording_io.hpp"
@@ -87,7 +87,7 @@ TEST(Server, let_go_of_a_push_the_base_stands_and_has_not_turned_back) {
   client->command(R"({"do":"take"})");
   client->hand(25.0F, 40.0F);
   ASSERT_TRUE(client->until([&] { return client->depth_mm > 12.0F; }));
-  client->hand(client->depth_mm - 1.0F, 0.0F);  // as deep as a page has seen it, which is a while ago
+  client->hand(client->depth_mm - 1.0F, 0.0F);  // a depth that a page has seen some time ago
   float deepest = client->depth_mm;
   const double then = client->time_s;
   ASSERT_TRUE(client->until([&] {
@@ -97,7 +97,7 @@ TEST(Server, let_go_of_a_push_the_base_stands_and_has_not_turned_back) {
   }));
   EXPECT_LT(deepest, 25.0F);
   EXPECT_FALSE(client->has_event("retraction_start"));
-  client->hand(5.0F, 40.0F);  // a pull is one
+  client->hand(5.0F, 40.0F);  // with a speed, a smaller depth is a pull
   EXPECT_TRUE(client->until([&] { return client->has_event("retraction_start"); }));
 }
 
@@ -108,7 +108,7 @@ TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
   client->hand(15.0F, 80.0F);
   ASSERT_TRUE(client->until([&] { return client->depth_mm > 14.9F; }));
   const std::string first = client->status["recording"]["name"];
-  const auto kinds = [&] {  // of this insertion
+  const auto kinds = [&] {  // kinds of the events of this insertion
     std::vector<std::string> names;
     for (const auto& event : client->events) {
       if (event["kind"] == "started") names.clear();
@@ -130,7 +130,7 @@ TEST(Server, a_replay_leaves_the_live_needle_as_it_was) {
 
   client->command(R"({"do":"replay","name":")" + first + "\"}");
   ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay" && (client->bits & 2U) != 0; }));
-  client->hand(0.0F, 80.0F);  // nobody's business now
+  client->hand(0.0F, 80.0F);  // ignored, because this viewer does not hold the needle
   client->events.clear();
   client->command(R"({"do":"live"})");
   ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "live" && (client->bits & 2U) == 0; }));
@@ -271,7 +271,7 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   client->hand(8.0F, 80.0F);
   ASSERT_TRUE(client->until([&] { return client->depth_mm < 8.1F; }));
   const std::string name = client->status["recording"]["name"];
-  client->command(R"({"do":"reset"})");  // that recording is whole now
+  client->command(R"({"do":"reset"})");  // completes the recording
   ASSERT_TRUE(client->until([&] { return client->status["recording"]["name"] != name; }));
 
   const auto csv = get(serving.port(), "/recordings/" + name + "/forces.csv");
@@ -295,7 +295,7 @@ TEST(Server, a_recording_replays_in_the_page_and_repeats_to_the_last_bit) {
   ASSERT_GT(run->steps.size(), 100u);
   EXPECT_FALSE(run->frames.empty());
   EXPECT_FALSE(run->events.empty());
-  // At rest nothing is recorded but where it ends; steps of another length are not the same.
+  // Of a rest only its end is recorded. Steps of another duration do not count as equal.
   int at_rest = 0;
   for (const Frame& frame : run->frames)
     at_rest += frame.time_s > rests_from && frame.time_s < rests_from + 0.9 ? 1 : 0;
@@ -430,7 +430,7 @@ TEST(Server, a_holder_who_does_not_answer_any_more_loses_the_needle) {
   holder->command(R"({"do":"take"})");
   ASSERT_TRUE(holder->until([&] { return holder->status.value("you_hold", false); }));
   holder->hand(100.0F, 1.0F);
-  // From here on the holder reads nothing, so it answers no ping; its connection stays open.
+  // From here on the holder reads nothing and so answers no ping, while its connection stays open.
   ASSERT_TRUE(watcher->until([&] { return watcher->status.value("held", false); }));
   const float moving = watcher->depth_mm;
   ASSERT_TRUE(watcher->until([&] { return watcher->depth_mm > moving; }));
@@ -511,7 +511,7 @@ TEST(Server, warns_of_a_disk_that_gets_full_and_goes_on_without_recording_when_i
 
 TEST(Server, removes_old_recordings_but_not_the_one_it_replays) {
   const Serving serving([](serve::ServerSettings& s) {
-    s.session.keep_bytes = 1;  // less than any recording
+    s.session.keep_bytes = 1;  // smaller than any recording
     s.session.room_every_s = 0.05;
   });
   const auto client = ready_client(serving);
@@ -522,7 +522,8 @@ TEST(Server, removes_old_recordings_but_not_the_one_it_replays) {
   client->command(R"({"do":"take"})");
   client->command(R"({"do":"replay","name":")" + first + "\"}");
   ASSERT_TRUE(client->until([&] { return client->status.value("mode", "") == "replay"; }));
-  // Longer than a second: a recording is named by the second it began in, and a name is free again once it is removed.
+  // Waits longer than a second, because a recording's name has the second of its start, and a removed name may be
+  // reused.
   std::this_thread::sleep_for(std::chrono::milliseconds(1200));
   EXPECT_TRUE(std::filesystem::exists(serving.folder.path / first / "run.h5"));
   client->command(R"({"do":"live"})");
@@ -541,10 +542,10 @@ TEST(Server, says_what_is_wrong_with_an_address_a_port_or_a_case) {
   EXPECT_SAYS(serve::Server::open(s).error().message(), "nowhere");
   s.address = "0.0.0.0";
   s.asks_for_token = false;
-  EXPECT_SAYS(serve::Server::open(s).error().message(), "everybody who reaches 0.0.0.0");
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "everybody who can reach 0.0.0.0");
   s.asks_for_token = true;
   s.token = "a b";
-  EXPECT_SAYS(serve::Server::open(s).error().message(), "'a b' cannot stand in an address");
+  EXPECT_SAYS(serve::Server::open(s).error().message(), "'a b' has characters that a web address cannot hold");
   s.token.clear();
   const Serving serving;
   s.address = "127.0.0.1";

@@ -13,7 +13,7 @@ using namespace stylet::serve;
 
 namespace {
 
-/// Reads what was encoded, in order.
+/// Reads the values of an encoded message in their order.
 struct Reader {
   const wire::Bytes& bytes;
   std::size_t at = 0;
@@ -201,7 +201,7 @@ TEST(Wire, noise_is_never_taken_for_a_number_that_is_none) {
     for (std::byte& b : bytes) b = static_cast<std::byte>(random());
     const std::uint32_t kind = k % 2 == 0 ? 16 : 17;
     if (bytes.size() >= 4) std::memcpy(bytes.data(), &kind, 4);
-    if (k % 4 == 0) bytes.resize(28);  // the length of a hand
+    if (k % 4 == 0) bytes.resize(28);  // the length of a hand message
     const auto decoded = wire::decode(bytes);
     if (!decoded) continue;
     ++taken;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs test_*.mjs of this folder with Node's test runner, each bundled with the TypeScript it tests.
+// Runs test_*.mjs of this folder with Node's test runner, each bundled with the TypeScript that it tests.
 //   node run.mjs WEB_BUILD_FOLDER FOLDER_FOR_BUNDLES
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readdirSync, rmSync } from 'node:fs';

@@ -36,7 +36,7 @@ test('a plane cuts an ellipsoid in one ellipse of the right size', () => {
     const cut = cutRegion(1, axis, 0.001);
     assert.equal(cut.length, 1);
     const ellipse = Math.PI * half[0] * half[1];
-    // Inscribed polygons of 28 sides and 36 (18 rings) have 0.992 and 0.995 of the area.
+    // Inscribed polygons with 28 and 36 sides (18 rings) have 0.992 and 0.995 of the circle's area.
     assert.ok(area(cut[0]) > 0.985 * ellipse && area(cut[0]) <= ellipse, `axis ${axis}: ${area(cut[0])} of ${ellipse}`);
   }
 });
@@ -54,7 +54,7 @@ test('corners of a contour lie on the surface, neighbours in one triangle', () =
 });
 
 test('a plane through nodes gives closed contours too', () => {
-  const [cut, ...rest] = cutRegion(1, 2, 0);  // a ring of nodes lies in it
+  const [cut, ...rest] = cutRegion(1, 2, 0);  // a ring of nodes lies in the plane
   assert.equal(rest.length, 0);
   assert.ok(Math.abs(area(cut) - 0.9916 * Math.PI * 23 * 16) < 2, `${area(cut)}`);
 });

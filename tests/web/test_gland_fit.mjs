@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { peakAfter } from 'live/src/controls/key_figures';
 import { GlandFit } from 'live/src/gland_fit';
 
-// A block of two target regions beside each other in tissue: their common face is inside the gland.
+// A block of two adjacent target regions in tissue. Their common face is inside the gland.
 const points = Float32Array.from([0, 1, 2].flatMap((x) => [0, 1].flatMap((y) => [0, 1].flatMap((z) => [12 * x, 20 * y - 5, 30 * z]))));
 const at = (x, y, z) => 4 * x + 2 * y + z;
 const quad = (a, b, c, d) => [a, b, c, a, c, d];

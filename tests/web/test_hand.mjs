@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page asks for while the needle is pushed and when it is let go, against a needle that frames show late.
+// The targets that the page sends while the needle is pushed and when it is released; frames show the needle with a
+// delay.
 import assert from 'node:assert/strict';
 import { beforeEach, mock, test } from 'node:test';
 import { HandControl } from 'live/src/hand.ts';
@@ -7,7 +8,7 @@ import { HandControl } from 'live/src/hand.ts';
 globalThis.window = globalThis;
 const LATE_MS = 120;
 
-/** A needle that obeys as the server's does, seen as it was a while ago. */
+/** A needle that follows the targets as the server's needle does; the page sees it with a delay. */
 class Needle {
   constructor(depth) {
     this.depth = depth;
@@ -16,7 +17,7 @@ class Needle {
     this.scene = { limits: { depth_mm: 100, behind_mm: 30, tilt_deg: 10 } };
     this.listeners = {};
     this.sent = [];
-    this.way = [];     // depths, a millisecond each
+    this.way = [];     // depths, one per millisecond
     this.target = { depth, speed: 0 };
     this.frame = this.seen();
   }
@@ -32,7 +33,7 @@ class Needle {
     const depth = this.way[Math.max(0, this.way.length - LATE_MS)] ?? this.depth;
     return { depth, paused: false, hand: [0, 0, 0] };
   }
-  /** Lets time pass, with a frame every 16 ms. @param each what the page does at every repaint */
+  /** Lets time pass, with a frame every 16 ms. @param each called at every repaint */
   pass(ms, each = () => {}) {
     for (let t = 0; t < ms; t++) {
       const way = this.target.depth - this.depth;

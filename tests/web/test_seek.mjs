@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A time of a recording that is wanted is asked for until it is shown.
+// Seeking repeats the command until the server shows the wanted time.
 import assert from 'node:assert/strict';
 import { beforeEach, mock, test } from 'node:test';
 import { Seek } from 'live/src/controls/seek.ts';
 
 globalThis.window = globalThis;
 
-/** A replay that hears only every so many of what it is asked. */
+/** A replay that loses some of the commands. */
 class Replay {
   connected = true;
   status = { state: 'ready', mode: 'replay', held: true, you_hold: true, replay: { name: 'one', time_s: 0, duration_s: 10, playing: false, rate: 0 } };
   asked = [];
-  deaf = 0;         // commands that come to nothing
+  deaf = 0;         // number of next commands that are lost
   listeners = {};
   on(topic, listener) {
     (this.listeners[topic] ??= []).push(listener);

@@ -39,7 +39,7 @@ test('the ends are where a rigid needle would be, and off it by the error', () =
 
 test('a base that is turned looks elsewhere', () => {
   const ends = makeEnds();
-  // From +z towards the patient's left: a quarter of a turn about +y.
+  // A quarter of a turn about +y turns the needle from +z to the patient's left.
   assert.ok(tipErrorEnds({ ...frame(), orientation: f32(Math.SQRT1_2, 0, Math.SQRT1_2, 0) }, 200, ends));
   ends.planned.forEach((value, k) => assert.ok(Math.abs(value - [210, 5, -180][k]) < 1e-3, `${ends.planned}`));
 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact points: balls where tissue sticks to the needle, rings where it slips, a cone's place for the tip.
+// Marks of contacts: balls where tissue sticks to the needle, rings where it slips, an octahedron at the tip.
 import * as THREE from 'three';
 
 const CAPACITY = 512;
@@ -29,7 +29,7 @@ export class ContactMarks {
       this.object.add(mesh);
       return mesh;
     };
-    // Numbered like the state of a contact: slipping, sticking, tip.
+    // Indexed by the state of a contact: slipping, sticking, tip.
     this.kinds = [
       make(new THREE.TorusGeometry(0.95 * r, 0.3 * r, 10, 24), SLIP_COLOR),
       make(new THREE.SphereGeometry(1.05 * r, 18, 14), STICK_COLOR),
@@ -38,7 +38,7 @@ export class ContactMarks {
   }
 
   /**
-   * @param needle [mm] LPS (3 × points) the needle's centreline, which rings go around
+   * @param needle [mm] LPS (3 × points) centreline of the needle; rings lie around it
    * @param contacts (4 × contacts) x y z [mm] LPS, state 0 slipping, 1 sticking, 2 tip
    */
   show(needle: Float32Array, contacts: Float32Array): void {
@@ -57,7 +57,7 @@ export class ContactMarks {
     });
   }
 
-  /** Direction of the needle at its point nearest to `place`. */
+  /** Computes the direction of the needle at its point nearest to `place`. */
   private setTangentNear(line: Float32Array): void {
     let best = 0;
     let distance = Infinity;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of events above a plot, in as many lanes as needed so that none covers another, each with a line to its place.
+// Labels of events above a plot, in as many lanes as needed so that they do not overlap, each with a line to its point.
 import type uPlot from 'uplot';
 import { font, fontSize, INK, lineScale, PALE } from './plot_style';
 
 export interface PlacedEvent {
   event: { label: string; color?: string };
   x: number;  // value on the x scale
-  y: number;  // value on the y scale: where the dot goes
+  y: number;  // value on the y scale, for the dot
 }
 
 interface Label {
@@ -18,7 +18,7 @@ interface Label {
 
 const PADDING = 4;
 
-/** Gives every label the lowest lane (nearest to the plot) in which it covers no other. */
+/** Puts each label in the lowest lane (nearest to the plot) in which it overlaps no other label. */
 function arrange(events: PlacedEvent[], position: (x: number) => number, width: number, textWidth: (t: string) => number): Label[] {
   const ends: { from: number; to: number }[][] = [];
   return events
@@ -39,7 +39,7 @@ function arrange(events: PlacedEvent[], position: (x: number) => number, width: 
 const widths = new Map<string, number>();
 let measuring: CanvasRenderingContext2D | null = null;
 
-/** Width of a text [CSS px]; the names of events are few and come often. */
+/** Width of a text [CSS px]. The results are cached, because few labels are measured often. */
 function measure(text: string): number {
   measuring ??= document.createElement('canvas').getContext('2d');
   if (!measuring) return text.length * fontSize() * 0.55;
@@ -57,7 +57,7 @@ export function laneHeight(): number {
   return fontSize() * 1.5;
 }
 
-/** Height above the plotting area that the labels need when `width` px show `from` … `to`. */
+/** Height [CSS px] of the labels above the plotting area if `width` px show `from` … `to`. */
 export function labelsHeight(events: PlacedEvent[], from: number, to: number, width: number): number {
   const labels = arrange(events, (x) => ((x - from) / (to - from)) * width, width, measure);
   const lanes = labels.reduce((most, l) => Math.max(most, l.lane + 1), 0);

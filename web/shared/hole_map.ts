@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of the template's holes before a needle goes in, as docs/results.md describes it, and its colours.
+// The map of the template's holes (docs/results.md) and its colours.
 import { viridis } from './colors';
 import { INK } from './plot_style';
 
@@ -31,7 +31,7 @@ export interface Measure {
   key: string;
   label: string;
   of(hole: MappedHole): number | null;  // [mm]
-  clearance: boolean;                   // little is bad; of the others much is
+  clearance: boolean;                   // true: small values are bad; false: large values are bad
 }
 
 export const MEASURES: Measure[] = [
@@ -43,13 +43,13 @@ export const MEASURES: Measure[] = [
   { key: 'tip', label: 'Tip error', of: (h) => h.tip_error_mm?.norm ?? null, clearance: false },
 ];
 
-/** The clearance to whichever structure is nearest. */
+/** The clearance to the nearest structure. */
 export const NEAREST: Measure = {
   key: 'nearest', label: 'Smallest clearance', clearance: true,
   of: (h) => Object.values(h.clearance_mm).reduce((least, mm) => (mm === null ? least : least === null ? mm : Math.min(least, mm)), null),
 };
 
-/** Clearances beyond this [mm] look alike: far enough. */
+/** Larger clearances [mm] have the same colour. */
 export const FAR_MM = 20;
 
 /** Value [mm] at which the scale of a measure ends. */
@@ -62,14 +62,14 @@ export function scaleEnd(measure: Measure, map: HoleMap): number {
 
 function share(measure: Measure, end: number, mm: number): number {
   const s = Math.max(0, Math.min(1, mm / end));
-  return measure.clearance ? s : 1 - s;  // dark is what to beware of, whatever the measure
+  return measure.clearance ? s : 1 - s;  // dark colours stand for bad values
 }
 
 function rgb(color: ArrayLike<number>): string {
   return `rgb(${[0, 1, 2].map((k) => Math.round(255 * color[k])).join(',')})`;
 }
 
-/** Colours of a value [mm]: of the hole, and of text upon it. Readers of every colour vision see which is darker. */
+/** Colours of a hole and of the text on it, for a value [mm]. Their brightness can be seen with every colour vision. */
 export function colorsOf(measure: Measure, end: number, mm: number): { fill: string; text: string } {
   const color = new Float32Array(3);
   const s = share(measure, end, mm);
@@ -83,22 +83,22 @@ export function scaleGradient(measure: Measure): string {
   return `linear-gradient(to right, ${stops.join(',')})`;
 }
 
-/** What the ends of a scale mean, in words: of 0, and of its end. */
+/** Labels of the two ends of a scale. */
 export function scaleWords(measure: Measure, end: number): [string, string] {
   return measure.clearance ? ['0 mm: through it', `${end} mm or more`] : ['0 mm: none', `${end} mm`];
 }
 
-/** Whether a map says anything of a measure: a model may lack a structure, predictions may be to come. */
+/** Whether a map has values of a measure. A model may lack a structure, and predictions may be missing. */
 export function isKnown(measure: Measure, map: HoleMap): boolean {
   return map.holes.some((h) => measure.of(h) !== null);
 }
 
-/** A value as it stands in a hole: few digits, since there is little room. */
+/** A value with few digits, to be written in a hole. */
 export function shortText(mm: number): string {
   return mm === 0 || mm >= 9.95 ? mm.toFixed(0) : mm.toFixed(1);
 }
 
-/** All that is known of a hole, a line for each thing. */
+/** All values of a hole as text, one line each. */
 export function tellOf(hole: MappedHole): string {
   const lines = [`Hole ${hole.hole}`];
   if (hole.depth_mm > 0) lines.push(`${hole.depth_mm.toFixed(1)} mm deep, ${hole.in_target_mm.toFixed(1)} mm of it in the gland`);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What colours and marks of a 3D view mean.
+// Legends of colours and marks in a 3D view.
 import { roundDown, viridisGradient } from './colors';
 import { SLIP_COLOR, STICK_COLOR, TIP_COLOR } from './contact_marks';
 import { element } from './dom';
 
-/** Marks of the colour scale [mm], round numbers from 0 to at least the largest displacement. */
+/** Ticks of the colour scale [mm]: round numbers from 0 to at least the largest displacement. */
 export function scaleMarks(most: number): number[] {
   const step = roundDown(Math.max(most, 0.01) / 4);
   return Array.from({ length: Math.ceil(most / step - 1e-9) + 1 }, (_, i) => Number((i * step).toPrecision(6)));

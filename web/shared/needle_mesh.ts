@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The needle as a tube along its centreline, with its real diameter and a conical tip. The buffers are kept from one
-// curve to the next and grow only with the number of points.
+// The needle as a tube along its centreline, with its real diameter and a conical tip. The buffers are reused for each
+// new curve and grow only with the number of points.
 import * as THREE from 'three';
 
 const SIDES = 20;
 
 export class NeedleMesh {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
-  private capacity = 0;  // rings that fit
+  private capacity = 0;  // number of rings for which buffers are allocated
   private centres = new Float32Array(0);
   private radii = new Float32Array(0);
   private position = new THREE.BufferAttribute(new Float32Array(0), 3);
@@ -38,7 +38,7 @@ export class NeedleMesh {
       tangent.set(this.centres[after] - this.centres[before], this.centres[after + 1] - this.centres[before + 1],
                   this.centres[after + 2] - this.centres[before + 2]).normalize();
       if (i === 0) across.set(0, 0, 0).setComponent(Math.abs(tangent.z) < 0.9 ? 2 : 0, 1);
-      across.addScaledVector(tangent, -across.dot(tangent)).normalize();  // carried along without twist
+      across.addScaledVector(tangent, -across.dot(tangent)).normalize();  // transported without twist
       side.crossVectors(tangent, across);
       for (let k = 0; k < SIDES; k++) {
         const c = Math.cos((2 * Math.PI * k) / SIDES);
@@ -55,11 +55,11 @@ export class NeedleMesh {
     this.object.geometry.setDrawRange(0, (rings - 1) * SIDES * 6);
   }
 
-  /** Centres and radii of the rings: full up to the last diameter of length, from there falling to zero. */
+  /** Computes centres and radii of the rings. Over the last diameter of length the radius decreases to 0. */
   private place(line: Float32Array, points: number): number {
     const r = this.diameter / 2;
     let left = this.diameter;
-    let last = points - 1;  // the point that the beginning of the cone replaces
+    let last = points - 1;  // this point is replaced by the start of the cone
     while (last > 1 && distance(line, last, last - 1) < left) left -= distance(line, last, --last);
     this.centres.set(line.subarray(0, 3 * last));
     const length = distance(line, last, last - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cube in the corner with the patient directions on its faces; turns with the camera.
+// A cube in the corner with the patient's directions on its faces. It turns with the camera.
 import * as THREE from 'three';
 
 function face(letter: string): THREE.CanvasTexture {
@@ -27,7 +27,7 @@ export class OrientationCube {
   private readonly camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10);
 
   constructor() {
-    // Faces +x −x +y −y +z −z in LPS; each letter stands upright when the head is up.
+    // Faces in the order +x −x +y −y +z −z (LPS). Each letter is upright when the patient's head is up.
     const turns: [string, THREE.Euler, THREE.Vector3][] = [
       ['L', new THREE.Euler(Math.PI / 2, Math.PI / 2, 0, 'XYZ'), new THREE.Vector3(1, 0, 0)],
       ['R', new THREE.Euler(Math.PI / 2, -Math.PI / 2, 0, 'XYZ'), new THREE.Vector3(-1, 0, 0)],
@@ -44,7 +44,7 @@ export class OrientationCube {
     }
   }
 
-  /** Draws over the lower left corner of what `renderer` has drawn. @param size [CSS px] */
+  /** Draws the cube over the lower left corner of the renderer's picture. @param size [CSS px] */
   draw(renderer: THREE.WebGLRenderer, main: THREE.Camera, size: number): void {
     this.camera.position.set(0, 0, 3).applyQuaternion(main.quaternion);
     this.camera.quaternion.copy(main.quaternion);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type uPlot from 'uplot';
 
-// Okabe & Ito: told apart by readers of every colour vision.
+// Colours by Okabe & Ito, distinguishable with every kind of colour vision.
 export const INK = '#23262b';
 export const PALE = '#8a9099';
 export const SOFT = '#5b6169';
@@ -13,12 +13,12 @@ export const CURVES = [
 ] as const;
 export type CurveKey = (typeof CURVES)[number]['key'];
 
-/** Size of text in the page [CSS px]; plots follow it, so that they grow with the screen. */
+/** Text size of the page [CSS px]. Plots use it, so that they grow with the screen. */
 export function fontSize(): number {
   return parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.82;
 }
 
-/** Lines and dots grow with the text: 1 on a usual screen. */
+/** Scale of lines and dots, in proportion to the text size: 1 on a usual screen. */
 export function lineScale(): number {
   return Math.max(1, fontSize() / 13);
 }
@@ -40,7 +40,7 @@ export function axis(label: string, size: number): uPlot.Axis {
   };
 }
 
-/** Keeps a plot as wide as its box. */
+/** Resizes a plot with the width of its box. */
 export function followWidth(box: HTMLElement, plot: uPlot): void {
   new ResizeObserver(() => {
     const width = box.clientWidth;
@@ -49,7 +49,7 @@ export function followWidth(box: HTMLElement, plot: uPlot): void {
   }).observe(box);
 }
 
-/** Number with its unit, digits fit for reading. */
+/** A number with its unit and a readable number of digits. */
 export function newtons(value: number): string {
   return `${value.toFixed(Math.abs(value) < 0.1 ? 3 : 2)} N`;
 }

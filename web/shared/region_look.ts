@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a region's surface looks, and the row of a list that changes it.
+// The appearance of a region's surface, and the row of controls that changes it.
 import type * as THREE from 'three';
 import { element } from './dom';
 
-const HARDLY = 0.005;  // less opacity than one can see
+const HARDLY = 0.005;  // surfaces with less opacity are invisible
 const OPAQUE = 0.99;
 
 /** A region's surface in a 3D view. */
@@ -22,14 +22,14 @@ export function applyLook(surface: RegionLook, byDisplacement: boolean): void {
   const { material } = surface.object;
   const opaque = surface.opacity > OPAQUE;
   if (material.transparent === opaque) material.needsUpdate = true;
-  // Colours that stand for numbers must not fade into what lies behind: denser than tissue colours.
+  // Colours that stand for numbers must not mix with the colours behind, so they are more opaque than tissue colours.
   material.opacity = byDisplacement && !surface.region.background ? 1 - (1 - surface.opacity) ** 2 : surface.opacity;
   material.transparent = !opaque;
   material.depthWrite = opaque;
   surface.object.visible = isShown(surface);
 }
 
-/** Colours of the displacement, which the geometry has, or the tissue's own. */
+/** Shows the displacement by the colours of the geometry, or the tissue's own colour. */
 export function applyColors(surface: RegionLook, byDisplacement: boolean): void {
   const { material } = surface.object;
   applyLook(surface, byDisplacement);
@@ -38,7 +38,7 @@ export function applyColors(surface: RegionLook, byDisplacement: boolean): void 
   material.needsUpdate = true;
 }
 
-/** @param changed called after the surface got another opacity, or was shown or hidden */
+/** The row of controls of a region. @param changed called after the opacity or the visibility has changed */
 export function regionRow(surface: RegionLook, changed: () => void): HTMLElement {
   const { region } = surface;
   const row = element('div', 'region');

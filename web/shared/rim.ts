@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type * as THREE from 'three';
 
-/** Makes a translucent surface denser towards its rim, where one looks along it: shapes stay readable through another. */
+/**
+ * Makes a translucent surface more opaque at its rim, where one looks along it, so that shapes behind others are
+ * visible.
+ */
 export function densenRim(material: THREE.MeshStandardMaterial, strength: number): void {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(

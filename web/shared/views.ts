@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a 3D view looks from: directions from the anatomy to the observer, LPS.
+// Standard views of a 3D view: directions from the anatomy to the observer, LPS.
 export const VIEWS: { name: string; from: [number, number, number] }[] = [
   { name: 'Oblique', from: [0.8, -0.56, 0.2] },
   { name: 'From the left', from: [1, 0, 0] },

@@ -10,14 +10,14 @@
 
 namespace stylet::cli {
 
-/// `stylet bench WHAT`, one function a benchmark.
+/// Arguments of `stylet bench WHAT`. 0 stands for the default of the benchmark.
 struct BenchArguments {
   std::string what;
-  int nodes = 0;         ///< 0 = the default of what is measured
-  int contacts = 0;      ///< 0 = the default
-  long steps = 0;        ///< 0 = the default
-  double seconds = 0.0;  ///< 0 = the default
-  double speed = 0.0;    ///< [mm/s], 0 = the default
+  int nodes = 0;
+  int contacts = 0;
+  long steps = 0;
+  double seconds = 0.0;  ///< [s] wall-clock time
+  double speed = 0.0;    ///< [mm/s]
 };
 
 inline constexpr int kRemeshNodes = 1331;
@@ -31,18 +31,18 @@ Result<> bench_display_command(const BenchArguments& arguments, Console& console
 Result<> bench_viewers_command(const BenchArguments& arguments, Console& console);
 
 /// Refuses `--nodes` below `fewest`.
-/// @param why says where that number comes from
+/// @param why the reason for this minimum, shown as the last clause of the error
 Result<> check_nodes(const std::string& benchmark, int nodes, int fewest, const std::string& why);
 
-/// The machine times are of.
+/// The machine on which the times were measured.
 Json machine_json();
 
 Json times_json(const measure::StepTimes& times);
 
-/// A number with so many digits after the point; "-" where there is none.
+/// A number with `digits` digits after the decimal point; "-" if it is not finite.
 std::string number(double value, int digits);
 
-/// The same in JSON: null where there is none.
+/// A number for JSON; null if it is not finite.
 Json or_null(double value);
 
 }  // namespace stylet::cli

@@ -28,7 +28,7 @@ Json histogram_json(const DeadlineHistogram& histogram) {
   return json;
 }
 
-/// Bars of the shares of steps between the edges. A share that is not nothing has a mark at least.
+/// A histogram as text: a bar for the share of steps between two edges. A share above 0 has at least one mark.
 std::string bars(const DeadlineHistogram& histogram) {
   constexpr double kWidth = 60.0;
   std::string text;

@@ -13,7 +13,7 @@ namespace stylet::cli {
 
 namespace {
 
-/// Sizes of a cube, by its cells, up to a number of nodes.
+/// Numbers of cells along the edge of a cube whose mesh has at most `nodes` nodes.
 std::vector<int> sizes_up_to(int nodes) {
   std::vector<int> cells;
   for (int c = 4; (c + 1) * (c + 1) * (c + 1) <= nodes; c += c < 10 ? 1 : 2) cells.push_back(c);
@@ -27,10 +27,11 @@ Json spread_json(const measure::Spread& spread) {
   return {{"p5", spread.p5}, {"p50", spread.p50}, {"p95", spread.p95}, {"max", spread.max}};
 }
 
-/// How much cheaper than Woodbury a contact is on the same mesh, and how much dearer on the finest mesh.
+/// Ratios of processor times: of Woodbury's update to a contact on the coarsest mesh, and of a contact on the finest
+/// mesh to one on the coarsest.
 struct Ratios {
   double woodbury_over_event = 0.0;
-  std::optional<double> finest_over_coarsest;  ///< of one mesh there is none
+  std::optional<double> finest_over_coarsest;  ///< empty with one mesh only
 };
 Ratios ratios(const measure::EventBench& bench, const std::string& rule, bool cold) {
   const auto median = [&](const measure::EventRow& row) { return cold ? row.cold_us.p50 : row.warm_us.p50; };

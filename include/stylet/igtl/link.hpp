@@ -12,72 +12,76 @@
 namespace stylet::igtl {
 
 enum class Role {
-  server,  ///< listens; several others may connect
-  client   ///< connects to one other, again and again until it is there
+  server,  ///< listens; several programs may connect
+  client   ///< connects to one server and tries again until the server answers
 };
 
-/// Names longer than 20 bytes are cut to them: an OpenIGTLink header has no more room.
+/// How a Link connects, the device names of its messages, and its rates. A name is cut after 20 bytes, because an
+/// OpenIGTLink header has no more room.
 struct LinkSettings {
   Role role = Role::server;
-  std::string host = "127.0.0.1";           ///< server: address to listen at; client: whom to connect to
-  int port = 18944;                         ///< 1…65535; a server takes any free one for 0
-  std::string input = "HandleToReference";  ///< TRANSFORM that says where the hand wants the needle's base
+  std::string host = "127.0.0.1";           ///< server: address to listen at; client: host to connect to
+  int port = 18944;                         ///< 1…65535; 0 makes a server take any free port
+  std::string input = "HandleToReference";  ///< name of the TRANSFORM with the wanted pose of the base
   std::string base = "NeedleBaseToReference";
   std::string tip = "NeedleTipToReference";
   std::string force = "BaseForce";
   std::string shaft = "NeedleShaft";
   std::string surface = "TissueSurface";
   std::string status = "Stylet";
-  double poses_hz = 60.0;      ///< 1…1000, poses and force
-  double surface_hz = 10.0;    ///< 0.1…poses_hz
-  double fresh_s = 0.25;       ///< 0.01…10, an older picture has no force
-  int max_connections = 8;     ///< 1…64, of a server; others are turned away
-  double give_up_s = 10.0;     ///< 0.1…600, a connection that takes nothing for so long is closed
-  double retry_s = 0.25;       ///< 0.01…60, a client's first pause before it tries again; doubles up to…
-  double longest_retry_s = 5;  ///< retry_s…600
+  double poses_hz = 60.0;      ///< [1/s] 1…1000, rate of the messages with poses and force
+  double surface_hz = 10.0;    ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
+  double fresh_s = 0.25;       ///< [s] 0.01…10; of a picture older than this, the force is not sent
+  int max_connections = 8;     ///< 1…64, of a server; further connections are refused
+  double give_up_s = 10.0;     ///< [s] 0.1…600; a connection that accepts no data for this time is closed
+  double retry_s = 0.25;       ///< [s] 0.01…60, first pause of a client before it connects again; each pause doubles
+  double longest_retry_s = 5;  ///< [s] retry_s…600, longest such pause
 };
 
-/// What a link has seen so far.
+/// State and counters of a link. The counters start at 0 when the link is opened.
 struct LinkState {
-  int port = 0;                     ///< listens at, or connects to
-  int connections = 0;              ///< now
-  bool tracked = false;             ///< the last pose of the handle was usable, and its sender is still there
-  std::int64_t connected = 0;       ///< connections made, in all
-  std::int64_t turned_away = 0;     ///< beyond max_connections
-  std::int64_t poses = 0;           ///< received: usable poses of the handle
-  std::int64_t unusable = 0;        ///< received: no rigid motion, or sent by somebody whose STATUS was not OK
-  std::int64_t of_others = 0;       ///< received: poses of the handle while another connection had it
-  std::int64_t other_messages = 0;  ///< received: other types and names
-  std::int64_t sent = 0;            ///< bundles of poses and force, surfaces, heartbeats: handed to connections
-  std::int64_t dropped = 0;         ///< of those, replaced by newer ones before they left
-  std::int64_t garbage = 0;         ///< connections closed because what they sent was no OpenIGTLink
-  std::int64_t given_up = 0;        ///< connections closed because they took nothing
-  std::string problem;              ///< the last of these, in words
+  int port = 0;                     ///< the port at which it listens, or to which it connects
+  int connections = 0;              ///< open connections
+  bool tracked = false;             ///< the last pose of the handle was usable, and its sender is still connected
+  std::int64_t connected = 0;       ///< connections made in total
+  std::int64_t turned_away = 0;     ///< connections refused because there were max_connections already
+  std::int64_t poses = 0;           ///< usable poses of the handle that were received
+  std::int64_t unusable = 0;        ///< received poses that were no rigid motion, or whose sender's STATUS was not OK
+  std::int64_t of_others = 0;       ///< received poses of the handle while another connection had the handle
+  std::int64_t other_messages = 0;  ///< received messages of other types and names
+  std::int64_t sent = 0;      ///< messages queued for connections: bundles of poses and force, surfaces, heartbeats
+  std::int64_t dropped = 0;   ///< queued messages that newer ones replaced before they were sent
+  std::int64_t garbage = 0;   ///< connections closed because the received bytes were not OpenIGTLink
+  std::int64_t given_up = 0;  ///< connections closed because they accepted no data
+  std::string problem;        ///< the latest of these problems, in words
 };
 
-/// Shows a running simulation to programs that speak OpenIGTLink, such as 3D Slicer and PLUS, and takes the hand's pose
-/// from them; docs/openigtlink.md says what goes over the wire. One thread of its own does everything with sockets;
-/// what enters and leaves a real-time thread passes through LatestValue.
+/// Sends a running simulation to programs that speak OpenIGTLink, such as 3D Slicer and PLUS, and receives the pose of
+/// the hand from them; docs/openigtlink.md describes the messages. A thread of its own does all socket operations; it
+/// exchanges data with real-time threads through LatestValue, without locks.
 class Link {
  public:
-  /// Opens the server's port, or looks the client's host up; the rest happens in the link's thread.
-  /// Refuses settings out of range, names that are empty or used twice, an unknown host, a port that is taken.
+  /// Opens the server's port, or resolves the client's host name; everything else happens in the link's thread.
+  /// Errors: settings out of range, names that are empty or used twice, an unknown host, a port in use.
   static Result<std::unique_ptr<Link>> open(const LinkSettings& settings);
-  ~Link();  ///< closes all connections; waits for nobody
+  ~Link();  ///< closes all connections without waiting for the other programs
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  /// The handle, for a RealtimeRunner; may outlive the link, then without a hand. Only the last one asked for is fed.
-  /// A runner needs a late_after_s of some periods of the sender (0.1 s for 30 to 60 Hz): older samples fade its force.
+  /// The handle as a device for a RealtimeRunner. It may outlive the link and then gives no valid pose. Only the device
+  /// of the latest call receives poses. Set RunnerSettings::late_after_s to several periods of the sender (0.1 s for 30
+  /// to 60 Hz), because the runner fades the force out when samples are older than this.
   [[nodiscard]] std::unique_ptr<Device> device();
 
-  /// What is to be seen now. One publishing thread; does not wait. Pictures faster than poses_hz replace each other.
+  /// Sets the picture that is sent next. Does not wait; call it from one thread only. Of pictures that come faster than
+  /// poses_hz, the newest is sent.
   void publish(const Picture& picture);
-  /// Surface, as often as it changes; sent at surface_hz at most, and once to whoever connects later. Any thread but a
-  /// real-time one. Refuses triangles that name no point, and surfaces of more than 64 MiB.
+  /// Sets the surface. It is sent at most surface_hz times per second, and once to every program that connects later.
+  /// Call it from any thread but a real-time thread. Errors: triangles whose corners are not points of the surface;
+  /// surfaces of more than 64 MiB.
   Result<> publish_surface(Surface surface);
 
-  /// As of the last turn of the link's thread, one in 1/poses_hz. Any thread but a real-time one.
+  /// The state that the link's thread stored last, every 1/poses_hz. Call it from any thread but a real-time thread.
   [[nodiscard]] LinkState state() const;
 
  private:

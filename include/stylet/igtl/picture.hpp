@@ -11,30 +11,31 @@
 
 namespace stylet::igtl {
 
-/// What a link shows of the needle: plain data, in our own frame.
+/// The state of the needle that a link sends: plain data in Stylet's frame (LPS).
 struct Picture {
   static constexpr std::size_t kShaft = 10;
-  double time_s = 0.0;  ///< simulated
+  double time_s = 0.0;  ///< simulated time
   PlainPose base;
-  PlainPose tip;                       ///< as tip_pose
-  PlainWrench on_hand;                 ///< what needle and tissue exert on the hand, about the base point
-  std::array<Triple, kShaft> shaft{};  ///< [mm] LPS, on the centreline, base to tip
+  PlainPose tip;                       ///< see tip_pose()
+  PlainWrench on_hand;                 ///< force and torque of needle and tissue on the hand, about the base point
+  std::array<Triple, kShaft> shaft{};  ///< [mm] LPS, points on the centreline, base to tip
 };
 
-/// Where the tip is and how it lies: the base's axes carried along the centreline without twist, so that local z is the
-/// tangent at the tip and the bevel keeps its side.
-/// @param centreline [mm] LPS, base to tip, evenly spaced; the base's own pose where it has no length
+/// The pose of the tip. Its axes are those of the base, transported along the centreline without twist: local z is the
+/// tangent at the tip, and the bevel keeps its side.
+/// @param centreline [mm] LPS, base to tip, evenly spaced. If it has no length, the pose of the base is returned.
 [[nodiscard]] Pose tip_pose(const Pose& base, std::span<const Triple> centreline);
 
-/// The picture of a runner's latest snapshots. Its force is the one the runner let through to its device: limited, and
-/// nothing where the hand's samples are invalid or old.
+/// Makes the picture of a runner's latest snapshots. Its force is the one that the runner sent to its device: limited,
+/// and zero where the hand's samples are invalid or old.
 [[nodiscard]] Picture picture_of(const Snapshot& snapshot, const DeviceSnapshot& device);
 
-/// A deformed surface.
+/// A deformed triangulated surface.
 struct Surface {
   using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-  std::vector<std::array<float, 3>> points;    ///< [mm] LPS
-  std::shared_ptr<const Triangles> triangles;  ///< corners, numbers of points; shared, since they stay the same
+  std::vector<std::array<float, 3>> points;  ///< [mm] LPS
+  std::shared_ptr<const Triangles>
+      triangles;  ///< indices of the corners in `points`; shared, because they do not change
 };
 
 }  // namespace stylet::igtl

@@ -10,7 +10,7 @@
 
 namespace stylet::measure {
 
-/// Median and spread of many times [µs] of processor time.
+/// Quantiles of processor times [µs].
 struct Spread {
   double p5 = 0.0;
   double p50 = 0.0;
@@ -18,22 +18,22 @@ struct Spread {
   double max = 0.0;
 };
 
-/// What laying a contact costs on one mesh: all that the loop does for it, from the search of its element to the last
-/// compliance that the next step reads.
+/// Processor time of laying a contact on one mesh: all work of the loop for it, from the search of its element to the
+/// last entry of the compliance that the next step reads.
 struct EventRow {
   Index nodes = 0;
-  std::string rule;  ///< interior, paper: node addition; near-field: the default, no node
-  int points = 0;    ///< held when the way is done; the same on every mesh
-  long events = 0;   ///< measured
-  Spread warm_us;    ///< one event after the other
-  Spread cold_us;    ///< everything else has been through the caches between two
+  std::string rule;  ///< "interior" or "paper": node addition by this rule; "near-field": the default, adds no node
+  int points = 0;    ///< number of points held at the end of the way; the same on every mesh
+  long events = 0;   ///< number of timed events
+  Spread warm_us;    ///< events timed directly one after the other
+  Spread cold_us;    ///< events timed with the processor's caches emptied before each
 };
 
 struct EventBench {
   std::vector<EventRow> rows;
-  Index woodbury_nodes = 0;  ///< of the smallest mesh, on which the full inverse is changed
-  Spread woodbury_us;        ///< search, ΔK, and all of K⁻¹ by the matrix inversion lemma on one triangle
-  Spread woodbury_cold_us;   ///< the same with nothing of it in the caches
+  Index woodbury_nodes = 0;  ///< nodes of the smallest mesh, on which the full inverse is updated
+  Spread woodbury_us;        ///< search, ΔK, and update of K⁻¹ by the matrix inversion lemma on one triangle
+  Spread woodbury_cold_us;   ///< the same with the caches emptied before each event
 
   /// The row of a rule on the smallest or the largest mesh; null where there is none.
   [[nodiscard]] const EventRow* coarsest(const std::string& rule) const;
@@ -42,13 +42,13 @@ struct EventBench {
 
 struct EventBenchOptions {
   Index largest = 20000;  ///< meshes with more nodes are left out
-  int turns = 25;         ///< in each the whole way is gone several times by one rule, then by the next
-  int cold_turns = 4;     ///< emptying the caches takes long
+  int turns = 25;         ///< turns with warm caches; in each, every rule follows the whole way several times
+  int cold_turns = 4;     ///< turns with cold caches; few, because emptying the caches takes long
 };
 
-/// The demo patient on meshes of 570, 5,000 and 20,000 nodes; contacts are laid along the demo's
-/// way by node addition with both rules, and with the near field, as a step does it.
-/// Errors: failed, where nodes can be added nowhere on the way.
+/// Times the laying of contacts in the demo patient on meshes of 570, 5,000 and 20,000 nodes. Contacts are laid along
+/// the demo's way by node addition with both rules, and with the near field, as a step does it. Errors: failed, if no
+/// node can be added anywhere on the way.
 Result<EventBench> bench_events(const EventBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::measure

@@ -8,11 +8,11 @@
 
 namespace stylet::measure {
 
-/// What the real-time loop did on this machine.
+/// Result of a run of the real-time loop on this machine.
 struct LoopReport {
   Index nodes = 0;
   int contacts_max = 0;
-  double seconds = 0.0;  ///< on the clock
+  double seconds = 0.0;  ///< wall-clock time
   double simulated_s = 0.0;
   LoopCounters counters;
   RunnerTimes times;
@@ -25,8 +25,8 @@ struct LoopBenchOptions {
   double seconds = 30.0;
 };
 
-/// Runs RealtimeRunner at 1 kHz in its two threads, a script at the handle: the insertion of bench_scale, again and
-/// again, for so many seconds of the clock.
+/// Runs RealtimeRunner at 1 kHz in its two threads for a wall-clock time. A scripted handle repeats the insertion of
+/// bench_scale.
 Result<LoopReport> bench_loop(const LoopBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::measure

@@ -11,18 +11,18 @@
 
 namespace stylet::measure {
 
-/// An insertion that has been carried out, with every step.
+/// A simulated insertion with all its steps.
 struct RecordedRun {
   std::shared_ptr<const Model> model;
   std::vector<Step> steps;
-  std::vector<Frame> events;  ///< frames taken at events and at the deepest point, labelled
+  std::vector<Frame> events;  ///< labelled frames, taken at events and at the deepest point
   Summary summary;
 
-  /// The first event of a kind, in a region where one is named; null where there is none.
+  /// The first event of a kind, in `region` unless that is empty; null if there is none.
   [[nodiscard]] const Event* event(EventKind kind, const std::string& region = {}) const;
 };
 
-/// Carries out all insertions of a model.
+/// Simulates all insertions of a model.
 Result<RecordedRun> record_run(const std::shared_ptr<const Model>& model, const Progress& progress = {});
 
 }  // namespace stylet::measure

@@ -9,10 +9,11 @@
 
 namespace stylet::measure {
 
-/// A cube of tissue, 100 mm, held at its far face, and a needle's way into it: changes of the mesh at any size.
+/// A cube of tissue of 100 mm, held at its far face, with a needle's way into it. Used to time changes of a mesh of any
+/// size.
 class Block {
  public:
-  /// @param cells along each edge, 3 … 20: (cells + 1)³ nodes
+  /// @param cells number of cells along each edge, 3 … 20; the mesh has (cells + 1)³ nodes
   static Result<std::unique_ptr<Block>> build(int cells, const Progress& progress = {});
 
   [[nodiscard]] const NeedleWay& way() const { return way_; }
@@ -24,16 +25,17 @@ class Block {
   NeedleWay way_;
 };
 
-/// One size, one method: processor time of one change of the mesh, everything included.
+/// Processor time of one change of the mesh with everything that it needs, for one size and one method.
 struct RemeshRow {
   int nodes = 0;
   std::string method;  ///< shortcut, bordered, woodbury, bcs, inverse
   double median_us = 0.0;
 };
 
-/// Times a change of the mesh against the number of nodes. shortcut: a node inside an element, the default; bordered: a
-/// node on a face by the default's compliance; woodbury, bcs, inverse: that node in the full inverse.
-/// @param cells sizes of the block
+/// Times a change of the mesh against the number of nodes. Methods: shortcut, a node inside an element, as by default;
+/// bordered, a node on a face with the default's compliance; woodbury, bcs and inverse, a node on a face with the full
+/// inverse.
+/// @param cells sizes of the block, see Block::build
 Result<std::vector<RemeshRow>> bench_remeshing(const std::vector<int>& cells, const Progress& progress = {});
 
 }  // namespace stylet::measure

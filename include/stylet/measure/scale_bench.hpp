@@ -11,7 +11,7 @@
 
 namespace stylet::measure {
 
-/// Quantiles of the times of many steps [µs].
+/// Quantiles of the computing times of steps [µs].
 struct StepTimes {
   double p50 = 0.0;
   double p99 = 0.0;
@@ -19,51 +19,51 @@ struct StepTimes {
   double max = 0.0;
 };
 
-/// What a step costs on one mesh with so many contacts.
+/// Computing time of a step on one mesh with one number of contacts.
 struct ScaleRow {
   Index nodes = 0;
-  std::string element;      ///< tissue.element
-  int contacts = 0;         ///< wanted
-  int contacts_max = 0;     ///< there were
-  double spacing_mm = 0.0;  ///< that gave them
-  long steps = 0;           ///< measured: those with at least kShare of the most contacts
-  long events = 0;          ///< of the insertion in them
-  long flagged = 0;         ///< of them, with a flag (Step)
-  double iterations = 0.0;  ///< of the solver in a step, mean
-  StepTimes cpu_us;         ///< thread CPU time
-  StepTimes wall_us;
-  long all_steps = 0;           ///< with however many contacts
-  double all_longest_us = 0.0;  ///< of those, thread CPU time
-  long all_over_1ms = 0;        ///< of those, above a millisecond of it
-  double all_cpu_s = 0.0;       ///< of those together
-  /// After every step an arithmetic of always the same amount is timed, 100 µs when nothing interrupts it: how often it
-  /// took above a millisecond, and all of it together. An interruption takes time from it and from steps alike.
+  std::string element;          ///< tissue.element
+  int contacts = 0;             ///< wanted number of contacts
+  int contacts_max = 0;         ///< largest number of contacts that occurred
+  double spacing_mm = 0.0;      ///< spacing of contacts that gives the wanted number
+  long steps = 0;               ///< number of measured steps: those with at least 85 % of contacts_max
+  long events = 0;              ///< events of the insertion in the measured steps
+  long flagged = 0;             ///< measured steps with a flag (Step::flags)
+  double iterations = 0.0;      ///< mean number of solver iterations in a measured step
+  StepTimes cpu_us;             ///< thread CPU time of the measured steps
+  StepTimes wall_us;            ///< wall-clock time of the measured steps
+  long all_steps = 0;           ///< number of all steps, with any number of contacts
+  double all_longest_us = 0.0;  ///< largest thread CPU time of all steps
+  long all_over_1ms = 0;        ///< number of all steps with more than 1 ms of thread CPU time
+  double all_cpu_s = 0.0;       ///< sum of the thread CPU times of all steps
+  /// After every step a fixed amount of arithmetic is timed, which takes 100 µs if nothing interrupts it. How often it
+  /// took more than 1 ms, and the sum of its times. Interruptions by the system lengthen it and the steps alike.
   long fixed_over_1ms = 0;
   double fixed_cpu_s = 0.0;
-  /// The longest of all steps when each is given the median of its repeats, which do the same work: what is left
-  /// without the system's interruptions, which count as the thread's time too. NaN with fewer than three repeats.
+  /// Largest value of the median time of each step over its repeats, which do the same work. The median removes the
+  /// system's interruptions, which count as thread CPU time too. NaN with fewer than three repeats.
   double all_longest_median_us = std::numeric_limits<double>::quiet_NaN();
-  /// Of the steps above a millisecond, the longest median of their repeats: whether it was the step or an interruption.
-  /// NaN without such steps, or with fewer than three repeats of one.
+  /// The same for the steps that took more than 1 ms: it tells whether the step itself or an interruption was long.
+  /// NaN without such steps, or if one has fewer than three repeats.
   double over_1ms_median_us = std::numeric_limits<double>::quiet_NaN();
-  double mesh_s = 0.0;     ///< from contours, wall clock
-  double factor_s = 0.0;   ///< of the stiffness
-  double store_s = 0.0;    ///< compliance and kernel of the corridor, and everything else before the first step
-  double memory_mb = 0.0;  ///< resident in the process with the model ready
+  double mesh_s = 0.0;     ///< wall-clock time of meshing the contours
+  double factor_s = 0.0;   ///< time of factorising the stiffness
+  double store_s = 0.0;    ///< time of the corridor's compliance and kernel, and all else before the first step
+  double memory_mb = 0.0;  ///< resident memory of the process with the model ready
 };
 
 struct ScaleBenchOptions {
   Index largest = 20000;  ///< meshes with more nodes are left out
   std::vector<int> contacts = {20, 40, 60};
-  long steps = 0;  ///< the way is gone again until there are so many, of the same needle and of a new one by turns
+  long steps = 0;  ///< least number of steps: the insertion is repeated, in turn with the same needle and a new one
 };
 
-/// How many contacts there can be: with more they would be nearer each other than the needle is thick.
+/// Largest number of contacts. With more, their spacing would be smaller than the needle's diameter.
 int most_driven_contacts();
 
-/// The demo patient on meshes of 570, 5,000, 20,000 and 100,000 nodes; on each the default scenario's needle goes 90 mm
-/// in, back and forth by 15 mm at the deepest point, further in each time, and out, with contacts as near each other as
-/// give 20, 40 and 60 of them, or as many as are asked for.
+/// Times the steps of an insertion into the demo patient on meshes of 570, 5,000, 20,000 and 100,000 nodes. The needle
+/// of the default scenario goes 90 mm in, back and forth by 15 mm at the deepest point, further in each time, and out.
+/// The spacing of contacts is chosen to give 20, 40 and 60 of them, or the numbers in ScaleBenchOptions::contacts.
 Result<std::vector<ScaleRow>> bench_scale(const ScaleBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::measure

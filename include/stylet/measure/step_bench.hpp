@@ -8,26 +8,27 @@
 
 namespace stylet::measure {
 
-/// On what a step with so many contacts spends its time.
+/// The time that a step with one number of contacts spends in each phase.
 struct StepRow {
   Index nodes = 0;
-  int contacts = 0;      ///< wanted
-  int contacts_max = 0;  ///< there were
-  long steps = 0;        ///< measured
-  double iterations = 0.0;
-  StepTimes cpu_us;                                 ///< thread CPU time, nobody observing the phases
-  double mean_us = 0.0;                             ///< of the same
-  std::array<double, kStepPhases> phase_us{};       ///< mean of all steps (StepPhase)
-  std::array<double, kStepPhases> slow_phase_us{};  ///< mean of the slowest hundredth
-  double clock_share = 0.0;                         ///< by which reading the clock makes the mean step longer
+  int contacts = 0;                                 ///< wanted number of contacts
+  int contacts_max = 0;                             ///< largest number of contacts that occurred
+  long steps = 0;                                   ///< number of measured steps
+  double iterations = 0.0;                          ///< mean number of solver iterations
+  StepTimes cpu_us;                                 ///< thread CPU time without timing the phases
+  double mean_us = 0.0;                             ///< mean of the same times
+  std::array<double, kStepPhases> phase_us{};       ///< time in each StepPhase, mean of all steps
+  std::array<double, kStepPhases> slow_phase_us{};  ///< the same, mean of the slowest hundredth of the steps
+  double clock_share = 0.0;                         ///< relative increase of the mean step by reading the clock
 };
 
 struct StepBenchOptions {
   Index nodes = 5000;
 };
 
-/// The insertion of bench_scale on one mesh, with 20, 40 and 60 contacts, each eight times: by turns as it is and with
-/// the clock read at every change of phase. The first is that of the times of steps. All runs take the very same steps.
+/// Runs the insertion of bench_scale on one mesh with 20, 40 and 60 contacts, each eight times: in turn without and
+/// with the clock read at every change of phase. The first run without gives the times of steps. All runs take
+/// identical steps.
 Result<std::vector<StepRow>> bench_step(const StepBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::measure

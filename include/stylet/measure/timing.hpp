@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-/// The experiments of Goksel et al. 2005 and their figures, made again.
+/// Every benchmark, and the clocks and the machine's name that they share.
 namespace stylet::measure {
 
 /// Processor time of this thread [s].
 double thread_cpu_s();
 
-/// A clock on the wall that only goes forward [s].
+/// Wall-clock time from a monotonic clock [s].
 double wall_s();
 
 /// Processor time of one call [s].
@@ -21,18 +21,18 @@ double cpu_seconds(Work&& work) {
   return thread_cpu_s() - before;
 }
 
-/// Results of methods that are timed may differ by this much, relatively; beyond it nothing is reported.
+/// Largest relative difference between the results of timed methods; if it is larger, an error is reported.
 inline constexpr double kLargestDifference = 1e-8;
 
-/// Median; of an even number of values the mean of the two in the middle. NaN of none.
+/// Median; with an even number of values, the mean of the two in the middle. NaN without values.
 double median(std::vector<double> values);
 
-/// What the times were measured on.
+/// The machine on which the times were measured.
 struct Machine {
-  std::string processor;  ///< as the system names it
+  std::string processor;  ///< name reported by the system
   int cores = 0;
-  std::string blas;      ///< name, version and kernel as the library tells them; empty where it tells nothing
-  int blas_threads = 0;  ///< while measuring; 0 where it cannot be set: another BLAS than OpenBLAS
+  std::string blas;      ///< name, version and kernel reported by the library; empty if it reports none
+  int blas_threads = 0;  ///< threads during the measurement; 0 if they cannot be set (not OpenBLAS)
   std::string compiler;
 };
 Machine this_machine();

@@ -11,18 +11,18 @@
 
 namespace stylet::measure {
 
-/// What viewers of a live session cost the loop.
+/// The effect of viewers of a live session on the real-time loop.
 struct ViewersReport {
   Index nodes = 0;
   int viewers = 0;
   struct Condition {
     DeadlineHistogram step_cpu;        ///< thread CPU time of steps
-    std::vector<std::int64_t> p99_ns;  ///< of each turn
-    std::int64_t late = 0;             ///< steps that took over more than one period
+    std::vector<std::int64_t> p99_ns;  ///< 99 % quantile of this time in each turn
+    std::int64_t late = 0;             ///< steps that covered more than one period, because the loop was late
   };
   Condition without, with;
-  double pictures_per_s = 0.0;  ///< that a viewer got
-  double megabytes_per_s = 0.0;
+  double pictures_per_s = 0.0;   ///< pictures that one viewer received per second
+  double megabytes_per_s = 0.0;  ///< data that one viewer received per second
 };
 
 struct ViewersBenchOptions {
@@ -32,9 +32,9 @@ struct ViewersBenchOptions {
   double seconds = 120.0;
 };
 
-/// Serves a live session over the loopback interface, a script at the handle: the insertion of bench_scale, again and
-/// again. By turns of one insertion each, nobody watches and `viewers` do, who read everything as it comes. The times
-/// are those of the steps in the session's own recording.
+/// Serves a live session over the loopback interface; a scripted handle repeats the insertion of bench_scale. In turns
+/// of one insertion each there are no viewers, or `viewers` that read everything at once. The times of steps come from
+/// the session's recording.
 Result<ViewersReport> bench_viewers(const ViewersBenchOptions& options, const Progress& progress = {});
 
 }  // namespace stylet::measure

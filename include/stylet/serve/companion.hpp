@@ -10,24 +10,28 @@
 
 namespace stylet::serve {
 
-/// Another program beside the pages, over a link of its own: it sees a live session and may have the needle. It stays
-/// while loops come and go with resets, holes and cases. All calls from the session's thread; they return at once.
+/// Another program that is connected besides the pages, for example over OpenIGTLink: it is shown a live session and
+/// may move the needle. It stays connected when a reset, another hole or another case starts a new real-time loop. The
+/// session's thread makes all calls; each must return at once.
 class Companion {
  public:
   virtual ~Companion() = default;
 
-  /// What viewers call it.
+  /// Its name on the page.
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Moves the needle in the next loop, and not any more in those before; null: the pages move it.
+  /// A device that moves the needle in the next loop; devices of earlier loops give no more poses. Null: the pages move
+  /// the needle.
   [[nodiscard]] virtual std::unique_ptr<Device> device() = 0;
-  /// Why that device says no pose that can be used, in words.
+  /// Why the device gives no usable pose, in words.
   [[nodiscard]] virtual std::string why_no_pose() const = 0;
 
-  /// The case that is open, undeformed.
+  /// Receives the open case, undeformed.
   virtual void show(const Scene& scene) = 0;
-  /// What is to be seen now: with every picture for the pages, also while paused; never while there is no loop.
+  /// Receives the state of the loop. Called with every picture for the pages, also while paused, and never while there
+  /// is no loop.
   virtual void show(const Snapshot& snapshot, const DeviceSnapshot& device) = 0;
-  /// @param displacement [mm] (3 × n) LPS of the scene's nodes
+  /// Receives the displacement of the scene's points.
+  /// @param displacement [mm] (3 × n) LPS
   virtual void show(const Eigen::Ref<const Eigen::Matrix3Xf>& displacement) = 0;
 };
 

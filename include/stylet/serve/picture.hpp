@@ -9,40 +9,40 @@
 #include <string>
 #include <vector>
 
-/// What viewers are shown (docs/live_protocol.md).
+/// The data that viewers of a live session receive (docs/live_protocol.md).
 namespace stylet::serve {
 
-/// A case as it lies undeformed.
+/// A case, undeformed.
 struct Scene {
-  std::string text;                      ///< JSON
-  std::vector<float> positions;          ///< (3 n) [mm] LPS of the nodes of surfaces
-  std::vector<std::uint32_t> triangles;  ///< (3 t) corners, patch by patch
+  std::string text;                      ///< JSON: regions, template, planned insertions, …
+  std::vector<float> positions;          ///< (3 n) [mm] LPS, the points of the surfaces
+  std::vector<std::uint32_t> triangles;  ///< (3 t) indices of the corners, patch by patch
 };
 
-/// One moment, as it goes to viewers (wire.hpp).
+/// The state at one moment, as it is sent to viewers (wire.hpp).
 struct LiveFrame {
   enum Bit : std::uint32_t { paused = 1, replayed = 2, trusted = 4, displaced = 8, whole_curve = 16 };
 
-  double time_s = 0.0;  ///< simulated; of a replay between two steps later than the step's
-  Step step;            ///< the last one
+  double time_s = 0.0;  ///< simulated time; in a replay it may lie between `step` and the next one
+  Step step;            ///< the last step
   std::uint32_t bits = 0;
-  std::uint32_t steps = 0;                                              ///< so many have been taken
-  std::uint32_t missed = 0;                                             ///< deadlines
-  double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< of the hand
-  double left_out_N = 0.0;                                              ///< far or near field is not shown, the larger
-  std::optional<TipError> tip_error;                                    ///< empty in a replay: not recorded
-  std::vector<float> centreline;                                        ///< (3 p) [mm] LPS, base to tip
+  std::uint32_t steps = 0;                                              ///< number of steps taken
+  std::uint32_t missed = 0;                                             ///< number of missed deadlines
+  double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< orientation of the hand
+  double left_out_N = 0.0;            ///< force whose far or near field is not shown; the larger of the two
+  std::optional<TipError> tip_error;  ///< empty in a replay, because it is not recorded
+  std::vector<float> centreline;      ///< (3 p) [mm] LPS, base to tip
   std::vector<ContactSnapshot> contacts;
-  std::vector<Step> curve;                 ///< steps since the last frame; with whole_curve all
-  double unit_mm = 0.0;                    ///< of `displacement`
-  std::vector<std::int16_t> displacement;  ///< (3 n) of the scene's nodes; may be empty
+  std::vector<Step> curve;                 ///< steps since the last frame; with the bit whole_curve, all steps
+  double unit_mm = 0.0;                    ///< length that 1 in `displacement` stands for
+  std::vector<std::int16_t> displacement;  ///< (3 n) of the scene's points; may be empty
 };
 
-/// Puts displacements into a frame, in the finest unit that holds them.
-/// @param u [mm] (3 × n) LPS
+/// Stores displacements in a frame, in the smallest unit_mm in which the largest fits 16 bits (at least 0.001 mm).
+/// @param u [mm] (3 × n) LPS; the frame gets no displacement if a value is not finite
 void set_displacement(LiveFrame& frame, const Eigen::Ref<const Eigen::Matrix3Xf>& u);
 
-/// Something that happened, or "started" with the insertion's name for the region.
+/// An event of the insertion. Of kind "started", it is the start of an insertion, and `region` is the insertion's name.
 struct LiveEvent {
   std::string kind;
   double time_s = 0.0;
@@ -51,44 +51,44 @@ struct LiveEvent {
   std::string region;
 };
 
-/// The map of the case's template, as far as it has been made.
+/// The map of the template's holes, as far as it has been computed.
 struct LiveMap {
-  std::optional<HoleMap> map{};  ///< empty until the clearances are there, and where there can be none
-  std::string why_not{};         ///< why there can be none; empty: there can
-  int predicted = 0;             ///< holes whose insertion has succeeded or failed
-  bool predicting = false;       ///< more are to come
+  std::optional<HoleMap> map{};  ///< empty until the clearances are computed, and where no map is possible
+  std::string why_not{};         ///< why no map is possible; empty: it is
+  int predicted = 0;             ///< number of holes whose insertion was simulated or failed
+  bool predicting = false;       ///< further holes are being simulated
 };
 
-/// Why a request was not carried out.
+/// Why a request was not carried out (`text`), and what the user can do (`cure`).
 struct Notice {
   std::string text;
   std::string cure;
 };
 
-/// How a session is doing, but for what differs from viewer to viewer.
+/// The state of a session, without the part that differs from viewer to viewer.
 struct SessionStatus {
   enum class State { loading, ready, failed };
   State state = State::loading;
-  std::string stage;       ///< of loading; when ready: what is still missing of the picture
-  double fraction = -1.0;  ///< of it, −1 where it is not known
+  std::string stage;       ///< stage of loading; when ready: the part of the picture that is still missing
+  double fraction = -1.0;  ///< of `stage` that is done, 0…1; −1 where it is not known
   Notice failure;
   bool paused = false;
-  std::string insertion;            ///< its name
-  std::string hole;                 ///< empty where it is none
-  std::vector<std::string> inside;  ///< regions that the needle is in with its tip (the first) or its shaft
-  std::string device;               ///< that has the needle: "page", or a companion's name
-  std::string device_problem;       ///< why it does not move the needle now; empty: it does
+  std::string insertion;            ///< name of the insertion
+  std::string hole;                 ///< template hole; empty where the insertion does not use one
+  std::vector<std::string> inside;  ///< regions that contain the tip (the first) or the shaft
+  std::string device;               ///< device that moves the needle: "page", or a companion's name
+  std::string device_problem;       ///< why the device does not move the needle; empty: it does
   struct Recording {
     std::string name;
     double seconds = 0.0;
-    std::string problem;  ///< why nothing is recorded; empty: it is
-    std::string warning;  ///< what may keep it from going on
+    std::string problem;  ///< why nothing is recorded; empty: the session is recorded
+    std::string warning;  ///< what may soon stop the recording
   } recording;
   struct Replay {
-    std::string name;  ///< empty: live
+    std::string name;  ///< recording that is replayed; empty: the session is live
     double time_s = 0.0;
     double duration_s = 0.0;
-    double rate = 0.0;  ///< 0: stands
+    double rate = 0.0;  ///< playing speed, 1 is real time; 0: stopped
   } replay;
   struct Loop {
     std::int64_t steps = 0;

@@ -11,35 +11,37 @@
 namespace stylet::serve {
 
 struct ServerSettings {
-  std::string address = "127.0.0.1";  ///< to listen on
-  std::uint16_t port = 8080;          ///< 0: any that is free
-  std::string token;                  ///< that viewers must know; empty: one is made
-  bool asks_for_token = true;         ///< false: everybody of this machine may come in; on the loopback interface only
-  std::filesystem::path
-      token_file;            ///< keeps the made token of the loopback interface for the next start; may be empty
-  std::size_t viewers = 32;  ///< at most
-  double silence_s = 15.0;   ///< a viewer who has not answered for so long is gone
+  std::string address = "127.0.0.1";  ///< IP address to listen on
+  std::uint16_t port = 8080;          ///< 0: any free port
+  std::string token;                  ///< viewers must know it; empty: a random one is made
+  /// False lets every user of this machine in without a token; allowed on the loopback interface only.
+  bool asks_for_token = true;
+  /// File that keeps the random token of the loopback interface for the next start; may be empty.
+  std::filesystem::path token_file;
+  std::size_t viewers = 32;  ///< largest number of viewers
+  double silence_s = 15.0;   ///< [s] a viewer that has not answered for this time is disconnected
   SessionSettings session;
 };
 
-/// The live page: HTTP, WebSockets (docs/live_protocol.md) and the session behind them. One thread serves all viewers;
-/// each has room for one picture, so a slow one loses pictures and delays nobody.
+/// The server of the live page: HTTP, WebSockets (docs/live_protocol.md) and the session behind them. One thread serves
+/// all viewers. For each viewer at most one picture waits to be sent, so a slow viewer misses pictures and delays no
+/// other viewer.
 class Server {
  public:
-  /// Listens. Errors: an address that is none, a port that is taken, a token that cannot stand in an address, or none
-  /// asked for beyond the loopback interface.
+  /// Opens the port. Errors: an invalid IP address, a port in use, a token with characters that a URL cannot hold, or
+  /// asks_for_token = false on an address other than the loopback interface.
   static Result<std::unique_ptr<Server>> open(ServerSettings settings);
   ~Server();  ///< stop()
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// What to open in a browser, with the token if one is asked for.
+  /// The address to open in a browser, with the token if there is one.
   [[nodiscard]] std::string url() const;
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Begins to serve, in threads of its own.
+  /// Starts serving, in threads of its own.
   void start();
-  /// Ends the session, whose recording is whole then, and closes all connections. Any thread.
+  /// Ends the session, completes its recording and closes all connections. May be called from any thread.
   void stop();
 
  private:

@@ -20,34 +20,35 @@ struct HandTarget;
 /// A case that has been opened.
 struct LoadedCase {
   std::shared_ptr<const Model> model;
-  std::vector<std::string> notes;  ///< what was left out, added or put right on the way to the model
+  std::vector<std::string> notes;  ///< what was left out, added or corrected when the model was made
 };
 
-/// A case that can be opened: a scenario file, a saved model.
+/// A case that can be opened: a scenario file or a saved model.
 struct CaseSource {
   std::string title;
   std::function<Result<LoadedCase>(const Progress&)> load;
 };
 
 struct SessionSettings {
-  std::vector<CaseSource> cases;              ///< the first is opened; there must be one unless something is replayed
-  std::filesystem::path recordings;           ///< folder; every insertion makes a folder in it, with its run.h5
-  std::filesystem::path archive;              ///< another folder with recordings, which is only read; may be empty
-  std::string replay;                         ///< name of a recording to start with; empty: live
-  RunnerSettings runner;                      ///< keep_steps is set
-  double pictures_per_s = 60.0;               ///< at most
-  double field_waits_s = 3.0;                 ///< longest wait for a page to draw before the displacement field is made
-  double recorded_frames_per_s = 10;          ///< at most; fewer where a mesh makes them expensive
-  std::shared_ptr<Companion> companion;       ///< may be null
-  std::uintmax_t keep_bytes = 5'000'000'000;  ///< recordings may take together, the oldest go first; 0: no limit
-  double room_every_s = 2.0;                  ///< looks after their room and the disk's
-  /// Free bytes of the disk that a folder is on; empty: as the system says.
+  std::vector<CaseSource> cases;      ///< the first is opened; may be empty only with `replay`
+  std::filesystem::path recordings;   ///< folder; every insertion makes a folder with run.h5 in it
+  std::filesystem::path archive;      ///< another folder with recordings, read only; may be empty
+  std::string replay;                 ///< name of a recording to start with; empty: live
+  RunnerSettings runner;              ///< keep_steps is set by the session
+  double pictures_per_s = 60.0;       ///< [1/s] highest rate of pictures
+  double field_waits_s = 3.0;         ///< [s] longest wait for a page to draw before the displacement field is prepared
+  double recorded_frames_per_s = 10;  ///< [1/s] highest rate; lower where frames of the mesh take long to compute
+  std::shared_ptr<Companion> companion;  ///< may be null
+  /// Limit of all recordings together; the oldest are removed first; 0: no limit.
+  std::uintmax_t keep_bytes = 5'000'000'000;
+  double room_every_s = 2.0;  ///< [s] period of the check of this limit and of the free disk space
+  /// Returns the free bytes of the disk that holds a folder; empty: asks the system.
   std::function<std::uintmax_t(const std::filesystem::path&)> free_bytes;
-  /// Tells who started the session of what has become of recordings; may be empty. From any thread.
+  /// Receives messages about removed recordings and full disks, for the terminal; may be empty. Called from any thread.
   std::function<void(const std::string&)> say;
 };
 
-/// Who watches a session. Called from the session's thread; returns at once.
+/// Receives the output of a session. The session's thread makes all calls; each must return at once.
 class Audience {
  public:
   virtual ~Audience() = default;
@@ -56,27 +57,28 @@ class Audience {
   virtual void show(const LiveMap& map) = 0;
   virtual void tell(const SessionStatus& status) = 0;
   virtual void tell(const LiveEvent& event) = 0;
-  /// @param viewer who asked for what is refused
+  /// Reports that a request was refused.
+  /// @param viewer the viewer that made the request
   virtual void refuse(std::uint64_t viewer, const Notice& why) = 0;
 };
 
-/// What viewers can ask a session for.
+/// A request of a viewer to the session.
 struct Request {
   enum class Kind {
-    hole,       ///< text: another hole of the template
-    insertion,  ///< number: one that the scenario plans
-    reset,      ///< back to the start of this one
+    hole,       ///< starts an insertion through another hole of the template; text: its name
+    insertion,  ///< starts an insertion that the scenario plans; number: its index
+    reset,      ///< restarts the current insertion
     pause,
     resume,
-    step,       ///< number: while paused
-    open_case,  ///< number
-    replay,     ///< text: a recording
-    live,       ///< back from it
-    seek,       ///< number [s]
-    play,       ///< number: rate, 0 stands
-    predict,    ///< number: 1 inserts a needle through each hole for the map, beside the one that moves; 0 no more
-    greet,      ///< somebody has come: the whole curve again
-    drawn       ///< a page has drawn all it shows
+    step,       ///< takes steps while paused; number: how many
+    open_case,  ///< number: index of the case
+    replay,     ///< text: name of a recording
+    live,       ///< ends the replay and continues the live insertion
+    seek,       ///< moves the replay to a time; number [s]
+    play,       ///< number: speed of the replay, 1 is real time, 0 stops it
+    predict,    ///< number: 1 simulates an insertion through each hole for the map, in the background; 0 stops this
+    greet,      ///< a viewer has connected and needs the whole force curve
+    drawn       ///< a page has drawn its first complete picture
   };
   Kind kind{};
   std::uint64_t viewer = 0;
@@ -84,21 +86,21 @@ struct Request {
   double number = 0.0;
 };
 
-/// A live simulation that people watch: opens cases, runs the real-time loop, makes pictures of it, records it, and
-/// replays recordings. One thread of its own; the loop has its own two.
+/// A live simulation with viewers: it opens cases, runs the real-time loop, makes pictures, records, and replays
+/// recordings. It has one thread of its own; the real-time loop has two more.
 class Session {
  public:
   Session(SessionSettings settings, Audience& audience);
   ~Session();  ///< stop()
 
   void start();
-  /// Ends the loop; the recording is whole afterwards.
+  /// Ends the loop and completes the recording.
   void stop();
-  /// Any thread. @return false: too many are waiting
+  /// Queues a request. May be called from any thread. @return false if too many requests are waiting
   bool ask(Request request);
-  /// Where the hand that holds the needle wants the base. From one thread.
+  /// Sets the target of the hand that holds the needle. Call it from one thread only.
   void aim(const HandTarget& target);
-  /// Nobody holds the needle any more. From the same thread.
+  /// Stops the needle, because nobody holds it. Call it from the same thread as aim().
   void let_go();
 
  private:

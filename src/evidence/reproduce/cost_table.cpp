@@ -20,7 +20,7 @@ double largest_change(const Figure6Run& run) {
   return most;
 }
 
-/// Whether the longest iteration that leaves the mesh alone is the one in which the needle comes out.
+/// Whether the longest iteration without a change of the mesh is the one in which the needle comes out.
 bool longest_is_the_last(const Figure6Run& run) {
   const double worst_us = 1e6 * run.worst_s(false);
   return std::any_of(run.events.begin(), run.events.end(), [&](const Figure6Event& e) {

@@ -12,7 +12,7 @@ namespace stylet::reproduce {
 
 namespace {
 
-/// The contour with a mark on the points that are left after culling, which come in the same order.
+/// Marks the points of a contour that remain after culling. Culling keeps the order of points.
 CulledContour marked(const Contour& contour, double cull_mm) {
   const Contour left = cull(contour, cull_mm);
   CulledContour result{contour.points, std::vector<bool>(contour.points.size(), false)};
@@ -25,7 +25,7 @@ CulledContour marked(const Contour& contour, double cull_mm) {
   return result;
 }
 
-/// Faces between the organ's regions and the rest, outward.
+/// Adds the faces between the organ's regions and the rest, with outward normals.
 void add_surface(Figure2& figure, const TetMesh& mesh) {
   std::vector<bool> organ;
   for (const std::string& region : mesh.regions) organ.push_back(is_target_region(region));
@@ -49,7 +49,7 @@ void add_surface(Figure2& figure, const TetMesh& mesh) {
   }
 }
 
-/// Drawn twice as long as wide, whatever the needle has.
+/// Makes a segment for the drawing, twice as long as wide.
 Figure2::Segment segment(TetNeedle::Segment kind) {
   const double width = NeedleSection{}.outer_diameter_mm;
   const tet::SegmentMesh mesh = tet::make_segment(kind, width, 2.0 * width);

@@ -20,7 +20,8 @@ namespace {
 constexpr int kMostRepeats = 400;
 constexpr int kFewestRepeats = 3;
 
-/// A node is added to a tissue of about `dim` degrees of freedom: what all methods start from and should come to.
+/// The addition of a node to a tissue of about `dim` degrees of freedom: the initial matrices of all methods and the
+/// expected result.
 struct Problem {
   explicit Problem(int dim) {
     const int deep = std::max(2, static_cast<int>(std::lround(std::sqrt(0.5 * dim))));
@@ -40,7 +41,7 @@ struct Problem {
   StiffnessChange change;
 };
 
-/// One way to the new inverse: `start` fills the matrix it works on, `work` is what is timed.
+/// One method for the new inverse. `start` fills the matrix; `work` updates it and is timed.
 struct Method {
   const char* name;
   double Figure5Row::*median_s;
@@ -53,7 +54,8 @@ struct Method {
 std::vector<Method> methods(const Problem& p) {
   const Eigen::Index old = p.before.rows();
   const Eigen::Index N = p.after.rows();
-  // The new node stands on springs of the size of the other compliances, which the change takes away again.
+  // The lemma needs an invertible matrix, so the new node starts on springs whose compliance is the mean of the others.
+  // The change removes these springs.
   const double delta = p.before.diagonal().mean();
   MatX without_springs = p.change.values;
   for (std::size_t i = 0; i < p.change.dofs.size(); ++i) {

@@ -13,7 +13,7 @@ namespace stylet::reproduce {
 
 namespace {
 
-/// Carries the insertions out step by step, as run() does, but keeps what the figure needs.
+/// Simulates the insertions step by step, as run() does, and keeps the data that the figure needs.
 class Recorder {
  public:
   Recorder(const std::shared_ptr<const Model>& model, const Figure6Variant& variant, const Progress& progress)
@@ -59,7 +59,7 @@ class Recorder {
     }
   }
 
-  /// The hand drifts sideways as it goes in, and back as it comes out.
+  /// Adds the drift of the hand: sideways as it goes in, and back as it comes out.
   [[nodiscard]] Pose drifted(const PlannedInsertion& insertion, std::size_t number, Pose base) const {
     const Vec3 tip = base.origin + model_->scenario().needle.length_mm * (base.rotation * Vec3::UnitZ());
     const double depth = (tip - insertion.entry).dot(insertion.direction);
@@ -117,7 +117,7 @@ Scenario figure6_scenario(bool quick) {
   scenario.patient.source = "phantom";
   scenario.mesh.preset = MeshPreset::paper;
   scenario.tissue_model.preset = TissuePreset::linear;
-  scenario.fixed.regions = {"band"};  // the pubic side, as the paper holds it
+  scenario.fixed.regions = {"band"};  // the pubic side, as in the paper
   scenario.fixed.outer = OuterSupport::none;
   scenario.run.dt_ms = quick ? 2.0 : 1.0;
 

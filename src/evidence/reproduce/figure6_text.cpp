@@ -23,7 +23,7 @@ std::string list(const std::vector<std::string>& parts, const char* between) {
   return text;
 }
 
-/// Smallest and largest order of ΔK among the changes of one kind.
+/// Smallest and largest order of ΔK among the changes of one kind (node moved or node added), as text.
 std::string dimensions(const Figure6Run& run, bool moved) {
   int least = 0;
   int most = 0;
@@ -53,7 +53,7 @@ std::optional<std::size_t> when(const Figure6Run& run, std::size_t insertion, Ev
   return std::nullopt;
 }
 
-/// Changes of the mesh while a needle is drawn back.
+/// Number of changes of the mesh while a needle is drawn back.
 int remeshed_in_retraction(const Figure6Run& run) {
   return static_cast<int>(std::count_if(run.remeshes.begin(), run.remeshes.end(), [&](const Figure6Remesh& r) {
     const auto turned = when(run, r.insertion, EventKind::retraction_start);
@@ -61,7 +61,8 @@ int remeshed_in_retraction(const Figure6Run& run) {
   }));
 }
 
-/// Whether the hand pushes when it turns and pulls before the shaft slips: the tissue stuck to the needle.
+/// Whether the hand pushes when it turns back and already pulls when slip starts. Then the tissue sticks to the needle
+/// while the force reverses.
 bool reverses_while_stuck(const Figure6Run& run, std::size_t insertion) {
   const auto turned = when(run, insertion, EventKind::retraction_start);
   const auto slipped = when(run, insertion, EventKind::slip_start);
@@ -69,7 +70,7 @@ bool reverses_while_stuck(const Figure6Run& run, std::size_t insertion) {
   return run.steps[*turned - 1].force_axial_N > 0.0 && run.steps[*slipped].force_axial_N < 0.0;
 }
 
-/// Axial force [N] just before the base comes to rest at its deepest, and at the end of that rest.
+/// Axial force [N] directly before the base comes to rest at its deepest point, and at the end of this rest.
 std::optional<std::pair<double, double>> force_at_rest(const Figure6Run& run, std::size_t insertion) {
   constexpr double still_mm = 1e-6;
   std::size_t from = 0;  // first and last iteration at the greatest depth
@@ -95,7 +96,7 @@ double peak(const Figure6Run& run) {
   return most;
 }
 
-/// Root mean square difference of the axial forces of two runs over the second's peak [%].
+/// Root mean square difference of the axial forces of two runs, relative to the peak of the second [%].
 double difference_percent(const Figure6Run& run, const Figure6Run& other) {
   double sum = 0.0;
   const std::size_t count = std::min(run.steps.size(), other.steps.size());

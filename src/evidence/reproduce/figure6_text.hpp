@@ -6,21 +6,21 @@
 
 #include <string>
 
-/// What the page says of figure 6, as HTML; every statement about this run is computed from it.
+/// The text of the page about figure 6, as HTML. Every statement about the run is computed from its data.
 namespace stylet::reproduce {
 
-/// What is done, and by which variants.
+/// Describes the insertions and the variants.
 std::string figure6_intro(const Figure6& figure);
 
-/// Times of iterations with and without changes of the mesh.
-/// @param inside what one of the default's changes costs by itself
+/// Describes the times of iterations with and without changes of the mesh.
+/// @param inside times of a single change of the mesh with the default's rule
 std::string cumulative_caption(const Figure6& figure, const measure::RemeshCost& inside);
 
-/// Features of the force curves, peaks, and how far the variants differ.
+/// Describes the features of the force curves, their peaks, and the differences between the variants.
 /// @param organ region whose puncture counts as the penetration of the target
 std::string forces_caption(const Figure6& figure, const std::string& organ);
 
-/// Order of ΔK, and why nodes were not moved.
+/// Describes the order of ΔK and the reasons why nodes were not moved.
 std::string dimensions_caption(const Figure6& figure);
 
 }  // namespace stylet::reproduce

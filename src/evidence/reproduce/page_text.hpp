@@ -3,19 +3,19 @@
 
 #include <string>
 
-/// Numbers and paragraphs of the page.
+/// Formats numbers and paragraphs of the page.
 namespace stylet::reproduce {
 
-/// 5·10⁻¹³: a small number by its order.
+/// A small number with one digit and its order of magnitude: "5·10⁻¹³".
 std::string order(double value);
 
-/// Three significant digits, without an exponent down to 1e-4.
+/// Three significant digits; from 1e-4 on without an exponent.
 std::string digits(double value);
 
-/// A time with the unit that suits it.
+/// A time in µs, ms or s, with its unit.
 std::string duration(double seconds);
 
-/// @param text plain, with the marks results::html_prose() knows
+/// An HTML paragraph. @param text plain text with the marks of results::html_prose()
 std::string paragraph(const std::string& text);
 
 }  // namespace stylet::reproduce

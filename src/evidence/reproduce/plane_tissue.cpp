@@ -72,7 +72,7 @@ namespace {
 void add_triangle(StiffnessChange& change, const PlaneTissue& tissue, const std::array<Index, 3>& triangle,
                   double sign) {
   const auto block = triangle_stiffness(tissue, triangle);
-  std::array<Eigen::Index, 6> at{};  // place of each of the triangle's degrees of freedom in ΔK, −1 where held
+  std::array<Eigen::Index, 6> at{};  // position of each degree of freedom of the triangle in ΔK, −1 if held
   for (std::size_t i = 0; i < 6; ++i) {
     const Index first = tissue.first_dof(triangle[i / 2]);
     const Index dof = first + static_cast<Index>(i % 2);

@@ -163,7 +163,7 @@ std::string pair(const std::string& name, const std::string& value) {
   return "<dt>" + html_escaped(name) + "</dt><dd>" + html_escaped(value) + "</dd>";
 }
 
-/// The library and its threads, as far as they are known.
+/// The BLAS library and its number of threads, as far as they are known.
 std::string blas_text(const measure::Machine& machine) {
   return (machine.blas.empty() ? std::string("of the system") : machine.blas) +
          (machine.blas_threads == 1 ? ", one thread" : ", number of threads not known");

@@ -18,7 +18,7 @@ namespace stylet::reproduce {
 
 namespace {
 
-/// A number whose minus is one.
+/// A number with a typographic minus sign.
 std::string signed_text(double value, int digits) {
   const std::string text = fmt::format("{:.{}f}", std::abs(value), digits);
   return value < 0.0 && text.find_first_not_of("0.") != std::string::npos ? "−" + text : text;
@@ -36,7 +36,7 @@ std::string in_words(const PlannedInsertion& insertion, const Vec3& drift) {
                      insertion.depth_mm, drift.norm());
 }
 
-/// Runs the parts one after the other; each leaves what it found in the reproduction.
+/// Runs the experiments one after the other; each stores its results in the reproduction.
 class Experiments {
  public:
   Experiments(const ReproduceOptions& options, const Progress& progress) : progress_(progress) {
@@ -94,7 +94,7 @@ class Experiments {
                                          variant.label, run->not_converged, run->steps.size()));
       }
       figure.runs.push_back(std::move(*run));
-      default_ = *model;  // the last one
+      default_ = *model;  // the default is the last variant
     }
     figure.nodes = default_->mesh().node_count();
     figure.tets = default_->mesh().tet_count();
@@ -104,7 +104,7 @@ class Experiments {
     return Ok{};
   }
 
-  /// Times what Model::compile does once more, part by part.
+  /// Repeats the parts of Model::compile and times each of them.
   Result<> preparation() {
     const detail::OneBlasThread one_thread;
     const Tissue& tissue = default_->tissue();
@@ -152,8 +152,8 @@ class Experiments {
   Scenario scenario_;
   TetMesh mesh_;
   MeshQuality quality_;
-  std::shared_ptr<const Model> default_;  ///< the model of this program's default
-  std::shared_ptr<const MatX> inverse_;   ///< of the whole stiffness
+  std::shared_ptr<const Model> default_;  ///< model of this program's default for node addition
+  std::shared_ptr<const MatX> inverse_;   ///< K⁻¹ of the whole tissue
   Preparation preparation_;
 };
 

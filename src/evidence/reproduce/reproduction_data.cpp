@@ -22,7 +22,7 @@ Json segment_json(const Figure2::Segment& segment) {
   return {{"points_mm", points_json(segment.points)}, {"tets", segment.tets}};
 }
 
-/// null for what does not exist, since JSON knows no NaN.
+/// A number; null for NaN and infinity, which JSON does not have.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json cell_json(const TableCell& cell) {

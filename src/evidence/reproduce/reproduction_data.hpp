@@ -12,13 +12,13 @@ using Json = nlohmann::ordered_json;
 Json figure2_json(const Figure2& figure);
 Json reproduction_data(const Reproduction& reproduction);
 
-/// The curves of one variant as the page wants them: base64 of little-endian floats.
+/// The curves of one variant for the page's script: little-endian floats in base64.
 Json curves_json(const Figure6Run& run);
 
-/// "figure6_default.csv"
+/// Name of the file with a variant's curves, such as "figure6_default.csv".
 std::string curve_file(const Figure6Run& run);
 
-/// "punctures the prostate": an event for people.
+/// An event as text for the page, such as "prostate punctured".
 std::string event_label(const Event& event);
 
 }  // namespace stylet::reproduce

@@ -14,7 +14,7 @@ namespace {
 
 using Place2 = Eigen::Vector2d;  ///< distance from the axis, height [mm]
 
-/// A piece of the cylinder's meridian; turned around the axis it is a ring.
+/// A segment of the cylinder's meridian; rotated about the axis it gives a ring.
 struct Ring {
   Place2 from;
   Place2 to;
@@ -22,7 +22,7 @@ struct Ring {
   [[nodiscard]] double width() const { return (to - from).norm(); }
 };
 
-/// The meridian, divided so that pieces become short towards the edges, where tractions have no bound.
+/// The meridian, divided into segments that become short towards the edges, where tractions are unbounded.
 std::vector<Ring> meridian(double length, double radius) {
   std::vector<Ring> rings;
   const auto divide = [&](const Place2& from, const Place2& to, int count, const auto& place) {
@@ -49,14 +49,15 @@ Mat3 kelvin(const Vec3& r, const Medium& medium) {
   return scale * ((3.0 - 4.0 * medium.poisson) * Mat3::Identity() + r * r.transpose() / (d * d));
 }
 
-/// Radial, circumferential and axial unit vectors at an angle: columns.
+/// Radial, circumferential and axial unit vectors at an angle, as columns.
 Mat3 cylindrical(double theta) {
   Mat3 frame;
   frame << std::cos(theta), -std::sin(theta), 0.0, std::sin(theta), std::cos(theta), 0.0, 0.0, 0.0, 1.0;
   return frame;
 }
 
-/// How radial, circumferential and axial parts of a motion along x, or along the axis, vary around the axis.
+/// Factors by which the radial, circumferential and axial parts vary around the axis, for a motion along x (lateral) or
+/// along the axis.
 Vec3 around(bool lateral, double theta) {
   return lateral ? Vec3(std::cos(theta), std::sin(theta), std::cos(theta)) : Vec3(Vec3::Ones());
 }
@@ -65,13 +66,14 @@ class TractionLayer {
  public:
   TractionLayer(const Medium& medium, bool lateral) : medium_(medium), lateral_(lateral) {}
 
-  /// Amplitudes of displacement in the middle of one ring per amplitudes of traction on another [mm/MPa].
+  /// Displacement amplitudes in the middle of the ring `at` per traction amplitudes on the ring `on` [mm/MPa].
   [[nodiscard]] Mat3 operator()(const Ring& at, const Ring& on) const {
     Mat3 sum = Mat3::Zero();
     if (&at != &on) {
       for (const GaussPoint& s : far_) sum += s.weight * turned(at.at(0.5), on.at(s.x));
     } else {
-      // Cubes gather the points where the distance vanishes, in the middle, and their Jacobians take the pole away.
+      // The cubic substitution concentrates the points in the middle, where the distance vanishes; its Jacobian removes
+      // the singularity.
       for (const GaussPoint& q : near_) {
         const double off = 0.5 * q.x * q.x * q.x;
         const double weight = 1.5 * q.x * q.x * q.weight;
@@ -84,7 +86,7 @@ class TractionLayer {
  private:
   /// Integral around the axis.
   [[nodiscard]] Mat3 turned(const Place2& at, const Place2& on) const {
-    constexpr double seen = 0.25 * std::numbers::pi;  // any angle where neither cosine nor sine vanishes
+    constexpr double seen = 0.25 * std::numbers::pi;  // any angle at which neither cosine nor sine vanishes
     const Mat3 frame = cylindrical(seen);
     const Vec3 x = at.x() * frame.col(0) + at.y() * Vec3::UnitZ();
     const Vec3 scale = around(lateral_, seen).cwiseInverse();

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that goes when its owner does.
+/// A temporary folder that is removed by its destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -38,8 +38,8 @@ class TemporaryFolder {
 /// CalculiX reads at most 20 characters of a number.
 std::string digits(double value) { return fmt::format("{:.12e}", value); }
 
-/// The moments in a .dat file: for each a heading that ends in its time, of 1 in all, then lines of node number and
-/// three values. A displacement that is not there is NaN.
+/// Reads the increments of a .dat file. Each has a heading that ends in its time, 0…1, then lines with a node number
+/// and three values. Missing displacements are NaN.
 std::vector<LoadedMoment> read_moments(const fs::path& file, Index nodes) {
   std::vector<LoadedMoment> moments;
   std::ifstream in(file);
@@ -60,10 +60,10 @@ std::vector<LoadedMoment> read_moments(const fs::path& file, Index nodes) {
   return moments;
 }
 
-/// Lets ccx solve a deck, whatever it ends with. @return the moments that it printed in full
+/// Solves a deck with ccx. The exit status is ignored. @return the increments that it printed completely
 Result<std::vector<LoadedMoment>> run_calculix(const Tissue& tissue, const std::string& deck) {
   if (!calculix_installed())
-    return failure("CalculiX", "the program ccx is not there", "Install the Debian package calculix-ccx");
+    return failure("CalculiX", "the program ccx is not installed", "Install the Debian package calculix-ccx");
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "case.inp";
   std::ofstream(file) << deck << std::flush;
@@ -74,7 +74,8 @@ Result<std::vector<LoadedMoment>> run_calculix(const Tissue& tissue, const std::
     moments = read_moments(folder.path() / "case.dat", tissue.displacement_nodes());
   while (!moments.empty() && !moments.back().u.allFinite()) moments.pop_back();
   if (moments.empty())
-    return failure("CalculiX", "ccx printed no displacement for some nodes", "Run a deck of its own to see why");
+    return failure("CalculiX", "ccx did not print all displacements",
+                   "Run ccx on the input of calculix_deck() to see why");
   return moments;
 }
 
@@ -85,7 +86,7 @@ std::string material_text(const Material& material, Geometry geometry) {
   return fmt::format("*HYPERELASTIC, NEO HOOKE\n{}, {}\n", digits(0.5 * material.mu()), digits(2.0 / bulk_MPa));
 }
 
-/// Increments of an eighth of the load, down to a five-hundredth of it where that does not converge.
+/// Increments of 1/8 of the load; where they do not converge, CalculiX reduces them to 1/500 at least.
 constexpr const char* kFiniteStep = "*STEP, NLGEOM, INC=60\n*STATIC\n0.125, 1., 0.002, 0.125\n";
 
 }  // namespace

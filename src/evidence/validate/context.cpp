@@ -15,7 +15,8 @@ std::optional<fs::path> Context::data(const std::string& file) const {
 
 std::string Context::no_data(const std::string& file) const {
   return fmt::format(
-      "{} is not there. Name the folder of the shared data with --data or the environment variable STYLET_SHARED_DATA.",
+      "{} does not exist. Name the folder of the shared data with --data or the environment variable "
+      "STYLET_SHARED_DATA.",
       (data_ / file).string());
 }
 

@@ -17,12 +17,12 @@ namespace {
 constexpr double kWay_mm = 2.0;
 constexpr double kLever_rad = 2.0 * std::numbers::pi / 180.0;
 constexpr double kRoll_rad = 60.0 * std::numbers::pi / 180.0;
-constexpr double kLargest = 2.0, kSmallest = 0.02;  // in these
+constexpr double kLargest = 2.0, kSmallest = 0.02;  // range of HandLoop::size()
 
-/// Uniform in [0, 1); the same on every machine, which the distributions of the standard library are not.
+/// Uniform in [0, 1). The distributions of the standard library are not used, because they differ between machines.
 double uniform(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
 
-/// A needle on its way, and the work of the hand on it.
+/// Moves a needle and sums the work of the hand.
 class Hand {
  public:
   explicit Hand(const std::shared_ptr<const Model>& model) : model_(model), simulation_(model) {
@@ -59,7 +59,8 @@ class Hand {
     return simulation_.insertion().tissue_energy() + simulation_.insertion().needle().energy();
   }
 
-  /// Work by the mean of force and torque before and after the step: exact to second order in the step.
+  /// Takes a step. Its work is computed with the mean of force and torque before and after it, which is accurate to
+  /// second order in the step.
   void step(const Pose& next, double dt_s) {
     simulation_.prepare();
     simulation_.step(next, dt_s);
@@ -93,7 +94,7 @@ HandLoop::HandLoop(unsigned number) {
   duration_s_ = 0.5 * std::pow(8.0, uniform(random));
   size_ = kLargest * std::pow(kSmallest / kLargest, uniform(random));
   for (auto& waves : waves_) {
-    // Some loops go mainly one way, others all ways at once.
+    // Some loops move mainly in one direction, others in all directions at once.
     const double share = uniform(random);
     for (std::size_t h = 0; h < kHarmonics; ++h)
       waves[h] = {size_ * share / static_cast<double>(h + 1), 2.0 * std::numbers::pi * uniform(random)};
@@ -110,7 +111,7 @@ Pose HandLoop::at(const Pose& start, double share) const {
     }
   }
   Pose pose = start;
-  if (share >= 1.0) return pose;  // closed to the last bit
+  if (share >= 1.0) return pose;  // the loop closes exactly
   pose.origin += start.rotation * Vec3(kWay_mm * Vec3(q[0], q[1], q[2]));
   const Vec3 lever = kLever_rad * Vec3(q[3], q[4], 0.0);
   const double tilt = lever.norm();

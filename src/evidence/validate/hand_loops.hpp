@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Closed loops of the hand with a needle in tissue: what the hand puts in and what it gets back.
+// Closed loops of the hand with a needle in tissue. They measure the work that the hand does and the work that it gets
+// back, which must not be larger (passivity).
 #pragma once
 
 #include "stylet/core/result.hpp"
@@ -12,17 +13,17 @@
 
 namespace stylet::validate {
 
-/// A closed way of the needle's base about a pose: push and pull, two ways sideways, two ways of lever, roll. Each is a
-/// random sum of three harmonics that begins and ends at zero.
+/// A closed motion of the needle's base about a pose in six directions: push and pull, two sideways translations, two
+/// tilts, and roll. Each is a random sum of three harmonics that begins and ends at zero.
 class HandLoop {
  public:
-  /// The loop of a number; each number has its own. Loops differ in size by up to 100 times, in depth and in duration.
+  /// @param number seed: each number gives another loop. Loops differ in size (by up to 100 times), depth and duration.
   explicit HandLoop(unsigned number);
 
-  [[nodiscard]] double depth_mm() const { return depth_mm_; }  ///< of the needle's tip in the tissue where it begins
-  [[nodiscard]] double duration_s() const { return duration_s_; }  ///< of one passage
-  [[nodiscard]] double size() const { return size_; }  ///< 0.02 … 2; 1: up to some 3 mm, 3° and 90° of roll
-  /// @param share of the loop, 0 … 1
+  [[nodiscard]] double depth_mm() const { return depth_mm_; }      ///< depth of the tip at the start of the loop
+  [[nodiscard]] double duration_s() const { return duration_s_; }  ///< duration of one passage
+  [[nodiscard]] double size() const { return size_; }  ///< 0.02 … 2; 1 stands for up to about 3 mm, 3° and 90° of roll
+  /// Pose of the base. @param share part of the loop that has passed, 0 … 1
   [[nodiscard]] Pose at(const Pose& start, double share) const;
 
  private:
@@ -35,18 +36,19 @@ class HandLoop {
   std::array<std::array<Wave, kHarmonics>, 6> waves_{};
 };
 
-/// The last of several passages of a loop, all [N mm].
+/// Work in the last of several passages of a loop [N mm].
 struct HandWork {
-  double put_in = 0.0;  ///< work of the hand over the steps in which it works
-  double net = 0.0;     ///< over all steps
-  double stored = 0.0;  ///< elastic energy of tissue and needle at the end less that at the beginning
-  unsigned flags = 0;   ///< Step::flags of all steps, over all passages
+  double put_in = 0.0;  ///< work of the hand over the steps in which it is positive
+  double net = 0.0;     ///< work of the hand over all steps
+  double stored = 0.0;  ///< increase of the elastic energy of tissue and needle
+  unsigned flags = 0;   ///< Step::flags of all steps of all passages
 
-  /// What the hand got back beyond what was taken from the store, over what it put in; below 0: energy was lost.
+  /// (stored − net) / put_in: the energy that the hand and the stored energy gained, relative to the work of the hand.
+  /// Negative if energy was lost.
   [[nodiscard]] double given_back() const { return (stored - net) / put_in; }
 };
 
-/// Goes in along the first insertion of a model, then passes the loop so many times in so many steps each.
+/// Inserts a needle along the first insertion of a model, then passes the loop `passages` times in `steps` steps each.
 HandWork pass_loop(const std::shared_ptr<const Model>& model, const HandLoop& loop, int passages, int steps);
 
 }  // namespace stylet::validate

@@ -16,7 +16,7 @@ namespace stylet::validate {
 
 namespace {
 
-/// Moves to each plane the layer of nodes that is nearest to it and not yet in use.
+/// Moves to each plane the nearest layer of nodes that has not been moved to another plane.
 void move_layers(TetMesh& mesh, const std::vector<double>& planes) {
   std::set<double> layers;
   for (const Vec3& x : mesh.nodes) layers.insert(x.z());
@@ -132,14 +132,14 @@ Mat3 MediumBlock::tip_moves(const NeedleKernel& needle, const Vec3& x, const Vec
 
 namespace {
 
-/// Points of a needle line without its near field, as an insertion lays them.
+/// Lays the points of a needle line without near field, as an insertion does.
 class Layer {
  public:
   Layer(MediumBlock& block, const NeedleLine::Options& options, int capacity)
       : block_(block), options_(options), contacts_(block.store, *block.locator, capacity) {}
 
-  /// Puts a point at x: by its method, or interpolated where that has no room. Leaves it out where it would follow from
-  /// those before it.
+  /// Lays a point at x by the method, or by interpolation if no node can be added. Leaves it out if its compliance
+  /// follows from the points before it.
   void lay(const Vec3& x) {
     if (options_.method == NeedleLine::Method::node_addition && lay_node(x)) return;
     block_.prepare_mesh({x});
@@ -152,7 +152,7 @@ class Layer {
       points.push_back(x);
   }
 
-  /// Compliance among the points laid.
+  /// Compliance among the laid points.
   [[nodiscard]] MatX matrix() const {
     const auto size = 3 * static_cast<Eigen::Index>(points.size());
     return contacts_.matrix().block(3, 3, size, size);
@@ -161,7 +161,7 @@ class Layer {
   std::vector<Vec3> points;
 
  private:
-  /// A node inside an element, at x or as near to it along the line as elements allow.
+  /// Adds a node inside an element, at x or as near to x along the line as the elements allow.
   bool lay_node(const Vec3& x) {
     constexpr double step_mm = 0.05;
     const double farthest = 0.45 * options_.spacing_mm;

@@ -11,21 +11,23 @@
 
 namespace stylet::validate {
 
-/// A cube of 100 mm around the origin, E = 10 kPa unless told otherwise, and what checks of the near field ask of it.
+/// A cube of tissue of 100 mm around the origin, E = 10 kPa by default, with the quantities that checks of the near
+/// field need.
 struct MediumBlock {
   struct Options {
     int cells = 10;
     double poisson = 0.45;
     double jitter = 0.15;
-    bool skin = false;  ///< the face z = −50 mm is free; else all faces are held
+    bool skin = false;  ///< true: the face z = −50 mm is free; false: all faces are held
     std::vector<std::string> regions{"body"};
     std::function<int(const Vec3&)> region_at = [](const Vec3&) { return 0; };
-    std::vector<Material> materials{};  ///< empty: one of 10 kPa
-    std::vector<double>
-        faces_at_z{};  ///< [mm] planes onto which the nearest layers of nodes are moved, for an interface
+    std::vector<Material> materials{};  ///< empty: one material of 10 kPa
+    /// [mm] planes onto which the nearest layers of nodes are moved, so that they can be interfaces.
+    std::vector<double> faces_at_z{};
     std::function<bool(const Vec3&)> also_held = [](const Vec3&) { return false; };
     Element element = Element::p1;
-    std::vector<NeedleWay> ways{};  ///< along which the wide part is that of spread forces; none: nowhere
+    std::vector<NeedleWay>
+        ways{};  ///< ways along which the wide part of the compliance comes from spread forces; may be empty
   };
   static constexpr double kHalf_mm = 50.0;
   static constexpr double kYoung_MPa = 0.01;
@@ -33,22 +35,22 @@ struct MediumBlock {
   /// Errors: those of Tissue::build.
   static Result<MediumBlock> build(const Options& options);
 
-  /// @param x inside the cube, or std::bad_optional_access is thrown
+  /// The material point at x. @param x inside the cube; otherwise throws std::bad_optional_access
   [[nodiscard]] MaterialPoint at(const Vec3& x) const;
 
-  /// Makes the compliance around these points available.
+  /// Computes the mesh's compliance around these points.
   void prepare_mesh(const std::vector<Vec3>& points) { store->add_nodes(corners_around(points)); }
-  /// The near field of the mesh as well.
+  /// Computes the mesh's compliance and its kernel around these points.
   void prepare(const std::vector<Vec3>& points);
 
   [[nodiscard]] NearFieldCompliance compliance(const NeedleKernel& needle, int capacity) const;
 
-  /// What the k held nodes feel of unit forces on the material point x [N/N] (3k × 3), node by node in the order of
-  /// `fixed`. By reciprocity −reactionsᵀ U is what moving the held nodes by U moves the point by.
+  /// Reaction forces of the k held nodes to unit forces on the material point x [N/N] (3k × 3), node by node in the
+  /// order of `fixed`. By reciprocity, moving the held nodes by U moves the point by −reactionsᵀ U.
   [[nodiscard]] MatX reactions(const Vec3& x) const;
 
-  /// What moving the held nodes by `field` moves the material point x by (3×3).
-  /// @param field (k) displacement of the held nodes per unit of three loads
+  /// Displacement of the material point x when the held nodes move by `field` (3×3, a column per load).
+  /// @param field (k) displacement of the held nodes per unit of each of three loads
   [[nodiscard]] Mat3 lift(const Vec3& x, const std::vector<Mat3>& field) const;
 
   /// Compliance of a needle's tip at x [mm/N].
@@ -64,25 +66,27 @@ struct MediumBlock {
   std::shared_ptr<ComplianceStore> store;
   std::shared_ptr<MeshKernel> kernel;
   std::shared_ptr<const SpreadCompliance> spread;  ///< null without ways
-  Medium medium;                                   ///< of the first region
+  Medium medium;                                   ///< elastic constants of the first region
 
  private:
   [[nodiscard]] std::vector<Index> corners_around(const std::vector<Vec3>& points) const;
 };
 
-/// A straight needle of 64 mm around the cube's middle, held along its length and displaced as a whole.
+/// A straight rigid needle of 64 mm around the cube's centre that holds tissue points along its length and is
+/// displaced.
 struct NeedleLine {
   static constexpr double kLength_mm = 64.0;
   static constexpr double kWay_mm = 5.0;
   enum class Method { near_field, node_addition, embedded };
 
   struct Options {
-    double spacing_mm = 4.0;  ///< of the points at which the needle is held
+    double spacing_mm = 4.0;  ///< spacing of the held points
     Vec3 direction = Vec3::UnitZ();
-    bool unbounded = false;  ///< the held faces move as they would in an unbounded medium
+    bool unbounded = false;  ///< the held faces are moved as in an unbounded medium
     Method method = Method::near_field;
   };
-  /// Methods other than the near field leave points out that follow from others, as an insertion does.
+  /// Lays the points. Methods other than the near field leave out points whose compliance follows from others, as an
+  /// insertion does.
   static NeedleLine build(MediumBlock& block, Options options);
 
   /// Force [N] that moves the line by kWay_mm along a unit vector.
@@ -92,7 +96,7 @@ struct NeedleLine {
 
   Vec3 direction = Vec3::UnitZ();
   std::vector<Vec3> points;  ///< [mm]
-  MatX A;                    ///< compliance among the points [mm/N] (3·points × 3·points)
+  MatX A;                    ///< [mm/N] (3·points × 3·points) compliance among the points
 };
 
 }  // namespace stylet::validate

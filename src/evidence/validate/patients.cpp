@@ -70,7 +70,7 @@ double seat_N_per_mm(const Model& model) {
     volume += 4.0 * share;
     for (const Index node : mesh.tets[k]) force(3 * Eigen::Index{node} + 2, 0) += share;
   }
-  force /= volume;  // 1 N, and the weights of the mean at once
+  force /= volume;  // 1 N in total; the same vector gives the weights of the mean
   return 1.0 / force.col(0).dot(model.tissue().solve(force).col(0));
 }
 

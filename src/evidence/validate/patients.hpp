@@ -12,13 +12,13 @@ namespace stylet::validate {
 
 enum class PatientCase { demo, mask };
 
-/// The settings in which one insertion into a patient differs from the demo.
+/// The settings of an insertion that differ from the demo.
 struct PatientRun {
   double speed_mm_per_s = 20.0;
-  bool creeps = true;                ///< false: elastic tissue, the null model of the speed
+  bool creeps = true;                ///< false: elastic tissue, for comparison when the speed is varied
   std::optional<double> depth_mm{};  ///< unset: to the far end of the gland
   double bevel_deg = 20.0;
-  std::string hole{};  ///< empty: the one 15 mm to the left
+  std::string hole{};  ///< empty: the hole 15 mm to the left
 
   bool operator<(const PatientRun& other) const { return key() < other.key(); }
   [[nodiscard]] std::tuple<double, bool, std::optional<double>, double, std::string> key() const {
@@ -26,13 +26,13 @@ struct PatientRun {
   }
 };
 
-/// Insertions into patients with all defaults, each carried out once. A needle goes in 15 mm to the left of the gland's
-/// axis and stays.
+/// Insertions into patients with all defaults, each simulated once. A needle goes in 15 mm to the left of the gland's
+/// axis and stays there.
 class Patients {
  public:
   static constexpr const char* kMask = "msd_prostate_masks/prostate_00.nii.gz";
 
-  /// Whether the data for it are there.
+  /// Whether the data of a patient are available.
   static bool is_there(const Context& context, PatientCase patient);
   Result<std::shared_ptr<const measure::RecordedRun>> run(Context& context, PatientCase patient, const PatientRun& how);
 
@@ -43,8 +43,8 @@ class Patients {
   std::map<std::pair<PatientCase, PatientRun>, std::shared_ptr<const measure::RecordedRun>> runs_;
 };
 
-/// A force along the patient's axis, spread evenly over the gland, over the gland's mean displacement along it [N/mm],
-/// before anything creeps.
+/// Stiffness of the gland's seat [N/mm], without creep: a force along the patient's axis (z), spread evenly over the
+/// gland, divided by the gland's mean displacement along this axis.
 double seat_N_per_mm(const Model& model);
 
 }  // namespace stylet::validate

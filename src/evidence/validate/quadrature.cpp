@@ -9,7 +9,7 @@ namespace stylet::validate {
 std::vector<GaussPoint> gauss_legendre(int n) {
   std::vector<GaussPoint> rule;
   for (int k = 0; k < n; ++k) {
-    // Roots of Legendre's polynomial on −1 … 1 by Newton's method from Chebyshev's.
+    // Roots of the Legendre polynomial on −1 … 1 by Newton's method, starting from roots of a Chebyshev polynomial.
     double x = -std::cos(std::numbers::pi * (k + 0.75) / (n + 0.5));
     double slope = 0.0;
     constexpr int enough = 20;

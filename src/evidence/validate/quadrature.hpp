@@ -13,14 +13,14 @@ struct GaussPoint {
   double weight;  ///< the weights add up to 1
 };
 
-/// Gauss and Legendre's rule, exact for polynomials up to degree 2n − 1.
-/// @param n points, ≥ 1
+/// The Gauss–Legendre rule with n points, exact for polynomials up to degree 2n − 1.
+/// @param n number of points, ≥ 1
 std::vector<GaussPoint> gauss_legendre(int n);
 
 /// A point of a quadrature rule on a tetrahedron.
 struct TetrahedronPoint {
   Vec4 weights;   ///< barycentric coordinates
-  double factor;  ///< share of the volume; they add up to 1
+  double factor;  ///< share of the volume; the shares add up to 1
 };
 
 /// Conical product of Gauss–Legendre rules with n points each: n³ points, exact for polynomials up to degree 2n − 3.

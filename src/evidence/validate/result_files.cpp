@@ -10,7 +10,7 @@ using results::csv_text;
 
 namespace {
 
-/// One line a point, curve by curve: the curves of a row need not share their abscissa.
+/// One line per point, curve by curve, because the curves of a row may have different abscissae.
 std::string curves_csv(const Plot& plot) {
   std::string csv = fmt::format("curve,{},{}\n", csv_text(plot.x_label), csv_text(plot.y_label));
   for (const Curve& curve : plot.curves) {

@@ -28,13 +28,13 @@ const char* to_string(Group group) {
 const char* title(Group group) {
   switch (group) {
     case Group::analysis:
-      return "Against analysis";
+      return "Comparison with analysis";
     case Group::other_code:
-      return "Against independent code";
+      return "Comparison with independent code";
     case Group::measurements:
-      return "Against published measurements";
+      return "Comparison with published measurements";
     case Group::independence:
-      return "Independence of mesh, step and solver";
+      return "Independence of mesh, time step and solver";
   }
   return "";
 }
@@ -101,7 +101,7 @@ Row measure(const RowSpec& spec, Context& context) {
     } else {
       crash(found.error().message());
     }
-  } catch (const std::exception& unexpected) {  // one row must not take the others with it
+  } catch (const std::exception& unexpected) {  // a failure of one row must not stop the others
     crash(fmt::format("unexpected failure: {}", unexpected.what()));
   }
   row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-/// Rows by the file that has them. A new file of rows: a function here, a line in rows.cpp, a line in CMakeLists.txt.
+/// One function per file of rows. To add a file of rows, add a function here and a line in rows.cpp and CMakeLists.txt.
 namespace stylet::validate {
 
 std::vector<RowSpec> elasticity_rows();

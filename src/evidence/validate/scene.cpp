@@ -8,7 +8,7 @@ namespace stylet::validate {
 
 namespace {
 
-/// Pose of a base whose straight needle reaches `depth` beyond the entry.
+/// Pose of the base at which a straight needle reaches `depth_mm` beyond the entry.
 Pose pose_at(const PlannedInsertion& insertion, double length_mm, double depth_mm, const Vec3& sideways) {
   return pose_along(insertion.entry + (depth_mm - length_mm) * insertion.direction + sideways, insertion.direction);
 }

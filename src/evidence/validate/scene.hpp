@@ -11,43 +11,44 @@
 
 namespace stylet::validate {
 
-/// A block of tissue, 100 mm wide and deep unless told otherwise, skin at z = 0, in a box of rigid wall that is open at
-/// the skin, and a needle along z. Compiled from a Scenario, so that it follows every default.
+/// A block of tissue, by default 100 mm wide and deep, with its skin at z = 0, in a box of rigid wall that is open at
+/// the skin, and a needle along z. It is compiled from a Scenario, so it uses all default values.
 struct Block {
-  Vec3 lo{-50, -50, 0};  ///< [mm] of what is soft; the wall is one cell thick
+  Vec3 lo{-50, -50, 0};  ///< [mm] corners lo and hi of the soft part; the wall is one cell thick
   Vec3 hi{50, 50, 100};
-  std::array<int, 3> cells{8, 8, 8};  ///< of what is soft
+  std::array<int, 3> cells{8, 8, 8};  ///< number of cells of the soft part
   double jitter = 0.1;
-  double gland_radius_mm = 20.0;  ///< a ball of "prostate" …
-  Vec3 gland_centre{0, 0, 45};    ///< … here; radius 0: none
+  double gland_radius_mm = 20.0;  ///< radius of a ball of region "prostate"; 0: no ball
+  Vec3 gland_centre{0, 0, 45};    ///< [mm] centre of the ball
   std::array<double, 3> entry_mm{3, 2, 0};
   std::array<double, 3> direction{0, 0, 1};
-  double depth_mm = 60.0;                                 ///< compliance is prepared so deep
-  Eigen::Affine3d placing = Eigen::Affine3d::Identity();  ///< rigid, mirrored or not: where the whole scene goes
-  Scenario scenario;  ///< all but patient, supports and insertions; its tissue is default_tissue() where not given
+  double depth_mm = 60.0;                                 ///< depth to which compliance is prepared
+  Eigen::Affine3d placing = Eigen::Affine3d::Identity();  ///< rigid motion or reflection of the whole scene
+  Scenario scenario;  ///< all settings except patient, supports and insertions, which compile() sets
 
-  /// The tissue parameters of a region of the block, to be changed.
+  /// The tissue parameters of a region of the block, for changing them.
   TissueParameters& tissue(const std::string& region);
   [[nodiscard]] TetMesh mesh() const;
-  /// @param more entry points of further insertions, along the same direction
+  /// @param more entry points of further insertions in the same direction
   [[nodiscard]] Result<std::shared_ptr<const Model>> compile(const std::vector<std::array<double, 3>>& more = {}) const;
 };
 
-/// What a step of a drive left.
+/// The result of a step of a drive.
 struct DriveStep {
   Step record;
   Vec3 hand_force = Vec3::Zero();  ///< [N] LPS
   int shaft_contacts = 0;
-  double work_Nmm = 0.0;  ///< of the hand, since the start; the base is only translated
+  double work_Nmm = 0.0;  ///< work of the hand since the start; the base is only translated
 };
 
-/// Moves the needle of a model in and out by hand and keeps every step.
+/// Moves the needle of a model in and out and keeps every step.
 class Drive {
  public:
-  /// @param insertion number of the planned insertion whose line is followed
+  /// @param start_mm base depth at the start
+  /// @param insertion index of the planned insertion whose line the needle follows
   explicit Drive(std::shared_ptr<const Model> model, double start_mm = -1.0, std::size_t insertion = 0);
 
-  /// Puts the needle in front of another insertion's entry; it should be out.
+  /// Places the needle in front of another insertion's entry. The needle should be out of the tissue.
   void aim(std::size_t insertion, double start_mm = -1.0);
   /// Moves the base along the line to a depth [mm] at a speed [mm/s].
   void go(double to_mm, double speed_mm_per_s = 20.0, double dt_s = 1e-3);
@@ -60,7 +61,7 @@ class Drive {
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const Event* event(EventKind kind) const;
   [[nodiscard]] unsigned flags() const { return flags_; }
-  [[nodiscard]] double peak_N() const;  ///< largest axial force, absolute
+  [[nodiscard]] double peak_N() const;  ///< largest absolute axial force
   [[nodiscard]] const Simulation& simulation() const { return simulation_; }
   [[nodiscard]] const Insertion& insertion() const { return simulation_.insertion(); }
 
@@ -79,7 +80,7 @@ class Drive {
   unsigned flags_ = 0;
 };
 
-/// A quantity of all steps of a drive.
+/// The values of one quantity in all steps of a drive.
 std::vector<double> column(const std::vector<DriveStep>& steps, double Step::*quantity);
 
 }  // namespace stylet::validate

@@ -26,7 +26,7 @@ struct Parameter {
   std::string meaning;
 };
 
-/// Keys of a region and what people call them.
+/// The keys of a region's parameters and their meaning in words.
 std::vector<Parameter> tissue_parameters(const std::string& region, bool quick) {
   std::string name = region;
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -44,7 +44,8 @@ std::vector<Parameter> tissue_parameters(const std::string& region, bool quick) 
 }
 
 std::string unit_of(const std::string& key) {
-  // "tissue.prostate.young_kPa" is documented as "tissue.<region>.young_kPa", "insertion[0].x" as "insertion[].x".
+  // The documented keys have placeholders: "tissue.<region>.young_kPa" for "tissue.prostate.young_kPa", "insertion[].x"
+  // for "insertion[0].x". So only the first letters and the last word are compared.
   const std::string last = key.substr(key.rfind('.'));
   for (const ScenarioKey& known : scenario_keys()) {
     const bool same_table = known.path.substr(0, 4) == key.substr(0, 4);
@@ -67,8 +68,8 @@ class Study {
     out_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (auto done = base(); !done) return done.error();
     for (const Parameter& p : parameters()) move(p);
-    choose("fixed.outer", "what holds the body: only the pubic arch", "none");
-    choose("fixed.outer", "what holds the body: all outer faces, perineum too", "all");
+    choose("fixed.outer", "support of the body: only the pubic arch", "none");
+    choose("fixed.outer", "support of the body: all outer faces, including the perineum", "all");
     if (!quick_) choose("coupling.method", "coupling: interpolated contacts", "embedded");
     carry_out();
     out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -76,7 +77,7 @@ class Study {
   }
 
  private:
-  /// The demo as it is: mesh, outputs, regions met.
+  /// Runs the demo with its base values: gives the mesh, the outputs and the regions that the needle meets.
   Result<> base() {
     scenario_ = measure::demo_scenario();
     scenario_.output.frames_per_s = 0.0;
@@ -141,14 +142,15 @@ class Study {
     jobs_.push_back({std::move(changed), influence, outputs});
   }
 
-  /// A parameter lower and higher.
+  /// Adds two runs with a parameter decreased and increased.
   void move(const Parameter& parameter) {
     auto value = scenario_value(scenario_, parameter.key);
-    if (parameter.key == "needle.bending_stiffness_Nmm2") {  // of tube and stylet where the scenario gives none
+    if (parameter.key ==
+        "needle.bending_stiffness_Nmm2") {  // computed from tube and stylet if the scenario gives no value
       if (const auto section = needle_section(scenario_.needle); section)
         value = ScenarioValue{.number = section->bending_stiffness_Nmm2};
     }
-    if (!value || value->number == 0.0) return;  // 20 % of nothing is nothing
+    if (!value || value->number == 0.0) return;  // a relative change of 0 changes nothing
     Influence influence;
     influence.key = parameter.key;
     influence.meaning = parameter.meaning;
@@ -169,7 +171,7 @@ class Study {
     add_job(parameter.key, high, out_.influences.size() - 1, &Influence::at_high);
   }
 
-  /// A word in place of another.
+  /// Adds a run in which another word is chosen.
   void choose(const std::string& key, const std::string& meaning, const std::string& word) {
     const auto value = scenario_value(scenario_, key);
     if (!value || value->text == word) return;
@@ -184,7 +186,7 @@ class Study {
     add_job(key, other, out_.influences.size() - 1, &Influence::at_low);
   }
 
-  /// All runs, as many at a time as there are cores.
+  /// Carries all runs out, one per core at a time.
   void carry_out() {
     std::mutex mutex;
     std::size_t next = 0;
@@ -217,7 +219,7 @@ class Study {
     for (std::thread& thread : threads) thread.join();
   }
 
-  /// A run of the study: one scenario, and where its outputs go.
+  /// A run of the study: its scenario and the place of its outputs.
   struct Job {
     Scenario scenario;
     std::size_t influence = 0;

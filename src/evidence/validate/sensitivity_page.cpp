@@ -29,12 +29,12 @@ constexpr std::array<Output, 3> kOutputs{{{&Outputs::peak_axial_N, "Peak axial f
 
 bool two_sided(const Influence& influence) { return !influence.high.empty(); }
 
-/// Change of an output from the base, in percent of it; 0 where the run is not there.
+/// Change of an output in percent of its base value; 0 if the run failed.
 double percent(double base, double value) {
   return std::isfinite(value) && base != 0.0 ? 100.0 * (value - base) / std::abs(base) : 0.0;
 }
 
-/// Largest change of an output by any parameter that is moved by the same share; choices are another matter.
+/// Largest change of an output by any parameter; choices are not counted.
 double largest(const Sensitivity& study, const Output& output) {
   double most = 1e-9;
   for (const Influence& i : study.influences) {
@@ -45,7 +45,7 @@ double largest(const Sensitivity& study, const Output& output) {
   return most;
 }
 
-/// A bar from the middle; the middle of the cell is the base value, its edge the largest change.
+/// A bar that starts in the middle of the cell. The middle stands for the base value, the edge for the largest change.
 std::string bar(const char* side, double change, double most) {
   constexpr double half = 33.0;  // [%] of the cell's width; the rest is for the numbers
   const double width = half * std::min(1.0, std::abs(change) / most);

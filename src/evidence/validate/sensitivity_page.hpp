@@ -7,15 +7,15 @@
 
 namespace stylet::validate {
 
-/// The study as a section of the page: a table whose cells are bars around the base value (a tornado for each output),
-/// the most influential parameter first.
+/// The study as an HTML section of the page: a table whose cells are bars around the base value (a tornado plot for
+/// each output), the most influential parameter first.
 std::string sensitivity_html(const Sensitivity& study);
 
-/// Positions of the influences, the most influential first: by the largest change of any output, each relative to the
-/// largest change that any parameter makes of that output.
+/// Indices of the influences, the most influential first. The order is by the largest change of any output, relative to
+/// the largest change of that output by any parameter. Choices come last.
 std::vector<std::size_t> by_influence(const Sensitivity& study);
 
-/// "+12 %", "−0.3 %": change from `from` to `to`, in words.
+/// The relative change from `from` to `to` as text: "+12 %", "−0.3 %".
 std::string change_text(double from, double to);
 
 }  // namespace stylet::validate

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-/// What checks of the tissue by itself have in common: supports, loads, fields.
+/// Supports, loads and fields for checks of the tissue without a needle.
 namespace stylet::validate {
 
 /// Nodes of a mesh for which `chosen` holds.
@@ -17,20 +17,21 @@ VecX sample(const Tissue& tissue, const std::function<Vec3(const Vec3&)>& field)
 /// Stress of a homogeneous displacement gradient [MPa].
 Mat3 stress_of(const Material& material, const Mat3& gradient);
 
-/// Nodal forces [N] (3 × displacement nodes) of the traction σ n on the outer faces, constant on a face: a third on
-/// each corner of a linear face, on each edge's middle of a quadratic one.
-/// @param stress_at σ [MPa] at the middle of a face [mm] of a region
+/// Nodal forces [N] (3 × displacement nodes) of the traction σ n on the outer faces, which is constant on each face. A
+/// third acts on each corner of a linear face, or on the middle of each edge of a quadratic face.
+/// @param stress_at returns σ [MPa] for the centre of a face [mm] and its region
 VecX traction(const Tissue& tissue, const std::function<Mat3(const Vec3&, int region)>& stress_at);
 
-/// Largest deviation over the largest value.
+/// Largest deviation of an entry, divided by the largest expected value.
 double relative_error(const VecX& value, const VecX& expected);
 
-/// A cube of 60 mm stands on its floor and is pressed from above by a smooth hill of pressure of 2 kPa. Irregular mesh.
+/// A cube of 60 mm on a fixed floor, loaded from above by a smooth pressure distribution with a peak of 2 kPa. The mesh
+/// is irregular.
 struct PressedBlock {
-  double dent_mm = 0.0;  ///< mean depth under the load, weighted with it
+  double dent_mm = 0.0;  ///< mean displacement under the load, weighted with the load
   Index displacement_nodes = 0;
 };
-/// @param cells along an edge of the cube, of six tetrahedra each
+/// @param cells number of cells along an edge of the cube, of six tetrahedra each
 /// Errors: those of Tissue::build.
 Result<PressedBlock> press_block(const Material& material, int cells, Element element);
 

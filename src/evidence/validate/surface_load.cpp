@@ -10,8 +10,8 @@ namespace stylet::validate {
 
 namespace {
 
-/// Tractions on a plane z = const, seen from above (normal −z), in Kelvin's solution: column k for a force along axis k
-/// at a distance r [1/mm²].
+/// Tractions of Kelvin's solution on a plane z = const with normal −z, at r from the force [1/mm²]. Column k is for a
+/// force along axis k.
 /// @cite Johnson1985
 Mat3 kelvin_traction(const Vec3& r, double poisson) {
   const double d = r.norm();

@@ -24,7 +24,7 @@ Result<> check_ids(const std::vector<RowSpec>& rows, const std::vector<std::stri
     if (std::find(known.begin(), known.end(), id) != known.end()) continue;
     const std::string near = nearest_name(id, known);
     return input_error("--only", fmt::format("there is no row '{}'", id),
-                       near.empty() ? "--list prints all rows" : fmt::format("Did you mean '{}'?", near));
+                       near.empty() ? "Print all rows with --list" : fmt::format("Did you mean '{}'?", near));
   }
   return Ok{};
 }
@@ -49,10 +49,10 @@ Result<Validation> validate(const std::vector<RowSpec>& rows, const ValidateOpti
 
   std::vector<const RowSpec*> chosen;
   for (const RowSpec& row : rows) {
-    // A row asked for by name is measured with --quick, too.
+    // A row that is named with --only is measured even with --quick.
     if (options.only.empty() ? row.quick || !options.quick : asked(row.id)) chosen.push_back(&row);
   }
-  // What a row reports of its own stages is shown after the row's number.
+  // The stages that a row reports are shown after the row's number.
   std::string stage;
   double done = 0.0;
   const auto inner = [&](std::string_view what, double) { report(progress, fmt::format("{}: {}", stage, what), done); };

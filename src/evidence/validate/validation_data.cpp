@@ -63,7 +63,8 @@ Json row_json(const Row& row) {
 
 constexpr std::size_t kMostPoints = 400;
 
-/// Positions that keep the look of a curve in a small picture: the lowest and the highest value of each stretch.
+/// Indices of the points to draw: the lowest and the highest value of each section, which keep the shape of a curve in
+/// a small picture.
 std::vector<std::size_t> thinned(const std::vector<double>& y) {
   std::vector<std::size_t> kept;
   if (y.size() <= kMostPoints) {
@@ -83,7 +84,7 @@ std::vector<std::size_t> thinned(const std::vector<double>& y) {
   return kept;
 }
 
-/// Six digits are more than a picture shows.
+/// Rounds to six digits, which is enough for a picture.
 double rounded(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.6g}", value)) : value; }
 
 Json curve_json(const Curve& curve) {

@@ -11,16 +11,16 @@ using Json = nlohmann::ordered_json;
 
 Json validation_data(const Validation& validation);
 
-/// What the page's script draws: plots of all rows by id, thinned to what a small picture shows, and the study.
+/// The data that the page's script draws: plots of all rows by id, thinned for small pictures, and the study.
 Json page_data(const Validation& validation);
 
-/// "force_balance.csv"
+/// Name of the file with a row's curves, such as "force_balance.csv".
 std::string curve_file(const Row& row);
 
-/// A value and its digits for people, "–" where there is none.
+/// A value as text for the page; "–" for NaN.
 std::string value_text(double value);
 
-/// The same of a bound or a pair of bounds: "≤ 10⁻¹⁰", "0.58 … 1.3".
+/// Accepted values as text for the page: "≤ 10⁻¹⁰", "0.58 … 1.3".
 std::string accepted_text(const Accepted& accepted);
 
 }  // namespace stylet::validate

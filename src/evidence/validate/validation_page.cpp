@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array kGroups{Group::analysis, Group::other_code, Group::measurements, Group::independence};
 
-/// Word, sign and colour: any one of them is enough.
+/// The verdict as word, sign and colour, each of which is sufficient by itself.
 std::string badge(Verdict verdict) {
   const auto make = [&](const char* style, const char* sign) {
     return fmt::format("<span class=\"verdict {}\"><i>{}</i>{}</span>", style, sign, to_string(verdict));
@@ -86,8 +86,8 @@ std::string group_html(const Validation& v, Group group) {
       "pass</small></h2>"
       "<div class=\"scroll\"><table class=\"rows\"><colgroup><col class=\"result\"><col><col class=\"reference\">"
       "<col class=\"value\"><col class=\"accepted\"><col class=\"plotted\"></colgroup>"
-      "<thead><tr><th>Result</th><th>Claim</th><th>Reference</th><th>Our number</th><th>Accepted</th>"
-      "<th>Picture</th></tr></thead><tbody>{4}</tbody></table></div></section>",
+      "<thead><tr><th>Result</th><th>Claim</th><th>Reference</th><th>Value</th><th>Accepted</th>"
+      "<th>Plot</th></tr></thead><tbody>{4}</tbody></table></div></section>",
       static_cast<int>(group), html_escaped(title(group)), passed, judged, rows);
 }
 
@@ -106,7 +106,7 @@ std::string summary_html(const Validation& v) {
   if (v.count(Verdict::skipped) > 0)
     html += " " + counted(v.count(Verdict::skipped), "row was", "rows were") + " skipped.";
   if (v.count(Verdict::information) > 0)
-    html += " " + counted(v.count(Verdict::information), "row is", "rows are") + " there for information.";
+    html += " " + counted(v.count(Verdict::information), "row is", "rows are") + " shown for information.";
   if (v.count(Verdict::crashed) > 0) html += " " + counted(v.count(Verdict::crashed), "row", "rows") + " crashed.";
   html += "</p>";
   std::string missed;
@@ -117,8 +117,8 @@ std::string summary_html(const Validation& v) {
                           with_unit(accepted_text(row.spec.accepted), row.spec.unit));
   }
   if (!missed.empty())
-    html += "<div class=\"missed-list\"><p>✗ Missed; each row says what is known about why</p><ul>" + missed +
-            "</ul></div>";
+    html +=
+        "<div class=\"missed-list\"><p>✗ Missed rows; each gives the known reasons</p><ul>" + missed + "</ul></div>";
   return html + "</section>";
 }
 
@@ -131,7 +131,7 @@ std::string how_made(const Validation& v) {
   if (!v.options.only.empty())
     extent = fmt::format("{} only", fmt::join(v.options.only, ", "));
   else if (v.options.quick)
-    extent = "--quick: rows that take a few seconds at the most";
+    extent = "--quick: only rows that take a few seconds at most";
   return pair("Command", v.options.command) +
          pair("Machine", fmt::format("{}, {} cores", machine.processor, machine.cores)) +
          pair("Compiler", machine.compiler) + pair("Program", "Stylet " + v.version) +

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compliance between the nodes of a needle's corridor: the corridor eliminated last and one dense inverse, against a
-// factor in METIS' own order and a solve for each column. On a block of 100 mm. Counters: nodes, those of the corridor,
-// memory of the factor. By hand, on a quiet machine:
+// Times the compliance between the nodes of a needle's corridor in a block of 100 mm, by two methods: the corridor is
+// eliminated last and one dense matrix is inverted, or the factor has METIS' own order and each column is a solve.
+// Counters: nodes, nodes of the corridor, memory of the factor. Run it by hand on an otherwise idle machine:
 //   build/bin/bench_corridor --benchmark_filter='cells:14/'
 #include "stylet/fem/compliance_store.hpp"
 #include "stylet/geom/box_mesh.hpp"

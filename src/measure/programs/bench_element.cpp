@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the kinds of elements cost and what they are worth, on a block of 100 mm. Counters: nodes of the mesh,
-// displacement nodes, entries of K and of its factor, memory; for accuracy the error in percent of how deep a smooth
-// pressure dents the block. By hand, on a quiet machine:
+// Computing time, memory and accuracy of the kinds of elements in a block of 100 mm. Counters: nodes of the mesh,
+// displacement nodes, entries of K and of its factor, memory. The accuracy is the error, in percent, of the dent under
+// a smooth pressure. Run it by hand on an otherwise idle machine:
 //   build/bin/bench_element --benchmark_filter='cells:14/'
 #include "stylet/fem/compliance_store.hpp"
 #include "stylet/geom/box_mesh.hpp"
@@ -20,7 +20,7 @@ namespace {
 constexpr double kSide_mm = 100.0;
 constexpr double kJitter = 0.1;
 constexpr double kCorridor_mm = 10.0;
-constexpr int kFineCells = 14;  // of the quadratic reference
+constexpr int kFineCells = 14;  // mesh of the reference with quadratic elements
 
 Tissue block(Element element, int cells, double poisson) {
   TetMesh mesh = box_mesh(Vec3::Zero(), Vec3::Constant(kSide_mm), {cells, cells, cells}, kJitter);
@@ -33,7 +33,7 @@ Tissue block(Element element, int cells, double poisson) {
   return std::move(*tissue);
 }
 
-/// Nodes within the corridor of a needle that goes down the middle to 80 mm.
+/// Nodes in the corridor of a needle that goes along the block's axis to 80 mm depth.
 std::vector<Index> corridor(const TetMesh& mesh) {
   std::vector<Index> nodes;
   const double cell = kSide_mm / std::cbrt(static_cast<double>(mesh.tet_count()) / 6.0);
@@ -45,20 +45,20 @@ std::vector<Index> corridor(const TetMesh& mesh) {
   return nodes;
 }
 
-/// Depth of the dent that a smooth hill of pressure on top makes, weighted with the pressure [mm].
+/// Depth of the dent under a smooth pressure on top, averaged with the pressure as weight [mm].
 double dent(Element element, int cells, double poisson) {
   const Tissue tissue = block(element, cells, poisson);
   const double cell = kSide_mm / cells;
   VecX f = VecX::Zero(3 * Eigen::Index{tissue.displacement_nodes()});
-  // Nodal forces by the pressure at the nodes' own places; the share of the top's area that is a node's.
+  // The force on a node is the pressure at the node times its share of the area of the top.
   double total = 0.0;
   const double spacing = element == Element::p2 ? 0.5 * cell : cell;
   for (Index node = 0; node < tissue.displacement_nodes(); ++node) {
     const Vec3 x = tissue.node_position(node);
     if (x.z() != kSide_mm) continue;
     const double hill = std::sin(std::numbers::pi * x.x() / kSide_mm) * std::sin(std::numbers::pi * x.y() / kSide_mm);
-    // Quadratic faces carry a constant pressure on the middles of their edges only: one per half cell squared and a
-    // third.
+    // A constant pressure on a quadratic face acts on the middles of its edges only, each with a third of the face's
+    // area.
     const bool corner = tissue.ends_of(node)[0] == tissue.ends_of(node)[1];
     const double area = element == Element::p2 ? (corner ? 0.0 : 4.0 / 3.0 * spacing * spacing) : spacing * spacing;
     f[3 * node + 2] = -area * 1e-3 * hill * hill;
@@ -67,7 +67,7 @@ double dent(Element element, int cells, double poisson) {
   return f.dot(VecX(tissue.solve(f))) / std::abs(total);
 }
 
-/// The quadratic block on a mesh as fine as is affordable.
+/// The dent with quadratic elements on a fine mesh; computed once for each Poisson ratio.
 double reference(double poisson) {
   static std::map<double, double> known;
   if (const auto found = known.find(poisson); found != known.end()) return found->second;
@@ -123,7 +123,8 @@ constexpr int kP1 = static_cast<int>(Element::p1);
 constexpr int kAveraged = static_cast<int>(Element::nodal_pressure);
 constexpr int kP2 = static_cast<int>(Element::p2);
 
-// 14 cells: 3,375 nodes; 26 cells: 19,683 nodes; quadratic elements on 7 and 13 cells have as many displacement nodes.
+// 14 cells have 3,375 nodes and 26 cells 19,683 nodes. Quadratic elements on 7 and 13 cells have the same numbers of
+// displacement nodes.
 void sizes(benchmark::internal::Benchmark* run) {
   run->ArgNames({"element", "cells"})->Unit(benchmark::kSecond)->Iterations(1);
   for (const int cells : {14, 26}) {

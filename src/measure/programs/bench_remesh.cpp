@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a change of the mesh costs, method by method, against the size of the mesh: the full inverse from scratch, by
-// boundary condition switches, by Woodbury on the whole matrix and on one triangle, and the compliance among the points
-// held (the default) with nodes inside elements and on faces. BLAS with one thread.
+// Times a change of the mesh by several methods against the size of the mesh: the full inverse from scratch, by
+// boundary condition switches, by Woodbury on the whole matrix and on one triangle; and the compliance among the held
+// points (the default) with nodes inside elements and on faces. BLAS uses one thread.
 #include "fem/blas_threads.hpp"
 #include "measure/needle_way.hpp"
 #include "stylet/coupling/paper/inverse_updates.hpp"
@@ -18,7 +18,7 @@ namespace {
 using namespace stylet;
 using namespace stylet::measure;
 
-/// Blocks are made once, each takes a second or more.
+/// Returns a block. Each is built once, because that takes a second or more.
 const Block* block_of(std::int64_t cells) {
   static std::map<std::int64_t, std::unique_ptr<Block>> blocks;
   auto& block = blocks[cells];
@@ -29,8 +29,8 @@ const Block* block_of(std::int64_t cells) {
   return block.get();
 }
 
-/// The first node on a face of the way: K⁻¹ with the node on springs, and the change that puts it into the mesh or, the
-/// other way round, takes it out again. Both ways cost the same, so that nothing need be restored in between.
+/// The first node of the way on a face: K⁻¹ with the node on springs, and the changes that add the node to the mesh and
+/// remove it. Both changes take the same time, so they can alternate without restoring K⁻¹.
 struct FaceNode {
   explicit FaceNode(const NeedleWay& way) {
     const AddedNode node = nodes_along(way, {.placement = Placement::face, .most_nodes = 1}).front();
@@ -91,7 +91,7 @@ void inverse_from_scratch(benchmark::State& state) {
   state.counters["nodes"] = block->way().store->tissue().mesh().node_count();
 }
 
-/// One iteration adds all nodes of the way; the time of one node is the inverse of items_per_second.
+/// Adds all nodes of the way in each iteration; the time for one node is the inverse of items_per_second.
 void held_points(benchmark::State& state, Placement placement) {
   const Block* block = block_of(state.range(0));
   if (block == nullptr) return state.SkipWithError("the block cannot be built");

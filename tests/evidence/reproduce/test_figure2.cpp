@@ -14,7 +14,7 @@ using namespace stylet::reproduce;
 
 namespace {
 
-/// A prostate of three circles with many points, and a box mesh with a prostate in its middle.
+/// Contours of a prostate, three circles with many points, and a box mesh with a prostate in its centre.
 ContourSet circles() {
   Roi roi{.name = "Prostate", .number = 1, .type = "ORGAN", .contours = {}};
   for (const double z : {5.0, 0.0, -5.0}) {

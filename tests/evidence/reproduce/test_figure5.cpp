@@ -37,7 +37,7 @@ TEST(Figure5, sizes_span_the_papers_range) {
 }
 
 TEST(PlaneTissue, stretches_as_plane_strain_does) {
-  // A homogeneous strain is in the space of linear triangles: its energy is exact whatever the grid.
+  // Linear triangles can represent a homogeneous strain, so its energy is exact on every grid.
   const PlaneTissue tissue = plane_tissue(4, 3);
   const double e = 0.01;
   double energy = 0.0;

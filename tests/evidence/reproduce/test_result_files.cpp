@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of a made-up reproduction: names, keys, whole or not at all.
+// The files of an invented reproduction: their names and keys, and that they appear complete or not at all.
 #include "stylet/evidence/reproduce/reproduction.hpp"
 
 #include <gtest/gtest.h>

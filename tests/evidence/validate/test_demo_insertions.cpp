@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Insertions at random into the demo's patient: whatever way and speed, needle and tissue find their balance.
+// Random insertions into the demo patient: needle and tissue must find a balance for every way and speed.
 #include "stylet/measure/demo.hpp"
 #include "stylet/mesher/mesher.hpp"
 #include "stylet/sim/simulation.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of a made-up validation: what passes, misses, is skipped or crashes stays visible.
+// A validation with invented rows: rows that pass, are missed, are skipped or crash are all reported.
 #include "stylet/evidence/validate/context.hpp"
 #include "stylet/evidence/validate/validation.hpp"
 
@@ -99,7 +99,7 @@ TEST(Validation, every_row_gets_its_verdict_and_none_stops_the_others) {
   EXPECT_EQ(row_of(v, "throws").verdict, Verdict::crashed);
   EXPECT_EQ(row_of(v, "long_one").verdict, Verdict::pass);
   EXPECT_EQ(v.count(Verdict::crashed), 2);
-  // A miss says why, a pass does not bother.
+  // A missed row gives the reason; a row that passes does not.
   EXPECT_NE(row_of(v, "misses").note().find("the known reason"), std::string::npos);
   EXPECT_EQ(row_of(v, "passes").note().find("the known reason"), std::string::npos);
   EXPECT_NE(row_of(v, "skips").note().find("/nowhere/some/file.csv"), std::string::npos);

@@ -18,7 +18,7 @@ TEST(HandLoop, ends_where_it_begins_and_goes_elsewhere_between) {
       EXPECT_TRUE(loop.at(start, share).origin.isApprox(start.origin, 1e-12)) << number;
       EXPECT_NEAR(loop.at(start, share).rotation.angularDistance(start.rotation), 0.0, 1e-7) << number;
     }
-    // No jump before its end, which is put right to the last bit.
+    // The loop closes exactly at its end, and there is no jump before it.
     EXPECT_LT((loop.at(start, 1.0 - 1e-9).origin - start.origin).norm(), 1e-6) << number;
     EXPECT_GT((loop.at(start, 0.37).origin - start.origin).norm(), 1e-4) << number;
     EXPECT_GT(loop.at(start, 0.37).rotation.angularDistance(start.rotation), 1e-5) << number;
@@ -53,8 +53,8 @@ TEST(HandWork, of_a_loop_in_tissue_is_not_negative) {
       smallest_loss = std::min(smallest_loss, -work.given_back());
       largest_loss = std::max(largest_loss, -work.given_back());
     }
-    // Both kinds are among them: one that hardly slides and returns nearly all, but for what creeps, and one that loses
-    // much to friction. Work without that of the torque would come out far from balanced.
+    // There are two kinds: a loop that hardly slides and returns nearly all work except that lost by creep, and a loop
+    // that loses much work by friction. Without the work of the torque, the balance would be far off.
     EXPECT_LT(smallest_loss, preset == TissuePreset::linear ? 1e-2 : 5e-2) << word(preset);
     EXPECT_GT(largest_loss, 0.2) << word(preset);
   }

@@ -9,7 +9,7 @@ using namespace stylet::measure;
 
 namespace {
 
-/// Rows of a method, the finest mesh first.
+/// The rows of a method, with the finest mesh first.
 std::vector<CouplingRow> of(const std::vector<CouplingRow>& rows, const std::string& method) {
   std::vector<CouplingRow> found;
   for (const CouplingRow& row : rows) {
@@ -29,10 +29,10 @@ TEST(InsertionOverMeshes, comes_near_the_same_force_with_the_near_field_on_500_n
   const CouplingRow& coarse = near_field[1];
   EXPECT_NEAR(fine.nodes, 2000, 60);
   EXPECT_NEAR(coarse.nodes, 500, 15);
-  // The soft layers are thinner than the elements of the coarse mesh, and its capsule breaks millimetres earlier.
+  // The soft layers are thinner than the elements of the coarse mesh, so its capsule breaks some millimetres earlier.
   EXPECT_LT(coarse.rms_vs_finest_percent, 10.0);
   EXPECT_NEAR(coarse.peak_N, fine.peak_N, 0.03 * fine.peak_N);
   EXPECT_NEAR(coarse.skin_mm, fine.skin_mm, 1.5);
-  // The method of 2005 is there to be compared: its skin dents less, by as much as the mesh has it.
+  // The method of 2005 is compared: its skin dents less, by an amount that depends on the mesh.
   for (const CouplingRow& row : of(*rows, "node-addition")) EXPECT_LT(row.skin_mm, 0.7 * fine.skin_mm);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows there are: named, complete, and those of pure algebra hold.
+// All rows have a name and all their texts, and the rows that only need algebra pass.
 #include "evidence/validate/number_table.hpp"
 #include "stylet/evidence/validate/calculix.hpp"
 #include "stylet/evidence/validate/context.hpp"
@@ -104,7 +104,7 @@ TEST(DemoScenario, is_the_demo_that_is_shipped) {
   EXPECT_EQ(to_toml(ours), to_toml(*shipped));
 }
 
-/// Root mean square of how far a row's curve is from its reference, over the reference's largest value [%].
+/// Root mean square difference of a row's curve from its reference, relative to the reference's largest value [%].
 double rms_percent(const Curve& curve, const Curve& reference) {
   double sum = 0.0;
   for (std::size_t i = 0; i < reference.x.size(); ++i)
@@ -125,7 +125,7 @@ TEST(LiverCurves, are_met_by_the_dent_that_stiffens_twice_as_nearly_as_by_any_li
     EXPECT_EQ(published.x.front(), 2.0);
     EXPECT_NEAR(row.finding.value, rms_percent(curves[0], published), 1e-9);
     EXPECT_LT(2.0 * row.finding.value, rms_percent(curves[1], published)) << row.note();
-    // The null model is the best there is of its kind.
+    // The null model has the best possible fit.
     for (const double factor : {0.95, 1.05}) {
       Curve other = curves[1];
       for (double& force : other.y) force *= factor;

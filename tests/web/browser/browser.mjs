@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens a page in the Chromium of the machine, drawing in software, and says what a user would see.
+// Opens a page in an installed Chromium with software rendering, and reads what a user would see.
 import assert from 'node:assert/strict';
 import { existsSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -10,19 +10,20 @@ import { fileURLToPath } from 'node:url';
 const PLACES = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 const WEB = process.env.STYLET_WEB ?? path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../../build/web');
 const SKIPPED = 77;
-// WebGL alone: what Chromium does by itself where there is no graphics hardware. The page itself it draws without.
+// Only WebGL is rendered in software, as Chromium does without graphics hardware. The page itself does not need it.
 const SOFTWARE_GL = ['--use-gl=angle', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader'];
-const NO_GL_SAID = /Error creating WebGL context|WebGL context could not be created/;  // three.js tells the console as well
+// three.js reports this on the console
+const NO_GL_SAID = /Error creating WebGL context|WebGL context could not be created/;
 const NO_GL = ['--disable-gpu', '--disable-3d-apis'];
-/** Pictures in software on a busy machine come seconds apart. */
+/** With software rendering on a busy machine there may be seconds between two pictures. */
 export const PATIENCE_MS = 120_000;
 
-/** Path of a Chromium, or null. */
+/** The path of a Chromium, or null. */
 export function findChromium() {
   return [process.env.CHROMIUM, ...PLACES].find((p) => p && existsSync(p)) ?? null;
 }
 
-/** Ends a test, as one that was skipped, where there is no browser. */
+/** Ends a test as skipped if there is no browser. */
 export function skipWithoutChromium() {
   if (findChromium()) return;
   console.log('Skipped: no Chromium. Install the package chromium, or set CHROMIUM to its path.');
@@ -31,8 +32,8 @@ export function skipWithoutChromium() {
 
 /**
  * @param web folder whose node_modules has playwright-core: web/ of a build
- * @param webgl false: without the 3D view, which in software takes most of the time
- * @param pictures whether pictures are kept, if any are: they have the 3D view all the same
+ * @param webgl false: without the 3D view, which takes most of the time with software rendering
+ * @param pictures whether pictures are saved if a folder is given; then there is a 3D view in any case
  */
 export async function openBrowser({ web = WEB, webgl = true, pictures = true, options = [] } = {}) {
   const executablePath = findChromium();
@@ -45,9 +46,9 @@ export async function openBrowser({ web = WEB, webgl = true, pictures = true, op
 }
 
 /**
- * A page of its own, as another visitor has it.
- * @param prepare done to the page before it is opened
- * @returns page, and problems: what the page's scripts complained of
+ * Opens a separate page, like another visitor.
+ * @param prepare called with the page before it is opened
+ * @returns page, and problems: the errors of the page's scripts
  */
 export async function openVisitor(browser, address, { width = 1366, height = 768, prepare = async () => {} } = {}) {
   const page = await browser.newPage({ viewport: { width, height } });
@@ -60,30 +61,30 @@ export async function openVisitor(browser, address, { width = 1366, height = 768
   return { page, problems };
 }
 
-/** A browser with one page. @returns page, problems, close() */
+/** Starts a browser with one page. @returns page, problems, close() */
 export async function openPage(web, address, size = {}) {
   const browser = await openBrowser({ web });
   return { ...(await openVisitor(browser, address, size)), close: () => browser.close() };
 }
 
-/** Waits until there is a patient and nothing covers it. */
+/** Waits until a patient is shown and nothing covers it. */
 export async function waitUntilReady(page, timeout = PATIENCE_MS) {
   await page.locator('#cover').waitFor({ state: 'hidden', timeout });
   await page.locator('.readouts b').first().filter({ hasText: /\d/ }).waitFor({ timeout });
 }
 
-/** Number of a read-out by its label: "Depth", "Axial", "Speed", … */
+/** The value of a readout, by its label: "Depth", "Axial", "Speed", … */
 export async function readout(page, label) {
   const text = await page.locator('.readouts .value', { has: page.locator('.name', { hasText: new RegExp(`^${label}$`) }) }).locator('b').textContent();
   return Number(text.replace('−', '-'));
 }
 
-/** A large number by its name: "Peak force", "Tip error", …; NaN where there is none. */
+/** The value of a key figure, by its name: "Peak force", "Tip error", …; NaN if there is none. */
 export async function figure(page, name) {
   return Number(await page.locator('.figure').filter({ hasText: name }).locator('b').textContent());
 }
 
-/** Waits until what `ask` brings satisfies `good`, and returns it; fails with what it was last. */
+/** Waits until the result of `ask` satisfies `good`, and returns it. Fails with the last result. */
 export async function until(what, ask, good, timeout = PATIENCE_MS) {
   const end = Date.now() + timeout;
   let value;
@@ -95,7 +96,7 @@ export async function until(what, ask, good, timeout = PATIENCE_MS) {
   assert.fail(`waited in vain for ${what}; last was ${JSON.stringify(value)}`);
 }
 
-/** Waits until the page has marked a moment of its opening ("needle ready", "3D view"); @returns it [ms since 1970] */
+/** Waits until the page has marked a moment of its opening ("needle ready", "3D view"). @returns it [ms since 1970] */
 export function marked(page, name) {
   return until(name, () => page.evaluate((mark) => {
     const [entry] = performance.getEntriesByName(mark);
@@ -103,12 +104,12 @@ export function marked(page, name) {
   }, name), Boolean);
 }
 
-/** Waits until a read-out satisfies `good`, and returns it. */
+/** Waits until the value of a readout satisfies `good`, and returns it. */
 export function untilReadout(page, label, good) {
   return until(`${label} ${good}`, () => readout(page, label), good);
 }
 
-/** Names of the events, as marks of the chart have them, in the order in which they happened: what a reader of screens hears. */
+/** The names of the events in their order, as they are announced to screen readers. */
 export async function listenToEvents(page) {
   await page.evaluate(() => {
     window.heard = [];
@@ -118,14 +119,14 @@ export async function listenToEvents(page) {
   return () => page.evaluate(() => window.heard);
 }
 
-/** Turns the wheel over the 3D view: positive notches push. */
+/** Turns the wheel over the 3D view; positive notches push. */
 export async function turnWheel(page, notches) {
   const box = await page.locator('#view3d').boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   for (let left = Math.abs(notches); left > 0; left -= 5) await page.mouse.wheel(0, -100 * Math.sign(notches) * Math.min(left, 5));
 }
 
-/** Tests that go on from where the one before ended: after one that failed the others are skipped. */
+/** Tests of which each continues from the end of the previous one. After a failure the others are skipped. */
 export function inOrder() {
   let failed = false;
   return (name, action) => test(name, async (t) => {
@@ -139,7 +140,7 @@ export function inOrder() {
   });
 }
 
-/** Keeps a picture of a state of the page in the folder named by STYLET_SCREENSHOTS; without one nothing is kept. */
+/** Saves a picture of the page in the folder named by STYLET_SCREENSHOTS, if that is set. */
 export async function keepPicture(page, name) {
   const folder = process.env.STYLET_SCREENSHOTS;
   if (!folder) return;

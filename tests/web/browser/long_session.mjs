@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Minutes of a needle going to and fro: neither the page nor the server may grow.
+// Moves a needle in and out for minutes. The memory of the page and of the server must not grow.
 //   node tests/web/browser/long_session.mjs SECONDS
 import { openBrowser, openVisitor, readout, waitUntilReady } from './browser.mjs';
 import { makeFolder, SMALL, startServer } from './server.mjs';
@@ -7,7 +7,7 @@ import { makeFolder, SMALL, startServer } from './server.mjs';
 const MEASURES = 24;
 const MB = 1e6;
 
-/** Counts messages of the live connection. */
+/** Counts the messages of the live connection. */
 function countMessages() {
   window.messages = 0;
   const listen = WebSocket.prototype.addEventListener;
@@ -16,7 +16,7 @@ function countMessages() {
   };
 }
 
-/** Pushes or pulls with what a key does, between the skin and the gland's far end, as long as it is asked to, or so often in and out. */
+/** Pushes and pulls as with a key, between the skin and the gland's far end, for a time or for a number of cycles. */
 async function toAndFro(page, seconds, times = Infinity) {
   const end = Date.now() + 1000 * seconds;
   let key = 'PageUp';
@@ -32,7 +32,10 @@ async function toAndFro(page, seconds, times = Infinity) {
   }
 }
 
-/** @returns MB of the page's heap after garbage collection and of the server, numbers of nodes and listeners, messages so far */
+/**
+ * @returns memory [MB] of the page's heap after garbage collection and of the server, numbers of nodes, listeners and
+ * messages
+ */
 async function measure(page, client, server) {
   for (let i = 0; i < 2; i++) await client.send('HeapProfiler.collectGarbage');
   const { usedSize } = await client.send('Runtime.getHeapUsage');
@@ -43,14 +46,17 @@ async function measure(page, client, server) {
   };
 }
 
-/** Median of the second half of the measures less that of the first. */
+/** The median of the second half of the measurements minus that of the first half. */
 function growth(measures, key) {
   const half = measures.length / 2;
   const median = (list) => list.map((m) => m[key]).sort((a, b) => a - b)[Math.floor(list.length / 2)];
   return median(measures.slice(half)) - median(measures.slice(0, half));
 }
 
-/** @returns growth from the first to the second half of what follows the first quarter, minutes between their middles, messages a second */
+/**
+ * The first quarter of the session is left out.
+ * @returns growth from the first to the second half of the rest, minutes between their centres, messages per second
+ */
 export async function longSession(seconds, say = () => {}) {
   const { folder, remove } = makeFolder();
   const server = await startServer(folder, { options: SMALL });
@@ -59,7 +65,7 @@ export async function longSession(seconds, say = () => {}) {
     const { page, problems } = await openVisitor(browser, server.url, { width: 800, height: 600, prepare: (p) => p.addInitScript(countMessages) });
     await waitUntilReady(page);
     await page.keyboard.press('3');
-    await toAndFro(page, 120, 2); // until server and page have made room for all depths
+    await toAndFro(page, 120, 2); // until server and page have allocated memory for all depths
     const client = await page.context().newCDPSession(page);
     const measures = [];
     for (let i = 0; i < MEASURES; i++) {

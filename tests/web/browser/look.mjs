@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of the live page on three screens, before and after a push to the planned depth of the demo, with the gland's shift
-// predicted for every hole of the template (which takes some minutes the first time):
-//   node tests/web/browser/look.mjs build/web 'http://localhost:8000/?fake' out/look
-// Ends with 1 if a script of the page complained.
+// Saves pictures of the live page on three screen sizes, before and after a push to the planned depth of the demo, with
+// the predicted shift of the gland for every hole of the template (which takes some minutes the first time): node
+// tests/web/browser/look.mjs build/web 'http://localhost:8000/?fake' out/look Ends with status 1 if a script of the
+// page reported an error.
 import { mkdirSync } from 'node:fs';
 import path from 'node:path';
 import { openPage, readout, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
@@ -11,7 +11,7 @@ const [web, address, out] = process.argv.slice(2);
 mkdirSync(out, { recursive: true });
 let complaints = 0;
 
-/** Colours the template by the largest shift of the gland, once it is predicted for all holes. */
+/** Waits for the predictions of all holes and colours the template by the largest shift of the gland. */
 async function predictShift(page) {
   const choice = page.getByLabel('What the colours of the holes mean');
   if (!(await choice.isVisible())) return;
@@ -27,8 +27,8 @@ for (const [width, height] of [[1366, 768], [1920, 1080], [3840, 2160]]) {
   await page.waitForTimeout(1500);
   await page.screenshot({ path: path.join(out, `${width}-start.png`) });
   await predictShift(page);
-  await page.getByRole('button', { name: 'Start again' }).click();  // a curve that begins with the push
-  await page.waitForTimeout(1000);  // a needle that stood before the skin already shows so at once
+  await page.getByRole('button', { name: 'Start again' }).click();  // so that the curve starts with the push
+  await page.waitForTimeout(1000);  // until the page shows the needle in front of the skin
   await untilReadout(page, 'Depth', (depth) => depth < 0);
   await turnWheel(page, 77);
   await page.waitForTimeout(6000);

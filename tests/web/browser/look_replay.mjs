@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture of the last moment of a recording: the gland from the front with a net where it lay before the needle came, and sections.
-//   build/bin/stylet serve out/before/run.h5
-//   node tests/web/browser/look_replay.mjs build/web "ADDRESS" out/before.png
-// Ends with 1 if a script of the page complained.
+// Saves a picture of the last moment of a recording: the gland from the front with a wire frame of its initial
+// position, and the sections. build/bin/stylet serve out/before/run.h5 node tests/web/browser/look_replay.mjs build/web
+// "ADDRESS" out/before.png Ends with status 1 if a script of the page reported an error.
 import { openPage, readout, until, waitUntilReady } from './browser.mjs';
 
-const HIDDEN = ['Pubic arch', 'Band', 'Rectum', 'Rectal lumen', 'Levator', 'Periprostatic fat', 'Ischiorectal fat'];  // what lies before the gland
+// regions in front of the gland
+const HIDDEN = ['Pubic arch', 'Band', 'Rectum', 'Rectal lumen', 'Levator', 'Periprostatic fat', 'Ischiorectal fat'];
 
 const [web, address, file] = process.argv.slice(2);
 const { page, problems, close } = await openPage(web, address, { width: 1366, height: 768 });

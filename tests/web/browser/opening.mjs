@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long it is from the command to a needle in one's hand, and to the first picture of the 3D view:
+// Measures the time from the command until the needle can be moved, and until the first picture of the 3D view:
 //   node tests/web/browser/opening.mjs [STARTS] [SCENARIO] [open|started]
-// in a browser with an open window, or in one that is started as soon as the server has said its address. Each start
-// has an empty cache of models; the demo's comes with the build.
+// in a browser with an open window, or in a browser that is started as soon as the server has printed its address. Each
+// start has an empty cache of models; the model of the demo comes with the build.
 import path from 'node:path';
 import { marked, openBrowser, openVisitor } from './browser.mjs';
 import { DEMO, makeFolder, startServer } from './server.mjs';
@@ -12,7 +12,7 @@ const scenario = path.resolve(process.argv[3] ?? DEMO);
 const way = process.argv[4] ?? 'open';
 if (way !== 'open' && way !== 'started') throw new Error(`"${way}" is neither "open" nor "started"`);
 const open = way === 'open';
-const REST_MS = 1500;  // what the window and the start before still do is no part of this one
+const REST_MS = 1500;  // pause, so that work of the window and of the previous start does not disturb this one
 let browser = open ? await openBrowser() : null;
 const rows = [];
 for (let k = 0; k < starts; k++) {

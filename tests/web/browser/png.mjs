@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Enough of PNG to see that a picture is not blank.
+// A minimal PNG reader, sufficient to check that a picture is not blank.
 import { inflateSync } from 'node:zlib';
 
-/** Pixels of a PNG of 8 bits a channel, RGB or RGBA. @returns width, height, at(x, y): [r, g, b] */
+/** Reads a PNG with 8 bits per channel, RGB or RGBA. @returns width, height, at(x, y): [r, g, b] */
 export function decodePng(bytes) {
   const width = bytes.readUInt32BE(16);
   const height = bytes.readUInt32BE(20);
@@ -33,7 +33,7 @@ function paeth(a, b, c) {
   return da <= db && da <= dc ? a : db <= dc ? b : c;
 }
 
-/** Number of different colours in the parts of a kept picture: 3D view and sections above, curve below. */
+/** Number of different colours in the parts of a saved picture: 3D view and sections above, curve below. */
 export function shadesOf(bytes) {
   const { width, height, at } = decodePng(bytes);
   const count = (x0, x1, y0, y1) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// stylet serve, started as a user starts it.
+// Starts stylet serve as a user does.
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -8,7 +8,7 @@ import { fileURLToPath } from 'node:url';
 
 const REPOSITORY = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../..');
 export const DEMO = path.join(REPOSITORY, 'scenarios/demo.toml');
-/** A mesh that is ready soon, where nothing depends on how fine it is. */
+/** A coarse mesh that is ready soon, for tests that do not depend on the mesh. */
 export const SMALL = ['--set', 'mesh.nodes=800'];
 
 export function makeFolder() {
@@ -17,7 +17,7 @@ export function makeFolder() {
 }
 
 /**
- * @param folder for the recordings, and for models that are kept
+ * @param folder folder for the recordings and for cached models
  * @param options arguments after the scenario; the port is a free one unless they name another
  * @returns url, port, memory() of the process [bytes], kill(signal)
  */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who opens the page while nothing moves sees what has been displaced, on a scale that fits it.
+// A page that is opened while nothing moves shows the displacement, with a colour scale that fits it.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
 import { inOrder, marked, openBrowser, openVisitor, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
@@ -9,14 +9,14 @@ skipWithoutChromium();
 const FRAME = 2;  // docs/live_protocol.md
 const PAUSED = 1;
 const SMALLEST_SCALE_MM = 0.5;
-// At rest a needle displaces the demo's own tissue by a few tenths of a millimetre, which the smallest scale shows.
+// At rest the needle displaces the demo's tissue by a few tenths of a millimetre, which fits the smallest scale.
 const SOFT = ['--set', 'tissue.body.young_kPa=3', '--set', 'tissue.prostate.young_kPa=8'];
 const test = inOrder();
 const { folder, remove } = makeFolder();
 let server, browser, withoutGl, holder;
 const shown = { holder: {}, late: {} };
 
-/** The largest displacement [mm] that the newest frame with one has, and whether the newest frame is of a pause. */
+/** The largest displacement [mm] of the newest frame that has one, and whether the newest frame is paused. */
 function watchDisplacement(page, newest) {
   page.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => {
     if (payload.readUInt32LE(0) !== FRAME) return;

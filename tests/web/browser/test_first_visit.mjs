@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Somebody who has never seen the page: turns the wheel, clicks a hole, drags what can be dragged.
+// A first visit of the page: turns the wheel, clicks a hole, and drags everything that can be dragged.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before } from 'node:test';
@@ -11,8 +11,8 @@ import { makeFolder, startServer } from './server.mjs';
 
 const FORCES_HEADER = 'time_s,base_depth_mm,force_axial_N,force_sagittal_N,force_lateral_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,'
   + 'tip_x_mm,tip_y_mm,tip_z_mm,tip_state,contacts,sticking,iterations,step_us';
-const WHAT_IT_COST = FORCES_HEADER.split(',').indexOf('iterations');  // column; from here on nothing is of the needle
-const LONGEST_STEP_S = 0.0041;  // a step makes good for three missed ones at most
+const WHAT_IT_COST = FORCES_HEADER.split(',').indexOf('iterations');  // first column that does not describe the needle
+const LONGEST_STEP_S = 0.0041;  // a step covers at most three missed steps
 
 skipWithoutChromium();
 const test = inOrder();
@@ -30,13 +30,13 @@ after(async () => {
   remove();
 });
 
-/** What a download of the page brought. */
+/** The content of a file that the page downloads. */
 async function download(action) {
   const [file] = await Promise.all([page.waitForEvent('download'), action()]);
   return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
 }
 
-/** Turns the wheel until something has happened. */
+/** Turns the wheel until a condition holds. */
 async function turnUntil(notches, what, happened) {
   for (let turns = 0; turns < 60 && !(await happened()); turns++) await turnWheel(page, notches);
   await until(what, happened, Boolean);
@@ -86,7 +86,7 @@ test('a picture can be kept', async () => {
   assert.match(name, /^stylet-.*\.png$/);
   const { width, height, shades } = shadesOf(bytes);
   assert.deepEqual([width, height], [1920, 1200]);
-  // A quarter of the picture each: 3D view, sections; below, the curve.
+  // The parts of the picture: 3D view and sections above, the curve below.
   for (const [part, count] of Object.entries(shades)) assert.ok(count > 40, `${part} of the picture has ${count} shades`);
 });
 
@@ -141,11 +141,11 @@ test('the insertion can be replayed, its time slider dragged, and its curve save
   const lines = bytes.toString().trimEnd().split('\n');
   assert.equal(lines[0], FORCES_HEADER);
   assert.ok(lines.every((line) => line.split(',').length === 16));
-  // Every step from the first to the last; one that comes late stands for the milliseconds it missed.
+  // Every step from the first to the last is there; a late step covers the milliseconds that were missed.
   const seconds = Number(await slider.getAttribute('max'));
   const times = lines.slice(1).map((line) => Number(line.split(',')[0]));
   assert.ok(times[0] <= LONGEST_STEP_S && Math.abs(times.at(-1) - seconds) < 1e-3, `from ${times[0]} to ${times.at(-1)} of ${seconds} s`);
-  // Of a rest there are the first and the last step: all that belongs to the needle is the same in both.
+  // Of a rest the first and the last step are there. All columns of the needle are equal in both.
   const needleOf = (line) => line.split(',').slice(1, WHAT_IT_COST).join();
   const isRest = (i) => needleOf(lines[i]) === needleOf(lines[i + 1]);
   const gap = times.findIndex((time, i) => i > 0 && !(time > times[i - 1] && (time < times[i - 1] + LONGEST_STEP_S || isRest(i))));

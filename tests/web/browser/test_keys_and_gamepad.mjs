@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The needle moved without a mouse: by keys, and by a gamepad.
+// Moves the needle without a mouse: with keys and with a gamepad.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
 import { inOrder, keepPicture, listenToEvents, openBrowser, openVisitor, readout, skipWithoutChromium, until, untilReadout, waitUntilReady } from './browser.mjs';
@@ -11,7 +11,7 @@ const test = inOrder();
 const { folder, remove } = makeFolder();
 let server, browser, page, problems;
 
-/** A gamepad as the standard mapping has it: four axes, seventeen buttons. */
+/** A gamepad with the standard mapping: four axes and seventeen buttons. */
 function bringGamepad() {
   window.pad = { connected: false, axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false, value: 0 })) };
   navigator.getGamepads = () => [null, window.pad.connected ? window.pad : null];
@@ -35,7 +35,7 @@ after(async () => {
 });
 
 const pose = () => page.locator('.pose').textContent();
-/** Number of steps taken, and whether paused, as the newest frame has it; and all depths. */
+/** From the newest frame the number of steps and whether it is paused; and all depths. */
 const newest = { steps: 0, paused: false };
 const depths = [];
 function watchFrames(p) {
@@ -54,7 +54,7 @@ test('arrow keys push and pull as long as they are held', async () => {
   const deep = await untilReadout(page, 'Depth', (depth) => depth > 6);
   await page.keyboard.up('ArrowUp');
   assert.ok(deep > start);
-  // Let go, it stops: the same depth twice, and the base has not been drawn back.
+  // After the key is released the needle stops: two equal depths, and the base has not been drawn back.
   let last = NaN;
   await until('rest', () => readout(page, 'Depth'), (depth) => depth === last || ((last = depth), false));
   await page.waitForTimeout(500);
@@ -150,7 +150,7 @@ test('a gamepad pushes with its left stick and turns the bevel with its shoulder
     window.pad.axes[1] = -1;
   });
   await untilReadout(page, 'Depth', (depth) => depth > 8);
-  await page.evaluate(() => (window.pad.axes[1] = 0.05));  // sticks do not come back to exactly zero
+  await page.evaluate(() => (window.pad.axes[1] = 0.05));  // sticks do not return to exactly 0
   let last = NaN;
   await until('rest', () => readout(page, 'Depth'), (depth) => depth === last || ((last = depth), false));
   await page.evaluate(() => (window.pad.buttons[5].value = 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Screens from small to huge: every control can be seen and reached with a pointer, no text is cut off.
+// On screens from small to huge, every control is visible and can be reached with a pointer, and no text is cut off.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
 import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, until, untilReadout, waitUntilReady } from './browser.mjs';
@@ -17,7 +17,7 @@ before(async () => {
   await waitUntilReady(visitor.page);
   await turnWheel(visitor.page, 30);
   await untilReadout(visitor.page, 'Depth', (depth) => depth === 27);
-  // Notices about the coarse mesh lie over the curve for some seconds.
+  // Notices about the coarse mesh cover the curve for some seconds.
   await until('the notices to go', () => visitor.page.locator('.notice').count(), (count) => count === 0);
 });
 after(async () => {
@@ -26,7 +26,7 @@ after(async () => {
   remove();
 });
 
-/** What is wrong with the page's places, in words. */
+/** The faults of the page's layout, in words. */
 function faults() {
   const found = [];
   const name = (e) => `${e.tagName.toLowerCase()} "${(e.getAttribute('aria-label') ?? e.textContent).trim().slice(0, 40)}"`;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A short session of the kind that long_session.mjs runs for as long as one likes. Garbage that is not yet collected is some tenths of a
-// megabyte; the frames of this time, were they kept, would be tens.
+// A short session of the kind that long_session.mjs runs for a longer time. Uncollected garbage takes some tenths of a
+// megabyte; if the frames of this time were kept, they would take tens of megabytes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { skipWithoutChromium } from './browser.mjs';

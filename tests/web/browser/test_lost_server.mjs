@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A server that is killed and started again: the page says so, and goes on by itself.
+// A server that is killed and started again: the page reports the lost connection and reconnects on its own.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
 import { inOrder, keepPicture, openBrowser, openVisitor, skipWithoutChromium, turnWheel, untilReadout, waitUntilReady } from './browser.mjs';
@@ -40,6 +40,6 @@ test('it goes on when there is a server again', async () => {
   await untilReadout(page, 'Depth', (depth) => depth === -3);
   await turnWheel(page, 10);
   await untilReadout(page, 'Depth', (depth) => depth === 7);
-  // What a browser itself says of a server that does not answer is no fault of the page.
+  // Messages of the browser itself about a server that does not answer are no faults of the page.
   assert.deepEqual(problems.filter((text) => !/ERR_CONNECTION|WebSocket connection/.test(text)), []);
 });

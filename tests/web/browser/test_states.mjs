@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States that a visitor seldom sees: a case that cannot be had, a browser without 3D, a server that asks for a token.
+// Rare states: a case that cannot be loaded, a browser without 3D, a server that needs a token.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -23,7 +23,8 @@ after(async () => {
 });
 
 test('a case that has never been open: the page says what it waits for', async () => {
-  server = await startServer(folder, { options: ['--set', 'mesh.nodes=30000'] });  // for much longer than this takes
+  // loading takes much longer than this test
+  server = await startServer(folder, { options: ['--set', 'mesh.nodes=30000'] });
   const { page, problems } = await openVisitor(browser, server.url);
   await page.getByText('Preparing the patient').waitFor();
   assert.equal(await page.locator('.recording').isVisible(), false, 'nothing is recorded yet');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The template's colours: how near a needle would come to what it is to spare, at once; what it would do, on request.
+// The colours of the template's holes: clearances at once, and predictions of a needle through each hole on request.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
 import {
@@ -26,7 +26,7 @@ after(async () => {
 
 const choice = () => page.getByLabel('What the colours of the holes mean');
 const mapped = () => page.locator('.hole .mapped:not(.unknown):not(.through)').count();
-/** What the pointer over a hole tells. */
+/** The text that appears when the pointer is over a hole. */
 const told = (name) => page.evaluate((hole) => [...document.querySelectorAll('.hole title')].map((t) => t.textContent)
   .find((text) => new RegExp(`^(Hole )?${hole.replace('.', '\\.')}(\\n|,|$)`).test(text)), name);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two visitors of one patient: one holds the needle, the other watches, asks for it and gets it.
+// Two viewers of one patient: one holds the needle; the other watches, asks for the needle and gets it.
 import assert from 'node:assert/strict';
 import { after, before } from 'node:test';
 import {

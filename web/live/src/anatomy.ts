@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the nodes of the surfaces are now: one buffer, written for each frame and read by every view.
+// The current positions of the surfaces' nodes: one buffer, which each frame updates and every view reads.
 import type { Scene } from './scene';
 import type { Frame } from './wire';
 
 export class Anatomy {
   readonly position: Float32Array;      // (3 × nodes) [mm] LPS, deformed
   readonly displacement: Float32Array;  // (nodes) [mm] magnitude
-  largest = 0;                          // [mm]
-  tissueMoved = false;                  // by the last frame: what did not move need not be drawn
+  largest = 0;                          // [mm] largest displacement
+  tissueMoved = false;                  // whether the last frame moved it; otherwise it need not be drawn again
   needleMoved = false;
   private last: Frame | null = null;
 
@@ -16,7 +16,7 @@ export class Anatomy {
     this.displacement = new Float32Array(scene.points.length / 3);
   }
 
-  /** Moves the nodes to their places in a frame; a frame without displacement leaves them. */
+  /** Moves the nodes to their positions in a frame. A frame without displacement does not move them. */
   show(frame: Frame): void {
     this.needleMoved = !this.last || !same(frame.line, this.last.line) || !same(frame.contacts, this.last.contacts);
     const { displacement: u, unit } = frame;

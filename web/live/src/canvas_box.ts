@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A canvas that fills its box, sharp on every screen, drawn anew at most once for each repaint of the page.
+// A canvas that fills its box and is sharp on every screen. It is drawn at most once per repaint of the page.
 import { onRepaint } from './repaint';
 
 export class CanvasBox {
@@ -10,16 +10,16 @@ export class CanvasBox {
   text = 12;       // size of text [CSS px]
   family = 'sans-serif';
 
-  /** @param draw draws all; the context is scaled to CSS px and empty */
+  /** @param draw draws the whole picture; the context is empty and scaled to CSS px */
   constructor(private readonly box: HTMLElement, private readonly draw: () => void) {
     const context = this.canvas.getContext('2d');
     if (!context) throw new Error('This browser offers no 2D canvas');
     this.context = context;
     box.append(this.canvas);
-    new ResizeObserver(() => this.resize()).observe(box);  // calls at once, but not before the constructor has ended
+    new ResizeObserver(() => this.resize()).observe(box);  // the first call comes soon, but after the constructor
   }
 
-  /** Asks for a new picture before the next repaint. */
+  /** Requests a new picture for the next repaint. */
   readonly request = onRepaint(() => this.render());
 
   render(): void {

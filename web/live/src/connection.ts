@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The WebSocket, opened again whenever it closes, after a wait that doubles up to a few seconds.
+// The WebSocket. When it closes, it is opened again after a wait that doubles each time up to a few seconds.
 import { decode, SUBPROTOCOL, WireError, type Message } from './wire';
 
-/** What a page talks through: the server, or a made-up one. */
+/** The connection of a page: to the server, or to a simulated server for tests. */
 export interface Transport {
   open(listener: TransportListener): void;
-  /** @param perishable worth nothing later: left out where the connection cannot take it now */
+  /** Sends data. @param perishable the data are soon outdated, so they are dropped if the connection is busy */
   send(data: ArrayBuffer, perishable?: boolean): void;
 }
 
@@ -17,7 +17,7 @@ export interface TransportListener {
 
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 5000;
-const MOST_UNSENT_BYTES = 4096;  // a hand that moved long ago is not worth sending
+const MOST_UNSENT_BYTES = 4096;  // with more unsent data, positions of the hand are dropped
 
 export class WebSocketTransport implements Transport {
   private socket: WebSocket | null = null;
@@ -60,7 +60,7 @@ export function serverAddress(path: string, webSocket = false): string {
   return address.href;
 }
 
-/** Decodes a message; one that is malformed is told to the console and otherwise ignored. */
+/** Decodes a message. A malformed message is reported on the console and ignored. */
 export function understood(data: ArrayBuffer): Message | null {
   try {
     return decode(data);

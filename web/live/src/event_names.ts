@@ -8,11 +8,11 @@ const NAMES: Record<string, string> = {
 const BONE_OR_OUT = new Set(['bone_contact', 'exited']);
 let spared = new Set<string>();
 const WITH_REGION = new Set(['puncture', 'region_entered']);
-/** Whether a region fills the space between the organs: what breaks at its surface is the skin (is_surrounding() in C++). */
+/** Whether a region fills the space between the organs; its surface is the skin (is_surrounding() in C++). */
 const isSurrounding = (region: string): boolean => region === 'body' || region === 'levator' || region.endsWith('_fat');
 let labels = new Map<string, string>();
 
-/** What regions are called in the case that is shown. */
+/** Sets the labels of the regions of the case that is shown. */
 export function nameRegions(regions: { name: string; label: string; spared?: boolean }[]): void {
   spared = new Set(regions.filter((r) => r.spared).map((r) => r.name));
   labels = new Map(regions.map((r) => [r.name, r.label.toLowerCase()]));
@@ -28,7 +28,7 @@ export function eventLabel(event: Event): string {
   return WITH_REGION.has(event.kind) && event.region ? `${name} ${regionLabel(event.region)}` : name;
 }
 
-/** Whether something has happened that harms the patient: an organ that is to be spared, bone, the far side. */
+/** Whether an event harms the patient: the needle enters an organ to be spared, meets bone or leaves the body. */
 export function isHarm(event: Event): boolean {
   return BONE_OR_OUT.has(event.kind) || (event.kind === 'region_entered' && spared.has(event.region));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the gland has moved as a whole, of what is displayed: the rigid motion that is nearest to the displacement of its
-// surface, each node with its share of the surface's area. The reports have it of the gland's volume.
+// The rigid motion of the gland: a least-squares fit to the displayed displacement of its surface, in which each node
+// has its share of the surface's area as weight. Reports compute the motion from the gland's volume instead.
 import { glandTriangles, type Scene } from './scene';
 
 type Vector = [number, number, number];
@@ -17,12 +17,12 @@ function cross(ax: number, ay: number, az: number, bx: number, by: number, bz: n
 export class GlandFit {
   readonly shift: Vector = [0, 0, 0];     // [mm] LPS
   readonly rotation: Vector = [0, 0, 0];  // [degrees] about LR, AP and SI, right-handed
-  private readonly nodes: Uint32Array;    // of the scene
-  private readonly weight: Float64Array;  // of each of them; their sum is 1
-  private readonly arm: Float64Array;     // (3 × nodes) [mm] from the centroid
-  private readonly inverse: Vector[];     // of the second moments, J⁻¹ [1/mm²]
+  private readonly nodes: Uint32Array;    // node numbers of the scene
+  private readonly weight: Float64Array;  // (nodes) their sum is 1
+  private readonly arm: Float64Array;     // (3 × nodes) [mm] vectors from the centroid
+  private readonly inverse: Vector[];     // J⁻¹ [1/mm²], inverse of the second moments
 
-  /** null where the scene has no target. */
+  /** The fit for a scene; null if the scene has no target. */
   static of(scene: Scene): GlandFit | null {
     const triangles = glandTriangles(scene);
     return triangles.length > 0 ? new GlandFit(scene.points, triangles) : null;
@@ -56,7 +56,7 @@ export class GlandFit {
     this.inverse = cofactors.map((row) => row.map((value) => value / determinant) as Vector);  // symmetric
   }
 
-  /** @param displacement (3 × nodes of the scene) in `unit` mm */
+  /** Computes the fit. @param displacement (3 × nodes of the scene) in `unit` mm */
   update(displacement: Int16Array, unit: number): void {
     const { shift, rotation, weight, arm } = this;
     let [mx, my, mz] = [0, 0, 0];

@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the hand wants the needle. Follows the simulation until somebody pushes, and after a jump (reset, another hole) again.
+// The target of the hand. It follows the simulation until the user pushes, and again after a jump (reset, another
+// hole).
 import { samePatient, type Scene } from './scene';
 import type { Session } from './session';
 import type { Frame, Hand } from './wire';
 
 export const SPEEDS = [5, 20, 50];         // [mm/s]
-const MOST_LEAD_S = 0.25;                  // as long as a key is held the needle is sent ahead by no more than this
-const TAP_MS = 1000 / 60;                  // a key that is only tapped moves it so long
+const MOST_LEAD_S = 0.25;                  // while a key is held, the target is at most this time ahead of the needle
+const TAP_MS = 1000 / 60;                  // shortest duration of a motion by a key
 const SEND_EVERY_MS = 1000 / 60;
 
 /**
- * Who says how deep the needle is: the simulation while nobody pushes; this page while somebody does; and after it was let
- * go, the simulation again, once it has been seen to stand. Where it comes to rest only the server knows: what this page has
- * seen last is some hundredths of a second old.
+ * What determines the target's depth. followed: the simulation, because nobody pushes. driven: this page, because the
+ * user pushes. stopping: the user has let go and the page waits until the needle stands still. Only the server knows
+ * the depth at which it stops, because the frames that this page receives are some hundredths of a second old.
  */
 type Depth = 'followed' | 'driven' | 'stopping';
 
 export class HandControl {
   readonly target: Hand = { depth: 0, speed: 20, roll: 0, tiltLeft: 0, tiltAnterior: 0 };
   private depth: Depth = 'followed';
-  private turned = false;        // roll and tilt are this page's
-  private pace = 1;              // share of the speed that a half pressed trigger asks for
-  private aimed = 0;             // [mm] depth that was sent last: the needle is not beyond it
-  private pending = 0;           // [mm] to be pushed once it stands
-  private stoodAt = NaN;         // [mm] in the last frame since it was let go
+  private turned = false;        // roll and tilt are set by this page
+  private pace = 1;              // share of the speed, below 1 for a half-pressed trigger
+  private aimed = 0;             // [mm] last depth sent; the needle has not passed it
+  private pending = 0;           // [mm] push that starts when the needle stands still
+  private stoodAt = NaN;         // [mm] depth in the last frame since the user let go
   private heldAt = 0;
   private stopTimer = 0;
   private changed = false;
   private sentAt = 0;
   private timer = 0;
-  private toldAt = 0;            // [ms] that the needle cannot be pushed now
+  private toldAt = 0;            // [ms] time of the last notice that the needle cannot be pushed
   private readonly listeners: (() => void)[] = [];
 
   constructor(private readonly session: Session) {
@@ -49,7 +50,7 @@ export class HandControl {
     this.listeners.push(listener);
   }
 
-  /** The needle jumps: what the hand wanted before counts no longer. */
+  /** Discards the target, because the needle jumps. */
   rest(): void {
     this.depth = 'followed';
     this.turned = false;
@@ -68,14 +69,14 @@ export class HandControl {
     if (this.begin()) this.drive(depth, 1);
   }
 
-  /** Pushes [mm], pulls when negative. */
+  /** Pushes the needle by `mm`; pulls it when negative. */
   push(mm: number): void {
     if (!this.begin()) return;
     if (this.depth === 'stopping') this.pending += mm;
     else this.drive(this.target.depth + mm, 1);
   }
 
-  /** Pushes as long as it is called, at every repaint, until stop(). @param direction −1 … 1, how fast */
+  /** Pushes while it is called at every repaint, until stop(). @param direction −1 … 1, sign and share of the speed */
   hold(direction: number): void {
     const { frame } = this.session;
     if (!this.begin() || !frame) return;
@@ -86,7 +87,9 @@ export class HandControl {
     this.drive(direction > 0 ? Math.max(before, ahead) : Math.min(before, ahead), Math.abs(direction));
   }
 
-  /** Let go, the needle stops where it is: it is told to stay, not to go where this page has seen it. */
+  /**
+   * Stops the needle where it is. The command is to stay, not to go to a depth, because this page's depth is outdated.
+   */
   stop(): void {
     clearTimeout(this.stopTimer);
     const tapped = this.heldAt + TAP_MS - performance.now();
@@ -175,7 +178,7 @@ export class HandControl {
     this.timer = window.setTimeout(() => this.flush(), wait);
   }
 
-  /** A speed of 0 says: stay as deep as you are. */
+  /** Sends the target. A speed of 0 means that the depth stays as it is. */
   private flush(): void {
     clearTimeout(this.timer);
     this.timer = 0;

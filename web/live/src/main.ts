@@ -35,11 +35,11 @@ function part(id: string): HTMLElement {
 
 const fake = __FAKE_SERVER__ && new URLSearchParams(location.search).has('fake');
 const session = new Session(fake ? new FakeServer() : new WebSocketTransport(serverAddress('live', true)));
-session.start();  // the server answers while the page is being built
+session.start();  // first, so that the server answers while the page is built
 const hand = new HandControl(session);
 const help = makeHelp(session);
 
-// The anatomy moves before anything that draws it: listeners are called in the order in which they came.
+// Listeners are called in the order in which they were added, so the anatomy moves before anything draws it.
 let anatomy: Anatomy | null = null;
 session.on('scene', (scene) => {
   if (scene.case !== anatomy?.scene.case) for (const warning of scene.warnings) session.notify(warning);

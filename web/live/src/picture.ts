@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture of what is shown, to keep: 3D view, sections and curves, with what it is a picture of written above and that
-// it is not of a medical device below.
+// Makes a picture file of the page: 3D view, sections and curves, with the case and the state of the needle above and
+// the notice "not a medical device" below.
 import { viridis } from '../../shared/colors';
 import { INK, SOFT, WARN } from './palette';
 import type { Session } from './session';
@@ -9,7 +9,7 @@ export interface PictureParts {
   view: HTMLCanvasElement | null;
   sections: { title: string; canvas: HTMLCanvasElement }[];
   chart: HTMLCanvasElement | null;
-  largest_mm: number | null;  // end of the colour scale, if colours are displacement
+  largest_mm: number | null;  // end of the colour scale; null unless colours show the displacement
 }
 
 function fit(source: HTMLCanvasElement, width: number, height: number): { width: number; height: number } {
@@ -29,7 +29,9 @@ function colorScale(context: CanvasRenderingContext2D, largest: number, x: numbe
   text(`moved by 0 … ${largest} mm`, x + 60, y - 10, 20, SOFT);
 }
 
-/** Draws into a canvas of 1920 × 1200 pixels. The 3D view must have been rendered in the same turn. */
+/**
+ * Draws into a canvas of 1920 × 1200 pixels. The 3D view must have been rendered in the same task of the event loop.
+ */
 export function compose(session: Session, parts: PictureParts): HTMLCanvasElement {
   const [width, height, gap] = [1920, 1200, 24];
   const canvas = document.createElement('canvas');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Work that is done once before the next repaint, however often it is asked for until then.
+// Work that is done once before the next repaint, even if it is requested several times.
 
-/** Returns what asks for `work`. */
+/** Returns a function that requests `work` for the next repaint. */
 export function onRepaint(work: () => void): () => void {
   let pending = false;
   const run = () => {
@@ -15,7 +15,7 @@ export function onRepaint(work: () => void): () => void {
   };
 }
 
-/** The same, at most once in `interval` ms: for text and curves, which nobody reads sixty times a second. */
+/** The same, but at most once per `interval` ms: for text and curves, which need not change sixty times per second. */
 export function onRepaintEvery(interval: number, work: () => void): () => void {
   let last = -Infinity;
   let timer = 0;

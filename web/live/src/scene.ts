@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The case as the server describes it. Lengths in mm, LPS.
+// The case, as the server describes it. Lengths are in mm, coordinates in LPS.
 
 export interface Region {
   name: string; label: string; color: string; opacity: number; target: boolean; background: boolean; spared?: boolean; volume_cc: number;
 }
-export interface Patch { inside: number; outside: number; first: number; count: number }  // outside −1: no tissue
+// outside is −1 at the patient's surface
+export interface Patch { inside: number; outside: number; first: number; count: number }
 export interface Template { pitch_mm: number; columns: string[]; rows: string[]; centre_mm: [number, number]; z_mm: number }
 export interface Insertion {
   name: string; hole: string; entry_mm: [number, number, number]; direction: [number, number, number]; depth_mm: number;
@@ -26,11 +27,11 @@ export interface SceneText {
 }
 
 export interface Scene extends SceneText {
-  points: Float32Array;  // (3 × nodes) undeformed
+  points: Float32Array;  // (3 × nodes) undeformed positions
   corners: Uint32Array;  // (3 × triangles)
 }
 
-/** Corners of a region's whole surface, counter-clockwise seen from outside: every patch that names it. */
+/** Corners of a region's whole surface, made of all its patches; counter-clockwise seen from outside. */
 export function regionTriangles(scene: Scene, region: number): Uint32Array {
   const patches = scene.patches.filter((p) => p.inside === region || p.outside === region);
   const triangles = new Uint32Array(3 * patches.reduce((sum, p) => sum + p.count, 0));
@@ -46,7 +47,7 @@ export function regionTriangles(scene: Scene, region: number): Uint32Array {
   return triangles;
 }
 
-/** Corners of the outer surface of the gland, which is all target regions together. The same way round as the patches. */
+/** Corners of the outer surface of the gland, that is of all target regions together. Orientation as in the patches. */
 export function glandTriangles(scene: Scene): Uint32Array {
   const target = (region: number) => scene.regions[region]?.target ?? false;
   const corners: number[] = [];
@@ -86,7 +87,9 @@ function nothing(): Bounds {
 
 const AROUND_TARGET_MM = 12;
 
-/** [low, high] of x, y, z of what a section must show: the target with some tissue around it, the holes, the entries. */
+/**
+ * [low, high] of x, y, z that a section must show: the target with some tissue around it, the holes and the entries.
+ */
 export function focusBounds(scene: Scene, list: Hole[]): Bounds {
   if (!scene.regions.some((r) => r.target)) return organBounds(scene);
   const bounds = nothing();
@@ -100,7 +103,9 @@ export function focusBounds(scene: Scene, list: Hole[]): Bounds {
   return bounds;
 }
 
-/** [low, high] of x, y, z over the corners of regions that are not background, and of tips as far back as they can be drawn. */
+/**
+ * [low, high] of x, y, z of the regions that are not background and of the tips at their furthest in front of the skin.
+ */
 export function organBounds(scene: Scene): Bounds {
   const bounds = nothing();
   const all = scene.regions.every((r) => r.background);
@@ -115,7 +120,9 @@ export function organBounds(scene: Scene): Bounds {
   return bounds;
 }
 
-/** Whether two scenes show the same patient: another hole brings the scene again, drawn finer along its way. */
+/**
+ * Whether two scenes show the same patient. With another hole, the scene comes again with surfaces refined along it.
+ */
 export function samePatient(a: Scene, b: Scene): boolean {
   return a.case === b.case && a.name === b.name && a.mesh.nodes === b.mesh.nodes && a.mesh.tets === b.mesh.tets
     && a.regions.length === b.regions.length && a.regions.every((r, i) => r.name === b.regions[i].name);

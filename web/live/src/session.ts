@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What this page knows of the simulation at the moment. Parts of the page listen to what concerns them.
+// The state of the simulation, as this page has received it. Parts of the page listen to the topics that they need.
 import { understood, type Transport, type TransportListener } from './connection';
 import type { Scene } from './scene';
 import { encodeCommand, encodeHand, Kind, type Command, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
 
 interface Topics {
-  link: void;       // connected or not
+  link: void;       // the connection was opened or closed
   status: Status;
   scene: Scene;
   frame: Frame;
   event: Event;
   notice: Notice;
-  map: LiveMap;     // of the template's holes
-  restart: void;    // the needle is at a start: what happened before is over
+  map: LiveMap;     // the map of the template's holes
+  restart: void;    // the needle is at a start; earlier events do not count
 }
 
 const MOST_EVENTS = 500;
 
 export class Session implements TransportListener {
   connected = false;
-  lostAt = 0;                     // [ms] of the clock, when the connection was lost; 0 if there never was one
-  attempts = 0;                   // in vain since the page was opened or the connection was lost
+  lostAt = 0;                     // [ms] time at which the connection was lost; 0 if it was not
+  attempts = 0;                   // failed attempts to connect since the page was opened or the connection was lost
   status: Status | null = null;
   scene: Scene | null = null;
   frame: Frame | null = null;
   map: LiveMap | null = null;
-  events: Event[] = [];           // since the start of time
-  private letGo = false;          // the user gave the needle away: do not take it by itself
+  events: Event[] = [];           // since the start of the insertion
+  private letGo = false;          // the user has handed the needle over, so the page does not take it on its own
   private readonly listeners: { [K in keyof Topics]: ((what: Topics[K]) => void)[] } = {
     link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], restart: [],
   };
@@ -41,12 +41,12 @@ export class Session implements TransportListener {
     this.listeners[topic].push(listener);
   }
 
-  /** Whether this page moves the needle now. */
+  /** Whether this page can move the needle. */
   get steering(): boolean {
     return this.connected && this.status?.state === 'ready' && this.status.you_hold === true && this.status.mode !== 'replay';
   }
 
-  /** What moves the needle in the pages' place now; empty: nothing does. */
+  /** The name of the device that moves the needle instead of a page; empty: there is none. */
   get guest(): string {
     const { device, mode } = this.status ?? {};
     return device && device !== 'page' && mode !== 'replay' ? device : '';
@@ -59,11 +59,11 @@ export class Session implements TransportListener {
   }
 
   sendHand(hand: Hand): void {
-    // Where a hand is going is soon out of date; that it has let go is not.
+    // A moving target is soon outdated and may be dropped. A stop must not be dropped.
     if (this.steering) this.transport.send(encodeHand(hand), hand.speed > 0);
   }
 
-  /** Shows a message of this page's own. */
+  /** Shows a message of this page. */
   notify(text: string, cure = ''): void {
     this.tell('notice', { text, cure });
   }
@@ -109,10 +109,10 @@ export class Session implements TransportListener {
   }
 
   private takeStatus(status: Status): void {
-    // A replay is of the hole of its scene, whatever the live needle was in.
+    // In a replay, the hole is that of its scene, not the hole of the live needle.
     if (status.mode === 'replay') status.hole = this.scene?.insertions[0]?.hole ?? '';
     this.status = status;
-    // A page that finds the needle free takes it, so that a first visitor need not know about holding it.
+    // If nobody holds the needle, this page takes it, so that a first visitor need not know that it must be held.
     const free = status.state === 'ready' && status.held === false && !status.you_hold;
     if (free && !this.letGo) this.transport.send(encodeCommand({ do: 'take' }));
     this.tell('status', status);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The messages of docs/live_protocol.md. Decoding checks every length before it reads and returns what is wrong as text.
+// Encodes and decodes the messages of docs/live_protocol.md. Decoding checks every length before it reads; a WireError
+// says what is wrong.
 import type { HoleMap } from '../../shared/hole_map';
 import type { Scene, SceneText } from './scene';
 
@@ -10,37 +11,37 @@ export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
 export const SAMPLE_WORDS = 8;  // time, depth, axial, sagittal, lateral force, CPU time [µs], tip state, flags
 
-/** Vectors are views into the message, LPS, [mm] or [N]. */
+/** The state at one moment. Vectors are in LPS, in [mm] or [N], and are views into the message. */
 export interface Frame {
-  time: number;              // [s] simulated
+  time: number;              // [s] simulated time
   paused: boolean;
   replayed: boolean;
-  trusted: boolean;          // the force
-  shown: boolean;            // displacement follows
-  whole: boolean;            // the samples are the whole curve: forget those before
-  approximate: boolean;      // compliance is missing: the force is about right
-  unfelt: boolean;           // the tip is in the tissue, and no force acts on the needle
+  trusted: boolean;          // the force can be trusted
+  shown: boolean;            // the frame has a displacement
+  whole: boolean;            // the samples are the whole curve and replace all earlier ones
+  approximate: boolean;      // compliance is missing, so the force is approximate
+  unfelt: boolean;           // the tip is in the tissue, but no force acts on the needle
   flags: number;
   tipState: number;
   sticking: number;
   iterations: number;
   steps: number;
-  missed: number;            // deadlines so far
-  depth: number;             // [mm] of the base beyond the skin point
+  missed: number;            // missed deadlines so far
+  depth: number;             // [mm] base depth
   force: Float32Array;       // [N] axial, sagittal, lateral
   torque: Float32Array;      // [N·mm] LPS
   tip: Float32Array;
   base: Float32Array;
   orientation: Float32Array; // w x y z
   hand: Float32Array;        // [degrees] roll, tilt to the left, tilt to anterior
-  hidden: number;            // [N] whose displacement is not shown
-  unit: number;              // [mm] of a unit of displacement
-  tipError: Float32Array;    // [mm] LPS, at the deepest step so far: where the tip was in the tissue less where it was to be; NaN: the tip is not in the tissue
-  tipErrorDepth: number;     // [mm] of the base in that step
+  hidden: number;            // [N] force whose displacement is not shown
+  unit: number;              // [mm] per unit of displacement
+  tipError: Float32Array;    // [mm] LPS, tip error at the deepest step so far; NaN: the tip is not in the tissue
+  tipErrorDepth: number;     // [mm] base depth in that step
   line: Float32Array;        // (3 × points) base to tip
   contacts: Float32Array;    // (4 × contacts) x y z, state 0 slipping, 1 sticking, 2 tip
-  contactForces: Float32Array;  // (3 × contacts) on the tissue
-  samples: Float32Array;     // (8 × steps) times less the frame's
+  contactForces: Float32Array;  // (3 × contacts) forces on the tissue
+  samples: Float32Array;     // (8 × steps) times are relative to the frame's
   displacement: Int16Array;  // (3 × nodes of the scene), or empty
 }
 
@@ -74,7 +75,7 @@ export type Message =
 
 export class WireError extends Error {}
 
-const COMPLIANCE_MISSING = 1 << 2;  // of Step::Flag
+const COMPLIANCE_MISSING = 1 << 2;  // as in Step::Flag
 const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
 const FRAME_HEADER = 164;
@@ -149,7 +150,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
   };
 }
 
-/** What a message says; null for a kind this page does not know. Throws a WireError for one that is malformed. */
+/** Decodes a message; null for an unknown kind. Throws a WireError if the message is malformed. */
 export function decode(buffer: ArrayBuffer): Message | null {
   must(buffer.byteLength >= HEADER, 'a message without its header');
   const view = new DataView(buffer);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program writes into the page (src/io/results/report/report_data.cpp), and its decoded form.
+// The data that the program writes into the page (src/io/results/report/report_data.cpp), and their decoded form.
 import type { HoleMap } from '../../shared/hole_map';
 
-/** Arrays are base64 of little-endian numbers. */
+/** The data as written; arrays are little-endian numbers in base64. */
 type Base64 = string;
 
 interface RawData {
@@ -43,7 +43,7 @@ export interface Steps {
   lateral: Float32Array;   // [N]
 }
 
-/** Shift of the gland's mean after each step [mm]; null where there is no gland. */
+/** Mean shift of the gland after each step [mm]; null if there is no gland. */
 export interface GlandPath {
   lr: Float32Array;  // positive to the patient's left
   ap: Float32Array;  // positive to posterior
@@ -57,7 +57,7 @@ export interface Region {
   opacity: number;
   target: boolean;
   background: boolean;
-  triangles: Uint32Array;  // (3 × triangles) numbers of surface nodes, outward
+  triangles: Uint32Array;  // (3 × triangles) indices of surface nodes, outward normals
 }
 
 export interface Frame {
@@ -70,7 +70,7 @@ export interface Frame {
 }
 
 export interface ReportData {
-  map: HoleMap | null;        // of the template's holes
+  map: HoleMap | null;        // map of the template's holes
   steps: Steps;
   gland: GlandPath | null;
   events: EventMark[];
@@ -78,9 +78,9 @@ export interface ReportData {
   points: Float32Array;       // (3 × surface nodes) [mm] LPS, undeformed
   regions: Region[];
   displacementScale: number;  // [mm] per unit of Frame.displacement
-  displacementMax: number;    // [mm] largest magnitude in any frame
+  displacementMax: number;    // [mm] largest displacement in any frame
   frames: Frame[];
-  firstFrame: number;         // the one to show first
+  firstFrame: number;         // index of the frame to show first
   needleDiameter: number;     // [mm]
   entry: [number, number, number];
   direction: [number, number, number];
@@ -127,7 +127,7 @@ export function decode(json: string): ReportData {
   };
 }
 
-/** Index of the step nearest in time; times ascend. */
+/** Index of the step that is nearest in time. Times are in ascending order. */
 export function nearestStep(steps: Steps, time: number): number {
   let low = 0;
   let high = steps.time.length - 1;
@@ -139,7 +139,7 @@ export function nearestStep(steps: Steps, time: number): number {
   return time - steps.time[low] < steps.time[high] - time ? low : high;
 }
 
-/** First step of the way back: the one of greatest depth. */
+/** Index of the step with the largest depth, at which the way back starts. */
 export function turningStep(steps: Steps): number {
   let deepest = 0;
   for (let i = 1; i < steps.depth.length; i++) if (steps.depth[i] >= steps.depth[deepest]) deepest = i;

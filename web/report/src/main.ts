@@ -22,7 +22,7 @@ document.documentElement.classList.add('with-script');
 const data = decode(box('report-data').textContent ?? '');
 const moment = new Moment(data);
 
-/** Legend and both plots of a family of curves, in the boxes whose names begin with `name`. */
+/** Builds the legend and both plots of a family of curves, in the boxes whose ids begin with `name`. */
 function buildCurves(name: string, family: CurveFamily): void {
   const choice = new CurveChoice(family.curves);
   build(`${name}-legend`, (b) => buildLegend(b, choice));

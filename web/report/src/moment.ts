@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frame all parts of the page show at the moment. Plots and viewer set it and listen to it.
+// The frame that all parts of the page show. Plots and viewer set it and listen to it.
 import type { Frame, ReportData } from './data';
 
 export class Moment {

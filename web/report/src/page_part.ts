@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-/** Builds one part of the page; when that fails the others still work, and the reader is told. */
+/** Builds one part of the page. If that fails, a message is shown and the other parts still work. */
 export function build(id: string, part: (element: HTMLElement) => void): void {
   const element = document.getElementById(id);
   if (!element) throw new Error(`The page has no element "${id}"`);

@@ -12,19 +12,20 @@
 
 namespace stylet::reproduce {
 
-/// One way of carrying the same insertions out.
+/// A method by which the same insertions are simulated.
 struct Figure6Variant {
   std::string id;      ///< word for file names: "bcs_repositioning"
-  std::string label;   ///< for people
-  std::string method;  ///< scenario keys coupling.method, .rule, .engine
+  std::string label;   ///< name on the page
+  std::string method;  ///< this and the next two fields: scenario keys coupling.method, .rule and .engine
   std::string rule;
   std::string engine;
 };
 
-/// The paper's two (switches with node repositioning, Woodbury with node addition) and this program's default.
+/// The paper's two methods (switches with node repositioning, Woodbury with node addition) and this program's default
+/// for node addition.
 std::vector<Figure6Variant> figure6_variants();
 
-/// Something that happened to the needle.
+/// An event of an insertion.
 struct Figure6Event {
   std::size_t iteration = 0;
   std::size_t insertion = 0;
@@ -38,30 +39,30 @@ struct Figure6Remesh {
   RemeshEvent event;
 };
 
-/// All iterations of one variant, both insertions in a row.
+/// All iterations of one variant, with all insertions one after the other.
 struct Figure6Run {
   Figure6Variant variant;
-  std::vector<Step> steps;             ///< step_us: processor time of the whole iteration, median of all runs
+  std::vector<Step> steps;             ///< step_us is the median processor time of the whole iteration over all runs
   std::vector<std::size_t> insertion;  ///< (steps) number of the insertion, from 0
   std::vector<int> remeshings;         ///< (steps) changes of the mesh in this iteration
   std::vector<Figure6Event> events;
   std::vector<Figure6Remesh> remeshes;
-  double compliance_mb = 0.0;  ///< memory of what is kept of K⁻¹, at the end
-  int not_converged = 0;       ///< steps that kept the last iterate
+  double compliance_mb = 0.0;  ///< memory of the stored part of K⁻¹ at the end
+  int not_converged = 0;       ///< steps that did not converge and kept the last iterate
 
   [[nodiscard]] double total_s() const;
-  [[nodiscard]] double worst_s(bool with_remeshing) const;  ///< largest iteration that changed the mesh, or did not
+  [[nodiscard]] double worst_s(bool with_remeshing) const;  ///< longest iteration that did, or did not, change the mesh
   [[nodiscard]] double median_s(bool with_remeshing) const;
 };
 
-/// What the insertions are, and every variant of them.
+/// The setting of figure 6 and the runs of all variants.
 struct Figure6 {
   Index nodes = 0;
   Index tets = 0;
   Index free_dofs = 0;
   double dt_ms = 0.0;
   double speed_mm_per_s = 0.0;
-  double spacing_mm = 0.0;              ///< between contacts, but where nodes are added on faces
+  double spacing_mm = 0.0;              ///< between contacts, except where nodes are added on faces
   int repeats = 0;                      ///< runs of each variant
   std::vector<std::string> insertions;  ///< in words
   std::vector<Figure6Run> runs;
@@ -70,22 +71,23 @@ struct Figure6 {
   [[nodiscard]] const Figure6Run& run(const std::string& id) const;
 };
 
-/// Two needles on different ways into the demo patient's prostate, meshed as the paper's (570 nodes), the pubic side
-/// held; each goes in, waits, and comes out at constant speed. quick: one shorter insertion with a larger time step.
+/// The scenario of figure 6: two needles on different ways into the demo patient's prostate, in a mesh of the paper's
+/// size (570 nodes) whose pubic side is held. Each goes in, waits, and comes out at constant speed.
+/// @param quick one shorter insertion with a larger time step
 Scenario figure6_scenario(bool quick);
 
-/// How far the base drifts sideways until it is at its deepest [mm] LPS: no hand is straight, and a straight one would
-/// feel next to nothing across the needle.
+/// Sideways drift of the base at its deepest point [mm] LPS. No hand moves perfectly straight, and without drift the
+/// forces across the needle would be nearly zero.
 Vec3 figure6_drift_mm(std::size_t insertion);
 
 /// Compiles the patient for a variant.
-/// @param mesh of the scenario's patient
+/// @param mesh mesh of the scenario's patient
 Result<std::shared_ptr<const Model>> figure6_model(const Scenario& scenario, const Figure6Variant& variant,
                                                    const TetMesh& mesh, const Progress& progress = {});
 
-/// Carries all insertions of a model out and keeps every iteration.
-/// @param times how often all of it is done: the same each time but for the processor times, of which the median of
-/// each iteration is kept, so that what else the machine did does not show
+/// Simulates all insertions of a model and keeps every iteration.
+/// @param times number of repeats. They differ only in their processor times; the median of each iteration is kept,
+/// which suppresses disturbances by other programs
 Result<Figure6Run> run_insertions(const std::shared_ptr<const Model>& model, const Figure6Variant& variant, int times,
                                   const Progress& progress = {});
 

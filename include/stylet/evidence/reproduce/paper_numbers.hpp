@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-/// What Goksel et al. 2005 state, and what follows from it: the only numbers that are not measured or computed in a run
-/// of the reproduction. @cite Goksel2005
+/// Numbers that Goksel et al. 2005 state, and numbers that follow from them. All other numbers of the reproduction are
+/// measured or computed in its run. @cite Goksel2005
 namespace stylet::reproduce::paper_numbers {
 
 inline constexpr int kNodes = 570;
@@ -17,7 +17,7 @@ inline constexpr double kForceAxisTo_N = 0.9;
 inline constexpr double kClock_Hz = 3.2e9;
 inline constexpr int kFlopPerCycle = 2;  ///< a Pentium 4: one addition and one multiplication of doubles
 
-/// Nodes of the elements that a node added on the face of two elements changes.
+/// Number of nodes of the elements that change when a node is added on the face between two elements.
 inline constexpr int kNodesInvolved = 6;
 inline constexpr int kOrder = 3 * kNodes;
 inline constexpr int kChange = 3 * kNodesInvolved;

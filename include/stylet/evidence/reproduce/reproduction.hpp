@@ -12,38 +12,38 @@
 namespace stylet::reproduce {
 
 struct ReproduceOptions {
-  bool quick = false;   ///< fewer sizes and repeats, one shorter insertion: under a minute
-  std::string command;  ///< what the page says it was made with
+  bool quick = false;   ///< fewer sizes and repeats, one shorter insertion; takes less than a minute
+  std::string command;  ///< command line, shown on the page
 };
 
-/// The paper's experiments, made again.
+/// Results of the reproduced experiments of the paper.
 struct Reproduction {
   ReproduceOptions options;
   std::string version;
   measure::Machine machine;
-  double seconds = 0.0;  ///< wall clock, everything
+  double seconds = 0.0;  ///< wall-clock time of the whole run
   Figure2 figure2;
   std::vector<Figure5Row> figure5;
   Figure6 figure6;
-  measure::RemeshCost on_faces;  ///< the paper's rule
-  measure::RemeshCost inside;    ///< the default's rule
-  measure::CountedCost counted;  ///< of one update at the paper's size
+  measure::RemeshCost on_faces;  ///< with the paper's rule: nodes on faces
+  measure::RemeshCost inside;    ///< with the default's rule: nodes inside elements
+  measure::CountedCost counted;  ///< one update at the size of the paper's mesh
   std::vector<TableRow> table;
-  std::vector<std::string> notes;  ///< what a reader should know, in sentences
+  std::vector<std::string> notes;  ///< remarks for the reader, in full sentences
 };
 
-/// Runs everything: figures 2, 5 and 6 and the table. Times are processor times, BLAS with one thread.
+/// Reproduces figures 2, 5 and 6 and the table. Times are processor times with one BLAS thread.
 Result<Reproduction> reproduce(const ReproduceOptions& options, const Progress& progress = {});
 
-/// Everything but the curves, as JSON: fig2, fig5, fig6, table, machine, … (docs/results.md).
+/// Everything except the curves, as JSON with the keys fig2, fig5, fig6, table, machine, … (docs/results.md).
 std::string reproduction_json(const Reproduction& reproduction);
 
-/// The self-contained page. Errors: failed, when the program was built from files that do not belong together.
+/// The self-contained HTML page. Errors: failed, when the embedded template does not fit the program.
 Result<std::string> reproduction_page(const Reproduction& reproduction);
 
-/// Fills the folder: report.html, reproduce.json, figure2.json, figure5.csv, figure6_*.csv, table.csv. A new folder
-/// appears whole or not at all; in one that exists the files are replaced one by one, reproduce.json goes first and
-/// comes last.
+/// Writes report.html, reproduce.json, figure2.json, figure5.csv, figure6_*.csv and table.csv into a folder. A new
+/// folder appears complete or not at all. In an existing folder the files are replaced one by one: reproduce.json is
+/// removed first and written last, so that it exists only with complete results.
 Result<> write_reproduction(const Reproduction& reproduction, const std::filesystem::path& folder);
 
 }  // namespace stylet::reproduce

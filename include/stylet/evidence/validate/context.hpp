@@ -13,26 +13,27 @@
 
 namespace stylet::validate {
 
-/// What rows may share: options, the shared data, and things too expensive to make twice.
+/// What all rows share: the options, the folder of the shared data, and results that are too expensive to compute
+/// twice.
 class Context {
  public:
-  /// @param data folder of the shared data; need not exist
+  /// @param data folder of the shared data; it need not exist
   Context(bool quick, std::filesystem::path data, Progress progress)
       : quick_(quick), data_(std::move(data)), progress_(std::move(progress)) {}
 
   [[nodiscard]] bool quick() const { return quick_; }
   [[nodiscard]] const Progress& progress() const { return progress_; }
 
-  /// A file of the shared data, or nothing where it is not there.
+  /// The path of a file of the shared data; empty if it does not exist.
   [[nodiscard]] std::optional<std::filesystem::path> data(const std::string& file) const;
-  /// "…/shared/data/NAME is not there …": what a row says that is skipped for want of it.
+  /// The reason why a row is skipped if a file of the shared data is missing: a message with its path.
   [[nodiscard]] std::string no_data(const std::string& file) const;
 
-  /// The demo patient, meshed as the demo scenario does it (about 3,000 nodes).
+  /// The demo patient, meshed as in the demo scenario (about 3,000 nodes). Meshed once.
   Result<TetMesh> demo_mesh();
-  /// The demo: hole e3.5, in and out at 20 mm/s, with default parameters. Carried out once.
+  /// The demo insertion: hole e3.5, in and out at 20 mm/s, with default parameters. Simulated once.
   Result<std::shared_ptr<const measure::RecordedRun>> demo_run();
-  /// The demo insertion on meshes of 500 to 10,000 nodes, with the near field and with node addition. Carried out once.
+  /// The demo insertion on meshes of 500 to 10,000 nodes, with the near field and with node addition. Simulated once.
   Result<std::vector<measure::CouplingRow>> demo_on_meshes();
 
  private:

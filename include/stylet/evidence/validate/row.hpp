@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-/// The model against analysis, independent codes and published measurements.
+/// Validation: compares the model with analysis, independent codes and published measurements.
 namespace stylet::validate {
 
 /// What a claim is checked against; rows of one group follow each other.
 enum class Group { analysis, other_code, measurements, independence };
-const char* to_string(Group group);  ///< "analysis", "independent code", …: as JSON has it
-const char* title(Group group);      ///< heading for people
+const char* to_string(Group group);  ///< "analysis", "independent code", …: the word in JSON
+const char* title(Group group);      ///< heading on the page
 
-/// Values that let a row pass: from … to, both included; a bound that is not there lets everything pass on its side. A
-/// row without any bound is there for information and neither passes nor misses.
+/// The accepted values of a row: from … to, both included. A bound that is not set does not limit. A row without any
+/// bound is shown for information; it neither passes nor misses.
 struct Accepted {
   std::optional<double> from;
   std::optional<double> to;
@@ -35,12 +35,12 @@ struct Accepted {
   [[nodiscard]] std::string text() const;
 };
 
-/// A curve of a row's picture. Each has an abscissa of its own, increasing.
+/// A curve of a row's plot. Each curve has abscissae of its own, in increasing order.
 struct Curve {
   enum class Kind {
-    ours,       ///< computed by this program
-    reference,  ///< what it is checked against: drawn dashed
-    points      ///< measurements, drawn as dots
+    ours,       ///< computed by this program; drawn as a line
+    reference,  ///< the reference; drawn as a dashed line
+    points      ///< measurements; drawn as dots
   };
   std::string label;
   std::vector<double> x;
@@ -53,23 +53,23 @@ struct Curve {
   }
 };
 
-/// A row's picture; none without curves.
+/// The plot of a row. A row without curves has no plot.
 struct Plot {
-  std::string x_label;  ///< with unit: "base depth [mm]"
+  std::string x_label;  ///< label with unit: "base depth [mm]"
   std::string y_label;
   bool log_x = false;
   bool log_y = false;
   std::vector<Curve> curves{};
-  std::optional<Accepted> band = std::nullopt;  ///< stretch of y that is accepted, shaded
+  std::optional<Accepted> band = std::nullopt;  ///< range of accepted y values; drawn shaded
 };
 
-/// What a measurement of a row found.
+/// The result of measuring a row.
 struct Finding {
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::string note;        ///< how it was obtained, what else is worth knowing; sentences
-  std::string why_missed;  ///< what is known about why, shown when the value is not accepted
+  std::string note;        ///< how the value was obtained and what else the reader should know; full sentences
+  std::string why_missed;  ///< known reasons why the value is not accepted; shown only then
   Plot plot;
-  std::string skipped;  ///< why nothing could be measured; everything else is empty then
+  std::string skipped;  ///< why nothing could be measured; if set, everything else is empty
 
   static Finding skip(std::string reason) {
     Finding finding;
@@ -78,38 +78,38 @@ struct Finding {
   }
 };
 
-/// The larger of two errors; NaN when either is, so that nothing passes that could not be measured.
+/// The larger of two errors. NaN if one of them is NaN, so that a row does not pass if a part was not measured.
 double worse(double one, double other);
 
 class Context;
 
-/// A claim and how to check it. Rows know nothing of each other. docs/validation.md shows how to add one.
+/// A claim and how to check it. Rows are independent of each other. docs/validation.md shows how to add one.
 struct RowSpec {
-  std::string id;  ///< word of a-z, 0-9 and _: names files, --only takes it
+  std::string id;  ///< word of a-z, 0-9 and _; used for file names and by --only
   Group group{};
-  std::string claim;      ///< a sentence without its full stop
-  std::string reference;  ///< formula, program or publication
-  std::string unit;       ///< of the value; empty for a pure number
+  std::string claim;      ///< a sentence without a full stop
+  std::string reference;  ///< formula, program or publication that the value is compared with
+  std::string unit;       ///< unit of the value; empty for a pure number
   Accepted accepted;
-  bool quick = true;  ///< takes a few seconds at the most: part of --quick
+  bool quick = true;  ///< takes a few seconds at most, so --quick includes it
   std::function<Result<Finding>(Context&)> measure;
 };
 
 enum class Verdict { pass, missed, skipped, information, crashed };
 const char* to_string(Verdict verdict);
 
-/// A row, measured.
+/// A measured row.
 struct Row {
   RowSpec spec;
   Verdict verdict{};
-  Finding finding;  ///< of a crashed row: note holds the message
+  Finding finding;  ///< in a crashed row, `note` holds the error message
   double seconds = 0.0;
 
-  /// The finding's note and, where they apply, why it missed or was skipped.
+  /// The finding's note, followed by the reason if the row was missed or skipped.
   [[nodiscard]] std::string note() const;
 };
 
-/// Measures one row. A measurement that fails or throws makes a crashed row, nothing else.
+/// Measures one row. A measurement that fails or throws gives a crashed row.
 Row measure(const RowSpec& spec, Context& context);
 
 }  // namespace stylet::validate

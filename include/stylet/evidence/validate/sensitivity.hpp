@@ -9,27 +9,27 @@
 
 namespace stylet::validate {
 
-/// What a run comes to, as the study compares it.
+/// The results of a run that the study compares.
 struct Outputs {
   double peak_axial_N = 0.0;
-  double target_shift_mm = 0.0;    ///< of the target's centroid, at the deepest point
+  double target_shift_mm = 0.0;    ///< shift of the target's centroid at the deepest point
   double tip_deflection_mm = 0.0;  ///< largest distance of the tip from the straight line
 };
 
-/// A parameter moved down and up.
+/// The influence of one parameter, which is decreased and increased, or of one choice, which is replaced.
 struct Influence {
-  std::string key;      ///< of the scenario: "tissue.prostate.young_kPa"
-  std::string meaning;  ///< for people: "prostate: Young’s modulus"
+  std::string key;      ///< key of the scenario: "tissue.prostate.young_kPa"
+  std::string meaning;  ///< in words: "prostate: Young’s modulus"
   std::string unit;
-  std::string base;  ///< values in words; of a choice the word
-  std::string low;
-  std::string high;  ///< empty where there is one other choice only
+  std::string base;  ///< base value as text; for a choice its word
+  std::string low;   ///< decreased value, or the other choice
+  std::string high;  ///< increased value; empty for a choice
   Outputs at_low;
   Outputs at_high;
-  std::string note;  ///< "limited to 0.49", an error of a run, …
+  std::string note;  ///< a remark such as "limited to 0.49", or the error of a run
 };
 
-/// How the outputs of the demo insertion move with each parameter.
+/// The change of the demo insertion's outputs with each parameter.
 struct Sensitivity {
   double change = 0.2;  ///< relative change of each parameter
   std::string scenario;
@@ -39,12 +39,12 @@ struct Sensitivity {
   double seconds = 0.0;  ///< wall clock
 };
 
-/// The study as lines of a table, the first its head: key, values, change of each output; the most influential
-/// parameter first.
+/// The study as rows of a table. The first row is the head: key, values, change of each output. The most influential
+/// parameter comes first.
 std::vector<std::vector<std::string>> sensitivity_lines(const Sensitivity& study);
 
-/// Runs the demo once as it is and twice for each parameter, on as many threads as there are cores.
-/// @param quick fewer parameters, a coarser mesh and a shorter insertion: for trying out
+/// Runs the demo once with the base values and twice for each parameter, with one thread per core.
+/// @param quick fewer parameters, a coarser mesh and a shorter insertion, for a first try
 Result<Sensitivity> measure_sensitivity(bool quick, const Progress& progress = {});
 
 }  // namespace stylet::validate

@@ -13,14 +13,14 @@
 namespace stylet::validate {
 
 struct ValidateOptions {
-  bool quick = false;               ///< only rows that take a few seconds at the most
-  bool sensitivity = false;         ///< the study of parameters as well
-  std::vector<std::string> only{};  ///< ids of rows, or "sensitivity"; empty: all
+  bool quick = false;               ///< measures only rows that take a few seconds at most
+  bool sensitivity = false;         ///< also runs the sensitivity study of the parameters
+  std::vector<std::string> only{};  ///< ids of the rows to measure, or "sensitivity"; empty: all rows
   std::filesystem::path data{};     ///< folder of the shared data
-  std::string command{};            ///< what the page says it was made with
+  std::string command{};            ///< command line, shown on the page
 };
 
-/// Rows and study, carried out.
+/// The measured rows and the sensitivity study.
 struct Validation {
   ValidateOptions options;
   std::string version;
@@ -31,26 +31,26 @@ struct Validation {
   [[nodiscard]] int count(Verdict verdict) const;
 };
 
-/// All rows there are, group by group.
+/// All rows, group by group.
 const std::vector<RowSpec>& all_rows();
 
-/// Measures rows one after the other. A row that misses, is skipped or crashes stops nothing.
-/// Errors: input, when `only` names an unknown row; failed, when the study of parameters fails.
+/// Measures rows one after the other. It continues after a row that is missed, skipped or crashes.
+/// Errors: input, when `only` has an unknown id; failed, when the sensitivity study fails.
 Result<Validation> validate(const ValidateOptions& options, const Progress& progress = {});
 
-/// The same with rows of one's own.
+/// The same with the given rows.
 Result<Validation> validate(const std::vector<RowSpec>& rows, const ValidateOptions& options,
                             const Progress& progress = {});
 
-/// rows[], missed, skipped, sensitivity, machine, … (docs/validation.md).
+/// JSON with the keys rows[], missed, skipped, sensitivity, machine, … (docs/validation.md).
 std::string validation_json(const Validation& validation);
 
-/// The self-contained page. Errors: failed, when the program was built from files that do not belong together.
+/// The self-contained HTML page. Errors: failed, when the embedded template does not fit the program.
 Result<std::string> validation_page(const Validation& validation);
 
-/// Fills the folder: validate.html, validate.json, ID.csv for each row with curves, sensitivity.csv. A new folder
-/// appears whole or not at all; in one that exists the files are replaced one by one, validate.json goes first and
-/// comes last.
+/// Writes validate.html, validate.json, ID.csv for each row with curves, and sensitivity.csv into a folder. A new
+/// folder appears complete or not at all. In an existing folder the files are replaced one by one: validate.json is
+/// removed first and written last, so that it exists only with complete results.
 Result<> write_validation(const Validation& validation, const std::filesystem::path& folder);
 
 }  // namespace stylet::validate

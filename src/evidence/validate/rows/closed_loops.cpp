@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle in tissue led around closed loops: nobody gets energy out of it.
+// A hand moves a needle in tissue around closed loops. It must not gain energy.
 #include "../hand_loops.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -23,7 +23,7 @@ constexpr int kSteps = 500;
 constexpr double kBevel_deg = 20.0;
 constexpr int kDemoNodes = 2000;
 
-/// The block, with a symmetric tip or a bevelled one.
+/// The block, with a symmetric or a bevelled tip.
 Result<std::shared_ptr<const Model>> block_of(TissuePreset preset, bool bevelled) {
   Block block;
   block.direction = {0.05, 0.1, 1.0};
@@ -32,7 +32,7 @@ Result<std::shared_ptr<const Model>> block_of(TissuePreset preset, bool bevelled
   return block.compile();
 }
 
-/// The demo's patient, with the demo's needle and template.
+/// The demo patient with the demo's needle and template.
 Result<std::shared_ptr<const Model>> demo() {
   auto meshed = measure::mesh_demo(kDemoNodes, {});
   if (!meshed) return meshed.error();
@@ -47,7 +47,7 @@ Result<Finding> closed_loops(Context& context) {
     scenes.push_back(*scene);
   }
   Finding finding;
-  Curve bounds{.label = "given back", .x = {}, .y = {}, .kind = Curve::Kind::points};
+  Curve bounds{.label = "energy gained", .x = {}, .y = {}, .kind = Curve::Kind::points};
   double most = -1.0, least = 1.0, error = 0.0, stored = 0.0, unaccounted = 0.0;
   bool flagged = false;
   for (unsigned number = 0; number < kLoops; ++number) {
@@ -67,23 +67,19 @@ Result<Finding> closed_loops(Context& context) {
   }
   finding.value = flagged ? std::numeric_limits<double>::quiet_NaN() : 100.0 * worse(most, 0.0);
   finding.note = fmt::format(
-      "{} random loops of push and pull, sideways, lever and roll, 20 to 55 mm deep, by turns in a block of linear "
-      "tissue with a symmetric tip and with a bevel of {:g}°, in a block of tissue that stiffens and creeps, and in "
-      "the "
-      "demo’s patient on {} nodes. Each is passed {} times and the last passage counts, when cutting is over and "
-      "contacts stick "
-      "and slide alike each time; what tissue and needle store more or less at its end, at most {:.2g} % of the work "
-      "put "
-      "in, is accounted for (otherwise up to {:.2g} % would seem given back). Work of force and torque by the "
-      "trapezoidal "
-      "rule in {} steps; with half as many the share changes by up to {:.2g} percentage points, and that change is "
-      "added "
-      "to each value. The loop that loses most loses {:.0f} % of what is put in.",
+      "{} random closed loops of the hand with push and pull, sideways motion, tilt and roll, 20 to 55 mm deep. They "
+      "are made in turn in a block of linear tissue with a symmetric tip and with a bevel of {:g}°, in a block of "
+      "tissue that stiffens and creeps, and in the demo patient with {} nodes. Each loop is passed {} times and the "
+      "last passage counts, because nothing is cut in it and contacts stick and slip in the same way each time. The "
+      "change of the energy stored in tissue and needle, at most {:.2g} % of the work of the hand, is taken into "
+      "account (otherwise up to {:.2g} % would seem to be gained). The work of force and torque is computed with the "
+      "trapezoidal rule in {} steps. With half as many steps the result changes by up to {:.2g} percentage points, and "
+      "this change is added to each value. The largest loss in a loop is {:.0f} % of the work of the hand.",
       kLoops, kBevel_deg, kDemoNodes, kPassages, 100.0 * stored, 100.0 * unaccounted, 2 * kSteps, 100.0 * error,
       -100.0 * least);
-  finding.why_missed = flagged ? "A step did not converge, or was flagged otherwise." : "";
-  finding.plot = {.x_label = "size of the loop (1: some 3 mm, 3° and 90° of roll)",
-                  .y_label = "given back [% of the work put in]",
+  finding.why_missed = flagged ? "A step did not converge, or had another flag." : "";
+  finding.plot = {.x_label = "size of the loop (1: about 3 mm, 3° and 90° of roll)",
+                  .y_label = "energy gained [% of the work of the hand]",
                   .log_x = true,
                   .curves = {std::move(bounds)}};
   return finding;
@@ -93,8 +89,8 @@ Result<Finding> closed_loops(Context& context) {
 
 std::vector<RowSpec> closed_loop_rows() {
   return {
-      {"closed_loops", Group::analysis, "A hand that leads the needle around closed loops gets no energy out of it",
-       "dissipation ≥ 0", "% of work put in", Accepted::at_most(0.1), false, closed_loops},
+      {"closed_loops", Group::analysis, "A hand that moves the needle around closed loops gains no energy",
+       "dissipation ≥ 0", "% of the hand’s work", Accepted::at_most(0.1), false, closed_loops},
   };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's condensed system x = K_W y against the mixed problem, solved directly.
+// Compares the paper's condensed system x = K_W y with a direct solution of the mixed problem.
 #include "stylet/coupling/paper/condensed_system.hpp"
 #include "../rows.hpp"
 
@@ -19,9 +19,10 @@ constexpr int kSize = 3 * kPoints;
 constexpr int kChanges = 3000;
 constexpr int kEvery = 50;
 
-/// Forces where displacements are given and displacements where forces are given, by solving A_BB f_B = u_B − A_BF f_F.
+/// Solves the mixed problem: gives the forces where displacements are prescribed (B) and the displacements where forces
+/// are prescribed (F), from A_BB f_B = u_B − A_BF f_F.
 VecX solve_mixed(const MatX& A, const paper::CondensedSystem& system, const VecX& y) {
-  std::vector<int> given;  // rows under displacement control
+  std::vector<int> given;  // rows with prescribed displacement
   std::vector<int> free;
   for (int i = 0; i < kSize; ++i) (system.is_displacement(i) ? given : free).push_back(i);
   VecX force(kSize);
@@ -76,8 +77,8 @@ Result<Finding> switches_and_rotations(Context&) {
     curve.x.push_back(k);
     curve.y.push_back(error);
   }
-  finding.note = fmt::format("{} points, {} switches and {} rotations in random order; the worst of {} looks.", kPoints,
-                             kChanges - rotations, rotations, kChanges / kEvery);
+  finding.note = fmt::format("{} points, {} switches and {} rotations in random order; the largest error of {} checks.",
+                             kPoints, kChanges - rotations, rotations, kChanges / kEvery);
   finding.plot = {.x_label = "switches and rotations", .y_label = "relative error", .log_y = true, .curves = {curve}};
   return finding;
 }
@@ -85,7 +86,8 @@ Result<Finding> switches_and_rotations(Context&) {
 }  // namespace
 
 std::vector<RowSpec> condensed_system_rows() {
-  return {{"condensed_system", Group::analysis, "K_W follows boundary condition switches and rotations of its frames",
+  return {{"condensed_system", Group::analysis,
+           "K_W stays correct after boundary condition switches and rotations of its frames",
            "direct solution of the mixed problem", "", Accepted::at_most(1e-9), true, switches_and_rotations}};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tissue against closed solutions of linear elasticity, and against CalculiX.
+// Compares the tissue with closed-form solutions of linear elasticity and with CalculiX.
 #include "../rows.hpp"
 #include "../solids.hpp"
 #include "stylet/evidence/validate/calculix.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 const Material kGland{0.040, 0.45};
 
-/// Nodal forces [N] of one stress on all outer faces.
+/// Nodal forces [N] of a uniform stress on all outer faces.
 VecX uniform_traction(const Tissue& tissue, const Mat3& stress) {
   return traction(tissue, [&](const Vec3&, int) { return stress; });
 }
@@ -42,7 +42,8 @@ Result<Finding> patch_test(Context&) {
     const VecX u = tissue->solve(uniform_traction(*tissue, stress_of(kGland, gradient)));
     finding.value = worse(finding.value, relative_error(u, expected));
   }
-  finding.note = fmt::format("Irregular mesh of {} nodes, floor held, four linear fields.", mesh.node_count());
+  finding.note =
+      fmt::format("An irregular mesh of {} nodes whose floor is held; four linear fields.", mesh.node_count());
   return finding;
 }
 
@@ -54,16 +55,17 @@ Result<Finding> rigid_motions(Context&) {
   for (int mode = 0; mode < 6; ++mode) {
     const Vec3 axis = Vec3::Unit(mode % 3);
     const VecX u = sample(*tissue, [&](const Vec3& x) { return mode < 3 ? axis : Vec3(axis.cross(x) / 60.0); });
-    // Relative to the stress that a strain of the same motion over 1 mm would make.
+    // The scale is the stress of a strain that has the size of the displacement over a length of 1 mm.
     const double scale = kGland.lambda() * u.cwiseAbs().maxCoeff();
     finding.value = worse(finding.value, tissue->stress(u).cwiseAbs().maxCoeff() / scale);
   }
-  finding.note = "Three translations, three infinitesimal rotations; the largest stress in any element.";
+  finding.note =
+      "Three translations and three infinitesimal rotations; the value is the largest stress in any element.";
   return finding;
 }
 
 Result<Finding> uniaxial_bar(Context&) {
-  // Without lateral contraction the held end does not disturb the field.
+  // With ν = 0 there is no lateral contraction, so the held end does not disturb the field.
   const Material material{0.020, 0.0};
   TetMesh mesh = box_mesh({0, 0, 0}, {10, 15, 100}, {2, 3, 20}, 0.15);
   const auto floor = nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; });
@@ -77,7 +79,8 @@ Result<Finding> uniaxial_bar(Context&) {
   const double strain = force / (material.young_MPa * area);
   Finding finding;
   finding.value = relative_error(u, sample(*tissue, [&](const Vec3& x) { return Vec3(0, 0, strain * x.z()); }));
-  finding.note = fmt::format("100 mm long, {:g} N on {:g} mm², 20 kPa: {:.4g} mm.", force, area, 100.0 * strain);
+  finding.note = fmt::format("A bar 100 mm long of 20 kPa under {:g} N on {:g} mm² stretches by {:.4g} mm.", force,
+                             area, 100.0 * strain);
   return finding;
 }
 
@@ -90,7 +93,7 @@ Result<Finding> same_as_calculix(Element element, const std::array<int, 3>& cell
   const auto tissue = Tissue::build(std::move(mesh), {{0.008, 0.45}, {0.060, 0.40}}, fixed, {}, element);
   if (!tissue) return tissue.error();
 
-  // A press on the top and pushes and pulls at a third of the free nodes.
+  // Loads: a force on all nodes of the top, and random forces on a third of the free nodes.
   const Index nodes = tissue->displacement_nodes();
   VecX f = VecX::Zero(3 * Eigen::Index{nodes});
   std::mt19937 random(11);
@@ -106,11 +109,10 @@ Result<Finding> same_as_calculix(Element element, const std::array<int, 3>& cell
   Finding finding;
   finding.value = relative_error(ours, *theirs);
   finding.note = fmt::format(
-      "{} nodes, two materials, loads on a third of the nodes, largest displacement {:.2f} mm; largest difference of "
-      "any "
-      "component over the largest displacement.",
+      "{} nodes, two materials, loads on a third of the nodes; the largest displacement is {:.2f} mm. The value is the "
+      "largest difference of any component, relative to the largest displacement.",
       nodes, ours.cwiseAbs().maxCoeff());
-  finding.why_missed = "CalculiX prints seven digits.";
+  finding.why_missed = "CalculiX prints only seven digits.";
   Curve curve{.label = "nodes", .x = {}, .y = {}, .kind = Curve::Kind::points};
   std::vector<Eigen::Index> by_size(static_cast<std::size_t>(nodes));
   for (std::size_t a = 0; a < by_size.size(); ++a) by_size[a] = static_cast<Eigen::Index>(a);
@@ -132,15 +134,16 @@ std::vector<RowSpec> elasticity_rows() {
        "u = c z, σ from Hooke’s law", "", Accepted::at_most(1e-10), true, patch_test},
       {"rigid_motions", Group::analysis, "Rigid motions cause no stress", "σ = 0", "", Accepted::at_most(1e-10), true,
        rigid_motions},
-      {"uniaxial_bar", Group::analysis, "A bar stretches by force × length over stiffness", "ΔL = F L / (E A)", "",
+      {"uniaxial_bar", Group::analysis, "A bar stretches by force × length / (modulus × area)", "ΔL = F L / (E A)", "",
        Accepted::at_most(1e-10), true, uniaxial_bar},
-      {"calculix", Group::other_code, "Same mesh, materials, supports and loads: the same displacements",
+      {"calculix", Group::other_code, "The same mesh, materials, supports and loads give the same displacements",
        "CalculiX, C3D4 elements", "", Accepted::at_most(1e-6), true,
        [](Context&) {
          return same_as_calculix(Element::p1, {8, 7, 9});
        }},
-      {"calculix_quadratic", Group::other_code, "The same with quadratic tetrahedra", "CalculiX, C3D10 elements", "",
-       Accepted::at_most(1e-6), true,
+      {"calculix_quadratic", Group::other_code,
+       "The same mesh, materials, supports and loads give the same displacements with quadratic tetrahedra",
+       "CalculiX, C3D10 elements", "", Accepted::at_most(1e-6), true,
        [](Context&) {
          return same_as_calculix(Element::p2, {4, 4, 5});
        }},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tip at the skin and a little below it.
+// The compliance of the tip at the skin and a little below it.
 #include "../medium_block.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -17,7 +17,7 @@ namespace stylet::validate {
 
 namespace {
 
-/// Stiffness that the hand feels while the tip presses on the skin, and that of a flat punch [N/mm].
+/// Stiffness at the hand while the tip presses on the skin, and stiffness under a flat punch [N/mm].
 struct Pressed {
   double ours = 0.0;
   double punch = 0.0;
@@ -37,7 +37,7 @@ Result<Pressed> press_skin(const std::string& method, int cells, const std::arra
   Drive drive(*model, 0.0);
   drive.go(depth_mm, 1.0);
   if (drive.event(EventKind::puncture) != nullptr)
-    return failure("flat_punch", "the skin broke under less than a tenth of a millimetre", "Press less deep");
+    return failure("flat_punch", "the skin broke at a depth below 0.1 mm", "Press less deep");
   return Pressed{drive.last().record.force_axial_N / depth_mm,
                  2.0 * (*model)->coupling().needle_radius_mm * skin.young_MPa / (1.0 - skin.poisson * skin.poisson)};
 }
@@ -73,30 +73,32 @@ Result<Finding> flat_punch(Context&) {
     finding.plot.curves.push_back(std::move(curve));
   }
   finding.note = fmt::format(
-      "The hand presses the tip 0.1 mm into the skin of the block, at three places on meshes of four sizes; worst of "
-      "all. Punch {:.4f} N/mm, {}. That the tip at a surface is as stiff as a flat punch was set, by its kernel’s "
-      "radius, from this very formula; what is not set and shows here is that mesh, place in the mesh and a whole "
-      "insertion’s set-up do not change it. The block is 100 mm wide and held around, a half space is not.",
+      "The hand presses the tip 0.1 mm into the skin of the block, at three places on meshes of four sizes; the value "
+      "is the largest difference. The punch has {:.4f} N/mm; {}. The radius of the tip’s kernel was chosen so that "
+      "the tip at a surface is as stiff as a flat punch by this formula. So the row shows only that mesh, place in "
+      "the mesh and the set-up of a whole insertion do not change this stiffness. The block is 100 mm wide and held "
+      "on its sides, unlike a half space.",
       stiffness, finding.note);
-  finding.why_missed = "A block that is held all around is stiffer than a half space.";
+  finding.why_missed = "A block that is held on its sides is stiffer than a half space.";
   punch.x = {finding.plot.curves.front().x.front(), finding.plot.curves.front().x.back()};
   punch.y = {stiffness, stiffness};
   finding.plot.curves.push_back(std::move(punch));
   return finding;
 }
 
-/// Kelvin’s solution and what the surface adds, by superposition [mm/N].
+/// Kelvin’s solution plus the contribution of the free surface, by superposition [mm/N].
 Mat3 point_force(const Vec3& x, const Vec3& source, const Medium& medium) {
   constexpr double point_mm = 1e-6;
   return kelvinlet(x - source, point_mm, medium) + surface_part(x, source, medium);
 }
 
-/// A block with a free face at z = −50 mm whose other faces move as a half space’s material does.
+/// A block with a free face at z = −50 mm whose other faces move as in a half space.
 struct HalfSpace {
   MediumBlock block;
-  const Vec3 up{0.0, 0.0, MediumBlock::kHalf_mm};  ///< from the block’s places to those of the half space z ≥ 0
+  const Vec3 up{0.0, 0.0,
+                MediumBlock::kHalf_mm};  ///< shift from the block’s coordinates to those of the half space z ≥ 0
 
-  /// The held nodes’ motion under a force at a place.
+  /// Displacement of the held nodes per force at `source`.
   [[nodiscard]] std::vector<Mat3> far_field(const Vec3& source) const {
     std::vector<Mat3> field;
     for (const Index node : block.fixed)
@@ -105,8 +107,8 @@ struct HalfSpace {
   }
 };
 
-/// Stiffness of the flat end of a rod in its hole, so far below a free surface, over E R: by finite elements, at ν =
-/// 0.45 (python3 tests/reference/rod_end.py --shallow).
+/// Stiffness of the flat end of a rod in its hole at a depth below a free surface, divided by E R. By finite elements
+/// with ν = 0.45 (python3 tests/reference/rod_end.py --shallow).
 struct RodEnd {
   double depth_mm;
   double stiffness;
@@ -116,12 +118,12 @@ constexpr std::array<RodEnd, 7> kRodEnds{
 
 Result<Finding> mindlin(Context&) {
   const NeedleKernel needle;
-  const NeedleKernel point{.radius_mm = 0.05};  // a point, as far as its neighbours can tell
+  const NeedleKernel point{.radius_mm = 0.05};  // small enough to be a point force for its neighbours
   Finding finding;
   double tip_off = 0.0;
   double field_off = 0.0;
   finding.plot = {.x_label = "depth below the face [mm]", .y_label = "compliance [mm/N]"};
-  Curve reference{.label = "end of a rod, by finite elements", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve reference{.label = "end of a rod by finite elements", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (const int cells : {7, 14}) {
     auto built = MediumBlock::build({.cells = cells, .skin = true, .element = Element::nodal_pressure});
     if (!built) return built.error();
@@ -149,27 +151,27 @@ Result<Finding> mindlin(Context&) {
   finding.plot.curves.push_back(std::move(reference));
   finding.value = worse(tip_off, field_off);
   finding.note = fmt::format(
-      "1 … 10 mm below a free face, two meshes: the tip’s own compliance along the normal within {:.1f} % of that of "
-      "the "
-      "flat end of a rod in its hole by finite elements, the displacement at four points 3 … 7 mm away from a point "
-      "force, "
-      "all nine components, within {:.1f} % of the half space’s. The coupling uses Mindlin’s formula; the reference "
-      "does "
-      "not: Kelvin’s tractions on the face are taken off by Boussinesq’s and Cerruti’s solutions, integrated over the "
-      "plane. The other faces of the block move as the reference says.",
+      "At depths of 1 … 10 mm below a free face, in two meshes: the tip’s own compliance along the normal differs by "
+      "at most {:.1f} % from that of the flat end of a rod in its hole by finite elements. The displacement at four "
+      "points 3 … 7 mm away from a point force, all nine components, differs by at most {:.1f} % from that of the half "
+      "space. The coupling uses Mindlin’s formula; the reference does not: it removes Kelvin’s tractions on the face "
+      "with Boussinesq’s and Cerruti’s solutions, integrated over the plane. The other faces of the block move as in "
+      "the reference.",
       tip_off, field_off);
-  finding.why_missed = "At a depth of a radius or two the kernel does not know the shape of the tip.";
+  finding.why_missed =
+      "At a depth of one or two radii the shape of the tip matters, which the kernel does not represent.";
   return finding;
 }
 
 }  // namespace
 
 std::vector<RowSpec> free_surface_rows() {
-  return {{"flat_punch", Group::analysis, "Before the puncture the skin is as stiff as under a flat punch",
-           "2RE/(1−ν²) on a half space", "%", Accepted::at_most(10.0), true, flat_punch},
-          {"mindlin", Group::analysis, "A force just below the skin moves the tissue as in a half space",
-           "Mindlin’s problem, by superposition of Kelvin, Boussinesq and Cerruti; the end of a rod, by CalculiX", "%",
-           Accepted::at_most(10.0), true, mindlin}};
+  return {
+      {"flat_punch", Group::analysis, "Before the puncture the skin is as stiff under the tip as under a flat punch",
+       "2RE/(1−ν²) on a half space", "%", Accepted::at_most(10.0), true, flat_punch},
+      {"mindlin", Group::analysis, "A force just below the skin moves the tissue as in a half space",
+       "Mindlin’s problem, by superposition of Kelvin, Boussinesq and Cerruti; the end of a rod, by CalculiX", "%",
+       Accepted::at_most(10.0), true, mindlin}};
 }
 
 }  // namespace stylet::validate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The defaults against what was measured in patients and cadavers: the demo, and a gland drawn as a mask.
+// Compares the default values with measurements in patients and cadavers, for the demo and for a gland drawn as a mask.
 #include "../patients.hpp"
 #include "../rows.hpp"
 #include "published_values.hpp"
@@ -23,7 +23,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Measure = Result<Finding> (*)(Context&, Patients&, PatientCase);
 
-/// The gland's shift when its surface breaks, or nothing where it does not.
+/// The gland's shift when its surface breaks; empty if it does not break.
 std::optional<Vec3> shift_at_break(const measure::RecordedRun& run) {
   return run.summary.gland ? run.summary.gland->shift_at_break_mm : std::nullopt;
 }
@@ -33,11 +33,11 @@ double norm_at_break(const measure::RecordedRun& run) {
   return shift ? shift->norm() : kNone;
 }
 
-/// The break of the skin, which is the first surface that the needle breaks; null where it breaks none.
+/// The puncture of the skin, which is the first puncture of a run; null if there is none.
 const Event* skin_break(const measure::RecordedRun& run) { return run.event(EventKind::puncture); }
 
 Plot force_plot(const measure::RecordedRun& run) {
-  Curve in{.label = "way in", .x = {}, .y = {}};
+  Curve in{.label = "on the way in", .x = {}, .y = {}};
   for (const Step& s : run.steps) {
     if (in.x.empty() || s.base_depth_mm > in.x.back()) in.add(s.base_depth_mm, s.force_axial_N);
   }
@@ -63,9 +63,9 @@ Result<Finding> gland_shift(Context& context, Patients& patients, PatientCase pa
   Finding finding;
   finding.value = norm_at_break(**run);
   finding.note = fmt::format(
-      "Mean over the gland’s volume when its surface breaks, at {:g} mm/s; {:.2f} mm at {:g} mm/s. Published: {:g} mm "
-      "(0.3 … 21.6) for a needle that is pushed (not verified), 5.2 mm for targets of 90 guided cores. Null model, a "
-      "rigid gland: 0 mm.",
+      "The value is the mean shift of the gland’s volume when its surface breaks, at {:g} mm/s; it is {:.2f} mm at "
+      "{:g} mm/s. Published: {:g} mm (0.3 … 21.6) for a needle that is pushed (not verified), 5.2 mm for the targets "
+      "of 90 guided cores. The null model, a rigid gland, gives 0 mm.",
       kUsual_mm_per_s, norm_at_break(**slow), kSlow_mm_per_s, prostate::kPushedShift_mm);
   finding.plot = path_plot(**run);
   return finding;
@@ -79,9 +79,10 @@ Result<Finding> gland_turn(Context& context, Patients& patients, PatientCase pat
   const PlaneAngles turn = plane_angles((*run)->summary.gland->rotation_deg);
   finding.value = std::abs(turn.coronal);
   finding.note = fmt::format(
-      "In the coronal plane, by a needle 15 mm to the left of the axis; sagittal {:.1f}°, transverse {:.1f}°. "
-      "Published: "
-      "up to about 14° (Lagerburg 2005, not verified). Null model, a rigid gland: 0°.",
+      "The value is the turn in the coronal plane by a needle 15 mm to the left of the axis; the turn is {:.1f}° in "
+      "the "
+      "sagittal and {:.1f}° in the transverse plane. Published: up to about 14° (Lagerburg 2005, not verified). The "
+      "null model, a rigid gland, gives 0°.",
       turn.sagittal, turn.transverse);
   return finding;
 }
@@ -93,7 +94,7 @@ Result<Finding> peak_force(Context& context, Patients& patients, PatientCase pat
   finding.value = (*run)->summary.peak_axial_N;
   finding.note =
       "Published for 18 gauge: about 8.9 N through the perineum and 6 N in the gland (Podder 2006, not verified). The "
-      "force of the default capsule was fitted to this.";
+      "default puncture force of the capsule was fitted to these values.";
   finding.plot = force_plot(**run);
   return finding;
 }
@@ -104,7 +105,8 @@ Result<Finding> skin_force(Context& context, Patients& patients, PatientCase pat
   Finding finding;
   if (const Event* skin = skin_break(**run)) finding.value = skin->force_N;
   finding.note =
-      "Force of the hand when the skin breaks. Published: 2.75 … 2.80 N in fresh cadaver, of which it is the default.";
+      "The value is the force of the hand when the skin breaks. Published: 2.75 … 2.80 N in fresh cadaver, from which "
+      "the default puncture force of the skin is taken.";
   return finding;
 }
 
@@ -121,8 +123,8 @@ Result<Finding> skin_dent(Context& context, Patients& patients, PatientCase pati
   Finding finding;
   finding.value = std::max(dent(**run), dent(**slow));
   finding.note = fmt::format(
-      "How far the base goes from touching the skin to its break: {:.1f} mm at {:g} mm/s, {:.1f} mm at {:g} mm/s. No "
-      "measurement of the perineum is known; 12 mm is what is held plausible.",
+      "The base moves by {:.1f} mm at {:g} mm/s, and by {:.1f} mm at {:g} mm/s, from the contact with the skin to its "
+      "puncture. No measurement at the perineum is known; up to 12 mm is considered plausible.",
       dent(**run), kUsual_mm_per_s, dent(**slow), kSlow_mm_per_s);
   return finding;
 }
@@ -145,8 +147,8 @@ Result<Finding> force_slope(Context& context, Patients& patients, PatientCase pa
   }
   if (n > 10) finding.value = 1e3 * (n * sxy - sx * sy) / (n * sxx - sx * sx);
   finding.note =
-      "Slope of a line through force over depth, from the skin’s break to the deepest point. Published: 35 … 59 N/m in "
-      "fresh cadaver.";
+      "The value is the slope of a straight line that is fitted to the force over depth, from the puncture of the skin "
+      "to the deepest point. Published: 35 … 59 N/m in fresh cadaver.";
   finding.plot = force_plot(**run);
   return finding;
 }
@@ -159,10 +161,10 @@ Result<Finding> gland_seat(Context& context, Patients& patients, PatientCase pat
   Finding finding;
   finding.value = at_once / creep;
   finding.note = fmt::format(
-      "A lasting force along the patient’s axis, spread evenly over the gland, over the gland’s mean displacement; "
-      "{:.2f} "
-      "N/mm at once, of which creep leaves 1/{:g}. Derived from published forces and shifts: 0.7 … 1.4 N/mm. Null "
-      "model, a rigid gland: no displacement.",
+      "The value is a lasting force along the patient’s axis, spread evenly over the gland, divided by the gland’s "
+      "mean "
+      "displacement. Without creep it is {:.2f} N/mm; creep reduces it to 1/{:g}. Derived from published forces and "
+      "shifts: 0.7 … 1.4 N/mm. The null model, a rigid gland, has no displacement.",
       at_once, creep);
   return finding;
 }
@@ -184,17 +186,19 @@ Result<Finding> speed_ratio(Context& context, Patients& patients, PatientCase pa
   const bool counts = creeping.y.front() > 1.0 && ratio < null;
   finding.value = counts ? ratio : kNone;
   finding.note = fmt::format(
-      "Shift of the gland when its surface breaks: {:.2f} mm at {:g} mm/s, {:.2f} mm at {:g} mm/s, a ratio of {:.2f}; "
-      "the former has to be more than 1 mm. Published: {:g} mm tapped over {:g} mm pushed, at second hand and NOT "
-      "VERIFIED. McLaughlin et al. (AAPM 2022) report of a phantom built to be movable that high-speed placement moved "
-      "it by up to {:g} mm, and a pneumatic device by {:g} mm; they give no figure for slow needles. Null model, "
-      "tissue without creep: a ratio of {:.2f}, which has to be beaten.",
+      "The shift of the gland when its surface breaks is {:.2f} mm at {:g} mm/s and {:.2f} mm at {:g} mm/s, a ratio of "
+      "{:.2f}; the first must be more than 1 mm. Published: {:g} mm with a tapped needle and {:g} mm with a pushed "
+      "one, "
+      "at second hand and NOT VERIFIED. McLaughlin et al. (AAPM 2022) report that high-speed placement moved a "
+      "phantom, "
+      "built to be movable, by up to {:g} mm, and a pneumatic device by {:g} mm; they give no value for slow needles. "
+      "The null model, tissue without creep, gives a ratio of {:.2f}; the value must be smaller.",
       creeping.y.front(), kSlow_mm_per_s, creeping.y.back(), kFast_mm_per_s, ratio, prostate::kTappedShift_mm,
       prostate::kPushedShift_mm, prostate::kPhantomHighSpeed_mm, prostate::kPhantomPneumatic_mm, null);
   finding.why_missed =
-      "Inertia and a cutting force that falls with speed are not in the model; creep alone makes a fast needle move "
-      "the "
-      "gland less.";
+      "The model has neither inertia nor a cutting force that decreases with speed. Only creep makes a fast needle "
+      "move "
+      "the gland less.";
   finding.plot = {
       .x_label = "speed [mm/s]", .y_label = "shift of the gland [mm]", .log_x = true, .curves = {creeping, elastic}};
   return finding;
@@ -209,31 +213,30 @@ Result<Finding> axis_ratio(Context& context, Patients& patients, PatientCase pat
   for (std::size_t k = 0; k < holes.size(); ++k) {
     const auto run = patients.run(context, patient, {.speed_mm_per_s = kUsual_mm_per_s, .hole = holes[k]});
     if (!run) return run.error();
-    if (!(*run)->summary.gland) return Finding{.note = "There is no gland."};
+    if (!(*run)->summary.gland) return Finding{.note = "The patient has no gland."};
     const Vec3 shift = (*run)->summary.gland->shift_max_mm.cwiseAbs();
     mean += shift / static_cast<double>(holes.size());
     for (int a = 0; a < 3; ++a) curves[static_cast<std::size_t>(a)].add(static_cast<double>(k + 1), shift[a]);
   }
   const double over_left = mean.z() / mean.x();
   const double over_posterior = mean.z() / mean.y();
-  // Of the two ratios the one that is further from the middle of what is accepted.
+  // The worse of the two ratios is the one that is further from the middle of the accepted range.
   const auto off = [](double ratio) { return std::abs(std::log(ratio / std::sqrt(1.5 * 8.0))); };
   const double further = off(over_left) > off(over_posterior) ? over_left : over_posterior;
   Finding finding;
   finding.value = mean.z() >= 2.0 ? further : kNone;
   finding.note = fmt::format(
-      "Mean of the largest shift over holes {}: {:.2f} mm along the needle, {:.1f} times that to the left or "
-      "right and {:.1f} times that to anterior or posterior; the worse of the two counts, and 2 mm along the needle "
-      "are "
-      "wanted. Seeds were misplaced by {:g}, {:g} and {:g} cm on average, with other causes beside the gland’s motion. "
-      "Null model, a rigid gland: no ratio.",
+      "The mean of the largest shift over the holes {} is {:.2f} mm along the needle. This is {:.1f} times the shift "
+      "to "
+      "the left or right and {:.1f} times the shift to anterior or posterior. The worse of the two ratios counts, and "
+      "the shift along the needle must be at least 2 mm. Seeds were misplaced by {:g}, {:g} and {:g} cm on average, by "
+      "other causes too. The null model, a rigid gland, has no ratio.",
       fmt::join(holes, ", "), mean.z(), over_left, over_posterior, prostate::kSeedX_cm, prostate::kSeedY_cm,
       prostate::kSeedZ_cm);
   finding.why_missed =
       "A needle through a template is parallel to the patient’s axis, and the tissue around the gland is nearly the "
-      "same "
-      "on all sides, so little of its push acts across. A probe in the rectum, needles that are not parallel and the "
-      "other causes of misplaced seeds are not in these runs.";
+      "same on all sides, so only a small part of the force acts across. These runs have no probe in the rectum, no "
+      "needles that are not parallel, and none of the other causes of misplaced seeds.";
   finding.plot = {
       .x_label = "needle", .y_label = "shift of the gland [mm]", .curves = {curves[0], curves[1], curves[2]}};
   return finding;
@@ -252,9 +255,8 @@ Result<Finding> bevel_deflection(Context& context, Patients& patients, PatientCa
   Finding finding;
   finding.value = deflection > symmetric ? deflection : kNone;
   finding.note = fmt::format(
-      "Largest distance of the tip from the straight line, {:g} mm deep, with a bevel of 20° and in a guide. Null "
-      "model, "
-      "a symmetric tip: {:.2f} mm, which has to be less.",
+      "The value is the largest distance of the tip from the straight line at a depth of {:g} mm, with a bevel of 20° "
+      "and a guide. The null model, a symmetric tip, gives {:.2f} mm, which must be less.",
       depth_mm, symmetric);
   return finding;
 }
@@ -269,28 +271,28 @@ struct Claim {
 };
 
 const Claim kClaims[] = {
-    {"gland_shift", "a needle moves the gland by millimetres before it breaks its surface",
+    {"gland_shift", "a needle moves the gland by some millimetres before its surface breaks",
      "Lagerburg et al. 2006, 5.6 mm (0.3 … 21.6), NOT VERIFIED; 5.2 mm in 90 MR-guided cores", "mm",
      Accepted::between(2.0, 12.0), gland_shift},
-    {"gland_turn", "a needle beside the axis turns the gland by degrees",
+    {"gland_turn", "a needle beside the axis turns the gland by some degrees",
      "Lagerburg et al. 2005, up to 14°, NOT VERIFIED", "°", Accepted::between(2.0, 15.0), gland_turn},
-    {"peak_force", "the largest axial force is that of patients", "18 gauge, Podder et al. 2006, NOT VERIFIED", "N",
+    {"peak_force", "the largest axial force is as in patients", "18 gauge, Podder et al. 2006, NOT VERIFIED", "N",
      Accepted::between(4.0, 10.0), peak_force},
-    {"skin_force", "the skin breaks at the force of cadavers", "fresh cadaver, doi 10.1089/end.2016.0342", "N",
+    {"skin_force", "the skin breaks at the force measured in cadavers", "fresh cadaver, doi 10.1089/end.2016.0342", "N",
      Accepted::between(2.0, 3.5), skin_force},
-    {"skin_dent", "the skin tents by a plausible depth, slow or not", "stated", "mm", Accepted::between(3.0, 12.0),
-     skin_dent},
-    {"force_slope", "force grows with depth as in cadavers", "fresh cadaver, doi 10.1089/end.2016.0342", "N/m",
+    {"skin_dent", "the skin tents by a plausible depth at both speeds", "plausible range, not measured", "mm",
+     Accepted::between(3.0, 12.0), skin_dent},
+    {"force_slope", "the force grows with depth as in cadavers", "fresh cadaver, doi 10.1089/end.2016.0342", "N/m",
      Accepted::between(30.0, 70.0), force_slope},
-    {"gland_seat", "the gland is held as softly as forces and shifts of patients say", "derived", "N/mm",
-     Accepted::between(0.5, 2.0), gland_seat},
+    {"gland_seat", "the gland is held as softly as forces and shifts in patients suggest",
+     "derived from published forces and shifts", "N/mm", Accepted::between(0.5, 2.0), gland_seat},
     {"speed_ratio", "a fast needle moves the gland far less than a slow one",
-     "NOT VERIFIED: Lagerburg et al. 2006, 0.9 mm tapped over 5.6 mm pushed; 0.4 is let pass", "",
+     "NOT VERIFIED: Lagerburg et al. 2006, 0.9 mm tapped / 5.6 mm pushed; up to 0.4 is accepted", "",
      Accepted::at_most(0.4), speed_ratio},
     {"axis_ratio", "the gland moves along the needle more than across it, but not only along it",
      "seed misplacement by axis, 1,197 seeds of 357 needles in 15 patients", "", Accepted::between(1.5, 8.0),
      axis_ratio},
-    {"bevel_deflection", "a bevel deflects the needle by millimetres", "bands of tracked needles", "mm",
+    {"bevel_deflection", "a bevel deflects the needle by some millimetres", "range of tracked needles", "mm",
      Accepted::between(1.0, 7.0), bevel_deflection},
 };
 

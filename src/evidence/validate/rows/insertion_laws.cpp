@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole insertion against what its laws say in closed form.
+// Compares whole insertions with closed forms of the laws of cutting and friction.
 #include "../rows.hpp"
 #include "../scene.hpp"
 
@@ -13,7 +13,7 @@ namespace stylet::validate {
 
 namespace {
 
-/// A block of one tissue: its forces have closed forms.
+/// A block of one tissue, whose forces have closed forms.
 Block one_tissue() {
   Block block;
   block.gland_radius_mm = 0.0;
@@ -26,7 +26,7 @@ Curve force_curve(const Drive& drive, const std::string& label) {
           .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
-/// Force against time, for motions that go back and forth.
+/// Force against time, for motions in and out.
 Curve force_over_time(const Drive& drive, const std::string& label) {
   return {.label = label, .x = column(drive.steps(), &Step::time_s), .y = column(drive.steps(), &Step::force_axial_N)};
 }
@@ -52,8 +52,8 @@ Result<Finding> steady_cutting(Context&) {
     law.x.push_back(depth);
     law.y.push_back(expected);
   }
-  finding.note = "Constant speed, one tissue, from 20 mm on; the inserted length is the simulated one.";
-  finding.why_missed = "Where contacts are laid the force is not quite steady.";
+  finding.note = "One tissue, constant speed, from 20 mm depth on. The formula uses the simulated inserted length.";
+  finding.why_missed = "The force is not quite constant where contacts are laid.";
   finding.plot = {
       .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(drive, "ours"), law}};
   return finding;
@@ -76,9 +76,9 @@ Result<Finding> reversal(Context&) {
   Finding finding;
   finding.value = percent_off(drive.last().record.force_axial_N, expected);
   finding.note = fmt::format(
-      "Pushed in with {:.2f} N; 0.1 mm after the turn {} of {} contacts stick; 10 mm after it all slide out, with "
-      "{:.3f} N "
-      "against {:.3f} N.",
+      "The needle is pushed in with {:.2f} N. After 0.1 mm of retraction {} of {} contacts stick. After 10 mm all "
+      "slip; "
+      "the hand pulls with {:.3f} N, and the formula gives {:.3f} N.",
       pushing, sticking, contacts, -drive.last().record.force_axial_N, -expected);
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
   return finding;
@@ -100,9 +100,10 @@ Result<Finding> second_pass(Context&) {
   finding.value = percent_off(drive.last().record.force_axial_N, expected);
   const double cut = drive.insertion().track().end_xi - deepest;
   if (cut > 0.0) finding.value = 100.0;
-  finding.note =
-      fmt::format("In to 40 mm, out to 20, in to 34: {:.3f} N, friction alone is {:.3f} N; {:g} mm cut anew.",
-                  drive.last().record.force_axial_N, expected, cut);
+  finding.note = fmt::format(
+      "The needle goes in to 40 mm, out to 20 mm and in to 34 mm. The force is {:.3f} N, friction alone {:.3f} N; "
+      "{:g} mm of new track are cut.",
+      drive.last().record.force_axial_N, expected, cut);
   drive.go(45.0, speed);
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
   return finding;
@@ -110,7 +111,7 @@ Result<Finding> second_pass(Context&) {
 
 Result<Finding> withdrawal(Context&) {
   Block block;
-  block.scenario.tissue_model.creep = 1.0;  // what creeps is left for seconds
+  block.scenario.tissue_model.creep = 1.0;  // no creep, whose displacement would last for seconds
   const auto model = block.compile({{-9, 7, 0}});
   if (!model) return model.error();
   Drive used(*model);
@@ -129,8 +130,9 @@ Result<Finding> withdrawal(Context&) {
     finding.value = worse(finding.value, difference / fresh.peak_N());
   }
   finding.note = fmt::format(
-      "Left over after the needle is out: {:g} mm. A second needle elsewhere feels what it would feel in fresh tissue; "
-      "largest difference over the peak.",
+      "After the needle is out, the largest displacement of the tissue is {:g} mm. A second needle at another place "
+      "has "
+      "the same forces as in fresh tissue; the value is the largest difference relative to the peak force.",
       left);
   finding.plot = {
       .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(fresh, "fresh tissue")}};
@@ -168,8 +170,8 @@ Result<Finding> moved_scene(Context&) {
   mirrored.linear().diagonal() << -1.0, 1.0, 1.0;
   Finding finding;
   finding.value = 0.0;
-  finding.plot = {.x_label = "step", .y_label = "difference over the peak", .log_y = true};
-  for (const auto& [label, placing] : {std::pair{"turned and moved", turned}, {"mirrored", mirrored}}) {
+  finding.plot = {.x_label = "step", .y_label = "difference / peak force", .log_y = true};
+  for (const auto& [label, placing] : {std::pair{"rotated and moved", turned}, {"mirrored", mirrored}}) {
     const auto other = run(placing);
     if (!other) return other.error();
     Curve curve{.label = label, .x = {}, .y = {}};
@@ -181,13 +183,13 @@ Result<Finding> moved_scene(Context&) {
     }
     finding.plot.curves.push_back(std::move(curve));
   }
-  finding.note = "An oblique insertion through a capsule, the base shifted sideways on the way, and back.";
+  finding.note = "An oblique insertion through a capsule, with a sideways shift of the base on the way, and back out.";
   return finding;
 }
 
 Result<Finding> contact_changes(Context&) {
   Block block = one_tissue();
-  block.scenario.tissue_model.creep = 1.0;  // forces that relax in the pauses are no jumps of contacts
+  block.scenario.tissue_model.creep = 1.0;  // no creep, because relaxing forces would look like jumps
   block.direction = {0.1, 0.05, 1.0};
   const auto model = block.compile();
   if (!model) return model.error();
@@ -216,11 +218,10 @@ Result<Finding> contact_changes(Context&) {
   }
   Finding finding;
   finding.value = 100.0 * worst / drive.peak_N();
-  if (changes < 10) finding.value = std::numeric_limits<double>::quiet_NaN();  // nothing was shown
+  if (changes < 10) finding.value = std::numeric_limits<double>::quiet_NaN();  // too few changes to judge
   finding.note = fmt::format(
-      "{} contacts laid or dropped on an oblique way in and out; the step of the force at each, less the mean of the "
-      "steps "
-      "around it, over the peak of {:.2f} N.",
+      "{} contacts are laid or removed on an oblique way in and out. The value is the change of the force at each, "
+      "minus the mean of the changes before and after it, relative to the peak force of {:.2f} N.",
       changes, drive.peak_N());
   finding.plot = {.x_label = "time [s]", .y_label = "jump of the force [% of peak]", .curves = {jumps}};
   return finding;
@@ -237,7 +238,7 @@ Result<Finding> energy(Context&) {
   Curve work{.label = "work of the hand", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   Curve stored{.label = "stored energy", .x = {}, .y = {}};
   double from = 0.0;
-  // Finely at first: until the skin breaks next to nothing is lost, and the two must agree.
+  // The first millimetre is checked finely: until the skin breaks nearly no energy is lost, and both must agree.
   for (const auto& [to, looks] : {std::pair{1.0, 20}, {20.0, 20}, {50.0, 20}, {30.0, 20}, {60.0, 20}, {20.0, 20}}) {
     for (int k = 1; k <= looks; ++k) {
       drive.go(from + (to - from) * k / looks);
@@ -252,9 +253,8 @@ Result<Finding> energy(Context&) {
     from = to;
   }
   finding.note = fmt::format(
-      "In and out several times; the largest of stored energy over work of the hand. Before the skin breaks nearly all "
-      "is "
-      "stored, in the end {:.2f} of {:.0f} N mm.",
+      "The needle goes in and out several times. The value is the largest ratio of stored energy to work of the hand. "
+      "Before the skin breaks nearly all work is stored, at the end {:.2f} of {:.0f} N mm.",
       stored.y.back(), work.y.back());
   finding.plot = {.x_label = "time [s]", .y_label = "energy [N mm]", .log_y = true, .curves = {stored, work}};
   return finding;
@@ -266,11 +266,11 @@ Result<Finding> balance(Context& context, bool torque) {
   Finding finding;
   finding.value = torque ? (*run)->summary.residual_torque_balance : (*run)->summary.residual_force_balance;
   finding.note = fmt::format(
-      "The demo insertion, {} steps: what the supports and the contacts exert on the tissue{}, largest of the run over "
-      "the peak force{}. Nothing is said of the hand: its force and torque are computed as the sum of what the "
-      "contacts "
-      "exert, so that hand and contacts balance by definition; the row closed_loops checks the hand by its work.",
-      (*run)->summary.steps, torque ? ", moments about the entry" : "", torque ? " × 100 mm" : "");
+      "The demo insertion, {} steps. The value is the largest sum of the {} that supports and contacts exert on the "
+      "tissue, relative to the peak force{}. It says nothing about the hand: its force and torque are computed as the "
+      "sum over the contacts, so that hand and contacts balance by definition. The row closed_loops checks the work of "
+      "the hand.",
+      (*run)->summary.steps, torque ? "moments about the entry point" : "forces", torque ? " × 100 mm" : "");
   if (!torque) {
     Curve force{.label = "the demo", .x = {}, .y = {}};
     for (const Step& s : (*run)->steps) {
@@ -290,15 +290,15 @@ std::vector<RowSpec> insertion_law_rows() {
        "F_cut + η v + (C + b v) L", "%", Accepted::at_most(2.0), true, steady_cutting},
       {"reversal", Group::analysis, "After a reversal the shaft sticks, then slides, and friction points the other way",
        "−(C + b v) L", "%", Accepted::at_most(2.0), true, reversal},
-      {"second_pass", Group::analysis, "On an old track there is nothing to cut until its end",
-       "(C + b v) L; nothing cut anew", "%", Accepted::at_most(3.0), true, second_pass},
-      {"withdrawal", Group::analysis, "A needle that is out leaves the tissue as it was", "zero; fresh tissue", "",
-       Accepted::at_most(1e-12), true, withdrawal},
-      {"moved_scene", Group::analysis, "A scene turned, moved or mirrored gives the same forces in its own frame",
-       "the scene as it was", "", Accepted::at_most(1e-8), true, moved_scene},
-      {"contact_changes", Group::analysis, "Laying and dropping contacts does not show in the force of the hand",
+      {"second_pass", Group::analysis, "Nothing is cut on an existing track until its end", "(C + b v) L; no new track",
+       "%", Accepted::at_most(3.0), true, second_pass},
+      {"withdrawal", Group::analysis, "After the needle is out, the tissue is as before the insertion",
+       "zero; fresh tissue", "", Accepted::at_most(1e-12), true, withdrawal},
+      {"moved_scene", Group::analysis, "A rotated, moved or mirrored scene gives the same forces in its own frame",
+       "the original scene", "", Accepted::at_most(1e-8), true, moved_scene},
+      {"contact_changes", Group::analysis, "Laying and removing contacts causes no jump of the hand’s force",
        "continuity", "%", Accepted::at_most(0.1), true, contact_changes},
-      {"energy", Group::analysis, "The hand puts in at least the energy that is stored", "dissipation ≥ 0", "",
+      {"energy", Group::analysis, "The hand does at least as much work as energy is stored", "dissipation ≥ 0", "",
        Accepted::at_most(1.0), true, energy},
       {"force_balance", Group::analysis, "Action equals reaction on the tissue: supports and contacts balance",
        "Newton’s third law", "", Accepted::at_most(1e-9), false, [](Context& c) { return balance(c, false); }},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole insertion must not hang on the mesh.
+// The results of a whole insertion must not depend on the mesh.
 #include "../rows.hpp"
 
 #include <fmt/format.h>
@@ -12,10 +12,10 @@ namespace stylet::validate {
 namespace {
 
 constexpr const char* kDefault = "near-field";
-/// Meshes that are coarser are shown, and not judged.
+/// Coarser meshes are shown but not judged.
 constexpr Index kCoarsest = 1500;
 
-/// The force of the hand, a point every 20 ms.
+/// The force of the hand, with a point every 20 ms.
 Curve curve_of(const measure::CouplingRow& row) {
   Curve curve{.label = fmt::format("{}, {} nodes", row.method, row.nodes), .x = {}, .y = {}};
   if (row.method != kDefault) curve.kind = Curve::Kind::reference;
@@ -35,8 +35,8 @@ Result<Finding> force(Context& context) {
   for (const measure::CouplingRow& row : *rows) {
     if (row.method == kDefault) {
       if (row.nodes >= kCoarsest) finding.value = worse(finding.value, row.rms_vs_finest_percent);
-      finding.note += fmt::format("{} nodes: RMS {:.2f} %, skin breaks at {:.1f} mm, capsule at {:.1f} mm. ", row.nodes,
-                                  row.rms_vs_finest_percent, row.skin_mm, row.capsule_mm);
+      finding.note += fmt::format("{} nodes: RMS difference {:.2f} %, skin breaks at {:.1f} mm, capsule at {:.1f} mm. ",
+                                  row.nodes, row.rms_vs_finest_percent, row.skin_mm, row.capsule_mm);
       finding.plot.curves.push_back(curve_of(row));
     } else {
       others += fmt::format("{}{}: {:.2f} %, {:.1f} mm", others.empty() ? "" : "; ", row.nodes,
@@ -45,13 +45,12 @@ Result<Finding> force(Context& context) {
     }
   }
   finding.note += fmt::format(
-      "With node addition (its finest dashed) RMS from its own finest and skin: {}. 500 nodes are shown and not "
-      "judged: "
-      "no layer is an element thick there. stylet bench coupling goes on to 40,000 nodes "
-      "(docs/theory/near_field.md §8).",
+      "With node addition (finest mesh dashed), nodes, RMS difference from its own finest mesh and depth at which the "
+      "skin breaks: {}. The mesh of 500 nodes is shown but not judged, because its layers are thinner than an element. "
+      "stylet bench coupling includes meshes up to 40,000 nodes (docs/theory/near_field.md §8).",
       others);
   finding.why_missed =
-      "The capsule breaks at the same force, but deeper or less deep: on the border of fat and gland the tip’s own "
+      "The capsule breaks at the same force but at another depth: at the border of fat and gland the tip’s own "
       "compliance still depends on the mesh (docs/theory/near_field.md §8).";
   return finding;
 }
@@ -81,10 +80,10 @@ Result<Finding> shift(Context& context) {
     std::reverse(curve.y.begin(), curve.y.end());
   }
   finding.note +=
-      "The target’s mean displacement comes from the needle’s forces by reciprocity, on coarse meshes with quadratic "
-      "elements. stylet bench coupling goes on to 40,000 nodes.";
+      "The target’s mean displacement is computed from the needle’s forces by reciprocity, on coarse meshes with "
+      "quadratic elements. stylet bench coupling includes meshes up to 40,000 nodes.";
   finding.why_missed =
-      "The field of a body force on the target, by which its shift is computed, still depends on the mesh, above all "
+      "The field of a body force on the target, from which its shift is computed, still depends on the mesh, mainly "
       "near the ends of supports.";
   return finding;
 }
@@ -93,10 +92,10 @@ Result<Finding> shift(Context& context) {
 
 std::vector<RowSpec> insertion_over_meshes_rows() {
   return {
-      {"insertion_mesh_force", Group::independence, "The force of a whole insertion does not hang on the mesh",
-       "each other, 2,000 and 10,000 nodes; RMS over the peak", "%", Accepted::at_most(3.0), false, force},
-      {"insertion_mesh_shift", Group::independence, "The shift of the gland does not hang on the mesh",
-       "each other, 2,000 and 10,000 nodes", "%", Accepted::at_most(7.0), false, shift},
+      {"insertion_mesh_force", Group::independence, "The force of a whole insertion does not depend on the mesh",
+       "meshes of 2,000 and 10,000 nodes; RMS difference / peak", "%", Accepted::at_most(3.0), false, force},
+      {"insertion_mesh_shift", Group::independence, "The shift of the gland does not depend on the mesh",
+       "meshes of 2,000 and 10,000 nodes", "%", Accepted::at_most(7.0), false, shift},
   };
 }
 

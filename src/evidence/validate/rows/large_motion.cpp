@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gland's motion, which is linear in the forces but for its turn, against a solid with large displacements.
+// Compares the gland's motion with a solid with large displacements. In the model the motion is linear in the forces,
+// except for the gland's rotation, which is exact.
 #include "../quadrature.hpp"
 #include "../rows.hpp"
 #include "stylet/evidence/validate/calculix.hpp"
@@ -23,8 +24,8 @@ namespace {
 constexpr std::array<const char*, 3> kHoles{"e3.5", "c3.5", "D4.5"};
 constexpr double kFurthest_mm = 6.0;
 constexpr Index kNodes = 1000;
-/// Standard deviation of the cloud of points over which a force is spread: at a point, neo-Hookean tissue gives way
-/// without bound.
+/// Standard deviation of the distribution over which a force is spread. Under a point force, the displacement of
+/// neo-Hookean tissue is unbounded.
 constexpr double kSpread_mm = 3.0;
 
 struct PointForce {
@@ -40,7 +41,8 @@ Vec3 position(const TetMesh& mesh, const MaterialPoint& point) {
   return x;
 }
 
-/// A force spread over a cloud around its point; what of the cloud would lie outside the tissue is left out.
+/// Spreads a force with a normal distribution around its point. The part outside the tissue is left out and the rest is
+/// scaled to the whole force.
 std::vector<PointForce> spread(const TetMesh& mesh, const MaterialPoint& at, const Vec3& force) {
   static const auto rule = tetrahedron_rule(3);
   const Vec3 centre = position(mesh, at);
@@ -61,7 +63,7 @@ std::vector<PointForce> spread(const TetMesh& mesh, const MaterialPoint& at, con
   return cloud;
 }
 
-/// The forces on the tissue when the gland has gone furthest on the way in.
+/// The forces on the tissue at the largest shift of the gland on the way in.
 Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<const Model>& model) {
   auto motion = TargetMotion::of(*model);
   if (!motion) return motion.error();
@@ -83,11 +85,11 @@ Result<std::vector<TissueForce>> forces_at_largest_shift(const std::shared_ptr<c
     forces = simulation.insertion().tissue_forces();
   }
   if (forces.empty())
-    return failure("large motion", "the needle has not moved the gland", "Run stylet insert to see why");
+    return failure("large motion", "the needle did not move the gland", "Run stylet insert to see why");
   return forces;
 }
 
-/// Mean shift of the volume of some regions and of its thirds, by the displacement of a tissue's nodes [mm].
+/// Mean shift [mm] of a volume and of its thirds along z, computed from the displacements of nodes.
 struct Seen {
   Vec3 shift = Vec3::Zero();
   std::array<Vec3, 3> third{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -148,7 +150,8 @@ class GlandOf {
   double height_ = 1.0;
 };
 
-/// The largest error of shift and thirds, of what is allowed: 0.5 mm or a tenth, whichever is more.
+/// The largest error of the shift and of the thirds' shifts, divided by the allowed error: 0.5 mm or a tenth of the
+/// shift, whichever is larger.
 double error_of(const VolumeMotion& ours, const Seen& theirs) {
   const auto one = [](const Vec3& value, const Vec3& expected) {
     return (value - expected).norm() / std::max(0.5, 0.1 * expected.norm());
@@ -167,13 +170,13 @@ VolumeMotion times(VolumeMotion motion, double share) {
 }
 
 struct HoleResult {
-  double at_points_mm = 0.0;  ///< the gland's largest shift as the simulation has it
-  double factor = 1.0;        ///< of the forces, for kFurthest_mm
-  double worst = 0.0;         ///< error_of, all moments
-  double worst_linear = 0.0;  ///< the same without the exact turn
-  double worst_needle = 0.0;  ///< error_of, moments up to the needle's own forces
-  double reached_mm = 0.0;
-  double turn_deg = 0.0;
+  double at_points_mm = 0.0;  ///< the gland's shift under the needle's forces, which act at points
+  double factor = 1.0;        ///< factor of the forces that gives a shift of kFurthest_mm
+  double worst = 0.0;         ///< largest error_of() of all increments
+  double worst_linear = 0.0;  ///< the same without the exact rotation
+  double worst_needle = 0.0;  ///< largest error_of() of the increments up to the needle's own forces
+  double reached_mm = 0.0;    ///< shift at the last increment
+  double turn_deg = 0.0;      ///< rotation at the last increment
   Curve ours, theirs;
 };
 
@@ -246,26 +249,27 @@ Result<Finding> large_motion(Context& context) {
   if (!meshed) return meshed.error();
   Finding finding;
   finding.value = 0.0;
-  finding.plot = {.x_label = "forces over the needle’s own", .y_label = "shift of the gland’s base [mm]"};
+  finding.plot = {.x_label = "forces / needle’s own forces", .y_label = "shift of the gland’s base [mm]"};
   for (const char* hole : kHoles) {
     const auto result = through(meshed->mesh, hole, context.progress());
     if (!result) return result.error();
     constexpr double enough = 0.9 * kFurthest_mm;
     finding.value = worse(finding.value, result->reached_mm >= enough ? result->worst : std::nan(""));
     finding.note += fmt::format(
-        "Hole {}: {:.1f} mm and {:.0f}° reached, with {:.2f} times the needle’s own forces, which move the gland by "
-        "{:.1f} mm; worst error {:.2f} of what is allowed, {:.2f} without the exact turn, {:.2f} up to the needle’s "
-        "own forces. ",
+        "Hole {}: a shift of {:.1f} mm and a turn of {:.0f}° are reached with {:.2f} times the needle’s own forces, "
+        "which move the gland by {:.1f} mm. The largest error is {:.2f} of the allowed one, {:.2f} without the exact "
+        "rotation, {:.2f} up to the needle’s own forces. ",
         hole, result->reached_mm, result->turn_deg, result->factor, result->at_points_mm, result->worst,
         result->worst_linear, result->worst_needle);
     finding.plot.curves.push_back(result->ours);
     finding.plot.curves.push_back(result->theirs);
   }
   finding.note += fmt::format(
-      "The forces on the tissue when the gland has gone furthest, lasting ones included, each spread over {:g} mm, "
-      "grow "
-      "in proportion until the gland is {:g} mm away; its mean shift and those of its thirds are compared, allowed are "
-      "0.5 mm or a tenth, whichever is more. Same mesh of {} nodes, quadratic elements in both.",
+      "The forces on the tissue at the largest shift of the gland, including those kept by creep, are each spread over "
+      "{:g} mm and increased in proportion until the gland’s shift is {:g} mm. The mean shifts of the gland and of its "
+      "thirds are compared; the allowed error is 0.5 mm or a tenth of the shift, whichever is larger. Both use the "
+      "same "
+      "mesh of {} nodes with quadratic elements.",
       kSpread_mm, kFurthest_mm, meshed->mesh.node_count());
   return finding;
 }
@@ -276,8 +280,8 @@ std::vector<RowSpec> large_motion_rows() {
   return {
       {"large_motion", Group::other_code,
        "The gland moves as in a solid with large displacements, up to 6 mm, through three holes",
-       "CalculiX, neo-Hookean C3D10 elements, large displacements", "of what is allowed", Accepted::at_most(1.0), false,
-       large_motion},
+       "CalculiX, neo-Hookean C3D10 elements, large displacements", "of the allowed error", Accepted::at_most(1.0),
+       false, large_motion},
   };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force over depth before the puncture of liver, as a whole: the dent that stiffens against linear tissue.
+// The force over depth before the puncture of liver, with a stiffening dent and with linear tissue.
 #include "../number_table.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -18,16 +18,16 @@ namespace {
 
 using namespace published;
 
-/// The curve is compared from here on: nearer to the contact its own start is uncertain.
+/// Curves are compared from this depth on, because the depth of the contact is uncertain.
 constexpr double kFrom_mm = 2.0;
-/// κ is fitted up to here, about half of the way to the puncture.
+/// κ is fitted up to this depth, about half of the depth of the puncture.
 constexpr double kFittedTo_mm = 8.0;
 constexpr double kReference_kPa = 30.0;
 constexpr double kUnbreakable_N = 50.0;
 
 using Law = std::function<double(double)>;  ///< force [N] at a depth [mm]
 
-/// The tip pressed on liver that has a modulus and stiffens.
+/// Presses the tip into liver with a modulus and a stiffening κ.
 Result<Drive> press(double young_kPa, double stiffening, double puncture_N) {
   Block block;
   block.scenario.tissue_model.preset = TissuePreset::linear;
@@ -63,7 +63,7 @@ std::vector<double> compared_depths() {
   return depths;
 }
 
-/// Over the depths that are compared, in % of the published force at the mean depth of the puncture.
+/// Root mean square difference over the compared depths, in % of the published force at the mean depth of the puncture.
 double rms_percent(const Curve& curve, const Law& published) {
   const std::vector<double> depths = compared_depths();
   const double sum = std::accumulate(depths.begin(), depths.end(), 0.0, [&](double so_far, double z) {
@@ -72,7 +72,8 @@ double rms_percent(const Curve& curve, const Law& published) {
   return 100.0 * std::sqrt(sum / static_cast<double>(depths.size())) / published(okamura::kPunctureDepth.mean);
 }
 
-/// At a depth force goes with the modulus: the curve of the modulus that fits best, by least squares.
+/// Scales a curve to the best fit by least squares. At a given depth the force is proportional to the modulus, so this
+/// gives the modulus too.
 Curve scaled_to(const Law& published, Curve curve, std::string label, double& young_kPa) {
   double both = 0.0;
   double own = 0.0;
@@ -86,7 +87,7 @@ Curve scaled_to(const Law& published, Curve curve, std::string label, double& yo
   return curve;
 }
 
-/// κ and modulus by which the law has the published forces at kFrom_mm and kFittedTo_mm.
+/// κ and modulus with which the law gives the published forces at kFrom_mm and kFittedTo_mm.
 struct Fit {
   double stiffening = 0.0;
   double young_kPa = 0.0;
@@ -119,8 +120,9 @@ Plot plot_of(std::vector<Curve> curves, const Law& published) {
 }
 
 constexpr const char* kSecondHand =
-    "The published curve is the parabola that the study fitted to its recordings, at second hand, not the recordings.";
-constexpr const char* kNotBetter = " The law does not come nearer than linear tissue, so no value is given.";
+    "The published curve is the parabola that the study fitted to its recordings, not the recordings; it is known at "
+    "second hand.";
+constexpr const char* kNotBetter = " The law is not better than linear tissue, so no value is given.";
 
 Result<Finding> liver_curve(Context&) {
   const Law published = okamura::stiffness_N;
@@ -130,7 +132,7 @@ Result<Finding> liver_curve(Context&) {
   const auto whole = press(fit->young_kPa, fit->stiffening, kUnbreakable_N);
   const auto straight = unbroken(0.0);
   if (!drive || !whole || !straight) return !drive ? drive.error() : !whole ? whole.error() : straight.error();
-  const Curve law = pressing_curve(*whole, "dent that stiffens");
+  const Curve law = pressing_curve(*whole, "stiffening dent");
   double linear_kPa = 0.0;
   const Curve linear = scaled_to(published, *straight, "linear tissue", linear_kPa);
   const double off = rms_percent(law, published);
@@ -139,19 +141,18 @@ Result<Finding> liver_curve(Context&) {
   Finding finding;
   if (off < linear_off) finding.value = off;
   finding.note = fmt::format(
-      "Fitted: E = {:.1f} kPa and κ = {:.2f}, to the forces at {:g} and {:g} mm. Predicted: the rest of the curve up "
-      "to "
-      "the mean depth of the puncture, {:.2f} mm, and that depth: with the measured {:.2f} N the surface breaks at {}. "
-      "Law over published at 2, 5, 10 mm: {}. Null model, linear tissue of the modulus that fits the whole curve best "
-      "({:.0f} kPa): {:.1f} %, ratios {}. {} A parabola is the form of the law too; what is tested is that the "
-      "far field, which stays linear, the mesh and the needle leave it one.{}",
+      "Fitted to the forces at two depths: E = {:.1f} kPa and κ = {:.2f}, at {:g} and {:g} mm. Predicted: the rest of "
+      "the curve up to the mean depth of the puncture, {:.2f} mm, and this depth: with the measured {:.2f} N the "
+      "surface breaks at {}. Ratios of simulated to published force at 2, 5 and 10 mm: {}. The null model, linear "
+      "tissue with the modulus that fits the whole curve best ({:.0f} kPa), gives {:.1f} % and the ratios {}. {} The "
+      "law is a parabola too. The row tests that far field (which stays linear), mesh and needle preserve its form.{}",
       fit->young_kPa, fit->stiffening, kFrom_mm, kFittedTo_mm, okamura::kPunctureDepth.mean, okamura::kPuncture.mean,
-      puncture != nullptr ? fmt::format("{:.1f} mm", puncture->depth_mm) : "no depth that was tried",
+      puncture != nullptr ? fmt::format("{:.1f} mm", puncture->depth_mm) : "none of the simulated depths",
       ratios(law, published), linear_kPa, linear_off, ratios(linear, published), kSecondHand,
       off < linear_off ? "" : kNotBetter);
   finding.why_missed =
-      "The part of the tip’s displacement that is as wide as an organ stays linear, and grows in proportion to a force "
-      "that grows as a parabola.";
+      "The part of the tip’s displacement that is as wide as an organ stays linear in the force, which grows as a "
+      "parabola.";
   finding.plot = plot_of({law, linear}, published);
   return finding;
 }
@@ -165,23 +166,25 @@ Result<Finding> liver_other_curve(Context&) {
   if (!bent || !straight) return !bent ? bent.error() : straight.error();
   double young_kPa = 0.0;
   double linear_kPa = 0.0;
-  const Curve law = scaled_to(published, *bent, "dent that stiffens", young_kPa);
+  const Curve law = scaled_to(published, *bent, "stiffening dent", young_kPa);
   const Curve linear = scaled_to(published, *straight, "linear tissue", linear_kPa);
   const double off = rms_percent(law, published);
   const double linear_off = rms_percent(linear, published);
   Finding finding;
   if (off < linear_off) finding.value = off;
   finding.note = fmt::format(
-      "Fitted to this curve: E alone, {:.1f} kPa. κ = {:.2f} is that of the other curve (row liver_curve), whose "
+      "Only E is fitted to this curve, {:.1f} kPa. κ = {:.2f} is that of the other curve (row liver_curve), whose "
       "tissue "
-      "was stiffer; tested is whether it carries over. Law over published at 2, 5, 10 mm: {}: the dent stiffens "
-      "more here than κ says. Null model, linear tissue of the modulus that fits best ({:.1f} kPa): {:.1f} %, ratios "
-      "{}. At what depth this liver broke is not known: the curve is compared up to the other’s mean depth. {} Speed "
-      "is "
-      "not tested: both curves are of {:g} mm/s, and the law does not know of it.{}",
+      "was stiffer; the row tests whether it applies here too. Ratios of simulated to published force at 2, 5 and 10 "
+      "mm: {}; the dent stiffens more here than with this κ. The null model, linear tissue with the modulus that fits "
+      "best ({:.1f} kPa), gives {:.1f} % and the ratios {}. The depth of this liver’s puncture is not known, so the "
+      "curve is compared up to the other liver’s mean depth. {} Speed is not tested: both curves are for {:g} mm/s, "
+      "and "
+      "the law does not depend on speed.{}",
       young_kPa, fit->stiffening, ratios(law, published), linear_kPa, linear_off, ratios(linear, published),
       kSecondHand, okamura::kSpeed_mm_per_s, off < linear_off ? "" : kNotBetter);
-  finding.why_missed = "One κ does not fit both: the curve starts 24 times softer and stiffens ten times as fast.";
+  finding.why_missed =
+      "One κ does not fit both curves: this one starts 24 times softer and stiffens ten times as fast.";
   finding.plot = plot_of({law, linear}, published);
   return finding;
 }
@@ -190,13 +193,14 @@ Result<Finding> liver_other_curve(Context&) {
 
 std::vector<RowSpec> liver_curve_rows() {
   const char* study =
-      "bovine liver ex vivo, 18G, Okamura, Simone & O’Leary 2004, parabola fitted there to {} set of insertions; NOT "
+      "bovine liver ex vivo, 18G, Okamura, Simone & O’Leary 2004, their parabola for {} set of insertions; NOT "
       "VERIFIED: at second hand";
-  return {{"liver_curve", Group::measurements, "Force over depth before the puncture of liver, 2 mm to puncture",
-           fmt::format(fmt::runtime(study), "one"), "% of puncture force", Accepted::at_most(5.0), true, liver_curve},
-          {"liver_other_curve", Group::measurements, "A κ fitted to one liver carries over to another",
-           fmt::format(fmt::runtime(study), "another"), "% of the last force", Accepted::at_most(10.0), true,
-           liver_other_curve}};
+  return {
+      {"liver_curve", Group::measurements, "The force over depth in liver is as published, from 2 mm to the puncture",
+       fmt::format(fmt::runtime(study), "one"), "% of puncture force", Accepted::at_most(5.0), true, liver_curve},
+      {"liver_other_curve", Group::measurements, "A κ that is fitted to one liver fits another liver too",
+       fmt::format(fmt::runtime(study), "another"), "% of the last force", Accepted::at_most(10.0), true,
+       liver_other_curve}};
 }
 
 }  // namespace stylet::validate

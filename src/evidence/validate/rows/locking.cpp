@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nearly incompressible tissue: what elements make of it that lock, and that do not.
+// Nearly incompressible tissue with elements that lock and with elements that do not.
 #include "../rows.hpp"
 #include "../solids.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 struct Case {
   Element element;
   const char* label;
-  std::vector<int> cells;  ///< the last is the one that is judged
+  std::vector<int> cells;  ///< cells along an edge; the last mesh is judged
 };
 
 Result<Finding> locking(Context&) {
@@ -48,10 +48,10 @@ Result<Finding> locking(Context&) {
   finding.plot.y_label = "dent [mm]";
   finding.plot.log_x = true;
   finding.note = fmt::format(
-      "A cube of 60 mm at ν = 0.499 that stands on its floor, a smooth pressure on top; dent on about 4,900 "
-      "displacement nodes against quadratic tetrahedra on three times as many: {}. The worse of the two that do not "
-      "lock counts; the "
-      "reference is one of them on a finer mesh, the other shares no assumption with it.",
+      "A cube of 60 mm with ν = 0.499 stands on its floor under a smooth pressure. Difference of the dent with about "
+      "4,900 displacement nodes from that of quadratic tetrahedra with three times as many: {}. The worse of the two "
+      "kinds of elements that do not lock counts. The reference is one of them on a finer mesh; the other shares no "
+      "assumption with it.",
       each);
   finding.why_missed = "The mesh is too coarse, or the reference itself is not fine enough.";
   return finding;
@@ -60,7 +60,7 @@ Result<Finding> locking(Context&) {
 }  // namespace
 
 std::vector<RowSpec> locking_rows() {
-  return {{"locking", Group::analysis, "Nearly incompressible tissue is as soft as it should be",
+  return {{"locking", Group::analysis, "Nearly incompressible tissue has the correct softness",
            "a fine mesh of quadratic tetrahedra", "%", Accepted::at_most(2.0), false, locking}};
 }
 

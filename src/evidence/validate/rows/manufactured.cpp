@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Convergence of the tissue with the mesh, on a manufactured solution.
+// Convergence of the tissue with mesh refinement, for a manufactured solution.
 #include "../quadrature.hpp"
 #include "../rows.hpp"
 #include "../solids.hpp"
@@ -25,7 +25,8 @@ Vec3 exact(const Vec3& x) {
   return s.prod() * kAmplitude;
 }
 
-/// The body force that holds it [N/mm³]: −div σ = −(λ+μ) H d − μ tr(H) d with H the Hessian of the product.
+/// The body force of this displacement [N/mm³]: −div σ = −(λ+μ) H d − μ tr(H) d, where H is the Hessian of the product
+/// of sines.
 Vec3 body_force(const Vec3& x) {
   const double k = std::numbers::pi / kCube_mm;
   const Vec3 s = (k * x).array().sin();
@@ -80,7 +81,7 @@ Result<double> error_of(int cells, Element element) {
   return std::sqrt(error / norm);
 }
 
-/// @param cells ascending, the last twice the one before the last but one
+/// Measures the order of convergence. @param cells ascending; the last must be twice the third-last
 Result<Finding> order(Element element, const std::string& label, int expected, const std::vector<int>& cells) {
   Curve ours{.label = label, .x = {}, .y = {}};
   Curve slope{.label = fmt::format("order {}", expected), .x = {}, .y = {}, .kind = Curve::Kind::reference};
@@ -93,9 +94,10 @@ Result<Finding> order(Element element, const std::string& label, int expected, c
   }
   Finding finding;
   finding.value = std::log(ours.y[2] / ours.y[0]) / std::log(ours.x[2] / ours.x[0]);
-  finding.note = fmt::format("Irregular meshes of {0}³ … {1}³ cells, six tetrahedra each; order between {2}³ and {1}³.",
-                             cells.front(), cells.back(), cells[cells.size() - 3]);
-  finding.why_missed = "The order is that of meshes fine enough; these are on their way to it.";
+  finding.note = fmt::format(
+      "Irregular meshes of {0}³ … {1}³ cells with six tetrahedra each. The value is the order between {2}³ and {1}³.",
+      cells.front(), cells.back(), cells[cells.size() - 3]);
+  finding.why_missed = "The order is reached on sufficiently fine meshes; these meshes are coarser.";
   finding.plot = {.x_label = "cell size [mm]",
                   .y_label = "relative error in L2",
                   .log_x = true,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle that is moved as a whole: against a bonded rigid cylinder, and over meshes and spacings.
+// A needle that is moved as a whole, compared with a bonded rigid cylinder and between meshes and spacings.
 #include "../bonded_cylinder.hpp"
 #include "../medium_block.hpp"
 #include "../rows.hpp"
@@ -20,7 +20,7 @@ namespace {
 using Method = NeedleLine::Method;
 constexpr double kSide_mm = 2.0 * MediumBlock::kHalf_mm;
 
-/// One curve of forces for each way of moving the needle.
+/// One curve of forces for each direction in which the needle is moved.
 struct Forces {
   Curve lateral;
   Curve axial;
@@ -34,10 +34,10 @@ struct Forces {
   [[nodiscard]] const Curve& of(bool is_lateral) const { return is_lateral ? lateral : axial; }
 };
 
-/// Curves of several methods over mesh or spacing, measured once for the rows that look at them.
+/// Curves of several methods over mesh size or spacing. They are measured once for several rows.
 struct Study {
-  std::vector<Forces> ours;       ///< the near field first
-  std::vector<Forces> reference;  ///< where there is one
+  std::vector<Forces> ours;       ///< the near field is the first
+  std::vector<Forces> reference;  ///< may be empty
   double largest_factor_mb = 0.0;
 
   [[nodiscard]] Plot plot(const std::string& over, bool lateral) const {
@@ -48,7 +48,7 @@ struct Study {
   }
 };
 
-/// Measured when first asked for.
+/// A study that is measured at its first use.
 class Lazy {
  public:
   explicit Lazy(Result<Study> (*measure)(Context&)) : measure_(measure) {}
@@ -62,14 +62,14 @@ class Lazy {
   std::optional<Result<Study>> study_;
 };
 
-constexpr Element kDefaultElement = Element::nodal_pressure;  ///< what coupling.method = "near-field" takes
-constexpr int kFinestOfOthers = 20;                           ///< cells along an edge
+constexpr Element kDefaultElement = Element::nodal_pressure;  ///< default element of coupling.method = "near-field"
+constexpr int kFinestOfOthers = 20;  ///< finest mesh of the other methods, in cells along an edge
 const std::string kNearField = "near field";
 const std::string kNodeAddition = "node addition";
 const std::string kEmbedded = "embedded";
 
-/// Forces on a needle line in a block, added to the curves: the near field on its default element, the other methods
-/// on the linear tetrahedra that they need.
+/// Adds the forces on a needle line in a block to the curves: the near field for its default element, the other methods
+/// for the linear tetrahedra that they need.
 void measure_methods(MediumBlock& block, NeedleLine::Options options, double x, Study& study) {
   const bool near_field = block.tissue->element() == kDefaultElement;
   for (const auto& [method, curve] :
@@ -81,7 +81,8 @@ void measure_methods(MediumBlock& block, NeedleLine::Options options, double x, 
   }
 }
 
-/// The needle line in one block after the other. The finest mesh is for the near field alone, which is what is judged.
+/// Measures the needle line in one block after the other. Only the near field is measured on the finest mesh, because
+/// only the near field is judged.
 Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbounded) {
   Study study;
   study.ours = {Forces(kNearField), Forces(kNodeAddition), Forces(kEmbedded)};
@@ -99,7 +100,7 @@ Result<Study> over_meshes(Context& context, std::vector<int> cells, bool unbound
   return study;
 }
 
-/// Largest over smallest of a curve, in percent.
+/// Ratio of the largest to the smallest value of a curve, minus 1, in percent.
 double spread(const Curve& curve) {
   double most = 0.0;
   for (const double high : curve.y) {
@@ -113,7 +114,7 @@ std::string range(const Curve& curve) {
   return fmt::format("{:.2f} … {:.2f} N {}", *low, *high, curve.label);
 }
 
-/// Ranges of all methods.
+/// The ranges of forces of all methods, as text.
 std::string ranges(const Study& study, bool lateral) {
   std::string text;
   for (const Forces& forces : study.ours) text += (text.empty() ? "" : ", ") + range(forces.of(lateral));
@@ -154,14 +155,15 @@ Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
     from_slender = std::max(from_slender, 100.0 * std::abs(force / slender - 1.0));
   }
   finding.note = fmt::format(
-      "{} whose outer nodes move as they would in an unbounded medium; worst of five meshes. Boundary elements give "
-      "{:.2f} N, the formula for slender bodies {:.2f} N (worst {:.1f} % from it); {}. The boundary elements share "
-      "nothing with the coupling but Kelvin’s solution; the outer nodes’ motion is taken from the coupling’s own "
-      "kernel, which is Kelvin’s at that distance.",
+      "{} whose outer nodes move as in an unbounded medium. The value is the largest difference on five meshes. "
+      "Boundary elements give {:.2f} N, the formula for slender bodies {:.2f} N (largest difference {:.1f} %); {}. The "
+      "boundary elements share only Kelvin’s solution with the coupling. The motion of the outer nodes is computed "
+      "with "
+      "the coupling’s own kernel, which agrees with Kelvin’s solution at this distance.",
       kNeedle, cylinder, slender, from_slender, ranges(*study, lateral));
-  finding.why_missed = "The kernel on the axis stands for a slender cylinder: ends and R/L are left out.";
+  finding.why_missed = "The kernel on the axis represents a slender cylinder and neglects its ends and R/L.";
   finding.plot = study->plot("element size [mm]", lateral);
-  finding.plot.curves.pop_back();  // the slender body's, which no eye tells from the cylinder's
+  finding.plot.curves.pop_back();  // removes the slender body's curve, which would cover the cylinder's
   return finding;
 }
 
@@ -172,11 +174,11 @@ Result<Finding> over_mesh_size(const Result<Study>& study, bool lateral) {
   Finding finding;
   finding.value = spread(study->ours.front().of(lateral));
   finding.note = fmt::format(
-      "{}, outer faces held; 512 … 50,653 nodes, largest over smallest force; the other methods up to 9,261 nodes. {}. "
-      "The factor of the finest mesh takes {:.1f} GB.",
+      "{} whose outer faces are held, with 512 … 50,653 nodes; the other methods up to 9,261 nodes. The value is the "
+      "ratio of the largest to the smallest force, minus 1. {}. The factor of the finest mesh takes {:.1f} GB.",
       kNeedle, ranges(*study, lateral), 1e-3 * study->largest_factor_mb);
   finding.why_missed =
-      "What is left is the far field: supports and the cube’s size are represented by elements, and those of 14 mm are "
+      "The remaining difference is that of the far field: it is represented by elements, and elements of 14 mm are "
       "stiffer than fine ones.";
   finding.plot = study->plot("element size [mm]", lateral);
   return finding;
@@ -200,10 +202,10 @@ Result<Finding> over_spacing(Context& context) {
   const double axial = spread(study.ours.front().axial);
   finding.value = worse(lateral, axial);
   finding.note = fmt::format(
-      "The needle line in the held cube on 4,913 nodes, contacts 2 … 8 mm apart: {:.2f} % laterally, {:.2f} % axially "
-      "between largest and smallest force, the larger counts. Lateral: {}. Axial: {}.",
+      "The needle line in the held cube with 4,913 nodes and contacts 2 … 8 mm apart. The largest force exceeds the "
+      "smallest by {:.2f} % laterally and {:.2f} % axially; the larger counts. Lateral: {}. Axial: {}.",
       lateral, axial, ranges(study, true), ranges(study, false));
-  finding.why_missed = "Pieces of a needle as long as the spacing are taken to share their force evenly.";
+  finding.why_missed = "The force is assumed to be uniform over pieces of the needle that are as long as the spacing.";
   finding.plot = study.plot("contact spacing [mm]", true);
   return finding;
 }
@@ -215,20 +217,20 @@ std::vector<RowSpec> needle_line_rows() {
   const auto box = std::make_shared<Lazy>(box_study);
   const std::string cylinder = "bonded rigid cylinder, boundary elements; slender body";
   return {
-      {"needle_line_lateral", Group::analysis, "A needle moved sideways meets the force of a bonded rigid cylinder",
-       cylinder, "%", Accepted::at_most(3.0), true,
-       [unbounded](Context& c) { return against_cylinder((*unbounded)(c), true); }},
-      {"needle_line_axial", Group::analysis, "A needle moved along itself meets the force of a bonded rigid cylinder",
-       cylinder, "%", Accepted::at_most(3.0), true,
-       [unbounded](Context& c) { return against_cylinder((*unbounded)(c), false); }},
-      {"line_mesh_size_lateral", Group::independence, "The lateral force on a needle does not hang on the mesh",
-       "each other, 512 … 50,653 nodes", "%", Accepted::at_most(3.0), false,
+      {"needle_line_lateral", Group::analysis,
+       "A needle that is moved sideways needs the force of a bonded rigid cylinder", cylinder, "%",
+       Accepted::at_most(3.0), true, [unbounded](Context& c) { return against_cylinder((*unbounded)(c), true); }},
+      {"needle_line_axial", Group::analysis,
+       "A needle that is moved along its axis needs the force of a bonded rigid cylinder", cylinder, "%",
+       Accepted::at_most(3.0), true, [unbounded](Context& c) { return against_cylinder((*unbounded)(c), false); }},
+      {"line_mesh_size_lateral", Group::independence, "The lateral force on a needle does not depend on the mesh",
+       "meshes of 512 … 50,653 nodes", "%", Accepted::at_most(3.0), false,
        [box](Context& c) { return over_mesh_size((*box)(c), true); }},
-      {"line_mesh_size_axial", Group::independence, "The axial force on a needle does not hang on the mesh",
-       "each other, 512 … 50,653 nodes", "%", Accepted::at_most(6.0), false,
+      {"line_mesh_size_axial", Group::independence, "The axial force on a needle does not depend on the mesh",
+       "meshes of 512 … 50,653 nodes", "%", Accepted::at_most(6.0), false,
        [box](Context& c) { return over_mesh_size((*box)(c), false); }},
-      {"line_spacing", Group::independence, "The force on a needle does not hang on how closely it is held",
-       "each other, contacts every 2 … 8 mm", "%", Accepted::at_most(3.0), false, over_spacing},
+      {"line_spacing", Group::independence, "The force on a needle does not depend on the spacing of contacts",
+       "contacts every 2 … 8 mm", "%", Accepted::at_most(3.0), false, over_spacing},
   };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The needle models against beam theory.
+// Compares the needle models with beam theory.
 #include "../rows.hpp"
 #include "stylet/needle/make_needle.hpp"
 #include "stylet/needle/theory.hpp"
@@ -13,11 +13,11 @@ namespace stylet::validate {
 
 namespace {
 
-constexpr double kForce = 1e-5;  ///< [N] geometry stays linear to 1e-6
+constexpr double kForce = 1e-5;  ///< [N] small enough for linear geometry to within 1e-6
 constexpr double kBalance_Nmm = 1e-8;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Shape under a lateral load, against Euler and Bernoulli's, everywhere along the needle.
+/// Compares the shape under a lateral load with the Euler–Bernoulli beam along the whole needle.
 Result<Finding> small_deflection(const std::string& model) {
   const NeedleSection section;
   auto needle = make_needle(model, section, 0, 8);
@@ -47,11 +47,13 @@ Result<Finding> small_deflection(const std::string& model) {
   }
   finding.plot.x_label = "arc length [mm]";
   finding.plot.y_label = "deflection [µm]";
-  finding.note = "200 mm needle, a lateral load at three places; largest error of the shape over the tip’s deflection.";
+  finding.note =
+      "A 200 mm needle with a lateral load at three places. The value is the largest error of the shape, relative to "
+      "the tip’s deflection.";
   return finding;
 }
 
-/// The tip under a dead load, up to a slope of 60 degrees.
+/// Compares the tip's displacement under a dead load with the elastica, up to a slope of 60 degrees.
 Result<Finding> large_deflection(const std::string& model) {
   const NeedleSection section;
   auto needle = make_needle(model, section, 0, 8);
@@ -74,7 +76,9 @@ Result<Finding> large_deflection(const std::string& model) {
     theory.y.push_back(exact.deflection);
   }
   finding.plot = {.x_label = "force [N]", .y_label = "tip deflection [mm]", .curves = {ours, theory}};
-  finding.note = "Dead load across the tip, slope of the tip 5° to 60°; largest error of deflection and shortening.";
+  finding.note =
+      "A dead load across the tip with slopes of the tip from 5° to 60°. The value is the largest error of deflection "
+      "and shortening.";
   return finding;
 }
 
@@ -84,7 +88,7 @@ std::vector<RowSpec> needle_theory_rows() {
   std::vector<RowSpec> rows;
   for (const std::string& model : needle_models()) {
     rows.push_back({"needle_small_" + model, Group::analysis,
-                    fmt::format("Needle model “{}” bends as a thin beam under small loads", model),
+                    fmt::format("Needle model “{}” bends like a thin beam under small loads", model),
                     "Euler–Bernoulli cantilever", "%", Accepted::at_most(0.5), true,
                     [model](Context&) { return small_deflection(model); }});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compliance after nodes were added, against the same mesh factorised anew.
+// Compares the compliance after node additions with that of the same mesh factorised from scratch.
 #include "../rows.hpp"
 #include "stylet/coupling/paper/inverse_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
@@ -19,7 +19,7 @@ constexpr int kNodes = 100;
 constexpr int kEvery = 20;  ///< additions between two checks
 const std::vector<Material> kMaterials{{0.04, 0.45}, {0.12, 0.40}};
 
-/// A cube of two tissues with one face held, all of its compliance at hand.
+/// A cube of two tissues with one face held and its whole compliance.
 struct Cube {
   std::vector<Index> fixed;
   std::shared_ptr<const Tissue> tissue;
@@ -49,8 +49,8 @@ Result<Cube> make_cube() {
   return cube;
 }
 
-/// Largest difference between the compliances among the added nodes and those of a fresh factorisation, over the
-/// largest of these.
+/// Largest difference between the compliance among the added nodes and that of a new factorisation, relative to the
+/// largest entry of the latter.
 Result<double> difference(const Cube& cube, const ContactCompliance& compliance, const TetMesh& split) {
   const auto fresh = Tissue::build(split, kMaterials, cube.fixed);
   if (!fresh) return fresh.error();
@@ -63,8 +63,8 @@ Result<double> difference(const Cube& cube, const ContactCompliance& compliance,
   return (ours - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
 }
 
-/// Adds nodes at random places, inside elements or on their faces, and looks again and again.
-/// @param mesh_of the mesh as it is now
+/// Adds nodes at random places, inside elements or on their faces, and checks the compliance after every kEvery nodes.
+/// @param mesh_of returns the mesh with the nodes added so far
 Result<Curve> add_nodes(const Cube& cube, ContactCompliance& compliance, const std::function<TetMesh()>& mesh_of,
                         Placement placement, const std::string& label) {
   Curve curve{.label = label, .x = {}, .y = {}};
@@ -119,9 +119,9 @@ Result<Finding> node_additions(Context&) {
     }
   }
   finding.note = fmt::format(
-      "{} nodes added at random to {} nodes, by both rules and three engines: shortcut and bordered update "
-      "(condensed), "
-      "Woodbury’s formula, boundary condition switches. The worst of all.",
+      "{} nodes are added at random places to a mesh of {} nodes, with both rules and three engines: shortcut and "
+      "bordered update (condensed), Woodbury’s formula, and boundary condition switches. The value is the largest "
+      "error.",
       kNodes, cube->tissue->mesh().node_count());
   return finding;
 }
@@ -129,7 +129,7 @@ Result<Finding> node_additions(Context&) {
 }  // namespace
 
 std::vector<RowSpec> node_addition_rows() {
-  return {{"node_additions", Group::analysis, "After 100 node additions the compliance is that of the new mesh",
+  return {{"node_additions", Group::analysis, "After 100 node additions the compliance equals that of the new mesh",
            "the new mesh, factorised from scratch", "", Accepted::at_most(1e-8), true, node_additions}};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recorded insertion into liver: the shape of the force over depth.
+// Compares the shape of the force over depth with a recorded insertion into liver.
 #include "../number_table.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -21,26 +21,26 @@ constexpr const char* kFile = "force_okamura_insertion/depth_force.csv";
 constexpr double kBin_mm = 1.0;
 constexpr double kSoftest_kPa = 2.0;
 constexpr double kStiffest_kPa = 400.0;
-constexpr double kContact_N = 0.15;  ///< more than the noise of free travel
+constexpr double kContact_N = 0.15;  ///< larger than the noise before contact
 
-/// The recording, mean force in bins of depth, depth counted from contact.
+/// The recording as mean forces in bins of depth; the depth is measured from the contact.
 struct OkamuraRecording {
   std::vector<double> depth_mm;
   std::vector<double> force_N;
-  double first_peak_N = 0.0;  ///< before the first drop
+  double first_peak_N = 0.0;  ///< largest force before the first drop
   double first_peak_mm = 0.0;
-  double contact_mm = 0.0;  ///< on the recording's own scale
+  double contact_mm = 0.0;  ///< depth of the contact on the recording's own scale
 };
 
 Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
   const auto columns = read_number_table(file);
   if (!columns) return columns.error();
   if (columns->size() < 2)
-    return input_error(file.string(), "two columns are expected", "Use the file as it was published");
+    return input_error(file.string(), "there are fewer than two columns", "Use the file as it was published");
   const auto& depth = (*columns)[0];
   const auto& force = (*columns)[1];
   const double most = *std::max_element(depth.begin(), depth.end());
-  // The points are not in order and several forces share a depth: bins.
+  // The points are not sorted and several forces have the same depth, so they are averaged in bins.
   const auto bins = static_cast<std::size_t>(1e3 * most / kBin_mm) + 1;
   std::vector<double> sum(bins, 0.0);
   std::vector<int> count(bins, 0);
@@ -61,7 +61,7 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
     out.depth_mm.push_back(z - out.contact_mm);
     out.force_N.push_back(f);
   }
-  // The first peak is the largest force before the first fall by half.
+  // The first peak is the largest force before the force falls to half of it for the first time.
   for (std::size_t i = 0; i < out.force_N.size(); ++i) {
     if (out.force_N[i] > out.first_peak_N) {
       out.first_peak_N = out.force_N[i];
@@ -71,11 +71,11 @@ Result<OkamuraRecording> read_recording_of(const std::filesystem::path& file) {
     }
   }
   if (out.force_N.size() < 10)
-    return input_error(file.string(), "there is no rise of the force", "Use the file as it was published");
+    return input_error(file.string(), "the force does not rise", "Use the file as it was published");
   return out;
 }
 
-/// A run with the literature's parameters and the two that are fitted.
+/// Simulates the insertion with published parameters and the two fitted ones.
 Result<Curve> simulate(double young_kPa, double puncture_N, double depth_mm) {
   Block block;
   block.scenario.tissue_model.preset = TissuePreset::linear;
@@ -108,7 +108,7 @@ Result<Finding> force_over_depth(Context& context) {
   if (!path) return Finding::skip(context.no_data(kFile));
   const auto recording = read_recording_of(*path);
   if (!recording) return recording.error();
-  // The puncture's force is read off the recording; the modulus is fitted, on a logarithmic scale, finer and finer.
+  // The puncture force is taken from the recording. The modulus is fitted on a logarithmic grid that is refined twice.
   const double depth = recording->depth_mm.back();
   double best_rms = 1e300;
   double best_kPa = 0.0;
@@ -138,20 +138,15 @@ Result<Finding> force_over_depth(Context& context) {
   Finding finding;
   finding.value = 100.0 * best_rms / peak;
   finding.note = fmt::format(
-      "Fitted: puncture {:.2f} N (study: 2.30 ± 0.83 N, {}) and modulus {:.0f} kPa{} (its measured stiffness by the "
-      "flat "
-      "punch: "
-      "{:.0f} kPa). From the literature: cutting 0.94 N, friction 18.5 and 10.6 N/m, 212 N s/m². RMS difference over "
-      "the "
-      "recording’s largest force.",
-      recording->first_peak_N, plausible ? "within two deviations" : "outside two deviations", best_kPa,
-      at_edge ? ", the edge of what was searched" : "", punch_kPa);
+      "Fitted: puncture force {:.2f} N (study: 2.30 ± 0.83 N, {}) and modulus {:.0f} kPa{} (from the study’s stiffness "
+      "and a flat punch: {:.0f} kPa). From the literature: cutting force 0.94 N, friction 18.5 and 10.6 N/m and "
+      "212 N s/m². The value is the RMS difference, relative to the largest force of the recording.",
+      recording->first_peak_N, plausible ? "within two standard deviations" : "outside two standard deviations",
+      best_kPa, at_edge ? ", at the end of the searched range" : "", punch_kPa);
   finding.why_missed =
       "The recording shows two layers, each with a membrane: the force falls to 0.2 N, below the cutting force of "
-      "liver, and "
-      "rises over 17 mm to a second puncture. The model has one layer here, its tissue does not stiffen, and a second "
-      "layer "
-      "would need more than two fitted values.";
+      "liver, and rises over 17 mm to a second puncture. The model has one layer here and its tissue does not stiffen. "
+      "A second layer would need more than two fitted values.";
   finding.plot = {
       .x_label = "depth from contact [mm]",
       .y_label = "axial force [N]",
@@ -163,9 +158,9 @@ Result<Finding> force_over_depth(Context& context) {
 }  // namespace
 
 std::vector<RowSpec> okamura_recording_rows() {
-  return {{"liver_recording", Group::measurements, "A recorded insertion into liver: shape of the force over depth",
-           "recording of Okamura et al. 2004, digitised", "% of peak", Accepted::at_most(15.0), false,
-           force_over_depth}};
+  return {
+      {"liver_recording", Group::measurements, "The force over depth has the shape of a recorded insertion into liver",
+       "recording of Okamura et al. 2004, digitised", "% of peak", Accepted::at_most(15.0), false, force_over_depth}};
 }
 
 }  // namespace stylet::validate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step costs here and elsewhere, on meshes that others were timed on.
+// Computing time of a step here and in other software, on the same meshes.
 #include "../rows.hpp"
 #include "stylet/io/mesh_io.hpp"
 #include "stylet/measure/timing.hpp"
@@ -13,8 +13,8 @@ namespace stylet::validate {
 
 namespace {
 
-/// CPU time of a step by other software on the two meshes [ms], SOFA v26.06.00 with one thread, as measured for the
-/// shared data (sphere_in_box/SOURCE.md): not on this machine.
+/// CPU time of a step of other software on the two meshes [ms]: SOFA v26.06.00 with one thread. It was measured for the
+/// shared data (sphere_in_box/SOURCE.md) on another machine.
 struct Other {
   const char* name;
   double small_ms;
@@ -33,7 +33,7 @@ struct Timed {
   int contacts = 0;
 };
 
-/// A needle through the ball from the face opposite to the one that is held; every step counts once it is half way in.
+/// Times a needle through the ball, from the face opposite to the held face. Steps count from half of the depth on.
 Result<Timed> time_steps(const std::filesystem::path& file, const Progress& progress) {
   auto mesh = read_tet_mesh(file, {.scale = 1000.0});
   if (!mesh) return mesh.error();
@@ -84,7 +84,7 @@ Result<Timed> time_steps(const std::filesystem::path& file, const Progress& prog
 
 Result<Finding> step_time(Context& context) {
   Finding finding;
-  Curve ours{.label = "Stylet, here: insertion", .x = {}, .y = {}};
+  Curve ours{.label = "Stylet on this machine: insertion", .x = {}, .y = {}};
   std::string each;
   for (const char* name : {"sphere_in_box_573.msh", "sphere_in_box_5037.msh"}) {
     const std::string file = std::string("sphere_in_box/") + name;
@@ -99,9 +99,9 @@ Result<Finding> step_time(Context& context) {
                         timed->median_ms, timed->worst_ms, timed->contacts);
   }
   finding.note =
-      "Processor time of a step with half of the needle in and more." + each +
-      " The others’ figures are of another machine and of other models, elastic and dynamic; they are here for "
-      "their order.";
+      "Processor time of a step from half of the depth on." + each +
+      " The times of the other software are from another machine and for other models, elastic and dynamic; only their "
+      "order of magnitude can be compared.";
   finding.plot = {
       .x_label = "nodes", .y_label = "processor time of a step [ms]", .log_x = true, .log_y = true, .curves = {ours}};
   for (const Other& other : kOthers)
@@ -113,7 +113,7 @@ Result<Finding> step_time(Context& context) {
 }  // namespace
 
 std::vector<RowSpec> other_software_rows() {
-  return {{"step_time", Group::other_code, "What a step costs hardly grows with the mesh",
+  return {{"step_time", Group::other_code, "The time of a step hardly grows with the mesh",
            "SOFA v26.06.00 on the same two meshes (573 and 5,037 nodes)", "ms", Accepted::information(), true,
            step_time}};
 }

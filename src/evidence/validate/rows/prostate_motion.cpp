@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the demo patient's prostate moves, against what was seen in patients and phantoms.
+// Compares the motion of the demo patient's prostate with observations in patients and phantoms.
 #include "../rows.hpp"
 #include "published_values.hpp"
 
@@ -25,11 +25,11 @@ Result<measure::RecordedRun> run_demo(Context& context, const Scenario& scenario
   return measure::record_run(*model, context.progress());
 }
 
-/// Needles through holes on all sides of the gland, one after the other.
+/// Results of needles through holes on all sides of the gland, one after the other.
 struct TemplateRun {
   std::vector<std::string> holes;
   std::vector<Vec3> centroid_mm;   ///< shift of the gland's centroid at each needle's deepest point
-  Vec3 largest_mm = Vec3::Zero();  ///< of any node of the gland, by axis
+  Vec3 largest_mm = Vec3::Zero();  ///< largest displacement of any node of the gland, per axis
 };
 
 Result<TemplateRun> through_template(Context& context) {
@@ -72,11 +72,10 @@ Result<Finding> markers(Context& context) {
   Finding finding;
   finding.value = run->largest_mm.cwiseQuotient(seen).maxCoeff();
   finding.note = fmt::format(
-      "Largest displacement in the gland over six needles, one at a time: lateral {:.2f}, sagittal {:.2f}, axial "
-      "{:.2f} mm; gold markers were displaced by up to {:g}, {:g} and {:g} mm, which is what an implant of many "
-      "needles "
-      "and two weeks leave behind, relative to the gland, and not its motion under a needle. Null model, a rigid "
-      "gland: 0, below what is accepted.",
+      "The largest displacements in the gland over six needles, one at a time, are {:.2f} mm lateral, {:.2f} mm "
+      "sagittal and {:.2f} mm axial. Gold markers were displaced by up to {:g}, {:g} and {:g} mm. This is the lasting "
+      "displacement relative to the gland after an implant of many needles and two weeks, not the motion under a "
+      "needle. The null model, a rigid gland, gives 0, which is below the accepted range.",
       run->largest_mm.x(), run->largest_mm.y(), run->largest_mm.z(), seen.x(), seen.y(), seen.z());
   return finding;
 }
@@ -86,7 +85,7 @@ Result<Finding> markers(Context& context) {
 std::vector<RowSpec> prostate_motion_rows() {
   return {
       {"motion_markers", Group::measurements,
-       "Points of the gland move as far as markers were displaced in patients, and no further",
+       "Points of the gland move as far as markers were displaced in patients, but not further",
        "gold markers before and after an implant, 18 patients, Radiat. Oncol. 7 (2012) 24", "",
        Accepted::between(0.2, 1.0), false, markers},
   };

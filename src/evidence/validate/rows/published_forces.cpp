@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces against published measurements: liver ex vivo with its measured parameters, a gel, and the demo patient with
-// this program's defaults.
+// Compares forces with published measurements: liver ex vivo with its measured parameters, a gel, and the demo patient
+// with the default values.
 #include "../rows.hpp"
 #include "../scene.hpp"
 #include "published_values.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace published;
 
-/// Liver as Okamura et al. measured it, one tissue.
+/// A block of one tissue with the values that Okamura et al. measured in liver.
 Block liver() {
   Block block;
   block.scenario.tissue_model.preset = TissuePreset::linear;
@@ -37,7 +37,7 @@ Curve force_curve(const Drive& drive) {
           .y = column(drive.steps(), &Step::force_axial_N)};
 }
 
-/// Goes in at 3 mm/s until 8 mm beyond the puncture.
+/// Inserts a needle at 3 mm/s until 8 mm beyond the puncture.
 Result<Drive> puncture_liver() {
   const auto model = liver().compile();
   if (!model) return model.error();
@@ -60,13 +60,12 @@ Result<Finding> liver_puncture_drop(Context&) {
   for (const DriveStep& s : drive->steps())
     if (s.record.time_s > event->time_s) lowest = std::min(lowest, s.record.force_axial_N);
   finding.value = event->force_N - lowest;
-  finding.note =
-      fmt::format("From {:.2f} N down to {:.2f} N; cutting force {:.2f} N as measured elsewhere in the study.",
-                  event->force_N, lowest, okamura::kCutting.mean);
+  finding.note = fmt::format(
+      "The force falls from {:.2f} N to {:.2f} N; the cutting force is {:.2f} N, from other insertions of the study.",
+      event->force_N, lowest, okamura::kCutting.mean);
   finding.why_missed =
-      "The force falls to the cutting force. The study’s puncture (2.30 N) and cutting force (0.94 N, from other "
-      "insertions) "
-      "differ by more than its mean drop.";
+      "The force falls to the cutting force. The study’s puncture force (2.30 N) and cutting force (0.94 N, from other "
+      "insertions) differ by more than its mean drop.";
   finding.plot = {.x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(*drive)}};
   return finding;
 }
@@ -90,34 +89,34 @@ Result<Finding> gel_force(Context&) {
   Finding finding;
   finding.value = drive.last().record.force_axial_N;
   finding.note =
-      "PVC gel at 1 mm/s: measured friction per length, modulus, Poisson’s ratio and puncture force go in, force at 70 "
-      "mm "
-      "comes out. The tip’s excess is its measured peak of force density over one tip length.";
+      "PVC gel at 1 mm/s. The simulation uses the measured friction per length, modulus, Poisson’s ratio and puncture "
+      "force; the value is the force at 70 mm. The cutting force is the measured peak of force density at the tip over "
+      "one tip length.";
   finding.plot = {
       .x_label = "base depth [mm]",
       .y_label = "axial force [N]",
       .curves = {force_curve(drive),
-                 {.label = "measured, about", .x = {11, 70}, .y = {0.7, 2.3}, .kind = Curve::Kind::reference}}};
+                 {.label = "measured, approximate", .x = {11, 70}, .y = {0.7, 2.3}, .kind = Curve::Kind::reference}}};
   return finding;
 }
 
-// The demo patient with this program's defaults.
-
+/// The force on the tip in the demo patient with default values.
 Result<Finding> demo_cutting_force(Context& context) {
   const auto run = context.demo_run();
   if (!run) return run.error();
   Finding finding;
   const auto& regions = (*run)->model->mesh().regions;
   const auto gland = std::find(regions.begin(), regions.end(), "prostate");
-  if (gland == regions.end()) return failure("the demo", "there is no prostate in its mesh", "Check the demo patient");
+  if (gland == regions.end()) return failure("the demo", "its mesh has no prostate", "Check the demo patient");
   for (const Frame& frame : (*run)->events) {
     if (frame.label != "deepest") continue;
     for (const ContactView& contact : frame.contacts)
       if (contact.tip) finding.value = contact.force.norm();
   }
-  finding.note = fmt::format("Force on the tip at the deepest point, in the gland. Median of 10 studies: {:.2f} N.",
-                             vanGerwen::kCutting_N);
-  finding.why_missed = "The default, 1.5 N, is fitted to the force in patients’ glands, not to liver.";
+  finding.note = fmt::format(
+      "The value is the force on the tip at the deepest point, in the gland. The median of 10 studies is {:.2f} N.",
+      vanGerwen::kCutting_N);
+  finding.why_missed = "The default cutting force, 1.5 N, is fitted to the force in patients’ glands, not to liver.";
   return finding;
 }
 
@@ -129,12 +128,12 @@ std::vector<RowSpec> published_force_rows() {
   };
   const char* liver_study = "bovine liver ex vivo, 18G, Okamura, Simone & O’Leary 2004; mean ± one standard deviation";
   return {
-      {"liver_puncture_drop", Group::measurements, "The force drops as measured when the capsule breaks", liver_study,
+      {"liver_puncture_drop", Group::measurements, "When the capsule breaks, the force drops as measured", liver_study,
        "N", one_deviation(okamura::kDrop), true, liver_puncture_drop},
-      {"gel_force", Group::measurements, "Force at 70 mm in PVC gel follows from its friction per length",
+      {"gel_force", Group::measurements, "The force at 70 mm in PVC gel follows from its friction per length",
        "DiMaio & Salcudean 2003, read from a figure: 2.3 N, ± 15 %", "N", Accepted::between(1.955, 2.645), true,
        gel_force},
-      {"demo_cutting_force", Group::measurements, "Demo patient: cutting force as in liver", liver_study, "N",
+      {"demo_cutting_force", Group::measurements, "Demo patient: the cutting force is as in liver", liver_study, "N",
        one_deviation(okamura::kCutting), false, demo_cutting_force},
   };
 }

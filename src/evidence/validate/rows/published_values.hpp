@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-/// Published measurements that rows are judged against. Each says how it was read: in its source, in the source's
-/// abstract, or at second hand, which is in the notes of others on the source; docs/validation.md has the list.
+/// Published measurements with which rows are compared. Each states how it was read: in its source, in the source's
+/// abstract, or at second hand, that is in other people's notes on the source. docs/validation.md has the list.
 namespace stylet::validate::published {
 
 struct Measured {
@@ -15,7 +15,7 @@ struct Measured {
 namespace okamura {
 inline constexpr Measured kPuncture{2.304, 0.829};      ///< [N] 19 insertions
 inline constexpr Measured kPunctureDepth{16.65, 3.55};  ///< [mm]
-inline constexpr Measured kDrop{0.658, 0.564};          ///< [N] at the puncture
+inline constexpr Measured kDrop{0.658, 0.564};          ///< [N] drop of the force at the puncture
 inline constexpr Measured kCutting{0.94, 0.36};         ///< [N] 5 insertions
 inline constexpr double kStatic_N_per_m = 18.45;
 inline constexpr double kCoulomb_N_per_m = 10.57;
@@ -25,11 +25,11 @@ inline constexpr double kSpeed_mm_per_s = 3.0;
 /// Force [N] on the tip before the puncture, at a depth [mm].
 inline double stiffness_N(double z_mm) { return 0.0480 * z_mm + 0.0052 * z_mm * z_mm; }
 
-/// The same of another set of insertions, of which no depth of puncture is known.
+/// The same for another set of insertions, whose depth of puncture is not known.
 inline double other_stiffness_N(double z_mm) { return 0.0020 * z_mm + 0.0023 * z_mm * z_mm; }
 
-/// Modulus of linear tissue that a flat punch of the needle's diameter presses in as far at the mean depth of puncture:
-/// F/z = 2 R E / (1 − ν²).
+/// Modulus of linear tissue in which a flat punch of the needle's diameter has the same force at the mean depth of the
+/// puncture: F/z = 2 R E / (1 − ν²).
 inline double modulus_kPa(double diameter_mm, double poisson) {
   const double z = kPunctureDepth.mean;
   return 1e3 * stiffness_N(z) / z * (1.0 - poisson * poisson) / diameter_mm;
@@ -45,7 +45,7 @@ inline constexpr double kPuncture_N = 0.7;
 inline constexpr double kFriction_N_per_m = 34.0;
 inline constexpr double kSpeed_mm_per_s = 1.0;
 inline constexpr double kDepth_mm = 70.0;
-/// Force density peaks at 68 N/m near the tip; over some 5 mm of tip that is this much more than along the shaft.
+/// Additional force of the tip: near the tip, over about 5 mm, the force density reaches 68 N/m instead of 34 N/m.
 inline constexpr double kTipExcess_N = (68.0 - 34.0) * 5e-3;
 }  // namespace dimaio
 
@@ -64,9 +64,9 @@ namespace prostate {
 /// Radiother. Oncol. (2006). NOT VERIFIED: the source has not been read.
 inline constexpr double kPushedShift_mm = 5.6;
 inline constexpr double kTappedShift_mm = 0.9;
-/// Displacement towards the head of a phantom that was built to be movable: the most under needles placed at high
-/// speed, and what a pneumatic device reduced it to. For slow needles there is no figure. P. McLaughlin et al., The
-/// challenge of base depth needle placement in prostate brachytherapy, AAPM 2022. Abstract.
+/// Displacement towards the head in a phantom that was built to be movable: the largest value with needles placed at
+/// high speed, and the value to which a pneumatic device reduced it. There is no value for slow needles. P. McLaughlin
+/// et al., The challenge of base depth needle placement in prostate brachytherapy, AAPM 2022. Abstract.
 inline constexpr double kPhantomHighSpeed_mm = 20.0;
 inline constexpr double kPhantomPneumatic_mm = 1.0;
 /// Mean seed misplacement by axis [cm]: lateral, sagittal, axial (1,197 seeds of 357 needles in 15 patients, all causes
@@ -74,8 +74,8 @@ inline constexpr double kPhantomPneumatic_mm = 1.0;
 inline constexpr double kSeedX_cm = 0.13;
 inline constexpr double kSeedY_cm = 0.15;
 inline constexpr double kSeedZ_cm = 0.38;
-/// Largest displacement of gold markers in the gland [mm] by axis in 18 patients, between scans two weeks apart that
-/// were laid over each other by the gland, with an implant of many needles between them (Radiat. Oncol. 7 (2012) 24).
+/// Largest displacement of gold markers in the gland [mm] per axis in 18 patients, between two scans that were two
+/// weeks apart and registered by the gland, with an implant of many needles between them (Radiat. Oncol. 7 (2012) 24).
 /// Abstract.
 inline constexpr double kMarkerLateral_mm = 7.0;
 inline constexpr double kMarkerSagittal_mm = 5.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results must not hang on the time step or on the solver's tolerance.
+// Results must not depend on the time step or on the solver's tolerance.
 #include "../rows.hpp"
 #include "../scene.hpp"
 #include "stylet/measure/force_curve.hpp"
@@ -38,12 +38,15 @@ Result<Finding> force_over_time_steps(Context&) {
     finding.value = worse(finding.value, rms);
     each += fmt::format("{}{:.2f} % at {:g} ms", each.empty() ? "" : ", ", rms, 1e3 * dt);
   }
-  finding.note = "Skin, capsule, a pause, and out; RMS difference from 0.25 ms over the peak: " + each + ".";
-  finding.why_missed = "What differs is the moment of the punctures.";
+  finding.note =
+      "In through skin and capsule, a pause, and out. RMS difference from the run with 0.25 ms, relative to the "
+      "peak: " +
+      each + ".";
+  finding.why_missed = "The punctures happen at slightly different times.";
   return finding;
 }
 
-/// How far a needle that goes in by friction takes the tissue with it [mm].
+/// Largest displacement of the tissue by the friction of a needle that goes in.
 struct Drag {
   double largest_mm = 0.0;
   unsigned flags = 0;
@@ -59,7 +62,7 @@ Result<Drag> drag(double tolerance, double dt_s) {
   return Drag{drive.insertion().displacement().cwiseAbs().maxCoeff(), drive.flags()};
 }
 
-/// @param over what is varied, in words
+/// Measures how the drag depends on a setting. @param over the varied setting, as label of the plot
 Result<Finding> drag_over(const std::string& over, const std::vector<double>& values,
                           const std::function<Result<Drag>(double)>& measure) {
   Finding finding;
@@ -73,9 +76,11 @@ Result<Finding> drag_over(const std::string& over, const std::vector<double>& va
   const auto [low, high] = std::minmax_element(curve.y.begin(), curve.y.end());
   finding.value = 100.0 * (*high - *low) / *high;
   finding.note = fmt::format(
-      "A needle 40 mm in, the same friction each time; largest displacement of the tissue {:.4f} … {:.4f} mm.", *low,
-      *high);
-  finding.plot = {.x_label = over, .y_label = "tissue taken along [mm]", .log_x = true, .curves = {curve}};
+      "A needle goes 40 mm in, with the same friction in each run. The largest displacement of the tissue is "
+      "{:.4f} … {:.4f} mm.",
+      *low, *high);
+  finding.plot = {
+      .x_label = over, .y_label = "largest displacement of the tissue [mm]", .log_x = true, .curves = {curve}};
   return finding;
 }
 
@@ -86,7 +91,7 @@ Result<Finding> drag_over_tolerance(Context&) {
     finding->plot.log_y = true;
     finding->plot.curves.push_back(
         {.label = "SOFA’s needle plugin", .x = {1e-9, 1e-5}, .y = {72.5, 0.27}, .kind = Curve::Kind::reference});
-    finding->note += " SOFA’s needle plugin, on a case of its own: 0.27 mm at 1e-5 and 72.5 mm at 1e-9.";
+    finding->note += " SOFA’s needle plugin gives 0.27 mm at 1e-5 and 72.5 mm at 1e-9 in a case of its own.";
   }
   return finding;
 }
@@ -99,13 +104,13 @@ Result<Finding> drag_over_step(Context&) {
 
 std::vector<RowSpec> step_and_tolerance_rows() {
   return {
-      {"drag_tolerance", Group::other_code, "How far tissue is dragged along does not hang on the solver’s tolerance",
+      {"drag_tolerance", Group::other_code, "The drag on the tissue does not depend on the solver’s tolerance",
        "SOFA’s needle plugin, same friction coefficient at two tolerances", "%", Accepted::at_most(1.0), true,
        drag_over_tolerance},
-      {"drag_time_step", Group::independence, "How far tissue is dragged along does not hang on the time step",
-       "each other, 0.25 … 4 ms", "%", Accepted::at_most(1.0), true, drag_over_step},
-      {"time_step", Group::independence, "A stick-slip insertion does not hang on the time step",
-       "each other, 0.25 … 2 ms", "%", Accepted::at_most(1.0), false, force_over_time_steps},
+      {"drag_time_step", Group::independence, "The drag on the tissue does not depend on the time step",
+       "time steps of 0.25 … 4 ms", "%", Accepted::at_most(1.0), true, drag_over_step},
+      {"time_step", Group::independence, "An insertion with stick and slip does not depend on the time step",
+       "time steps of 0.25 … 2 ms", "%", Accepted::at_most(1.0), false, force_over_time_steps},
   };
 }
 

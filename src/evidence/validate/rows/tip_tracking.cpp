@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorded bevelled needles that nobody steered: fitted on two recordings, predicted for the other two.
+// Recorded insertions of bevelled, unsteered needles: the model is fitted to two recordings and predicts the other two.
 #include "../number_table.hpp"
 #include "../rows.hpp"
 #include "../scene.hpp"
@@ -22,21 +22,21 @@ constexpr double kDeepest_mm = 100.0;
 constexpr double kEvery_mm = 5.0;
 constexpr double kInsertionSpeed_mm_per_s = 2.0;  ///< 100 mm in about a minute
 
-/// Lateral place of the tip over depth, from where it entered.
+/// Lateral position of the tip over depth, relative to the entry point.
 struct TipRecording {
   std::string name;
   std::vector<double> depth_mm;
   std::vector<double> lateral_mm;
 };
 
-/// @return the recording every 5 mm of depth
+/// Reads a recording. @return the recording, sampled every 5 mm of depth
 Result<TipRecording> read(const std::filesystem::path& file) {
   const auto columns = read_number_table(file, {"Tip x", "Tip y"});
   if (!columns) return columns.error();
   std::vector<std::pair<double, double>> samples;  // depth, lateral
   for (std::size_t i = 0; i < columns->front().size(); ++i) {
     const double y = (*columns)[1][i];
-    if (y != 0.0) samples.emplace_back(-y, (*columns)[0][i]);  // exactly 0: no reading yet
+    if (y != 0.0) samples.emplace_back(-y, (*columns)[0][i]);  // exactly 0 marks samples without a reading
   }
   std::sort(samples.begin(), samples.end());
   std::vector<double> depth;
@@ -57,7 +57,7 @@ Result<TipRecording> read(const std::filesystem::path& file) {
   return out;
 }
 
-/// Lateral place of the simulated tip every 5 mm of depth.
+/// Lateral position of the simulated tip, every 5 mm of depth.
 Result<std::vector<double>> simulate(double bevel_deg) {
   Block block;
   block.hi.z() = 125.0;
@@ -76,7 +76,7 @@ Result<std::vector<double>> simulate(double bevel_deg) {
   return lateral;
 }
 
-/// Bevel angle and heading, and how far off they leave the recordings they were fitted on.
+/// Fitted bevel angle and heading, and the remaining error for the fitted recordings.
 struct Fit {
   double bevel_deg = 0.0;
   double heading = 0.0;  ///< slope of the guide against the tracker's axis
@@ -94,7 +94,7 @@ double rms(const std::vector<double>& lateral, const std::vector<TipRecording>& 
   return std::sqrt(sum / count);
 }
 
-/// The best heading for a bevel angle follows by least squares.
+/// Computes the best heading for a bevel angle by least squares.
 Result<Fit> fit_heading(double bevel_deg, const std::vector<TipRecording>& recordings) {
   auto lateral = simulate(bevel_deg);
   if (!lateral) return lateral.error();
@@ -163,26 +163,21 @@ Result<Finding> predict(Context& context) {
     ends +=
         fmt::format("{}{:.2f} mm", ends.empty() ? "" : " and ", std::abs(fit->lateral_mm.back() - r.lateral_mm.back()));
   finding.note = fmt::format(
-      "Fitted on two recordings: bevel {:.1f}° (needles are ground to 10° … 30°) and heading of the guide {:.1f}°, RMS "
-      "{:.2f} "
-      "mm. Predicted for the other two; off at 100 mm by {}. Of the deflection there the heading makes {:.1f} mm and "
-      "the bevel "
-      "{:.1f} mm; a null model, a needle without bevel at its own best heading, is off by {:.2f} mm RMS, which has to "
-      "be "
-      "beaten. The four recordings repeat "
-      "one "
-      "another within half a millimetre, so this tests little more than the shape. Needle and tissue are the defaults: "
-      "the "
-      "recordings state neither gauge nor material.",
+      "Fitted to two recordings: a bevel of {:.1f}° (needles are ground to 10° … 30°) and a heading of the guide of "
+      "{:.1f}°, with an RMS error of {:.2f} mm. The other two are predicted; the error at 100 mm is {}. There, {:.1f} "
+      "mm of the deflection are due to the heading and {:.1f} mm to the bevel. The null model, a needle without bevel "
+      "with its own best heading, has an RMS error of {:.2f} mm; the value must be smaller. The four recordings agree "
+      "within half a millimetre, so the row tests little more than the shape. Needle and tissue have default values, "
+      "because the recordings state neither gauge nor material.",
       fit->bevel_deg, std::atan(fit->heading) * 180.0 / std::numbers::pi, fit->rms_mm, ends, fit->heading * kDeepest_mm,
       fit->lateral_mm.back() - fit->heading * kDeepest_mm, unbevelled);
   finding.why_missed =
-      "Gauge, bevel and material of the recordings are not known; the model has two fitted values only.";
+      "Gauge, bevel and material of the recordings are not known, and the model has only two fitted values.";
   Curve model{.label = "fitted", .x = fitted->front().depth_mm, .y = fit->lateral_mm};
-  finding.plot = {.x_label = "depth [mm]", .y_label = "lateral place of the tip [mm]", .curves = {model}};
+  finding.plot = {.x_label = "depth [mm]", .y_label = "lateral position of the tip [mm]", .curves = {model}};
   for (const auto* set : {&*fitted, &*others}) {
     for (const TipRecording& r : *set) {
-      finding.plot.curves.push_back({.label = r.name + (set == &*fitted ? ", for the fit" : ", predicted"),
+      finding.plot.curves.push_back({.label = r.name + (set == &*fitted ? ", used for the fit" : ", predicted"),
                                      .x = r.depth_mm,
                                      .y = r.lateral_mm,
                                      .kind = set == &*fitted ? Curve::Kind::points : Curve::Kind::reference});
@@ -195,9 +190,9 @@ Result<Finding> predict(Context& context) {
 
 std::vector<RowSpec> tip_tracking_rows() {
   return {{"tip_tracking", Group::measurements,
-           "Deflection of an unsteered bevelled needle, fitted twice, predicted twice",
-           "tracked tips, Bernardes et al. 2023; 0.75 mm is what Chentanez et al. 2009 reached on the gel of their fit",
-           "mm", Accepted::at_most(0.75), false, predict}};
+           "The deflection of unsteered bevelled needles is predicted after a fit to two other recordings",
+           "tracked tips, Bernardes et al. 2023; Chentanez et al. 2009 reached 0.75 mm in the gel of their fit", "mm",
+           Accepted::at_most(0.75), false, predict}};
 }
 
 }  // namespace stylet::validate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tissue that creeps against the closed forms of a standard linear solid.
+// Compares creeping tissue with closed forms of the standard linear solid.
 #include "../rows.hpp"
 #include "../scene.hpp"
 
@@ -37,7 +37,7 @@ Result<Finding> viscosity(Context&) {
   for (const auto* model : {&elastic, &viscous, &soft})
     if (!*model) return model->error();
 
-  // Pressed in at constant speed and held.
+  // The tip is pressed in at constant speed and then held.
   Drive at_rest(*elastic, 0.0);
   at_rest.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   const double held_N = at_rest.last().record.force_axial_N;
@@ -46,7 +46,9 @@ Result<Finding> viscosity(Context&) {
   pressing.go(kDent_mm, kPressSpeed_mm_per_s, kStep_s);
   pressing.wait(kTau_s, kStep_s);
   const double moving_s = kDent_mm / kPressSpeed_mm_per_s;
-  // The dent is f/k + F (r − 1) m, and m + τ ṁ = f: so τ ṁ = k dent − β m, first of a dent that grows evenly.
+  // dent = f/k + F (r − 1) m and m + τ ṁ = f, so τ ṁ = k dent − β m, where f is the force, k the stiffness, F the wide
+  // compliance, r the creep and m the memory. `remembered` gives m for a dent that grows at constant speed and then
+  // stays.
   const Vec3 axis = pressing.insertion().needle().tangent(0.0);
   const double wide = axis.dot(pressing.insertion().compliance().wide(0, 0) * axis);
   const double beta = 1.0 + stiffness * wide * (kCreep - 1.0);
@@ -58,8 +60,8 @@ Result<Finding> viscosity(Context&) {
     return time < moving_s ? then : at_last + (then - at_last) * std::exp(-rate * (time - moving_s));
   };
   double press_off = 0.0;
-  Curve force{.label = "force over that of elastic tissue", .x = {}, .y = {}};
-  Curve force_law{.label = "of a standard linear solid", .x = {}, .y = {}, .kind = Curve::Kind::reference};
+  Curve force{.label = "force / force of elastic tissue", .x = {}, .y = {}};
+  Curve force_law{.label = "standard linear solid", .x = {}, .y = {}, .kind = Curve::Kind::reference};
   for (std::size_t i = 0; i < pressing.steps().size(); ++i) {
     const double time = kStep_s * static_cast<double>(i + 1);
     const double dent = std::min(kDent_mm, kPressSpeed_mm_per_s * time);
@@ -70,13 +72,13 @@ Result<Finding> viscosity(Context&) {
     force_law.add(time / kTau_s, law);
   }
 
-  // In, out, and left alone.
+  // The needle goes in and out, and the tissue relaxes.
   Drive drive(*soft);
   drive.go(30.0, 20.0, kStep_s);
   drive.go(-2.0, 40.0, kStep_s);
   const VecX first = drive.insertion().displacement();
   double relax_off = 0.0;
-  Curve left{.label = "displacement over the first, needle out", .x = {0.0}, .y = {1.0}};
+  Curve left{.label = "displacement / initial displacement, needle out", .x = {0.0}, .y = {1.0}};
   Curve law{.label = "exp(−t/τ)", .x = {0.0}, .y = {1.0}, .kind = Curve::Kind::reference};
   for (int look = 1; look <= 30; ++look) {
     constexpr double every_s = 0.1 * kTau_s;
@@ -92,23 +94,23 @@ Result<Finding> viscosity(Context&) {
   Finding finding;
   finding.value = worse(press_off, relax_off);
   finding.note = fmt::format(
-      "r = {:g}, τ = {:g} s, steps of {:g} ms. The tip pressed into the skin at {:g} mm/s and held: the force is off "
-      "by "
-      "at most {:.2f} % of the {:.3f} N that elastic tissue holds; in the end creep takes off {:.1f} % of these. A "
-      "needle "
-      "taken out after 30 mm: the whole field of displacement, {:.2f} mm at first, dies away to within {:.2f} % of "
-      "that.",
+      "Creep r = {:g}, τ = {:g} s, steps of {:g} ms. The tip is pressed into the skin at {:g} mm/s and held: the error "
+      "of the force is at most {:.2f} % of the {:.3f} N with elastic tissue, of which creep finally removes {:.1f} %. "
+      "A "
+      "needle is taken out after 30 mm: the field of displacement, at first {:.2f} mm, decays as predicted to within "
+      "{:.2f} % of its initial value.",
       kCreep, kTau_s, 1e3 * kStep_s, kPressSpeed_mm_per_s, press_off, held_N, 100.0 * (1.0 - 1.0 / beta),
       first.cwiseAbs().maxCoeff(), relax_off);
-  finding.why_missed = "Steps in time are of first order: dt/(2τ) of the change is to be expected.";
-  finding.plot = {.x_label = "time over τ", .y_label = "force, displacement", .curves = {force, left, force_law, law}};
+  finding.why_missed = "The time integration is of first order, so an error of dt/(2τ) of the change is expected.";
+  finding.plot = {
+      .x_label = "time / τ", .y_label = "relative force, displacement", .curves = {force, left, force_law, law}};
   return finding;
 }
 
 }  // namespace
 
 std::vector<RowSpec> viscosity_rows() {
-  return {{"viscosity", Group::analysis, "Tissue creeps and relaxes as a standard linear solid does",
+  return {{"viscosity", Group::analysis, "Tissue creeps and relaxes like a standard linear solid",
            "k (dent − F p); exp(−t/τ)", "%", Accepted::at_most(1.0), true, viscosity}};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The strip chart with its legend and the choice of what lies on the x axis.
+// The strip chart with its legend and the choice of the x axis.
 import { element } from '../../../shared/dom';
 import { CURVES } from '../../../shared/plot_style';
 import type { Session } from '../session';

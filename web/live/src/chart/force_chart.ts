@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces on the base as a strip chart, by time or by depth. uPlot keeps scales and axes; the curves are stroked from the
-// ring, for each stretch of steps its extremes, so that no peak is lost however long the stretch.
+// Forces on the base as a strip chart over time or depth. uPlot draws scales and axes. The curves are drawn from the
+// ring: the steps are divided into stretches and the extremes of each are drawn, so that no peak is lost.
 import uPlot from 'uplot';
 import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import { axis, CURVES, fontSize, INK, lineScale } from '../../../shared/plot_style';
@@ -11,15 +11,15 @@ import type { Session } from '../session';
 import { extremes, ForceRing, type ForceName } from './force_ring';
 
 const DRAW_EVERY_MS = 50;
-const STRETCHES = 700;  // of a curve
+const STRETCHES = 700;  // number of stretches of a curve, at most
 
 export class ForceChart {
   readonly ring = new ForceRing();
   readonly shown = new Set<ForceName>(['axial', 'sagittal', 'lateral']);
-  seconds = 20;           // of time that are shown
+  seconds = 20;           // [s] shown time span
   private byDepth = false;
   private plot: uPlot | null = null;
-  private textSize = 0;  // [px] that the plot was made with
+  private textSize = 0;  // [px] text size with which the plot was made
   private events: PlacedEvent[] = [];
   private readonly ends: [number, number] = [0, 0];
   private range = { x: [0, 1] as [number, number], y: [-0.2, 1] as [number, number] };
@@ -64,7 +64,7 @@ export class ForceChart {
     this.plot.redraw(false, true);
   });
 
-  /** A replay brings its whole curve at once; a mark then moves along it. */
+  /** Whether a replay is shown. Its whole curve is known at once, and a mark moves along it. */
   private get replayed(): boolean {
     return this.session.frame?.replayed === true;
   }
@@ -106,7 +106,7 @@ export class ForceChart {
     if (width === 0 || height === 0) return;
     if (this.plot && this.textSize === fontSize()) {
       this.plot.setSize({ width, height });
-    } else {  // another screen, or zoom
+    } else {  // the text size has changed, by another screen or zoom
       this.plot?.destroy();
       this.textSize = fontSize();
       this.plot = this.makePlot(width, height);
@@ -153,7 +153,7 @@ export class ForceChart {
     ctx.lineJoin = 'round';
     this.drawZero(u);
     if (this.replayed && !this.byDepth) this.drawMoment(u);
-    // Stretches are powers of two and begin at multiples of their length, so that curves do not flicker as they move on.
+    // The length of stretches is a power of two and they start at its multiples, so that moving curves do not flicker.
     const length = 2 ** Math.ceil(Math.log2(Math.max(1, (ring.count - from) / STRETCHES)));
     const phase = (ring.total - ring.count + from) % length;
     const begin = phase === 0 ? from : from + length - phase;
@@ -182,7 +182,7 @@ export class ForceChart {
     ctx.restore();
   }
 
-  /** Where a replay is. */
+  /** Marks the time of a replay. */
   private drawMoment(u: uPlot): void {
     const { ctx, bbox } = u;
     const x = u.valToPos(this.session.frame?.time ?? 0, 'x', true);

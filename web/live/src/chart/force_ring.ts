@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The steps of the last minute, in fixed memory.
+// A ring buffer of the steps of the last minute.
 import { SAMPLE_WORDS, type Frame } from '../wire';
 
 export const RING_STEPS = 60_000;
@@ -12,8 +12,8 @@ export class ForceRing {
   readonly axial: Float32Array;   // [N]
   readonly sagittal: Float32Array;
   readonly lateral: Float32Array;
-  count = 0;       // steps held
-  total = 0;       // steps taken since the last clear
+  count = 0;       // stored steps
+  total = 0;       // steps added since the last clear()
   private next = 0;
 
   constructor(readonly capacity = RING_STEPS) {
@@ -28,7 +28,7 @@ export class ForceRing {
     this.count = this.next = this.total = 0;
   }
 
-  /** Takes the steps of a frame; one that is not later than the last held is dropped. */
+  /** Adds the steps of a frame. Steps that are not later than the last stored one are dropped. */
   add(frame: Frame): void {
     const { samples } = frame;
     for (let i = 0; i < samples.length; i += SAMPLE_WORDS) {
@@ -46,12 +46,12 @@ export class ForceRing {
     }
   }
 
-  /** Place in the arrays of the step with this number; 0 is the oldest held. */
+  /** Index in the arrays of the step with this number; number 0 is the oldest stored step. */
   place(number: number): number {
     return (this.next - this.count + number + this.capacity) % this.capacity;
   }
 
-  /** Number of the first step not earlier than a time. */
+  /** Number of the first step that is not earlier than `time`. */
   since(time: number): number {
     let low = 0;
     let high = this.count;
@@ -64,7 +64,9 @@ export class ForceRing {
   }
 }
 
-/** Numbers of the steps with the smallest and the largest value in [from, to), the earlier first, written to `out`. */
+/**
+ * Writes the numbers of the steps with the smallest and the largest value in [from, to) to `out`, the earlier first.
+ */
 export function extremes(ring: ForceRing, values: Float32Array, from: number, to: number, out: [number, number]): void {
   let low = from;
   let high = from;

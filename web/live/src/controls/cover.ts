@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States in which there is nothing to steer: connecting, loading, failed; and what is said when pictures are old.
+// A card over the page while there is nothing to steer: when it connects, loads or has failed, or when pictures are
+// old.
 import { element } from '../../../shared/dom';
 import { serverAddress } from '../connection';
 import type { Session } from '../session';
@@ -11,7 +12,7 @@ export class Cover {
   private readonly cure = element('p', 'cure');
   private readonly bar = element('progress');
   private timer = 0;
-  private refusal = '';  // in the server's words
+  private refusal = '';  // the server's reason for refusing the connection
 
   constructor(private readonly root: HTMLElement, private readonly session: Session) {
     this.card.append(this.title, this.bar, this.text, this.cure);
@@ -48,12 +49,12 @@ export class Cover {
       this.show('Preparing the patient', sentence(status?.stage ?? 'waiting for the server'), '', true,
                 typeof fraction === 'number' ? fraction : null);
     } else {
-      if (!this.root.hidden) performance.mark('needle ready');  // for whoever measures how long the page takes
+      if (!this.root.hidden) performance.mark('needle ready');  // for measuring how long the page takes to open
       this.root.hidden = true;
     }
   }
 
-  /** A WebSocket that is refused does not say why; a page of the same server does. */
+  /** Asks for the reason of a refusal with an HTTP request, because a refused WebSocket gives none. */
   private async askWhy(): Promise<void> {
     try {
       const answer = await fetch(serverAddress('recordings'));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Help, and the list of recordings.
+// The dialogs with help and with the list of recordings.
 import { button, element } from '../../../shared/dom';
 import { serverAddress } from '../connection';
 import type { Session } from '../session';

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A gamepad, read while one is there: left stick or triggers push and pull, right stick tilts, shoulders turn the bevel.
+// Reads a gamepad while one is connected: left stick or triggers push and pull, right stick tilts, shoulders turn the
+// bevel.
 import type { HandControl } from '../hand';
 
-const REST = 0.15;  // sticks do not come back to exactly zero
+const REST = 0.15;  // smaller values count as 0, because sticks do not return to exactly 0
 const TILT_DEG_PER_S = 4;
 const ROLL_DEG_PER_S = 90;
 
@@ -16,7 +17,7 @@ export function bindGamepad(hand: HandControl): void {
   };
   const turn = (now: number) => {
     const pad = navigator.getGamepads().find((p) => p?.connected);
-    if (!pad) {  // pulled out
+    if (!pad) {  // disconnected
       if (pushing) hand.stop();
       running = pushing = false;
       return;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A needle where it harms: large and in red while it is there, and a line that stays for each time it came there.
+// Warns of harm by the needle: a large red text while it is at such a place, and a list with a line for each harm so
+// far.
 import { element } from '../../../shared/dom';
 import { harmSentence, isHarm, regionLabel } from '../event_names';
 import type { Session } from '../session';
 import { TIP_STATES, type Event } from '../wire';
 
-const MOST = 6;  // lines; the oldest go first
+const MOST = 6;  // most lines of the list; the oldest are dropped
 
 export class HarmBanner {
   private readonly now = element('p', 'harm-now');
   private readonly list = element('ul', 'harm-list');
-  private written: string | null = null;  // in the list
+  private written: string | null = null;  // text of the list
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.now.setAttribute('role', 'alert');
@@ -38,13 +39,16 @@ export class HarmBanner {
   }
 }
 
-/** What was harmed until the moment that is shown: of a recording all events are known from the start. */
+/**
+ * The harmful events up to the shown moment. All events of a recording are known from the start, so later ones are left
+ * out.
+ */
 export function harmsSoFar({ events, frame }: Pick<Session, 'events' | 'frame'>): Event[] {
-  if (!frame) return [];  // nobody knows yet which moment is shown
+  if (!frame) return [];  // the shown moment is not known yet
   return events.filter((event) => isHarm(event) && (!frame.replayed || event.time_s <= frame.time));
 }
 
-/** What is harmed at this moment, in words; empty: nothing. */
+/** The harm at this moment, in words; empty if there is none. */
 export function harmNow({ status, scene, frame }: Pick<Session, 'status' | 'scene' | 'frame'>): string {
   const spared = new Set(scene?.regions.filter((r) => r.spared).map((r) => r.name));
   const inside = status?.inside ?? [];

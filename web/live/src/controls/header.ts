@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Case, who holds the needle, recording, and the ways out of this page: recordings, picture, help.
+// The header: case, holder of the needle, state of the recording, and buttons for recordings, picture and help.
 import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import type { Session } from '../session';

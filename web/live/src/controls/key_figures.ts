@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures that clinics report, in large numbers: the largest force since the needle was put to its start, where the gland is, and by
-// how much the tip misses.
+// The key figures of an insertion, in large numbers: peak force since the start, motion of the gland, and tip error.
 import { element } from '../../../shared/dom';
 import { GlandFit, length } from '../gland_fit';
 import { onRepaintEvery } from '../repaint';
@@ -9,7 +8,7 @@ import { hasTipError, isDrawnBack } from '../tip_error';
 import { SAMPLE_WORDS, type Frame } from '../wire';
 
 const WRITE_EVERY_MS = 100;
-const AXIAL = 2;  // of a sample's words
+const AXIAL = 2;  // index of the axial force in a sample
 
 class Figure {
   readonly box = element('div', 'figure');
@@ -27,7 +26,10 @@ class Figure {
   }
 }
 
-/** The largest axial force, by magnitude, of the steps of a frame and of those before. */
+/**
+ * The largest absolute axial force of the steps of a frame and of the steps before. @param peak that of the steps
+ * before
+ */
 export function peakAfter(peak: number, { samples, whole }: Frame): number {
   let largest = whole ? 0 : peak;
   for (let i = 0; i < samples.length; i += SAMPLE_WORDS) largest = Math.max(largest, Math.abs(samples[i + AXIAL]));
@@ -38,7 +40,7 @@ function part(value: number, digits: number, unit: string, positive: string, neg
   return `${Math.abs(value).toFixed(digits)}${unit} ${value < 0 ? negative : positive}`;
 }
 
-/** The error of the tip [mm] to write, and in words what it is. */
+/** The tip error [mm] as text, and an explanation of it. */
 export function tipErrorText(frame: Frame): { text: string; title: string } {
   if (!hasTipError(frame)) return { text: '–', title: 'The tip is not in the tissue' };
   const [lr, ap, si] = frame.tipError;
@@ -54,7 +56,7 @@ export class KeyFigures {
   private readonly shift = new Figure('Gland shift', 'mm');
   private readonly turn = new Figure('Gland turn', '°');
   private readonly tip = new Figure('Tip error', 'mm');
-  private largest = 0;  // [N]
+  private largest = 0;  // [N] peak force
   private gland: GlandFit | null = null;
 
   constructor(root: HTMLElement, private readonly session: Session) {
@@ -79,7 +81,7 @@ export class KeyFigures {
   private write(): void {
     this.peak.set(this.largest.toFixed(2), 'Largest axial force since the needle was put to its start');
     const { frame } = this.session;
-    this.tip.box.hidden = frame?.replayed ?? false;  // recordings do not have it
+    this.tip.box.hidden = frame?.replayed ?? false;  // recordings do not contain it
     if (frame) {
       const { text, title } = tipErrorText(frame);
       this.tip.set(text, title);

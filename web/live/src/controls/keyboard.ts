@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys. Those of a focused control stay with it; everything else moves the needle.
+// Keys. A focused control gets the keys that it uses; all other keys move the needle.
 import { SPEEDS, type HandControl } from '../hand';
 import type { Session } from '../session';
 
@@ -20,7 +20,7 @@ export const KEYS: [string, string][] = [
 const ROLL_DEG_PER_S = 90;
 const TILT_DEG_PER_S = 4;
 const TAP_S = 1 / 60;
-const LONGEST_TURN_S = 0.25;  // where pictures are slow
+const LONGEST_TURN_S = 0.25;  // limit of the time between two repaints
 
 type Held = (hand: HandControl, seconds: number) => void;
 const HELD: Record<string, Held> = {
@@ -34,7 +34,7 @@ const HELD: Record<string, Held> = {
 const PUSHES = new Set(['KeyW', 'KeyS', 'ArrowUp', 'ArrowDown']);
 
 export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => void): void {
-  const held = new Map<string, Held>();  // by code of the key
+  const held = new Map<string, Held>();  // actions of the held keys, by the key's code
   let last = 0;
   const turn = (now: number) => {
     if (held.size === 0) return;
@@ -61,7 +61,7 @@ export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => 
       e.preventDefault();
       if (held.has(e.code)) return;
       held.set(e.code, action);
-      action(hand, TAP_S);  // a tap may be over before the next repaint
+      action(hand, TAP_S);  // a tapped key may be released before the next repaint
       if (held.size > 1) return;
       last = performance.now();
       requestAnimationFrame(turn);
@@ -71,7 +71,8 @@ export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => 
     }
   });
   document.addEventListener('keyup', (e) => release(e.code));
-  // Who clicks with a mouse goes on with the needle's keys; who came with the tab key stays at the control.
+  // After a click with a mouse, keys move the needle again. A control that was reached with the Tab key keeps the
+  // focus.
   document.addEventListener('click', (e) => {
     const control = (e.target as HTMLElement).closest<HTMLElement>('button, summary, input, .hole');
     if (e.detail > 0 && control && !control.closest('dialog')) control.blur();
@@ -90,7 +91,7 @@ export function reset(session: Session, hand: HandControl): void {
   session.command({ do: 'reset' });
 }
 
-/** Whether the focused control itself does something with a key. */
+/** Whether the focused control uses a key itself. */
 function usesKey(target: HTMLElement, code: string): boolean {
   if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement) return true;
   if (target instanceof HTMLInputElement) return target.type === 'checkbox' ? code === 'Space' : /^(Arrow|Page|Home|End|Space)/.test(code);

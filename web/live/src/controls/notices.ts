@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Why something was not done, and what to do instead; gone after a while.
+// Notices: why something was not done, and what to do instead. They disappear after some seconds.
 import { button, element } from '../../../shared/dom';
 import { eventLabel, harmSentence, isHarm } from '../event_names';
 import type { Session } from '../session';
@@ -7,7 +7,7 @@ import type { Session } from '../session';
 const SHOWN_MS = 9000;
 const MOST = 3;
 
-/** Says events to who cannot see the chart, as they happen: those that come with a scene, before its first picture, are old. */
+/** Announces events to screen readers as they happen. Events before the first frame of a scene are old and left out. */
 export function speakEvents(root: HTMLElement, session: Session): void {
   const spoken = element('p', 'spoken');
   spoken.setAttribute('aria-live', 'polite');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The needle's depth as a long track with a handle to drag, marks of what happened and what is planned, and two buttons
-// that push and pull as long as they are held.
+// The needle's depth as a long track with a handle to drag, with marks of events and of the planned depth, and two
+// buttons that push and pull while they are held.
 import { ACCENT, HARM, INK, SOFT } from '../palette';
 import { element } from '../../../shared/dom';
 import { CanvasBox } from '../canvas_box';
@@ -14,9 +14,9 @@ const MARKED = new Set(['skin_contact', 'puncture']);
 export class PushBar {
   private readonly track = element('div', 'track');
   private readonly box: CanvasBox;
-  private grabbed: number | null = null;  // [mm] from the handle to where it was taken
+  private grabbed: number | null = null;  // [mm] distance from the handle to the point that was grabbed
   private readonly buttons: HTMLButtonElement[] = [];
-  private readonly labelled: [number, number][] = [];  // stretches of the track that have a label above
+  private readonly labelled: [number, number][] = [];  // sections of the track with a label above
 
   constructor(root: HTMLElement, private readonly session: Session, private readonly hand: HandControl) {
     const pull = this.holdButton('◀ Pull', -1);
@@ -110,7 +110,7 @@ export class PushBar {
     if (!frame || e.button !== 0) return;
     this.track.setPointerCapture(e.pointerId);
     const at = this.toDepth(e.offsetX);
-    // Beside the handle too: the handle stays where it is and is drawn along, the needle never leaps.
+    // The track can be grabbed beside the handle too. The distance is kept, so that the needle does not jump.
     this.grabbed = at - frame.depth;
     this.track.classList.add('held');
   }
@@ -191,7 +191,8 @@ export class PushBar {
     context.font = this.box.font(0.76);
     const room = context.measureText(label).width / 2 + 2;
     const at = clamp(x, room, this.box.width - room);
-    if (this.labelled.some(([from, to]) => at - room < to && at + room > from)) return;  // the mark alone
+    // no room for the label, only the mark is drawn
+    if (this.labelled.some(([from, to]) => at - room < to && at + room > from)) return;
     this.labelled.push([at - room, at + room]);
     context.fillText(label, at, middle - 0.85 * text);
   }

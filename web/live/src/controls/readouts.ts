@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers of the moment: depth, speed, tip, forces, and whether steps come in time; and the key figures of the insertion.
+// Current values: depth, speed, tip, forces, and whether steps are in time; and the key figures of the insertion.
 import { element } from '../../../shared/dom';
 import { CURVES } from '../../../shared/plot_style';
 import { onRepaintEvery } from '../repaint';

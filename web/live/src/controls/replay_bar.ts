@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replaying a recording: time, rate, and back to the live needle. Takes the push bar's place.
+// Controls of a replay: time, rate, and the way back to the live needle. It replaces the push bar.
 import { button, element } from '../../../shared/dom';
 import { serverAddress } from '../connection';
 import type { Session } from '../session';
@@ -46,7 +46,7 @@ export class ReplayBar {
     root.append(this.title, this.play, this.slider, this.text, this.rate, this.curve, this.back);
     session.on('status', () => this.update());
     session.on('link', () => {
-      if (!session.connected) this.dragging = false;  // the slider is no longer there to be dragged
+      if (!session.connected) this.dragging = false;  // the slider cannot be dragged then
       this.update();
     });
     session.on('frame', (frame) => {
@@ -76,7 +76,7 @@ export class ReplayBar {
     for (const control of [this.play, this.slider, this.rate, this.back]) control.disabled = !connected || status?.you_hold !== true;
   }
 
-  /** What is shown; while another time is wanted, that one stays. */
+  /** Shows the time of the replay; while the user seeks, shows the wanted time. */
   private write(time: number): void {
     if (this.dragging || this.seek.pending) return;
     this.slider.value = String(time);

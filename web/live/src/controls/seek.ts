@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A moment of a recording that somebody wants to see. It is asked for again until the server shows it: a command may come to
-// nothing, and a slider that was let go at 5 s beside a needle of 3 s would be a lie.
+// Seeks to a moment of a recording. The command is repeated until the server shows the moment, because a command may be
+// lost, and then the slider would show another time than the picture.
 import type { Session } from '../session';
 
-const MOST_OFTEN_MS = 50;      // while a slider is dragged
-const AGAIN_MS = 100;          // the first time; then less and less often
+const MOST_OFTEN_MS = 50;      // least time between commands while a slider is dragged
+const AGAIN_MS = 100;          // wait before the first repeat; it doubles each time
 const SELDOM_MS = 1000;
 const NEAR_S = 1e-3;
-const PICTURE_S = 0.05;        // a replay that plays has gone on by no more before its next picture
+const PICTURE_S = 0.05;        // a playing replay advances at most this much before its next picture
 
 export class Seek {
-  private wanted: number | null = null;  // [s]
+  private wanted: number | null = null;  // [s] wanted time
   private of = '';             // name of the recording
   private wantedSince = 0;
   private askedAt = -Infinity;
@@ -21,14 +21,14 @@ export class Seek {
     session.on('status', (status) => {
       if (this.wanted === null || status.state !== 'ready') return;
       const replay = status.mode === 'replay' ? status.replay : null;
-      const taken = status.held === true && !status.you_hold;  // somebody else says now what is shown
+      const taken = status.held === true && !status.you_hold;  // another viewer controls the replay
       if (!replay || replay.name !== this.of || taken) this.end();
       else this.see(replay.time_s);
     });
     session.on('frame', (frame) => frame.replayed && this.see(frame.time));
   }
 
-  /** Whether something is wanted that has not been seen yet. */
+  /** Whether the wanted time has not been shown yet. */
   get pending(): boolean {
     return this.wanted !== null;
   }
@@ -57,7 +57,7 @@ export class Seek {
       this.askedAt = performance.now();
       this.session.command({ do: 'seek', time_s: this.wanted });
     }
-    if (this.wanted === null) return;  // it was answered at once
+    if (this.wanted === null) return;  // the answer came at once
     this.askIn(this.wait);
     this.wait = Math.min(2 * this.wait, SELDOM_MS);
   }
@@ -67,7 +67,7 @@ export class Seek {
     if (this.wanted === null || !replay) return;
     const there = Math.max(0, Math.min(this.wanted, replay.duration_s));
     const since_s = (performance.now() - this.wantedSince) / 1000;
-    const gone = replay.playing ? replay.rate * (since_s + PICTURE_S) : 0;  // it goes on from there
+    const gone = replay.playing ? replay.rate * (since_s + PICTURE_S) : 0;  // it has advanced since
     if (time_s > there - NEAR_S && time_s < there + NEAR_S + gone) this.end();
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Speed, pause, steps, reset, bevel and tilt; and who holds the needle.
+// Buttons for speed, pause, single steps, reset, bevel and tilt.
 import { button, element } from '../../../shared/dom';
 import { SPEEDS, type HandControl } from '../hand';
 import type { Session } from '../session';

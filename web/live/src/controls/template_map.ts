@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of the template's holes: how near a needle's straight way comes to what it is to spare, and what a needle would do.
+// Colours of the template's holes: clearances of the straight way, and results of a simulated needle through each hole.
 import { button, element } from '../../../shared/dom';
 import { colorsOf, isKnown, MEASURES, NEAREST, scaleEnd, scaleGradient, scaleWords, tellOf, type Measure } from '../../../shared/hole_map';
 import { svg } from '../../../shared/svg';
@@ -32,7 +32,7 @@ export class TemplateMap {
     this.paint();
   }
 
-  /** The holes as they have just been drawn, by name. */
+  /** Sets the drawn holes, by name. */
   setHoles(marks: Map<string, { group: SVGGElement; title: SVGTitleElement; name: string }>): void {
     this.marks = marks;
     this.paint();
@@ -77,7 +77,7 @@ export class TemplateMap {
     this.ends[1].textContent = words[1];
   }
 
-  /** What is known and what can be asked for. */
+  /** Shows the state of the map and whether predictions can be requested. */
   private offer(): void {
     const live = this.session.map;
     const measure = this.measure();

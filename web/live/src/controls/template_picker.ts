@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guide template as one sees it from the feet: a click on a hole puts the needle there. Arrows move among the holes.
+// The guide template, seen from the feet. A click on a hole puts the needle there. Arrow keys move between the holes.
 import { element } from '../../../shared/dom';
 import { svg } from '../../../shared/svg';
 import { holes, type Hole, type Scene } from '../scene';
@@ -29,7 +29,7 @@ export class TemplatePicker {
     root.append(this.title, this.grid, key, colors, hint);
     session.on('scene', (scene) => this.build(scene));
     session.on('status', () => {
-      hint.hidden = session.guest !== '';  // pushing would only be refused
+      hint.hidden = session.guest !== '';  // the page cannot push then
       this.mark();
     });
     this.mark();

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contours in which a plane across one axis cuts a closed surface of triangles. Each edge that the plane crosses is a
-// corner of a contour; each triangle that it crosses joins two of them. All room is taken at the start.
+// Cuts a closed surface of triangles with a plane perpendicular to an axis. Each edge that the plane crosses gives a
+// corner of a contour; each triangle that it crosses joins two corners. All memory is allocated in the constructor.
 
 const NONE = -1;
 
 export class ContourCutter {
-  /** (2 × corners) the two other coordinates, in ascending order of their axis, contour after contour */
+  /** (2 × corners) the other two coordinates, ordered by axis, contour after contour */
   readonly corners: Float32Array;
-  /** where each contour begins in `corners`, counted in corners; contours + 1 numbers */
+  /** (contours + 1) number of the first corner of each contour in `corners` */
   readonly starts: Uint32Array;
   contours = 0;
-  private readonly edgeNodes: Uint32Array;      // (2 × edges)
-  private readonly triangleEdges: Uint32Array;  // (3 × triangles)
-  private readonly links: Int32Array;           // (2 × edges) neighbours of a crossed edge
+  private readonly edgeNodes: Uint32Array;      // (2 × edges) node numbers
+  private readonly triangleEdges: Uint32Array;  // (3 × triangles) edge numbers
+  private readonly links: Int32Array;           // (2 × edges) neighbours of a crossed edge along the contour
   private readonly crossed: Uint32Array;        // edges that the plane crosses
   private crossings = 0;
 
@@ -47,7 +47,7 @@ export class ContourCutter {
     const { edgeNodes, triangleEdges, links, crossed } = this;
     this.crossings = 0;
     for (let e = 0; e < edgeNodes.length / 2; e++) {
-      // A node in the plane counts as above: the plane then misses nodes by as little as one likes.
+      // A node in the plane counts as above it, as if the plane were moved by an infinitesimal distance.
       const above = position[3 * edgeNodes[2 * e] + axis] >= value;
       if (above === position[3 * edgeNodes[2 * e + 1] + axis] >= value) continue;
       crossed[this.crossings++] = e;
@@ -76,10 +76,11 @@ export class ContourCutter {
   private link(e: number, other: number): void {
     const { links } = this;
     if (links[2 * e] === NONE) links[2 * e] = other;
-    else if (links[2 * e + 1] === NONE) links[2 * e + 1] = other;  // more than two: surfaces that touch along an edge
+    // further neighbours, of surfaces that touch along an edge, are ignored
+    else if (links[2 * e + 1] === NONE) links[2 * e + 1] = other;
   }
 
-  /** Walks from edge to edge; an edge that has been walked through loses its links. */
+  /** Follows the links from edge to edge and removes the links of the edges that it has passed. */
   private collect(position: Float32Array, axis: number, value: number): void {
     const { links } = this;
     const [across, along] = axis === 0 ? [1, 2] : axis === 1 ? [0, 2] : [0, 1];

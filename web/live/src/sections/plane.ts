@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two planes of the sections: where they are, and whether they follow the needle.
+// A plane of a section: its position, and whether it follows the needle.
 import { clamp } from '../hand';
 import { holes, organBounds, regionTriangles, samePatient, type Scene } from '../scene';
 import type { Session } from '../session';
@@ -10,11 +10,11 @@ const TIP = new Float32Array(3);
 export type PlaneName = 'transverse' | 'sagittal';
 
 export class Plane {
-  value = 0;            // [mm] of the coordinate
+  value = 0;            // [mm] position on the axis
   follows = true;
   low = -50;
   high = 50;
-  private near = -Infinity;  // a plane that follows the tip waits here until the tip comes
+  private near = -Infinity;  // [mm] a plane that follows the tip waits here until the tip arrives
   private holeOf: [Scene, string, number | undefined] | null = null;
   private readonly listeners: (() => void)[] = [];
 
@@ -28,7 +28,7 @@ export class Plane {
     session.on('status', () => this.update());
   }
 
-  /** Axis across the plane. */
+  /** The axis perpendicular to the plane. */
   get axis(): 0 | 2 {
     return this.name === 'transverse' ? 2 : 0;
   }
@@ -80,8 +80,9 @@ export class Plane {
   }
 
   /**
-   * From the target's near end on: before the needle comes there, its apex is the picture worth having.
-   * @param again the patient is the one that was shown: a plane that was put somewhere stays
+   * Sets the range of the plane. A plane that follows the tip starts at the target's near end (its apex), because that
+   * is the most useful picture before the needle arrives.
+   * @param again whether the same patient was shown before; then a plane that the user has moved stays
    */
   private setRange(scene: Scene, again: boolean): void {
     const [low, high] = organBounds(scene)[this.axis];

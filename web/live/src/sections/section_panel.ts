@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A section with its title, where its plane is, and what moves it.
+// A section with its title and the controls of its plane.
 import { button, element } from '../../../shared/dom';
 import type { Session } from '../session';
 import { onRepaint } from '../repaint';

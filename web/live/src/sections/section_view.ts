@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One section, drawn as planning systems do: anterior up; transverse with the patient's right at the left of the picture,
-// sagittal with the base (superior) at the left, as a transrectal probe shows it. Letters at the edges say so.
+// One section, oriented as in planning systems: anterior is up. In the transverse section the patient's right is at the
+// left of the picture; in the sagittal section superior is at the left, as a transrectal probe shows it. Letters at the
+// edges give the directions.
 import { INK, lineScale, SOFT } from '../../../shared/plot_style';
 import { roundDown } from '../../../shared/colors';
 import type { Anatomy } from '../anatomy';
@@ -18,7 +19,7 @@ import { drawTemplate, drawTemplateEdge } from './template_overlay';
 interface Section {
   region: number;
   now: ContourCutter;
-  before: ContourCutter;  // undeformed
+  before: ContourCutter;  // of the undeformed surface
 }
 
 const TIP_ROOM_MM = 3;
@@ -31,15 +32,15 @@ export class SectionView {
   private anatomy: Anatomy | null = null;
   private sections: Section[] = [];
   private holes: Hole[] = [];
-  private cutBefore = NaN;  // place of the plane at which `before` was cut
-  private window = { u: 0, v: 0, width: 100, height: 100 };  // [mm] middle and size of what must be seen now
-  private focus = this.window;  // … wherever the needle is
+  private cutBefore = NaN;  // position of the plane for which `before` was cut
+  private window = { u: 0, v: 0, width: 100, height: 100 };  // [mm] centre and size of the area to show
+  private focus = this.window;  // the part of it that does not depend on the needle
   private pixels = 1;       // CSS px per mm
   readonly hidden = new Set<number>();
 
   constructor(box: HTMLElement, private readonly session: Session, readonly plane: Plane, private readonly other: Plane) {
     this.box = new CanvasBox(box, () => this.draw());
-    // A drag in one picture moves the plane of the other one.
+    // A drag in one section moves the plane of the other section.
     box.addEventListener('pointerdown', (e) => {
       if (e.button !== 0 || !this.anatomy) return;
       box.setPointerCapture(e.pointerId);
@@ -75,7 +76,7 @@ export class SectionView {
     this.box.request();
   }
 
-  /** Patient coordinates to the picture [CSS px]. */
+  /** Horizontal position in the picture [CSS px] of a point of the patient. */
   private u(x: number, z: number): number {
     return this.box.width / 2 + this.pixels * ((this.plane.axis === 2 ? x : -z) - this.window.u);
   }
@@ -84,7 +85,7 @@ export class SectionView {
     return this.box.height / 2 + this.pixels * (y - this.window.v);
   }
 
-  /** Patient coordinate of the other plane that a place in the picture [CSS px] has. */
+  /** Position of the other plane that belongs to a horizontal position in the picture [CSS px]. */
   private otherAt(pixels: number): number {
     const u = (pixels - this.box.width / 2) / this.pixels + this.window.u;
     return this.plane.axis === 2 ? u : -u;
@@ -96,7 +97,7 @@ export class SectionView {
     this.focus = { u: (across[0] + across[1]) / 2, v: (y[0] + y[1]) / 2, width: across[1] - across[0], height: y[1] - y[0] };
   }
 
-  /** A needle that is far out, or deep in: the picture takes in as much more as its tip needs. */
+  /** Extends the shown area to the tip, if the needle is far outside or deep inside. */
   private showTip(): void {
     this.window = this.focus;
     const { frame } = this.session;
@@ -215,7 +216,8 @@ export class SectionView {
       path();
       context.stroke();
       context.strokeStyle = INK;
-      context.globalAlpha = Math.abs(tip[0] - this.plane.value) < 3 ? 1 : 0.45;  // out of this plane
+      // faint if the tip is not near this plane
+      context.globalAlpha = Math.abs(tip[0] - this.plane.value) < 3 ? 1 : 0.45;
       context.lineWidth = width;
       path();
       context.stroke();
@@ -250,7 +252,7 @@ export class SectionView {
     context.restore();
   }
 
-  /** In the undeformed patient, like the dashed outlines. */
+  /** Draws the tip error. Its points are places in the undeformed patient, like the dashed outlines. */
   private drawTipError(frame: Frame, scene: Scene, radius: number): void {
     if (!tipErrorEnds(frame, scene.needle.length_mm, ENDS)) return;
     const { context } = this.box;
@@ -274,7 +276,7 @@ export class SectionView {
       context.strokeText(name, x, y);
       context.fillText(name, x, y);
     };
-    const side = transverse ? height / 2 : height / 4;  // the needle comes from the side
+    const side = transverse ? height / 2 : height / 4;  // in the sagittal section the letters make room for the needle
     letter(transverse ? 'R' : 'S', at, side);
     letter(transverse ? 'L' : 'I', width - at, side);
     letter('A', width / 2, at);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guide template over a section: its holes with the names of columns and rows, and from the side its plate.
+// Draws the guide template over a section: in the transverse section its holes with the names of columns and rows, in
+// the sagittal section its plate from the side.
 import { INK, SOFT } from '../../../shared/plot_style';
 import type { CanvasBox } from '../canvas_box';
 import type { Hole, Scene } from '../scene';
@@ -18,7 +19,7 @@ export function drawTemplate(box: CanvasBox, scene: Scene, holes: Hole[], curren
   context.save();
   context.fillStyle = SOFT;
   for (const hole of holes) {
-    // Whole letters and numbers are bolder, as on the plate.
+    // Upper-case letters and whole numbers are bolder, as on the plate.
     const whole = /^[A-Z]/.test(hole.name) && !hole.name.includes('.');
     context.globalAlpha = whole ? 0.9 : 0.45;
     context.beginPath();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses the plane that cuts the anatomy open in the 3D view, and moves it.
+// Controls of the plane that cuts the anatomy open in the 3D view.
 import { element } from '../../../shared/dom';
 import { organBounds, type Scene } from '../scene';
 import type { Stage } from './stage';
 
 const PLANES = [
   { name: 'None', axis: null, side: 1 },
-  { name: 'Sagittal', axis: 0, side: 1 },   // the left half goes: the oblique view is from the left
+  { name: 'Sagittal', axis: 0, side: 1 },   // removes the left half, because the oblique view is from the left
   { name: 'Coronal', axis: 1, side: -1 },
   { name: 'Transverse', axis: 2, side: 1 },
 ] as const;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plane that cuts the anatomy open. Where it cuts a region it is filled with the region's colour: of a closed surface
-// more back faces than front faces lie behind a point exactly where the point is inside (counted in the stencil buffer).
+// A plane that cuts the anatomy open. The cut through a region is filled with its colour. The stencil buffer counts the
+// faces behind each point of the plane: exactly inside a closed surface, there are more back faces than front faces.
 import * as THREE from 'three';
 import type { RegionSurface } from './region_surface';
 
-const FIRST = -200;  // before all translucent surfaces
+const FIRST = -200;  // render order before all translucent surfaces
 
 export class CutPlane {
   readonly object = new THREE.Group();
-  /** Planes to clip materials with: one or none. */
+  /** The clipping planes of materials: one or none. */
   readonly clipping: THREE.Plane[] = [];
   private readonly plane = new THREE.Plane(new THREE.Vector3(0, 0, 1), 0);
   private readonly caps: { surface: RegionSurface; parts: THREE.Mesh[]; quad: THREE.Mesh }[] = [];
@@ -35,7 +35,7 @@ export class CutPlane {
     this.place(this.axis, this.value, this.side);
   }
 
-  /** Cuts away what lies on the given side of the plane across an axis; null: nothing. */
+  /** Removes the anatomy on one side of a plane perpendicular to an axis. @param axis null: removes nothing */
   place(axis: 0 | 1 | 2 | null, value: number, side: 1 | -1): void {
     [this.axis, this.value, this.side] = [axis, value, side];
     this.clipping.length = 0;
@@ -52,14 +52,14 @@ export class CutPlane {
     }
   }
 
-  /** What is shown has changed. */
+  /** Must be called when surfaces are shown or hidden. */
   refresh(): void {
     this.place(this.axis, this.value, this.side);
   }
 
   private counter(surface: RegionSurface, side: THREE.Side, operation: THREE.StencilOp): THREE.Mesh {
     const mesh = new THREE.Mesh(surface.object.geometry, new THREE.MeshBasicMaterial({
-      transparent: true,  // so that it is drawn in the same pass as the fill
+      transparent: true,  // so that it is drawn in the same pass as the filling
       depthWrite: false, depthTest: false, colorWrite: false, side, clippingPlanes: this.clipping,
       stencilWrite: true, stencilFunc: THREE.AlwaysStencilFunc, stencilFail: operation, stencilZFail: operation, stencilZPass: operation,
     }));

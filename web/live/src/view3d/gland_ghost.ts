@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gland as it lay before the needle came: a net over its undeformed surface, to be seen beside where it is now.
+// The gland before the insertion: a wire frame of its undeformed surface, for comparison with its current position.
 import * as THREE from 'three';
 import { INK } from '../../../shared/plot_style';
 import { glandTriangles, type Scene } from '../scene';

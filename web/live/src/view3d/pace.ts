@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where pictures come too slowly (no graphics hardware, a very large screen) they are drawn coarser, so that the hand,
-// the sections and the curves keep up.
+// If pictures take too long (no graphics hardware, a very large screen), the 3D view is drawn with a lower resolution,
+// so that the hand, the sections and the curves stay responsive.
 
 const TOO_SLOW_MS = 45;
-const ONE_STREAM_MS = 600;  // longer between two pictures: nothing moved
-const PICTURES = 12;        // before anything is concluded
+const ONE_STREAM_MS = 600;  // a longer time between two pictures means that nothing moved
+const PICTURES = 12;        // number of pictures for one decision
 const COARSEST = 0.5;
 
 export class Pace {
@@ -12,10 +12,10 @@ export class Pace {
   private sum = 0;
   private count = 0;
 
-  /** @param ratio pixels of the picture for a CSS pixel */
+  /** @param ratio pixels of the picture per CSS pixel */
   constructor(public ratio: number) {}
 
-  /** Called with every picture. Returns whether `ratio` has changed. */
+  /** Must be called with every picture. Returns whether `ratio` has changed. */
   tick(now: number): boolean {
     const gap = now - this.last;
     this.last = now;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of one region. Its buffers are made once; each frame writes positions, normals and, if asked for, colours.
+// The surface of one region. Its buffers are allocated once; each frame writes positions, normals and, if colours show
+// the displacement, colours.
 import * as THREE from 'three';
 import { toLinear, viridis } from '../../../shared/colors';
 import { applyColors, applyLook, isShown, type RegionLook } from '../../../shared/region_look';
@@ -13,9 +14,9 @@ export class RegionSurface implements RegionLook {
   readonly centre = new THREE.Vector3();
   visible = true;
   opacity: number;
-  private readonly box = new THREE.Box3();  // undeformed
-  private readonly nodes: Uint32Array;      // of the scene
-  private readonly index: Uint32Array;      // into `nodes`
+  private readonly box = new THREE.Box3();  // of the undeformed surface
+  private readonly nodes: Uint32Array;      // node numbers of the scene
+  private readonly index: Uint32Array;      // corners of the triangles as indices of `nodes`
   private readonly position: THREE.BufferAttribute;
   private readonly normal: THREE.BufferAttribute;
   private readonly color: THREE.BufferAttribute;
@@ -53,7 +54,7 @@ export class RegionSurface implements RegionLook {
     this.applyLook();
   }
 
-  /** Whether the other region lies inside this one, by their boxes. */
+  /** Whether the bounding box of the other region lies inside that of this region. */
   holds(other: RegionSurface): boolean {
     return other !== this && this.box.containsBox(other.box);
   }
@@ -77,7 +78,7 @@ export class RegionSurface implements RegionLook {
     applyColors(this, on);
   }
 
-  /** @param most displacement [mm] at the end of the colour scale */
+  /** Writes the buffers. @param most displacement [mm] at the end of the colour scale */
   update(most: number): void {
     if (!this.shown) return;
     const { position } = this.anatomy;
@@ -98,7 +99,7 @@ export class RegionSurface implements RegionLook {
     this.object.material.dispose();
   }
 
-  /** Sums of the triangles' normals, each as long as twice its area; the shader makes them unit. */
+  /** Sums the normals of the adjacent triangles, weighted with their areas. The shader normalises them. */
   private updateNormals(): void {
     const p = this.position.array;
     const n = this.normal.array;

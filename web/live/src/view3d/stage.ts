@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene, camera and light of the 3D view, in parallel projection. Drawn only when something has changed.
+// Scene, camera and light of the 3D view, in parallel projection. It is drawn only when something has changed.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { fitPicture, lookFrom } from '../../../shared/camera';
@@ -38,11 +38,11 @@ export class Stage {
   private readonly viewing = new THREE.Vector3();
   private sorted: { surface: RegionSurface; distance: number }[] = [];
   private readonly pace = new Pace(Math.min(devicePixelRatio, 2));
-  private halfSize = 60;  // [mm] half height of the view at zoom 1
+  private halfSize = 60;  // [mm] half the height of the view at zoom 1
   private drawn = false;
-  private compiled = false;  // the shaders of the anatomy: waiting for them would hold up all of the page
+  private compiled = false;  // shaders are compiled in the background, because waiting for them would block the page
 
-  /** Throws where the browser has no WebGL. @param scaleBar [mm] and width [CSS px] of a bar that fits the zoom */
+  /** Throws if the browser has no WebGL. @param scaleBar receives length [mm] and width [CSS px] of the scale bar */
   constructor(private readonly box: HTMLElement, private readonly scaleBar: (mm: number, px: number) => void) {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, stencil: true });
     this.renderer.setPixelRatio(this.pace.ratio);
@@ -64,7 +64,7 @@ export class Stage {
     this.resize();
   }
 
-  /** @param again the patient is the one that was shown: what is shown how, and from where, stays */
+  /** Shows a patient. @param again whether the same patient was shown before; then its appearance and the view stay */
   setAnatomy(anatomy: Anatomy, again: boolean): void {
     const before = this.surfaces;
     for (const surface of this.surfaces) {
@@ -74,7 +74,7 @@ export class Stage {
     this.scene.remove(this.needle.object, this.contacts.object);
     const { scene } = anatomy;
     this.needle = new NeedleMesh(scene.needle.diameter_mm);
-    const contactsShown = this.contacts.object.visible;  // whatever the patient: the box says so
+    const contactsShown = this.contacts.object.visible;  // the check box applies to every patient
     this.contacts = new ContactMarks(scene.needle.diameter_mm);
     this.contacts.object.visible = contactsShown;
     this.surfaces = scene.regions.map((_, i) => new RegionSurface(anatomy, i, this.cut.clipping));
@@ -94,7 +94,7 @@ export class Stage {
     });
   }
 
-  /** @param most displacement [mm] at the end of the colour scale */
+  /** Updates the surfaces. @param most displacement [mm] at the end of the colour scale */
   showTissue(most: number): void {
     for (const surface of this.surfaces) surface.update(most);
     this.draw();
@@ -107,7 +107,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Puts the camera in a standard place. @param from direction from the anatomy to the observer, LPS */
+  /** Puts the camera in a standard position. @param from direction from the anatomy to the observer, LPS */
   look(from: [number, number, number]): void {
     lookFrom(this.camera, this.controls, from, this.centre, this.halfSize);
     this.draw();
@@ -134,7 +134,7 @@ export class Stage {
     this.renderer.render(this.scene, this.camera);
     if (!this.drawn) {
       this.drawn = true;
-      performance.mark('3D view');  // like 'needle ready' of the cover
+      performance.mark('3D view');  // for measuring how long the page takes to open
       this.onFirstPicture();
     }
     this.cube.draw(this.renderer, this.camera, Math.round(Math.min(width, height) * 0.17));
@@ -142,7 +142,7 @@ export class Stage {
     this.scaleBar(mm, mm * pixelsPerMm);
   }
 
-  /** Translucent surfaces are drawn from the farthest to the nearest, a region inside another before that one. */
+  /** Sorts translucent surfaces: the farthest is drawn first, and a region inside another before the outer region. */
   private sortSurfaces(): void {
     this.camera.getWorldDirection(this.viewing);
     for (const entry of this.sorted) entry.distance = this.distance(entry.surface);
@@ -165,7 +165,7 @@ export class Stage {
     this.render();
   }
 
-  /** Centre and size from where something happens: the organs, the entries and the template. */
+  /** Computes centre and size of the view from the organs, the entries and the template. */
   private frameOrgans({ scene }: Anatomy): void {
     const bounds = organBounds(scene);
     if (scene.template) bounds[2][0] = Math.min(bounds[2][0], scene.template.z_mm - 8);

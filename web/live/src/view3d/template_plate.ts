@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guide template in 3D: a translucent plate, its holes as rings, the needle's hole marked.
+// The guide template in 3D: a translucent plate with holes as rings; the needle's hole is marked.
 import * as THREE from 'three';
 import { holes, type Hole, type Template } from '../scene';
 
@@ -7,7 +7,7 @@ export class TemplatePlate {
   readonly object = new THREE.Group();
   private list: Hole[] = [];
   private rings: THREE.InstancedMesh | null = null;
-  private current = '';  // name of the hole that is marked
+  private current = '';  // name of the marked hole
 
   setTemplate(template: Template | null): void {
     for (const child of this.object.children as THREE.Mesh[]) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The key to the marks of the tip's error.
+// The legend of the marks of the tip error.
 import { element } from '../../../shared/dom';
 import { drawCross, drawRing } from '../tip_error_shapes';
 
-const SIZE_PX = 48;  // of a picture that is shown as large as the text
+const SIZE_PX = 48;  // size of the picture, which is shown as large as the text
 
 export function tipErrorKey(): HTMLElement {
   const key = element('div', 'contact-key');

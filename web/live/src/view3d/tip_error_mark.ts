@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of the tip: from a cross where the tip was to be to a ring where it is in the tissue, both as places in the
-// undeformed patient. Nothing hides them, since the needle itself lies there.
+// The tip error in 3D: a line from a cross at the planned place of the tip to a ring at its place in the tissue, both
+// in the undeformed patient. They are drawn over everything else, because the needle would hide them.
 import * as THREE from 'three';
 import { lineScale } from '../../../shared/plot_style';
 import { makeEnds, tipErrorEnds } from '../tip_error';
@@ -9,11 +9,11 @@ import type { Frame } from '../wire';
 
 const SIZE_MM = 3.4;
 const LEAST_PX = 20;
-const LAST = 1000;  // after all translucent surfaces
+const LAST = 1000;  // render order after all translucent surfaces
 const UP = new THREE.Vector3(0, 1, 0);
 const PICTURE_PX = 96;
 
-/** A mark that always faces the observer. */
+/** Makes a mark that always faces the observer. */
 function sprite(shape: typeof drawCross, order: number): THREE.Sprite {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = PICTURE_PX;
@@ -59,7 +59,7 @@ export class TipErrorMark {
     for (const line of this.lines) line.quaternion.setFromUnitVectors(UP, this.way);
   }
 
-  /** Not smaller than can be seen, whatever the zoom. @param ratio pixels of the picture for a CSS pixel */
+  /** Keeps the marks large enough to be seen at every zoom. @param ratio pixels of the picture per CSS pixel */
   fit(pixelsPerMm: number, ratio: number): void {
     const scale = lineScale();
     const size = Math.max(SIZE_MM, (scale * LEAST_PX) / pixelsPerMm);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 3D view with its controls: what is shown, how it is coloured, where it is cut, where one looks from.
+// The 3D view with its controls: visible parts, colours, cut, and direction of view.
 import { contactKey, colorBar, scaleMarks } from '../../../shared/keys';
 import { button, element } from '../../../shared/dom';
 import { regionRow } from '../../../shared/region_look';
@@ -17,7 +17,7 @@ import { Stage } from './stage';
 
 const SMALLEST_SCALE_MM = 0.5;
 
-/** Shows or hides a thing of the stage; whatever it is at the start. */
+/** A check box that shows or hides an object of the stage. */
 function visibilityBox(stage: Stage, thing: { object: { visible: boolean } }, text: string): HTMLElement {
   const label = element('label');
   const box = element('input');
@@ -31,7 +31,10 @@ function visibilityBox(stage: Stage, thing: { object: { visible: boolean } }, te
   return label;
 }
 
-/** The 3D view comes last when the page opens: a WebGL context may hold up all of it for a second or more. */
+/**
+ * The 3D view is built last when the page opens, because making a WebGL context may block the page for a second or
+ * more.
+ */
 export class ViewPanel {
   stage: Stage | null = null;
   onVisibility: (region: number, visible: boolean) => void = () => {};
@@ -53,7 +56,7 @@ export class ViewPanel {
     this.bar.hidden = true;
     this.note.hidden = true;
     this.scale.hidden = true;
-    // The wheel pushes the needle, with Ctrl it zooms.
+    // The wheel pushes the needle; with Ctrl it zooms.
     root.addEventListener('wheel', (e) => {
       if (e.ctrlKey || this.settings.contains(e.target as Node)) return;
       e.preventDefault();
@@ -68,7 +71,7 @@ export class ViewPanel {
     });
   }
 
-  /** [mm] at the end of the colour scale; null while colours are the tissues'. */
+  /** [mm] end of the colour scale; null unless colours show the displacement. */
   get largestColored(): number | null {
     return this.byDisplacement ? this.most : null;
   }
@@ -83,7 +86,7 @@ export class ViewPanel {
     }
   }
 
-  /** Once the needle can be taken, and what else there is to see has been painted. */
+  /** Opens the 3D view when the needle can be moved and the other parts of the page have been painted. */
   private openSoon(): void {
     if (this.opening || !this.anatomy || this.session.status?.state !== 'ready') return;
     this.opening = true;
@@ -102,7 +105,7 @@ export class ViewPanel {
     this.stage.template.mark(this.session.status?.hole ?? '');
     const { frame } = this.session;
     if (!frame) return;
-    this.fitScale(this.anatomy.largest);  // nothing may move from now on
+    this.fitScale(this.anatomy.largest);  // perhaps nothing moves from now on
     this.stage.showNeedle(frame);
     this.showNote(frame);
   }
@@ -154,7 +157,7 @@ export class ViewPanel {
     }
   }
 
-  /** What of the tissue's motion the picture lacks. */
+  /** Says which part of the tissue's motion the picture does not show. */
   private notShown(hidden_N: number): string {
     const { status } = this.session;
     if (status?.mode !== 'replay' && status?.stage) {
@@ -222,7 +225,7 @@ export class ViewPanel {
     return regionRow(surface, () => {
       if (surface.visible !== visible) this.onVisibility(i, (visible = surface.visible));
       surface.applyLook();
-      surface.update(this.most);  // it was left out while it was hidden
+      surface.update(this.most);  // a hidden surface is not updated
       stage.cut.refresh();
       stage.draw();
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guide template as one sees it from the patient's feet, once for each quantity of the map, with its numbers.
+// Pictures of the guide template, seen from the patient's feet: one for each quantity of the map, with its numbers.
 import { element } from '../../../shared/dom';
 import { colorsOf, isKnown, MEASURES, scaleEnd, scaleGradient, scaleWords, shortText, tellOf, type HoleMap, type Measure } from '../../../shared/hole_map';
 import { svg } from '../../../shared/svg';
@@ -59,7 +59,7 @@ function scale(map: HoleMap, measure: Measure): HTMLElement {
   return box;
 }
 
-/** Fills the box with a picture for each quantity that the map knows something of. */
+/** Fills the box with a picture for each quantity of the map. */
 export function buildTemplatePictures(map: HoleMap, box: HTMLElement): void {
   for (const measure of MEASURES) {
     const figure = element('figure');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves of a run against time or depth. Depth goes forth and back, so the curves are drawn as paths through all steps
-// (uPlot's scatter mode), solid on the way in and dashed on the way out.
+// Curves of a run against time or depth. The depth increases and decreases again, so the curves are drawn as paths
+// through all steps (uPlot's scatter mode), solid on the way in and dashed on the way out.
 import uPlot from 'uplot';
 import { nearestStep, turningStep, type EventMark, type ReportData } from '../data';
 import type { Moment } from '../moment';
@@ -14,15 +14,15 @@ export interface Curve {
   label: string;
   color: string;
   width: number;
-  values: Float32Array;  // one of each step
+  values: Float32Array;  // one value per step
 }
 
-/** Curves that share a plot; the first is the one that is pointed at. */
+/** Curves that share a plot. The pointer and the moment refer to the first. */
 export interface CurveFamily {
-  label: string;                          // of the ordinate, with its unit
+  label: string;                          // label of the y axis, with unit
   curves: Curve[];
-  at(event: EventMark): number;           // where on the ordinate an event is marked
-  numbers(step: number): string;          // HTML, what the curves are at a step
+  at(event: EventMark): number;           // y value at which an event is marked
+  numbers(step: number): string;          // HTML with the values of the curves at a step
 }
 
 export interface CurvePlotOptions {
@@ -50,7 +50,7 @@ function extent(arrays: Float32Array[], margin: number): [number, number] {
   return [low - room, high + room];
 }
 
-/** Strokes steps from … to of one curve. */
+/** Draws the steps from … to of one curve. */
 function stroke(plot: uPlot, xs: Float32Array, ys: Float32Array, from: number, to: number): void {
   const { ctx } = plot;
   ctx.beginPath();
@@ -79,7 +79,7 @@ function drawCurve(plot: uPlot, xs: Float32Array, turn: number, { values, color,
   ctx.restore();
 }
 
-/** Vertical line (time) and dot on the first curve for the frame shown in the 3D view. */
+/** Marks the frame that the 3D view shows: a vertical line (over time) and a dot on the first curve. */
 function drawMoment(plot: uPlot, x: number, y: number, color: string, asLine: boolean): void {
   const { ctx, bbox } = plot;
   const unit = devicePixelRatio * lineScale();

@@ -3,7 +3,7 @@ import type { ReportData } from '../data';
 import { CURVES, newtons } from '../../../shared/plot_style';
 import type { CurveFamily } from './curve_plot';
 
-/** What the hand exerts on the needle's base. */
+/** The force of the hand on the needle's base. */
 export function forceCurves({ steps }: ReportData): CurveFamily {
   return {
     label: 'Force [N]',

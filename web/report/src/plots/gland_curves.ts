@@ -7,9 +7,9 @@ function direction(mm: number, positive: string, negative: string): string {
   return `${Math.abs(mm).toFixed(3)} mm ${mm < 0 ? negative : positive}`;
 }
 
-/** How far the gland is from where it was before the insertion: the path of its mean. */
+/** The mean shift of the gland from its position before the insertion. */
 export function glandCurves({ steps }: ReportData, { lr, ap, si }: GlandPath): CurveFamily {
-  const [first, second, third] = CURVES;  // the same colours as the forces have
+  const [first, second, third] = CURVES;  // the colours of the forces
   return {
     label: 'Shift of the gland [mm]',
     curves: [

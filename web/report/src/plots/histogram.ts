@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long steps took: bins of equal ratio, counts on a logarithmic scale so that the rare slow step is seen.
+// Histogram of the steps' times: bins of equal ratio, counts on a logarithmic scale so that rare slow steps are
+// visible.
 import uPlot from 'uplot';
 import type { ReportData } from '../data';
 import { marksAt, roundNumbers } from './round_numbers';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One legend for both plots of a family of curves: which are shown, and what solid and dashed mean.
+// One legend for both plots of a family of curves: chooses the visible curves and explains solid and dashed lines.
 import type { Curve } from './curve_plot';
 
 export class CurveChoice {

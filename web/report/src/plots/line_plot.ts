@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves on linear or logarithmic scales, named at their right ends.
+// Curves on linear or logarithmic scales with labels at their right ends.
 import uPlot from 'uplot';
 import { marksAt, roundNumbers } from './round_numbers';
 import { axis, font, fontSize, followWidth, lineScale, SOFT } from '../../../shared/plot_style';
@@ -11,25 +11,25 @@ export interface Line {
   label: string;
   color: string;
   values: ArrayLike<number>;
-  x?: ArrayLike<number>;  // an abscissa of its own, increasing
+  x?: ArrayLike<number>;  // abscissae of this line, increasing
   dashed?: boolean;
-  marks?: boolean;  // a dot at every value
-  bare?: boolean;   // dots only
+  marks?: boolean;  // draws a dot at every value
+  bare?: boolean;   // draws dots only
   width?: number;
 }
 
 export interface LinePlot {
-  x?: ArrayLike<number>;  // shared by all lines that have none of their own
+  x?: ArrayLike<number>;  // abscissae of all lines that have none of their own
   xLabel: string;
   yLabel: string;
   lines: Line[];
-  logX?: number[] | true;  // marks of a logarithmic x axis; true: decades
+  logX?: number[] | true;  // ticks of a logarithmic x axis; true: decades
   logY?: boolean;
-  lowest?: number;     // of a logarithmic y axis
-  level?: { from: number | null; to: number | null };  // stretch of y, shaded
-  unnamed?: boolean;   // no names at the curves' ends: a legend stands elsewhere
-  bands?: { from: number; to: number; label: string }[];  // stretches of x, shaded
-  text: (value: number) => string;  // a value of y in words
+  lowest?: number;     // lower end of a logarithmic y axis
+  level?: { from: number | null; to: number | null };  // shaded range of y
+  unnamed?: boolean;   // no labels at the curves' ends, because there is a legend
+  bands?: { from: number; to: number; label: string }[];  // shaded ranges of x
+  text: (value: number) => string;  // formats a y value
   xText: (value: number) => string;
 }
 
@@ -40,7 +40,7 @@ function textWidth(texts: string[]): number {
   return Math.max(...texts.map((t) => context.measureText(t).width));
 }
 
-/** Names at the right ends of the curves, pushed apart where they would cover each other. */
+/** Draws labels at the right ends of the curves, moved apart so that they do not overlap. */
 function drawNames(plot: uPlot, lines: Line[]): void {
   const ratio = devicePixelRatio;
   const { ctx, bbox } = plot;
@@ -67,7 +67,7 @@ function drawNames(plot: uPlot, lines: Line[]): void {
   ctx.restore();
 }
 
-/** Shades stretches of x behind the curves. */
+/** Shades ranges of x behind the curves. */
 function drawBands(plot: uPlot, bands: NonNullable<LinePlot['bands']>): void {
   const ratio = devicePixelRatio;
   const { ctx, bbox } = plot;
@@ -89,7 +89,7 @@ function drawBands(plot: uPlot, bands: NonNullable<LinePlot['bands']>): void {
   ctx.restore();
 }
 
-/** Shades a stretch of y behind the curves. */
+/** Shades a range of y behind the curves. */
 function drawLevel(plot: uPlot, level: NonNullable<LinePlot['level']>): void {
   const { ctx, bbox } = plot;
   const at = (value: number | null, open: number) =>
@@ -102,7 +102,7 @@ function drawLevel(plot: uPlot, level: NonNullable<LinePlot['level']>): void {
   ctx.restore();
 }
 
-/** Curves over one list of abscissae: undefined where a curve has no value of its own. */
+/** The curves over one common list of abscissae; undefined where a curve has no value. */
 function aligned(options: LinePlot, drawn: (value: number) => number | null): uPlot.AlignedData {
   const { lines } = options;
   const values = (line: Line) => Array.from(line.values, drawn);
@@ -110,7 +110,7 @@ function aligned(options: LinePlot, drawn: (value: number) => number | null): uP
   return uPlot.join(lines.map((line) => [Array.from(line.x ?? options.x ?? []), values(line)] as uPlot.AlignedData));
 }
 
-/** A small box with all values at the pointer. */
+/** A small box that shows all values at the pointer. */
 function readout(plot: uPlot, options: LinePlot): void {
   const box = document.createElement('div');
   box.className = 'readout';
@@ -152,7 +152,7 @@ export function buildLinePlot(box: HTMLElement, options: LinePlot): void {
   };
   for (const line of lines) for (let i = 0; i < line.values.length; i++) count(line.values[i]);
   if (!isFinite(most)) throw new Error('there is no value to draw');
-  // The accepted stretch is seen whole where it is not far away from the curves.
+  // The whole accepted range is visible, unless it is far away from the curves.
   const reach = options.logY ? [least / 100, most * 100] : [least - 2 * (most - least), most + 2 * (most - least)];
   for (const bound of [options.level?.from, options.level?.to]) {
     if (bound !== null && bound !== undefined && bound >= reach[0] && bound <= reach[1]) count(bound);

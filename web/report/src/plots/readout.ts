@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the pointer is at: a dot on the curve and a small box with the numbers of that step.
+// Shows the step at the pointer: a dot on the curve and a small box with the values of this step.
 import type uPlot from 'uplot';
 
 export class Readout {
   private readonly box = document.createElement('div');
   private readonly dot = document.createElement('div');
 
-  /** @param text HTML of a step's numbers */
+  /** @param text returns the values of a step as HTML */
   constructor(private readonly plot: uPlot, private readonly text: (step: number) => string) {
     this.box.className = 'readout';
     this.dot.className = 'readout-dot';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks of logarithmic axes.
+// Ticks of logarithmic axes.
 import type uPlot from 'uplot';
 
-/** Numbers between low and high whose leading digit is one of `leading`. */
+/** The numbers between low and high that are a power of ten times one of `leading`. */
 export function roundNumbers(low: number, high: number, leading: number[]): number[] {
   const numbers: number[] = [];
   for (let power = Math.floor(Math.log10(low)); Math.pow(10, power) <= high; power++) {
@@ -14,7 +14,7 @@ export function roundNumbers(low: number, high: number, leading: number[]): numb
   return numbers;
 }
 
-/** An axis with marks at exactly these numbers: uPlot alone would drop some on a logarithmic axis. */
+/** An axis with ticks at exactly these numbers. By itself, uPlot leaves out some of them on a logarithmic axis. */
 export function marksAt(numbers: number[], text: (value: number) => string = (v) => v.toLocaleString('en')): Partial<uPlot.Axis> {
   return {
     splits: () => numbers,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Okabe & Ito, as in the plots of the report.
+// Colours by Okabe & Ito, as in the plots of the report.
 export const BLUE = '#0072b2';
 export const SKY = '#56b4e9';
 export const VERMILION = '#d55e00';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program writes into the page (src/reproduce/reproduction_data.cpp, reproduction_page.cpp).
+// The data that the program writes into the page (reproduction_data.cpp, reproduce_page.cpp).
 
 export interface Figure5Row {
   dim: number;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Order of ΔK of every change of the mesh: one mark each.
+// The order of ΔK of each change of the mesh, as one mark per change.
 import uPlot from 'uplot';
 import { axis, followWidth, fontSize, lineScale } from '../../../shared/plot_style';
 import type { Remeshing, Run } from './data';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure 2, drawn as SVG: contours slice by slice, the organ's surface and a needle segment that can be turned.
+// Figure 2 as SVG: contours slice by slice, the organ's surface, and needle segments. The solids can be turned.
 import { BLUE, VERMILION } from './colors';
 import type { Figure2, Point, Segment } from './data';
 
@@ -12,7 +12,10 @@ function svg(tag: string, attributes: Record<string, string | number>, parent?: 
   return element;
 }
 
-/** Every contour in its own frame, in order from the apex to the base, as seen from the feet: the patient's left is right. */
+/**
+ * Draws each contour in a picture of its own, from the apex to the base, seen from the feet: the patient's left is
+ * right.
+ */
 export function drawContours(box: HTMLElement, figure: Figure2): void {
   const all = figure.contours.flatMap((c) => c.points_mm);
   const xs = all.map((p) => p[0]);
@@ -46,7 +49,7 @@ export function drawContours(box: HTMLElement, figure: Figure2): void {
 
 type Mat = [Point, Point, Point];  // rows: right, up, towards the observer
 
-/** Camera of an observer at azimuth a around the z axis, lifted by b [rad]. */
+/** Camera of an observer at azimuth a around the z axis and elevation b [rad]. */
 function camera(a: number, b: number): Mat {
   const towards: Point = [Math.cos(b) * Math.sin(a), -Math.cos(b) * Math.cos(a), Math.sin(b)];
   const right: Point = [Math.cos(a), Math.sin(a), 0];
@@ -60,11 +63,11 @@ const cross = (a: Point, b: Point): Point => [a[1] * b[2] - a[2] * b[1], a[2] * 
 
 interface Solid {
   points: Point[];
-  triangles: [number, number, number][];  // outward
-  edges: [number, number][];              // inner ones, drawn through the translucent faces
+  triangles: [number, number, number][];  // outward normals
+  edges: [number, number][];              // inner edges, visible through the translucent faces
   color: [number, number, number];
   opacity: number;
-  turn: [number, number];  // first azimuth and lift [rad]
+  turn: [number, number];  // [rad] azimuth and elevation at the start
 }
 
 /** Draws a solid with flat shading; dragging turns it. */
@@ -133,7 +136,7 @@ export function drawSurface(box: HTMLElement, figure: Figure2): void {
   }, 'Surface of the organ, from the patient’s left front');
 }
 
-/** A handful of tetrahedra: their outer faces, and the edges inside. */
+/** Draws the tetrahedra of a segment: outer faces and inner edges. */
 export function drawSegment(box: HTMLElement, segment: Segment): void {
   const { points_mm: points, tets } = segment;
   const triangles = new Map<string, [number, number, number]>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Three components of the force on the base over iterations, with every event marked.
+// The three components of the force on the base over the iterations, with marks of events.
 import uPlot from 'uplot';
 import { drawEvents, labelsHeight, type PlacedEvent } from '../../../shared/event_labels';
 import { axis, CURVES, followWidth, fontSize, lineScale, newtons } from '../../../shared/plot_style';
@@ -7,14 +7,14 @@ import type { Curves, Run } from './data';
 
 const COLUMNS = { axial: 'axial_N', sagittal: 'sagittal_N', lateral: 'lateral_N' } as const;
 
-/** Events as the plot marks them: where a membrane breaks, the region behind it needs no mark of its own. */
+/** The events to mark. When a membrane breaks, the region behind it is entered too and gets no mark of its own. */
 function placed(run: Run): PlacedEvent[] {
   return run.events
     .filter((e) => e.kind !== 'region_entered' || !run.events.some((o) => o.kind === 'puncture' && o.iteration === e.iteration))
     .map((event) => ({ event, x: event.iteration, y: event.force_N ?? run.curves.axial_N[event.iteration] }));
 }
 
-/** Largest and smallest force of all runs, so that their plots share a scale. */
+/** Smallest and largest force of all runs, as the common scale of their plots. */
 export function forceRange(runs: Run[]): [number, number] {
   let low = 0;
   let high = 0;

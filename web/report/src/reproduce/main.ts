@@ -12,7 +12,7 @@ import { buildForceLegend, buildForcePlot, forceRange } from './force_plot';
 import { buildLinePlot } from '../plots/line_plot';
 import { build } from '../page_part';
 
-/** A time with the unit that suits it. */
+/** A time in µs, ms or s, with its unit. */
 function duration(seconds: number): string {
   const size = Math.abs(seconds);
   const digits = (value: number) => String(Number(value.toPrecision(3)));
@@ -43,7 +43,7 @@ function figure5(box: HTMLElement, data: ReproductionData): void {
   });
 }
 
-/** Time summed over the iterations that changed the mesh; nothing before the first. */
+/** Sum of the times of the iterations that changed the mesh; no value before the first of them. */
 function remeshingOnly(run: Run): number[] {
   const sums = new Array<number>(run.iterations).fill(0);
   for (const { iteration, step_us } of run.remeshings) sums[iteration] = step_us * 1e-6;
@@ -51,7 +51,7 @@ function remeshingOnly(run: Run): number[] {
   return sums.map((s) => (sum += s));
 }
 
-/** From the turn of the hand until the needle is out. */
+/** The retraction, from the turning point of the hand until the needle is out. */
 function retractions(run: Run): { from: number; to: number; label: string }[] {
   const outs = run.events.filter((e) => e.kind === 'withdrawn');
   return run.events

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pictures of the rows of stylet validate; what the program writes: src/validate/validation_data.cpp.
+// The plots of the rows of stylet validate. The program writes the data in validation_data.cpp.
 import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import './style.css';
@@ -23,10 +23,10 @@ interface Plot {
   curves: Curve[];
 }
 
-// Okabe & Ito: told apart by readers of every colour vision; what is checked against is drawn in ink.
+// Colours by Okabe & Ito, distinguishable with every kind of colour vision. References are drawn in the text colour.
 const OURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#56b4e9', '#e69f00'];
 
-/** Few digits, powers of ten for what is very small or large. */
+/** A number with few digits; as a power of ten if it is very small or large. */
 function text(value: number): string {
   if (value === 0) return '0';
   const size = Math.abs(value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interactive view: stage, time slider, and what is shown how.
+// The interactive view: stage, time slider, and controls of its appearance.
 import type { ReportData } from '../data';
 import type { Moment } from '../moment';
 import { button, element } from '../../../shared/dom';
@@ -34,7 +34,7 @@ function contactList(stage: Stage): HTMLElement {
   return row;
 }
 
-/** One of several, the first at the start. */
+/** A choice of one of several; the first is chosen at the start. */
 function radioButtons<Value>(name: string, choices: readonly (readonly [string, Value])[], set: (value: Value) => void): HTMLElement {
   const box = element('div', 'choice');
   choices.forEach(([text, value], i) => {
@@ -59,10 +59,10 @@ function colorChoice(stage: Stage, bar: HTMLElement): HTMLElement {
   });
 }
 
-/** How much larger than it is the tissue's displacement may be drawn. */
+/** The factors by which the tissue's displacement may be exaggerated. */
 const EXAGGERATIONS = [1, 5, 20];
 
-/** @param note says in the picture what is exaggerated @param set is told the new factor */
+/** The choice of the factor. @param note text in the picture that states it @param set receives the new factor */
 function exaggerationChoice(note: HTMLElement, set: (times: number) => void): HTMLElement {
   return radioButtons('viewer-exaggeration', EXAGGERATIONS.map((times) => [`×${times}`, times] as const), (times) => {
     note.textContent = times === 1 ? '' : `Displacement of the tissue drawn ×${times}. The needle is where it is.`;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of one region, moved and coloured frame by frame.
+// The surface of one region, which each frame moves and colours.
 import * as THREE from 'three';
 import type { Frame, Region, ReportData } from '../data';
 import { toLinear, viridis } from '../../../shared/colors';
@@ -12,11 +12,11 @@ export class RegionMesh implements RegionLook {
   visible: boolean;
   opacity: number;
   private byDisplacement = false;
-  private readonly nodes: Uint32Array;  // surface nodes this region uses
+  private readonly nodes: Uint32Array;  // surface nodes of this region
   private readonly position: Float32Array;
   private readonly color: Float32Array;
 
-  private readonly box = new THREE.Box3();  // undeformed
+  private readonly box = new THREE.Box3();  // of the undeformed surface
 
   constructor(private readonly data: ReportData, readonly region: Region) {
     const local = new Map<number, number>();
@@ -45,7 +45,7 @@ export class RegionMesh implements RegionLook {
     this.applyLook();
   }
 
-  /** Whether the other region lies inside this one, by their boxes. */
+  /** Whether the bounding box of the other region lies inside that of this region. */
   holds(other: RegionMesh): boolean {
     return other !== this && this.box.containsBox(other.box);
   }
@@ -60,9 +60,9 @@ export class RegionMesh implements RegionLook {
   }
 
   /**
-   * Moves the nodes to where they are in a frame.
+   * Moves the nodes to their positions in a frame.
    * @param most displacement [mm] at the end of the colour scale
-   * @param times how much larger than it is the displacement is drawn
+   * @param times factor by which the displacement is exaggerated
    */
   show(frame: Frame, most: number, times: number): void {
     const { points, displacementScale: scale } = this.data;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene, camera and light: the anatomy, the needle and its contacts, seen in parallel projection.
+// Scene, camera and light of the interactive view: anatomy, needle and contacts in parallel projection.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Frame, ReportData } from '../data';
@@ -21,13 +21,13 @@ export class Stage {
   private readonly controls: OrbitControls;
   private readonly cube = new OrientationCube();
   private readonly centre = new THREE.Vector3();
-  private halfSize = 1;  // [mm] half height of the view at zoom 1
+  private halfSize = 1;  // [mm] half the height of the view at zoom 1
   private pending = false;
 
-  /** Throws where the browser has no WebGL. @param scaleBar [mm] and width [CSS px] of a bar that fits the zoom */
+  /** Throws if the browser has no WebGL. @param scaleBar receives length [mm] and width [CSS px] of the scale bar */
   constructor(private readonly data: ReportData, private readonly box: HTMLElement,
               private readonly scaleBar: (mm: number, px: number) => void) {
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });  // kept for printing
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });  // needed for printing
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setClearColor('#ffffff');
     box.append(this.renderer.domElement);
@@ -51,7 +51,7 @@ export class Stage {
     this.resize();
   }
 
-  /** @param most displacement [mm] at the end of the colour scale @param times how much larger the tissue's is drawn */
+  /** Shows a frame. @param most displacement [mm] at the end of the colour scale @param times factor of exaggeration */
   show(frame: Frame, most: number, times: number): void {
     for (const region of this.regions) region.show(frame, most, times);
     this.needle.show(frame.needle);
@@ -59,13 +59,13 @@ export class Stage {
     this.draw();
   }
 
-  /** Puts the camera in a standard place. @param from direction from the anatomy to the observer, LPS */
+  /** Puts the camera in a standard position. @param from direction from the anatomy to the observer, LPS */
   look(from: [number, number, number]): void {
     lookFrom(this.camera, this.controls, from, this.centre, this.halfSize);
     this.draw();
   }
 
-  /** Draws once before the next repaint, however often it is called until then. */
+  /** Draws once before the next repaint, even if it is called several times. */
   draw(): void {
     if (this.pending) return;
     this.pending = true;
@@ -80,7 +80,7 @@ export class Stage {
     });
   }
 
-  /** Translucent surfaces are drawn from the farthest to the nearest, a region inside another before that one. */
+  /** Sorts translucent surfaces: the farthest is drawn first, and a region inside another before the outer region. */
   private sortRegions(): void {
     const view = this.camera.getWorldDirection(new THREE.Vector3());
     const distance = (mesh: RegionMesh): number => {
@@ -108,7 +108,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Centre and size from where something happens: the organs, the entry and the deepest tip. */
+  /** Computes centre and size of the view from the organs, the entry and the deepest tip. */
   private frameOrgans(): void {
     const box = new THREE.Box3();
     const p = new THREE.Vector3();
