@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 
 case "${1:-}" in
-  "") steps=(packages format module_order machine_paths documents build tests instrumented_build sanitizers threads lint) ;;
+  "") steps=(packages format module_order machine_paths documents build tests commands instrumented_build sanitizers threads lint) ;;
   --quick) steps=(packages build unit_tests) ;;
   *) echo "usage: ./test.sh [--quick]" >&2; exit 2 ;;
 esac
@@ -26,6 +26,7 @@ module_order()  { scripts/check_module_order; }
 machine_paths() { scripts/check_machine_paths; }
 documents()     { scripts/check_documents; }
 build()         { scripts/build release; }
+commands()      { scripts/check_commands build/bin/stylet; }
 unit_tests()    { run_tests release --parallel "$(nproc)" --label-regex unit; }
 sanitizers()    { run_tests sanitize --parallel "$(nproc)" --label-regex 'unit|long'; }
 threads()       { run_tests threads; }
@@ -51,10 +52,11 @@ declare -A about=(
   [format]="code is formatted as .clang-format says"
   [module_order]="modules include only what lies left of them"
   [machine_paths]="no path of one machine in the sources"
-  [documents]="lines of documents, links, and phrases that lack their noun"
+  [documents]="lines of documents, links, names of tests, and phrases that lack their noun"
   [build]="release build into build/"
   [unit_tests]="unit tests"
   [tests]="all tests: unit, long, command line, browser, real data, slow, installed library"
+  [commands]="every command that a document shows"
   [instrumented_build]="the rest of the builds with sanitizers, begun beside the tests"
   [sanitizers]="core to realtime under address and undefined-behaviour sanitizers, unit and long tests"
   [threads]="what runs in several threads under the thread sanitizer"
