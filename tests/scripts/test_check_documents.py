@@ -51,6 +51,10 @@ class Documents(unittest.TestCase):
         self.refused({"tests/a.cpp": "TEST(Needle, BendsUnderLoad) {}\nTEST(Needle, weighs_2_kN_at_D4) {}\n"},
                      "tests/a.cpp:1: the test's name BendsUnderLoad")
 
+    def test_a_cure_with_a_full_stop_is_named(self):
+        self.refused({"src/core/a.cpp": 'return input_error(where, "it is not.", "Do it"\n" now.");\n',
+                      "src/core/README.md": "# core\n"}, 'src/core/a.cpp:2: the cure " now." ends with a full stop')
+
     def test_a_link_to_no_file_or_no_heading_is_named(self):
         self.refused({"README.md": "# A\n[x](docs/none.md) and [y](docs/one.md#another)\n"},
                      "README.md:2: the link docs/none.md leads to no file",
