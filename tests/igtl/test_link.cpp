@@ -284,7 +284,8 @@ TEST(Link, surfaces_that_are_none_are_refused) {
   s.points.pop_back();
   const auto missing = link->publish_surface(std::move(s));
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().what.find("the corner 8, but there are 8 points"), std::string::npos) << missing.error().message();
+  EXPECT_NE(missing.error().what.find("the corner 8, but there are 8 points"), std::string::npos)
+      << missing.error().message();
   Surface large;
   large.points.resize(6'000'000);
   EXPECT_FALSE(link->publish_surface(std::move(large)));
