@@ -52,11 +52,11 @@ Result<> run_needle(Console& console) {
   }
   json["machine"] = machine_json();
   console.say(
-      "Needle of 200 mm: error in % of the tip's deflection, under a small load at a third of the length and at the "
-      "tip,\n"
-      "and under a tip force that turns the tip by so many degrees (elastica); stiffness along the axis; processor "
-      "time of\n"
-      "one solve with 20 loads, median. * = the default number of elements.");
+      "Needle of 200 mm length. L/3, L: error in % of the tip's deflection under a small load at a third of the length "
+      "and at the tip.\n"
+      "Degrees: the same error under a tip force that turns the tip by this angle (elastica). Axial: stiffness along "
+      "the axis.\n"
+      "Solve: median processor time of one solve with 20 loads. * marks the default number of elements.");
   console.say(table.text());
   return console.write_json(json);
 }
@@ -107,8 +107,8 @@ std::vector<std::string> coupling_cells(const measure::CouplingRow& row) {
 Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   measure::CouplingBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked =
-          check_nodes("coupling", options.largest, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("coupling", options.largest, 500,
+                                 "Give 500 or more, the nodes of the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto rows = measure::bench_coupling(options, console.progress());
@@ -122,12 +122,12 @@ Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   }
   json["machine"] = machine_json();
   console.say(fmt::format(
-      "Demo insertion, in to {:g} mm and out. RMS: difference of the axial force from the finest of its kind, over "
-      "that one's peak;\n"
-      "shift: of the gland's centroid; skin, capsule: depth of the base when they break; gland: where the mesh has it "
-      "on the needle's line,\n"
-      "off by: mean distance of its surface from the contours; step: processor time, median; before: what is computed "
-      "before the needle moves.",
+      "The insertion of the demo scenario, in to {:g} mm and out. RMS: root mean square difference of the axial force "
+      "from the finest run of the same study and method, relative to the peak of that run.\n"
+      "Shift: displacement of the gland's centroid. Skin, capsule: depth of the base when they are punctured. Gland: "
+      "where the needle's line lies inside the gland of the mesh.\n"
+      "Off by: mean distance of the gland's surface in the mesh from the contours. Step: median processor time of a "
+      "step. Before: time for all computations before the needle moves.",
       options.depth_mm));
   console.say(table.text());
   return console.write_json(json);
@@ -149,8 +149,8 @@ Result<> check_options(const BenchArguments& arguments) {
   for (const Option& option : options) {
     const std::vector<std::string>& by = option.taken_by;
     if (!option.given || std::find(by.begin(), by.end(), arguments.what) != by.end()) continue;
-    return input_error(option.name, fmt::format("bench {} does not take it", arguments.what),
-                       fmt::format("Leave it out; it is an option of bench {}", fmt::join(by, ", ")));
+    return input_error(option.name, fmt::format("bench {} does not have this option", arguments.what),
+                       fmt::format("Leave this option out; it belongs to bench {}", fmt::join(by, ", ")));
   }
   return Ok{};
 }
@@ -196,41 +196,42 @@ Json times_json(const measure::StepTimes& times) {
 
 Command add_bench_command(CLI::App& program) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* app = program.add_subcommand("bench", "Measure performance: methods against each other in one run");
+  CLI::App* app = program.add_subcommand("bench", "Measure performance, and compare methods in one run");
   app->add_option(
          "WHAT", arguments->what,
          "remesh: time of one change of the mesh against the number of nodes, by the default's two rules, by "
-         "Woodbury, by boundary condition switches, by an inverse from scratch; step: what a step spends its time on; "
-         "coupling: force of one insertion over "
-         "mesh, spacing of contacts and time step, with the near field and with node addition; scale: time of a step "
-         "against the number of nodes and contacts; loop: the real-time loop, how long its steps take and how late "
-         "they "
-         "are; supply: which speeds a needle may have where no compliance was prepared; display: time and error of a "
-         "picture of the deformed patient; viewers: steps of a live session with nobody watching and with two viewers; "
-         "needle: accuracy of the needle models against their cost")
+         "Woodbury, by boundary condition switches and by an inverse from scratch; step: processor time of the phases "
+         "of a step; coupling: force of one insertion against mesh, spacing of contacts and time step, with the near "
+         "field and with node addition; scale: time of a step against the number of nodes and contacts; loop: duration "
+         "and lateness of the steps of the real-time loop; supply: speeds that a needle can have where no compliance "
+         "was precomputed; display: time and error of a picture of the deformed patient; viewers: time of the steps of "
+         "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
+         "cost")
       ->required()
       ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle"}));
   app->add_option("--nodes", arguments->nodes,
-                  fmt::format("Largest mesh; remesh: 125 to 4096 (default {}), coupling: 500 or more (default {}), "
-                              "scale, supply and display: 570 or more (default {}); the mesh; step, loop and viewers: "
-                              "500 or more (default {})",
+                  fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
+                              "(default {}), scale, supply and display 570 or more (default {}). Nodes of the only "
+                              "mesh: step, loop and viewers 500 or more (default {})",
                               kRemeshNodes, measure::CouplingBenchOptions{}.largest,
                               measure::ScaleBenchOptions{}.largest, measure::StepBenchOptions{}.nodes))
       ->type_name("N")
       ->check(whole_number_between(1, 1000000));
-  app->add_option("--contacts", arguments->contacts,
-                  "With about so many; scale: only (default 20, 40 and 60), loop and viewers (default 40)")
+  app->add_option(
+         "--contacts", arguments->contacts,
+         "Approximate number of contacts: scale one number (default 20, 40 and 60), loop and viewers (default 40)")
       ->type_name("N")
       ->check(whole_number_between(5, measure::most_driven_contacts()));
   app->add_option("--steps", arguments->steps,
-                  "scale: repeat insertion and withdrawal until there are so many steps in each row (default: once)")
+                  "scale: repeat insertion and withdrawal until each row has this number of steps (default: once)")
       ->type_name("N")
       ->check(whole_number_between(1, 100000000));
   app->add_option("--seconds", arguments->seconds,
-                  "loop and viewers: how long, in seconds of the clock (default 30 and 120)")
+                  "loop and viewers: duration in seconds of real time (default 30 and 120)")
       ->type_name("S")
       ->check(number_between(1.0, 86400.0));
-  app->add_option("--speed", arguments->speed, "supply: of the base, in mm/s (default 2, 5, 10, 20 and 50)")
+  app->add_option("--speed", arguments->speed,
+                  "supply: speed of the needle's base in mm/s (default 2, 5, 10, 20 and 50)")
       ->type_name("V")
       ->check(number_between(0.5, 100.0));
   return {app, [arguments](Console& console) { return run_bench(*arguments, console); }};

@@ -42,8 +42,8 @@ Result<Description> description_of(const InfoArguments& arguments) {
 /// Writes a drafted scenario.
 Result<> run_draft(const InfoArguments& arguments, Console& console) {
   if (is_meant_as_model(arguments.file) || is_hdf5_file(arguments.file)) {
-    return input_error(arguments.file, "a saved model or a recording holds its scenario already",
-                       "Run it as it is with stylet insert, or name the patient's file");
+    return input_error(arguments.file, "a saved model or a recording already contains its scenario",
+                       "Run it with stylet insert, or give the patient's file");
   }
   std::error_code code;
   if (!arguments.output.empty() && std::filesystem::equivalent(arguments.file, arguments.output, code))
@@ -88,25 +88,26 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
 Command add_info_command(CLI::App& program) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* app =
-      program.add_subcommand("info", "Say what is in a contour set, mask, mesh, surface, saved model or recording");
-  app->add_option("FILE", arguments->file, "File, or folder with one DICOM RTSTRUCT or SEG in it")->required();
+      program.add_subcommand("info", "Describe a contour set, mask, mesh, surface, saved model or recording");
+  app->add_option("FILE", arguments->file, "File, or folder that contains one DICOM RTSTRUCT or SEG")->required();
   app->add_option("--scale", arguments->scale,
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
   app->add_option("--skip", arguments->skip,
-                  "Pass over the structure NAME where it is damaged; with --scenario leave it out in any case; may be "
+                  "Ignore the structure NAME if it is damaged; with --scenario leave it out in any case; may be "
                   "repeated")
       ->type_name("NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   CLI::Option* scenario = app->add_flag("--scenario", arguments->scenario,
-                                        "Write a commented scenario with this patient instead: what is taken as what, "
-                                        "what is left out and why, and one needle");
+                                        "Write a commented scenario for this patient instead: the region that each "
+                                        "structure is taken as, the structures that are left out and why, and one "
+                                        "needle");
   app->add_option("-o,--output", arguments->output,
-                  "With --scenario: the file to write, from which the patient is named relatively (default: standard "
-                  "output, with the patient's absolute path)")
+                  "With --scenario: the file to write; it gives the patient's path relative to its own folder "
+                  "(default: standard output, with the patient's absolute path)")
       ->type_name("FILE.toml")
       ->needs(scenario);
   return {app, [arguments](Console& console) { return run_info(*arguments, console); }};

@@ -64,7 +64,7 @@ std::string mesh_changes_text(const Summary& summary) {
   static const std::map<std::string, const char*> reasons{
       {"boundary", "the nearest node shapes an organ's surface"},
       {"fixed", "the nearest node is fixed"},
-      {"held", "the needle holds the nearest node already"},
+      {"held", "the needle already holds the nearest node"},
       {"contacts", "contacts are interpolated around the nearest node"},
       {"inverts", "moving the nearest node would flatten an element"}};
   for (const auto& [reason, count] : refused)
@@ -101,7 +101,7 @@ std::string gland_text(const GlandMotion& gland) {
         fmt::format("{}{} {}° ({})", turns.empty() ? "" : ", ", turn.plane, thousandths(turn.degrees), turn.direction);
   Facts facts;
   facts.add("gland turned", turns);
-  facts.add("its volume", fmt::format("changed by {} %", thousandths(gland.volume_change_percent)));
+  facts.add("gland volume", fmt::format("changed by {} %", thousandths(gland.volume_change_percent)));
   return shifts.text() + "\n\n" + facts.text();
 }
 
@@ -129,13 +129,14 @@ std::string summary_text(const Summary& summary) {
                           "deepest point",
                           error.norm(), error.x(), error.y(), error.z()));
   }
-  facts.add("tip off its line", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));
+  facts.add("tip deflection", fmt::format("at most {:.2f} mm", summary.tip_deflection_mm));
   facts.add("balance", fmt::format("force {:.1e}, torque {:.1e} (relative)", summary.residual_force_balance,
                                    summary.residual_torque_balance));
-  facts.add("step", fmt::format("median {:.0f} µs, 99 % {:.0f} µs, 99.9 % {:.0f} µs, worst {:.0f} µs of CPU time; {} "
-                                "steps, at most {} contacts",
-                                summary.step_us_p50, summary.step_us_p99, summary.step_us_p999, summary.step_us_max,
-                                summary.steps, summary.contacts_max));
+  facts.add("step",
+            fmt::format("processor time median {:.0f} µs, 99 % {:.0f} µs, 99.9 % {:.0f} µs, worst {:.0f} µs; {} "
+                        "steps, at most {} contacts",
+                        summary.step_us_p50, summary.step_us_p99, summary.step_us_p999, summary.step_us_max,
+                        summary.steps, summary.contacts_max));
   if (const std::string changes = mesh_changes_text(summary); !changes.empty()) facts.add("mesh", changes);
   const std::string gland = summary.gland ? gland_text(*summary.gland) + "\n\n" : "";
   return events.text() + "\n\n" + gland + facts.text();
@@ -172,7 +173,7 @@ Result<std::string> tissues_text(const InsertArguments& arguments) {
   }
   if (!arguments.settings.empty())
     return input_error("insert --print-tissues", "--set has no scenario to change",
-                       "Name a scenario file, for example scenarios/demo.toml");
+                       "Give a scenario file, for example scenarios/demo.toml");
   return tissues_text(Scenario{});
 }
 
@@ -221,16 +222,16 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
     return console.said();
   }
   if (arguments.scenario.empty())
-    return input_error("insert", "no scenario is given", "Name a scenario file, for example scenarios/demo.toml");
+    return input_error("insert", "no scenario is given", "Give a scenario file, for example scenarios/demo.toml");
   const std::filesystem::path folder =
       arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
   if (arguments.map && is_recording(arguments.scenario)) {
     return input_error(arguments.scenario,
-                       "it is a recording, whose base motion is one needle's own and cannot be repeated through every "
-                       "hole of the template",
-                       "Give its scenario in its place, or leave --map out");
+                       "it is a recording, whose base motion belongs to one needle and cannot be repeated through "
+                       "every hole of the template",
+                       "Give the scenario of the recording instead, or leave --map out");
   }
 
   Result<RecordedRun> source = what_to_run(arguments, console.progress());
@@ -239,7 +240,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   const bool repeats = !source->steps.empty();
   if (repeats && same_file(folder / "run.h5", arguments.scenario))
     return input_error(folder.string(), "the recording would be replaced by its repetition",
-                       "Name another folder (-o)");
+                       "Give another folder with -o");
   const std::vector<std::string> warnings = prepared.warnings();
   const auto warn = [&] {
     for (const std::string& warning : warnings) console.warn(warning);
@@ -255,7 +256,7 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
                           summary.tets, prepared.model->info().method));
   console.say(summary_text(summary));
   if (result->map) console.say("\n" + map_text(*result->map));
-  if (repeats) console.say("Repeated: " + compare_forces(source->steps, result->steps) + ".");
+  if (repeats) console.say("Repeated the recording: " + compare_forces(source->steps, result->steps) + ".");
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
   const Result<Json> json = result_json(folder, result->map);
   return json ? console.write_json(*json) : Result<>(json.error());
@@ -269,8 +270,8 @@ Command add_insert_command(CLI::App& program) {
       program.add_subcommand("insert", "Insert a needle: run a scenario and write forces, displacements and a report");
   app->add_option(
          "SCENARIO", arguments->scenario,
-         "Scenario file (TOML; --print-schema lists its keys), a model that `stylet prepare` saved, or the run.h5 of "
-         "a recording, whose base motion is then repeated step by step")
+         "Scenario file (TOML; --print-schema lists its keys), a model saved by `stylet prepare`, or the run.h5 of a "
+         "recording, whose base motion is then repeated step by step")
       ->type_name("SCENARIO.toml");
   app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
   app->add_option("--set", arguments->settings,
@@ -289,18 +290,19 @@ Command add_insert_command(CLI::App& program) {
         ->type_name("WORD");
   };
   shorthand("--method", "coupling.method", "near-field, node-addition, node-repositioning or embedded");
-  shorthand("--rule", "coupling.rule", "where nodes are added: interior or paper");
-  shorthand("--engine", "coupling.engine", "what is kept of the inverse stiffness: condensed, woodbury or bcs");
+  shorthand("--rule", "coupling.rule", "rule for the place where nodes are added: interior or paper");
+  shorthand("--engine", "coupling.engine", "form in which the inverse stiffness is kept: condensed, woodbury or bcs");
   shorthand("--solver", "coupling.solver", "coupled or staggered");
   shorthand("--needle", "needle.model", "beam, springs or tet");
   app->add_flag("--map", arguments->map,
-                "Also print what a needle through each hole of the template would come near to, and how far the gland "
-                "and its tip would be off; written as map.csv and into the report");
+                "Also insert a needle through each hole of the template: print its distances from bone, urethra and "
+                "rectum, the shift of the gland and the error of the tip; also written as map.csv and into the report");
   app->add_flag("--print-schema", arguments->print_schema,
                 "Print every key of a scenario with unit, default, range and meaning");
   app->add_flag(
       "--print-tissues", arguments->print_tissues,
-      "Print the properties of every tissue with their sources: the defaults, or those of a scenario and --set");
+      "Print the properties of every tissue with their sources: the default values, or the values of a scenario and "
+      "--set");
   return {app, [arguments](Console& console) { return run_insert(*arguments, console); }};
 }
 

@@ -46,7 +46,7 @@ Result<RegionNames> parse_regions(const std::vector<std::string>& arguments) {
                          "Write e.g. --region 'PTV 1=prostate'");
     }
     if (!regions.emplace(argument.substr(0, split), argument.substr(split + 1)).second) {
-      return input_error(fmt::format("--region {}", argument), "the name is given twice", "Give each name once");
+      return input_error(fmt::format("--region {}", argument), "this name is given twice", "Give each name only once");
     }
   }
   return regions;
@@ -86,7 +86,7 @@ Result<MeshedAnatomy> model_of(const LabelImage& image, const MeshArguments& arg
 /// A mesh from a file is used without changes, but its regions may get other names.
 Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& arguments, const MeshOptions& options,
                                Console&) {
-  constexpr const char* kind = "a tetrahedral mesh, which is taken as it is";
+  constexpr const char* kind = "a tetrahedral mesh, which is used without changes";
   if (arguments.nodes > 0) return pointless(arguments, "--nodes", kind);
   if (!arguments.preset.empty()) return pointless(arguments, "--preset", kind);
   if (arguments.cull_mm >= 0) return pointless(arguments, "--cull", kind);
@@ -94,7 +94,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (!arguments.skip.empty()) return pointless(arguments, "--skip", kind);
 
   auto out = take_mesh(mesh, options.regions, arguments.input);
-  if (out) out->report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
+  if (out) out->report.notes.emplace_back("the tetrahedral mesh was checked and converted without changes");
   return out;
 }
 
@@ -102,7 +102,7 @@ Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshA
                                Console&) {
   return input_error(
       arguments.input,
-      fmt::format("{} triangulated surface{}; surfaces are not meshed", surfaces.size(),
+      fmt::format("the file contains {} triangulated surface{}; surfaces are not meshed", surfaces.size(),
                   surfaces.size() == 1 ? "" : "s"),
       "Give contours (DICOM RTSTRUCT, contour JSON), a label mask (NIfTI, NRRD, MetaImage, DICOM SEG) or a "
       "tetrahedral mesh");
@@ -149,14 +149,15 @@ Result<> run_mesh(const MeshArguments& arguments, Console& console) {
 Command add_mesh_command(CLI::App& program) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App* app = program.add_subcommand(
-      "mesh", "Turn contours or a label mask into tetrahedra; or check and convert a tetrahedral mesh");
+      "mesh", "Mesh contours or a label mask with tetrahedra, or check and convert a tetrahedral mesh");
   app->add_option("INPUT", arguments->input,
                   "Contours (DICOM RTSTRUCT or a folder with one, contour JSON), label mask (NIfTI, NRRD, MetaImage, "
                   "DICOM SEG) or "
                   "tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
       ->required();
   app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.vtu")->required();
-  app->add_option("--nodes", arguments->nodes, "Number of nodes, hit within 3 % (default: the preset's)")
+  app->add_option("--nodes", arguments->nodes,
+                  "Number of nodes; the mesh has this number within 3 % (default: the number of the preset)")
       ->type_name("N")
       ->check(whole_number_between(kFewestNodes, kMostNodes));
   app->add_option("--preset", arguments->preset,
@@ -164,27 +165,27 @@ Command add_mesh_command(CLI::App& program) {
       ->type_name("standard|paper")
       ->check(one_of({"standard", "paper"}));
   app->add_option("--scale", arguments->scale,
-                  "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
+                  "Unit of length of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")
       ->check(number_between(1e-6, 1e6, "mm"));
   add_volume_option(*app, arguments->volume);
   app->add_option("--region", arguments->regions,
                   "Take the structure, label or region NAME as CANONICAL, e.g. 'PTV 1=prostate' or 2=prostate; may be "
-                  "repeated; those not named are recognised by their names")
+                  "repeated; the others are recognised by their names")
       ->type_name("NAME=CANONICAL")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app->add_option("--skip", arguments->skip,
-                  "Leave out the structure or label NAME, such as one that is drawn wrongly; may be repeated")
+                  "Leave out the structure or label NAME, for example because it is drawn wrongly; may be repeated")
       ->type_name("NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app->add_option("--cull", arguments->cull_mm,
-                  "Drop contour points closer than this to the contour without them [mm] (default: 0.3)")
+                  "Drop a contour point if it is closer than this to the contour without it [mm] (default: 0.3)")
       ->type_name("MM")
       ->check(number_between(0, 5, "mm"));
   app->add_flag("--no-band", arguments->no_band,
-                "Without a pubic arch in the input: do not add the stiff band that holds the gland");
+                "Do not add the stiff band that holds the gland if the input has no pubic arch");
   return {app, [arguments](Console& console) { return run_mesh(*arguments, console); }};
 }
 

@@ -45,11 +45,12 @@ Result<> run_phantom(const PhantomArguments& arguments, Console& console) {
 
 Command add_phantom_command(CLI::App& program) {
   auto arguments = std::make_shared<PhantomArguments>();
-  CLI::App* app = program.add_subcommand("phantom", "Write the demo patient: contours as DICOM RTSTRUCT and as JSON");
+  CLI::App* app =
+      program.add_subcommand("phantom", "Write the contours of the demo patient as DICOM RTSTRUCT and as JSON");
   app->add_option("-o,--output", arguments->folder, "Folder to write phantom.dcm and phantom.json into")
       ->type_name("CASE/")
       ->required();
-  app->add_option("--seed", arguments->seed, "Vary the anatomy; 0 is the reference patient")
+  app->add_option("--seed", arguments->seed, "Number that varies the anatomy; 0 is the reference patient")
       ->type_name("N")
       ->check(whole_number_between(0, std::numeric_limits<long long>::max()))
       ->capture_default_str();

@@ -48,8 +48,8 @@ Result<std::filesystem::path> output_file(const PrepareArguments& arguments) {
 
 Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   if (is_hdf5_file(arguments.scenario)) {
-    return input_error(arguments.scenario, "this is an HDF5 file, a scenario (TOML) is expected",
-                       "Name the scenario that the model is to be made of");
+    return input_error(arguments.scenario, "this is an HDF5 file; a scenario (TOML) is expected",
+                       "Give the scenario from which the model is to be made");
   }
   const auto file = output_file(arguments);
   if (!file) return file.error();
@@ -70,8 +70,8 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
   facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {}", model.mesh().node_count(), model.mesh().tet_count(),
                                 to_string(model.tissue().element())));
   facts.add("corridor", fmt::format("{} nodes", model.tissue().corridor().size()));
-  facts.add("took", fmt::format("{:.1f} s to mesh, {:.1f} s to compile (factor {:.1f} s), {:.1f} s to save; {:.0f} MB "
-                                "of memory",
+  facts.add("time", fmt::format("{:.1f} s to mesh, {:.1f} s to compile ({:.1f} s of it to factorise the stiffness), "
+                                "{:.1f} s to save; {:.0f} MB of memory",
                                 prepared->mesh_s, prepared->model_s, statistics.factor_seconds, save_s, peak_mb()));
   facts.add("file", fmt::format("{:.0f} MB", megabytes));
   console.say(fmt::format("{} → {}", arguments.scenario, output.string()));
@@ -97,11 +97,11 @@ Result<> run_prepare(const PrepareArguments& arguments, Console& console) {
 
 Command add_prepare_command(CLI::App& program) {
   auto arguments = std::make_shared<PrepareArguments>();
-  CLI::App* app = program.add_subcommand(
-      "prepare", "Mesh and compile a scenario and save the model: from then on it starts in seconds");
+  CLI::App* app =
+      program.add_subcommand("prepare", "Mesh and compile a scenario and save the model, which then starts in seconds");
   app->add_option("SCENARIO", arguments->scenario, "Scenario file (TOML)")->type_name("SCENARIO.toml")->required();
   app->add_option("-o,--output", arguments->output,
-                  "Model to write, or a folder: `stylet serve --models` finds it there")
+                  "Model to write, or a folder in which `stylet serve --models` finds the model")
       ->type_name("MODEL.stylet")
       ->required();
   app->add_option("--set", arguments->settings,

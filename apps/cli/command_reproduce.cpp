@@ -50,11 +50,13 @@ Result<> run_reproduce(const ReproduceArguments& arguments, Console& console) {
 Command add_reproduce_command(CLI::App& program) {
   auto arguments = std::make_shared<ReproduceArguments>();
   CLI::App* app = program.add_subcommand(
-      "reproduce", "Make the figures and numbers of Goksel et al. 2005 again, this program's own beside them");
-  app->add_option("-o,--output", arguments->output, "Folder for the page and its numbers")
+      "reproduce",
+      "Reproduce the figures and numbers of Goksel et al. 2005, beside the results of this program's default");
+  app->add_option("-o,--output", arguments->output, "Folder for the page and the numbers")
       ->type_name("OUT/")
       ->required();
-  app->add_flag("--quick", arguments->quick, "Fewer sizes and repeats, one shorter insertion: under a minute");
+  app->add_flag("--quick", arguments->quick,
+                "Use fewer sizes and repeats and one shorter insertion; takes less than a minute");
   return {app, [arguments](Console& console) { return run_reproduce(*arguments, console); }};
 }
 

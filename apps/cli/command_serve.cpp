@@ -90,12 +90,13 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
       auto cases = cases_in(input, arguments, console);
       if (cases.empty())
         return input_error(input, "there is no scenario (.toml) and no saved model (.stylet) in this folder",
-                           "Name a folder with some, or a file");
+                           "Give a folder that contains scenarios or saved models, or give a file");
       std::move(cases.begin(), cases.end(), std::back_inserter(session.cases));
     } else if (is_hdf5_file(input) && !is_meant_as_model(input)) {
       const fs::path file = fs::absolute(input);
       if (file.filename() != "run.h5")
-        return input_error(input, "a recording is a folder with a run.h5", "Name the run.h5 in its folder");
+        return input_error(input, "a recording is a folder that contains a file run.h5",
+                           "Give the run.h5 in its folder");
       session.archive = file.parent_path().parent_path();
       session.replay = file.parent_path().filename().string();
     } else {
@@ -156,9 +157,10 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
   const std::string limit =
       arguments.keep_GB > 0.0
-          ? fmt::format("They may take {:g} GB together, then the oldest are removed (--keep).", arguments.keep_GB)
-          : "They may take all of the disk (--keep 0).";
-  console.say(fmt::format("Recordings go to {}. {}", recordings, limit));
+          ? fmt::format("The oldest recordings are removed when all together take more than {:g} GB (--keep).",
+                        arguments.keep_GB)
+          : "Recordings may fill the disk (--keep 0).";
+  console.say(fmt::format("Recordings are written to {}. {}", recordings, limit));
   if (arguments.no_token) console.warn("Every user of this machine can open this address and move the needle.");
   if (!igtl->warning.empty()) console.warn(igtl->warning);
   if (igtl->companion) console.say(igtl->said);
@@ -166,7 +168,7 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   if (igtl->companion) json["igtl"] = igtl->json;
   if (auto said = console.write_json(json); !said) return said;
   end.wait();
-  console.say("Ending; the recording is being closed.");
+  console.say("Closing the recording, then the program ends.");
   (*server)->stop();
   return Ok{};
 }
@@ -176,40 +178,40 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
 Command add_serve_command(CLI::App& program) {
   auto arguments = std::make_shared<ServeArguments>();
   CLI::App* app = program.add_subcommand(
-      "serve", "Take the needle in your hand: a live simulation that a browser shows. Not a medical device");
-  app->add_option(
-         "INPUT", arguments->inputs,
-         "Scenario files (TOML), models that `stylet prepare` saved, folders of such files, or the run.h5 of a "
-         "recording to replay")
+      "serve", "Run a live simulation in which you move the needle in a browser. Not a medical device");
+  app->add_option("INPUT", arguments->inputs,
+                  "Scenario files (TOML), models saved by `stylet prepare`, folders of such files, or the run.h5 of a "
+                  "recording to replay")
       ->type_name("SCENARIO.toml")
       ->required();
-  app->add_option("--port", arguments->port, "Port to listen on; 0: any that is free")
+  app->add_option("--port", arguments->port, "Port to listen on; 0 chooses a free port")
       ->capture_default_str()
       ->type_name("P")
       ->check(whole_number_between(0, 65535));
   app->add_option("--address", arguments->address,
-                  "Address to listen on. By default this machine only; 0.0.0.0: every network it is in")
+                  "Address to listen on; the default serves this machine only, 0.0.0.0 every network of this machine")
       ->capture_default_str()
       ->type_name("IP");
   app->add_option("--token", arguments->token,
-                  "Token that viewers must know (default: a random one); better in the environment, where other users "
-                  "of this machine cannot read it")
+                  "Token that viewers must know (default: a random token); safer in the environment variable, which "
+                  "other users of this machine cannot read")
       ->envname("STYLET_TOKEN")
       ->type_name("TEXT");
   app->add_flag("--no-token", arguments->no_token,
-                "Let every user of this machine in without a token, for example where nobody else can log in");
+                "Let every user of this machine open the page without a token, for example where nobody else can log "
+                "in");
   app->add_option("-o,--output", arguments->recordings, "Folder for the recordings, one for each insertion")
       ->capture_default_str()
       ->type_name("OUT/");
   app->add_option(
          "--keep", arguments->keep_GB,
-         "Gigabytes that recordings may take together; the oldest are removed when they take more. 0: no limit")
+         "Gigabytes that all recordings may take together; the oldest are removed when they take more; 0 sets no limit")
       ->capture_default_str()
       ->type_name("GB")
       ->check(CLI::Range(0.0, 1e6));
   app->add_option("--models", arguments->models,
                   "Folder in which compiled models are kept, so that a case opens at once the next time (default: "
-                  "~/.cache/stylet/models); \"\": nowhere")
+                  "~/.cache/stylet/models); \"\" keeps none")
       ->type_name("MODELS/");
   app->add_option("--set", arguments->settings,
                   "Set a key of the scenarios, e.g. --set mesh.nodes=5000; may be repeated")

@@ -49,7 +49,7 @@ std::string list_text() {
   Table table({"id", "group", "quick", "claim"});
   for (const RowSpec& row : validate::all_rows())
     table.row({row.id, to_string(row.group), row.quick ? "yes" : "no", row.claim});
-  table.row({"sensitivity", "", "yes", "what to measure: how the outputs move with each parameter (--sensitivity)"});
+  table.row({"sensitivity", "", "yes", "study of how the outputs change with each parameter (--sensitivity)"});
   return table.text();
 }
 
@@ -91,8 +91,8 @@ std::string sensitivity_text(const validate::Sensitivity& study) {
   Table table(lines.front());
   for (std::size_t i = 1; i < lines.size(); ++i) table.row(lines[i]);
   return fmt::format(
-             "{}; each parameter moved by {:.0f} %, change of peak force, shift of the target and deflection of "
-             "the tip (base: {:.3g} N, {:.3g} mm, {:.3g} mm)\n",
+             "{}: each parameter is changed by {:.0f} %; the table shows the change of the peak force, of the shift of "
+             "the target and of the deflection of the tip (unchanged parameters: {:.3g} N, {:.3g} mm, {:.3g} mm)\n",
              study.scenario, 100.0 * study.change, study.base.peak_axial_N, study.base.target_shift_mm,
              study.base.tip_deflection_mm) +
          table.text();
@@ -104,12 +104,13 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
     return console.write_json(list_json());
   }
   if (arguments.output.empty())
-    return input_error("validate", "no folder for the page is given", "Name one with -o, or --list the rows");
+    return input_error("validate", "no folder for the page is given",
+                       "Give a folder with -o, or list the rows with --list");
   const fs::path folder = arguments.output;
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
   if (!arguments.data.empty() && !fs::is_directory(arguments.data))
     return input_error("--data", fmt::format("'{}' is not a folder", arguments.data),
-                       "Name the folder of the shared data");
+                       "Give the folder of the shared data");
   validate::ValidateOptions options;
   options.quick = arguments.quick;
   options.sensitivity = arguments.sensitivity;
@@ -132,7 +133,7 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
   if (Result<> json = console.write_json(Json::parse(validate::validation_json(*validation))); !json) return json;
   for (const Row& row : validation->rows) {
     if (row.verdict == Verdict::crashed)
-      return failure("row " + row.spec.id, row.note(), "The other rows were measured");
+      return failure("row " + row.spec.id, row.note(), "See the page for the other rows, which were measured");
   }
   return Ok{};
 }
@@ -142,19 +143,22 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
 Command add_validate_command(CLI::App& program) {
   auto arguments = std::make_shared<ValidateArguments>();
   CLI::App* app = program.add_subcommand(
-      "validate", "Check the model against analysis, independent code and published measurements");
-  app->add_option("-o,--output", arguments->output, "Folder for the page and its numbers")->type_name("OUT/");
-  app->add_option("--only", arguments->only, "Measure these rows only (--list has their names)")
+      "validate", "Compare the model with analytical solutions, independent code and published measurements");
+  app->add_option("-o,--output", arguments->output, "Folder for the page and the numbers")->type_name("OUT/");
+  app->add_option("--only", arguments->only, "Measure these rows only (--list prints their names)")
       ->type_name("ID")
       ->expected(1, -1);
-  app->add_option("--data", arguments->data,
-                  "Folder of the shared data (default: $STYLET_SHARED_DATA, or ../shared/data); rows that need it are "
-                  "skipped without it")
+  app->add_option(
+         "--data", arguments->data,
+         "Folder of the shared data (default: $STYLET_SHARED_DATA, or ../shared/data); without this folder the "
+         "rows that need it are skipped")
       ->type_name("FOLDER");
-  app->add_flag("--quick", arguments->quick, "Only rows that take a few seconds at the most: under a minute");
+  app->add_flag("--quick", arguments->quick,
+                "Measure only rows that take at most a few seconds; takes less than a minute in all");
   app->add_flag("--list", arguments->list, "List the rows and do nothing else");
-  app->add_flag("--sensitivity", arguments->sensitivity,
-                "Also: how peak force, shift of the target and deflection of the tip move with each parameter");
+  app->add_flag(
+      "--sensitivity", arguments->sensitivity,
+      "Also measure how peak force, shift of the target and deflection of the tip change with each parameter");
   return {app, [arguments](Console& console) { return run_validate(*arguments, console); }};
 }
 

@@ -34,7 +34,7 @@ Description describe(const TetMesh& mesh) {
   facts.add("extent", extent_text(box) + " mm");
   facts.add("edges", fmt::format("{:.2f} … {:.2f} mm", quality.edge_mm.min, quality.edge_mm.max));
   facts.add("dihedral angles", fmt::format("{:.1f}° … {:.1f}°", quality.dihedral_deg.min, quality.dihedral_deg.max));
-  facts.add("radius ratio", fmt::format("≥ {:.3f} (1: regular)", quality.radius_ratio_min));
+  facts.add("radius ratio", fmt::format("≥ {:.3f} (1 for a regular tetrahedron)", quality.radius_ratio_min));
   out.text = facts.text() + "\n\n" + table.text();
   if (const std::string flat = nearly_flat_warning(mesh); !flat.empty()) out.warnings.push_back(flat);
   out.json["warnings"] = out.warnings;

@@ -37,8 +37,8 @@ Description describe(const ModelFile& file) {
   facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {}", file.mesh.node_count(), file.mesh.tet_count(),
                                 fmt::join(file.mesh.regions, ", ")));
   facts.add("element", file.element);
-  facts.add("insertions", fmt::format("{}, {} of them recorded", file.motions.size(), recorded));
-  facts.add("compliance", fmt::format("of {} nodes, {:.0f} MB in memory", file.corridor.size(), store_mb));
+  facts.add("insertions", fmt::format("{}, {} of them with a recorded motion", file.motions.size(), recorded));
+  facts.add("compliance", fmt::format("{} nodes, {:.0f} MB in memory", file.corridor.size(), store_mb));
   out.text = facts.text();
   for (const std::string& note : file.notes) out.text += "\n  note: " + note;
   return out;

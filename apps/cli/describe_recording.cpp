@@ -84,13 +84,13 @@ Description describe(const RunRecording& run) {
   facts.add("made by", "stylet " + run.info.version);
   facts.add("scenario", run.info.scenario_name);
   facts.add("method", run.info.method);
-  facts.add("state", finished ? "finished" : "unfinished: still running, or stopped on the way");
+  facts.add("state", finished ? "finished" : "unfinished: the insertion is still running or was interrupted");
   facts.add("mesh", fmt::format("{} nodes, {} tetrahedra, {} regions", run.mesh.node_count(), run.mesh.tet_count(),
                                 run.mesh.regions.size()));
   facts.add("steps", fmt::format("{}{}, {:.2f} s simulated, {} frames", step_count,
                                  at_rest > 0 ? fmt::format(", {} of them at rest", at_rest) : "", duration_s,
                                  run.frames.size()));
-  facts.add("deepest", fmt::format("{:.1f} mm", peaks.depth_mm));
+  facts.add("largest base depth", fmt::format("{:.1f} mm", peaks.depth_mm));
   facts.add("peak force", fmt::format("axial {:.2f} N, sagittal {:.2f} N, lateral {:.2f} N", peaks.axial_N,
                                       peaks.sagittal_N, peaks.lateral_N));
   out.text = facts.text();

@@ -48,11 +48,11 @@ std::string LinkCompanion::why_no_pose() const {
   const igtl::LinkState state = link_->state();
   if (state.connections == 0)
     return settings_.role == igtl::Role::server
-               ? fmt::format("nobody is connected to port {}", state.port)
+               ? fmt::format("no client is connected to port {}", state.port)
                : fmt::format("no connection to {}:{}", bracketed(settings_.host), state.port);
-  if (state.poses + state.unusable == 0) return fmt::format("no {} has come yet", settings_.input);
-  if (!state.tracked) return fmt::format("no {} comes that can be used", settings_.input);
-  return fmt::format("no new {} comes", settings_.input);
+  if (state.poses + state.unusable == 0) return fmt::format("no {} has been received yet", settings_.input);
+  if (!state.tracked) return fmt::format("no usable {} is received", settings_.input);
+  return fmt::format("no new {} is received", settings_.input);
 }
 
 void LinkCompanion::show(const serve::Scene& scene) {
@@ -103,7 +103,7 @@ Result<> read_place(const std::string& option, const std::string& text, igtl::Li
   } else if (colon != std::string::npos && text.back() != ']') {
     host = text.substr(0, colon);
     port = text.substr(colon + 1);
-    if (host.empty() || port.empty()) return wrong("there is nothing on one side of the colon");
+    if (host.empty() || port.empty()) return wrong("one side of the colon is empty");
   }
   if (host.empty() && !server) return wrong("there is no host");
   if (port.empty() && server) return wrong("there is no port");
@@ -132,8 +132,8 @@ Result<IgtlCompanion> open_igtl(const IgtlArguments& arguments) {
   const bool has_hand = arguments.hand == "igtl";
   if (!listens && arguments.connect.empty()) {
     if (!has_hand) return IgtlCompanion{};
-    return input_error("--hand igtl", "there is no OpenIGTLink to take the hand from",
-                       "Give --igtl PORT (18944 is usual) or --igtl-connect HOST as well");
+    return input_error("--hand igtl", "there is no OpenIGTLink connection from which to take the hand's pose",
+                       "Give --igtl PORT (usually 18944) or --igtl-connect HOST as well");
   }
   igtl::LinkSettings settings;
   settings.role = listens ? igtl::Role::server : igtl::Role::client;
@@ -152,8 +152,8 @@ Result<IgtlCompanion> open_igtl(const IgtlArguments& arguments) {
   made.said = fmt::format("OpenIGTLink: {} {}{}.", listens ? "listening at" : "connecting to", place,
                           has_hand ? "; the needle follows " + settings.input : "");
   if (listens && !this_machine_only(settings.host))
-    made.warning = fmt::format("OpenIGTLink has no password: whoever reaches {} sees the simulation{}", place,
-                               has_hand ? " and can move the needle" : "");
+    made.warning = fmt::format("OpenIGTLink has no password: everyone who can connect to {} sees the simulation{}.",
+                               place, has_hand ? " and can move the needle" : "");
   made.companion = std::move(companion);
   return made;
 }

@@ -7,15 +7,18 @@ namespace stylet::cli {
 void add_igtl_options(CLI::App& app, IgtlArguments& arguments) {
   CLI::Option* listen =
       app.add_option("--igtl", arguments.listen,
-                     "Show the simulation to programs that speak OpenIGTLink, such as 3D Slicer: port "
-                     "(18944 is usual) to listen on, of this machine only unless an address is given")
+                     "Send the simulation to programs that speak OpenIGTLink, such as 3D Slicer; PORT is the port to "
+                     "listen on (usually 18944), for this machine only unless an address is given")
           ->type_name("[IP:]PORT");
-  app.add_option("--igtl-connect", arguments.connect,
-                 "The same, but connect to such a program, such as PLUS, and again whenever it comes back")
+  app.add_option(
+         "--igtl-connect", arguments.connect,
+         "Send the simulation to an OpenIGTLink server, such as PLUS: connect to it, and reconnect whenever the "
+         "connection is lost")
       ->type_name("HOST[:PORT]")
       ->excludes(listen);
   app.add_option("--hand", arguments.hand,
-                 "Who moves the needle: page, or igtl: the transform HandleToReference that comes over OpenIGTLink")
+                 "Source of the needle's motion: page, or igtl for the transform HandleToReference received over "
+                 "OpenIGTLink")
       ->capture_default_str()
       ->type_name("WHO")
       ->check(one_of({"page", "igtl"}));

@@ -32,7 +32,7 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
       ->type_name("FILE")
       ->group(group);
   app.add_flag("--quiet", common.quiet, "Print warnings and errors only")->group(group);
-  app.add_flag("--verbose", common.verbose, "Print more about what is done")->group(group);
+  app.add_flag("--verbose", common.verbose, "Print more details of the work")->group(group);
   app.add_option("--threads", common.threads, "Use at most N threads (default: one per core)")
       ->type_name("N")
       ->check(whole_number_between(1, 1024))
@@ -50,7 +50,7 @@ int run(int argc, char** argv, Console& console) {
   CLI::App program("Real-time simulation of a flexible needle in soft tissue. Not a medical device.", "stylet");
   program.set_version_flag("--version", std::string("stylet ") + version());
   program.require_subcommand(1);
-  program.footer("Exit status: 0 done, 1 the run failed, 2 the input or the command line was wrong.");
+  program.footer("Exit status: 0 success, 1 the run failed, 2 the input or the command line was wrong.");
 
   CommonOptions common;
   const std::array commands{add_phantom_command(program), add_mesh_command(program),     add_info_command(program),

@@ -37,18 +37,17 @@ std::string map_text(const HoleMap& map) {
   }
   std::string text =
       fmt::format(
-          "Map of the template, before the needle (all in mm; * the planned hole). {} of {} holes lead into "
-          "the gland; the straight way of the other {} misses it.\n",
+          "Map of the template, predicted before an insertion (all in mm; * marks the planned hole). {} of {} holes "
+          "lead into the gland; the straight path from the other {} misses it.\n",
           map.holes.size(), map.columns.size() * map.rows.size(), map.missing) +
       table.text() +
-      "\n\n  to bone, urethra, rectum: between the needle's surface on its straight way and the structure; 0 is "
-      "through "
-      "it"
-      "\n  shift: how far the gland as a whole has moved just before its capsule breaks, and at most on the way in"
-      "\n  tip error: from where the tip was to be in the tissue at its deepest to where it is";
+      "\n\n  to bone, urethra, rectum: distance between the needle's surface on its straight path and the structure; 0 "
+      "means that the path goes through the structure"
+      "\n  shift: displacement of the gland as a whole just before its capsule breaks, and its maximum during insertion"
+      "\n  tip error: distance in the tissue between the planned and the actual position of the tip at its deepest";
   for (const Spared structure : missing_structures(map))
     text += fmt::format("\n  There is no {} in this model.", to_string(structure));
-  if (!remarks.empty()) text += "\n\nRemarks" + remarks;
+  if (!remarks.empty()) text += "\n\nRemarks on single holes" + remarks;
   return text + "\n\nNot a medical device: do not plan or judge a treatment by this map.";
 }
 

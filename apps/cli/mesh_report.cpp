@@ -17,12 +17,12 @@ std::string report_text(const MeshReport& report) {
             fmt::format("{:.1f}° … {:.1f}°, {:.2f} % of the elements below 12°", quality.dihedral_deg.min,
                         quality.dihedral_deg.max, 100 * quality.fraction_below_12_deg));
   facts.add("edges", fmt::format("{:.2f} … {:.2f} mm", quality.edge_mm.min, quality.edge_mm.max));
-  facts.add("radius ratio", fmt::format("≥ {:.3f} (1: regular)", quality.radius_ratio_min));
+  facts.add("radius ratio", fmt::format("≥ {:.3f} (1 for a regular tetrahedron)", quality.radius_ratio_min));
   facts.add("surface distance",
             fmt::format("mean {:.2f} mm, largest {:.2f} mm", report.surface_mean_mm, report.surface_max_mm));
   if (report.contour_points > 0) {
     facts.add("contour points",
-              fmt::format("{}, {} left after culling", report.contour_points, report.contour_points_kept));
+              fmt::format("{}, of which {} were kept", report.contour_points, report.contour_points_kept));
   }
   facts.add("time", fmt::format("{:.2f} s", report.seconds));
 

@@ -38,7 +38,7 @@ Result<> check_output_file(const fs::path& path) {
   if (path.empty()) return input_error("output file", "the name is empty", kCure);
   std::error_code code;
   if (!path.has_filename() || fs::is_directory(path, code)) {
-    return input_error(path.string(), "this is a folder, the name of a file is expected", kCure);
+    return input_error(path.string(), "this is a folder; the name of a file is expected", kCure);
   }
   const Result<> folder = check_output_folder(folder_of(path));
   if (!folder) return input_error(path.string(), folder.error().what, folder.error().cure);
@@ -49,7 +49,7 @@ Result<> make_folder(const fs::path& path) {
   std::error_code code;
   fs::create_directories(path, code);
   if (!fs::is_directory(path)) {
-    return input_error(path.string(), fmt::format("the folder cannot be made: {}", code.message()), kCure);
+    return input_error(path.string(), fmt::format("the folder cannot be created: {}", code.message()), kCure);
   }
   return Ok{};
 }
@@ -78,7 +78,7 @@ Result<> write_text_file(const fs::path& path, std::string_view text) {
   if (code) {
     const std::string reason = code.message();
     fs::remove(temporary, code);
-    return failure(path.string(), "the file cannot be put in place: " + reason, kCure);
+    return failure(path.string(), "the finished file cannot be renamed to its name: " + reason, kCure);
   }
   return Ok{};
 }

@@ -37,8 +37,7 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
   if (auto checked = check_settings(settings, file); !checked) return checked.error();
   auto recording = read_recording(file);
   if (!recording) return recording.error();
-  if (recording->steps.empty())
-    return input_error(file, "the recording ends before its first step", "Choose another one");
+  if (recording->steps.empty()) return input_error(file, "the recording contains no step", "Choose another recording");
   auto scenario = parse_scenario(recording->info.scenario_text, file + ", /scenario", settings);
   if (!scenario) return scenario.error();
   const auto start = std::chrono::steady_clock::now();
@@ -50,7 +49,7 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
   const auto& of_model = run.prepared.model->warnings();
   for (const std::string& warning : recording->info.warnings) {
     if (std::find(of_model.begin(), of_model.end(), warning) != of_model.end()) continue;
-    run.prepared.notes.push_back(settings.empty() ? warning : "Said of the recording: " + warning);
+    run.prepared.notes.push_back(settings.empty() ? warning : "Warning of the recorded run: " + warning);
   }
   run.prepared.model_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
@@ -76,10 +75,10 @@ std::string compare_forces(std::span<const Step> recorded, std::span<const Step>
     for (std::size_t c = 0; c < 3; ++c) most_N = std::max(most_N, std::abs(a[c] - b[c]));
   }
   if (differ == 0 && static_cast<std::size_t>(all.count()) == repeated.size())
-    return fmt::format("the forces of all {} steps are those of the recording, to the last bit{}", count,
+    return fmt::format("the forces of all {} steps equal the recorded forces to the last bit{}", count,
                        at_rest == 0 ? ""
-                                    : fmt::format("; {} of them were at rest, which it only counts, and stayed so to "
-                                                  "{:g} N",
+                                    : fmt::format("; for {} steps at rest, which the recording only counts, the force "
+                                                  "changed by less than {:g} N",
                                                   at_rest, kRestForce_N));
   return fmt::format("the forces of {} of {} steps differ from the recording's, first at {:.3f} s, by at most {:.3g} N",
                      differ, count, first_s, most_N);

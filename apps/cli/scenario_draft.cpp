@@ -135,7 +135,8 @@ Result<Contents> contents_of(const ContourSet& contours, const std::vector<std::
   const StructureChoice* choice = &judged->choice;
   out.kind = fmt::format("contours of {} structure{}", contours.rois.size(), contours.rois.size() == 1 ? "" : "s");
   out.about_regions =
-      "What each structure is taken as. Change a region here, or write skip = [\"NAME\"] above to leave one out.";
+      "The region that each structure is taken as. Change a region here, or write skip = [\"NAME\"] above to leave a "
+      "structure out.";
   out.remarks = contours.notes;
   for (const JudgedStructure& structure : judged->structures) {
     if (!structure.is_used()) continue;
@@ -146,8 +147,9 @@ Result<Contents> contents_of(const ContourSet& contours, const std::vector<std::
   }
   out.left_out = choice->left_out;
   if (!choice->has_target) {
-    out.warnings.emplace_back("no structure is recognised as the gland: say which one it is below [patient.regions]");
-    out.about_regions = "No structure is recognised as the gland. Say which one it is: \"NAME\" = \"prostate\"";
+    out.warnings.emplace_back(
+        "No structure is recognised as the gland: name the gland's structure below [patient.regions]");
+    out.about_regions = "No structure is recognised as the gland. Name the gland's structure: \"NAME\" = \"prostate\"";
     for (const StructureUse& other : choice->uses) {
       if (other.region.empty()) out.regions.push_back({other.name, "", other.why});
     }
@@ -184,9 +186,10 @@ Result<Contents> contents_of(const LabelImage& image, const std::vector<std::str
   out.kind = fmt::format("label mask with {} label{}", sizes.size(), sizes.size() == 1 ? "" : "s");
   out.about_regions =
       choice->has_target
-          ? "What each label is taken as."
-          : "No label is known to be the gland: all labels together count as it. Where you know what they are, "
-            "take the # away and say so, for example \"peripheral_zone\", \"transition_zone\" or \"prostate\".";
+          ? "The region that each label is taken as."
+          : "No label is recognised as the gland, therefore all labels together are taken as the gland. If you know "
+            "what a label is, remove the # and write its region, for example \"peripheral_zone\", \"transition_zone\" "
+            "or \"prostate\".";
   for (const StructureUse& use : choice->uses) {
     const LabelSize& size = sizes[use.number];
     if (use.region.empty()) continue;
@@ -202,9 +205,10 @@ Result<Contents> contents_of(const LabelImage& image, const std::vector<std::str
 
 Result<Contents> contents_of(const TetMesh& mesh, const std::vector<std::string>& /*skip*/) {
   Contents out;
-  out.kind = fmt::format("tetrahedral mesh of {} nodes, used as it is", mesh.node_count());
+  out.kind = fmt::format("tetrahedral mesh of {} nodes, used without changes", mesh.node_count());
   out.about_regions =
-      "What each region of the mesh is. A name of one's own is fine: it has the tissue of the surroundings.";
+      "The region that each region of the mesh is taken as. You may use any other name: such a region has the tissue "
+      "parameters of the surroundings.";
   std::set<std::string> taken(mesh.regions.begin(), mesh.regions.end());
   std::vector<double> volume(mesh.regions.size(), 0.0);
   std::vector<Eigen::AlignedBox3d> box(mesh.regions.size());
@@ -225,8 +229,9 @@ Result<Contents> contents_of(const TetMesh& mesh, const std::vector<std::string>
     out.regions.push_back({name, region, size_text(volume[r]) + (known ? "" : "; name not recognised")});
   }
   if (!has_target) {
-    out.warnings.emplace_back("no region of the mesh is the gland: its motion is not told");
-    out.about_regions += " None is recognised as the gland: write \"prostate\" behind the one that is.";
+    out.warnings.emplace_back("No region of the mesh is the gland, so the motion of the gland is not computed");
+    out.about_regions +=
+        " No region is recognised as the gland: write \"prostate\" behind the region that is the gland.";
   }
   return out;
 }
@@ -236,7 +241,7 @@ Result<Contents> contents_of(const std::vector<Surface>& surfaces, const std::ve
   out.kind = fmt::format("{} triangulated surface{}", surfaces.size(), surfaces.size() == 1 ? "" : "s");
   out.warnings.emplace_back(
       "surfaces are not meshed: give contours, a label mask or a tetrahedral mesh of the same patient as source");
-  out.about_regions = "What each surface would be taken as.";
+  out.about_regions = "The region that each surface would be taken as.";
   for (const Surface& surface : surfaces) {
     Eigen::AlignedBox3d box;
     for (const Vec3& p : surface.points) box.extend(p);
@@ -284,8 +289,8 @@ std::string regions_text(const Contents& contents) {
 
 std::string patient_text(const Contents& contents, const DraftSource& source) {
   std::string out = fmt::format("\n[patient]\nsource = {}  # {}\n", toml_text(source.source), contents.kind);
-  if (source.scale > 0.0) out += fmt::format("scale = {}  # mm, length of the file's unit\n", source.scale);
-  if (source.volume > 0) out += fmt::format("volume = {}  # of the volumes in the file\n", source.volume);
+  if (source.scale > 0.0) out += fmt::format("scale = {}  # length of the file's unit [mm]\n", source.scale);
+  if (source.volume > 0) out += fmt::format("volume = {}  # number of the volume in the file, from 1\n", source.volume);
   for (const std::string& remark : contents.remarks) out += comment(remark);
   if (!contents.skip.empty()) {
     out += comment("Left out:");
@@ -301,9 +306,9 @@ std::string patient_text(const Contents& contents, const DraftSource& source) {
 std::string needle_text() {
   return '\n' +
          comment(
-             "An 18 gauge needle. Its bevel deflects it to the patient's left; roll_deg below [[insertion]] turns "
-             "it.") +
-         "[needle]\nbevel_deg = 20\n\n" + comment("The template's hole holds the needle sideways.") +
+             "An 18 gauge needle. Its bevel deflects the needle to the patient's left; roll_deg below [[insertion]] "
+             "turns the bevel.") +
+         "[needle]\nbevel_deg = 20\n\n" + comment("The hole of the template holds the needle sideways.") +
          "[template]\nguide = true\n";
 }
 
@@ -313,11 +318,11 @@ std::string insertion_text(const Contents& contents) {
   const std::string where = hole.left_mm > 0.0
                                 ? fmt::format("hole {} is {:g} mm to the patient's left of the middle of {} (hole D4)",
                                               hole.name, hole.left_mm, centre)
-                                : fmt::format("hole {} stands before the middle of {}", hole.name, centre);
+                                : fmt::format("hole {} is in front of the middle of {}", hole.name, centre);
   return '\n' +
          comment(fmt::format(
-             "One needle through the template, straight to superior: {}. Without depth_mm it goes to the far "
-             "end of the gland. Repeat the table for more needles.",
+             "One needle through the template, straight to superior: {}. Without depth_mm the tip goes to the far end "
+             "of the gland. Repeat the table [[insertion]] for more needles.",
              where)) +
          fmt::format("[[insertion]]\nhole = \"{}\"\n#depth_mm = 60\n#speed_mm_per_s = 20", hole.name);
 }

@@ -63,7 +63,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program) {
   if (!words.empty()) {
     what = explain_word(program, app, words);
   } else if (&app == &program && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    what = fmt::format("no command given; there are {}", fmt::join(command_names(program), ", "));
+    what = fmt::format("no command given; the commands are {}", fmt::join(command_names(program), ", "));
   } else {
     what = error.what();
   }

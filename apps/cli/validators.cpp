@@ -56,7 +56,7 @@ CLI::Validator one_of(std::vector<std::string> words) {
 
 void add_volume_option(CLI::App& app, int& volume) {
   app.add_option("--volume", volume,
-                 "Which volume of a mask file that holds several, counted from 1 (default: the only one)")
+                 "Number of the volume, from 1, in a mask file that contains several (default: the only volume)")
       ->type_name("N")
       ->check(whole_number_between(1, 1'000'000));
 }

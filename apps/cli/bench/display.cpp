@@ -11,7 +11,8 @@ namespace stylet::cli {
 Result<> bench_display_command(const BenchArguments& arguments, Console& console) {
   measure::DisplayBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked = check_nodes("display", options.largest, 570, "570 nodes is the coarsest mesh it is measured on");
+  if (auto checked = check_nodes("display", options.largest, 570,
+                                 "Give 570 or more, the nodes of the coarsest mesh that is measured");
       !checked)
     return checked;
   const auto rows = measure::bench_display(options, console.progress());
@@ -66,14 +67,14 @@ Result<> bench_display_command(const BenchArguments& arguments, Console& console
   }
   json["machine"] = machine_json();
   console.say(
-      "Pictures of the deformed patient along an insertion: processor time of all surfaces, of a slice and of both, "
-      "median and largest;\n"
-      "fine: points of surfaces that are finer along the needle's way; near: the needle's near field at these; solve: "
-      "of "
-      "the same by the factor; moved: the largest displacement; error: of any node in any frame against the "
-      "factor's,\n"
-      "and what was stated for those forces; coarse: the error when the coarsest mesh's displacement is shown "
-      "instead.");
+      "Pictures of the deformed patient during an insertion. Surface, slice, both: processor time of all surfaces, of "
+      "a slice and of both together, median and largest.\n"
+      "Fine: number of points of the surfaces that are refined along the needle's path. Near: time to evaluate the "
+      "needle's near field at these points.\n"
+      "Solve: time to compute the same displacement with the factorised stiffness. Moved: largest displacement.\n"
+      "Error: largest difference of any node in any picture from the displacement by the factorised stiffness. Stated: "
+      "the error bound that the program gave for these forces.\n"
+      "Coarse: error when the displacement of the coarsest mesh is shown instead.");
   console.say(table.text());
   return console.write_json(json);
 }

@@ -56,7 +56,8 @@ Result<> bench_loop_command(const BenchArguments& arguments, Console& console) {
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
   if (arguments.contacts > 0) options.contacts = arguments.contacts;
   if (arguments.seconds > 0) options.seconds = arguments.seconds;
-  if (auto checked = check_nodes("loop", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("loop", options.nodes, 500,
+                                 "Give 500 or more, the nodes of the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto done = measure::bench_loop(options, console.progress());
@@ -80,7 +81,7 @@ Result<> bench_loop_command(const BenchArguments& arguments, Console& console) {
   add("step, processor time", "step_cpu_us", done->times.step_cpu);
   add("step, wall clock", "step_wall_us", done->times.step_wall);
   add("step, woken late by", "step_late_us", done->times.step_lateness);
-  add("device's turn, wall clock", "device_wall_us", done->times.device_wall);
+  add("device cycle, wall clock", "device_wall_us", done->times.device_wall);
   add("device, woken late by", "device_late_us", done->times.device_lateness);
   json["machine"] = machine_json();
   console.say(

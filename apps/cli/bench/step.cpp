@@ -34,7 +34,8 @@ Json phases_json(const std::array<double, kStepPhases>& us) {
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console) {
   measure::ScaleBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked = check_nodes("scale", options.largest, 570, "570 nodes is the mesh of Goksel et al. 2005");
+  if (auto checked =
+          check_nodes("scale", options.largest, 570, "Give 570 or more, the nodes of the mesh of Goksel et al. 2005");
       !checked)
     return checked;
   if (arguments.contacts > 0) options.contacts = {arguments.contacts};
@@ -117,17 +118,18 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
   }
   json["machine"] = machine_json();
   console.say(
-      "The demo's needle in firm tissue, 90 mm in, back and forth three times, and out: time of the steps with nearly "
-      "all contacts.\n"
-      "p50 … max: processor time of the thread; p99 / 570: against the coarsest mesh with as many contacts; all "
-      "steps, longest, over 1 ms:\n"
-      "with however many contacts, processor time; their medians: the longest when each of those is given the median "
-      "of "
-      "its repeats (--steps), which do the same work;\n"
-      "fixed work: how often arithmetic of always the same amount, some 100 µs long, done after each step, took over "
-      "1 ms; by medians: as before, of all steps;\n"
-      "before the first step: mesh from contours, factor of the stiffness, store of compliances and all else; memory: "
-      "resident then.");
+      "The needle of the demo scenario in firm tissue: 90 mm in, back and forth three times, and out. The times are of "
+      "the steps that have nearly all contacts.\n"
+      "p50 … max: processor time of the thread. p99 / 570: ratio of p99 to p99 on the coarsest mesh with as many "
+      "contacts.\n"
+      "All steps, longest, over 1 ms: processor times of all steps, with any number of contacts.\n"
+      "Their medians: the longest of the steps over 1 ms after each time was replaced by the median over the repeats "
+      "of that step (--steps), which do the same work.\n"
+      "Fixed work: after each step a fixed calculation of about 100 µs is timed; this column counts how often it took "
+      "over 1 ms.\n"
+      "By medians: the longest of all steps after each time was replaced by the median over the repeats of that step.\n"
+      "Mesh, factor, store: time before the first step, for meshing the contours, factorising the stiffness, and "
+      "computing the stored compliances with everything else. Memory: resident memory after that.");
   console.say(table.text());
   return console.write_json(json);
 }
@@ -135,7 +137,8 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
 Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
   measure::StepBenchOptions options;
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
-  if (auto checked = check_nodes("step", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("step", options.nodes, 500,
+                                 "Give 500 or more, the nodes of the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto rows = measure::bench_step(options, console.progress());
@@ -165,11 +168,12 @@ Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
   }
   json["machine"] = machine_json();
   console.say(
-      "The insertion of `bench scale`: processor time of a step with nearly all contacts; clock: by how much reading "
-      "the clock\n"
-      "in every phase makes it longer, each step the shortest of four runs with it and of four without.");
+      "Processor time of a step with nearly all contacts, in the insertion of `bench scale`. Clock: by how much a step "
+      "gets longer when the clock\n"
+      "is read in every phase; for each step the shortest of four runs with the clock and of four runs without it is "
+      "taken.");
   console.say(times.text());
-  console.say("What of it goes where, in all steps and in the slowest hundredth:");
+  console.say("Share of each phase in the processor time, over all steps and over the slowest hundredth of the steps:");
   console.say(phases.text());
   return console.write_json(json);
 }

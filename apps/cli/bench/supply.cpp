@@ -12,7 +12,8 @@ Result<> bench_supply_command(const BenchArguments& arguments, Console& console)
   measure::SupplyBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
   if (arguments.speed > 0.0) options.speeds_mm_per_s = {arguments.speed};
-  if (auto checked = check_nodes("supply", options.largest, 570, "570 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("supply", options.largest, 570,
+                                 "Give 570 or more, the nodes of the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto rows = measure::bench_supply(options, console.progress());
@@ -40,9 +41,12 @@ Result<> bench_supply_command(const BenchArguments& arguments, Console& console)
   }
   json["machine"] = machine_json();
   console.say(
-      "The demo's needle beside its planned way, where nothing was prepared, at 1 kHz on the clock, a worker thread\n"
-      "bringing compliance. Outrun: steps flagged since some was missing; force off: largest difference of the axial\n"
-      "force from a run that had all; peak: of that one's; rows: nodes the worker brought; longest: processor time.");
+      "The needle of the demo scenario moves beside its planned path, where no compliance was precomputed, at 1 kHz in "
+      "real time, while a worker thread computes the compliance.\n"
+      "Outrun: share of the steps that are flagged because some compliance was missing. Force off: largest difference "
+      "of the axial force from a run that had all compliance.\n"
+      "Peak: largest axial force of the run that had all compliance. Rows: number of nodes whose compliance the worker "
+      "computed. Longest step: in processor time.");
   console.say(table.text());
   return console.write_json(json);
 }
