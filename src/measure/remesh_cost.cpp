@@ -211,8 +211,8 @@ Result<RemeshCost> measure_remeshing(const NeedleWay& way, const RemeshCostOptio
   const detail::OneBlasThread one_thread;
   std::vector<AddedNode> nodes = nodes_along(way, options);
   if (nodes.empty()) {
-    return failure("measuring the change of the mesh", "no node can be added on the needle's way",
-                   "Choose a way through the tissue");
+    return failure("measuring the change of the mesh", "no node can be added on the needle's path",
+                   "Choose a path through the tissue");
   }
   Trial trial(way, options, std::move(nodes));
   for (int round = 0; round < options.rounds; ++round) {

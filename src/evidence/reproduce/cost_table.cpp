@@ -56,7 +56,8 @@ class Table {
     group_ = "Mesh";
     const double nodes = in_.figure6.nodes;
     const double tets = in_.figure6.tets;
-    row("nodes", "", double{stated::kNodes}, nodes, nodes, "our own anatomy, the paper’s size");
+    row("nodes", "", double{stated::kNodes}, nodes, nodes,
+        "the demo patient’s anatomy, meshed to the size of the paper’s mesh");
     row("tetrahedra", "", double{stated::kTets}, tets, tets);
     row("shortest edge", "mm", stated::kShortestEdge_mm, in_.quality.edge_mm.min, in_.quality.edge_mm.min);
     row("smallest dihedral angle", "°", stated::kSmallestDihedral_deg, in_.quality.dihedral_deg.min,
@@ -67,22 +68,25 @@ class Table {
     group_ = "Iterations of figure 6";
     row("worst iteration that changes the mesh, switches with node repositioning", "ms", 1e3 * stated::kWorstBcs_s,
         1e3 * bcs_.worst_s(true), 1e3 * ours_.worst_s(true),
-        fmt::format("ΔK up to {:g} rows here; the paper’s is its worst iteration", largest_change(bcs_)));
+        fmt::format("ΔK has up to {:g} rows here; the paper’s number is for its worst iteration",
+                    largest_change(bcs_)));
     row("worst iteration that changes the mesh, Woodbury with node addition", "ms", woodbury_stated(),
-        1e3 * woodbury_.worst_s(true), 1e3 * ours_.worst_s(true), "the paper’s is of iterations with Woodbury");
+        1e3 * woodbury_.worst_s(true), 1e3 * ours_.worst_s(true),
+        "the paper’s number is for all iterations with Woodbury");
     row("median iteration that changes the mesh, Woodbury with node addition", "ms", {}, 1e3 * woodbury_.median_s(true),
         1e3 * ours_.median_s(true));
-    row("worst iteration that leaves the mesh alone, Woodbury with node addition", "ms", {},
+    row("worst iteration that does not change the mesh, Woodbury with node addition", "ms", {},
         1e3 * woodbury_.worst_s(false), 1e3 * ours_.worst_s(false),
-        longest_is_the_last(woodbury_) ? "Woodbury: the one that puts K⁻¹ back as it was when the needle comes out"
+        longest_is_the_last(woodbury_) ? "with Woodbury this is the iteration that restores K⁻¹ when the needle comes "
+                                         "out"
                                        : "");
-    row("median iteration that leaves the mesh alone, Woodbury with node addition", "ms", {},
+    row("median iteration that does not change the mesh, Woodbury with node addition", "ms", {},
         1e3 * woodbury_.median_s(false), 1e3 * ours_.median_s(false));
     row("all iterations, switches with node repositioning", "s", {}, bcs_.total_s(), ours_.total_s(),
         fmt::format("{} iterations, {} changes of the mesh", bcs_.steps.size(), bcs_.remeshes.size()));
     row("all iterations, Woodbury with node addition", "s", {}, woodbury_.total_s(), ours_.total_s(),
-        fmt::format("{} iterations, {} changes of the mesh; ours {}", woodbury_.steps.size(), woodbury_.remeshes.size(),
-                    ours_.remeshes.size()));
+        fmt::format("{} iterations, {} changes of the mesh; the default makes {} changes", woodbury_.steps.size(),
+                    woodbury_.remeshes.size(), ours_.remeshes.size()));
   }
 
   void remeshing() {
@@ -90,29 +94,30 @@ class Table {
     const measure::RemeshCost& face = in_.on_faces;
     const measure::RemeshCost& inside = in_.inside;
     row("a node on a face, Woodbury", "ms", {}, 1e3 * face.woodbury.median_s, 1e3 * face.ours.median_s,
-        fmt::format("whole event, median of {} nodes on one way; largest {:.3g} and {:.3g} ms", face.events,
+        fmt::format("the whole change, median over {} nodes on one path; largest {:.3g} and {:.3g} ms", face.events,
                     1e3 * face.woodbury.largest_s, 1e3 * face.ours.largest_s));
     row("a node on a face, Woodbury on the whole matrix", "ms", {}, 1e3 * face.woodbury_full.median_s,
-        1e3 * face.ours.median_s, "as the paper writes it; the row above uses symmetry");
+        1e3 * face.ours.median_s, "as in the paper’s formula; the row above uses the symmetry of K⁻¹");
     row("a node on a face, switches", "ms", {}, 1e3 * face.bcs.median_s, 1e3 * face.ours.median_s,
         fmt::format("largest {:.3g} ms", 1e3 * face.bcs.largest_s));
     row("a node inside an element, Woodbury", "ms", {}, 1e3 * inside.woodbury.median_s, 1e3 * inside.ours.median_s,
-        fmt::format("the default’s rule, same {} nodes for both; largest {:.3g} and {:.3g} ms", inside.events,
-                    1e3 * inside.woodbury.largest_s, 1e3 * inside.ours.largest_s));
-    row("the same with cold caches", "ms", {}, 1e3 * inside.woodbury.median_s, 1e3 * inside.ours_cold.median_s,
-        "each of the default’s events right after an update of a full inverse");
+        fmt::format("node placed by the default’s rule, the same {} nodes for both; largest {:.3g} and {:.3g} ms",
+                    inside.events, 1e3 * inside.woodbury.largest_s, 1e3 * inside.ours.largest_s));
+    row("a node inside an element, Woodbury, with cold caches for the default", "ms", {},
+        1e3 * inside.woodbury.median_s, 1e3 * inside.ours_cold.median_s,
+        "each change by the default is measured directly after an update of a full inverse");
     row("a node inside an element, switches", "ms", {}, 1e3 * inside.bcs.median_s, 1e3 * inside.ours.median_s);
     row("Woodbury over the default, same nodes", "", {}, inside.woodbury.median_s / inside.ours.median_s, 1.0,
-        "times as long, nodes inside elements");
+        "ratio of times, nodes inside elements");
     row("Woodbury at the paper’s nodes over the default at its own", "", {},
         face.woodbury.median_s / inside.ours.median_s, 1.0,
-        "times as long: nodes on faces by Woodbury, nodes inside elements by the default");
+        "ratio of times: nodes on faces with Woodbury, nodes inside elements with the default");
     row("Woodbury over a symmetric rank-k update by BLAS", "", {}, face.woodbury_update_s / face.rank_update.median_s,
-        {}, "dsyrk of the same order and rank: how good the baseline is");
+        {}, "ratio to the time of dsyrk of the same order and rank, which shows how efficient the Woodbury update is");
     row("stiffness update alone", "µs", {}, 1e6 * face.stiffness.median_s, 1e6 * inside.hat.median_s,
-        "ΔK of the elements around a node on a face; the 3 × 3 stiffness of the new hat function");
+        "reproduced: ΔK of the elements around a node on a face; default: the 3 × 3 stiffness of the new hat function");
     row("difference between the methods’ compliances", "", {}, std::max(face.largest_error, inside.largest_error), {},
-        "relative, after all changes of the way");
+        "relative, after all changes along the path");
   }
 
   void operations() {
@@ -121,14 +126,14 @@ class Table {
     const double woodbury = paper::cost_of_woodbury(stated::kOrder, stated::kChange);
     const double seconds = 2.0 * woodbury / (stated::kFlopPerCycle * stated::kClock_Hz);
     row("multiplications, switches: 2 (3m) (3n)²", "million", 1e-6 * switches, 1e-6 * in_.counted.switches, {},
-        fmt::format("predicted by the paper’s formula, and counted, at n = {}, m = {}", stated::kNodes,
+        fmt::format("paper: from its formula; reproduced: counted; at n = {}, m = {}", stated::kNodes,
                     stated::kNodesInvolved));
     row("multiplications, Woodbury: 3m (3n)² + (3m)² 3n + 2 (3m)³", "million", 1e-6 * woodbury,
-        1e-6 * in_.counted.woodbury, {}, "likewise, the whole matrix");
-    row("time of that update, as the paper writes it, at the peak rate of the paper’s processor", "ms",
-        woodbury_stated(), 1e3 * seconds, {},
-        fmt::format("computed: {:g} GHz, one multiplication and one addition a cycle. Symmetry would make it about "
-                    "{:.1f} ms; an iteration of less than {:g} ms cannot change all of K⁻¹ either way",
+        1e-6 * in_.counted.woodbury, {}, "paper: from its formula; reproduced: counted, for the whole matrix");
+    row("time of the Woodbury update of the paper at the peak rate of the paper’s processor", "ms", woodbury_stated(),
+        1e3 * seconds, {},
+        fmt::format("computed for {:g} GHz with one multiplication and one addition per cycle. With symmetry it would "
+                    "take about {:.1f} ms; in both cases an iteration of less than {:g} ms cannot update all of K⁻¹",
                     1e-9 * stated::kClock_Hz, 0.5e3 * seconds, 1e3 * stated::kWoodburyBelow_s));
   }
 
@@ -136,12 +141,12 @@ class Table {
     group_ = "Memory and preparation";
     const Preparation& p = in_.preparation;
     row("memory of the compliance", "MB", {}, woodbury_.compliance_mb, ours_.compliance_mb,
-        fmt::format("in figure 6: K⁻¹ with room for nodes and its initial copy; blocks of K⁻¹ near the planned ways. "
-                    "Beside it each keeps the sparse factor, {:.2g} MB",
+        fmt::format("in figure 6. Woodbury: K⁻¹ with room for added nodes, and its initial copy. Default: blocks of "
+                    "K⁻¹ near the planned paths. Both also keep the sparse factor, {:.2g} MB",
                     p.factor_mb));
     row("preparing the compliance", "s", {}, p.factor_s + p.inverse_s, p.factor_s + p.store_s,
-        fmt::format("before the simulation: assembling and factorising the stiffness, {:.2g} s of either; from there "
-                    "to all of K⁻¹, or to the blocks the default holds",
+        fmt::format("before the simulation. Both include assembling and factorising the stiffness, {:.2g} s; the rest "
+                    "computes all of K⁻¹, or only the blocks that the default keeps",
                     p.factor_s));
   }
 

@@ -27,7 +27,7 @@ class Recorder {
       one(i);
       if (simulation_.last_step().tip_state != TipState::air) {
         return failure("figure 6, " + run_.variant.label, "the needle is still in the tissue at the end",
-                       "Run the same scenario with stylet insert to see why");
+                       "Run the same scenario with stylet insert to find the cause");
       }
     }
     const auto* full = dynamic_cast<const paper::InverseCompliance*>(&simulation_.insertion().compliance());

@@ -109,11 +109,11 @@ std::string in_newtons(double force) { return fmt::format("{}{:.2f} N", force < 
 std::string why_not_moved(RemeshEvent::Refused refused) {
   switch (refused) {
     case RemeshEvent::Refused::boundary:
-      return "makes the shape of an organ or of the patient";
+      return "lies on the surface of an organ or of the patient";
     case RemeshEvent::Refused::fixed:
       return "is fixed";
     case RemeshEvent::Refused::held:
-      return "is held by the needle already";
+      return "is already held by the needle";
     case RemeshEvent::Refused::contacts:
       return "has contacts interpolated around it";
     case RemeshEvent::Refused::inverts:
@@ -121,7 +121,7 @@ std::string why_not_moved(RemeshEvent::Refused refused) {
     case RemeshEvent::Refused::no:
       break;
   }
-  return "was not asked to move";
+  return "was not to be moved";
 }
 
 }  // namespace
@@ -131,14 +131,15 @@ std::string figure6_intro(const Figure6& figure) {
   for (const std::string& insertion : figure.insertions)
     insertions += "<li>" + results::html_escaped(insertion) + "</li>";
   return paragraph(fmt::format(
-             "The demo patient’s prostate and its surroundings, meshed with {} nodes and {} tetrahedra, held at its "
-             "pubic side; {}, in and out at {:g} mm/s, {:g} ms an iteration. {} variants follow exactly the same "
-             "motion of the base: the paper’s first way (boundary condition switches; a contact about every {:g} mm, "
-             "and the "
-             "node nearest to the tip is moved there), its second (Woodbury; a node is added wherever the tip enters "
-             "an element), and this program’s default for node addition (a contact about every {:g} mm, a node added "
-             "inside an element; "
-             "compliance among the points held only).",
+             "The prostate of the demo patient and its surroundings are meshed with {} nodes and {} tetrahedra and "
+             "fixed at the pubic side. The motion is that of {}, in and out at {:g} mm/s, with {:g} ms per iteration. "
+             "{} variants follow exactly the same motion of the base. The first is the paper’s first method: boundary "
+             "condition switches, with a contact about every {:g} mm, to which the nearest node is moved. The second "
+             "is "
+             "the paper’s second method: Woodbury, with a node added wherever the tip enters an element. The third is "
+             "this program’s default for node addition: a contact about every {:g} mm, for which a node is added "
+             "inside "
+             "an element; the compliance is kept only among the points held by the needle.",
              figure.nodes, figure.tets,
              figure.insertions.size() == 1 ? std::string("one needle")
                                            : fmt::format("{} needles one after the other", figure.insertions.size()),
@@ -156,7 +157,7 @@ std::string cumulative_caption(const Figure6& figure, const measure::RemeshCost&
     const std::string& label = run.variant.label;
     const auto changes = static_cast<int>(
         std::count_if(run.remeshings.begin(), run.remeshings.end(), [](int made) { return made > 0; }));
-    changing.push_back(fmt::format("{}: {} of them, median {}, worst {}, together {}", label, changes,
+    changing.push_back(fmt::format("{}: {} iterations, median {}, worst {}, together {}", label, changes,
                                    duration(run.median_s(true)), duration(run.worst_s(true)),
                                    duration(remeshing_s(run))));
     others.push_back(
@@ -166,21 +167,22 @@ std::string cumulative_caption(const Figure6& figure, const measure::RemeshCost&
     in_retraction += remeshed_in_retraction(run);
   }
   return paragraph(fmt::format(
-             "In the paper the curve of the switches climbs in big steps, one for each repositioning, and runs flat "
-             "during retraction, when the mesh stays as it is. Here the median iteration that changes the mesh takes "
-             "this many times as long as the median of those that do not: {}. {} All iterations together take {}.",
+             "In the paper the curve of the switches rises in large steps, one for each repositioning, and is flat "
+             "during retraction, when the mesh does not change. Here the ratio of the median time of iterations that "
+             "change the mesh to the median time of iterations that do not is: {}. {} All iterations together take {}.",
              list(ratios, ", "),
              in_retraction == 0 ? std::string("No mesh changes during a retraction.")
-                                : fmt::format("{} changes of the mesh fall into a retraction.", in_retraction),
+                                : fmt::format("{} changes of the mesh occur during a retraction.", in_retraction),
              list(totals, ", "))) +
-         paragraph(fmt::format("Iterations that change the mesh, the plot on the right – {}. Each of them also finds "
-                               "the balance of needle and tissue; one change of the mesh by the default takes {} by "
-                               "itself (median, measured in isolation, see the table).",
+         paragraph(fmt::format("The plot on the right shows the iterations that change the mesh. {}. Each of these "
+                               "iterations also solves for the equilibrium of needle and tissue. One change of the "
+                               "mesh by the default alone takes {} (median, measured in isolation, see the table).",
                                list(changing, "; "), duration(inside.ours.median_s))) +
-         paragraph(fmt::format("Iterations that leave the mesh alone, only in the plot on the left – {}. They find the "
-                               "balance, by the same method in every variant, and when a needle comes out they forget "
-                               "its changes of the mesh.",
-                               list(others, "; ")));
+         paragraph(
+             fmt::format("The plot on the left also contains the iterations that do not change the mesh. {}. They "
+                         "solve for the equilibrium, by the same method in every variant; the iteration in which "
+                         "a needle comes out also undoes the changes of the mesh.",
+                         list(others, "; ")));
 }
 
 std::string forces_caption(const Figure6& figure, const std::string& organ) {
@@ -210,7 +212,7 @@ std::string forces_caption(const Figure6& figure, const std::string& organ) {
   }
   return paragraph(fmt::format(
              "The paper’s curves show the contact with the skin, the penetration of the prostate, the reversal of the "
-             "force while the tissue still sticks to the needle drawn back, and the start of slip; their axes reach "
+             "force while the tissue still sticks to the retracting needle, and the start of slip; their axes reach "
              "from {} to {:g} N. Here, of {} insertions ({} by each of {} variants): contact with the skin in {}, "
              "penetration of the {} in {}, the force turned from push to pull before slip in {}, start of slip in {}.",
              fmt::format("−{:g}", -paper_numbers::kForceAxisFrom_N), paper_numbers::kForceAxisTo_N,
@@ -218,13 +220,14 @@ std::string forces_caption(const Figure6& figure, const std::string& organ) {
              penetrated, reversed, slipped)) +
          (rests.empty() ? std::string()
                         : paragraph(fmt::format(
-                              "When the needle stops at its deepest and rests, the default’s axial force goes {}. Part "
-                              "of the friction grows with speed, and a needle at rest is without it.",
+                              "While the needle rests at its deepest point, the axial force of the default changes {}. "
+                              "Part of the friction grows with speed and does not act on a needle at rest.",
                               list(rests, ", then ")))) +
-         paragraph(fmt::format("Largest axial forces: {}. Root mean square difference of the axial force from the "
-                               "default’s, in percent of its peak: {}. The variants do not hold the tissue by "
-                               "the same nodes.",
-                               list(peaks, ", "), list(differences, ", ")));
+         paragraph(
+             fmt::format("Largest axial forces: {}. Root mean square difference of the axial force from the axial "
+                         "force of the default, in percent of the default’s peak: {}. The forces differ because "
+                         "the variants do not hold the tissue by the same nodes.",
+                         list(peaks, ", "), list(differences, ", ")));
 }
 
 std::string dimensions_caption(const Figure6& figure) {
@@ -242,13 +245,14 @@ std::string dimensions_caption(const Figure6& figure) {
   const std::string made =
       fmt::format("Of {} changes made, the repositioning moved a node {} times. ", bcs.remeshes.size(), moved);
   return paragraph(fmt::format(
-             "A node that is moved changes all elements around it: {}. A node added on a face changes the two elements "
-             "that share it, at the skin the only one: {}. A node added inside an element changes that one: {}.",
+             "Order of ΔK. A node that is moved changes all elements around it: {}. A node added on a face changes the "
+             "two elements that share the face, or the only element at the skin: {}. A node added inside an element "
+             "changes this element: {}.",
              dimensions(bcs, true), dimensions(figure.run("woodbury_addition"), false),
              dimensions(figure.run("default"), false))) +
          paragraph(refused.empty() ? made
-                                   : made + fmt::format("Otherwise a node was added inside the element, since the "
-                                                        "nearest one {}.",
+                                   : made + fmt::format("Otherwise a node was added inside the element, because the "
+                                                        "nearest node {}.",
                                                         list(refused, ", or ")));
 }
 

@@ -33,12 +33,13 @@ std::string tiles(const Reproduction& r) {
               fmt::format("worst iteration that changes the mesh, by switches; the paper: {}",
                           duration(stated::kWorstBcs_s))) +
          tile(duration(woodbury.worst_s(true)),
-              fmt::format("the same by Woodbury; the paper: iterations of less than {:g} ms",
+              fmt::format("worst iteration that changes the mesh, by Woodbury; the paper: iterations of less than {:g} "
+                          "ms",
                           1e3 * stated::kWoodburyBelow_s)) +
-         tile(duration(ours.worst_s(true)), "the same by the default") +
-         tile(duration(r.inside.ours.median_s), "the default’s change of the mesh by itself, median") +
+         tile(duration(ours.worst_s(true)), "worst iteration that changes the mesh, by the default") +
+         tile(duration(r.inside.ours.median_s), "median time of one change of the mesh alone, by the default") +
          tile(digits(r.inside.woodbury.median_s / r.inside.ours.median_s) + " ×",
-              "as long takes the same change by Woodbury");
+              "time of the same change by Woodbury, relative to the default");
 }
 
 std::string figure5_caption(const Reproduction& r) {
@@ -55,32 +56,35 @@ std::string figure5_caption(const Reproduction& r) {
     fewest = std::min(fewest, row.repeats);
   }
   return paragraph(fmt::format(
-             "A square of tissue in plane strain, linear triangles, one side held. A node is added on an edge in its "
-             "middle, two triangles become four, ΔK is {0} × {0}, and K⁻¹ of order {1} to {2} has to follow.",
+             "A square of tissue in plane strain is meshed with linear triangles and fixed at one side. A node is "
+             "added "
+             "on an edge in the middle of the square: two triangles become four, ΔK is {0} × {0}, and K⁻¹ of order {1} "
+             "to {2} has to be updated.",
              last.change, first.dim, last.dim)) +
          paragraph(
-             "The labels of the paper’s figure suggest this order, from slow to fast: full inverse, boundary condition "
-             "switches, matrix inversion lemma (Woodbury).") +
+             "The labels of the paper’s figure suggest this order, from slowest to fastest: full inverse, boundary "
+             "condition switches, matrix inversion lemma (Woodbury).") +
          paragraph(fmt::format(
-             "Here: at order {}, {} from scratch, {} by switches, {} by Woodbury, {} on one triangle of the symmetric "
-             "matrix. The switches take {:.1f} times as long as Woodbury at order {} and {:.1f} times at order {}. {}",
+             "Here, at order {}, the inverse takes {} from scratch, {} by switches, {} by Woodbury and {} by Woodbury "
+             "on "
+             "one triangle of the symmetric matrix. The switches take {:.1f} times as long as Woodbury at order {} and "
+             "{:.1f} times at order {}. {}",
              last.dim, duration(last.inverse_s), duration(last.bcs_s), duration(last.woodbury_s),
              duration(last.woodbury_symmetric_s), first.bcs_s / first.woodbury_s, first.dim,
              last.bcs_s / last.woodbury_s, last.dim,
-             ordered ? "At every size the order is the same."
-                     : "At some sizes the order is another; the points show where.")) +
+             ordered ? "The methods have the paper’s order at every size."
+                     : "The methods do not have the paper’s order at every size; the points in the plot show where.")) +
          paragraph(fmt::format(
-             "Multiplications, counted: the switches do {:.2f} times as many as Woodbury at order {} and {:.2f} times "
-             "at "
-             "order {}. On top of that the lemma goes over K⁻¹ once, in one product of matrices; the switches go over "
-             "it once for each degree of freedom of ΔK and direction, {} times here, since new ones are only switched "
-             "back.",
+             "The counted multiplications of the switches are {:.2f} times those of Woodbury at order {} and {:.2f} "
+             "times at order {}. In addition, Woodbury reads and writes K⁻¹ once, in one matrix product. The switches "
+             "read and write it once for each degree of freedom of ΔK that is switched off and once for each that is "
+             "switched back, {} times here, because new degrees of freedom are only switched back.",
              first.bcs_multiplications / first.woodbury_multiplications, first.dim,
              last.bcs_multiplications / last.woodbury_multiplications, last.dim, 2 * last.change - last.added)) +
-         paragraph(fmt::format("Medians of at least {} repeats; every result is checked against the inverse from "
-                               "scratch, largest difference "
-                               "{}.",
-                               fewest, order(worst)));
+         paragraph(
+             fmt::format("The times are medians of at least {} repeats. Every result is compared with the inverse "
+                         "from scratch; the largest difference is {}.",
+                         fewest, order(worst)));
 }
 
 std::string force_plots(const Figure6& figure) {
@@ -98,10 +102,9 @@ std::string force_plots(const Figure6& figure) {
 std::string figure2_intro(const Reproduction& r) {
   const Figure2& f = r.figure2;
   return paragraph(fmt::format(
-      "The mesher drops contour points that lie nearer than {:g} mm to the contour without them; of {} points of the "
-      "{} "
-      "it keeps {}. Filled: kept, hollow: dropped. The surface is that of the tetrahedra of the insertions above. Drag "
-      "the solids to turn them.",
+      "The mesher drops a contour point that lies less than {:g} mm from the contour without it. Of the {} points of "
+      "the {} it keeps {}. Filled points are kept, hollow points are dropped. The surface is the boundary of the "
+      "tetrahedra used in the insertions above. Drag the solids to turn them.",
       f.cull_mm, f.points(), f.organ, f.points_kept()));
 }
 
@@ -111,13 +114,13 @@ std::string segment_figures(const Reproduction& r) {
            "\"></div>" + paragraph(text) + "</figure>";
   };
   return one("Needle segment, symmetric", "segment",
-             fmt::format("The tetrahedral needle is built of these: {} tetrahedra around the axis, alike in "
-                         "opposite directions. Drawn twice as long as wide.",
+             fmt::format("The tetrahedral needle consists of such segments: {} tetrahedra around the axis, with the "
+                         "same arrangement in opposite directions. The drawing is twice as long as wide.",
                          r.figure2.symmetric.tets.size())) +
          one("Needle segment, asymmetric", "asymmetric",
              fmt::format(
-                 "For comparison, not used: {} tetrahedra, every diagonal rising the same way, so that opposite "
-                 "directions differ.",
+                 "This segment is shown for comparison and not used: {} tetrahedra, with all diagonals rising in the "
+                 "same direction, so that opposite directions differ.",
                  r.figure2.asymmetric.tets.size()));
 }
 
@@ -149,11 +152,13 @@ std::string table_rows(const std::vector<TableRow>& rows) {
 std::string credibility(const Reproduction& r) {
   const double seconds = 2.0 * r.counted.woodbury / (stated::kFlopPerCycle * stated::kClock_Hz);
   return paragraph(fmt::format(
-      "The paper states iterations of less than {:g} ms with Woodbury. On its mesh one update of the whole inverse is "
-      "{:.0f} million multiplications and as many additions; its processor could do at most one of each in a cycle of "
-      "{:g} GHz, which makes {:.1f} ms, and about {:.1f} ms where symmetry is used. So the figure can hold for "
-      "iterations that leave the mesh alone, or for a part of the inverse, but not for one that changes all of K⁻¹. "
-      "Here such an update, of order {} by {} rows, takes {} on one core, {} using symmetry.",
+      "The paper states iterations of less than {:g} ms with Woodbury. On its mesh one update of the whole inverse "
+      "needs {:.0f} million multiplications and as many additions. The paper’s processor could do at most one of each "
+      "per cycle at {:g} GHz, so the update takes at least {:.1f} ms, or about {:.1f} ms if symmetry is used. The "
+      "paper’s number can therefore be right for iterations that do not change the mesh, or for an update of a part of "
+      "the inverse, but not for an iteration that updates all of K⁻¹. Here an update of order {} by {} rows takes {} "
+      "on "
+      "one core, and {} if symmetry is used.",
       1e3 * stated::kWoodburyBelow_s, 1e-6 * r.counted.woodbury, 1e-9 * stated::kClock_Hz, 1e3 * seconds,
       0.5e3 * seconds, r.on_faces.dofs, r.on_faces.change, duration(r.on_faces.woodbury_full.median_s),
       duration(r.on_faces.woodbury_update_s)));
@@ -165,8 +170,8 @@ std::string pair(const std::string& name, const std::string& value) {
 
 /// The BLAS library and its number of threads, as far as they are known.
 std::string blas_text(const measure::Machine& machine) {
-  return (machine.blas.empty() ? std::string("of the system") : machine.blas) +
-         (machine.blas_threads == 1 ? ", one thread" : ", number of threads not known");
+  return (machine.blas.empty() ? std::string("BLAS of the system") : machine.blas) +
+         (machine.blas_threads == 1 ? ", one thread" : ", number of threads unknown");
 }
 
 std::string how_made(const Reproduction& r) {
@@ -175,7 +180,7 @@ std::string how_made(const Reproduction& r) {
          pair("BLAS", blas_text(r.machine)) + pair("Compiler", r.machine.compiler) +
          pair("Program", "Stylet " + r.version) + pair("Duration", fmt::format("{:.0f} s", r.seconds)) +
          pair("Extent", r.options.quick ? "--quick: fewer sizes and repeats, one shorter insertion, larger time step"
-                                        : "everything");
+                                        : "all sizes, repeats and insertions");
 }
 
 std::string notes_box(const std::vector<std::string>& notes) {
@@ -218,7 +223,7 @@ Result<std::string> reproduction_page(const Reproduction& r) {
       {"made", how_made(r)},
       {"repeats", r.figure6.repeats == 1
                       ? std::string("once")
-                      : fmt::format("{} times, and the median of each iteration counts", r.figure6.repeats)},
+                      : fmt::format("{} times, and the median time of each iteration is used", r.figure6.repeats)},
       {"tolerance", order(measure::kLargestDifference)},
       {"curve_files", files},
       {"versions", html_escaped("Stylet " + r.version)},

@@ -30,7 +30,7 @@ std::string in_words(const PlannedInsertion& insertion, const Vec3& drift) {
                        signed_text(v.z(), digits));
   };
   const bool straight = insertion.direction.z() > 0.9999;
-  return fmt::format("{}: entry at {} mm (LPS), {}, {:.0f} mm deep; the hand drifts {:.1f} mm sideways on the way",
+  return fmt::format("{}: entry at {} mm (LPS), {}, {:.0f} mm deep; the needle's base drifts {:.1f} mm sideways",
                      insertion.name, list(insertion.entry, 1),
                      straight ? std::string("straight along the template") : "along " + list(insertion.direction, 2),
                      insertion.depth_mm, drift.norm());

@@ -147,7 +147,7 @@ std::string event_label(const Event& event) {
     case EventKind::region_entered:
       return "in the " + region;
     case EventKind::retraction_start:
-      return "retraction starts, tissue stuck";
+      return "retraction starts, tissue sticks";
     case EventKind::slip_start:
       return "slip starts";
     case EventKind::withdrawn:

@@ -96,11 +96,11 @@ class OtherLaw final : public CuttingModel {
 
 TEST(SavedModel, cannot_hold_a_part_of_the_program) {
   const Folder folder;
-  const auto model = loaded(saved_box())->with({.cutting = std::make_shared<OtherLaw>()}).value();
-  const auto saved = save_model(*model, folder.path() / "own.stylet");
+  const auto model = test::compiled(saved_box())->with({.cutting = std::make_shared<OtherLaw>()}).value();
+  const auto saved = save_model(*model, folder / "own.stylet");
   ASSERT_FALSE(saved.ok());
   EXPECT_NE(saved.error().message().find("law of cutting"), std::string::npos) << saved.error().message();
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "own.stylet"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "own.stylet"));
 }
 
 TEST(SavedModel, makes_the_factor_for_what_is_not_in_it) {
