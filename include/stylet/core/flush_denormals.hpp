@@ -12,7 +12,7 @@ class FlushDenormals {
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
-  /// @return false on processors for which this class does nothing
+  /// Whether this class has an effect on this processor.
   [[nodiscard]] static bool available();
 
  private:

@@ -31,6 +31,7 @@ struct Error {
   return {ErrorKind::failed, std::move(where), std::move(what), std::move(cure)};
 }
 
+/// The value of a Result<> that carries nothing but success.
 struct Ok {};
 
 /// Either a value or an Error.

@@ -20,7 +20,7 @@ using MatX = Eigen::MatrixXd;
 
 /// Position and orientation of a rigid body: x_world = rotation * x_local + origin.
 struct Pose {
-  Vec3 origin = Vec3::Zero();                                    ///< [mm] LPS
+  Vec3 origin = Vec3::Zero();                                    ///< [mm] LPS, position of the local origin
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< local to LPS; local z is the needle's axis
 };
 

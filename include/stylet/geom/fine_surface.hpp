@@ -15,10 +15,11 @@ struct SurfacePoint {
   std::array<double, 3> weight{};         ///< weights of these points, sum 1
 };
 
-/// How long the edges of triangles may be: max(finest_mm, growth × distance to the nearest line).
+/// Longest allowed edge of a triangle, as a function of its distance to the nearest line:
+/// max(finest_mm, growth × distance).
 struct Fineness {
-  double finest_mm = 0.2;  ///< longest edge on the line; smaller values give more triangles
-  double growth = 0.35;    ///< longest edge / distance to the line, where this is more than finest_mm
+  double finest_mm = 0.2;  ///< longest edge at the line; smaller values give more triangles
+  double growth = 0.35;    ///< longest edge per distance to the line; smaller values give more triangles
   double reach_mm = 12.0;  ///< edges further from every line than this keep their length
 };
 
@@ -26,13 +27,13 @@ struct Fineness {
 /// surface keeps its shape, and it stays closed where it was closed.
 struct FineSurface {
   std::vector<SurfacePoint> points;  ///< the given points come first, with unchanged numbers
-  std::vector<Vec3> positions;       ///< (points) [mm] LPS
+  std::vector<Vec3> positions;       ///< (points) [mm] LPS, position of each point
   /// Numbers of the corners, in the same sense of rotation as in the given triangle.
   std::vector<std::array<Index, 3>> triangles;
   std::vector<int> patch;  ///< (triangles) patch number of the given triangle of which this triangle is a part
 };
 
-using LineSegment = std::array<Vec3, 2>;  ///< both ends [mm]
+using LineSegment = std::array<Vec3, 2>;  ///< start and end of a straight line [mm] LPS
 
 /// Refines triangulated surfaces near lines.
 /// @param points [mm] LPS, corners of the triangles

@@ -21,7 +21,7 @@ struct LabelImage {
   Mat3 direction = Mat3::Identity();   ///< columns: unit directions of i, j, k in LPS
   std::vector<std::uint16_t> labels;   ///< (size[0]*size[1]*size[2]) one label per voxel, i varies fastest
   std::map<int, std::string> names;    ///< names of the labels that the file names (.seg.nrrd, DICOM SEG)
-  /// Meaning of the code that the file gives for a label beside its name (DICOM SEG).
+  /// Anatomical meanings of the labels, in words: DICOM SEG files give a label a coded meaning in addition to its name.
   std::map<int, std::string> meanings;
   std::vector<std::string> notes;  ///< messages to the user about decisions of the reader
 

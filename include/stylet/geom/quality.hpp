@@ -15,8 +15,8 @@ struct Range {
 struct MeshQuality {
   Index nodes = 0;
   Index tets = 0;
-  Range dihedral_deg;  ///< smallest and largest of the six dihedral angles of all elements
-  Range edge_mm;
+  Range dihedral_deg;                    ///< smallest and largest dihedral angle of all elements
+  Range edge_mm;                         ///< shortest and longest edge of all elements
   double radius_ratio_min = 0;           ///< smallest 3 r_in / r_circ of all elements; the regular tetrahedron has 1
   double fraction_below_12_deg = 0;      ///< fraction of the elements whose smallest dihedral angle is below 12°
   std::vector<double> region_volume_cc;  ///< (regions) volume [cm³]

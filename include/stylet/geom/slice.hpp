@@ -15,11 +15,11 @@ struct SliceVertex {
   float t = 0.0F;
 };
 
-/// The part of a slice within one element, or half of it; counter-clockwise when the plane's normal points to the
-/// viewer.
+/// A triangle of a slice: the part of the slice within one element, or half of that part if it is a quadrilateral. Its
+/// corners are counter-clockwise when the plane's normal points to the viewer.
 struct SliceTriangle {
   std::array<Index, 3> vertices{};  ///< positions in Slicer::vertices()
-  Index tet = -1;
+  Index tet = -1;                   ///< the element
   int region = -1;
 };
 

@@ -7,8 +7,8 @@
 
 namespace stylet {
 
-/// A tetrahedron inside another one, the whole: barycentric coordinates of its corners in the whole (4 × 4, one column
-/// each).
+/// A tetrahedron ("part") inside a larger one ("whole"): barycentric coordinates of the part's corners in the whole
+/// tetrahedron (4 × 4, one column per corner).
 using TetPart = Eigen::Matrix4d;
 
 /// Volume of the part / volume of the whole tetrahedron, ≥ 0.

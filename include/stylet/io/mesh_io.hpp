@@ -11,13 +11,15 @@
 namespace stylet {
 
 struct MeshReadOptions {
-  double scale = 0.0;  ///< [mm] length of the file's unit; 0 = as the file says, else 1 mm, checked for plausibility
-  std::vector<std::string>* notes = nullptr;  ///< receives sentences for the user on what was ignored or corrected
+  double scale = 0.0;  ///< [mm] length of one unit of the file's coordinates; 0 = the unit that the file states, or
+                       ///< 1 mm (checked for plausibility) if it states none
+  std::vector<std::string>* notes = nullptr;  ///< receives sentences for the user about ignored or corrected data
 };
 
 /// Reads tetrahedra: VTU, legacy VTK, gmsh MSH 1, 2.2 and 4.1 (ASCII, binary), MEDIT .mesh, TetGen .node/.ele. Other
 /// elements in the file are ignored. Regions come from the format's own tag (physical group, reference, attribute, cell
-/// array "region"). If all tetrahedra of a file are numbered inversely, this is corrected. The result has passed
+/// array "region"). If the node order
+/// of all tetrahedra of a file gives negative volumes, the order is reversed. The result has passed
 /// check_mesh().
 Result<TetMesh> read_tet_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 

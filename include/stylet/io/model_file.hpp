@@ -15,13 +15,13 @@ namespace stylet {
 /// compliance of the needles' corridor, which takes long to compute. With it a simulation starts within seconds for any
 /// size of mesh.
 struct ModelFile {
-  std::string version;             ///< of the program that wrote the file
+  std::string version;             ///< version of the program that wrote the file
   std::string scenario_text;       ///< TOML, with all defaults filled in
   std::vector<std::string> notes;  ///< notes of the mesher
   TetMesh mesh;
   std::vector<std::vector<MotionSample>> motions;  ///< one per insertion; empty if the insertion follows the plan
   std::string element;                             ///< name of the finite element
-  std::vector<Index> corridor;                     ///< displacement nodes of the corridor
+  std::vector<Index> corridor;                     ///< numbers of the displacement nodes in the needles' corridor
   ModelCompliance compliance;
   std::string belongs_to;  ///< digest of the data from which the compliance was computed
 };

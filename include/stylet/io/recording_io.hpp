@@ -18,7 +18,7 @@ struct RunRecording {
   std::vector<Step> steps;
   std::vector<Frame> frames;       ///< displacements in single precision
   std::optional<Summary> summary;  ///< empty while the run goes on, or if it was killed
-  std::vector<Event> events{};     ///< for a live session also available if it was killed
+  std::vector<Event> events{};     ///< events of the run; if the run was killed, only a live session has them
 };
 
 /// Reads a run.h5. If it is still being written, or its writer was killed, the result has everything that had reached

@@ -13,8 +13,8 @@
 namespace stylet {
 
 /// Writes run.h5 (docs/results.md) during a session of unknown length. A thread of its own writes the added data to the
-/// disk five times a second, so a process that is killed loses less than a second. Calls never wait for the disk; they
-/// return its first error, if there was one.
+/// disk five times a second, so a process that is killed loses less than a second. Calls never wait for the disk;
+/// each returns the first error of writing, if there was one.
 class RunRecorder {
  public:
   /// @param file is replaced if it exists
@@ -24,7 +24,7 @@ class RunRecorder {
 
   Result<> add_step(const Step& step);
   Result<> add_event(const Event& event);
-  Result<> add_frame(const Frame& frame);  ///< displacement with single precision
+  Result<> add_frame(const Frame& frame);  ///< stores the displacement in single precision
 
  private:
   struct Parts;

@@ -33,20 +33,20 @@ struct MeshOptions {
 struct RegionReport {
   std::string name;
   Index tets = 0;
-  double volume_cc = 0;
-  double input_volume_cc = 0;  ///< 0 for regions that the mesher made itself (body, band, soft layers)
-  double surface_mean_mm = 0;  ///< mean distance between the input's boundary and the region's
-  double surface_max_mm = 0;   ///< largest of these distances
+  double volume_cc = 0;        ///< [cm³] volume of the region in the mesh
+  double input_volume_cc = 0;  ///< [cm³] 0 for regions that the mesher made itself (body, band, soft layers)
+  double surface_mean_mm = 0;  ///< mean distance between the region's boundary in the input and in the mesh
+  double surface_max_mm = 0;   ///< largest distance between these two boundaries
 };
 
 /// Figures about a mesh and how well it reproduces its input.
 struct MeshReport {
   MeshQuality quality;
   std::vector<RegionReport> regions;
-  double surface_mean_mm = 0;      ///< mean of the same distances over all boundary points of the input
-  double surface_max_mm = 0;       ///< largest of these distances
-  Index contour_points = 0;        ///< number of points in the input
-  Index contour_points_kept = 0;   ///< number of points after culling
+  double surface_mean_mm = 0;      ///< mean distance of all boundary points of the input from the mesh's boundaries
+  double surface_max_mm = 0;       ///< largest distance of a boundary point from the mesh's boundaries
+  Index contour_points = 0;        ///< number of contour points in the input
+  Index contour_points_kept = 0;   ///< number of contour points after culling
   double seconds = 0;              ///< time that meshing took [s]
   std::vector<std::string> notes;  ///< decisions that the user should know (body added, structures left out, …)
 };

@@ -17,7 +17,7 @@ struct StructureUse {
 struct StructureChoice {
   std::vector<StructureUse> uses;   ///< structures with contours, in their order, or labels, ascending
   std::vector<StructureUse> empty;  ///< structures without anything to mesh; all are left out
-  /// Messages to the user: which structure stands in for another one, then those of `left_out`.
+  /// Messages to the user: which structure stands in for another one, then the messages of `left_out`.
   std::vector<std::string> notes;
   std::vector<std::string> left_out;  ///< messages to the user: which structures are left out, and why
   bool has_target = false;            ///< whether one of the regions is the target

@@ -19,7 +19,7 @@ struct InsertSettings {
   bool map = false;                ///< also predict the gland's shift for a needle through each hole of the template
   std::span<const Step> recorded;  ///< steps of a recording whose base motion is repeated; empty: the scenario's plans
   std::string where = "scenario";  ///< name of the scenario in error messages
-  std::function<void()> begin;     ///< called once, when nothing is wrong with the settings and before the first step
+  std::function<void()> begin;     ///< called once, after the settings have been checked and before the first step
 };
 
 /// The result of insert(), beside the files that it wrote.

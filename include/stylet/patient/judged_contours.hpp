@@ -30,10 +30,11 @@ struct JudgedContours {
   [[nodiscard]] std::vector<std::string> oddities() const;
 };
 
-/// Judges the structures of a contour set: choose_structures(), check_roi() and long_closing_side() together. Reading a
-/// patient, `stylet info` and its draft of a scenario all ask here.
+/// Judges the structures of a contour set: choose_structures(), check_roi() and long_closing_side() together.
+/// read_patient(), `stylet info` and its draft of a scenario all use this function.
 /// @param contours must outlive the result
-/// Errors: those of choose_structures(). Faults of structures are no errors here.
+/// Errors: those of choose_structures(). A fault of a structure is reported in JudgedStructure::fault and is not an
+/// error here.
 Result<JudgedContours> judge_contours(const ContourSet& contours, const MeshOptions& options);
 
 }  // namespace stylet

@@ -16,9 +16,13 @@ namespace stylet {
 /// Source of the default tissue values. `typical`: measured forces, with moduli from the middle of the published range;
 /// `firm` and `soft`: moduli from its ends; `linear`: linear elastic tissue, as in the methods of Goksel et al. 2005.
 enum class TissuePreset { typical, firm, soft, linear };
+/// Kind of finite element of the tissue (Element); `automatic` lets the program choose.
 enum class ElementChoice { automatic, p1, nodal_pressure, p2 };
+/// Outer faces of the mesh that are held. `automatic`: none if there is a pubic arch, otherwise the sides.
 enum class OuterSupport { automatic, none, sides, all };
+/// Mechanical model of the needle: BeamNeedle, SpringsNeedle or TetNeedle.
 enum class NeedleModel { beam, springs, tet };
+/// Whether the stylet, the wire inside the needle, is in the lumen; it makes the needle stiffer.
 enum class StyletPlace { out, in };
 /// Where the staggered solver applies a contact force to the needle: at the contact's exact place, or at the nearest
 /// node of the needle.

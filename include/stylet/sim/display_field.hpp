@@ -75,13 +75,13 @@ class DisplayField {
   [[nodiscard]] bool exact_on(Index node) const;
 
   struct Statistics {
-    int zone_dofs = 0;  ///< free degrees of freedom of Z
-    int columns = 0;    ///< degrees of freedom of the skeleton; equal to zone_dofs: the field is exact
-    /// Largest error of any node's displacement, per newton of the summed magnitudes of all forces, without rounding.
-    /// Twice the error measured on the columns that the skeleton represents worst.
+    int zone_dofs = 0;  ///< number of free degrees of freedom of Z
+    int columns = 0;    ///< number of degrees of freedom of the skeleton; if equal to zone_dofs, the field is exact
+    /// Estimated largest error of a node's displacement [mm] per newton of Σ|f| over all forces, without rounding:
+    /// twice the error measured on the columns that the skeleton represents worst.
     double error_mm_per_N = 0.0;
-    double seconds = 0.0;
-    double megabytes = 0.0;
+    double seconds = 0.0;    ///< wall-clock time of prepare()
+    double megabytes = 0.0;  ///< memory of the field
   };
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
   [[nodiscard]] const Model& model() const { return *model_; }

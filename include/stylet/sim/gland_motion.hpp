@@ -15,7 +15,7 @@ struct GlandStep {
   double time_s = 0;
   double base_depth_mm = 0;
   Vec3 shift_mm = Vec3::Zero();      ///< mean displacement over the gland's volume
-  Vec3 rotation_deg = Vec3::Zero();  ///< of the rigid motion that fits best, about LR, AP and SI, right-handed
+  Vec3 rotation_deg = Vec3::Zero();  ///< rotation of the best-fitting rigid motion, about LR, AP and SI, right-handed
 };
 
 /// A rotation of the gland as an angle [°] in each anatomical plane. Positive angles: coronal, the gland's superior end
@@ -25,10 +25,11 @@ struct PlaneAngles {
   double sagittal = 0;    ///< about LR
   double transverse = 0;  ///< about SI
 };
-/// @param rotation_deg as GlandStep::rotation_deg
+/// Converts a rotation vector to angles in the anatomical planes. @param rotation_deg as GlandStep::rotation_deg
 inline PlaneAngles plane_angles(const Vec3& rotation_deg) {
   return {rotation_deg.y(), rotation_deg.x(), rotation_deg.z()};
 }
+/// The inverse of plane_angles().
 inline Vec3 rotation_of(const PlaneAngles& angles) { return {angles.sagittal, angles.coronal, angles.transverse}; }
 
 /// The motion of the gland over one insertion. Vectors as in GlandStep.
@@ -38,9 +39,9 @@ struct GlandMotion {
   Vec3 shift_in_place_mm = Vec3::Zero();    ///< shift at the end of the dwell, before the needle is drawn out
   std::optional<Vec3> shift_residual_mm{};  ///< shift 1 s after the needle was out; empty if unknown
 
-  // At the moment of shift_max_mm. A third is a third of the gland's height; its shift is NaN if a gland in several
-  // pieces has no tissue there.
-  Vec3 rotation_deg = Vec3::Zero();
+  // The members below describe the moment of shift_max_mm. A third is a third of the gland's height; its shift is NaN
+  // if a gland in several pieces has no tissue there.
+  Vec3 rotation_deg = Vec3::Zero();  ///< rotation of the gland, as GlandStep::rotation_deg
   Vec3 base_mm = Vec3::Zero();       ///< mean shift of the superior third
   Vec3 mid_mm = Vec3::Zero();        ///< mean shift of the middle third
   Vec3 apex_mm = Vec3::Zero();       ///< mean shift of the inferior third

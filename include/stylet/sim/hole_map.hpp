@@ -13,14 +13,14 @@ namespace stylet {
 /// Structures that a needle should keep clear of.
 enum class Spared { bone, urethra, rectum };
 inline constexpr std::array<Spared, 3> kSpared{Spared::bone, Spared::urethra, Spared::rectum};
-/// "bone", "urethra", "rectum".
+/// Name of a structure: "bone", "urethra" or "rectum".
 const char* to_string(Spared structure);
 
 /// One hole of the template whose straight way leads into the target.
 struct HoleRow {
   std::string hole;          ///< "d3.5"
-  double left_mm = 0.0;      ///< from the template's centre towards the patient's left
-  double anterior_mm = 0.0;  ///< from the template's centre towards anterior
+  double left_mm = 0.0;      ///< distance of the hole from the template's centre towards the patient's left
+  double anterior_mm = 0.0;  ///< distance of the hole from the template's centre towards anterior
   double depth_mm = 0.0;     ///< depth of the tip beyond the skin, along the way
   /// Length of the way within the target, and within the urethra where it crosses the target.
   double in_target_mm = 0.0;
@@ -34,9 +34,9 @@ struct HoleRow {
 /// Map of a template before the insertion: the holes from which a needle reaches the target, and the predicted effect
 /// of a needle through each of them.
 struct HoleMap {
-  std::vector<std::string> columns;  ///< of the template, from the patient's right to the left
-  std::vector<std::string> rows;     ///< of the template, from posterior to anterior
-  double pitch_mm = 5.0;             ///< between neighbouring holes
+  std::vector<std::string> columns;  ///< labels of the template's columns, from the patient's right to the left
+  std::vector<std::string> rows;     ///< labels of the template's rows, from posterior to anterior
+  double pitch_mm = 5.0;             ///< distance between neighbouring holes
   std::string planned;               ///< hole of the scenario's own insertion; may be empty
   std::vector<HoleRow> holes;        ///< row by row from anterior to posterior, each from the patient's right to left
   int missing = 0;                   ///< number of holes whose way misses the target; they are not in `holes`
@@ -58,17 +58,18 @@ using PlanOfHole = std::function<InsertionPlan(const std::string& hole)>;
 Result<HoleMap> map_ways(const Model& model, const PlanOfHole& plan_of, const std::string& where);
 
 /// Simulates the insertion of a needle through one hole: compiles a model for the plan and drives the needle in. The
-/// figures equal those of a run of the scenario with this plan.
-/// @param scenario its insertions are replaced by `plan` @param mesh of the scenario's patient
+/// results equal the results of run() for the scenario with this plan.
+/// @param scenario the scenario; its insertions are replaced by `plan`
+/// @param mesh mesh of the scenario's patient
 /// @param targets cache for this scenario and mesh
 /// @param progress may throw to cancel
-/// @param own parts that replace those of the scenario
+/// @param own parts that replace the scenario's needle model or law of cutting
 Result<Prediction> predict_hole(Scenario scenario, const TetMesh& mesh, const InsertionPlan& plan,
                                 KnownTargets& targets, const Progress& progress = {}, const OwnParts& own = {});
 
 /// Fills in the prediction of each row of the map by predict_hole(), several holes in parallel. If one fails, its row
 /// says why (HoleRow::failed).
-/// @param model of the patient and scenario
+/// @param model the model from which map_ways() made the map
 /// @param progress is called in the caller's thread
 void predict_holes(const std::shared_ptr<const Model>& model, const PlanOfHole& plan_of, HoleMap& map,
                    const Progress& progress = {});

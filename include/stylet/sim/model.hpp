@@ -19,7 +19,7 @@ struct PlannedInsertion {
   std::string name;                ///< template hole, or "needle 1", …
   Vec3 entry = Vec3::Zero();       ///< [mm] LPS skin point on the needle's line
   Vec3 direction = Vec3::UnitZ();  ///< unit, LPS
-  double depth_mm = 0.0;           ///< base depth at the deepest point, beyond skin contact
+  double depth_mm = 0.0;           ///< largest base depth, measured from skin contact
   bool recorded = false;           ///< the base follows a recorded motion
   BaseMotion motion;
 };
@@ -42,16 +42,16 @@ class Model {
   /// @param where name of the scenario in messages
   /// @param known result of an earlier compile() of the same scenario and mesh: the stiffness is then factorised only
   ///   when something needs compliance that `known` does not have. Sizes that do not fit are an error; the caller must
-  ///   make sure that it belongs to this model.
+  ///   make sure that `known` belongs to this model.
   static Result<std::shared_ptr<const Model>> compile(const Scenario& scenario, TetMesh mesh, const std::string& where,
                                                       const std::vector<std::vector<MotionSample>>& motions = {},
                                                       const Progress& progress = {},
                                                       std::optional<ModelCompliance> known = {});
 
-  /// The same model with parts of the program's own: a needle model, a law of cutting. Everything that took long to
-  /// compute is shared with this model. The scenario does not describe these parts, so the warnings name them, and the
-  /// model cannot be saved.
-  /// Errors: a needle that cannot be made, or whose length is not needle.length_mm.
+  /// The same model with parts that the calling program supplies: a needle model, a law of cutting. Everything that
+  /// took long to compute is shared with this model. The scenario does not describe these parts, so the warnings name
+  /// them, and the model cannot be saved. Errors: a needle that cannot be made, or whose length is not
+  /// needle.length_mm.
   [[nodiscard]] Result<std::shared_ptr<const Model>> with(OwnParts parts) const;
 
   [[nodiscard]] const OwnParts& own_parts() const { return own_; }

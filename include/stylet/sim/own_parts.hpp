@@ -15,9 +15,9 @@ namespace stylet {
 /// the largest number of point loads in any call of the needle.
 using NeedleMaker = std::function<Result<std::unique_ptr<Needle>>(const NeedleSection& section, int load_capacity)>;
 
-/// Parts that a program brings in place of those that the scenario chooses among (Model::with()).
+/// Parts that a C++ program supplies in place of the built-in parts that the scenario selects (Model::with()).
 struct OwnParts {
-  NeedleMaker needle;                           ///< empty: the needle of needle.model
+  NeedleMaker needle;                           ///< empty: the needle model that the key needle.model selects
   std::shared_ptr<const CuttingModel> cutting;  ///< null: the built-in law of cutting
   [[nodiscard]] bool is_any() const { return needle || cutting; }
 };

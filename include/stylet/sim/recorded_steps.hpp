@@ -9,11 +9,11 @@
 
 namespace stylet {
 
-// Largest difference between two steps of a needle at rest. Such steps differ by rounding, about 1e-15; these limits
-// are below the tolerance of the balance between needle and tissue.
-inline constexpr double kRestForce_N = 1e-7;
-inline constexpr double kRestTorque_Nmm = 1e-5;
-inline constexpr double kRestPlace_mm = 1e-7;  ///< of the tip
+// Largest differences that is_at_rest() accepts between two steps of a needle at rest. Such steps differ only by
+// rounding, about 1e-15; the limits are below the tolerance of the balance between needle and tissue.
+inline constexpr double kRestForce_N = 1e-7;     ///< difference of a force component
+inline constexpr double kRestTorque_Nmm = 1e-5;  ///< difference of the torque
+inline constexpr double kRestPlace_mm = 1e-7;    ///< difference of the tip's position
 
 /// Whether a step repeats an earlier one: dt and base are equal bit for bit, tip state, flags and numbers of contacts
 /// are equal, and forces, torque and tip differ by at most kRestForce_N, kRestTorque_Nmm and kRestPlace_mm.

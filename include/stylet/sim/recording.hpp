@@ -15,19 +15,20 @@
 
 namespace stylet {
 
+/// An event of a run.
 struct Event {
   EventKind kind{};
   double time_s = 0;
-  double depth_mm = 0;  ///< base depth
+  double depth_mm = 0;  ///< base depth at that moment
   double force_N = 0;   ///< axial force of the hand at that moment
   std::string region;   ///< region touched, punctured or entered; empty if the event has none
 };
 
 /// A contact, for display.
 struct ContactView {
-  Vec3 position = Vec3::Zero();  ///< [mm] LPS, deformed
-  Vec3 force = Vec3::Zero();     ///< [N] on the tissue
-  double s = 0;                  ///< [mm] arc length on the needle
+  Vec3 position = Vec3::Zero();  ///< [mm] LPS, position in the deformed tissue
+  Vec3 force = Vec3::Zero();     ///< [N] LPS, force of the needle on the tissue
+  double s = 0;                  ///< [mm] arc length on the needle, from its base
   bool sticking = true;
   bool tip = false;
 };
@@ -37,7 +38,7 @@ struct Frame {
   double time_s = 0;
   double base_depth_mm = 0;
   std::string label;         ///< "before", "skin_contact", "deepest", … or empty for a frame of the regular series
-  VecX displacement;         ///< [mm] (3n) of the mesh's nodes
+  VecX displacement;         ///< [mm] (3n) LPS, displacement of the mesh's nodes
   std::vector<Vec3> needle;  ///< [mm] LPS centreline from base to tip, evenly sampled
   std::vector<ContactView> contacts;
 };
@@ -62,20 +63,20 @@ struct RunInfo {
   double needle_diameter_mm = 0;
   double needle_length_mm = 0;
   std::vector<int> target_regions;  ///< indices of the regions that form the target
-  Vec3 entry_mm = Vec3::Zero();     ///< LPS
+  Vec3 entry_mm = Vec3::Zero();     ///< [mm] LPS, entry point of the insertion
   Vec3 direction = Vec3::UnitZ();
 };
 
 /// A change of the tissue's mesh during a run.
 struct MeshChange {
   double time_s = 0;
-  double depth_mm = 0;  ///< base depth
+  double depth_mm = 0;  ///< base depth at that moment
   RemeshEvent change;
 };
 
 /// Displacement of the target.
 struct TargetShift {
-  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean over its volume (VolumeMotion)
+  Vec3 centroid_mm = Vec3::Zero();  ///< LPS, mean displacement over the target's volume (VolumeMotion)
   double largest_mm = 0.0;  ///< largest displacement of a node of the target, as the mesh represents it: mesh-dependent
 };
 
@@ -86,7 +87,8 @@ struct Summary {
   Index nodes = 0;
   Index tets = 0;
   Index steps = 0;
-  double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;  ///< largest absolute values
+  /// Largest absolute values of the three components of the hand's force.
+  double peak_axial_N = 0, peak_sagittal_N = 0, peak_lateral_N = 0;
   std::vector<Event> events;
   double tip_deflection_mm = 0;  ///< largest distance of the tip from the straight line of insertion
   /// Tip error at the deepest point: material point of the tip minus the point that a rigid straight needle would reach
@@ -97,16 +99,19 @@ struct Summary {
   /// TargetShift::centroid_mm and largest_mm of the insertion with the greatest largest_mm.
   Vec3 target_shift_centroid_mm = Vec3::Zero();
   double target_shift_max_mm = 0;
-  std::vector<GlandMotion> gland_motions;  ///< of each insertion; empty without a target
-  std::optional<GlandMotion> gland;        ///< of the insertion of target_shift_max_mm
-  std::vector<GlandStep> gland_path;       ///< after each step; empty without a target and when read from a file
-  /// Largest value during the run of |supports + contacts on the tissue| / peak force of the hand.
+  std::vector<GlandMotion> gland_motions;  ///< one per insertion; empty without a target
+  std::optional<GlandMotion> gland;        ///< the entry of gland_motions for the insertion with target_shift_max_mm
+  std::vector<GlandStep> gland_path;       ///< one per step; empty without a target and when read from a file
+  /// Largest |sum of the forces of supports and contacts on the tissue| / peak force of the hand, during the run.
   double residual_force_balance = 0;
+  /// Largest |sum of their moments about the entry point| / (peak force of the hand × 100 mm).
   double residual_torque_balance = 0;
+  /// [µs] Quantiles and largest value of Step::step_us.
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
-  int contacts_max = 0;
+  int contacts_max = 0;  ///< largest number of contacts in a step
   CapacityUses capacity;
-  double compliance_condition = 1.0;  ///< condition number of the compliance among the contacts, largest of all frames
+  double compliance_condition =
+      1.0;  ///< largest condition number of the compliance among the contacts, over all frames
   struct Blur {
     double smallest_mm = 0, median_mm = 0, largest_mm = 0;
     int nodes = 0;  ///< number of nodes measured; 0 = the coupling method does not correct the near field

@@ -22,7 +22,9 @@ struct TissueParameters {
   double poisson = 0;
   double cutting_N = 0;   ///< axial force at which the tip begins to cut; coupling.tip_viscosity_Ns_per_m adds to it
   double puncture_N = 0;  ///< axial force at which the tip breaks the region's surface; 0 = no membrane
-  double stiffening = 0;  ///< k₂/E of the dent under the tip, F = k₁ z + k₂ z² (docs/theory/stiffening.md); 0 = linear
+  double stiffening = 0;  ///< k₂/E, without unit, of the dent under the tip, F = k₁ z + k₂ z²
+                          ///< (docs/theory/stiffening.md); 0 = linear tissue
+  // Friction between shaft and tissue per inserted length, see FrictionLaw.
   double friction_static_N_per_m = 0;
   double friction_coulomb_N_per_m = 0;
   double friction_viscous_Ns_per_m2 = 0;
@@ -48,7 +50,7 @@ bool is_surrounding(const std::string& region);
 /// right to the left, rows numbered 1, 1.5, … 7 from posterior to anterior.
 struct TemplateGrid {
   double pitch_mm = 5.0;
-  std::optional<std::array<double, 2>> centre_mm;  ///< LPS x and y of hole D4; unset: of the target's centroid
+  std::optional<std::array<double, 2>> centre_mm;  ///< LPS x and y of hole D4; unset: x and y of the target's centroid
   std::vector<std::string> columns{"A", "a", "B", "b", "C", "c", "D", "d", "E", "e", "F", "f", "G"};
   std::vector<std::string> rows{"1", "1.5", "2", "2.5", "3", "3.5", "4", "4.5", "5", "5.5", "6", "6.5", "7"};
 
@@ -68,7 +70,7 @@ struct InsertionPlan {
   std::optional<std::string> hole;                 ///< template hole; either this or entry_mm is needed
   std::optional<std::array<double, 3>> entry_mm;   ///< a point on the needle's line, LPS
   std::optional<std::array<double, 3>> direction;  ///< LPS, need not be a unit vector; default superior
-  std::optional<std::array<double, 3>> target_mm;  ///< a point to aim at, LPS, instead of a direction
+  std::optional<std::array<double, 3>> target_mm;  ///< a point at which the needle aims, LPS, instead of a direction
   double roll_deg = 0.0;                           ///< rotation of the needle about its axis, from local x to local y
   double approach_mm = 3.0;                        ///< free travel before the skin
   double depth_mm = 0.0;  ///< largest base depth, from skin contact; 0 = to the far end of the target
@@ -134,6 +136,7 @@ struct Scenario {
     int elements = 0;      ///< 0 = the default of the needle model
     bool operator==(const NeedleChoice&) const = default;
   } needle;
+  /// Interaction of needle and tissue; CouplingSettings explains these values.
   struct Coupling {
     CouplingSettings::Method method = CouplingSettings::Method::near_field;
     CouplingSettings::Rule rule = CouplingSettings::Rule::interior;

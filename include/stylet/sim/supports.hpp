@@ -8,7 +8,7 @@ namespace stylet {
 
 /// The nodes that are held.
 struct Supports {
-  std::vector<Index> nodes;              ///< sorted
+  std::vector<Index> nodes;              ///< node numbers, ascending
   std::vector<int> rigid_regions;        ///< regions all of whose nodes are held
   std::vector<std::string> description;  ///< sentences for the report that say what is held and why
 };

@@ -12,8 +12,8 @@ class TurnWatch {
   /// State of the insertion at one place of the base.
   struct Moment {
     double time_s = 0.0;
-    double depth_mm = 0.0;
-    double force_N = 0.0;
+    double depth_mm = 0.0;  ///< base depth
+    double force_N = 0.0;   ///< axial force of the hand
     bool in_tissue = false;
   };
 

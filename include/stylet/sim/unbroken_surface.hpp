@@ -8,8 +8,8 @@
 
 namespace stylet {
 
-/// Follows one insertion and detects a surface (skin or capsule) that the tip presses far in front of it and that never
-/// breaks. Without a warning nobody would notice that the needle does not reach the tissue behind that surface.
+/// Follows one insertion and detects a surface (skin or capsule) that the tip pushes far ahead of itself without
+/// breaking it. Without a warning nobody would notice that the needle does not reach the tissue behind that surface.
 class UnbrokenSurface {
  public:
   /// [mm] Distance of the tip past the rest position of an unbroken surface, above which there is a warning.
