@@ -96,7 +96,7 @@ Mat3 point_force(const Vec3& x, const Vec3& source, const Medium& medium) {
 struct HalfSpace {
   MediumBlock block;
   const Vec3 up{0.0, 0.0,
-                MediumBlock::kHalf_mm};  ///< shift from the block’s coordinates to those of the half space z ≥ 0
+                MediumBlock::kHalf_mm};  ///< shift from the block’s coordinates to coordinates of the half space z ≥ 0
 
   /// Displacement of the held nodes per force at `source`.
   [[nodiscard]] std::vector<Mat3> far_field(const Vec3& source) const {

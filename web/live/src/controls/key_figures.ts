@@ -27,8 +27,8 @@ class Figure {
 }
 
 /**
- * The largest absolute axial force of the steps of a frame and of the steps before. @param peak that of the steps
- * before
+ * The largest absolute axial force [N] of the steps of a frame and of all steps before.
+ * @param peak largest absolute axial force of the steps before
  */
 export function peakAfter(peak: number, { samples, whole }: Frame): number {
   let largest = whole ? 0 : peak;
