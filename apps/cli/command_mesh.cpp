@@ -152,8 +152,7 @@ Command add_mesh_command(CLI::App& program) {
       "mesh", "Mesh contours or a label mask with tetrahedra, or check and convert a tetrahedral mesh");
   app->add_option("INPUT", arguments->input,
                   "Contours (DICOM RTSTRUCT or a folder with one, contour JSON), label mask (NIfTI, NRRD, MetaImage, "
-                  "DICOM SEG) or "
-                  "tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
+                  "DICOM SEG) or tetrahedral mesh (VTU, legacy VTK, gmsh MSH, MEDIT, TetGen)")
       ->required();
   app->add_option("-o,--output", arguments->output, "Model to write")->type_name("MODEL.vtu")->required();
   app->add_option("--nodes", arguments->nodes,

@@ -351,8 +351,7 @@ Result<ScenarioDraft> draft_scenario(const PatientInput& patient, const DraftSou
           source.file, version())) +
       comment(
           "All lengths are in mm. Directions are the patient's: DICOM LPS, x to the left, y to posterior, z to "
-          "superior. "
-          "stylet insert --print-schema prints all other keys with their defaults.");
+          "superior. stylet insert --print-schema prints all other keys with their defaults.");
   for (const std::string& warning : contents->warnings) draft.text += comment("Note: " + warning + '.');
   draft.text +=
       fmt::format("\nname = {}\n", toml_text(name)) + patient_text(*contents, source) + regions_text(*contents);

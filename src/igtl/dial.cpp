@@ -52,8 +52,8 @@ class Dialer final : public Transport {
     });
   }
 
-  /// Whether the socket is connected to itself. If no program listens on this machine, the kernel may choose as the
-  /// local port the one that it connects to.
+  /// Whether the socket is connected to itself. If no program listens on this machine, the kernel may choose the remote
+  /// port as the local port as well.
   [[nodiscard]] bool to_itself() const {
     error_code error;
     const auto local = socket_.local_endpoint(error);

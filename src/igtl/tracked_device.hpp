@@ -27,8 +27,8 @@ class TrackedDevice final : public Device {
 
   [[nodiscard]] DeviceTraits traits() const override { return {.name = name_}; }
 
-  /// A sample gets the time of the call before the one that finds it. It arrived between the two calls, so its age is
-  /// never underestimated. A pose found by the first call has an unknown age and is not valid.
+  /// A sample gets the time of the previous call, before the call that finds it. It arrived between the two calls, so
+  /// its age is never underestimated. A pose found by the first call has an unknown age and is not valid.
   DeviceInput read(const DeviceTime& time) noexcept override {
     if (channel_->fetch()) {
       known_age_ = turned_;

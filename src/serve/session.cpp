@@ -427,10 +427,9 @@ void Session::Parts::choose_plan(const Request& request, const InsertionPlan& pl
 }
 
 Result<> Session::Parts::start_replay(const std::string& name) {
-  FolderLock in_use(
-      shelf.folder(name),
-      FolderLock::Kind::shared);  // first: the recording may be that of the live run, which holds the lock until then
-  if (live) live->runner().pause();  // its steps are not fetched while a long recording is read
+  FolderLock in_use(shelf.folder(name),
+                    FolderLock::Kind::shared);  // first, because the live run may hold the lock of this recording
+  if (live) live->runner().pause();             // its steps are not fetched while a long recording is read
   auto recording = shelf.read(name);
   auto scenario = recording ? parse_scenario(recording->info.scenario_text, name) : Result<Scenario>(recording.error());
   Result<> shown = scenario ? Result<>(Ok{}) : Result<>(scenario.error());

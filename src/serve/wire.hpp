@@ -36,7 +36,7 @@ using Bytes = std::vector<std::byte>;
 
 /// @param number sequence number of the message on its connection
 Bytes encode(const Scene& scene, std::uint32_t number);
-/// @param curve samples that this connection has not received; they replace those of the frame
+/// @param curve samples that this connection has not received; they replace the samples of the frame
 /// @param whole_curve whether `curve` starts at the beginning of the insertion
 Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
 /// Encodes a message of kind status, event, notice or map.

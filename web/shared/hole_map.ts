@@ -85,7 +85,7 @@ export function scaleGradient(measure: Measure): string {
 
 /** Labels of the two ends of a scale. */
 export function scaleWords(measure: Measure, end: number): [string, string] {
-  return measure.clearance ? ['0 mm: through it', `${end} mm or more`] : ['0 mm: none', `${end} mm`];
+  return measure.clearance ? ['0 mm: passes through', `${end} mm or more`] : ['0 mm', `${end} mm`];
 }
 
 /** Whether a map has values of a measure. A model may lack a structure, and predictions may be missing. */
@@ -104,7 +104,7 @@ export function tellOf(hole: MappedHole): string {
   if (hole.depth_mm > 0) lines.push(`${hole.depth_mm.toFixed(1)} mm deep, ${hole.in_target_mm.toFixed(1)} mm of it in the gland`);
   for (const measure of MEASURES) {
     const mm = measure.of(hole);
-    if (mm !== null) lines.push(`${measure.label}: ${measure.clearance && mm === 0 ? 'through it' : `${mm.toFixed(measure.clearance ? 1 : 2)} mm`}`);
+    if (mm !== null) lines.push(`${measure.label}: ${measure.clearance && mm === 0 ? 'passes through' : `${mm.toFixed(measure.clearance ? 1 : 2)} mm`}`);
   }
   if (hole.remark) lines.push(hole.remark);
   return lines.join('\n');

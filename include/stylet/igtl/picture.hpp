@@ -21,13 +21,13 @@ struct Picture {
   std::array<Triple, kShaft> shaft{};  ///< [mm] LPS, points on the centreline, base to tip
 };
 
-/// The pose of the tip. Its axes are those of the base, transported along the centreline without twist: local z is the
-/// tangent at the tip, and the bevel keeps its side.
+/// The pose of the tip. Its axes result from transporting the axes of the base along the centreline without twist:
+/// local z is the tangent at the tip, and the bevel keeps its side.
 /// @param centreline [mm] LPS, base to tip, evenly spaced. If it has no length, the pose of the base is returned.
 [[nodiscard]] Pose tip_pose(const Pose& base, std::span<const Triple> centreline);
 
-/// Makes the picture of a runner's latest snapshots. Its force is the one that the runner sent to its device: limited,
-/// and zero where the hand's samples are invalid or old.
+/// Makes the picture of a runner's latest snapshots. Its force is the force that the runner sent to its device:
+/// limited, and zero where the hand's samples are invalid or old.
 [[nodiscard]] Picture picture_of(const Snapshot& snapshot, const DeviceSnapshot& device);
 
 /// A deformed triangulated surface.

@@ -132,14 +132,12 @@ std::string figure6_intro(const Figure6& figure) {
     insertions += "<li>" + results::html_escaped(insertion) + "</li>";
   return paragraph(fmt::format(
              "The prostate of the demo patient and its surroundings are meshed with {} nodes and {} tetrahedra and "
-             "fixed at the pubic side. The motion is that of {}, in and out at {:g} mm/s, with {:g} ms per iteration. "
-             "{} variants follow exactly the same motion of the base. The first is the paper’s first method: boundary "
-             "condition switches, with a contact about every {:g} mm, to which the nearest node is moved. The second "
-             "is "
-             "the paper’s second method: Woodbury, with a node added wherever the tip enters an element. The third is "
-             "this program’s default for node addition: a contact about every {:g} mm, for which a node is added "
-             "inside "
-             "an element; the compliance is kept only among the points held by the needle.",
+             "fixed at the pubic side. The motion is an insertion of {}, in and out at {:g} mm/s, with {:g} ms per "
+             "iteration. {} variants follow exactly the same motion of the base. The first is the paper’s first "
+             "method: boundary condition switches, with a contact about every {:g} mm, to which the nearest node is "
+             "moved. The second is the paper’s second method: Woodbury, with a node added wherever the tip enters an "
+             "element. The third is this program’s default for node addition: a contact about every {:g} mm, for which "
+             "a node is added inside an element; the compliance is kept only among the points held by the needle.",
              figure.nodes, figure.tets,
              figure.insertions.size() == 1 ? std::string("one needle")
                                            : fmt::format("{} needles one after the other", figure.insertions.size()),

@@ -57,25 +57,23 @@ std::string figure5_caption(const Reproduction& r) {
   }
   return paragraph(fmt::format(
              "A square of tissue in plane strain is meshed with linear triangles and fixed at one side. A node is "
-             "added "
-             "on an edge in the middle of the square: two triangles become four, ΔK is {0} × {0}, and K⁻¹ of order {1} "
-             "to {2} has to be updated.",
+             "added on an edge in the middle of the square: two triangles become four, ΔK is {0} × {0}, and K⁻¹ of "
+             "order {1} to {2} has to be updated.",
              last.change, first.dim, last.dim)) +
          paragraph(
              "The labels of the paper’s figure suggest this order, from slowest to fastest: full inverse, boundary "
              "condition switches, matrix inversion lemma (Woodbury).") +
          paragraph(fmt::format(
              "Here, at order {}, the inverse takes {} from scratch, {} by switches, {} by Woodbury and {} by Woodbury "
-             "on "
-             "one triangle of the symmetric matrix. The switches take {:.1f} times as long as Woodbury at order {} and "
-             "{:.1f} times at order {}. {}",
+             "on one triangle of the symmetric matrix. The switches take {:.1f} times as long as Woodbury at order {} "
+             "and {:.1f} times at order {}. {}",
              last.dim, duration(last.inverse_s), duration(last.bcs_s), duration(last.woodbury_s),
              duration(last.woodbury_symmetric_s), first.bcs_s / first.woodbury_s, first.dim,
              last.bcs_s / last.woodbury_s, last.dim,
              ordered ? "The methods have the paper’s order at every size."
                      : "The methods do not have the paper’s order at every size; the points in the plot show where.")) +
          paragraph(fmt::format(
-             "The counted multiplications of the switches are {:.2f} times those of Woodbury at order {} and {:.2f} "
+             "The switches need {:.2f} times as many multiplications (counted) as Woodbury at order {} and {:.2f} "
              "times at order {}. In addition, Woodbury reads and writes K⁻¹ once, in one matrix product. The switches "
              "read and write it once for each degree of freedom of ΔK that is switched off and once for each that is "
              "switched back, {} times here, because new degrees of freedom are only switched back.",
@@ -157,8 +155,7 @@ std::string credibility(const Reproduction& r) {
       "per cycle at {:g} GHz, so the update takes at least {:.1f} ms, or about {:.1f} ms if symmetry is used. The "
       "paper’s number can therefore be right for iterations that do not change the mesh, or for an update of a part of "
       "the inverse, but not for an iteration that updates all of K⁻¹. Here an update of order {} by {} rows takes {} "
-      "on "
-      "one core, and {} if symmetry is used.",
+      "on one core, and {} if symmetry is used.",
       1e3 * stated::kWoodburyBelow_s, 1e-6 * r.counted.woodbury, 1e-9 * stated::kClock_Hz, 1e3 * seconds,
       0.5e3 * seconds, r.on_faces.dofs, r.on_faces.change, duration(r.on_faces.woodbury_full.median_s),
       duration(r.on_faces.woodbury_update_s)));

@@ -32,7 +32,7 @@ struct MediumBlock {
   static constexpr double kHalf_mm = 50.0;
   static constexpr double kYoung_MPa = 0.01;
 
-  /// Errors: those of Tissue::build.
+  /// Returns the errors of Tissue::build.
   static Result<MediumBlock> build(const Options& options);
 
   /// The material point at x. @param x inside the cube; otherwise throws std::bad_optional_access

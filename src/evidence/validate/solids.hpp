@@ -32,7 +32,7 @@ struct PressedBlock {
   Index displacement_nodes = 0;
 };
 /// @param cells number of cells along an edge of the cube, of six tetrahedra each
-/// Errors: those of Tissue::build.
+/// Returns the errors of Tissue::build.
 Result<PressedBlock> press_block(const Material& material, int cells, Element element);
 
 }  // namespace stylet::validate

@@ -46,7 +46,7 @@ async function measure(page, client, server) {
   };
 }
 
-/** The median of the second half of the measurements minus that of the first half. */
+/** The median of the second half of the measurements minus the median of the first half. */
 function growth(measures, key) {
   const half = measures.length / 2;
   const median = (list) => list.map((m) => m[key]).sort((a, b) => a - b)[Math.floor(list.length / 2)];

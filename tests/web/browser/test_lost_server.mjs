@@ -27,7 +27,7 @@ test('the page says that it has lost the server, and shows the last pictures as 
   await untilReadout(page, 'Depth', (depth) => depth === 12);
   await server.kill('SIGKILL');
   await page.getByText('Connection lost').waitFor();
-  await page.getByText('is stylet serve still running?').waitFor();
+  await page.getByText('check whether stylet serve is still running').waitFor();
   assert.match(await page.locator('body').getAttribute('class'), /is-old/);
   assert.ok(await page.getByRole('button', { name: 'Push' }).isDisabled());
   await keepPicture(page, 'lost');

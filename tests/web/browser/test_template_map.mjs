@@ -36,7 +36,7 @@ test('clearances are there without being asked for', async () => {
   assert.match(await told('e3.5'), /mm deep, .* in the gland\nClearance to bone: .* mm\nClearance to the urethra: .*\nClearance to the rectum: /);
   assert.match(await told('A1'), /misses the gland/);
   const ends = await page.locator('.map-scale .ticks span').allTextContents();
-  assert.deepEqual(ends, ['✕ 0 mm: through it', '20 mm or more']);
+  assert.deepEqual(ends, ['✕ 0 mm: passes through', '20 mm or more']);
   assert.ok(await page.locator('.hole .through').count() > 0, 'ways through a structure have a cross');
   await keepPicture(page, 'template-clearance');
 });

@@ -50,7 +50,7 @@ test('who watches cannot push', async () => {
 test('the second asks, the first hands over', async () => {
   await second.page.getByRole('button', { name: 'Ask for the needle' }).click();
   await second.page.getByText('You have asked for the needle').waitFor();
-  await first.page.getByText('Somebody asks for the needle').waitFor();
+  await first.page.getByText('Another viewer asks for the needle').waitFor();
   await keepPicture(first.page, 'asked');
   await first.page.getByRole('button', { name: 'Hand over' }).click();
   await second.page.getByText('You hold the needle').waitFor();

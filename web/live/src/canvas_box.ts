@@ -13,7 +13,7 @@ export class CanvasBox {
   /** @param draw draws the whole picture; the context is empty and scaled to CSS px */
   constructor(private readonly box: HTMLElement, private readonly draw: () => void) {
     const context = this.canvas.getContext('2d');
-    if (!context) throw new Error('This browser offers no 2D canvas');
+    if (!context) throw new Error('This browser does not support 2D canvas drawing');
     this.context = context;
     box.append(this.canvas);
     new ResizeObserver(() => this.resize()).observe(box);  // the first call comes soon, but after the constructor

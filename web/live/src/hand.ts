@@ -135,8 +135,8 @@ export class HandControl {
     if (!session.steering || !session.frame) return false;
     if (session.guest || session.frame.paused) {
       if (Date.now() - this.toldAt > 4000) {
-        if (session.guest) session.notify(`The needle follows ${session.guest}, not this page.`, 'Start stylet serve without --hand to push it here.');
-        else session.notify('The simulation is paused.', 'Press Space or "Resume" and push again.');
+        if (session.guest) session.notify(`The needle follows ${session.guest}, not this page.`, 'Start stylet serve without --hand to move the needle in this page.');
+        else session.notify('The simulation is paused.', 'Press Space or "Resume", then push again.');
       }
       this.toldAt = Date.now();
       return false;

@@ -52,7 +52,7 @@ export function compose(session: Session, parts: PictureParts): HTMLCanvasElemen
     const [axial, sagittal, lateral] = frame.force;
     const where = status?.hole ? `hole ${status.hole}, ` : '';
     text(`${where}${frame.time.toFixed(2)} s, depth ${frame.depth.toFixed(1)} mm, force axial ${axial.toFixed(2)} N, sagittal ${sagittal.toFixed(2)} N, lateral ${lateral.toFixed(2)} N`.replaceAll('-', '−')
-         + (frame.trusted ? '' : ' (not to be trusted)'), gap, 90, 24, SOFT);
+         + (frame.trusted ? '' : ' (do not trust these forces)'), gap, 90, 24, SOFT);
   }
   const top = 112;
   const chartHeight = 300;

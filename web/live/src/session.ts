@@ -109,7 +109,7 @@ export class Session implements TransportListener {
   }
 
   private takeStatus(status: Status): void {
-    // In a replay, the hole is that of its scene, not the hole of the live needle.
+    // In a replay, the hole of the replayed scene is shown, not the hole of the live needle.
     if (status.mode === 'replay') status.hole = this.scene?.insertions[0]?.hole ?? '';
     this.status = status;
     // If nobody holds the needle, this page takes it, so that a first visitor need not know that it must be held.

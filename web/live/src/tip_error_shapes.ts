@@ -26,8 +26,9 @@ function strokeMark(context: CanvasRenderingContext2D, radius: number, path: () 
 }
 
 /**
- * Draws the planned place of the tip. @param radius [px] @param weight lines are as wide as those of a ring of this
- * radius
+ * Draws the planned place of the tip.
+ * @param radius [px]
+ * @param weight [px] the lines are as wide as the lines of a ring of this radius
  */
 export function drawCross(context: CanvasRenderingContext2D, [u, v]: Place, radius: number, weight = radius): void {
   strokeMark(context, weight, () => {

@@ -96,7 +96,7 @@ Mat3 point_force(const Vec3& x, const Vec3& source, const Medium& medium) {
 struct HalfSpace {
   MediumBlock block;
   const Vec3 up{0.0, 0.0,
-                MediumBlock::kHalf_mm};  ///< shift from the block’s coordinates to those of the half space z ≥ 0
+                MediumBlock::kHalf_mm};  ///< shift from the block’s coordinates to coordinates of the half space z ≥ 0
 
   /// Displacement of the held nodes per force at `source`.
   [[nodiscard]] std::vector<Mat3> far_field(const Vec3& source) const {
@@ -152,11 +152,11 @@ Result<Finding> mindlin(Context&) {
   finding.value = worse(tip_off, field_off);
   finding.note = fmt::format(
       "At depths of 1 … 10 mm below a free face, in two meshes: the tip’s own compliance along the normal differs by "
-      "at most {:.1f} % from that of the flat end of a rod in its hole by finite elements. The displacement at four "
-      "points 3 … 7 mm away from a point force, all nine components, differs by at most {:.1f} % from that of the half "
-      "space. The coupling uses Mindlin’s formula; the reference does not: it removes Kelvin’s tractions on the face "
-      "with Boussinesq’s and Cerruti’s solutions, integrated over the plane. The other faces of the block move as in "
-      "the reference.",
+      "at most {:.1f} % from the compliance of the flat end of a rod in its hole by finite elements. The displacement "
+      "at four points 3 … 7 mm away from a point force, all nine components, differs by at most {:.1f} % from the "
+      "displacement in the half space. The coupling uses Mindlin’s formula; the reference does not: it removes "
+      "Kelvin’s tractions on the face with Boussinesq’s and Cerruti’s solutions, integrated over the plane. The other "
+      "faces of the block move as in the reference.",
       tip_off, field_off);
   finding.why_missed =
       "At a depth of one or two radii the shape of the tip matters, which the kernel does not represent.";

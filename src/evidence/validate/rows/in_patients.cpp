@@ -80,9 +80,8 @@ Result<Finding> gland_turn(Context& context, Patients& patients, PatientCase pat
   finding.value = std::abs(turn.coronal);
   finding.note = fmt::format(
       "The value is the turn in the coronal plane by a needle 15 mm to the left of the axis; the turn is {:.1f}° in "
-      "the "
-      "sagittal and {:.1f}° in the transverse plane. Published: up to about 14° (Lagerburg 2005, not verified). The "
-      "null model, a rigid gland, gives 0°.",
+      "the sagittal and {:.1f}° in the transverse plane. Published: up to about 14° (Lagerburg 2005, not verified). "
+      "The null model, a rigid gland, gives 0°.",
       turn.sagittal, turn.transverse);
   return finding;
 }
@@ -162,9 +161,8 @@ Result<Finding> gland_seat(Context& context, Patients& patients, PatientCase pat
   finding.value = at_once / creep;
   finding.note = fmt::format(
       "The value is a lasting force along the patient’s axis, spread evenly over the gland, divided by the gland’s "
-      "mean "
-      "displacement. Without creep it is {:.2f} N/mm; creep reduces it to 1/{:g}. Derived from published forces and "
-      "shifts: 0.7 … 1.4 N/mm. The null model, a rigid gland, has no displacement.",
+      "mean displacement. Without creep it is {:.2f} N/mm; creep reduces it to 1/{:g}. Derived from published forces "
+      "and shifts: 0.7 … 1.4 N/mm. The null model, a rigid gland, has no displacement.",
       at_once, creep);
   return finding;
 }
@@ -188,17 +186,14 @@ Result<Finding> speed_ratio(Context& context, Patients& patients, PatientCase pa
   finding.note = fmt::format(
       "The shift of the gland when its surface breaks is {:.2f} mm at {:g} mm/s and {:.2f} mm at {:g} mm/s, a ratio of "
       "{:.2f}; the first must be more than 1 mm. Published: {:g} mm with a tapped needle and {:g} mm with a pushed "
-      "one, "
-      "at second hand and NOT VERIFIED. McLaughlin et al. (AAPM 2022) report that high-speed placement moved a "
-      "phantom, "
-      "built to be movable, by up to {:g} mm, and a pneumatic device by {:g} mm; they give no value for slow needles. "
-      "The null model, tissue without creep, gives a ratio of {:.2f}; the value must be smaller.",
+      "one, at second hand and NOT VERIFIED. McLaughlin et al. (AAPM 2022) report that high-speed placement moved a "
+      "phantom, built to be movable, by up to {:g} mm, and a pneumatic device by {:g} mm; they give no value for slow "
+      "needles. The null model, tissue without creep, gives a ratio of {:.2f}; the value must be smaller.",
       creeping.y.front(), kSlow_mm_per_s, creeping.y.back(), kFast_mm_per_s, ratio, prostate::kTappedShift_mm,
       prostate::kPushedShift_mm, prostate::kPhantomHighSpeed_mm, prostate::kPhantomPneumatic_mm, null);
   finding.why_missed =
       "The model has neither inertia nor a cutting force that decreases with speed. Only creep makes a fast needle "
-      "move "
-      "the gland less.";
+      "move the gland less.";
   finding.plot = {
       .x_label = "speed [mm/s]", .y_label = "shift of the gland [mm]", .log_x = true, .curves = {creeping, elastic}};
   return finding;
@@ -227,10 +222,9 @@ Result<Finding> axis_ratio(Context& context, Patients& patients, PatientCase pat
   finding.value = mean.z() >= 2.0 ? further : kNone;
   finding.note = fmt::format(
       "The mean of the largest shift over the holes {} is {:.2f} mm along the needle. This is {:.1f} times the shift "
-      "to "
-      "the left or right and {:.1f} times the shift to anterior or posterior. The worse of the two ratios counts, and "
-      "the shift along the needle must be at least 2 mm. Seeds were misplaced by {:g}, {:g} and {:g} cm on average, by "
-      "other causes too. The null model, a rigid gland, has no ratio.",
+      "to the left or right and {:.1f} times the shift to anterior or posterior. The worse of the two ratios counts, "
+      "and the shift along the needle must be at least 2 mm. Seeds were misplaced by {:g}, {:g} and {:g} cm on "
+      "average, by other causes too. The null model, a rigid gland, has no ratio.",
       fmt::join(holes, ", "), mean.z(), over_left, over_posterior, prostate::kSeedX_cm, prostate::kSeedY_cm,
       prostate::kSeedZ_cm);
   finding.why_missed =

@@ -77,8 +77,7 @@ Result<Finding> reversal(Context&) {
   finding.value = percent_off(drive.last().record.force_axial_N, expected);
   finding.note = fmt::format(
       "The needle is pushed in with {:.2f} N. After 0.1 mm of retraction {} of {} contacts stick. After 10 mm all "
-      "slip; "
-      "the hand pulls with {:.3f} N, and the formula gives {:.3f} N.",
+      "slip; the hand pulls with {:.3f} N, and the formula gives {:.3f} N.",
       pushing, sticking, contacts, -drive.last().record.force_axial_N, -expected);
   finding.plot = {.x_label = "time [s]", .y_label = "axial force [N]", .curves = {force_over_time(drive, "ours")}};
   return finding;
@@ -131,8 +130,7 @@ Result<Finding> withdrawal(Context&) {
   }
   finding.note = fmt::format(
       "After the needle is out, the largest displacement of the tissue is {:g} mm. A second needle at another place "
-      "has "
-      "the same forces as in fresh tissue; the value is the largest difference relative to the peak force.",
+      "has the same forces as in fresh tissue; the value is the largest difference relative to the peak force.",
       left);
   finding.plot = {
       .x_label = "base depth [mm]", .y_label = "axial force [N]", .curves = {force_curve(fresh, "fresh tissue")}};

@@ -268,8 +268,7 @@ Result<Finding> large_motion(Context& context) {
       "The forces on the tissue at the largest shift of the gland, including those kept by creep, are each spread over "
       "{:g} mm and increased in proportion until the gland’s shift is {:g} mm. The mean shifts of the gland and of its "
       "thirds are compared; the allowed error is 0.5 mm or a tenth of the shift, whichever is larger. Both use the "
-      "same "
-      "mesh of {} nodes with quadratic elements.",
+      "same mesh of {} nodes with quadratic elements.",
       kSpread_mm, kFurthest_mm, meshed->mesh.node_count());
   return finding;
 }

@@ -173,14 +173,12 @@ Result<Finding> liver_other_curve(Context&) {
   Finding finding;
   if (off < linear_off) finding.value = off;
   finding.note = fmt::format(
-      "Only E is fitted to this curve, {:.1f} kPa. κ = {:.2f} is that of the other curve (row liver_curve), whose "
-      "tissue "
-      "was stiffer; the row tests whether it applies here too. Ratios of simulated to published force at 2, 5 and 10 "
-      "mm: {}; the dent stiffens more here than with this κ. The null model, linear tissue with the modulus that fits "
-      "best ({:.1f} kPa), gives {:.1f} % and the ratios {}. The depth of this liver’s puncture is not known, so the "
-      "curve is compared up to the other liver’s mean depth. {} Speed is not tested: both curves are for {:g} mm/s, "
-      "and "
-      "the law does not depend on speed.{}",
+      "Only E is fitted to this curve, {:.1f} kPa. κ = {:.2f} was fitted to the other curve (row liver_curve), whose "
+      "tissue was stiffer; the row tests whether it applies here too. Ratios of simulated to published force at 2, 5 "
+      "and 10 mm: {}; the dent stiffens more here than with this κ. The null model, linear tissue with the modulus "
+      "that fits best ({:.1f} kPa), gives {:.1f} % and the ratios {}. The depth of this liver’s puncture is not known, "
+      "so the curve is compared up to the other liver’s mean depth. {} Speed is not tested: both curves are for {:g} "
+      "mm/s, and the law does not depend on speed.{}",
       young_kPa, fit->stiffening, ratios(law, published), linear_kPa, linear_off, ratios(linear, published),
       kSecondHand, okamura::kSpeed_mm_per_s, off < linear_off ? "" : kNotBetter);
   finding.why_missed =

@@ -49,9 +49,9 @@ Result<Finding> locking(Context&) {
   finding.plot.log_x = true;
   finding.note = fmt::format(
       "A cube of 60 mm with ν = 0.499 stands on its floor under a smooth pressure. Difference of the dent with about "
-      "4,900 displacement nodes from that of quadratic tetrahedra with three times as many: {}. The worse of the two "
-      "kinds of elements that do not lock counts. The reference is one of them on a finer mesh; the other shares no "
-      "assumption with it.",
+      "4,900 displacement nodes from the dent of quadratic tetrahedra with three times as many: {}. The worse of the "
+      "two kinds of elements that do not lock counts. The reference is one of them on a finer mesh; the other shares "
+      "no assumption with it.",
       each);
   finding.why_missed = "The mesh is too coarse, or the reference itself is not fine enough.";
   return finding;

@@ -158,8 +158,7 @@ Result<Finding> against_cylinder(const Result<Study>& study, bool lateral) {
       "{} whose outer nodes move as in an unbounded medium. The value is the largest difference on five meshes. "
       "Boundary elements give {:.2f} N, the formula for slender bodies {:.2f} N (largest difference {:.1f} %); {}. The "
       "boundary elements share only Kelvin’s solution with the coupling. The motion of the outer nodes is computed "
-      "with "
-      "the coupling’s own kernel, which agrees with Kelvin’s solution at this distance.",
+      "with the coupling’s own kernel, which agrees with Kelvin’s solution at this distance.",
       kNeedle, cylinder, slender, from_slender, ranges(*study, lateral));
   finding.why_missed = "The kernel on the axis represents a slender cylinder and neglects its ends and R/L.";
   finding.plot = study->plot("element size [mm]", lateral);
@@ -178,7 +177,7 @@ Result<Finding> over_mesh_size(const Result<Study>& study, bool lateral) {
       "ratio of the largest to the smallest force, minus 1. {}. The factor of the finest mesh takes {:.1f} GB.",
       kNeedle, ranges(*study, lateral), 1e-3 * study->largest_factor_mb);
   finding.why_missed =
-      "The remaining difference is that of the far field: it is represented by elements, and elements of 14 mm are "
+      "The remaining difference comes from the far field: it is represented by elements, and elements of 14 mm are "
       "stiffer than fine ones.";
   finding.plot = study->plot("element size [mm]", lateral);
   return finding;

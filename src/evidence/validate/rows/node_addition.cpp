@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares the compliance after node additions with that of the same mesh factorised from scratch.
+// Compares the compliance after node additions with the compliance of the same mesh factorised from scratch.
 #include "../rows.hpp"
 #include "stylet/coupling/paper/inverse_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
@@ -49,8 +49,8 @@ Result<Cube> make_cube() {
   return cube;
 }
 
-/// Largest difference between the compliance among the added nodes and that of a new factorisation, relative to the
-/// largest entry of the latter.
+/// Largest difference between the compliance among the added nodes and the compliance of a new factorisation, relative
+/// to the largest entry of the latter.
 Result<double> difference(const Cube& cube, const ContactCompliance& compliance, const TetMesh& split) {
   const auto fresh = Tissue::build(split, kMaterials, cube.fixed);
   if (!fresh) return fresh.error();

@@ -96,8 +96,7 @@ Result<Finding> viscosity(Context&) {
   finding.note = fmt::format(
       "Creep r = {:g}, τ = {:g} s, steps of {:g} ms. The tip is pressed into the skin at {:g} mm/s and held: the error "
       "of the force is at most {:.2f} % of the {:.3f} N with elastic tissue, of which creep finally removes {:.1f} %. "
-      "A "
-      "needle is taken out after 30 mm: the field of displacement, at first {:.2f} mm, decays as predicted to within "
+      "A needle is taken out after 30 mm: the field of displacement, at first {:.2f} mm, decays as predicted to within "
       "{:.2f} % of its initial value.",
       kCreep, kTau_s, 1e3 * kStep_s, kPressSpeed_mm_per_s, press_off, held_N, 100.0 * (1.0 - 1.0 / beta),
       first.cwiseAbs().maxCoeff(), relax_off);

@@ -35,13 +35,14 @@ export class Cover {
     document.body.classList.toggle('is-old', old);
     if (old) {
       const seconds = Math.max(0, Math.round((Date.now() - session.lostAt) / 1000));
-      this.show('Connection lost', `The pictures are from ${new Date(session.lostAt).toLocaleTimeString()}, ${seconds} s ago. Connecting again…`,
-                seconds > 8 ? 'If this lasts: is stylet serve still running?' : '', false);
+      this.show('Connection lost', `The pictures are from ${new Date(session.lostAt).toLocaleTimeString()}, ${seconds} s ago. Reconnecting…`,
+                seconds > 8 ? 'If this lasts, check whether stylet serve is still running.' : '', false);
       this.timer = window.setTimeout(() => this.update(), 1000);
     } else if (!connected) {
       if (session.attempts > 1) void this.askWhy();
       const why = session.attempts > 2 ? this.refusal || 'The server does not answer.' : 'Waiting for the simulation…';
-      this.show('Connecting', why, session.attempts > 2 && !this.refusal ? 'Is stylet serve still running?' : '', session.attempts <= 2);
+      this.show('Connecting', why, session.attempts > 2 && !this.refusal ? 'Check whether stylet serve is still running.' : '',
+                session.attempts <= 2);
     } else if (status?.state === 'failed') {
       this.show('This case could not be loaded', status.message ?? '', status.cure ?? '', false);
     } else if (status?.state === 'loading' || !scene) {

@@ -27,10 +27,10 @@ export function makeHelp(session: Session): () => void {
   for (const [key, what] of KEYS) list.append(element('dt', '', key), element('dd', '', what));
   const reading = element('div', 'reading');
   for (const text of [
-    'Drag the blue handle at the bottom, turn the wheel over the 3D view, or hold ↑.',
-    'Solid outlines are the organs as the needle moves them, dashed ones where they were. A cross marks where the tip was to be, a ring the tissue it is in, both in the patient at rest: from one to the other is the tip error. Over a section the wheel moves its plane, a drag the plane of the other section.',
-    'Transverse: the patient’s right is at the left of the picture. Sagittal: superior (the base of the gland) is at the left, as a transrectal probe shows it.',
-    'A gamepad works too: left stick or triggers push, right stick tilts, shoulders turn the bevel.',
+    'To push the needle, drag the blue handle at the bottom, turn the wheel over the 3D view, or hold ↑.',
+    'Solid outlines show the organs displaced by the needle, dashed outlines show the organs at rest. A cross marks the planned position of the tip, a ring the tissue point that the tip has reached. Both are drawn in the patient at rest, and the distance between them is the tip error. Over a section, the wheel moves its plane and a drag moves the plane of the other section.',
+    'In the transverse section the patient’s right is at the left of the picture. In the sagittal section superior (the base of the gland) is at the left, as in the picture of a transrectal probe.',
+    'With a gamepad, the left stick or the triggers push the needle, the right stick tilts it, and the shoulder buttons turn the bevel.',
   ]) reading.append(element('p', '', text));
   const notice = element('p', 'cure');
   body.append(reading, list, notice);
@@ -62,19 +62,19 @@ export function makeRecordings(session: Session): () => void {
     return tr;
   };
   const fill = async () => {
-    body.replaceChildren(element('p', 'quiet', 'Asking the server…'));
+    body.replaceChildren(element('p', 'quiet', 'Fetching the list from the server…'));
     try {
       const answer = await fetch(serverAddress('recordings'));
       if (!answer.ok) throw new Error(`the server answered ${answer.status}`);
       const recordings = (await answer.json()) as Recording[];
       if (recordings.length === 0) {
-        body.replaceChildren(element('p', 'quiet', 'There are none yet. Every insertion is recorded as it happens.'));
+        body.replaceChildren(element('p', 'quiet', 'There are no recordings yet. Every insertion is recorded automatically.'));
         return;
       }
       const table = element('table');
       table.append(...recordings.map(row));
       body.replaceChildren(table);
-      if (session.status?.you_hold !== true) body.append(element('p', 'quiet', 'Only who holds the needle can start a replay.'));
+      if (session.status?.you_hold !== true) body.append(element('p', 'quiet', 'Only the viewer who holds the needle can start a replay.'));
     } catch (error) {
       body.replaceChildren(element('p', 'quiet', `The list could not be fetched: ${error instanceof Error ? error.message : String(error)}.`));
     }

@@ -15,7 +15,7 @@ export class HarmBanner {
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.now.setAttribute('role', 'alert');
-    this.list.setAttribute('aria-label', 'What the needle harmed');
+    this.list.setAttribute('aria-label', 'Harm caused by the needle');
     root.append(this.now, this.list);
     for (const topic of ['status', 'frame', 'scene', 'restart'] as const) session.on(topic, () => this.write());
     for (const topic of ['event', 'frame', 'restart', 'scene'] as const) session.on(topic, () => this.writeList());

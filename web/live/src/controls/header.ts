@@ -59,7 +59,7 @@ export class Header {
     const viewers = others === 0 ? '' : others === 1 ? ' · 1 other viewer' : ` · ${others} other viewers`;
     let text = '';
     if (!connected || status?.state !== 'ready') text = '';
-    else if (holds && asking > 0) text = asking === 1 ? 'Somebody asks for the needle' : `${asking} ask for the needle`;
+    else if (holds && asking > 0) text = asking === 1 ? 'Another viewer asks for the needle' : `${asking} viewers ask for the needle`;
     else if (holds) text = `${follows || 'You hold the needle'}${viewers}`;
     else if (status.held) text = status.you_ask ? `You have asked for the needle${viewers}` : `${follows || 'You are watching'}${viewers}`;
     else text = `${follows || 'Nobody holds the needle'}${viewers}`;
@@ -67,7 +67,7 @@ export class Header {
     this.holder.className = `holder ${holds ? 'mine' : 'watching'} ${holds && asking > 0 ? 'asked' : ''}`;
     this.holder.hidden = text === '';
     this.take.hidden = holds;
-    this.write(this.take, status?.you_ask ? 'Ask no longer' : status?.held ? 'Ask for the needle' : 'Take the needle');
+    this.write(this.take, status?.you_ask ? 'Cancel the request' : status?.held ? 'Ask for the needle' : 'Take the needle');
     this.release.hidden = !holds || others === 0;
     const recording = status?.recording;
     const unrecorded = recording?.problem;

@@ -27,8 +27,8 @@ class Figure {
 }
 
 /**
- * The largest absolute axial force of the steps of a frame and of the steps before. @param peak that of the steps
- * before
+ * The largest absolute axial force [N] of the steps of a frame and of all steps before.
+ * @param peak largest absolute axial force of the steps before
  */
 export function peakAfter(peak: number, { samples, whole }: Frame): number {
   let largest = whole ? 0 : peak;
@@ -44,10 +44,10 @@ function part(value: number, digits: number, unit: string, positive: string, neg
 export function tipErrorText(frame: Frame): { text: string; title: string } {
   if (!hasTipError(frame)) return { text: '–', title: 'The tip is not in the tissue' };
   const [lr, ap, si] = frame.tipError;
-  const miss = 'Where the tip is in the tissue, less where a rigid straight needle would have put it in a patient that nothing has moved: ' +
+  const miss = 'Position of the tip in the tissue minus the position that a rigid straight needle would reach in the undeformed patient: ' +
     [part(si, 2, ' mm', 'superior', 'inferior'), part(ap, 2, ' mm', 'posterior', 'anterior'), part(lr, 2, ' mm', 'left', 'right')].join(', ');
-  const when = isDrawnBack(frame) ? `Of the deepest point, at a depth of ${frame.tipErrorDepth.toFixed(1)} mm: the needle has been drawn back since`
-                                  : 'A seed dropped now would miss its place in the tissue by about as much';
+  const when = isDrawnBack(frame) ? `This is the error at the deepest point, at a depth of ${frame.tipErrorDepth.toFixed(1)} mm; the needle has been drawn back since`
+                                  : 'A seed dropped now would miss its planned place in the tissue by about this distance';
   return { text: length([lr, ap, si]).toFixed(2), title: `${miss}. ${when}.` };
 }
 
@@ -79,7 +79,7 @@ export class KeyFigures {
   }
 
   private write(): void {
-    this.peak.set(this.largest.toFixed(2), 'Largest axial force since the needle was put to its start');
+    this.peak.set(this.largest.toFixed(2), 'Largest absolute axial force since the start of this insertion');
     const { frame } = this.session;
     this.tip.box.hidden = frame?.replayed ?? false;  // recordings do not contain it
     if (frame) {
@@ -88,7 +88,7 @@ export class KeyFigures {
     }
     if (!this.gland) return;
     const { shift: [lr, ap, si], rotation: [sagittal, coronal, transverse] } = this.gland;
-    this.shift.set(length([lr, ap, si]).toFixed(2), 'Mean shift of the gland’s surface as it is drawn (a report has the shift of its volume, up to a fifth more): ' +
+    this.shift.set(length([lr, ap, si]).toFixed(2), 'Mean shift of the drawn surface of the gland (a report gives the shift averaged over its volume, which is up to a fifth larger): ' +
       [part(si, 2, ' mm', 'superior', 'inferior'), part(ap, 2, ' mm', 'posterior', 'anterior'), part(lr, 2, ' mm', 'left', 'right')].join(', '));
     this.turn.set(length([sagittal, coronal, transverse]).toFixed(1), 'Rigid rotation of the gland’s surface: ' +
       [part(coronal, 2, '° coronal, base to the', 'left', 'right'), part(sagittal, 2, '° sagittal, base to', 'anterior', 'posterior'),

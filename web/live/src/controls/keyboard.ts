@@ -4,18 +4,18 @@ import { SPEEDS, type HandControl } from '../hand';
 import type { Session } from '../session';
 
 export const KEYS: [string, string][] = [
-  ['↑ or W, ↓ or S', 'push, pull, as long as held'],
-  ['Page up, page down', '5 mm deeper, 5 mm back'],
-  ['Wheel', '1 mm; with Shift 0.1 mm; with Ctrl zooms the 3D view'],
-  ['1, 2, 3', `speed ${SPEEDS.join(', ')} mm/s`],
+  ['↑ or W, ↓ or S', 'push, pull while the key is held'],
+  ['Page up, page down', 'push by 5 mm, pull by 5 mm'],
+  ['Wheel', 'push or pull by 1 mm, with Shift by 0.1 mm; with Ctrl zoom the 3D view'],
+  ['1, 2, 3', `set the speed to ${SPEEDS.join(', ')} mm/s`],
   ['Q, E', 'turn the bevel'],
   ['A, D or Shift ← →', 'tilt the hub to the patient’s right, left'],
   ['Shift ↑ ↓', 'tilt the hub to anterior, posterior'],
-  ['Home', 'tilt back to straight'],
+  ['Home', 'make the hub straight again'],
   ['Space', 'pause, resume'],
-  ['.', 'a single step while paused'],
-  ['R', 'back to the start of this insertion'],
-  ['?', 'this list'],
+  ['.', 'make a single step while paused'],
+  ['R', 'go back to the start of this insertion'],
+  ['?', 'show or hide this list'],
 ];
 const ROLL_DEG_PER_S = 90;
 const TILT_DEG_PER_S = 4;

@@ -38,9 +38,9 @@ export class Readouts {
 
   constructor(root: HTMLElement, private readonly session: Session) {
     this.depth.row.classList.add('large');
-    this.depth.row.title = 'How far the tip of a straight needle on the same base would be beyond the skin';
+    this.depth.row.title = 'Depth beyond the skin at which the tip of a straight needle on the same base would be';
     this.forces[0].row.classList.add('large');
-    this.step.row.title = 'Processor time of a step: median, 99th percentile, longest';
+    this.step.row.title = 'Processor time of a step: median, 99th percentile, maximum';
     this.warning.hidden = true;
     const figures = element('div', 'figures');
     new KeyFigures(figures, session);
@@ -58,15 +58,15 @@ export class Readouts {
       this.tip.set(TIP_STATES[frame.tipState] ?? `state ${frame.tipState}`);
       this.forces.forEach((value, k) => value.set(signed(frame.force[k])));
       this.warn(!frame.trusted ? 'Do not trust these forces: the step did not converge.'
-                : frame.unfelt ? 'No force: the needle is in the tissue without feeling it. Draw it out.'
-                : frame.approximate && TIP_STATES[frame.tipState] === 'in air' ? 'No force yet: nothing is prepared here. Wait at the skin, or draw the needle out.'
-                : frame.approximate ? 'Forces are approximate here: the needle is ahead of its preparation.' : '', !frame.trusted);
+                : frame.unfelt ? 'No force: the needle is in tissue without any contact. Draw the needle out.'
+                : frame.approximate && TIP_STATES[frame.tipState] === 'in air' ? 'No force yet: the tissue here is not ready. Wait at the skin, or draw the needle out.'
+                : frame.approximate ? 'Forces are approximate: the needle is in tissue that is not yet precomputed.' : '', !frame.trusted);
     }
     const loop = status?.loop;
     const missed = frame?.missed ?? loop?.missed ?? 0;
     const steps = frame?.steps ?? loop?.steps ?? 0;
     this.step.set(loop && loop.steps > 0 ? `${loop.p50_us.toFixed(0)} · ${loop.p99_us.toFixed(0)} · ${loop.max_us.toFixed(0)}` : '–');
-    const words = frame?.replayed ? 'A replay' : steps === 0 ? 'No steps yet' : missed === 0 ? 'Every step in time' : `${missed.toLocaleString('en')} of ${steps.toLocaleString('en')} steps late`;
+    const words = frame?.replayed ? 'A replay' : steps === 0 ? 'No steps yet' : missed === 0 ? 'Every step on time' : `${missed.toLocaleString('en')} of ${steps.toLocaleString('en')} steps late`;
     this.deadline.className = `deadline ${steps === 0 || frame?.replayed ? '' : missed === 0 ? 'kept' : 'missed'}`;
     if (this.deadline.textContent !== words) this.deadline.textContent = words;
     this.deadline.title = loop?.rights ?? '';

@@ -32,9 +32,9 @@ export class Steering {
       presets.forEach((b, i) => b.setAttribute('aria-pressed', String(hand.target.speed === SPEEDS[i])));
       this.writePose();
     });
-    this.pause = make('Pause', 'Space', () => togglePause(session));
-    this.step = make('Step', 'A single step while paused (.)', () => session.command({ do: 'step', count: 1 }));
-    const again = make('Start again', 'Back to the start of this insertion (R)', () => reset(session, hand));
+    this.pause = make('Pause', 'Pause or resume (Space)', () => togglePause(session));
+    this.step = make('Step', 'Make a single step while paused (.)', () => session.command({ do: 'step', count: 1 }));
+    const again = make('Start again', 'Go back to the start of this insertion (R)', () => reset(session, hand));
     const run = element('div', 'row');
     run.append(this.pause, this.step, again);
     const turn = element('div', 'row pad');

@@ -54,7 +54,7 @@ export class TemplateMap {
     for (const [name, { group, title, name: said }] of this.marks) {
       group.querySelectorAll('.mapped').forEach((e) => e.remove());
       const hole = known.get(name);
-      title.textContent = hole ? tellOf(hole) : map ? `${said}\nIts straight way misses the gland.` : said;
+      title.textContent = hole ? tellOf(hole) : map ? `${said}\nThe straight path from this hole misses the gland.` : said;
       if (!hole || !measure) continue;
       const mm = measure.of(hole);
       const disc = svg('circle', { r: 0.46, class: mm === null ? 'mapped unknown' : 'mapped', fill: mm === null ? 'none' : colorsOf(measure, end, mm).fill });
@@ -85,9 +85,9 @@ export class TemplateMap {
     const predicted = live?.predicted ?? 0;
     this.ask.hidden = !live?.map || predicted >= total;
     this.ask.textContent = live?.predicting ? 'Stop' : 'Predict shift';
-    this.ask.title = 'Inserts a needle through each hole, in the background, to see how far the gland moves and the tip is off';
+    this.ask.title = 'Simulates an insertion through each hole in the background, to predict the shift of the gland and the tip error';
     this.ask.disabled = !this.session.steering;
-    this.state.textContent = live?.why_not ? 'No map: there is no gland.'
+    this.state.textContent = live?.why_not ? 'No map, because there is no gland.'
       : live?.predicting ? `Hole ${predicted + 1} of ${total} …`
       : live?.map && measure && !isKnown(measure, live.map) ? (measure.clearance ? 'Not in this model.' : 'Not predicted yet.')
       : predicted > 0 && predicted < total ? `${predicted} of ${total} holes` : '';

@@ -23,7 +23,7 @@ export class TemplatePicker {
       key.append(item);
     }
     const hint = element('p', 'picker-hint',
-      'Wheel over the 3D view or hold ↑ to push. Click a hole for another way in. ? lists all keys.');
+      'Wheel over the 3D view or ↑ pushes. A click on a hole moves the needle there. ? lists all keys.');
     const colors = element('div', 'picker-map');
     this.map = new TemplateMap(colors, session);
     root.append(this.title, this.grid, key, colors, hint);
@@ -90,7 +90,7 @@ export class TemplatePicker {
     const { session } = this;
     const { hole } = this.list[number];
     if (!session.steering) {
-      session.notify('You do not hold the needle.', 'Ask for it first.');
+      session.notify('You do not hold the needle.', 'Ask for the needle first.');
       return;
     }
     this.hand.rest();

@@ -54,7 +54,7 @@ export class RegionSurface implements RegionLook {
     this.applyLook();
   }
 
-  /** Whether the bounding box of the other region lies inside that of this region. */
+  /** Whether the bounding box of the other region lies inside the bounding box of this region. */
   holds(other: RegionSurface): boolean {
     return other !== this && this.box.containsBox(other.box);
   }

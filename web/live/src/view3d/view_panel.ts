@@ -129,7 +129,7 @@ export class ViewPanel {
       });
     } catch {
       picture.replaceChildren(element('p', 'no-webgl',
-        'This browser offers no WebGL, which the 3D view needs. The sections and the curves work without it. Cure: a current browser with hardware acceleration switched on.'));
+        'This browser offers no WebGL, which the 3D view needs. The sections and the curves work without it. Use a current browser and switch hardware acceleration on.'));
       return null;
     }
   }
@@ -164,7 +164,7 @@ export class ViewPanel {
       const done = status.fraction == null ? '' : ` is being prepared: ${Math.round(100 * status.fraction)} %`;
       return `${status.stage[0].toUpperCase()}${status.stage.slice(1)}${done}.`;
     }
-    return hidden_N > 0.05 ? `The displacement shown leaves out forces of ${hidden_N.toFixed(1)} N.` : '';
+    return hidden_N > 0.05 ? `The displacement is shown without the effect of forces of ${hidden_N.toFixed(1)} N.` : '';
   }
 
   private tissueChanged(): void {
@@ -180,7 +180,7 @@ export class ViewPanel {
 
   private buildSettings(stage: Stage): void {
     const summary = element('summary', '', 'View');
-    summary.title = 'What the 3D view shows';
+    summary.title = 'Choose what the 3D view shows';
     const colors = element('div', 'choice');
     for (const [text, on] of [['Tissue', false], ['Displacement', true]] as const) {
       const label = element('label');
@@ -199,7 +199,7 @@ export class ViewPanel {
     }
     const contacts = visibilityBox(stage, stage.contacts, 'Contact points');
     const ghost = visibilityBox(stage, stage.ghost, 'Gland before the insertion');
-    const tipError = visibilityBox(stage, stage.tipError, 'Tip error, in the patient at rest');
+    const tipError = visibilityBox(stage, stage.tipError, 'Tip error, drawn in the patient at rest');
     this.cutControl = new CutControl(stage);
     const body = element('div', 'settings-body');
     body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,

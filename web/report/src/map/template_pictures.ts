@@ -31,7 +31,7 @@ function draw(map: HoleMap, measure: Measure): SVGSVGElement {
     const mapped = byName.get(column + row);
     if (!mapped) {
       const dot = svg('circle', { cx: x(i), cy: y(j), r: 0.09, class: 'missing' });
-      dot.append(title(`Hole ${column + row}: its straight way misses the gland`));
+      dot.append(title(`Hole ${column + row}: the straight path from this hole misses the gland`));
       picture.append(dot);
       return;
     }
@@ -65,7 +65,7 @@ export function buildTemplatePictures(map: HoleMap, box: HTMLElement): void {
     const figure = element('figure');
     figure.append(element('figcaption', '', `${measure.label} [mm]`));
     if (isKnown(measure, map)) figure.append(draw(map, measure), scale(map, measure));
-    else figure.append(element('p', 'note', measure.clearance ? 'This model does not have the structure.' : 'There is no such figure for any hole.'));
+    else figure.append(element('p', 'note', measure.clearance ? 'This model does not have the structure.' : 'No hole has a value of this quantity.'));
     box.append(figure);
   }
 }

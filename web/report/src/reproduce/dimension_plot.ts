@@ -21,7 +21,7 @@ function marksOf(runs: Run[]): Marks[] {
     const color = colorOf(run.id);
     if (run.id === 'bcs_repositioning') {
       list.push({ label: 'node moved', color, hollow: false, shape: 'disc', points: moved });
-      list.push({ label: 'node not moved, one added instead', color, hollow: true, shape: 'disc', points: added });
+      list.push({ label: 'node added, the nearest could not be moved', color, hollow: true, shape: 'disc', points: added });
     } else {
       list.push({
         label: run.id === 'default' ? 'node added inside an element (default)' : 'node added on a face',

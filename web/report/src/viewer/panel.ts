@@ -65,7 +65,7 @@ const EXAGGERATIONS = [1, 5, 20];
 /** The choice of the factor. @param note text in the picture that states it @param set receives the new factor */
 function exaggerationChoice(note: HTMLElement, set: (times: number) => void): HTMLElement {
   return radioButtons('viewer-exaggeration', EXAGGERATIONS.map((times) => [`×${times}`, times] as const), (times) => {
-    note.textContent = times === 1 ? '' : `Displacement of the tissue drawn ×${times}. The needle is where it is.`;
+    note.textContent = times === 1 ? '' : `The displacement of the tissue is drawn ×${times}, the needle at its true position.`;
     note.hidden = times === 1;
     set(times);
   });
