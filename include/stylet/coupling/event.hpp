@@ -12,7 +12,7 @@ enum class EventKind {
   puncture,          ///< the surface in front of the tip breaks
   region_entered,    ///< the tip enters a region
   retraction_start,  ///< the base begins to move outwards
-  slip_start,        ///< after a reversal, more than half of the inserted shaft has begun to slide
+  slip_start,        ///< after a turn outwards, more than half of the inserted shaft slides out and the hand pulls
   withdrawn,         ///< the needle has been drawn out of the patient
   bone_contact,      ///< the tip touches a rigid region
   exited,            ///< the tip leaves the tissue through the far side
