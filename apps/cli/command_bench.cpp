@@ -52,11 +52,11 @@ Result<> run_needle(Console& console) {
   }
   json["machine"] = machine_json();
   console.say(
-      "Needle of 200 mm: error in % of the tip's deflection, under a small load at a third of the length and at the "
-      "tip,\n"
-      "and under a tip force that turns the tip by so many degrees (elastica); stiffness along the axis; processor "
-      "time of\n"
-      "one solve with 20 loads, median. * = the default number of elements.");
+      "Needle of 200 mm: error [%] of the tip's deflection under a small load at a third of the length (at L/3) and at "
+      "the tip (at L),\n"
+      "and under a tip force that turns the tip by the given angle (elastica); axial: stiffness along the axis; solve: "
+      "median\n"
+      "processor time of one solve with 20 loads. * = the default number of elements.");
   console.say(table.text());
   return console.write_json(json);
 }
@@ -107,8 +107,8 @@ std::vector<std::string> coupling_cells(const measure::CouplingRow& row) {
 Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   measure::CouplingBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked =
-          check_nodes("coupling", options.largest, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("coupling", options.largest, 500,
+                                 "Use 500 nodes or more; this is the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto rows = measure::bench_coupling(options, console.progress());
@@ -122,12 +122,15 @@ Result<> run_coupling(const BenchArguments& arguments, Console& console) {
   }
   json["machine"] = machine_json();
   console.say(fmt::format(
-      "Demo insertion, in to {:g} mm and out. RMS: difference of the axial force from the finest of its kind, over "
-      "that one's peak;\n"
-      "shift: of the gland's centroid; skin, capsule: depth of the base when they break; gland: where the mesh has it "
-      "on the needle's line,\n"
-      "off by: mean distance of its surface from the contours; step: processor time, median; before: what is computed "
-      "before the needle moves.",
+      "Demo insertion to {:g} mm and out. over: the setting that is varied; RMS: difference of the axial force from "
+      "the "
+      "finest row of\n"
+      "the same study and method, relative to that row's peak; shift: displacement of the gland's centroid; skin, "
+      "capsule: depth of the\n"
+      "base when they break; gland: extent of the mesh's gland on the needle's line; off by: mean distance of the "
+      "mesh's "
+      "gland from\n"
+      "the contours; step: median processor time; before: wall-clock time until the needle can move, without meshing.",
       options.depth_mm));
   console.say(table.text());
   return console.write_json(json);

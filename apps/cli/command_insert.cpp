@@ -228,9 +228,9 @@ Result<> run_insert(const InsertArguments& arguments, Console& console) {
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
   if (arguments.map && is_recording(arguments.scenario)) {
     return input_error(arguments.scenario,
-                       "it is a recording, whose base motion is one needle's own and cannot be repeated through every "
+                       "it is a recording: its base motion belongs to one needle and cannot be repeated through every "
                        "hole of the template",
-                       "Give its scenario in its place, or leave --map out");
+                       "Give the recording's scenario instead, or leave --map out");
   }
 
   Result<RecordedRun> source = what_to_run(arguments, console.progress());

@@ -94,7 +94,7 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshArguments& argumen
   if (!arguments.skip.empty()) return pointless(arguments, "--skip", kind);
 
   auto out = take_mesh(mesh, options.regions, arguments.input);
-  if (out) out->report.notes.emplace_back("a tetrahedral mesh is taken as it is: checked and converted");
+  if (out) out->report.notes.emplace_back("The tetrahedral mesh was checked and converted; it was not meshed again.");
   return out;
 }
 

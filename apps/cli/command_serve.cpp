@@ -57,7 +57,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
         auto prepared = prepare_model_file(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
         if (!prepared->not_kept.empty())
-          console.warn("The model was not kept for the next time: " + prepared->not_kept);
+          console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared->not_kept);
         for (const std::string& warning : prepared->warnings()) console.warn(warning);
         return serve::LoadedCase{prepared->model, prepared->notes};
       }};
@@ -156,8 +156,9 @@ Result<> run_serve(const ServeArguments& arguments, Console& console) {
   console.say(fmt::format("Open {} in a browser. Ctrl-C ends it.", (*server)->url()));
   const std::string limit =
       arguments.keep_GB > 0.0
-          ? fmt::format("They may take {:g} GB together, then the oldest are removed (--keep).", arguments.keep_GB)
-          : "They may take all of the disk (--keep 0).";
+          ? fmt::format("When they take more than {:g} GB together, the oldest are removed (--keep).",
+                        arguments.keep_GB)
+          : "They are never removed and may fill the disk (--keep 0).";
   console.say(fmt::format("Recordings go to {}. {}", recordings, limit));
   if (arguments.no_token) console.warn("Every user of this machine can open this address and move the needle.");
   if (!igtl->warning.empty()) console.warn(igtl->warning);

@@ -132,7 +132,7 @@ Result<> run_validate(const ValidateArguments& arguments, Console& console) {
   if (Result<> json = console.write_json(Json::parse(validate::validation_json(*validation))); !json) return json;
   for (const Row& row : validation->rows) {
     if (row.verdict == Verdict::crashed)
-      return failure("row " + row.spec.id, row.note(), "The other rows were measured");
+      return failure("row " + row.spec.id, row.note(), "See the page for the other rows, which were measured");
   }
   return Ok{};
 }

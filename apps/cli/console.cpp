@@ -85,7 +85,8 @@ void Console::say(std::string_view text) {
 
 Result<> Console::said() const {
   if (parts_->output_lost.empty()) return Ok{};
-  return failure("standard output", "it takes no more: " + parts_->output_lost, "Check where it is sent to");
+  return failure("standard output", "it accepts no more data: " + parts_->output_lost,
+                 "Check the file or program to which it is redirected");
 }
 
 void Console::detail(std::string_view text) {
@@ -110,8 +111,8 @@ Result<> Console::write_json(const Json& json) {
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
   if (target != "-") return write_text_file(target, text);
   if (!write_all(parts_->json_descriptor, text)) {
-    return failure("--json -", std::string("standard output takes no more: ") + std::strerror(errno),
-                   "Check where it is sent to");
+    return failure("--json -", std::string("standard output accepts no more data: ") + std::strerror(errno),
+                   "Check the file or program to which it is redirected");
   }
   return Ok{};
 }

@@ -38,7 +38,7 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
   auto recording = read_recording(file);
   if (!recording) return recording.error();
   if (recording->steps.empty())
-    return input_error(file, "the recording ends before its first step", "Choose another one");
+    return input_error(file, "the recording ends before its first step", "Choose another recording");
   auto scenario = parse_scenario(recording->info.scenario_text, file + ", /scenario", settings);
   if (!scenario) return scenario.error();
   const auto start = std::chrono::steady_clock::now();
@@ -50,7 +50,7 @@ Result<RecordedRun> recorded_run(const std::string& file, const std::vector<std:
   const auto& of_model = run.prepared.model->warnings();
   for (const std::string& warning : recording->info.warnings) {
     if (std::find(of_model.begin(), of_model.end(), warning) != of_model.end()) continue;
-    run.prepared.notes.push_back(settings.empty() ? warning : "Said of the recording: " + warning);
+    run.prepared.notes.push_back(settings.empty() ? warning : "Warning stored in the recording: " + warning);
   }
   run.prepared.model_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;

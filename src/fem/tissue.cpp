@@ -60,18 +60,18 @@ Result<> check_materials(const TetMesh& mesh, const std::vector<Material>& mater
     return input_error("materials",
                        std::to_string(materials.size()) + " materials are given for " +
                            std::to_string(mesh.regions.size()) + " regions",
-                       "Give one material for each region of the mesh, in the same order.");
+                       "Give one material for each region of the mesh, in the same order");
   }
   for (std::size_t r = 0; r < materials.size(); ++r) {
     const std::string where = "material of region '" + mesh.regions[r] + "'";
     const Material& material = materials[r];
     if (!(material.young_MPa > 0.0) || !std::isfinite(material.young_MPa)) {
       return input_error(where, "Young's modulus is " + number(1e3 * material.young_MPa) + " kPa, expected above 0",
-                         "Soft tissue has 1 to 500 kPa.");
+                         "Give a modulus above 0; soft tissue has 1 to 500 kPa");
     }
     if (!(material.poisson > -1.0 && material.poisson < 0.5)) {
       return input_error(where, "Poisson ratio is " + number(material.poisson) + ", expected above -1 and below 0.5",
-                         "Use 0.45 to 0.49 for nearly incompressible tissue; exactly 0.5 has no finite stiffness.");
+                         "Use 0.45 to 0.49 for nearly incompressible tissue; exactly 0.5 has no finite stiffness");
     }
   }
   return Ok{};
@@ -80,7 +80,7 @@ Result<> check_materials(const TetMesh& mesh, const std::vector<Material>& mater
 // The part of check_mesh() without which assembly would read out of bounds or divide by zero.
 Result<> check_usable(const TetMesh& mesh) {
   const auto bad = [](std::string what) {
-    return input_error("mesh", std::move(what), "Pass the mesh through check_mesh() first; it names every such fault.");
+    return input_error("mesh", std::move(what), "Pass the mesh through check_mesh() first; it names every such fault");
   };
   if (mesh.tets.empty() || mesh.tet_region.size() != mesh.tets.size()) return bad("no tetrahedra, or no regions");
   for (Index t = 0; t < mesh.tet_count(); ++t) {
@@ -110,12 +110,12 @@ Result<Tissue> Tissue::build_later(TetMesh mesh, std::vector<Material> materials
       return input_error("supports",
                          "fixed node number " + std::to_string(a) + " is out of range, expected 0 to " +
                              std::to_string(mesh.node_count() - 1),
-                         "Name nodes of this mesh.");
+                         "Give the numbers of nodes of this mesh");
     }
   }
   if (static_cast<Index>(fixed.size()) == mesh.node_count()) {
     return input_error("supports", "all " + std::to_string(fixed.size()) + " nodes are fixed, so nothing can move",
-                       "Fix only the nodes that bone or the body's far surface holds.");
+                       "Fix only the nodes that bone or the body's far surface holds");
   }
   std::vector<char> is_fixed(mesh.nodes.size(), 0);
   for (const Index a : fixed) is_fixed[a] = 1;
@@ -173,14 +173,14 @@ Result<> Tissue::Parts::factorise(const Progress& progress) {
     case detail::Cholesky::Failure::out_of_memory:
       return failure("stiffness matrix",
                      "memory ran out while factorising " + std::to_string(free_dofs) + " degrees of freedom",
-                     "Use a coarser mesh or a machine with more memory.");
+                     "Use a coarser mesh or a machine with more memory");
     case detail::Cholesky::Failure::too_large:
       return failure("stiffness matrix",
                      "the factor of " + std::to_string(free_dofs) + " degrees of freedom has more than 2³¹ entries",
-                     "Use a coarser mesh.");
+                     "Use a coarser mesh");
     case detail::Cholesky::Failure::refused:
-      return failure("stiffness matrix", "CHOLMOD refused it with status " + std::to_string(factor.status()),
-                     "This is a fault of the program: please report it with the mesh.");
+      return failure("stiffness matrix", "CHOLMOD could not factorise it, status " + std::to_string(factor.status()),
+                     "Report this fault of the program together with the mesh");
   }
   statistics.factor_mb = factor.megabytes();
   statistics.factor_entries = factor.entries();

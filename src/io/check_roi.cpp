@@ -71,7 +71,7 @@ class RoiCheck {
 
   Result<> run() {
     if (roi_.contours.empty())
-      return input_error(where_, "the structure is empty", "Contour it, or choose another structure.");
+      return input_error(where_, "the structure is empty", "Contour it, or choose another structure");
     for (std::size_t i = 0; i < roi_.contours.size(); ++i) {
       if (Result<> r = check_points(i); !r) return r;
     }
@@ -99,14 +99,14 @@ class RoiCheck {
       return input_error(fmt::format("{}, contour {}", where_, i + 1),
                          fmt::format("{} point{}, at least 3 are needed", contour.points.size(),
                                      contour.points.size() == 1 ? "" : "s"),
-                         "Delete or redraw this contour.");
+                         "Delete or redraw this contour");
     }
     for (std::size_t k = 0; k < contour.points.size(); ++k) {
       const Vec3& p = contour.points[k];
       if (!p.allFinite()) {
         return input_error(fmt::format("{}, contour {}, point {}", where_, i + 1, k + 1),
                            fmt::format("the coordinates ({}, {}, {}) are not finite", p.x(), p.y(), p.z()),
-                           "Redraw this contour.");
+                           "Redraw this contour");
       }
     }
     return Ok{};
@@ -120,8 +120,8 @@ class RoiCheck {
     const double extent = box.sizes().maxCoeff();
     if (extent >= 1.0 && extent <= 2000.0) return Ok{};
     return input_error(where_, fmt::format("the structure is {:.4g} mm long, 1 mm to 2 m is expected", extent),
-                       extent < 1.0 ? "The coordinates are probably in metres; convert them to mm."
-                                    : "The coordinates are probably in micrometres; convert them to mm.");
+                       extent < 1.0 ? "Convert the coordinates to mm; they are probably in metres"
+                                    : "Convert the coordinates to mm; they are probably in micrometres");
   }
 
   Result<> check_plane(std::size_t i) const {
@@ -129,17 +129,17 @@ class RoiCheck {
     const Frame own = fitted_frame(contour);
     if (thickness(contour, own.width) < min_width_mm) {
       return input_error(place(i), "its points coincide or lie on a line; it encloses nothing",
-                         "Delete or redraw this contour.");
+                         "Delete or redraw this contour");
     }
     const double off_plane = thickness(contour, own.normal);
     if (off_plane > plane_tolerance_mm) {
       return input_error(place(i), fmt::format("its points are up to {:.3g} mm off a common plane", off_plane),
-                         "Draw each contour within one slice.");
+                         "Draw each contour within one slice");
     }
     const double tilt = std::acos(std::min(1.0, std::abs(own.normal.dot(normal_)))) * 180.0 / M_PI;
     if (thickness(contour, normal_) > plane_tolerance_mm && tilt > max_tilt_deg) {
       return input_error(place(i), fmt::format("its plane is tilted by {:.1f}° against the others", tilt),
-                         "Draw all contours of a structure on parallel slices.");
+                         "Draw all contours of a structure on parallel slices");
     }
     return Ok{};
   }
@@ -157,7 +157,7 @@ class RoiCheck {
     return input_error(place(i),
                        fmt::format("it crosses itself at ({:.2f}, {:.2f}, {:.2f}) mm, after its points {} and {}",
                                    at.x(), at.y(), at.z(), crossing->first_edge + 1, crossing->second_edge + 1),
-                       "Redraw this contour without the loop.");
+                       "Redraw this contour without the loop");
   }
 
   Result<> check_slices() const {
@@ -169,7 +169,7 @@ class RoiCheck {
         where_,
         fmt::format("the structure has contours on one slice only (z = {:.2f} mm), at least 2 are needed",
                     roi_.contours.front().points.front().z()),
-        "Contour it on every slice it reaches, or choose another structure.");
+        "Contour it on every slice it reaches, or choose another structure");
   }
 
   const Roi& roi_;

@@ -11,7 +11,8 @@ namespace stylet::cli {
 Result<> bench_display_command(const BenchArguments& arguments, Console& console) {
   measure::DisplayBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked = check_nodes("display", options.largest, 570, "570 nodes is the coarsest mesh it is measured on");
+  if (auto checked = check_nodes("display", options.largest, 570,
+                                 "Use 570 nodes or more; this is the coarsest mesh that is measured");
       !checked)
     return checked;
   const auto rows = measure::bench_display(options, console.progress());
@@ -66,14 +67,16 @@ Result<> bench_display_command(const BenchArguments& arguments, Console& console
   }
   json["machine"] = machine_json();
   console.say(
-      "Pictures of the deformed patient along an insertion: processor time of all surfaces, of a slice and of both, "
-      "median and largest;\n"
-      "fine: points of surfaces that are finer along the needle's way; near: the needle's near field at these; solve: "
-      "of "
-      "the same by the factor; moved: the largest displacement; error: of any node in any frame against the "
-      "factor's,\n"
-      "and what was stated for those forces; coarse: the error when the coarsest mesh's displacement is shown "
-      "instead.");
+      "Pictures of the deformed patient during an insertion. Processor times, median and largest, of all surfaces, of "
+      "a "
+      "slice, and of both;\n"
+      "fine: points of the surfaces after refinement along the needle's way; near: time of the needle's near field at "
+      "these points;\n"
+      "solve: time of a picture computed by a solve with the factor of the stiffness; moved: largest displacement; "
+      "error: largest\n"
+      "difference of a node from that solve; stated: the error bound stated for these forces; coarse: the error if the "
+      "displacement\n"
+      "of the coarsest mesh is shown instead.");
   console.say(table.text());
   return console.write_json(json);
 }

@@ -56,7 +56,8 @@ Result<> bench_loop_command(const BenchArguments& arguments, Console& console) {
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
   if (arguments.contacts > 0) options.contacts = arguments.contacts;
   if (arguments.seconds > 0) options.seconds = arguments.seconds;
-  if (auto checked = check_nodes("loop", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("loop", options.nodes, 500,
+                                 "Use 500 nodes or more; this is the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto done = measure::bench_loop(options, console.progress());

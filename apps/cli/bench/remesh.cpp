@@ -74,9 +74,11 @@ void say_events(const measure::EventBench& bench, Console& console) {
                number(row.cold_us.p50, 1), number(row.cold_us.p95, 1), number(row.cold_us.max, 1)});
   }
   console.say(
-      "A contact laid in the demo patient where the tip is, all that the loop does for it: search, border, compliances "
-      "with all other points.\n"
-      "interior, paper: node addition; near-field: the default, without a node; cold: nothing of it in the caches.");
+      "Processor time of creating a contact at the tip in the demo patient, with all its work: search of the element, "
+      "border, compliances\n"
+      "with all other points. interior, paper: node addition by these rules; near-field: the default, which adds no "
+      "node; cold: with\n"
+      "the processor's caches emptied before.");
   console.say(table.text());
   const auto spread = [](const measure::Spread& of) {
     return fmt::format("{:.0f} µs ({:.0f} … {:.0f})", of.p50, of.p5, of.p95);
@@ -86,11 +88,12 @@ void say_events(const measure::EventBench& bench, Console& console) {
   for (const std::string& rule : kRules) {
     const Ratios warm = ratios(bench, rule, false);
     const Ratios cold = ratios(bench, rule, true);
-    std::string text = fmt::format("{}: warm 1/{:.0f} of that, cold 1/{:.0f}", rule, warm.woodbury_over_event,
-                                   cold.woodbury_over_event);
+    std::string text = fmt::format("{}: 1/{:.0f} of Woodbury's time warm, 1/{:.0f} cold", rule,
+                                   warm.woodbury_over_event, cold.woodbury_over_event);
     if (warm.finest_over_coarsest && cold.finest_over_coarsest) {
-      text += fmt::format("; at {} nodes {:.2f} times what it is at {} warm, {:.2f} cold", bench.finest(rule)->nodes,
-                          *warm.finest_over_coarsest, bench.coarsest(rule)->nodes, *cold.finest_over_coarsest);
+      text += fmt::format("; at {} nodes {:.2f} times the time at {} nodes warm, {:.2f} times cold",
+                          bench.finest(rule)->nodes, *warm.finest_over_coarsest, bench.coarsest(rule)->nodes,
+                          *cold.finest_over_coarsest);
     }
     console.say(text + ".");
   }
@@ -104,7 +107,7 @@ Result<> bench_remesh_command(const BenchArguments& arguments, Console& console)
   constexpr int largest = 4096;
   if (nodes < smallest || nodes > largest)
     return input_error("--nodes", fmt::format("remesh takes {} to {} nodes, not {}", smallest, largest, nodes),
-                       "The full inverse is what limits it");
+                       "Choose a number in this range, which the memory for the full inverse limits");
   const auto rows = measure::bench_remeshing(sizes_up_to(nodes), console.progress());
   if (!rows) return rows.error();
   const std::vector<std::string> methods{"shortcut", "bordered", "woodbury", "bcs", "inverse"};
@@ -127,7 +130,7 @@ Result<> bench_remesh_command(const BenchArguments& arguments, Console& console)
   if (!events) return events.error();
   add_events(*events, json);
   json["machine"] = machine_json();
-  console.say("Processor time of one change of the mesh, everything included, median:");
+  console.say("Median processor time of one change of the mesh, with all its work:");
   console.say(table.text());
   say_events(*events, console);
   return console.write_json(json);

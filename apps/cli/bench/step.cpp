@@ -34,7 +34,8 @@ Json phases_json(const std::array<double, kStepPhases>& us) {
 Result<> bench_scale_command(const BenchArguments& arguments, Console& console) {
   measure::ScaleBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
-  if (auto checked = check_nodes("scale", options.largest, 570, "570 nodes is the mesh of Goksel et al. 2005");
+  if (auto checked =
+          check_nodes("scale", options.largest, 570, "Use 570 nodes or more; this is the mesh of Goksel et al. 2005");
       !checked)
     return checked;
   if (arguments.contacts > 0) options.contacts = {arguments.contacts};
@@ -117,17 +118,19 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
   }
   json["machine"] = machine_json();
   console.say(
-      "The demo's needle in firm tissue, 90 mm in, back and forth three times, and out: time of the steps with nearly "
-      "all contacts.\n"
-      "p50 … max: processor time of the thread; p99 / 570: against the coarsest mesh with as many contacts; all "
-      "steps, longest, over 1 ms:\n"
-      "with however many contacts, processor time; their medians: the longest when each of those is given the median "
-      "of "
-      "its repeats (--steps), which do the same work;\n"
-      "fixed work: how often arithmetic of always the same amount, some 100 µs long, done after each step, took over "
-      "1 ms; by medians: as before, of all steps;\n"
-      "before the first step: mesh from contours, factor of the stiffness, store of compliances and all else; memory: "
-      "resident then.");
+      "The demo's needle goes 90 mm into firm tissue, back and forth three times, and out. Times are thread CPU "
+      "times.\n"
+      "p50 … max: steps with nearly all contacts; p99 / 570: p99 divided by the p99 of the coarsest mesh with as many "
+      "contacts;\n"
+      "all steps, longest, over 1 ms: steps with any number of contacts; their medians: the longest of the steps over "
+      "1 ms\n"
+      "if each counts with the median of its repeats (--steps), which do the same work; fixed work: how often a fixed "
+      "amount\n"
+      "of arithmetic (about 100 µs), done after each step, took over 1 ms; by medians: the longest of all steps by "
+      "medians.\n"
+      "Before the first step: mesh from contours, factor of the stiffness, store of compliances and all other "
+      "preparation;\n"
+      "memory: resident memory before the first step.");
   console.say(table.text());
   return console.write_json(json);
 }
@@ -135,7 +138,8 @@ Result<> bench_scale_command(const BenchArguments& arguments, Console& console) 
 Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
   measure::StepBenchOptions options;
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
-  if (auto checked = check_nodes("step", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("step", options.nodes, 500,
+                                 "Use 500 nodes or more; this is the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto rows = measure::bench_step(options, console.progress());
@@ -165,11 +169,12 @@ Result<> bench_step_command(const BenchArguments& arguments, Console& console) {
   }
   json["machine"] = machine_json();
   console.say(
-      "The insertion of `bench scale`: processor time of a step with nearly all contacts; clock: by how much reading "
-      "the clock\n"
-      "in every phase makes it longer, each step the shortest of four runs with it and of four without.");
+      "The insertion of `bench scale`: processor time of the steps with nearly all contacts. clock: increase of this "
+      "time by reading\n"
+      "the clock in every phase; each step counts with its shortest time in four runs with the clock and in four "
+      "without.");
   console.say(times.text());
-  console.say("What of it goes where, in all steps and in the slowest hundredth:");
+  console.say("Share of the time in each phase, in all steps and in the slowest 1 % of the steps:");
   console.say(phases.text());
   return console.write_json(json);
 }

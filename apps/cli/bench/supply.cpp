@@ -12,7 +12,8 @@ Result<> bench_supply_command(const BenchArguments& arguments, Console& console)
   measure::SupplyBenchOptions options;
   if (arguments.nodes > 0) options.largest = arguments.nodes;
   if (arguments.speed > 0.0) options.speeds_mm_per_s = {arguments.speed};
-  if (auto checked = check_nodes("supply", options.largest, 570, "570 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("supply", options.largest, 570,
+                                 "Use 570 nodes or more; this is the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto rows = measure::bench_supply(options, console.progress());
@@ -40,9 +41,11 @@ Result<> bench_supply_command(const BenchArguments& arguments, Console& console)
   }
   json["machine"] = machine_json();
   console.say(
-      "The demo's needle beside its planned way, where nothing was prepared, at 1 kHz on the clock, a worker thread\n"
-      "bringing compliance. Outrun: steps flagged since some was missing; force off: largest difference of the axial\n"
-      "force from a run that had all; peak: of that one's; rows: nodes the worker brought; longest: processor time.");
+      "The demo's needle is inserted beside its planned way, where no compliance was prepared, in 1 kHz real time; a\n"
+      "worker thread computes the compliance. outrun: steps in which compliance was missing; force off: largest\n"
+      "difference of the axial force from a run with all compliance; peak: largest axial force of that run; rows: "
+      "nodes\n"
+      "whose compliance the worker computed; longest step: processor time.");
   console.say(table.text());
   return console.write_json(json);
 }

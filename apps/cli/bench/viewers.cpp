@@ -34,7 +34,8 @@ Result<> bench_viewers_command(const BenchArguments& arguments, Console& console
   if (arguments.nodes > 0) options.nodes = arguments.nodes;
   if (arguments.contacts > 0) options.contacts = arguments.contacts;
   if (arguments.seconds > 0) options.seconds = arguments.seconds;
-  if (auto checked = check_nodes("viewers", options.nodes, 500, "500 nodes is the coarsest mesh of the demo patient");
+  if (auto checked = check_nodes("viewers", options.nodes, 500,
+                                 "Use 500 nodes or more; this is the coarsest mesh of the demo patient");
       !checked)
     return checked;
   const auto done = measure::bench_viewers(options, console.progress());
@@ -53,10 +54,10 @@ Result<> bench_viewers_command(const BenchArguments& arguments, Console& console
   add(done->viewers, done->with);
   const double ratio = us(done->with.step_cpu.quantile_ns(0.99)) / us(done->without.step_cpu.quantile_ns(0.99));
   console.say(
-      fmt::format("{} nodes, about {} contacts, 1 kHz: insertions by turns with nobody watching and with {} viewers, "
-                  "who each got {:.1f} pictures and {:.2f} MB a second.",
+      fmt::format("{} nodes, about {} contacts, 1 kHz: insertions alternate between no viewer and {} viewers, "
+                  "each of whom received {:.1f} pictures and {:.2f} MB a second.",
                   done->nodes, options.contacts, done->viewers, done->pictures_per_s, done->megabytes_per_s));
-  console.say("Processor time of a step; late: steps that came half a period or more after they were due:");
+  console.say("Processor time of a step; late: steps that covered more than one period:");
   console.say(table.text());
   console.say(fmt::format("p99 with viewers over p99 without: {:.3f}", ratio));
   return console.write_json({{"nodes", done->nodes},

@@ -28,8 +28,9 @@ Result<> check_keys(const Json& object, std::span<const std::string> known, cons
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const std::string near = nearest_name(key, known);
     return input_error(where, fmt::format("the key '{}' is unknown", key),
-                       !near.empty() ? fmt::format("Did you mean '{}'? Known keys: {}.", near, fmt::join(known, ", "))
-                                     : fmt::format("Known keys: {}.", fmt::join(known, ", ")));
+                       !near.empty()
+                           ? fmt::format("Did you mean '{}'? Use one of the keys {}", near, fmt::join(known, ", "))
+                           : fmt::format("Use one of the keys {}", fmt::join(known, ", ")));
   }
   return Ok{};
 }
@@ -37,11 +38,11 @@ Result<> check_keys(const Json& object, std::span<const std::string> known, cons
 /// The value of a key that must be a string.
 Result<std::string> string_at(const Json& object, const char* key, const std::string& where) {
   if (!object.contains(key)) {
-    return input_error(where, fmt::format("the key '{}' is missing", key), "Add it (docs/formats.md).");
+    return input_error(where, fmt::format("the key '{}' is missing", key), "Add it (docs/formats.md)");
   }
   if (!object[key].is_string()) {
     return input_error(where, fmt::format("'{}' is {}, a text is expected", key, object[key].type_name()),
-                       "Write it in quotation marks.");
+                       "Write it in quotation marks");
   }
   return object[key].get<std::string>();
 }
@@ -49,7 +50,7 @@ Result<std::string> string_at(const Json& object, const char* key, const std::st
 Result<Contour> parse_contour(const Json& json, const std::string& where) {
   if (!json.is_array()) {
     return input_error(where, fmt::format("a contour is {}, a list of points is expected", json.type_name()),
-                       "Write [[x, y, z], …].");
+                       "Write [[x, y, z], …]");
   }
   Contour contour;
   contour.points.reserve(json.size());
@@ -57,13 +58,13 @@ Result<Contour> parse_contour(const Json& json, const std::string& where) {
     const std::string here = fmt::format("{}, point {}", where, i + 1);
     const Json& point = json[i];
     if (!point.is_array() || point.size() != 3) {
-      return input_error(here, "a point needs three numbers", "Write [x, y, z] in mm.");
+      return input_error(here, "a point needs three numbers", "Write [x, y, z] in mm");
     }
     Vec3 value;
     for (int axis = 0; axis < 3; ++axis) {
       if (!point[axis].is_number() || !std::isfinite(point[axis].get<double>())) {
         return input_error(here, fmt::format("the coordinate {} is not a finite number", point[axis].dump()),
-                           "Write [x, y, z] in mm.");
+                           "Write [x, y, z] in mm");
       }
       value[axis] = point[axis].get<double>();
     }
@@ -80,7 +81,7 @@ Result<> parse_colour(const Json& json, const std::string& where, std::array<int
   for (std::size_t i = 0; i < 3; ++i) {
     if (!three || !json[i].is_number_integer() || json[i].get<long>() < 0 || json[i].get<long>() > 255) {
       return input_error(where, fmt::format("the colour {} is not three whole numbers 0…255", json.dump()),
-                         "Write \"colour\": [red, green, blue].");
+                         "Write \"colour\": [red, green, blue]");
     }
     colour[i] = json[i].get<int>();
   }
@@ -89,19 +90,20 @@ Result<> parse_colour(const Json& json, const std::string& where, std::array<int
 
 Result<Roi> parse_structure(const Json& json, std::size_t position, const std::string& source) {
   std::string where = fmt::format("{}, structure {}", source, position + 1);
-  if (!json.is_object()) return input_error(where, "a structure is an object {…}", "See docs/formats.md.");
+  if (!json.is_object())
+    return input_error(where, "the structure is not a JSON object, {…}", "Write it as in docs/formats.md");
   Result<> keys = check_keys(json, structure_keys, where);
   if (!keys) return keys.error();
   Result<std::string> name = string_at(json, "name", where);
   if (!name) return name.error();
   Roi roi;
   roi.name = trimmed(*name);
-  if (roi.name.empty()) return input_error(where, "the name is empty", "Name the structure, e.g. \"Prostate\".");
+  if (roi.name.empty()) return input_error(where, "the name is empty", "Name the structure, e.g. \"Prostate\"");
   where = fmt::format("{}, structure '{}'", source, roi.name);
   roi.number = static_cast<int>(position) + 1;
   if (json.contains("number")) {
     if (!json["number"].is_number_integer()) {
-      return input_error(where, "'number' is not a whole number", "Write e.g. \"number\": 1.");
+      return input_error(where, "'number' is not a whole number", "Write e.g. \"number\": 1");
     }
     roi.number = json["number"].get<int>();
   }
@@ -115,7 +117,7 @@ Result<Roi> parse_structure(const Json& json, std::size_t position, const std::s
     if (!colour) return colour.error();
   }
   if (!json.contains("contours") || !json["contours"].is_array()) {
-    return input_error(where, "'contours' is missing or not a list", "Write \"contours\": [[[x, y, z], …], …].");
+    return input_error(where, "'contours' is missing or not a list", "Write \"contours\": [[[x, y, z], …], …]");
   }
   const Json& contours = json["contours"];
   for (std::size_t i = 0; i < contours.size(); ++i) {

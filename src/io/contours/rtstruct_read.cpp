@@ -32,13 +32,13 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const char* data = nullptr;  // fetched as one text, because fetching number by number takes quadratic time
   if (item.findAndGetString(DCM_ContourData, data).bad() || data == nullptr || *data == '\0') {
     return input_error(where, "the contour has no points (ContourData is missing or empty)",
-                       "Export the structure set again.");
+                       "Export the structure set again");
   }
   const auto values = split(data, '\\');
   if (values.size() % 3 != 0) {
     return input_error(where,
                        fmt::format("ContourData has {} numbers, which is not a multiple of three", values.size()),
-                       "The file is damaged; export the structure set again.");
+                       "The file is damaged; export the structure set again");
   }
   Contour contour;
   contour.points.reserve(values.size() / 3);
@@ -49,7 +49,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
       if (!value || !std::isfinite(*value)) {
         return input_error(fmt::format("{}, point {}", where, i / 3 + 1),
                            fmt::format("the coordinate '{}' is not a finite number", trimmed(values[i + axis])),
-                           "The file is damaged; export the structure set again.");
+                           "The file is damaged; export the structure set again");
       }
       point[axis] = *value;
     }
@@ -58,7 +58,7 @@ Result<Contour> parse_points(DcmItem& item, const std::string& where) {
   const auto stated = integer_of(item, DCM_NumberOfContourPoints);
   if (stated && *stated != static_cast<int>(contour.points.size())) {
     return input_error(where, fmt::format("the file announces {} points and holds {}", *stated, contour.points.size()),
-                       "The file is damaged; export the structure set again.");
+                       "The file is damaged; export the structure set again");
   }
   // Some programs repeat the first point at the end; the copies are dropped.
   while (contour.points.size() > 1 && (contour.points.back() - contour.points.front()).norm() < 1e-3) {
@@ -119,7 +119,7 @@ Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& 
   if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
   return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
                      "its frame of reference differs from the one of the structures before it",
-                     "Export structures of one registration only; Stylet does not register images.");
+                     "Export structures of one registration only; Stylet does not register images");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Result<> check_reach(const std::string& where, const Vec3& position, const std::
                                                      "each axis",
                                                      kFarthest_mm)
                                        : "finite numbers are expected"),
-      "Correct it, or export the data again in patient coordinates in mm.");
+      "Correct it, or export the data again in patient coordinates in mm");
 }
 
 }  // namespace stylet::detail
