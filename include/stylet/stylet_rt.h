@@ -265,13 +265,12 @@ enum {
   STYLET_RT_EVENT_PUNCTURE = 1,         /* the surface in front of the tip breaks */
   STYLET_RT_EVENT_REGION_ENTERED = 2,   /* the tip enters a region */
   STYLET_RT_EVENT_RETRACTION_START = 3, /* the base begins to move outwards */
-  STYLET_RT_EVENT_SLIP_START =
-      4, /* after a turn outwards, more than half of the inserted shaft slides out and the hand pulls */
-  STYLET_RT_EVENT_WITHDRAWN = 5,    /* the needle has been drawn out of the patient */
-  STYLET_RT_EVENT_BONE_CONTACT = 6, /* the tip touches a rigid region */
-  STYLET_RT_EVENT_EXITED = 7,       /* the tip leaves the tissue through the far side */
-  STYLET_RT_EVENT_RE_ENTERED = 8,   /* the tip touches tissue again after it had exited */
-  STYLET_RT_EVENT_GRAZED = 9        /* the tip slides off a surface that it meets at a grazing angle */
+  STYLET_RT_EVENT_SLIP_START = 4,       /* after a turn outwards, most of the shaft slides out and the hand pulls */
+  STYLET_RT_EVENT_WITHDRAWN = 5,        /* the needle has been drawn out of the patient */
+  STYLET_RT_EVENT_BONE_CONTACT = 6,     /* the tip touches a rigid region */
+  STYLET_RT_EVENT_EXITED = 7,           /* the tip leaves the tissue through the far side */
+  STYLET_RT_EVENT_RE_ENTERED = 8,       /* the tip touches tissue again after it had exited */
+  STYLET_RT_EVENT_GRAZED = 9            /* the tip slides off a surface that it meets at a grazing angle */
 };
 
 /* An event. 32 bytes. */

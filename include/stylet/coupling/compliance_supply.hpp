@@ -50,8 +50,8 @@ class ComplianceSupply {
   void serve(const ContactCompliance& user, const NeedleWhereabouts& needle) noexcept;
 
   /// Computes all compliance that is needed around the needle, or as much as there is room for. Not to be called in a
-  /// step: solves on this
-  /// thread, or waits for the worker if one is running. Throws std::bad_alloc when memory runs out.
+  /// step: solves on this thread, or waits for the worker if one is running. Throws std::bad_alloc when memory runs
+  /// out.
   void work_through(const ContactCompliance& user, const NeedleWhereabouts& needle, const Settings& settings);
 
   // --- The worker's side.

@@ -39,8 +39,8 @@ struct RemeshEvent {
   int dimension = 0;      ///< size of ΔK: 3 × the number of nodes of the changed elements, fixed nodes included
   int elements = 0;       ///< number of elements that were changed or created
   double moved_mm = 0.0;  ///< distance by which a node was moved
-  double condition = std::numeric_limits<double>::quiet_NaN();  ///< condition number of the
-                                                                ///< small matrix in Woodbury's formula
+  /// Condition number of the small matrix in Woodbury's formula; NaN for other methods.
+  double condition = std::numeric_limits<double>::quiet_NaN();
 };
 
 const char* to_string(RemeshEvent::Kind kind);

@@ -17,12 +17,11 @@ struct LoopCounters {
   std::int64_t steps = 0;
   std::int64_t missed_deadlines = 0;  ///< steps that ended after the next one was due: woken late, or too slow
   std::int64_t skipped_periods = 0;   ///< periods without a step
-  std::int64_t lost_ns =
-      0;  ///< time by which simulated time is behind the clock, because of RunnerSettings::max_catch_up
-  std::int64_t distrusted = 0;      ///< steps whose force was not passed to the device
-  std::int64_t without_input = 0;   ///< steps with an invalid or old sample of the device: the base stayed in place
-  std::int64_t dropped_events = 0;  ///< events that did not fit into the queue
-  std::int64_t dropped_steps = 0;   ///< steps that did not fit into the queue, with RunnerSettings::keep_steps
+  std::int64_t lost_ns = 0;           ///< time by which simulated time lags the clock, lost beyond max_catch_up
+  std::int64_t distrusted = 0;        ///< steps whose force was not passed to the device
+  std::int64_t without_input = 0;     ///< steps with an invalid or old sample of the device: the base stayed in place
+  std::int64_t dropped_events = 0;    ///< events that did not fit into the queue
+  std::int64_t dropped_steps = 0;     ///< steps that did not fit into the queue, with RunnerSettings::keep_steps
 };
 
 /// A contact: a place at which shaft or tip holds the tissue.

@@ -31,8 +31,8 @@ struct NeedleKernel {
 
   /// [mm] Radius that separates the wide part of the tip's field from the narrow part. A force that is spread over this
   /// radius strains tissue by a few hundredths, where tissue is still linear. The field of such a force belongs to the
-  /// organs; the rest has the needle's own scale and stiffens (docs/theory/stiffening.md). With a larger
-  /// value more of the tip's compliance stiffens.
+  /// organs; the rest has the needle's own scale and stiffens (docs/theory/stiffening.md). With a larger value
+  /// more of the tip's compliance stiffens.
   static constexpr double kScale_mm = 10.0;
 
   /// [mm] ε of the shaft, √e R: a line of regularised forces on the axis with this ε moves the medium like a bonded
