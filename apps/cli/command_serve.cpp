@@ -57,7 +57,7 @@ Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& ar
         auto prepared = prepare_model_file(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
         if (!prepared->not_kept.empty())
-          console.warn("The model was not kept for the next time: " + prepared->not_kept);
+          console.warn("The model was not stored in the cache, so the next start takes as long: " + prepared->not_kept);
         for (const std::string& warning : prepared->warnings()) console.warn(warning);
         return serve::LoadedCase{prepared->model, prepared->notes};
       }};

@@ -213,7 +213,7 @@ typedef struct stylet_rt_result {
   int32_t tip_state;         /* STYLET_RT_TIP_AIR, ... */
   int32_t contacts;          /* number of contacts; includes the tip if it touches tissue */
   int32_t sticking;          /* number of contacts that stick */
-  int32_t iterations;        /* iterations of the solver */
+  int32_t iterations;        /* iterations of the solver, summed over the sub-steps */
   int32_t events;            /* number of events of this step, see stylet_rt_sim_read_events */
 } stylet_rt_result;
 
@@ -261,16 +261,16 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_read_needle(const stylet_rt_sim* si
 
 /* Kinds of events. */
 enum {
-  STYLET_RT_EVENT_SKIN_CONTACT = 0,
-  STYLET_RT_EVENT_PUNCTURE = 1,
-  STYLET_RT_EVENT_REGION_ENTERED = 2,
-  STYLET_RT_EVENT_RETRACTION_START = 3,
-  STYLET_RT_EVENT_SLIP_START = 4, /* after a reversal, more than half of the shaft has begun to slide */
-  STYLET_RT_EVENT_WITHDRAWN = 5,
-  STYLET_RT_EVENT_BONE_CONTACT = 6,
-  STYLET_RT_EVENT_EXITED = 7,
-  STYLET_RT_EVENT_RE_ENTERED = 8,
-  STYLET_RT_EVENT_GRAZED = 9
+  STYLET_RT_EVENT_SKIN_CONTACT = 0,     /* the tip touches the skin */
+  STYLET_RT_EVENT_PUNCTURE = 1,         /* the surface in front of the tip breaks */
+  STYLET_RT_EVENT_REGION_ENTERED = 2,   /* the tip enters a region */
+  STYLET_RT_EVENT_RETRACTION_START = 3, /* the base begins to move outwards */
+  STYLET_RT_EVENT_SLIP_START = 4,       /* after a turn outwards, most of the shaft slides out and the hand pulls */
+  STYLET_RT_EVENT_WITHDRAWN = 5,        /* the needle has been drawn out of the patient */
+  STYLET_RT_EVENT_BONE_CONTACT = 6,     /* the tip touches a rigid region */
+  STYLET_RT_EVENT_EXITED = 7,           /* the tip leaves the tissue through the far side */
+  STYLET_RT_EVENT_RE_ENTERED = 8,       /* the tip touches tissue again after it had exited */
+  STYLET_RT_EVENT_GRAZED = 9            /* the tip slides off a surface that it meets at a grazing angle */
 };
 
 /* An event. 32 bytes. */
@@ -294,7 +294,7 @@ STYLET_RT_API stylet_rt_status stylet_rt_sim_read_events(const stylet_rt_sim* si
 /* Capacities that are allocated before the first step, since steps do not allocate. */
 enum {
   STYLET_RT_CAPACITY_CONTACTS = 0,    /* contacts on the shaft; beyond it: STYLET_RT_OUT_OF_CONTACTS */
-  STYLET_RT_CAPACITY_SPARE_NODES = 1, /* nodes with compliance computed during motion; beyond it the furthest go */
+  STYLET_RT_CAPACITY_SPARE_NODES = 1, /* nodes with compliance computed during motion; beyond it the furthest lose it */
   STYLET_RT_CAPACITY_TRACKS = 2,      /* tracks of earlier insertions; beyond it the oldest is forgotten */
   STYLET_RT_CAPACITY_EVENTS = 3       /* events of needle and tissue in one step; further events are dropped */
 };

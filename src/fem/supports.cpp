@@ -13,7 +13,7 @@ std::string point(const Vec3& x) {
   return text;
 }
 
-constexpr const char* kCure = "Fix at least three nodes that are not on a line in every connected part of the mesh.";
+constexpr const char* kCure = "Fix at least three nodes that are not on a line in every connected part of the mesh";
 
 // Number of the connected part to which each node belongs; parts are numbered in the order of their lowest nodes.
 std::vector<Index> connected_parts(const TetMesh& mesh, Index& parts) {

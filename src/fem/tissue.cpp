@@ -67,7 +67,7 @@ Result<> check_materials(const TetMesh& mesh, const std::vector<Material>& mater
     const Material& material = materials[r];
     if (!(material.young_MPa > 0.0) || !std::isfinite(material.young_MPa)) {
       return input_error(where, "Young's modulus is " + number(1e3 * material.young_MPa) + " kPa, expected above 0",
-                         "Soft tissue has 1 to 500 kPa");
+                         "Give a modulus above 0; soft tissue has 1 to 500 kPa");
     }
     if (!(material.poisson > -1.0 && material.poisson < 0.5)) {
       return input_error(where, "Poisson ratio is " + number(material.poisson) + ", expected above -1 and below 0.5",
@@ -110,7 +110,7 @@ Result<Tissue> Tissue::build_later(TetMesh mesh, std::vector<Material> materials
       return input_error("supports",
                          "fixed node number " + std::to_string(a) + " is out of range, expected 0 to " +
                              std::to_string(mesh.node_count() - 1),
-                         "Name nodes of this mesh");
+                         "Give the numbers of nodes of this mesh");
     }
   }
   if (static_cast<Index>(fixed.size()) == mesh.node_count()) {
@@ -179,8 +179,8 @@ Result<> Tissue::Parts::factorise(const Progress& progress) {
                      "the factor of " + std::to_string(free_dofs) + " degrees of freedom has more than 2³¹ entries",
                      "Use a coarser mesh");
     case detail::Cholesky::Failure::refused:
-      return failure("stiffness matrix", "CHOLMOD refused it with status " + std::to_string(factor.status()),
-                     "This is a fault of the program: please report it with the mesh");
+      return failure("stiffness matrix", "CHOLMOD could not factorise it, status " + std::to_string(factor.status()),
+                     "Report this fault of the program together with the mesh");
   }
   statistics.factor_mb = factor.megabytes();
   statistics.factor_entries = factor.entries();

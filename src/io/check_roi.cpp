@@ -120,8 +120,8 @@ class RoiCheck {
     const double extent = box.sizes().maxCoeff();
     if (extent >= 1.0 && extent <= 2000.0) return Ok{};
     return input_error(where_, fmt::format("the structure is {:.4g} mm long, 1 mm to 2 m is expected", extent),
-                       extent < 1.0 ? "The coordinates are probably in metres; convert them to mm."
-                                    : "The coordinates are probably in micrometres; convert them to mm");
+                       extent < 1.0 ? "Convert the coordinates to mm; they are probably in metres"
+                                    : "Convert the coordinates to mm; they are probably in micrometres");
   }
 
   Result<> check_plane(std::size_t i) const {

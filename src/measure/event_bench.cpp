@@ -240,7 +240,7 @@ Result<> measure(const Ground& ground, const Places& places, const EventBenchOpt
   for (Way& way : ways) {
     if (way.refused > 0)
       return failure("timing changes of the mesh", "a node was refused at a place where it had been added before",
-                     "Please report this");
+                     "Report this fault of the program");
     if (way.rule == "woodbury") {
       bench.woodbury_nodes = ground.model->mesh().node_count();
       bench.woodbury_us = spread(std::move(way.warm_s));

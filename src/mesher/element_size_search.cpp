@@ -83,7 +83,7 @@ Result<SizedMesh> find_element_size(const std::function<TetrahedraliserInput(dou
   if (best_error > kLargestError) {
     if (fewest > wanted) {
       return input_error("number of nodes",
-                         fmt::format("{} wanted, but this anatomy needs about {:.0f}", wanted, fewest),
+                         fmt::format("{} nodes are wanted, but this anatomy needs about {:.0f}", wanted, fewest),
                          fmt::format("Ask for {:.0f} or more, or mesh fewer structures", 1.1 * fewest));
     }
     return failure(

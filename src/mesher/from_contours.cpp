@@ -56,7 +56,8 @@ Result<Structure> structure_of(const RoiChoice& choice, const SliceFrame& frame,
     const auto grid =
         interpolate_slices(slices, frame, std::clamp(radius / 20, 0.5, 3.0), std::min(1.2, 0.08 * radius));
     if (drop_small_islands(*grid, kSmallIsland) > 0) {
-      anatomy.notes.push_back(fmt::format("Small pieces of '{}' apart from the rest were left out.", roi.name));
+      anatomy.notes.push_back(
+          fmt::format("Small pieces of '{}' that lie apart from its main part were left out.", roi.name));
     }
     s.shape = grid;
   }

@@ -205,7 +205,9 @@ Result<Anatomy> anatomy_of(const LabelImage& image, const MeshOptions& options, 
                       name, volume_of(set) / 1000));
       continue;
     }
-    if (islands) anatomy.notes.push_back(fmt::format("Small pieces of '{}' apart from the rest were left out.", name));
+    if (islands)
+      anatomy.notes.push_back(
+          fmt::format("Small pieces of '{}' that lie apart from its main part were left out.", name));
     organs.insert(set.begin(), set.end());
     Structure structure;
     structure.name = name;

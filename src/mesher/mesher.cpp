@@ -128,8 +128,9 @@ Result<TetMesh> to_mesh(const RawMesh& raw, Anatomy& a) {
                         structure.input_volume / 1000, raw.nodes.size()),
             "Ask for more nodes, or leave the structure out (skip below [patient]; stylet mesh: --skip)");
       } else {
-        a.notes.push_back(fmt::format("The mesh has no element in the region '{}', which was to be added to the input.",
-                                      structure.name));
+        a.notes.push_back(fmt::format(
+            "The region '{}', which the mesher adds to the input, was left out: no element of the mesh lies in it.",
+            structure.name));
       }
     }
   }

@@ -102,7 +102,8 @@ void MapMaker::predict(std::size_t hole) {
   } catch (const Unwanted&) {
     return;
   } catch (const std::bad_alloc&) {
-    predicted = failure("hole " + plan.hole.value_or(""), "there is too little memory to insert a needle", "");
+    predicted = failure("hole " + plan.hole.value_or(""), "there is too little memory to simulate the insertion",
+                        "Close other programs, or use a coarser mesh (mesh.nodes)");
   }
   const std::scoped_lock lock(mutex_);
   HoleRow& row = state_.map->holes[hole];

@@ -434,7 +434,7 @@ Result<> Session::Parts::start_replay(const std::string& name) {
   auto scenario = recording ? parse_scenario(recording->info.scenario_text, name) : Result<Scenario>(recording.error());
   Result<> shown = scenario ? Result<>(Ok{}) : Result<>(scenario.error());
   if (shown && recording->frames.empty() && recording->steps.empty())
-    shown = failure(name, "the recording ends before its first step", "Choose another one");
+    shown = failure(name, "the recording ends before its first step", "Choose another recording");
   if (!shown) {
     if (live && !status.paused) live->runner().resume();
     return shown;
@@ -465,8 +465,9 @@ void Session::Parts::carry_out(const Request& request) {
   using Kind = Request::Kind;
   const auto number = static_cast<std::size_t>(std::max(0.0, request.number));
   const auto missing = [&](const char* what, std::size_t count) {
-    refuse(request, input_error(what, fmt::format("there is no number {}; there are {}, counted from 0", number, count),
-                                "Choose another one"));
+    refuse(request,
+           input_error(what, fmt::format("there is no number {}; the {} entries are counted from 0", number, count),
+                       "Choose one of these numbers"));
   };
   switch (request.kind) {
     case Kind::predict:

@@ -15,7 +15,7 @@ Result<> check_insertion(const Scenario& s, std::size_t number, const ScenarioPl
   if (!p.motion.empty()) {
     if (p.roll_deg != 0.0) {
       return input_error(place(name + ".roll_deg"), name + " has a recorded motion and roll_deg",
-                         "A recorded motion turns the needle itself: remove roll_deg");
+                         "Remove roll_deg, since the recorded motion turns the needle itself");
     }
     if (!way_given) return Ok{};
     return input_error(place(name + ".motion"), name + " has a recorded motion and a hole, entry, direction or target",
@@ -86,7 +86,7 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
       return input_error(place(name + ".friction_coulomb_N_per_m"),
                          fmt::format("{}.friction_coulomb_N_per_m = {} N/m exceeds friction_static_N_per_m = {} N/m",
                                      name, t.friction_coulomb_N_per_m, t.friction_static_N_per_m),
-                         "Sliding friction must not exceed static friction: lower the one or raise the other");
+                         "Lower the sliding friction or raise the static friction");
     }
   }
   if (s.fixed.box_mm) {
@@ -104,7 +104,7 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
     return input_error(place("coupling.spacing_mm"),
                        fmt::format("coupling.spacing_mm = {} is less than needle.diameter_mm = {}",
                                    s.coupling.spacing_mm, s.needle.diameter_mm),
-                       "Contacts closer than the diameter cannot be told apart: give at least the diameter");
+                       "Give at least the diameter, since closer contacts cannot be told apart");
   }
   if (s.coupling.method == Method::node_repositioning && s.coupling.engine == Engine::condensed) {
     return input_error(place("coupling.method"),

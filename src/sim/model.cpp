@@ -398,7 +398,7 @@ Result<std::shared_ptr<const Model>> Model::with(OwnParts parts) const {
   const auto warn = [&](const char* what, const std::string& name) {
     model->warnings_.push_back(fmt::format(
         "{} \"{}\" is a part of the program that made this model. The scenario does not describe it, so the "
-        "stylet program computes something else from this scenario.",
+        "stylet program computes other results from this scenario.",
         what, name));
   };
   if (parts.needle) {
@@ -406,7 +406,8 @@ Result<std::shared_ptr<const Model>> Model::with(OwnParts parts) const {
     if (!section) return section.error();
     const auto needle = parts.needle(*section, needle_loads(coupling_.capacity));
     if (!needle) return needle.error();
-    if (*needle == nullptr) return failure("own needle", "there is none", "Return a needle or an error");
+    if (*needle == nullptr)
+      return failure("own needle", "OwnParts::needle returned a null pointer", "Return a needle or an error");
     if (const double length = (*needle)->length(); std::abs(length - section->length_mm) > 1e-9 * section->length_mm) {
       return input_error("own needle \"" + (*needle)->model() + "\"",
                          fmt::format("it is {:g} mm long, and needle.length_mm is {:g}", length, section->length_mm),

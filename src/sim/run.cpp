@@ -240,7 +240,8 @@ class Runner {
         "the solver did not converge to the full tolerance; a smaller run.dt_ms helps",
         "the stick/slip state of a contact was frozen for one sub-step",
         "compliance was missing, because the needle had left the prepared corridor; the compliance at the tip's last "
-        "place was used instead, or none at the skin; raise coupling.corridor_mm or coupling.spare_nodes",
+        "place was used instead, or, at the skin, the tissue did not resist the tip; raise coupling.corridor_mm or "
+        "coupling.spare_nodes",
         "there was no room for another contact; raise coupling.contacts",
         "the base moved further in one step than the sub-steps can follow; a smaller run.dt_ms helps",
         "the pose of the base was not finite, so the step was not taken",

@@ -119,7 +119,7 @@ class ServeCommand(Serve):
     def test_a_folder_for_models_that_refuses_keeps_nobody_from_opening(self):
         (self.folder / "models").write_text("a file")
         server = self.opened("--models", "models")
-        self.assertIn("not kept for the next time", server.stderr.read())
+        self.assertIn("The model was not stored in the cache", server.stderr.read())
         self.opened("--models", "")
 
     def test_refuses_what_is_wrong(self):

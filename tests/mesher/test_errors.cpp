@@ -61,7 +61,7 @@ TEST(MesherRefuses, contours_that_are_not_parallel) {
 TEST(MesherRefuses, fewer_nodes_than_the_anatomy_needs_and_says_how_many_it_needs) {
   MeshOptions o;
   o.nodes = 30;
-  expect_refused(mesh_contours(set_of({gland()}), o), {"30 wanted", "needs about"});
+  expect_refused(mesh_contours(set_of({gland()}), o), {"30 nodes are wanted", "needs about"});
 }
 
 TEST(MesherRefuses, an_absurd_number_of_nodes) {

@@ -7,8 +7,8 @@ namespace stylet {
 
 /// Room that is allocated before the first step, because no step allocates, and the largest part of it ever in use.
 struct CapacityUse {
-  int most = 0;
-  int room = 0;
+  int most = 0;  ///< largest number in use at a time so far
+  int room = 0;  ///< number for which memory is allocated
 
   void note(int used) { most = std::max(most, used); }
 };

@@ -46,16 +46,17 @@ class ComplianceSupply {
   /// Whether the worker has handed the parcel to the step.
   [[nodiscard]] bool awaits_step() const noexcept;
   /// Takes over the worker's rows and gives up the slots that it requests. Wait-free: does not allocate, free or solve.
-  /// @param user the nodes that its points need are kept
+  /// @param user contact points in use; the nodes that they need keep their slots
   void serve(const ContactCompliance& user, const NeedleWhereabouts& needle) noexcept;
 
-  /// Computes all that is needed around the needle, or as much as there is room for. Not for the step: solves on this
-  /// thread, or waits for the worker if one is running. Throws std::bad_alloc when memory runs out.
+  /// Computes all compliance that is needed around the needle, or as much as there is room for. Not to be called in a
+  /// step: solves on this thread, or waits for the worker if one is running. Throws std::bad_alloc when memory runs
+  /// out.
   void work_through(const ContactCompliance& user, const NeedleWhereabouts& needle, const Settings& settings);
 
   // --- The worker's side.
 
-  /// Begins and ends the work of a worker. Must not be called while a step is running.
+  /// open() begins and close() ends the work of a worker. Neither must be called while a step is running.
   void open(const Settings& settings);
   void close();
 

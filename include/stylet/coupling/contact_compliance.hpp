@@ -39,7 +39,8 @@ struct RemeshEvent {
   int dimension = 0;      ///< size of ΔK: 3 × the number of nodes of the changed elements, fixed nodes included
   int elements = 0;       ///< number of elements that were changed or created
   double moved_mm = 0.0;  ///< distance by which a node was moved
-  double condition = std::numeric_limits<double>::quiet_NaN();  ///< of the small matrix in Woodbury's formula
+  /// Condition number of the small matrix in Woodbury's formula; NaN for other methods.
+  double condition = std::numeric_limits<double>::quiet_NaN();
 };
 
 const char* to_string(RemeshEvent::Kind kind);
@@ -105,7 +106,7 @@ class ContactCompliance {
   /// @param forces [N] LPS (3 × points())
   [[nodiscard]] virtual VecX displacement(const Eigen::Ref<const MatX>& forces) const = 0;
 
-  /// The same without the near field of the needle, where an implementation adds one: the displacement that the mesh
+  /// displacement() without the near field of the needle, if an implementation adds one: the displacement that the mesh
   /// represents (3 × Tissue::displacement_nodes()). It includes the nodes that quadratic elements add, and excludes
   /// nodes added at the needle. Allocates.
   /// @param forces [N] LPS (3 × points())
@@ -113,14 +114,15 @@ class ContactCompliance {
     return displacement(forces);
   }
 
-  /// Every node of the present mesh.
+  /// Positions of all nodes of the present mesh, and the forces that act on them.
   struct Nodes {
     std::vector<Vec3> position;  ///< [mm] LPS, undeformed
     VecX load;                   ///< [N] force of the contacts on each node, fixed nodes included
     VecX support;                ///< [N] force of the supports on each node, without loads applied directly to fixed
                                  ///< nodes
   };
-  /// Displacement [mm] (3n) of the material at the base mesh's nodes through wide() instead of A. Allocates.
+  /// The result of displacement() computed with the wide() part of the compliance instead of all of A [mm] (3n).
+  /// Allocates.
   [[nodiscard]] virtual VecX wide_displacement(const Eigen::Ref<const MatX>& forces) const {
     return displacement(forces);
   }
@@ -151,7 +153,8 @@ class ContactCompliance {
   /// more than the cut of that sub-step.
   [[nodiscard]] const MatX& wide() const { return wide_.size() > 0 ? wide_ : A_; }
   [[nodiscard]] Mat3 wide(int c, int d) const { return wide().block<3, 3>(3 * c, 3 * d); }
-  /// Factor of the mesh's own kernel at a point when wide() was made (softness_in_mesh()); 1 away from borders.
+  /// The factor softness_in_mesh() by which the mesh's own kernel at a point was multiplied to make wide(); 1 away from
+  /// borders.
   [[nodiscard]] virtual double softness(int /*point*/) const { return 1.0; }
 
   /// Changes whenever a compliance among points other than the tip has changed.

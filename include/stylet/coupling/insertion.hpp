@@ -22,17 +22,17 @@ namespace stylet {
 
 /// The state of a contact, for reports and pictures.
 struct ContactState {
-  Vec3 position = Vec3::Zero();  ///< [mm] LPS, deformed place of the tissue point
-  Vec3 force = Vec3::Zero();     ///< [N] on the tissue
-  double s = 0.0;                ///< [mm] arc length on the needle
-  double length = 0.0;           ///< [mm] tributary length
+  Vec3 position = Vec3::Zero();  ///< [mm] LPS, position of the tissue point in the deformed tissue
+  Vec3 force = Vec3::Zero();     ///< [N] LPS, force of the needle on the tissue
+  double s = 0.0;                ///< [mm] arc length on the needle, from its base
+  double length = 0.0;           ///< [mm] length of shaft that the contact represents
   bool sticking = false;
   bool tip = false;
 };
 
 /// A force on a point of the tissue.
 struct TissueForce {
-  MaterialPoint at;
+  MaterialPoint at;           ///< where the force acts
   Vec3 force = Vec3::Zero();  ///< [N] LPS, with `lasting` included
   /// Unit vector LPS along the piece of shaft over which the force is spread; zero for the tip, whose force acts at a
   /// point.
@@ -105,7 +105,7 @@ class Insertion {
   /// real-time loop.
   [[nodiscard]] VecX displacement() const;
 
-  /// The same without the near field of the needle: the displacement that the mesh represents, which has the same
+  /// displacement() without the near field of the needle: the displacement that the mesh represents, which has the same
   /// meaning at all nodes, near the needle or not.
   [[nodiscard]] VecX mesh_displacement() const;
 

@@ -51,7 +51,7 @@ inline double membrane_force(const std::vector<RegionLaws>& laws, int from, int 
 }
 
 /// Creep of tissue under a lasting force (docs/theory/tissue.md): after a time t the displacement is factor − (factor −
-/// 1) exp(−t / time_s) times the displacement at once.
+/// 1) exp(−t / time_s) times the immediate displacement.
 struct Creep {
   double factor = 1.0;  ///< ≥ 1; 1: elastic tissue
   double time_s = 1.0;  ///< > 0
@@ -87,12 +87,14 @@ struct CouplingSettings {
   double needle_radius_mm = 0.635;  ///< outer radius of the needle
   double spacing_mm = 4.0;          ///< distance between contacts along the track
   double merge_mm = 1.27;           ///< smallest distance between contacts: the needle's diameter
-  /// A contact is created only if it keeps this share of its own compliance when its neighbours are held. Raised,
-  /// contacts are refused earlier where elements are too large to tell them apart.
+  /// A contact is created only if it keeps this share of its own compliance when its neighbours are held. A larger
+  /// value refuses contacts earlier where elements are too large to tell them apart.
   double independence = 0.05;
-  /// The cutting force grows by this times the speed of cutting. It gives the jump after a puncture a finite speed.
+  /// η: the cutting force grows by η times the speed of cutting. It gives the jump of the tip after a puncture a finite
+  /// speed.
   double tip_viscosity_Ns_per_mm = 2e-3;
-  /// Time constant of the needle's bending while its tip stands on bone. It gives a snap there a finite speed.
+  /// Time constant of the needle's bending while its tip stands on bone. It gives a sudden slip of the tip a
+  /// finite speed.
   double bone_damping_s = 3e-3;
   double zero_band_mm_per_s = 0.005;  ///< a contact that slides more slowly than this sticks @cite Karnopp1985
   /// The tip slides off a surface where |axis · surface normal| is smaller than this: more than 80° from the normal.

@@ -68,8 +68,7 @@ class SplitMesh {
   [[nodiscard]] bool is_added(Index vertex) const { return vertex >= base_nodes_; }
   [[nodiscard]] int added(Index vertex) const {
     return vertex - base_nodes_;
-  }  ///< number among the added nodes, from
-     ///< 0
+  }  ///< number among the added nodes, from 0
   [[nodiscard]] int added_count() const { return static_cast<int>(positions_.size()); }
   [[nodiscard]] const Locator& locator() const { return *locator_; }
 

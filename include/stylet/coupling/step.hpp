@@ -26,7 +26,7 @@ const char* to_string(TipState state);
 /// pushing in; lateral towards the patient's left; sagittal = axial × lateral (towards posterior for a needle that goes
 /// to superior).
 struct Step {
-  /// Warnings about a step. No fallback is used without one.
+  /// Warnings about a step. Whenever a step uses a fallback, it sets the flag for it.
   enum Flag : unsigned {
     /// The balance was broken off and the last iterate kept. Cure: a smaller time step.
     not_converged = 1u << 0,
@@ -45,7 +45,7 @@ struct Step {
     /// A program's own law of cutting gave a number that is negative or not finite; the built-in law stood in for it.
     unusable_law = 1u << 7
   };
-  /// With one of these flags the force is not the model's.
+  /// With one of these flags the force is not a solution of the model and must not reach a hand.
   static constexpr unsigned kDistrusted = not_converged | invalid_input;
 
   // Filled in by the simulation; zero in a Step that Insertion::step() returns.

@@ -12,9 +12,9 @@ enum class StepPhase {
   gather,          ///< frames, yields, compliances and gaps of the contacts
   factorise,       ///< factorisation of the matrix of the shaft's contacts
   solve,           ///< solutions with that matrix, the border of the tip, changes of contact states
-  balance,         ///< residual of the iterate
-  tip,             ///< the cut: search, surfaces, compliance between the tip and all contacts, near field included
-  contacts         ///< contacts created and removed
+  balance,         ///< computes the residual of the iterate
+  tip,      ///< the tip's cut: search of the element, surfaces, compliance between tip and contacts with near field
+  contacts  ///< creation and removal of contacts
 };
 inline constexpr int kStepPhases = 10;
 

@@ -24,11 +24,13 @@ class NodeSlots {
   /// Changes the number of slots to `slots`; new slots are free. Allocates.
   void resize(Index slots) { node_.resize(static_cast<std::size_t>(slots), kNone); }
 
+  /// Puts a node without a slot into a free slot.
   void occupy(Index slot, Index node) {
     assert(this->node(slot) == kNone && this->slot(node) == kNone);
     node_[static_cast<std::size_t>(slot)] = node;
     slot_[static_cast<std::size_t>(node)] = slot;
   }
+  /// Frees an occupied slot.
   void vacate(Index slot) {
     slot_[static_cast<std::size_t>(node(slot))] = kNone;
     node_[static_cast<std::size_t>(slot)] = kNone;

@@ -15,7 +15,7 @@ namespace stylet {
 struct NeedleWay {
   Vec3 entry = Vec3::Zero();       ///< [mm] LPS, a point on the skin
   Vec3 direction = Vec3::UnitZ();  ///< unit vector, pointing inwards
-  double length_mm = 0.0;
+  double length_mm = 0.0;          ///< length of the way from the entry
 };
 
 /// The wide part of the compliance along planned ways of needles: displacement at one place per force at another, where
@@ -48,7 +48,7 @@ class SpreadCompliance {
   struct Place {
     std::array<int, 4> sample{};
     std::array<double, 4> weight{};
-    /// How far F is valid at the place: 1 near the way, 0 far from it, smooth in between.
+    /// Validity of F at the place: 1 near the way, 0 far from it, smooth in between.
     double known = 0.0;
   };
   /// Interpolation weights at x [mm] LPS.
@@ -71,9 +71,9 @@ class SpreadCompliance {
     NeedleWay way;
     int first = 0;  ///< number of the first sample
     int count = 0;
-    /// [mm] from the entry to the point of the line that is nearest to x.
+    /// [mm] distance from the entry to the point of the line that is nearest to x.
     [[nodiscard]] double along(const Vec3& x) const;
-    [[nodiscard]] double distance(const Vec3& x) const;  ///< [mm] between x and that line
+    [[nodiscard]] double distance(const Vec3& x) const;  ///< [mm] distance of x from the line
   };
   /// M for the samples of one line.
   static Result<MatX> solve(const Tissue& tissue, const Line& line);

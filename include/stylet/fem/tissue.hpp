@@ -18,7 +18,7 @@ namespace detail {
 class Discretisation;
 }
 
-/// Linear elastic, quasi-static tissue on tetrahedra, held at the nodes of its fundamental displacement constraints:
+/// Linear elastic, quasi-static tissue on tetrahedra, held at its fixed nodes:
 ///   K u = f,
 /// with K symmetric positive definite on the free degrees of freedom and factorised once. Immutable after build();
 /// several threads may read it at once.

@@ -23,6 +23,7 @@ struct LinkSettings {
   std::string host = "127.0.0.1";           ///< server: address to listen at; client: host to connect to
   int port = 18944;                         ///< 1…65535; 0 makes a server take any free port
   std::string input = "HandleToReference";  ///< name of the TRANSFORM with the wanted pose of the base
+  // Device names of the messages that the link sends.
   std::string base = "NeedleBaseToReference";
   std::string tip = "NeedleTipToReference";
   std::string force = "BaseForce";
@@ -31,11 +32,11 @@ struct LinkSettings {
   std::string status = "Stylet";
   double poses_hz = 60.0;      ///< [1/s] 1…1000, rate of the messages with poses and force
   double surface_hz = 10.0;    ///< [1/s] 0.1…poses_hz, highest rate of the messages with the surface
-  double fresh_s = 0.25;       ///< [s] 0.01…10; of a picture older than this, the force is not sent
+  double fresh_s = 0.25;       ///< [s] 0.01…10; the force of a picture older than this is not sent
   int max_connections = 8;     ///< 1…64, of a server; further connections are refused
   double give_up_s = 10.0;     ///< [s] 0.1…600; a connection that accepts no data for this time is closed
   double retry_s = 0.25;       ///< [s] 0.01…60, first pause of a client before it connects again; each pause doubles
-  double longest_retry_s = 5;  ///< [s] retry_s…600, longest such pause
+  double longest_retry_s = 5;  ///< [s] retry_s…600, longest pause before a client connects again
 };
 
 /// State and counters of a link. The counters start at 0 when the link is opened.
@@ -53,7 +54,7 @@ struct LinkState {
   std::int64_t dropped = 0;   ///< queued messages that newer ones replaced before they were sent
   std::int64_t garbage = 0;   ///< connections closed because the received bytes were not OpenIGTLink
   std::int64_t given_up = 0;  ///< connections closed because they accepted no data
-  std::string problem;        ///< the latest of these problems, in words
+  std::string problem;        ///< the latest of the problems counted above, in words
 };
 
 /// Sends a running simulation to programs that speak OpenIGTLink, such as 3D Slicer and PLUS, and receives the pose of

@@ -18,8 +18,8 @@ struct MeshReadOptions {
 
 /// Reads tetrahedra: VTU, legacy VTK, gmsh MSH 1, 2.2 and 4.1 (ASCII, binary), MEDIT .mesh, TetGen .node/.ele. Other
 /// elements in the file are ignored. Regions come from the format's own tag (physical group, reference, attribute, cell
-/// array "region"). If the node order
-/// of all tetrahedra of a file gives negative volumes, the order is reversed. The result has passed
+/// array "region"). If the node order of all
+/// tetrahedra of a file gives negative volumes, the order is reversed. The result has passed
 /// check_mesh().
 Result<TetMesh> read_tet_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 

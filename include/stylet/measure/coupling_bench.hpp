@@ -24,8 +24,8 @@ struct CouplingRow {
   double spacing_mm = 0.0;
   double dt_ms = 0.0;
   double peak_N = 0.0;
-  /// Root mean square difference between the force curves of this row and of the finest row of the same study and
-  /// method, relative to the peak force of the finest row [%].
+  /// Root mean square difference [%] between the force curves of this row and of the finest row of the same study and
+  /// method, relative to the peak force of the finest row.
   double rms_vs_finest_percent = 0.0;
   double target_shift_mm = 0.0;  ///< shift of the target's centroid at the deepest point
   double skin_mm = 0.0;          ///< depth of the base at which the skin breaks; NaN if it does not break

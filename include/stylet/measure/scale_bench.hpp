@@ -36,8 +36,9 @@ struct ScaleRow {
   double all_longest_us = 0.0;  ///< largest thread CPU time of all steps
   long all_over_1ms = 0;        ///< number of all steps with more than 1 ms of thread CPU time
   double all_cpu_s = 0.0;       ///< sum of the thread CPU times of all steps
-  /// After every step a fixed amount of arithmetic is timed, which takes 100 µs if nothing interrupts it. How often it
-  /// took more than 1 ms, and the sum of its times. Interruptions by the system lengthen it and the steps alike.
+  /// After every step a fixed amount of arithmetic is timed, which takes 100 µs if nothing interrupts it. These members
+  /// are the number of times that it took more than 1 ms, and the sum of its times. Interruptions by the system
+  /// lengthen this arithmetic and the steps alike.
   long fixed_over_1ms = 0;
   double fixed_cpu_s = 0.0;
   /// Largest value of the median time of each step over its repeats, which do the same work. The median removes the

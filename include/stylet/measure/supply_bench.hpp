@@ -16,12 +16,12 @@ struct SupplyRow {
   std::string element;  ///< tissue.element
   Index prepared = 0;   ///< nodes of the corridor, whose compliance was prepared
   double speed_mm_per_s = 0.0;
-  long steps = 0;               ///< number of steps with the tip in tissue
-  long flagged = 0;             ///< of these, steps in which the worker thread had not yet supplied the compliance
-  double force_off_N = 0.0;     ///< largest difference from the axial force with all compliance available
-  double force_peak_N = 0.0;    ///< peak of the axial force with all compliance available
-  long rows = 0;                ///< rows of the compliance that the worker thread supplied
-  double rows_per_s = 0.0;      ///< the same per second while the needle moved
+  long steps = 0;             ///< number of steps with the tip in tissue
+  long flagged = 0;           ///< number of these steps for which the worker thread had not yet supplied the compliance
+  double force_off_N = 0.0;   ///< largest difference from the axial force with all compliance available
+  double force_peak_N = 0.0;  ///< peak of the axial force with all compliance available
+  long rows = 0;              ///< rows of the compliance that the worker thread supplied
+  double rows_per_s = 0.0;    ///< the same per second while the needle moved
   double longest_cpu_us = 0.0;  ///< largest thread CPU time of a step
 };
 

@@ -21,7 +21,7 @@ double cpu_seconds(Work&& work) {
   return thread_cpu_s() - before;
 }
 
-/// Largest relative difference between the results of timed methods; if it is larger, an error is reported.
+/// Largest accepted relative difference between the results of timed methods; a larger one is an error.
 inline constexpr double kLargestDifference = 1e-8;
 
 /// Median; with an even number of values, the mean of the two in the middle. NaN without values.

@@ -10,10 +10,10 @@ struct Cannula {
   double outer_diameter_mm = 1.27;  ///< [mm], 18 gauge
   /// [mm], 0 = a solid rod; the default is a thin-walled 18 gauge tube that lets seeds of 0.8 mm pass.
   double lumen_diameter_mm = 1.0;
-  double young_MPa = 200e3;  ///< Young's modulus of the tube [MPa], stainless steel
-  double poisson = 0.3;
+  double young_MPa = 200e3;         ///< Young's modulus of the tube [MPa], stainless steel
+  double poisson = 0.3;             ///< Poisson's ratio of the tube
   double stylet_diameter_mm = 0.0;  ///< [mm], 0 = no stylet
-  double stylet_young_MPa = 200e3;
+  double stylet_young_MPa = 200e3;  ///< Young's modulus of the stylet [MPa], stainless steel
 };
 
 /// Stiffness of a cross-section.

@@ -28,8 +28,8 @@ class GuideMeeting {
   [[nodiscard]] bool holds() const { return crosses_ && (beyond_ > 0.0 || hole_.clearance_mm == 0.0); }
   /// Force of the hole on the needle and the arc length where it acts.
   [[nodiscard]] const PointLoad& load() const { return load_; }
-  /// [N/mm] Tangent stiffness: minus the derivative of this force with respect to the position of the shaft, without
-  /// the effect of its rotation.
+  /// [N/mm] Tangent stiffness: minus the derivative of load() with respect to the position of the shaft. The effect of
+  /// the shaft's rotation is neglected.
   [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
   /// [mm] Distance between the shaft and the hole's axis, in its plane; 0 where the shaft does not cross the plane.
   [[nodiscard]] double offset() const { return offset_.norm(); }

@@ -13,8 +13,9 @@ namespace stylet {
 ///   W = ½ k (d − c)²,   force on the needle  −Pᵀ ∇W,   P = I − t nᵀ/(t·n).
 /// P maps a motion of the shaft to the motion of the crossing. The force is therefore perpendicular to the shaft: the
 /// hole is smooth, and the shaft slides through it without friction. The force is an additional load of the inner
-/// needle with Pᵀ ∇²W P as its spring, so to the coupling the needle is just stiffer. The tangent neglects that the
-/// force turns with the shaft. There is no force before the tip reaches the plane or after the base has passed it.
+/// needle with Pᵀ ∇²W P as its spring, so to the coupling the needle is just stiffer. The tangent stiffness neglects
+/// that the force turns with the shaft. There is no force before the tip reaches the plane or after the base has passed
+/// it.
 class GuidedNeedle final : public Needle {
  public:
   /// @param inner a needle built for at least load_capacity + 1 loads

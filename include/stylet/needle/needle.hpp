@@ -19,7 +19,7 @@ struct PointLoad {
 /// What Needle::linearise() does when the tangent stiffness is not positive definite.
 enum class Indefinite {
   shift,    ///< adds stiffness until it is positive definite
-  give_up,  ///< stops; for callers that then lend springs and try again
+  give_up,  ///< stops; for callers that then pass springs to linearise() and try again
 };
 
 /// Position and direction of the centreline.

@@ -14,11 +14,10 @@ namespace stylet {
 /// A compiled model, with notes and times of its preparation.
 struct PreparedModel {
   std::shared_ptr<const Model> model;
-  std::vector<std::string>
-      notes;             ///< sentences for the user about data that reader or mesher left out, added or corrected
-  std::string not_kept;  ///< why the cache could not store the model; empty if it did or if there is no cache
-  double mesh_s = 0.0;   ///< time to read and mesh the patient
-  double model_s = 0.0;  ///< time to compile the model, or to load a saved model
+  std::vector<std::string> notes;  ///< sentences for the user: what reader or mesher left out, added or corrected
+  std::string not_kept;            ///< why the cache could not store the model; empty if it did or if there is no cache
+  double mesh_s = 0.0;             ///< time to read and mesh the patient
+  double model_s = 0.0;            ///< time to compile the model, or to load a saved model
 
   /// All messages for the user before the first step: the notes, then the model's warnings.
   [[nodiscard]] std::vector<std::string> warnings() const;

@@ -6,9 +6,10 @@
 namespace stylet {
 
 /// Moves the needle's base through the virtual coupling. The base has no mass: the force and torque that the coupling
-/// exerts on it balance those that the hand would have to exert to hold needle and tissue there. Let e be the offset of
-/// the handle (new) from the base (old), translation and rotation, e₀ the offset after the last step, K the stiffness
-/// and B the damping of the coupling, F the hand's force of the last step, and T the period. Then the base moves by Δ:
+/// exerts on it balance those that the hand would have to exert to hold needle and tissue there. Let e be the offset
+/// (translation and rotation) of the handle's new pose from the base's old pose, e₀ the offset after the last step, K
+/// the stiffness and B the damping of the coupling, F the hand's force of the last step, and T the period. Then the
+/// base moves by Δ:
 ///   K (e − Δ) + B (e − Δ − e₀)/T = F + S (Δ − φ s)
 ///   Δ = (K + B/T + S)⁻¹ (K e + B (e − e₀)/T − F + φ S s)
 /// S and φ predict the change of F. With S = 0 (explicit integration) a linear body of stiffness k is stable only for
@@ -17,20 +18,20 @@ namespace stylet {
 ///
 /// S is therefore identified during motion: the motion s of a step and the change y of F in it correct S by a BFGS
 /// update. For a linear body this keeps S below the true stiffness in every direction in which it was below, and above
-/// in every direction in which it was above. When the base meets a much stiffer body, S takes its stiffness before the
-/// step that answers it, and in all directions, since other directions may be as stiff; if the body proves softer in a
-/// direction, S decreases there gradually. φ, 0…1, is the share of the predicted change S s that did not occur: a
-/// sliding body is expected to go on sliding, so that S, which is needed when it sticks again, does not hold the base
-/// back.
+/// in every direction in which it was above. When the last step shows a body much stiffer than S, S is set to the
+/// body's stiffness before the next step, in all directions, since other directions may be as stiff; in directions in
+/// which the body proves softer, S decreases gradually. φ, 0…1, is the share of the predicted change S s that did not
+/// occur: a sliding body is expected to go on sliding, so that S, which is needed when it sticks again, does not hold
+/// the base back.
 /// @cite J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed. (2006), eq. (6.19)
 class BaseFollower {
  public:
   struct Limits {
     double speed_mm_per_s = 200.0;  ///< largest speed of the base, also if the handle jumps
-    double turn_rad_per_s = 6.0;
+    double turn_rad_per_s = 6.0;    ///< largest angular speed of the base
   };
 
-  /// Without a coupling: the base follows the handle exactly, within the limits.
+  /// A follower without a coupling: the base follows the handle exactly, within the limits.
   explicit BaseFollower(const Limits& limits) : limits_(limits) {}
   BaseFollower(const Limits& limits, const VirtualCoupling& coupling);
 

@@ -28,7 +28,8 @@ class DeadlineHistogram {
   /// quantiles from the copy.
   [[nodiscard]] DeadlineHistogram snapshot() const;
 
-  /// Adds all durations of another histogram. Its misses are counted according to its own deadline.
+  /// Adds all durations of another histogram. The misses of `other` were counted with its own deadline and are
+  /// added unchanged.
   void merge(const DeadlineHistogram& other);
 
   [[nodiscard]] std::int64_t count() const { return count_; }

@@ -12,7 +12,8 @@ namespace stylet {
 struct ForceGuardSettings {
   double max_force_N = 10.0;
   double max_torque_Nmm = 300.0;
-  /// Fast enough for a puncture, which changes the force by newtons within milliseconds, but slower than a fault.
+  /// Largest rates of change of force and torque: fast enough for a puncture, which changes the force by newtons within
+  /// milliseconds, but slower than a fault.
   double force_slew_N_per_s = 1000.0;
   double torque_slew_Nmm_per_s = 30000.0;
   double fade_s = 0.05;     ///< time from the first bad result to zero force
@@ -20,9 +21,9 @@ struct ForceGuardSettings {
 };
 
 /// Makes a computed force safe for a device. The output is finite, within the limits, and never changes faster than the
-/// slew rates, for any input. After a bad result the output fades linearly to zero within fade_s; with good results it
-/// recovers over recover_s. If good and bad results alternate, the force fades, because recovering takes longer. The
-/// output depends only on the inputs and dt; no clock is used.
+/// slew rates, for any input. After a bad result (late, missing, not finite, or not trustworthy) the output fades
+/// linearly to zero within fade_s; with good results it recovers over recover_s. If good and bad results alternate, the
+/// force fades, because recovering takes longer. The output depends only on the inputs and dt; no clock is used.
 class ForceGuard {
  public:
   /// Errors: settings that are not positive; recover_s below fade_s; slew rates too low to fade from the limits within

@@ -39,7 +39,7 @@ class PassivityControl {
   [[nodiscard]] double energy_Nmm() const { return energy_; }      ///< E
   [[nodiscard]] double lowest_Nmm() const { return lowest_; }      ///< minimum of E, ≤ 0
   [[nodiscard]] std::int64_t active() const { return active_; }    ///< periods in which damping was added
-  [[nodiscard]] std::int64_t limited() const { return limited_; }  ///< periods that needed more damping than allowed
+  [[nodiscard]] std::int64_t limited() const { return limited_; }  ///< periods that needed more than max_damping
 
  private:
   Settings settings_;

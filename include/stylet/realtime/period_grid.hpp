@@ -5,11 +5,11 @@
 
 namespace stylet {
 
-/// Schedule of a periodic loop: when each turn is due, and how much simulated time it stands for. Deadlines are the
-/// points origin + k T of a fixed grid. A late turn is not compensated by shorter ones: the points that it passed are
-/// skipped, and the next turn waits for the next point ahead. That turn stands for the whole time since the last one,
-/// so simulated time keeps up with the clock, but for at most `max_periods`; the time of a longer stall is lost for the
-/// simulation, because the needle must not jump. No clock is used; times are arguments.
+/// Schedule of a periodic loop: when each turn (one pass of the loop) is due, and how much simulated time it stands
+/// for. Deadlines are the points origin + k T of a fixed grid. A late turn is not compensated by shorter ones: the
+/// points that it passed are skipped, and the next turn waits for the next point ahead. That turn stands for the whole
+/// time since the last one, so simulated time keeps up with the clock, but for at most `max_periods`; the time of a
+/// longer stall is lost for the simulation, because the needle must not jump. No clock is used; times are arguments.
 class PeriodGrid {
  public:
   /// @param origin_ns [ns] time of the first turn @param period_ns [ns] T > 0 @param max_periods ≥ 1

@@ -17,7 +17,7 @@ struct LoopCounters {
   std::int64_t steps = 0;
   std::int64_t missed_deadlines = 0;  ///< steps that ended after the next one was due: woken late, or too slow
   std::int64_t skipped_periods = 0;   ///< periods without a step
-  std::int64_t lost_ns = 0;           ///< time beyond max_catch_up, by which simulated time is behind the clock
+  std::int64_t lost_ns = 0;           ///< time by which simulated time lags the clock, lost beyond max_catch_up
   std::int64_t distrusted = 0;        ///< steps whose force was not passed to the device
   std::int64_t without_input = 0;     ///< steps with an invalid or old sample of the device: the base stayed in place
   std::int64_t dropped_events = 0;    ///< events that did not fit into the queue
@@ -26,9 +26,9 @@ struct LoopCounters {
 
 /// A contact: a place at which shaft or tip holds the tissue.
 struct ContactSnapshot {
-  Triple position{};  ///< [mm] LPS, deformed
-  Triple force{};     ///< [N] LPS, on the tissue
-  double s = 0.0;     ///< [mm] arc length on the needle
+  Triple position{};  ///< [mm] LPS, position in the deformed tissue
+  Triple force{};     ///< [N] LPS, force of the needle on the tissue
+  double s = 0.0;     ///< [mm] arc length on the needle, from its base
   bool sticking = false;
   bool tip = false;
 };
@@ -69,7 +69,7 @@ struct Snapshot {
 
 /// Input and output of the device in one period.
 struct DeviceSnapshot {
-  double clock_s = 0.0;  ///< on the runner's clock
+  double clock_s = 0.0;  ///< time of the period on the runner's clock
   DeviceInput input;
   PlainWrench sent;   ///< force and torque on the hand
   bool good = false;  ///< the newest result was good enough to be sent

@@ -11,7 +11,7 @@
 
 namespace stylet {
 
-/// The result of a step that the loop needs.
+/// The part of a step's result that the real-time loop needs.
 struct StepOutcome {
   Wrench hand;           ///< force and torque that the hand exerts on the base, about the base point
   bool trusted = false;  ///< false: the step found no balance, and its force must not reach a hand

@@ -20,8 +20,8 @@ struct VirtualCouplingSettings {
 /// @cite J. E. Colgate, M. C. Stanley, J. M. Brown, "Issues in the haptic display of tool use", IROS 1995, 140–145
 class VirtualCoupling {
  public:
-  /// Error for a coupling that could supply energy to the hand by sampling and holding alone. The condition of
-  /// passivity is
+  /// Makes a coupling. Returns an error if it could supply energy to the hand merely because the loop samples the pose
+  /// and holds the force for a period. The condition of passivity is
   ///   b > K T / 2 + |B|
   /// with the coupling's stiffness K and damping B and the handle's physical damping b, for translation and, on devices
   /// with torques, for rotation.
@@ -37,8 +37,8 @@ class VirtualCoupling {
 
   [[nodiscard]] const VirtualCouplingSettings& settings() const { return settings_; }
 
-  /// Damping [N s/mm] that may be added to the coupling before the condition fails; for rotation lever_mm()² times
-  /// that.
+  /// Damping [N s/mm] that may be added to the coupling before the condition of create() fails. The damping that
+  /// may be added for rotation [N mm s/rad] is lever_mm()² times this value.
   [[nodiscard]] double spare_damping_N_s_per_mm() const { return spare_damping_; }
   /// √(rotational / translational stiffness) [mm], by which angles are converted to lengths.
   [[nodiscard]] double lever_mm() const;

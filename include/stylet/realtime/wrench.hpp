@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// A force and a torque about the base point (or the handle's).
+/// A force and a torque about the base point (or about the handle's origin).
 struct Wrench {
   Vec3 force = Vec3::Zero();   ///< [N] LPS
   Vec3 torque = Vec3::Zero();  ///< [N mm] LPS
@@ -17,7 +17,7 @@ struct Wrench {
 
 /// Motion of a rigid body.
 struct Twist {
-  Vec3 velocity = Vec3::Zero();          ///< [mm/s] LPS, of the base point (or the handle's)
+  Vec3 velocity = Vec3::Zero();          ///< [mm/s] LPS, of the base point (or of the handle's origin)
   Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s] LPS
 };
 

@@ -29,20 +29,21 @@ struct LiveFrame {
   std::uint32_t steps = 0;                                              ///< number of steps taken
   std::uint32_t missed = 0;                                             ///< number of missed deadlines
   double roll_deg = 0.0, tilt_left_deg = 0.0, tilt_anterior_deg = 0.0;  ///< orientation of the hand
-  double left_out_N = 0.0;            ///< force whose far or near field is not shown; the larger of the two
+  double left_out_N = 0.0;            ///< the larger of two forces: whose far field, and whose near field, is not shown
   std::optional<TipError> tip_error;  ///< empty in a replay, because it is not recorded
   std::vector<float> centreline;      ///< (3 p) [mm] LPS, base to tip
   std::vector<ContactSnapshot> contacts;
   std::vector<Step> curve;                 ///< steps since the last frame; with the bit whole_curve, all steps
   double unit_mm = 0.0;                    ///< length that 1 in `displacement` stands for
-  std::vector<std::int16_t> displacement;  ///< (3 n) of the scene's points; may be empty
+  std::vector<std::int16_t> displacement;  ///< (3 n) displacement of the scene's points; may be empty
 };
 
 /// Stores displacements in a frame, in the smallest unit_mm in which the largest fits 16 bits (at least 0.001 mm).
 /// @param u [mm] (3 × n) LPS; the frame gets no displacement if a value is not finite
 void set_displacement(LiveFrame& frame, const Eigen::Ref<const Eigen::Matrix3Xf>& u);
 
-/// An event of the insertion. Of kind "started", it is the start of an insertion, and `region` is the insertion's name.
+/// An event of the insertion. The kind "started" marks the start of an insertion; `region` is then the insertion's
+/// name.
 struct LiveEvent {
   std::string kind;
   double time_s = 0.0;
@@ -54,7 +55,7 @@ struct LiveEvent {
 /// The map of the template's holes, as far as it has been computed.
 struct LiveMap {
   std::optional<HoleMap> map{};  ///< empty until the clearances are computed, and where no map is possible
-  std::string why_not{};         ///< why no map is possible; empty: it is
+  std::string why_not{};         ///< why no map is possible; empty: a map is possible
   int predicted = 0;             ///< number of holes whose insertion was simulated or failed
   bool predicting = false;       ///< further holes are being simulated
 };
@@ -70,14 +71,14 @@ struct SessionStatus {
   enum class State { loading, ready, failed };
   State state = State::loading;
   std::string stage;       ///< stage of loading; when ready: the part of the picture that is still missing
-  double fraction = -1.0;  ///< of `stage` that is done, 0…1; −1 where it is not known
+  double fraction = -1.0;  ///< part of `stage` that is done, 0…1; −1 if it is not known
   Notice failure;
   bool paused = false;
   std::string insertion;            ///< name of the insertion
   std::string hole;                 ///< template hole; empty where the insertion does not use one
   std::vector<std::string> inside;  ///< regions that contain the tip (the first) or the shaft
   std::string device;               ///< device that moves the needle: "page", or a companion's name
-  std::string device_problem;       ///< why the device does not move the needle; empty: it does
+  std::string device_problem;       ///< why the device does not move the needle; empty: it moves the needle
   struct Recording {
     std::string name;
     double seconds = 0.0;

@@ -13,7 +13,7 @@ namespace stylet::serve {
 struct ServerSettings {
   std::string address = "127.0.0.1";  ///< IP address to listen on
   std::uint16_t port = 8080;          ///< 0: any free port
-  std::string token;                  ///< viewers must know it; empty: a random one is made
+  std::string token;  ///< secret word in the address that lets viewers in; empty: a random token is made
   /// False lets every user of this machine in without a token; allowed on the loopback interface only.
   bool asks_for_token = true;
   /// File that keeps the random token of the loopback interface for the next start; may be empty.

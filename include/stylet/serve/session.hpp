@@ -32,12 +32,12 @@ struct CaseSource {
 struct SessionSettings {
   std::vector<CaseSource> cases;      ///< the first is opened; may be empty only with `replay`
   std::filesystem::path recordings;   ///< folder; every insertion makes a folder with run.h5 in it
-  std::filesystem::path archive;      ///< another folder with recordings, read only; may be empty
+  std::filesystem::path archive;      ///< another folder with recordings, which is only read; may be empty
   std::string replay;                 ///< name of a recording to start with; empty: live
   RunnerSettings runner;              ///< keep_steps is set by the session
   double pictures_per_s = 60.0;       ///< [1/s] highest rate of pictures
   double field_waits_s = 3.0;         ///< [s] longest wait for a page to draw before the displacement field is prepared
-  double recorded_frames_per_s = 10;  ///< [1/s] highest rate; lower where frames of the mesh take long to compute
+  double recorded_frames_per_s = 10;  ///< [1/s] highest rate of recorded frames; lower if frames take long to compute
   std::shared_ptr<Companion> companion;  ///< may be null
   /// Limit of all recordings together; the oldest are removed first; 0: no limit.
   std::uintmax_t keep_bytes = 5'000'000'000;

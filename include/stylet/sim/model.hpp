@@ -50,8 +50,8 @@ class Model {
 
   /// The same model with parts that the calling program supplies: a needle model, a law of cutting. Everything that
   /// took long to compute is shared with this model. The scenario does not describe these parts, so the warnings name
-  /// them, and the model cannot be saved. Errors: a needle that cannot be made, or whose length is not
-  /// needle.length_mm.
+  /// them, and the model cannot be saved.
+  /// Errors: a needle that cannot be made, or whose length is not needle.length_mm.
   [[nodiscard]] Result<std::shared_ptr<const Model>> with(OwnParts parts) const;
 
   [[nodiscard]] const OwnParts& own_parts() const { return own_; }

@@ -110,8 +110,8 @@ struct Summary {
   double step_us_p50 = 0, step_us_p99 = 0, step_us_p999 = 0, step_us_max = 0;
   int contacts_max = 0;  ///< largest number of contacts in a step
   CapacityUses capacity;
-  double compliance_condition =
-      1.0;  ///< largest condition number of the compliance among the contacts, over all frames
+  /// Condition number of the compliance among the contacts; the largest of all frames.
+  double compliance_condition = 1.0;
   struct Blur {
     double smallest_mm = 0, median_mm = 0, largest_mm = 0;
     int nodes = 0;  ///< number of nodes measured; 0 = the coupling method does not correct the near field

@@ -28,8 +28,9 @@ Result<> check_keys(const Json& object, std::span<const std::string> known, cons
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const std::string near = nearest_name(key, known);
     return input_error(where, fmt::format("the key '{}' is unknown", key),
-                       !near.empty() ? fmt::format("Did you mean '{}'? Known keys: {}.", near, fmt::join(known, ", "))
-                                     : fmt::format("Known keys: {}.", fmt::join(known, ", ")));
+                       !near.empty()
+                           ? fmt::format("Did you mean '{}'? Use one of the keys {}", near, fmt::join(known, ", "))
+                           : fmt::format("Use one of the keys {}", fmt::join(known, ", ")));
   }
   return Ok{};
 }
@@ -89,7 +90,8 @@ Result<> parse_colour(const Json& json, const std::string& where, std::array<int
 
 Result<Roi> parse_structure(const Json& json, std::size_t position, const std::string& source) {
   std::string where = fmt::format("{}, structure {}", source, position + 1);
-  if (!json.is_object()) return input_error(where, "a structure is an object {…}", "See docs/formats.md");
+  if (!json.is_object())
+    return input_error(where, "the structure is not a JSON object, {…}", "Write it as in docs/formats.md");
   Result<> keys = check_keys(json, structure_keys, where);
   if (!keys) return keys.error();
   Result<std::string> name = string_at(json, "name", where);

@@ -118,7 +118,7 @@ Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& 
   if (set.frame_of_reference.empty()) set.frame_of_reference = header.frame_of_reference;
   if (header.frame_of_reference.empty() || header.frame_of_reference == set.frame_of_reference) return Ok{};
   return input_error(fmt::format("{}, ROI '{}'", set.source, roi.name),
-                     "its frame of reference differs from the one of the structures before it",
+                     "its frame of reference differs from that of the structures before it in the file",
                      "Export structures of one registration only; Stylet does not register images");
 }
 

@@ -65,7 +65,7 @@ std::string fingerprint(const ContourSet& set) {
 }
 
 Result<> check(const ContourSet& set, const std::string& where) {
-  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one");
+  if (set.rois.empty()) return failure(where, "there are no structures to write", "Draw at least one structure");
   for (const Roi& roi : set.rois) {
     const std::string place = fmt::format("{}, ROI '{}'", where, roi.name);
     if (roi.name.empty() || roi.name.size() > max_name || roi.name.find('\\') != std::string::npos) {

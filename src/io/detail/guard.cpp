@@ -172,8 +172,9 @@ Error threw(const fs::path& path, const char* what, const char* cure) {
 }
 
 Error out_of_memory(const fs::path& path) {
-  return input_error(path.string(), "reading it needs more memory than a file of its size should",
-                     "The file is damaged (a wrong size in its header), or too large for this machine; crop it");
+  return input_error(
+      path.string(), "reading it needs more memory than a file of its size should",
+      "Export the file again if a size in its header is wrong, or crop it if it is too large for this machine");
 }
 
 }  // namespace stylet::detail

@@ -126,7 +126,7 @@ Result<LabelImage> parse_nifti(const std::filesystem::path& path, const MaskRead
   if (form == nullptr) {
     return input_error(
         source, "the file does not state the position of the image in the patient (neither sform nor qform)",
-        "Left and right are unknown without it; save the image again with its orientation, e.g. from 3D Slicer");
+        "Save the image again with its orientation, e.g. from 3D Slicer; without it left and right are unknown");
   }
   const double unit = unit_mm(header.GetXYZTUnits());
   if (unit == 0.0) {

@@ -165,7 +165,7 @@ Result<> check_extent(const LabelImage& image) {
                        fmt::format("the segmentation is {:.4g} mm long, 1 mm to 2 m is expected; voxel spacing "
                                    "{:.4g} × {:.4g} × {:.4g} mm",
                                    extent, image.spacing[0], image.spacing[1], image.spacing[2]),
-                       "The file's unit is probably not mm; correct its spacing");
+                       "Correct the voxel spacing; the unit of the file is probably not mm");
   }
   return Ok{};
 }

@@ -26,11 +26,11 @@ Result<> check_unit(const std::vector<Vec3>& nodes, const std::string& source) {
   const auto believable = [&](double scale) { return extent * scale >= 40.0 && extent * scale <= 1500.0; };
   std::string cure = "State the unit: --scale S with S = mm per file unit";
   if (extent > largest_believable_mm) {
-    cure = "If they are micrometres, pass --scale 0.001; otherwise --scale S with S = mm per file unit";
+    cure = "Pass --scale 0.001 if they are in micrometres, otherwise --scale S with S = mm per file unit";
   } else if (believable(1000.0) && extent <= 1.5) {
-    cure = "They are probably metres: pass --scale 1000; otherwise --scale S with S = mm per file unit";
+    cure = "Pass --scale 1000 if they are in metres, as is probable, otherwise --scale S with S = mm per file unit";
   } else if (believable(10.0)) {
-    cure = "If they are centimetres, pass --scale 10; otherwise --scale S with S = mm per file unit";
+    cure = "Pass --scale 10 if they are in centimetres, otherwise --scale S with S = mm per file unit";
   }
   return input_error(source,
                      fmt::format("the mesh is {:.4g} units across, which is not plausible in mm ({:.0f} mm to {:.0f} "

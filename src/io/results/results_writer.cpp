@@ -89,7 +89,7 @@ Result<> write_from_recording(const fs::path& folder, const Summary& summary,
 /// not reached the disk.
 Error not_finite(const std::string& where, double time_s) {
   return failure(fmt::format("{} at {} s", where, time_s), "holds a number that is not finite",
-                 "The simulation diverged earlier; look at the steps before this one");
+                 "Look at the steps before this one; the simulation diverged earlier");
 }
 
 bool is_finite(const Frame& frame) {

@@ -98,7 +98,7 @@ StoredRun read_all(hid_t file) {
   demand(h5::has_attribute(file, "format"), "an HDF5 file, but not a recorded run");
   const std::string format = h5::read_text_attribute(file, "format");
   demand(format != "stylet-model",
-         "a saved model without the seal at its end: damaged, or an earlier version of stylet saved it");
+         "a saved model without the seal at its end: it is damaged, or an earlier version of stylet saved it");
   demand(format == kRunFileFormat, "an HDF5 file, but not a recorded run");
   const auto version = h5::read_int_attribute(file, "format_version");
   demand(version.size() == 1 && version[0] <= kRunFileVersion, "written by a newer version of stylet");

@@ -175,7 +175,7 @@ Result<> ScenarioReader::take(const TomlItem& item, const std::string& where) {
   }
   if (item.kind == TomlItem::Kind::unusable) {
     return input_error(where, fmt::format("{} is {}", path, item.what),
-                       "The keys take numbers, texts, true or false, and lists of numbers or of texts");
+                       "Give a number, a text, true or false, or a list of numbers or of texts");
   }
   for (const std::string& table : {pattern, pattern + "[]"}) {
     if (!is_table(table)) continue;

@@ -191,7 +191,7 @@ TEST(LabelImageErrors, an_nrrd_of_five_dimensions_is_refused_whatever_volume_is_
 TEST(LabelImageErrors, an_image_that_does_not_say_where_it_lies_is_refused) {
   const Mask mask;
   expect_refused(read_mask("mask.nii", nifti(mask, NiftiForm::none)),
-                 {"neither sform nor qform", "Left and right are unknown"});
+                 {"neither sform nor qform", "left and right are unknown"});
   expect_refused(read_mask("mask.nrrd", nrrd(mask, "raw", "", "scanner-xyz")), {"scanner-xyz"});
   std::string text = nrrd(mask);
   for (const char* key : {"space: ", "space directions: ", "space origin: "}) {

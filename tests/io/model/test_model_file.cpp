@@ -170,7 +170,7 @@ TEST(SavedModel, of_another_mesh_or_material_is_refused) {
     const auto model = compile_model(other, "box.stylet");
     ASSERT_FALSE(model);
     EXPECT_EQ(model.error().kind, ErrorKind::input);
-    EXPECT_SAYS(model.error().message(), "something else");
+    EXPECT_SAYS(model.error().message(), "compliance does not belong");
     EXPECT_SAYS(model.error().message(), "stylet prepare");
   }
   ModelFile shorter = *file;

@@ -18,7 +18,8 @@ struct NearInterface {
   int beyond = -1;                                         ///< number of the region on the other side
 };
 
-/// The nearest interface, and the nearest one that faces it (SurfaceDistance::opposite()); beyond < 0: there is none.
+/// The nearest interface, and the nearest interface that faces it (SurfaceDistance::opposite()). A missing interface
+/// has beyond = −1.
 using NearInterfaces = std::array<NearInterface, 2>;
 
 /// Distances to the interfaces between the deformable regions of a mesh, for each region. A face that two regions share

@@ -32,8 +32,8 @@ class MeshKernel {
   /// The solution on the patch of one node.
   struct Row {
     Index node = -1;
-    double edge = 0.0;
-    NearSurface skin;
+    double edge = 0.0;                                       ///< [mm] mean length of the edges at the node
+    NearSurface skin;                                        ///< the free surface nearest to the node
     std::vector<std::pair<int, NearInterfaces>> interfaces;  ///< for each region that has the node
     std::vector<Index> near;                                 ///< nodes of the patch that are not on its rim, ascending
     /// (media)(near) [mm/N] displacements for E = 1 MPa; empty for a medium that the patch does not contain.

@@ -27,7 +27,7 @@ namespace stylet {
 /// Points are interpolated, whatever placement is requested; the mesh does not change.
 class NearFieldCompliance final : public ContactCompliance {
  public:
-  /// @param far Λ K⁻¹ Λᵀ from the engine that holds K⁻¹; without points
+  /// @param far compliance from the engine that holds K⁻¹, for the part Λ K⁻¹ Λᵀ; it must not have points yet
   /// @param kernel of the tissue's mesh
   /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
   /// @param creeps whether wide() is computed even if no tissue stiffens

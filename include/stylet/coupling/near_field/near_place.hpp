@@ -17,7 +17,7 @@ struct NearPlace {
   Shape shape;
   Segment piece;
   double epsilon = 0.0;             ///< [mm] radius over which the needle's force is spread there
-  double own_epsilon = 0.0;         ///< [mm] of the tip only: the same for the tip's displacement by its own force
+  double own_epsilon = 0.0;         ///< [mm] only for the tip: as epsilon, for the tip's displacement by its own force
   Mat3 mesh_kernel = Mat3::Zero();  ///< [mm/N] g of the mesh between the place and itself, for E = 1 MPa
   double blur = 0.0;                ///< [mm] radius over which the mesh spreads a force there, from mesh_kernel
   double share = 1.0;               ///< least_share() of the needle there
@@ -32,8 +32,8 @@ struct NearPlace {
   double moves = 1.0;  ///< 0 … 1: weight of those nodes of the element that are not held
 };
 
-/// The place of a material point at x [mm], undeformed. Leaves `epsilon` to the caller. The kernel must have the
-/// corners of its element.
+/// The place of a material point at x [mm], undeformed. The caller has to set NearPlace::epsilon. The kernel must have
+/// rows for the corners of the element.
 NearPlace near_place(const Tissue& tissue, const MeshKernel& kernel, const MaterialPoint& at, const Vec3& x);
 
 /// Sets the radii of a place to those of the needle's tip.
@@ -52,13 +52,15 @@ double stiffening_of(const NearPlace& tip, const OfRegion& of) {
 }
 
 /// A place without a needle, such as a point of a surface: interpolated between nodes of the mesh, at `x` [mm],
-/// undeformed. acted_on_by() gives it the medium of the force that acts on it. The kernel must have these nodes.
+/// undeformed. acted_on_by() gives it the medium of the force that acts on it. The kernel must have rows for these
+/// nodes.
 NearPlace passive_place(const Tissue& tissue, const MeshKernel& kernel, const Shape& between, const Vec3& x);
 
-/// The passive_place() `here` with the radius and the medium of the force at `on`; it has none of its own.
+/// The passive_place() `here` with the radius and the medium of the place `on` where the force acts, since a passive
+/// place has neither.
 NearPlace acted_on_by(NearPlace here, const NearPlace& on);
 
-/// Whether the correction between two places is applied. It is zero where the places are so far apart that elements
+/// Whether near_correction() between two places is applied. It is zero where the places are so far apart that elements
 /// represent the field, and across a gap of air.
 bool needs_correction(const MeshKernel& kernel, const NearPlace& at, const NearPlace& on);
 

@@ -31,8 +31,8 @@ struct NeedleKernel {
 
   /// [mm] Radius that separates the wide part of the tip's field from the narrow part. A force that is spread over this
   /// radius strains tissue by a few hundredths, where tissue is still linear. The field of such a force belongs to the
-  /// organs; the rest has the needle's own scale and stiffens (docs/theory/stiffening.md). Raised, more of the tip's
-  /// compliance stiffens.
+  /// organs; the rest has the needle's own scale and stiffens (docs/theory/stiffening.md). With a larger value
+  /// more of the tip's compliance stiffens.
   static constexpr double kScale_mm = 10.0;
 
   /// [mm] ε of the shaft, √e R: a line of regularised forces on the axis with this ε moves the medium like a bonded
@@ -43,15 +43,15 @@ struct NeedleKernel {
   /// on a free surface it is a flat punch of stiffness 2RE/(1−ν²).
   /// @param skin the free surface near the tip
   [[nodiscard]] double tip_epsilon(const NearSurface& skin, double poisson) const;
-  /// [mm] ε of the tip for its own displacement, for tip_kernel(). Near an interface it approaches that of the flat
-  /// punch as well, the more so the softer the tissue on one side.
+  /// [mm] ε of the tip for its own displacement, for tip_kernel(). Near an interface it approaches the ε of the
+  /// flat punch as well, and the more so the softer the tissue on one side is.
   [[nodiscard]] double own_tip_epsilon(const NearSurface& skin, const NearBorders& borders, double poisson) const;
 
-  /// The tip's own compliance minus the half space's, at a depth below the free surface through which it entered
-  /// [mm/N]. A linear dent would be so steep that it turned the tissue under it inside out, and the force on a tip that
-  /// has broken the surface would grow. So the compliance falls with depth just as fast as lets the tip through, until
-  /// it has reached the half space's compliance (docs/theory/near_field.md §5). Zero at the surface, and from that
-  /// depth on. Does not depend on surface.share.
+  /// The tip's own compliance minus the half space's compliance [mm/N], at a depth below the free surface through which
+  /// the tip entered. In the half space a dent would be so steep that it turned the tissue under it inside out, and the
+  /// force on a tip that has broken the surface would grow. The tip's compliance therefore falls with depth no faster
+  /// than by equation (4) of docs/theory/near_field.md §5, until it equals the half space's compliance. The difference
+  /// is zero at the surface and beyond the depth of equality. It does not depend on surface.share.
   /// @param press [N] force that made the dent
   /// @param stiffening_MPa k₂ of DentLaw there, 0: linear tissue
   [[nodiscard]] Mat3 dent(const NearSurface& surface, double press, const Medium& medium,
@@ -67,7 +67,7 @@ struct NeedleKernel {
 /// @param epsilon [mm] own_tip_epsilon(), or the radius of a force that is spread wider
 Mat3 tip_kernel(const NearSurface& skin, const NearBorders& borders, double epsilon, const Medium& medium);
 
-/// The kernel g, which includes the skin, corrected for the borders between organs [mm/N].
+/// The mesh kernel g, which includes the image of the skin, corrected for the borders between organs [mm/N].
 /// @param epsilon [mm] radius over which g spreads a force
 Mat3 with_borders(const Mat3& g, const NearSurface& skin, const NearBorders& borders, double epsilon, double poisson);
 

@@ -29,12 +29,14 @@ class SurfaceDistance {
   SurfaceDistance(SurfaceDistance&&) noexcept;
   SurfaceDistance& operator=(SurfaceDistance&&) noexcept;
 
-  /// The quantity at the nearest point; at a node, the mean of the triangles there, weighted by their areas.
+  /// The given quantity at the nearest point of the surface; at a node it is the mean over the node's triangles,
+  /// weighted by their areas.
   struct Value {
     double value = 0.0;
     int triangle = -1;  ///< triangle that has the nearest point
   };
-  /// @param value written, if not null
+  /// The surface nearest to x [mm].
+  /// @param value output: the quantity at the nearest point; may be null
   [[nodiscard]] NearSurface nearest(const Vec3& x, Value* value = nullptr) const;
   /// The nearest surface that faces another one, as the two faces of a thin layer do. A surface that faces it at an
   /// angle counts as further away, by the cosine between the normals, so that nothing jumps as x moves.

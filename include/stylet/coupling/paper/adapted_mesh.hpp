@@ -15,11 +15,10 @@ class AdaptedMesh {
  public:
   struct Element {
     std::array<Index, 4> nodes{-1, -1, -1, -1};
-    Index base_tet = -1;  ///< tetrahedron of the base mesh that it comes from, which has its region and material
-    bool present = true;
-    double volume = 0.0;                                                          ///< [mm³]
-    double first_volume = 0.0;                                                    ///< [mm³] when the element was
-                                                                                  ///< created
+    Index base_tet = -1;        ///< tetrahedron of the base mesh that it comes from, which has its region and material
+    bool present = true;        ///< false: a change has removed the element
+    double volume = 0.0;        ///< [mm³]
+    double first_volume = 0.0;  ///< [mm³] volume when the element was created
     Eigen::Matrix<double, 3, 4> gradients = Eigen::Matrix<double, 3, 4>::Zero();  ///< of the barycentric weights [1/mm]
     Vec4 offset = Vec4::Zero();  ///< weights(x) = offset + gradientsᵀ x
     [[nodiscard]] Vec4 weights(const Vec3& x) const { return offset + gradients.transpose() * x; }
@@ -50,8 +49,9 @@ class AdaptedMesh {
   /// Whether the node lies on the surface of an organ or of the patient, whose shape it defines.
   [[nodiscard]] bool on_boundary(Index node) const { return on_boundary_[static_cast<std::size_t>(node)]; }
 
-  /// Moves a node, unless that leaves an element around it less than kSmallestShare of its first volume.
+  /// Smallest volume that move_node() leaves to an element, as a share of its first_volume.
   static constexpr double kSmallestShare = 0.1;
+  /// Moves a node. Empty, with nothing changed, if an element around it would keep less than kSmallestShare.
   std::optional<Change> move_node(Index node, const Vec3& to);
 
   /// Splits an element into four at an inner point.

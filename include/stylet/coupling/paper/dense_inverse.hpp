@@ -31,7 +31,7 @@ class DenseInverse {
   /// the change, so they stand on springs of stiffness 1/δ, and the next change() removes these springs exactly.
   /// Therefore δ need not be "infinite", and a δ of the size of the other compliances keeps the small matrix well
   /// conditioned.
-  /// @return number of the first of them
+  /// @return number of the first of the three degrees of freedom
   Index append_node();
 
   /// K ← K + V ΔK Vᵀ.

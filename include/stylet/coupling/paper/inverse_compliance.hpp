@@ -14,7 +14,7 @@ namespace stylet::paper {
 /// Where nodes may be moved, the nearest node of the element that contains the point is moved to it, unless that node
 /// defines the shape of an organ, is fixed, is a contact point already, has contacts interpolated around it, or would
 /// flatten an element. In these cases a node is added, and the event has the reason (RemeshEvent::Refused). When nodes
-/// may be moved, the tip is interpolated in the present mesh, and a contact in the elements of the moment when it was
+/// may be moved, the tip is interpolated in the present mesh, and a contact in the mesh as it was when the contact was
 /// created; otherwise both are interpolated in the base mesh.
 class InverseCompliance final : public ContactCompliance {
  public:

@@ -62,9 +62,9 @@ struct Figure6 {
   Index free_dofs = 0;
   double dt_ms = 0.0;
   double speed_mm_per_s = 0.0;
-  double spacing_mm = 0.0;              ///< between contacts, except where nodes are added on faces
+  double spacing_mm = 0.0;              ///< distance between contacts, except where nodes are added on faces
   int repeats = 0;                      ///< runs of each variant
-  std::vector<std::string> insertions;  ///< in words
+  std::vector<std::string> insertions;  ///< description of each insertion, in words
   std::vector<Figure6Run> runs;
 
   /// The run of a variant; there must be one.

@@ -37,9 +37,9 @@ struct LoadedMoment {
   VecX u;              ///< [mm] (3 × displacement nodes)
 };
 
-/// Solves a neo-Hookean solid (Geometry::finite) under a growing load with CalculiX.
-/// @return the increments that CalculiX chose; the last has less than the whole load if no further equilibrium was
-/// found Errors: failed, when ccx is not installed or no increment converged.
+/// Solves a neo-Hookean solid (Geometry::finite) under a growing load with CalculiX. The result has the increments that
+/// CalculiX chose; the last one has less than the whole load if no further equilibrium was found.
+/// Errors: failed, when ccx is not installed or no increment converged.
 Result<std::vector<LoadedMoment>> load_with_calculix(const Tissue& tissue, const VecX& f);
 
 }  // namespace stylet::validate

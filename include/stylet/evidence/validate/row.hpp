@@ -91,7 +91,7 @@ struct RowSpec {
   std::string reference;  ///< formula, program or publication that the value is compared with
   std::string unit;       ///< unit of the value; empty for a pure number
   Accepted accepted;
-  bool quick = true;  ///< takes a few seconds at most, so --quick includes it
+  bool quick = true;  ///< the row takes a few seconds at most, so --quick includes it
   std::function<Result<Finding>(Context&)> measure;
 };
 

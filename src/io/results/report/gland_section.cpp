@@ -46,12 +46,12 @@ std::string tell(const RunRecording& run, const GlandMotion& gland) {
                         target_name(run), anatomical(*gland.shift_at_break_mm));
   }
   text +=
-      fmt::format("On the way in it moved by at most {}; with the needle in place it lay {} from where it had been.",
+      fmt::format("On the way in it moved by at most {}; with the needle in place it lay {} from its initial place.",
                   anatomical(gland.shift_max_mm), anatomical(gland.shift_in_place_mm));
   if (gland.shift_residual_mm) {
     text += gland.shift_residual_mm->norm() < 0.0005
                 ? " Once the needle was out, it was back where it had been."
-                : fmt::format(" One second after the needle was out, it still lay {} from there.",
+                : fmt::format(" One second after the needle was out, it still lay {} from its initial place.",
                               anatomical(*gland.shift_residual_mm));
   }
   return text;

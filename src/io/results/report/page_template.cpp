@@ -16,7 +16,7 @@ Result<std::string> fill_page(std::string_view page, const Slots& slots, const s
     const auto slot = slots.find(slot_name);
     if (close == std::string_view::npos || slot == slots.end()) {
       return failure(name, fmt::format("its template has an unknown slot '{}'", slot_name),
-                     "The program was built from files that do not belong together: build it again");
+                     "Build the program again: it was built from files that do not belong together");
     }
     filled += page.substr(0, open);
     filled += slot->second;
