@@ -84,7 +84,8 @@ Result<MeshedAnatomy> model_of(const TetMesh& mesh, const MeshOptions& options, 
 Result<MeshedAnatomy> model_of(const std::vector<Surface>& surfaces, const MeshOptions&, const Scenario& scenario,
                                const Progress&) {
   return input_error(scenario.patient.source,
-                     fmt::format("the file has {} triangulated surfaces, which cannot be meshed", surfaces.size()),
+                     fmt::format("the file has {} triangulated surface{}, which cannot be meshed", surfaces.size(),
+                                 surfaces.size() == 1 ? "" : "s"),
                      "Give contours, a label mask or a tetrahedral mesh");
 }
 

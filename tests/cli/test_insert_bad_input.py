@@ -72,7 +72,7 @@ class BadScenario(InFolder):
         import samples
         samples.stl_surface(self.folder / "skin.stl")
         self.refuse("insert", self.write("bad.toml", BLOCK.replace("block.msh", "skin.stl")), "-o", "out",
-                    says=["skin.stl", "surfaces are not meshed"])
+                    says=["skin.stl", "cannot be meshed"])
 
     def test_no_needle(self):
         self.refuse_scenario(BLOCK.split("[[insertion]]")[0], ["[[insertion]]"])

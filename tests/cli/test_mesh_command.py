@@ -51,7 +51,7 @@ class Mesh(InFolder):
         text = (self.folder / "twice.msh").read_text()
         (self.folder / "twice.msh").write_text(text.replace("\n8 4 2 ", "\n7 4 2 "))
         for command in (("mesh", "twice.msh", "-o", "twice.vtu"), ("info", "twice.msh")):
-            self.refuse(*command, says=["twice.msh, element 7", "two elements have this number", "of its own"])
+            self.refuse(*command, says=["twice.msh, element 7", "two elements have this number", "a different number"])
 
     def test_nearly_flat_tetrahedra_are_warned_of(self):
         block_mesh(self.folder / "flat.msh", last_layer=0.5)

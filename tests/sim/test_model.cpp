@@ -302,7 +302,7 @@ TEST(Tenting, out_of_range_is_warned_of_with_its_numbers) {
   warnings = tenting_warnings("prostate", t, 1.27);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_SAYS(warnings[0], "cutting_N = 1 ");
-  EXPECT_SAYS(warnings[0], "10.8 mm behind");
+  EXPECT_SAYS(warnings[0], "10.8 mm");
 }
 
 TEST(Tenting, of_defaults_gives_no_warning_and_of_a_held_region_none_either) {

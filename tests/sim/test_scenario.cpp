@@ -430,12 +430,12 @@ TEST(CheckScenario, wants_linear_tetrahedra_where_their_stiffness_changes) {
       s.coupling.method = choice<CouplingSettings::Method>(method).value();
       s.coupling.engine = CouplingSettings::Engine::woodbury;
       EXPECT_SAYS(complaint(s),
-                  "at <tissue.element>: coupling.method = \"" + std::string(method) + "\" changes the stiffness");
+                  "at <tissue.element>: coupling.method = \"" + std::string(method) + "\" needs linear tetrahedra");
       EXPECT_SAYS(complaint(s), "tissue.element = \"" + std::string(element) + "\"");
       EXPECT_SAYS(complaint(s), "Set tissue.element = \"p1\", or coupling.method = \"near-field\" or \"embedded\"");
     }
     s.coupling.method = CouplingSettings::Method::embedded;
-    EXPECT_SAYS(complaint(s), "coupling.engine = \"woodbury\" changes the stiffness");
+    EXPECT_SAYS(complaint(s), "coupling.engine = \"woodbury\" needs linear tetrahedra");
     s.coupling.engine = CouplingSettings::Engine::condensed;
     EXPECT_EQ(complaint(s), "");
   }

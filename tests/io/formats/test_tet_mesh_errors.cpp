@@ -151,7 +151,7 @@ TEST(TetMeshErrors, meshes_without_tetrahedra_are_refused) {
   const std::string surface =
       "# vtk DataFile Version 3.0\ntriangle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n0 0 0 20 0 0 0 20 0\n"
       "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n";
-  expect_refused(read_mesh("s.vtk", surface), {"no tetrahedra", "vtkTriangle", "filled"});
+  expect_refused(read_mesh("s.vtk", surface), {"no tetrahedra", "vtkTriangle", "volume mesh"});
   expect_refused(
       read_mesh("s.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n"),
       {"no unstructured grid"});

@@ -109,7 +109,7 @@ TEST(ModelCache, a_patient_in_several_files_has_no_key) {
     Scenario s = saved_box();
     s.patient.source = (folder.path() / name).string();
     const auto made = model_key(s);
-    return !made && made.error().what == "its data are in several files";
+    return !made && made.error().what.starts_with("its data are in several files");
   };
   EXPECT_TRUE(says_so("a.mhd", "ObjectType = Image\nElementDataFile = a.raw\n"));
   EXPECT_TRUE(says_so("b.mha", "ObjectType = Image\nElementDataFile = a.raw\n"));
