@@ -89,7 +89,7 @@ typedef struct stylet_rt_model_info {
   double needle_length_mm;
   double needle_diameter_mm;
   double dt_s;          /* time step of the scenario (run.dt_ms); a loop may use another */
-  double corridor_mm;   /* radius around the planned ways within which the compliance is precomputed */
+  double corridor_mm;   /* radius around the planned paths within which the compliance is precomputed */
   int32_t nodes;        /* number of nodes of the mesh */
   int32_t tets;         /* number of tetrahedra of the mesh */
   int32_t regions;      /* number of regions of the mesh, see stylet_rt_model_region */

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kNearField = "near-field";
 constexpr const char* kNodeAddition = "node-addition";
 /// A narrow corridor keeps the time before the first step short on fine meshes. It suffices, because the demo's needle
-/// leaves its planned way by less, and elements that touch the corridor extend beyond it.
+/// leaves its planned path by less, and elements that touch the corridor extend beyond it.
 constexpr double kCorridor_mm = 3.0;
 
 /// One insertion to be simulated.

@@ -20,7 +20,7 @@ namespace {
 constexpr int kContacts = 40;
 constexpr double kFrames = 60;
 constexpr double kWay_mm = 90.0;
-constexpr double kBeside_mm = 10.0;  ///< surfaces are refined along the planned way extended by this at both ends
+constexpr double kBeside_mm = 10.0;  ///< surfaces are refined along the planned path extended by this at both ends
 constexpr double kDisplayedSpeed_mm_per_s = 20.0;
 constexpr double kDt_s = 1e-3;
 constexpr Index kNodalPressureFits = 50000;  ///< with more nodes, the factor for nodal pressure needs too much memory

@@ -28,7 +28,7 @@ struct OpenModel {
   std::vector<std::string> notes;             ///< LoadedCase::notes
   std::shared_ptr<const DisplayField> field;  ///< empty until it is prepared
   ScenePoints points;                         ///< points of the scene
-  std::size_t way = 0;  ///< index of the insertion along whose planned way the scene is drawn finer
+  std::size_t way = 0;  ///< index of the insertion along whose planned path the scene is drawn finer
 
   /// All warnings for the user: the notes, then the model's warnings.
   [[nodiscard]] std::vector<std::string> warnings() const {

@@ -26,7 +26,7 @@ struct CaseList {
 
 /// Makes the scene: all surfaces between regions and around the patient, each once, and the text that a page needs.
 /// @param targets indices of the target regions
-/// @param way planned way of the needle, along which surfaces are refined beyond the mesh; null: no refinement
+/// @param way planned path of the needle, along which surfaces are refined beyond the mesh; null: no refinement
 MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const Scenario& scenario,
                      const std::vector<PlannedInsertion>& insertions, const std::vector<std::string>& warnings,
                      const CaseList& cases, const PlannedInsertion* way);

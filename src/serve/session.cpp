@@ -309,7 +309,7 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   audience.tell(happened.front());
 }
 
-/// Shows the scene of the open model, with finer surfaces along the planned way of one of its insertions.
+/// Shows the scene of the open model, with finer surfaces along the planned path of one of its insertions.
 void Session::Parts::show_model(std::size_t which) {
   const Model& model = *open.model;
   MadeScene made = make_scene(model.mesh(), model.target_regions(), planned.scenario, planned.insertions,

@@ -31,7 +31,7 @@ double seconds_now() {
 
 }  // namespace
 
-/// Collects the zone Z: free displacement nodes near a planned way whose compliance is in the store.
+/// Collects the zone Z: free displacement nodes near a planned path whose compliance is in the store.
 void DisplayField::find_zone(double reach_mm) {
   const Tissue& tissue = model_->tissue();
   const ComplianceStore& store = *model_->store();

@@ -240,7 +240,7 @@ void describe_coupling(ScenarioEntries& keys) {
               "a needle whose angle to the skin's normal is larger than this slides off",
               [](auto& s, const Slot&) { return &s.coupling.grazing_deg; });
   keys.number("coupling.corridor_mm", "mm", 1, 50,
-              "radius around the planned way within which compliance is computed before the start",
+              "radius around the planned path within which compliance is computed before the start",
               [](auto& s, const Slot&) { return &s.coupling.corridor_mm; });
   keys.integer("coupling.corridor_nodes", 1, 20000,
                "largest number of nodes of the mesh in that corridor, of which the nearest are chosen; n nodes take 36 "

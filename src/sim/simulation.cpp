@@ -10,7 +10,7 @@ namespace {
 
 /// prepare() makes compliance available within this radius around the tip.
 constexpr double kPrepare_mm = 6.0;
-/// The radius is at most this fraction of the corridor's, so that a needle on its planned way needs no new compliance.
+/// The radius is at most this fraction of the corridor's, so that a needle on its planned path needs no new compliance.
 constexpr double kPrepareShare = 0.75;
 /// A worker computes compliance this far ahead of the tip.
 constexpr double kAhead_mm = 10.0;

@@ -39,7 +39,7 @@ const DisplayField& compressed() {
   return *field;
 }
 
-/// Points within 1 or 2 mm of the planned way, like contacts.
+/// Points within 1 or 2 mm of the planned path, like contacts.
 MaterialPoint point_near_way(std::mt19937& random) {
   std::uniform_real_distribution<double> any(0.0, 1.0);
   const PlannedInsertion& plan = box_model()->insertions()[0];

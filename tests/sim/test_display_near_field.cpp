@@ -32,7 +32,7 @@ std::shared_ptr<const Model> creeping_skin() {
   return compiled(s);
 }
 
-/// A needle that is pushed along its planned way.
+/// A needle that is pushed along its planned path.
 struct Pushed {
   std::shared_ptr<const Model> model;
   Simulation simulation{model};

@@ -49,7 +49,7 @@ struct InsertionTissue {
   std::vector<RegionLaws> laws;           ///< one for each region of the mesh
   std::shared_ptr<const MatX> inverse{};  ///< the full K⁻¹ (paper::full_inverse), for the engines that keep it
   std::shared_ptr<MeshKernel> kernel{};   ///< kernel of the mesh, for the near-field method
-  /// Compliance along the planned ways of the needle, for tissue that stiffens or creeps.
+  /// Compliance along the planned paths of the needle, for tissue that stiffens or creeps.
   std::shared_ptr<const SpreadCompliance> spread{};
 };
 

@@ -18,9 +18,9 @@ struct NeedleWay {
   double length_mm = 0.0;          ///< length of the way from the entry
 };
 
-/// The wide part of the compliance along planned ways of needles: displacement at one place per force at another, where
-/// both are averaged over the same density, about ten millimetres wide, around their place. Unlike K⁻¹ between points
-/// it hardly depends on the mesh.
+/// The wide part of the compliance along planned paths of needles: displacement at one place per force at another,
+/// where both are averaged over the same density, about ten millimetres wide, around their place. Unlike K⁻¹ between
+/// points it hardly depends on the mesh.
 ///
 /// With W_k the nodal loads of a unit force that is spread around sample k of a way,
 ///   F(x, y) = Σ_k Σ_l a_k(x) a_l(y) M(k,l),    M(k,l) = W_k K⁻¹ W_lᵀ,

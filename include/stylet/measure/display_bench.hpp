@@ -27,7 +27,7 @@ struct DisplayRow {
   double largest_mm = 0.0;  ///< largest displacement of a node in any frame
   double error_mm = 0.0;    ///< largest difference of a node from the exact solution K⁻¹ f
   double stated_error_mm = 0.0;  ///< largest error that the field states for the forces of a frame
-  double left_out_N = 0.0;       ///< largest force that was left out because it acts beside the planned way
+  double left_out_N = 0.0;       ///< largest force that was left out because it acts beside the planned path
   double solve_us = 0.0;         ///< median CPU time of a frame computed with the factor of K instead
   /// Largest error of a node if the displacement is computed on the coarsest mesh and interpolated; NaN for that mesh.
   double coarse_error_mm = std::numeric_limits<double>::quiet_NaN();

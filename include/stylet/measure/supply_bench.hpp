@@ -30,7 +30,7 @@ struct SupplyBenchOptions {
   std::vector<double> speeds_mm_per_s = {2.0, 5.0, 10.0, 20.0, 50.0};
 };
 
-/// Moves a needle into the demo patient on meshes of 570, 5,000, 20,000 and 100,000 nodes, parallel to the planned way
+/// Moves a needle into the demo patient on meshes of 570, 5,000, 20,000 and 100,000 nodes, parallel to the planned path
 /// but outside the corridor, to 40 mm depth, with one step per millisecond of wall-clock time.
 Result<std::vector<SupplyRow>> bench_supply(const SupplyBenchOptions& options, const Progress& progress = {});
 

@@ -12,15 +12,15 @@
 namespace stylet {
 
 struct DisplayFieldOptions {
-  /// [mm] Forces on elements within this distance of a planned way are shown; others are left out. Raising it needs
+  /// [mm] Forces on elements within this distance of a planned path are shown; others are left out. Raising it needs
   /// more columns for the same error.
   double reach_mm = 3.0;
   int columns = 600;  ///< largest number of columns of K⁻¹ that are kept; more cost time, memory and preparation
   double tolerance_mm_per_N = 0.05;  ///< columns are dropped as long as the error stays below this
 };
 
-/// Computes the displacement of any nodes of the mesh under forces along the planned ways, fast enough for pictures and
-/// without the factor of the stiffness: u_R = K⁻¹(R,S) T f_Z.
+/// Computes the displacement of any nodes of the mesh under forces along the planned paths, fast enough for pictures
+/// and without the factor of the stiffness: u_R = K⁻¹(R,S) T f_Z.
 ///
 /// R are the nodes asked for, Z the nodes near the ways, S some of their degrees of freedom (the skeleton), and T maps
 /// a force on Z to the equivalent force on the skeleton. If Z has at most `columns` degrees of freedom, S is all of

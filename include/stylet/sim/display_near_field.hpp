@@ -19,7 +19,7 @@ namespace stylet {
 /// computed for each picture. For one thread at a time. No system of equations is solved.
 class DisplayNearField {
  public:
-  /// @param points between nodes of the mesh (SurfacePoint::node); points away from the planned ways, where the model
+  /// @param points between nodes of the mesh (SurfacePoint::node); points away from the planned paths, where the model
   ///   has no kernel, are not moved
   DisplayNearField(std::shared_ptr<const Model> model, std::span<const SurfacePoint> points);
 
@@ -29,7 +29,7 @@ class DisplayNearField {
   /// Adds the near field to the displacement of the points. @param u (3 × points) [mm] LPS
   void add(Eigen::Ref<Eigen::Matrix3Xf> u) const;
 
-  /// Number of points near a planned way, which are the points that the near field may move.
+  /// Number of points near a planned path, which are the points that the near field may move.
   [[nodiscard]] std::size_t points() const { return numbers_.size(); }
   /// Sum of the magnitudes [N] of the forces at places where the model has no kernel; their near field is not shown.
   [[nodiscard]] double left_out_N() const { return left_out_N_; }

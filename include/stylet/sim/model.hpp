@@ -31,7 +31,7 @@ struct ModelCompliance {
   MatX spread;                 ///< SpreadCompliance::matrix(); empty where nothing stiffens or creeps
 };
 
-/// A compiled scenario: mesh, stiffness factor, compliance near the planned ways, laws, supports. Immutable:
+/// A compiled scenario: mesh, stiffness factor, compliance near the planned paths, laws, supports. Immutable:
 /// simulations in any threads may share it. When a needle leaves the planned corridor, its simulation adds compliance
 /// to a copy of its own.
 class Model {
@@ -72,7 +72,7 @@ class Model {
   [[nodiscard]] const std::vector<RegionLaws>& laws() const { return laws_; }
   [[nodiscard]] const CouplingSettings& coupling() const { return coupling_; }
   [[nodiscard]] const std::vector<PlannedInsertion>& insertions() const { return insertions_; }
-  /// Radius [mm] around the planned ways within which compliance is precomputed: coupling.corridor_mm, or less if that
+  /// Radius [mm] around the planned paths within which compliance is precomputed: coupling.corridor_mm, or less if that
   /// radius holds more than coupling.corridor_nodes nodes.
   [[nodiscard]] double corridor_mm() const { return corridor_mm_; }
   [[nodiscard]] const std::vector<int>& target_regions() const { return target_; }

@@ -99,8 +99,8 @@ TEST_P(NeedleOnItsWay, needs_the_force_of_a_bonded_rigid_cylinder) {
   EXPECT_NEAR(line.lateral() / thick.lateral_N, 1.0, 0.04);
   EXPECT_NEAR(line.axial() / thick.axial_N, 1.0, 0.04);
 }
-// Elements of 14, 10 and 7 mm. As without planned ways, pieces of constant force make the needle 1 % too soft along its
-// axis.
+// Elements of 14, 10 and 7 mm. As without planned paths, pieces of constant force make the needle 1 % too soft along
+// its axis.
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleOnItsWay,
                          testing::Combine(testing::Values(7, 10, 14), testing::Values(0.3, 0.45)));
 

@@ -19,7 +19,7 @@ namespace stylet {
 /// with the mesh's own kernel g (MeshKernel) and the medium's kernel ⟨G⟩, averaged over the pieces of the needle. K⁻¹ −
 /// g is smooth, so any mesh represents it; ⟨G⟩ does not depend on the mesh.
 ///
-/// Near the planned ways of a needle, in tissue that stiffens or creeps, the compliance is instead
+/// Near the planned paths of a needle, in tissue that stiffens or creeps, the compliance is instead
 ///   A(c,d) = F(c,d) + ⟨G⟩(c,d) − G₁₀(c,d),
 /// where F is the displacement by forces that are spread over 10 mm (SpreadCompliance), which does not depend on the
 /// elements, and G₁₀ is the medium's kernel for such forces. docs/theory/near_field.md derives both.
@@ -31,7 +31,7 @@ class NearFieldCompliance final : public ContactCompliance {
   /// @param kernel of the tissue's mesh
   /// @param stiffening_MPa (regions) k₂ of DentLaw; empty: no tissue stiffens
   /// @param creeps whether wide() is computed even if no tissue stiffens
-  /// @param spread the wide part along the planned ways of the needle; null: computed from K⁻¹ everywhere
+  /// @param spread the wide part along the planned paths of the needle; null: computed from K⁻¹ everywhere
   NearFieldCompliance(std::unique_ptr<ContactCompliance> far, std::shared_ptr<const Tissue> tissue,
                       std::shared_ptr<const MeshKernel> kernel, const NeedleKernel& needle, int capacity,
                       std::vector<double> stiffening_MPa = {}, bool creeps = false,

@@ -22,7 +22,7 @@ struct NearPlace {
   double blur = 0.0;                ///< [mm] radius over which the mesh spreads a force there, from mesh_kernel
   double share = 1.0;               ///< least_share() of the needle there
   double wide_share = 1.0;          ///< least_share() of a force that is spread over NeedleKernel::kScale_mm
-  SpreadCompliance::Place spread;   ///< place among the samples of the planned ways, where there are any
+  SpreadCompliance::Place spread;   ///< place among the samples of the planned paths, where there are any
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place has no medium of its own
   NearSurface skin;
