@@ -42,7 +42,7 @@ if(NOT status EQUAL 2 OR NOT said MATCHES "none.dcm: no such file")
   message(FATAL_ERROR "first_insertion: exit status ${status}: ${said}")
 endif()
 
-foreach(private reproduce serve validate)
+foreach(private evidence measure serve)
   if(EXISTS ${WORK}/prefix/include/stylet/${private})
     message(FATAL_ERROR "headers of ${private} are installed, but not its library")
   endif()
