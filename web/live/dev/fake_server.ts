@@ -98,7 +98,7 @@ export class FakeServer implements Transport {
     this.say(Kind.status, {
       state: 'ready', mode: this.replay ? 'replay' : 'live', paused: this.paused, insertion: `hole ${this.hole}`, hole: this.hole, inside: this.inside, you_hold: this.holds, held: true,
       asking: this.options.has('asked') ? 1 : 0, you_ask: false, viewers: this.options.has('watch') || this.options.has('asked') ? 2 : 1,
-      device: this.options.has('guest') ? 'OpenIGTLink' : 'page', device_problem: this.options.has('guest') ? 'nobody is connected to port 18944' : '',
+      device: this.options.has('guest') ? 'OpenIGTLink' : 'page', device_problem: this.options.has('guest') ? 'no client is connected to port 18944' : '',
       recording: { name: '2026-11-20-101500', seconds: this.time, problem: '' },
       replay: this.replay && { name: '2026-11-20-101500', time_s: this.replay.time, duration_s: REPLAY_S, playing: this.replay.rate > 0, rate: this.replay.rate },
       loop: { steps: this.steps, missed: this.options.has('late') ? 3 : 0, p50_us: 43, p99_us: 86, max_us: 231, rights: 'ordinary scheduling' },
