@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plan of 44 seeds whose dose an independent calculator has computed. The data are not part of the repository;
+// without them the tests are skipped.
+#include "stylet/dose/known_sources.hpp"
+#include "stylet/dose/tg43.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace stylet {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SyntheticPlan : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* chosen = std::getenv("STYLET_SHARED_DATA");
+    const fs::path file =
+        fs::path(chosen != nullptr ? chosen : STYLET_SHARED_DATA_DEFAULT) / "dose_synthetic/expected_synthetic.json";
+    if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
+    plan = nlohmann::json::parse(std::ifstream(file));
+    for (const auto& at : plan.at("seeds_xyz_mm"))
+      seeds.push_back({.at_mm = Vec3(at[0], at[1], at[2]), .axis = Vec3::UnitZ(), .weight = plan.at("S_K_U")});
+  }
+
+  /// Largest relative difference from the expected dose at all points that are further than `least` [mm] from all
+  /// seeds.
+  [[nodiscard]] double worst(DoseFormalism formalism, const char* key, double least) const {
+    const Tg43 tg43 = Tg43::create(find_source(plan.at("source")).value(), formalism).value();
+    double found = 0.0;
+    int compared = 0;
+    for (const auto& point : plan.at("points")) {
+      const auto& at = point.at("xyz_mm");
+      const Vec3 x(at[0], at[1], at[2]);
+      const bool near = std::any_of(seeds.begin(), seeds.end(),
+                                    [&](const PlacedSource& seed) { return (x - seed.at_mm).norm() < least; });
+      if (near) continue;
+      double rate = 0.0;
+      sum_rates(tg43, seeds, {&x, 1}, {&rate, 1});
+      const double expected = point.at(key);
+      found = std::max(found, std::abs(rate * permanent_Gy_per_rate(59.4) / expected - 1.0));
+      ++compared;
+    }
+    EXPECT_GT(compared, 20);
+    return found;
+  }
+
+  nlohmann::json plan;
+  std::vector<PlacedSource> seeds;
+};
+
+TEST_F(SyntheticPlan, has_the_dose_of_an_independent_calculator_by_the_line_source) {
+  EXPECT_LT(worst(DoseFormalism::line2d, "2d", 2.5), 5e-4);
+  EXPECT_LT(worst(DoseFormalism::line2d, "2d", 2.0), 5e-3);
+}
+
+TEST_F(SyntheticPlan, has_it_without_directions_as_well) {
+  EXPECT_LT(worst(DoseFormalism::line1d, "1d_line", 2.5), 5e-4);
+}
+
+TEST_F(SyntheticPlan, one_seed_without_direction_has_its_isodose_where_it_was_computed) {
+  const Tg43 tg43 = Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line1d).value();
+  const double dose = permanent_Gy_per_rate(59.4) * plan.at("S_K_U").get<double>();
+  const auto& checks = plan.at("closed_form_checks");
+  const double r = checks.at("one_seed_1d_isodose145_radius_mm");
+  EXPECT_NEAR(dose * tg43.rate(r, 0.0) / 145.0, 1.0, 1e-6);
+  const Tg43 line = Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line2d).value();
+  EXPECT_NEAR(
+      permanent_Gy_per_rate(59.4) * line.rate(10.0, 0.0) / checks.at("total_dose_Gy_per_U_at_1cm_90").get<double>(),
+      1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace stylet
