@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plan of 44 seeds whose dose an independent calculator has computed. The data are not part of the repository;
 // without them the tests are skipped.
+#include "stylet/dose/dose_volume.hpp"
 #include "stylet/dose/known_sources.hpp"
+#include "stylet/dose/structure_samples.hpp"
 #include "stylet/dose/tg43.hpp"
 
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 namespace stylet {
 namespace {
@@ -63,6 +66,37 @@ TEST_F(SyntheticPlan, has_the_dose_of_an_independent_calculator_by_the_line_sour
 
 TEST_F(SyntheticPlan, has_it_without_directions_as_well) {
   EXPECT_LT(worst(DoseFormalism::line1d, "1d_line", 2.5), 5e-4);
+}
+
+// The ellipsoid, drawn on planes 1 mm apart and sampled every 0.5 mm.
+TEST_F(SyntheticPlan, has_the_dose_volume_figures_of_an_independent_calculator) {
+  const auto& axes = plan.at("ellipsoid_semi_axes_mm");
+  const Vec3 half(axes[0], axes[1], axes[2]);
+  Roi roi;
+  roi.name = "prostate";
+  const double last = std::floor(half.z() - 0.5) + 0.5;
+  for (double z = -last; z <= last; z += 1.0) {
+    const double scale = std::sqrt(1.0 - z * z / (half.z() * half.z()));
+    Contour contour;
+    for (int k = 0; k < 240; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / 240;
+      contour.points.emplace_back(scale * half.x() * std::cos(angle), scale * half.y() * std::sin(angle), z);
+    }
+    roi.contours.push_back(contour);
+  }
+  const StructureSamples samples = sample_structure(roi, 0.5).value();
+  const Tg43 tg43 = Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line2d).value();
+  std::vector<double> dose(samples.points.size());
+  sum_rates(tg43, seeds, samples.points, dose);
+  for (double& d : dose) d *= permanent_Gy_per_rate(59.4);
+  const DoseVolume dvh(dose, samples.volume_mm3);
+  const auto& expected = plan.at("structures").at("prostate_0.5mm").at("2d");
+  EXPECT_NEAR(dvh.volume_cc() / expected.at("volume_cc").get<double>(), 1.0, 0.003);
+  EXPECT_NEAR(dvh.dose_of_percent(90.0) / expected.at("D90_Gy").get<double>(), 1.0, 0.003);
+  EXPECT_NEAR(dvh.dose_of_percent(50.0) / expected.at("D50_Gy").get<double>(), 1.0, 0.003);
+  EXPECT_NEAR(dvh.percent_above(145.0), expected.at("V100_pct").get<double>(), 0.3);
+  EXPECT_NEAR(dvh.percent_above(1.5 * 145.0), expected.at("V150_pct").get<double>(), 0.3);
+  EXPECT_NEAR(dvh.percent_above(2.0 * 145.0), expected.at("V200_pct").get<double>(), 0.3);
 }
 
 TEST_F(SyntheticPlan, one_seed_without_direction_has_its_isodose_where_it_was_computed) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/dose/structure_samples.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace stylet {
+
+namespace {
+
+/// [mm] Contours whose heights differ by less are in one plane: files round their coordinates.
+constexpr double kSamePlane_mm = 0.02;
+/// A gap between planes of more than so many times the usual distance is not bridged.
+constexpr double kWideGap = 2.5;
+constexpr double kMostSamples = 1e8;
+
+using Polygon = std::vector<Eigen::Vector2d>;
+
+/// The contours of one plane, and the slab that they stand for.
+struct Slab {
+  double height = 0.0;  // [mm] of the plane along the normal
+  double from = 0.0;
+  double to = 0.0;
+  std::vector<Polygon> polygons;
+};
+
+/// Axes of the planes: two in the plane, and the normal.
+struct Frame {
+  Vec3 across, up, normal;
+  [[nodiscard]] Vec3 point(double u, double v, double h) const { return u * across + v * up + h * normal; }
+};
+
+/// Twice the area of a contour times its normal.
+Vec3 area_vector(const Contour& contour) {
+  Vec3 sum = Vec3::Zero();
+  const Vec3& first = contour.points.front();
+  for (std::size_t k = 1; k + 1 < contour.points.size(); ++k)
+    sum += (contour.points[k] - first).cross(contour.points[k + 1] - first);
+  return sum;
+}
+
+Frame frame_of(const Roi& roi) {
+  Vec3 largest = Vec3::Zero();
+  for (const Contour& contour : roi.contours) {
+    if (contour.points.size() < 3) continue;
+    const Vec3 area = area_vector(contour);
+    if (area.norm() > largest.norm()) largest = area;
+  }
+  Frame frame;
+  frame.normal = largest.isZero() ? Vec3::UnitZ() : Vec3(largest.normalized());
+  if (frame.normal.sum() < 0.0) frame.normal = -frame.normal;
+  const Vec3 start = std::abs(frame.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  frame.across = (start - start.dot(frame.normal) * frame.normal).normalized();
+  frame.up = frame.normal.cross(frame.across);
+  return frame;
+}
+
+std::vector<Slab> slabs_of(const Roi& roi, const Frame& frame) {
+  std::vector<Slab> slabs;
+  for (const Contour& contour : roi.contours) {
+    if (contour.points.size() < 3) continue;
+    Polygon polygon;
+    double height = 0.0;
+    for (const Vec3& x : contour.points) {
+      polygon.emplace_back(x.dot(frame.across), x.dot(frame.up));
+      height += x.dot(frame.normal) / static_cast<double>(contour.points.size());
+    }
+    auto slab = std::find_if(slabs.begin(), slabs.end(),
+                             [&](const Slab& s) { return std::abs(s.height - height) < kSamePlane_mm; });
+    if (slab == slabs.end()) {
+      slabs.push_back({.height = height});
+      slab = slabs.end() - 1;
+    }
+    slab->polygons.push_back(std::move(polygon));
+  }
+  std::sort(slabs.begin(), slabs.end(), [](const Slab& a, const Slab& b) { return a.height < b.height; });
+  return slabs;
+}
+
+/// Puts the ends of all slabs half-way to their neighbours.
+void set_ends(std::vector<Slab>& slabs) {
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < slabs.size(); ++k) gaps.push_back(slabs[k].height - slabs[k - 1].height);
+  std::vector<double> sorted = gaps;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  for (std::size_t k = 0; k < slabs.size(); ++k) {
+    const auto half = [&](std::size_t gap) { return gaps[gap] > kWideGap * usual ? 0.5 * usual : 0.5 * gaps[gap]; };
+    const double below = half(k == 0 ? 0 : k - 1);
+    const double above = half(k + 1 == slabs.size() ? k - 1 : k);
+    slabs[k].from = slabs[k].height - below;
+    slabs[k].to = slabs[k].height + above;
+  }
+}
+
+/// Places along a row at height v where a contour is crossed, ascending.
+void crossings(const Slab& slab, double v, std::vector<double>& at) {
+  at.clear();
+  for (const Polygon& polygon : slab.polygons) {
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Eigen::Vector2d& a = polygon[k];
+      const Eigen::Vector2d& b = polygon[(k + 1) % polygon.size()];
+      if ((a.y() > v) == (b.y() > v)) continue;
+      at.push_back(a.x() + (v - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+    }
+  }
+  std::sort(at.begin(), at.end());
+}
+
+}  // namespace
+
+double StructureSamples::volume_cc() const {
+  return std::accumulate(volume_mm3.begin(), volume_mm3.end(), 0.0) / 1000.0;
+}
+
+Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
+  const std::string where = "structure '" + roi.name + "'";
+  if (!std::isfinite(step_mm) || step_mm <= 0.0) {
+    return input_error(where,
+                       "the distance of samples is " + std::to_string(step_mm) + " mm, expected a number above 0",
+                       "Use 0.5 mm, or less for small structures");
+  }
+  const Frame frame = frame_of(roi);
+  std::vector<Slab> slabs = slabs_of(roi, frame);
+  if (slabs.size() < 2) {
+    return input_error(where, "its contours lie in " + std::to_string(slabs.size()) + " plane, at least 2 are needed",
+                       "Contour it on more planes");
+  }
+  set_ends(slabs);
+  StructureSamples samples;
+  std::vector<double> at;
+  for (const Slab& slab : slabs) {
+    Eigen::AlignedBox2d box;
+    for (const Polygon& polygon : slab.polygons) {
+      for (const Eigen::Vector2d& x : polygon) box.extend(x);
+    }
+    const double thickness = slab.to - slab.from;
+    const int layers = std::max(1, static_cast<int>(std::ceil(thickness / step_mm - 1e-9)));
+    const double area_bound = box.sizes().prod() / (step_mm * step_mm);
+    if (static_cast<double>(samples.points.size()) + area_bound * layers > kMostSamples) {
+      return input_error(where, "samples every " + std::to_string(step_mm) + " mm would be more than 100 million",
+                         "Use a larger distance of samples, and check the unit of the contours");
+    }
+    const double volume = step_mm * step_mm * thickness / layers;
+    // Samples lie in the middle of squares whose corners are multiples of the step.
+    const auto middle = [&](double number) { return (number + 0.5) * step_mm; };
+    for (double row = std::floor(box.min().y() / step_mm); middle(row) < box.max().y(); ++row) {
+      crossings(slab, middle(row), at);
+      for (std::size_t pair = 0; pair + 1 < at.size(); pair += 2) {
+        for (double column = std::ceil(at[pair] / step_mm - 0.5); middle(column) < at[pair + 1]; ++column) {
+          for (int layer = 0; layer < layers; ++layer) {
+            const double h = slab.from + (layer + 0.5) * thickness / layers;
+            samples.points.push_back(frame.point(middle(column), middle(row), h));
+            samples.volume_mm3.push_back(volume);
+          }
+        }
+      }
+    }
+  }
+  return samples;
+}
+
+}  // namespace stylet
