@@ -20,7 +20,7 @@ const char* to_string(DoseFormalism formalism);  ///< "line2d", "line1d", "point
 /// @param r [mm] > 0 @param cos_theta −1 … 1 @param length [mm] ≥ 0
 [[nodiscard]] double line_geometry(double r, double cos_theta, double length);
 
-/// Dose rate in water around one source by TG-43U1 (Rivard et al. 2004, with supplements 2007 and 2017). Tables are
+/// Dose rate in water around one source by TG-43U1 (Rivard 2004, with the supplements of 2007 and 2017). Tables are
 /// continued and interpolated as U1S1 recommends:
 ///   - g: logarithmically between its radii (Ir-192: linearly), constant below the first, exponentially through the
 ///   last
