@@ -29,7 +29,7 @@ struct Slab {
 };
 
 /// Axes of the planes: two in the plane, and the normal.
-struct Frame {
+struct PlaneAxes {
   Vec3 across, up, normal;
   [[nodiscard]] Vec3 point(double u, double v, double h) const { return u * across + v * up + h * normal; }
 };
@@ -43,31 +43,31 @@ Vec3 area_vector(const Contour& contour) {
   return sum;
 }
 
-Frame frame_of(const Roi& roi) {
+PlaneAxes axes_of(const Roi& roi) {
   Vec3 largest = Vec3::Zero();
   for (const Contour& contour : roi.contours) {
     if (contour.points.size() < 3) continue;
     const Vec3 area = area_vector(contour);
     if (area.norm() > largest.norm()) largest = area;
   }
-  Frame frame;
-  frame.normal = largest.isZero() ? Vec3::UnitZ() : Vec3(largest.normalized());
-  if (frame.normal.sum() < 0.0) frame.normal = -frame.normal;
-  const Vec3 start = std::abs(frame.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-  frame.across = (start - start.dot(frame.normal) * frame.normal).normalized();
-  frame.up = frame.normal.cross(frame.across);
-  return frame;
+  PlaneAxes axes;
+  axes.normal = largest.isZero() ? Vec3::UnitZ() : Vec3(largest.normalized());
+  if (axes.normal.sum() < 0.0) axes.normal = -axes.normal;
+  const Vec3 start = std::abs(axes.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  axes.across = (start - start.dot(axes.normal) * axes.normal).normalized();
+  axes.up = axes.normal.cross(axes.across);
+  return axes;
 }
 
-std::vector<Slab> slabs_of(const Roi& roi, const Frame& frame) {
+std::vector<Slab> slabs_of(const Roi& roi, const PlaneAxes& axes) {
   std::vector<Slab> slabs;
   for (const Contour& contour : roi.contours) {
     if (contour.points.size() < 3) continue;
     Polygon polygon;
     double height = 0.0;
     for (const Vec3& x : contour.points) {
-      polygon.emplace_back(x.dot(frame.across), x.dot(frame.up));
-      height += x.dot(frame.normal) / static_cast<double>(contour.points.size());
+      polygon.emplace_back(x.dot(axes.across), x.dot(axes.up));
+      height += x.dot(axes.normal) / static_cast<double>(contour.points.size());
     }
     auto slab = std::find_if(slabs.begin(), slabs.end(),
                              [&](const Slab& s) { return std::abs(s.height - height) < kSamePlane_mm; });
@@ -124,8 +124,8 @@ Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
                        "the distance of samples is " + std::to_string(step_mm) + " mm, expected a number above 0",
                        "Use 0.5 mm, or less for small structures");
   }
-  const Frame frame = frame_of(roi);
-  std::vector<Slab> slabs = slabs_of(roi, frame);
+  const PlaneAxes axes = axes_of(roi);
+  std::vector<Slab> slabs = slabs_of(roi, axes);
   if (slabs.size() < 2) {
     return input_error(where, "its contours lie in " + std::to_string(slabs.size()) + " plane, at least 2 are needed",
                        "Contour it on more planes");
@@ -154,7 +154,7 @@ Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
         for (double column = std::ceil(at[pair] / step_mm - 0.5); middle(column) < at[pair + 1]; ++column) {
           for (int layer = 0; layer < layers; ++layer) {
             const double h = slab.from + (layer + 0.5) * thickness / layers;
-            samples.points.push_back(frame.point(middle(column), middle(row), h));
+            samples.points.push_back(axes.point(middle(column), middle(row), h));
             samples.volume_mm3.push_back(volume);
           }
         }

@@ -177,7 +177,6 @@ TEST(OwnNeedle, that_cannot_be_made_is_the_makers_error) {
 
 TEST(OwnParts, are_named_in_warnings_and_in_the_reports_parameters) {
   const auto model = plain_model()
-                         .model
                          ->with({.needle = [](const NeedleSection& section,
                                               int loads) { return make_needle("springs", section, 0, loads); },
                                  .cutting = std::make_shared<Given>(built_in)})
