@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/dose/structure_samples.hpp"
 
+#include "dose/sampling.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -16,7 +18,6 @@ namespace {
 constexpr double kSamePlane_mm = 0.02;
 /// A gap between planes of more than so many times the usual distance is not bridged.
 constexpr double kWideGap = 2.5;
-constexpr double kMostSamples = 1e8;
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
@@ -119,11 +120,7 @@ double StructureSamples::volume_cc() const {
 
 Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
   const std::string where = "structure '" + roi.name + "'";
-  if (!std::isfinite(step_mm) || step_mm <= 0.0) {
-    return input_error(where,
-                       "the distance of samples is " + std::to_string(step_mm) + " mm, expected a number above 0",
-                       "Use 0.5 mm, or less for small structures");
-  }
+  if (Result<> good = dose::check_step(step_mm, where); !good) return good.error();
   const PlaneAxes axes = axes_of(roi);
   std::vector<Slab> slabs = slabs_of(roi, axes);
   if (slabs.size() < 2) {
@@ -141,10 +138,8 @@ Result<StructureSamples> sample_structure(const Roi& roi, double step_mm) {
     const double thickness = slab.to - slab.from;
     const int layers = std::max(1, static_cast<int>(std::ceil(thickness / step_mm - 1e-9)));
     const double area_bound = box.sizes().prod() / (step_mm * step_mm);
-    if (static_cast<double>(samples.points.size()) + area_bound * layers > kMostSamples) {
-      return input_error(where, "samples every " + std::to_string(step_mm) + " mm would be more than 100 million",
-                         "Use a larger distance of samples, and check the unit of the contours");
-    }
+    if (static_cast<double>(samples.points.size()) + area_bound * layers > dose::kMostSamples)
+      return dose::too_many_samples(step_mm, where);
     const double volume = step_mm * step_mm * thickness / layers;
     // Samples lie in the middle of squares whose corners are multiples of the step.
     const auto middle = [&](double number) { return (number + 0.5) * step_mm; };

@@ -10,7 +10,9 @@
 #include "stylet/dose/source_model.hpp"
 #include "stylet/dose/structure_samples.hpp"
 #include "stylet/dose/tg43.hpp"
+#include "stylet/geom/contours.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +26,7 @@ struct DoseStructure {
   std::string type;           ///< DICOM interpreted type, such as "PTV"; may be empty
   StructureSamples samples;   ///< points that stand for its volume
   std::array<int, 3> colour{128, 128, 128};  ///< display colour, 0 … 255
+  std::vector<Contour> contours;             ///< its contours; empty for masks and meshes
 };
 
 /// The dose to one structure.
@@ -32,6 +35,8 @@ struct StructureDose {
   std::array<int, 3> colour{128, 128, 128};  ///< as in DoseStructure
   DoseVolume dvh;                            ///< of its samples
   double covered_by_grid_percent = 100.0;    ///< share of its volume within the grid that is compared or written
+  std::vector<Contour> contours;             ///< as in DoseStructure
+  std::vector<Vec3> cloud;                   ///< [mm] at most 4000 of its samples, to draw it
 };
 
 /// A goal with what the plan reaches.

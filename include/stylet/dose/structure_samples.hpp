@@ -4,6 +4,8 @@
 #include "stylet/core/result.hpp"
 #include "stylet/core/types.hpp"
 #include "stylet/geom/contours.hpp"
+#include "stylet/geom/label_image.hpp"
+#include "stylet/geom/tet_mesh.hpp"
 
 #include <vector>
 
@@ -24,5 +26,21 @@ struct StructureSamples {
 /// @param step_mm [mm] > 0, largest distance of neighbouring samples
 /// Errors: a structure without two planes, a step that is not above 0, more than 100 million samples.
 Result<StructureSamples> sample_structure(const Roi& roi, double step_mm);
+
+/// Samples a structure given by a label of a mask: each voxel is divided into equal parts.
+/// @param label number of the label @param step_mm [mm] > 0, largest distance of neighbouring samples
+/// Errors: no voxel has this label, a step that is not above 0, more than 100 million samples.
+Result<StructureSamples> sample_structure(const LabelImage& image, int label, double step_mm);
+
+/// Samples a region of a mesh: each tetrahedron is divided into equal parts. With the nodes of a deformed mesh, the
+/// samples are those of the deformed structure, and sample k belongs to the same tissue as before.
+/// @param region index of the region in TetMesh::regions @param step_mm [mm] > 0, largest distance of neighbouring
+/// samples
+/// Errors: no tetrahedron has this region, a step that is not above 0, more than 100 million samples.
+Result<StructureSamples> sample_structure(const TetMesh& mesh, int region, double step_mm);
+
+/// Distance of samples [mm] for a structure of this volume: 0.5 mm, 0.25 mm below 2 cc, and for large structures so
+/// much that there are about four million samples.
+[[nodiscard]] double sampling_step_mm(double volume_cc);
 
 }  // namespace stylet

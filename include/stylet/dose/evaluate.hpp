@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/dose/dose_evaluation.hpp"
+
+#include <span>
+
+namespace stylet {
+
+/// What the computed numbers of a permanent implant mean. A temporary implant always has its total dose.
+enum class DoseQuantity {
+  total,         ///< dose [Gy] until the sources have decayed
+  initial_rate,  ///< dose rate [Gy/h] when the sources are implanted
+  until          ///< dose [Gy] within a number of days after the implantation
+};
+
+/// Choices for evaluate_dose().
+struct DoseOptions {
+  DoseFormalism formalism = DoseFormalism::line2d;
+  DoseQuantity quantity = DoseQuantity::total;
+  double days = 0.0;             ///< [d] for DoseQuantity::until, > 0
+  double decay_days = 0.0;       ///< [d] from the date of the strengths to the implantation; 0: no decay in between
+  double prescription_Gy = 0.0;  ///< prescribed dose [Gy]; 0: the plan's own
+  double grid_step_mm = 1.0;     ///< distance of the grid's points [mm], > 0
+  std::vector<DoseGoal> goals;   ///< goals to judge
+  std::vector<Vec3> points;      ///< [mm] LPS, points whose dose is asked for
+};
+
+/// Factor from the sum of Tg43::rate() over PlacedSource to the quantity that is asked for, and the sources with their
+/// weights: strength [U] for permanent implants, strength times dwell time [U h] for temporary ones.
+struct WeightedSources {
+  std::vector<PlacedSource> sources;
+  double factor = 1.0;
+};
+WeightedSources weighted_sources(const DosePlan& plan, const SourceModel& source, const DoseOptions& options);
+
+/// Computes the dose of a plan: at points by the formula itself, to structures and on a grid by RateTable.
+/// @param structures sampled; their samples are not kept
+/// Errors: no source in the plan, a prescription or option that is not positive and finite, no sources near the
+/// structures, the errors of Tg43::create() and compare_source().
+Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& source,
+                                     std::span<const DoseStructure> structures, const DoseOptions& options,
+                                     const Progress& progress = {});
+
+/// Compares a dose grid from a file with the evaluated plan: the ratio of the computed dose to that of the file at all
+/// points of the grid that lie further than 4 mm from each source, and whose dose is at least a tenth of the
+/// prescription (without one: of the median of all points with dose) and at least 50 steps of the stored numbers, but
+/// not the largest number that can be stored. It also sets how much of each structure the grid covers, with a warning
+/// for organs that it does not hold.
+/// @param structures the structures as given to evaluate_dose(), for their samples
+/// @param shift_mm [mm] added to the places of the grid's points
+/// Errors: another frame of reference; no point is left to compare.
+Result<> compare_with_grid(DoseEvaluation& evaluation, const DoseGrid& grid, std::span<const DoseStructure> structures,
+                           const DoseOptions& options, const Vec3& shift_mm = Vec3::Zero());
+
+}  // namespace stylet

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/dose/evaluate.hpp"
+
+#include "stylet/dose/fitting_sources.hpp"
+#include "stylet/dose/rate_table.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace stylet {
+
+namespace {
+
+constexpr double kGy_per_cGy = 0.01;
+constexpr double kGridMargin_mm = 10.0;
+constexpr double kMostGridPoints = 4e6;
+constexpr double kNearStructures_mm = 30.0;  // sources further than this from all structures belong to another patient
+constexpr std::size_t kCloud = 4000;         // samples of a structure that are kept to draw it
+
+Result<> check_positive(double value, const char* what, const std::string& where, const char* cure) {
+  if (std::isfinite(value) && value > 0.0) return Ok{};
+  return input_error(where, fmt::format("{} is {}, expected a number above 0", what, value), cure);
+}
+
+Result<> check_plan(const DosePlan& plan, const DoseOptions& options) {
+  if (plan.sources.empty())
+    return input_error(plan.file, "the plan has no source", "Give a plan with seeds or dwell positions");
+  for (std::size_t k = 0; k < plan.sources.size(); ++k) {
+    const PlannedSource& source = plan.sources[k];
+    const std::string where = fmt::format("{}, source {}", plan.file, k + 1);
+    if (!source.at_mm.allFinite() || !source.axis.allFinite())
+      return input_error(where, "its place or axis is not finite", "Correct the plan");
+    if (Result<> good =
+            check_positive(source.strength_U, "its air-kerma strength [U]", where, "Give each source its strength");
+        !good)
+      return good;
+    if (plan.implant == Implant::temporary && !(source.dwell_s >= 0.0 && std::isfinite(source.dwell_s)))
+      return input_error(where, fmt::format("its dwell time is {} s", source.dwell_s), "Give a time of 0 s or more");
+  }
+  if (options.prescription_Gy != 0.0) {
+    if (Result<> good = check_positive(options.prescription_Gy, "the prescription [Gy]", "prescription",
+                                       "Give the prescribed dose in Gy");
+        !good)
+      return good;
+  }
+  if (options.quantity == DoseQuantity::until) {
+    if (Result<> good = check_positive(options.days, "the time [d]", "days", "Give the days after the implantation");
+        !good)
+      return good;
+  }
+  if (!std::isfinite(options.decay_days))
+    return input_error("decay days", "the time is not finite", "Give the days from the strengths' date to the implant");
+  return check_positive(options.grid_step_mm, "the distance of grid points [mm]", "grid step", "Use 1 mm");
+}
+
+std::string words_of(const DosePlan& plan, const DoseOptions& options) {
+  if (plan.implant == Implant::temporary) return "dose of all dwell times (Gy)";
+  switch (options.quantity) {
+    case DoseQuantity::total:
+      return "total dose until the sources have decayed (Gy)";
+    case DoseQuantity::initial_rate:
+      return "initial dose rate (Gy/h; all figures in Gy are in Gy/h)";
+    case DoseQuantity::until:
+      return fmt::format("dose within {:g} days after the implantation (Gy)", options.days);
+  }
+  return "";
+}
+
+/// Smallest distance of a source from a sample of any structure, looked at every so many samples.
+double distance_to_structures(const DosePlan& plan, std::span<const DoseStructure> structures) {
+  double nearest = INFINITY;
+  for (const DoseStructure& structure : structures) {
+    const std::vector<Vec3>& points = structure.samples.points;
+    const std::size_t stride = std::max<std::size_t>(1, points.size() / 2000);
+    for (std::size_t p = 0; p < points.size(); p += stride) {
+      for (const PlannedSource& source : plan.sources) nearest = std::min(nearest, (points[p] - source.at_mm).norm());
+    }
+  }
+  return nearest;
+}
+
+Eigen::AlignedBox3d box_of(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : points) box.extend(x);
+  return box;
+}
+
+/// A grid around all sources and structures; for structures larger than 30 cm, such as the body, around the sources.
+DoseGrid empty_grid(const DosePlan& plan, std::span<const DoseStructure> structures, double step) {
+  Eigen::AlignedBox3d box;
+  for (const PlannedSource& source : plan.sources) box.extend(source.at_mm);
+  for (const DoseStructure& structure : structures) {
+    const Eigen::AlignedBox3d around = box_of(structure.samples.points);
+    if (!around.isEmpty() && around.sizes().maxCoeff() < 300.0) box.extend(around);
+  }
+  const Vec3 low = box.min().array() - kGridMargin_mm, high = box.max().array() + kGridMargin_mm;
+  const double volume = (high - low).prod();
+  step = std::max(step, std::cbrt(volume / kMostGridPoints));
+  DoseGrid grid;
+  grid.frame_of_reference = plan.frame_of_reference;
+  grid.origin_mm = low;
+  grid.spacing_mm = Vec3::Constant(step);
+  for (int axis = 0; axis < 3; ++axis)
+    grid.size[static_cast<std::size_t>(axis)] = static_cast<Index>(std::ceil((high - low)[axis] / step)) + 1;
+  return grid;
+}
+
+void fill(DoseGrid& grid, const RateTable& table, const WeightedSources& weighted, const Progress& progress) {
+  const auto layer = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
+  grid.dose_Gy.resize(layer * static_cast<std::size_t>(grid.size[2]));
+  std::vector<Vec3> points(layer);
+  std::vector<double> rates(layer);
+  for (Index k = 0; k < grid.size[2]; ++k) {
+    std::size_t p = 0;
+    for (Index j = 0; j < grid.size[1]; ++j) {
+      for (Index i = 0; i < grid.size[0]; ++i) points[p++] = grid.point(i, j, k);
+    }
+    sum_rates(table, weighted.sources, points, rates);
+    for (p = 0; p < layer; ++p)
+      grid.dose_Gy[static_cast<std::size_t>(k) * layer + p] = static_cast<float>(rates[p] * weighted.factor);
+    report(progress, "dose grid", (k + 1.0) / grid.size[2]);
+  }
+}
+
+double covered_percent(const StructureSamples& samples, const DoseGrid& grid, const Vec3& shift) {
+  double inside = 0.0, all = 0.0;
+  for (std::size_t p = 0; p < samples.points.size(); ++p) {
+    all += samples.volume_mm3[p];
+    if (grid.covers(samples.points[p] - shift)) inside += samples.volume_mm3[p];
+  }
+  return all > 0.0 ? 100.0 * inside / all : 0.0;
+}
+
+std::vector<Vec3> cloud_of(const StructureSamples& samples) {
+  std::vector<Vec3> cloud;
+  const std::size_t stride = std::max<std::size_t>(1, samples.points.size() / kCloud);
+  for (std::size_t p = stride / 2; p < samples.points.size() && cloud.size() < kCloud; p += stride)
+    cloud.push_back(samples.points[p]);
+  return cloud;
+}
+
+std::optional<double> value_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription) {
+  const bool relative = metric.unit == DoseMetric::Unit::percent;
+  if (metric.kind == DoseMetric::Kind::volume) {
+    if (prescription <= 0.0) return std::nullopt;
+    const double dose = metric.amount / 100.0 * prescription;
+    return relative ? dvh.percent_above(dose) : dvh.volume_above_cc(dose);
+  }
+  const double dose = metric.kind == DoseMetric::Kind::dose_of_percent ? dvh.dose_of_percent(metric.amount)
+                                                                        : dvh.dose_of_volume(metric.amount);
+  if (!relative) return dose;
+  return prescription > 0.0 ? std::optional(100.0 * dose / prescription) : std::nullopt;
+}
+
+Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const std::vector<DoseGoal>& goals) {
+  std::vector<JudgedGoal> judged;
+  for (const DoseGoal& goal : goals) {
+    const Result<DoseMetric> metric = parse_metric(goal.metric, "goal for " + goal.structure);
+    if (!metric) return metric.error();
+    JudgedGoal row{goal, std::nullopt, false};
+    const auto structure =
+        std::find_if(evaluation.structures.begin(), evaluation.structures.end(),
+                     [&](const StructureDose& s) { return s.region == goal.structure || s.name == goal.structure; });
+    if (structure != evaluation.structures.end())
+      row.value = value_of(*metric, structure->dvh, evaluation.prescription_Gy);
+    if (row.value) row.met = goal.at_least ? *row.value >= goal.bound : *row.value <= goal.bound;
+    judged.push_back(row);
+  }
+  return judged;
+}
+
+void assume(DoseEvaluation& e, const DoseOptions& options) {
+  e.assumptions.push_back(fmt::format("Source model: {} ({}); {}.", e.source.name, e.source.title, e.source.citation));
+  const char* formalisms[] = {"line2d, a line source with the 2D anisotropy function",
+                              "line1d, a line source with the 1D anisotropy function and no direction",
+                              "point, a point source with the 1D anisotropy function and no direction"};
+  e.assumptions.push_back(fmt::format("Formalism: {} (AAPM TG-43U1). All is water: no attenuation by other seeds, no bone.",
+                                      formalisms[static_cast<int>(options.formalism)]));
+  const auto without = std::count_if(e.plan.sources.begin(), e.plan.sources.end(),
+                                     [](const PlannedSource& s) { return !s.has_axis; });
+  if (without > 0 && options.formalism == DoseFormalism::line2d) {
+    e.assumptions.push_back(
+        fmt::format("{} of {} sources have no direction in the plan; they are taken along z, inferior to superior.",
+                    without, e.plan.sources.size()));
+  }
+  if (e.plan.implant == Implant::permanent) {
+    e.assumptions.push_back(
+        options.decay_days != 0.0
+            ? fmt::format("The strengths have decayed for {:g} days before the implantation.", options.decay_days)
+            : "The strengths are taken as those at the implantation, without decay since their date.");
+  }
+  e.assumptions.push_back(
+      "Contours stand for slabs that reach half-way to the neighbouring planes; the first and the last slab are as "
+      "thick outside as inside.");
+}
+
+}  // namespace
+
+const char* to_string(Implant implant) { return implant == Implant::permanent ? "permanent" : "temporary"; }
+
+WeightedSources weighted_sources(const DosePlan& plan, const SourceModel& source, const DoseOptions& options) {
+  WeightedSources out;
+  constexpr double seconds_per_hour = 3600.0;
+  const bool temporary = plan.implant == Implant::temporary;
+  for (const PlannedSource& s : plan.sources) {
+    const double weight = s.strength_U * (temporary ? s.dwell_s / seconds_per_hour : 1.0);
+    if (weight > 0.0) out.sources.push_back({s.at_mm, s.axis, weight});
+  }
+  out.factor = kGy_per_cGy;
+  if (!temporary && options.quantity != DoseQuantity::initial_rate)
+    out.factor = permanent_Gy_per_rate(source.half_life_days);
+  if (!temporary && options.quantity == DoseQuantity::until)
+    out.factor *= -std::expm1(-std::numbers::ln2 * options.days / source.half_life_days);
+  out.factor *= std::exp2(-options.decay_days / source.half_life_days);
+  return out;
+}
+
+Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& source,
+                                     std::span<const DoseStructure> structures, const DoseOptions& options,
+                                     const Progress& progress) {
+  if (Result<> good = check_plan(plan, options); !good) return good.error();
+  Result<std::vector<std::string>> differences = compare_source(plan, source);
+  if (!differences) return differences.error();
+  const Result<Tg43> tg43 = Tg43::create(source, options.formalism);
+  if (!tg43) return tg43.error();
+  const double nearest = structures.empty() ? 0.0 : distance_to_structures(plan, structures);
+  if (nearest > kNearStructures_mm) {
+    return input_error(plan.file, fmt::format("the nearest source is {:.0f} mm away from all structures", nearest),
+                       "Give the structures of this plan's patient, in the same frame of reference");
+  }
+  DoseEvaluation e;
+  e.plan = plan;
+  e.source = source;
+  e.formalism = options.formalism;
+  e.quantity = words_of(plan, options);
+  e.prescription_Gy = options.prescription_Gy > 0.0 ? options.prescription_Gy : plan.prescription_Gy;
+  e.warnings = std::move(*differences);
+
+  const WeightedSources weighted = weighted_sources(plan, source, options);
+  const RateTable table(*tg43);
+  e.points = options.points;
+  e.point_Gy.resize(e.points.size());
+  sum_rates(*tg43, weighted.sources, e.points, e.point_Gy);
+  for (double& dose : e.point_Gy) dose *= weighted.factor;
+
+  e.grid = empty_grid(plan, structures, options.grid_step_mm);
+  fill(e.grid, table, weighted, progress);
+  for (std::size_t k = 0; k < structures.size(); ++k) {
+    const DoseStructure& structure = structures[k];
+    std::vector<double> dose(structure.samples.points.size());
+    sum_rates(table, weighted.sources, structure.samples.points, dose);
+    for (double& d : dose) d *= weighted.factor;
+    e.structures.push_back({structure.name, structure.region, structure.type, structure.colour,
+                            DoseVolume(dose, structure.samples.volume_mm3),
+                            covered_percent(structure.samples, e.grid, Vec3::Zero()), structure.contours,
+                            cloud_of(structure.samples)});
+    report(progress, "dose to structures", (k + 1.0) / static_cast<double>(structures.size()));
+  }
+  Result<std::vector<JudgedGoal>> goals = judge(e, options.goals);
+  if (!goals) return goals.error();
+  e.goals = std::move(*goals);
+  assume(e, options);
+  return e;
+}
+
+Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<const DoseStructure> structures,
+                           const DoseOptions& options, const Vec3& shift_mm) {
+  constexpr double near_mm = 4.0, least_share = 0.1, least_steps = 50.0;
+  if (!grid.frame_of_reference.empty() && !e.plan.frame_of_reference.empty() &&
+      grid.frame_of_reference != e.plan.frame_of_reference) {
+    return input_error(grid.file, "the dose grid has another frame of reference than the plan",
+                       "Give the dose grid that belongs to this plan");
+  }
+  const Result<Tg43> tg43 = Tg43::create(e.source, e.formalism);
+  if (!tg43) return tg43.error();
+  const RateTable table(*tg43);
+  const WeightedSources weighted = weighted_sources(e.plan, e.source, options);
+  double least = least_share * e.prescription_Gy;
+  if (least <= 0.0) {
+    std::vector<float> doses;
+    std::copy_if(grid.dose_Gy.begin(), grid.dose_Gy.end(), std::back_inserter(doses), [](float d) { return d > 0.0F; });
+    if (!doses.empty()) {
+      std::nth_element(doses.begin(), doses.begin() + static_cast<std::ptrdiff_t>(doses.size() / 2), doses.end());
+      least = least_share * static_cast<double>(doses[doses.size() / 2]);
+    }
+  }
+  least = std::max(least, least_steps * grid.quantum_Gy);
+  const double most = grid.largest_Gy > 0.0 ? grid.largest_Gy * (1.0 - 1e-6) : INFINITY;
+  std::vector<Vec3> points;
+  std::vector<double> theirs;
+  std::size_t n = 0;
+  for (Index k = 0; k < grid.size[2]; ++k) {
+    for (Index j = 0; j < grid.size[1]; ++j) {
+      for (Index i = 0; i < grid.size[0]; ++i, ++n) {
+        const auto dose = static_cast<double>(grid.dose_Gy[n]);
+        if (dose < least || dose <= 0.0 || dose >= most) continue;
+        const Vec3 x = grid.point(i, j, k) + shift_mm;
+        const bool near = std::any_of(weighted.sources.begin(), weighted.sources.end(), [&](const PlacedSource& s) {
+          return (x - s.at_mm).squaredNorm() < near_mm * near_mm;
+        });
+        if (near) continue;
+        points.push_back(x);
+        theirs.push_back(dose);
+      }
+    }
+  }
+  if (points.empty()) {
+    return input_error(grid.file, "no point of the dose grid can be compared: all lie near a source or have hardly any dose",
+                       "Give the dose grid that belongs to this plan");
+  }
+  std::vector<double> ratio(points.size());
+  sum_rates(table, weighted.sources, points, ratio);
+  for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] *= weighted.factor / theirs[p];
+  std::sort(ratio.begin(), ratio.end());
+  const auto at = [&](double share) {
+    return ratio[static_cast<std::size_t>(share * static_cast<double>(ratio.size() - 1))];
+  };
+  e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99)};
+  if (std::abs(at(0.5) - 1.0) > 0.02) {
+    e.warnings.push_back(fmt::format(
+        "The computed dose is {:.3f} times that of {} (median). Formalism, source model or strength may differ.", at(0.5),
+        grid.file));
+  }
+  for (std::size_t k = 0; k < structures.size() && k < e.structures.size(); ++k) {
+    const double covered = covered_percent(structures[k].samples, grid, shift_mm);
+    e.structures[k].covered_by_grid_percent = covered;
+    if (covered < 99.5) {
+      e.warnings.push_back(fmt::format(
+          "The dose grid {} holds only {:.1f} % of '{}'; figures that a planning system reads from it miss the rest.",
+          grid.file, covered, structures[k].name));
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace stylet
