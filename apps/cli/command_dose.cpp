@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "output_path.hpp"
+#include "source_choice.hpp"
+#include "table.hpp"
+#include "validators.hpp"
+
+#include "stylet/dose/evaluate.hpp"
+#include "stylet/dose/fitting_sources.hpp"
+#include "stylet/io/dose_io.hpp"
+#include "stylet/io/dose_results.hpp"
+#include "stylet/patient/dose_structures.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stylet::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DoseArguments {
+  std::string plan, structures, source, output, formalism, quantity, compare, points, goals;
+  std::vector<double> compare_shift_mm;
+  std::vector<std::string> regions, skip;
+  double phi_an = 0, prescription_Gy = 0, days = 0, decay_days = 0, grid_mm = 1, step_mm = 0;
+  bool ignore_frame = false;
+};
+
+Result<DoseOptions> options_of(const DoseArguments& arguments, const DosePlan& plan) {
+  DoseOptions options;
+  for (const DoseFormalism formalism : {DoseFormalism::line2d, DoseFormalism::line1d, DoseFormalism::point}) {
+    if (arguments.formalism == to_string(formalism)) options.formalism = formalism;
+  }
+  if (arguments.quantity == "rate") options.quantity = DoseQuantity::initial_rate;
+  if (arguments.days > 0) options.quantity = DoseQuantity::until;
+  if (arguments.days > 0 && arguments.quantity == "rate")
+    return input_error("--days", "a dose rate has no duration", "Leave out --days or --quantity rate");
+  if (plan.implant == Implant::temporary && (arguments.days > 0 || arguments.quantity == "rate"))
+    return input_error(arguments.plan, "the plan is a temporary implant, which has its total dose only",
+                       "Leave out --days and --quantity");
+  options.days = arguments.days;
+  options.decay_days = arguments.decay_days;
+  options.prescription_Gy = arguments.prescription_Gy;
+  options.grid_step_mm = arguments.grid_mm;
+  if (!arguments.points.empty()) {
+    Result<std::vector<Vec3>> points = read_points(arguments.points);
+    if (!points) return points.error();
+    options.points = std::move(*points);
+  }
+  if (!arguments.goals.empty()) {
+    Result<std::vector<DoseGoal>> goals = read_goals(arguments.goals);
+    if (!goals) return goals.error();
+    options.goals = std::move(*goals);
+  } else if (plan.implant == Implant::permanent) {
+    const auto own = permanent_prostate_goals();
+    options.goals.assign(own.begin(), own.end());
+  }
+  return options;
+}
+
+/// The source model of the plan, with the constant anisotropy that the user may give.
+Result<SourceModel> source_of(const DoseArguments& arguments, const DosePlan& plan) {
+  Result<SourceModel> source = choose_source(arguments.source, plan);
+  if (!source || arguments.phi_an <= 0) return source;
+  if (arguments.formalism.empty() || arguments.formalism == "line2d")
+    return input_error("--phi-an", "the formalism line2d has no 1D anisotropy",
+                       "Add --formalism line1d or --formalism point, or leave --phi-an out");
+  source->phi_r_mm = {Tg43::kReference_mm};
+  source->phi = {arguments.phi_an};
+  return source;
+}
+
+Result<DoseStructures> structures_of(const DoseArguments& arguments, const DosePlan& plan, Console& console) {
+  if (arguments.structures.empty()) return DoseStructures{};
+  const Result<PatientInput> input = read_input(arguments.structures, {}, {}, arguments.skip);
+  if (!input) return input.error();
+  DoseStructureOptions options;
+  options.skip = arguments.skip;
+  options.step_mm = arguments.step_mm;
+  for (const std::string& argument : arguments.regions) {
+    const std::size_t split = argument.rfind('=');
+    if (split == std::string::npos || split == 0 || split + 1 == argument.size())
+      return input_error(fmt::format("--region {}", argument), "NAME=CANONICAL is expected",
+                         "Write e.g. --region 'PTV 1=prostate'");
+    options.regions[argument.substr(0, split)] = argument.substr(split + 1);
+  }
+  Result<DoseStructures> structures = dose_structures(*input, options, console.progress());
+  if (!structures) return structures;
+  if (!arguments.ignore_frame && !structures->frame_of_reference.empty() && !plan.frame_of_reference.empty() &&
+      structures->frame_of_reference != plan.frame_of_reference) {
+    return input_error(arguments.structures,
+                       fmt::format("the structures have the frame of reference {}, the plan has {}",
+                                   structures->frame_of_reference, plan.frame_of_reference),
+                       "Give the structure set of this plan, or add --ignore-frame-of-reference if both have the same "
+                       "coordinates nevertheless");
+  }
+  return structures;
+}
+
+std::string value_text(double value, int digits) { return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-"; }
+
+std::string figures_text(const DoseEvaluation& e) {
+  Table table({"structure", "taken as", "volume [cc]", "D90 [Gy]", "D30 [Gy]", "D10 [Gy]", "D2cc [Gy]", "D0.1cc [Gy]",
+               "V100 [%]", "V150 [%]", "V200 [%]"});
+  const double p = e.prescription_Gy;
+  for (const StructureDose& s : e.structures) {
+    const auto volume = [&](double share) { return p > 0 ? value_text(s.dvh.percent_above(share * p), 1) : "-"; };
+    table.row({s.name, s.region.empty() ? "-" : s.region, value_text(s.dvh.volume_cc(), 2),
+               value_text(s.dvh.dose_of_percent(90), 2), value_text(s.dvh.dose_of_percent(30), 2),
+               value_text(s.dvh.dose_of_percent(10), 2), value_text(s.dvh.dose_of_volume(2), 2),
+               value_text(s.dvh.dose_of_volume(0.1), 2), volume(1.0), volume(1.5), volume(2.0)});
+  }
+  return table.text();
+}
+
+std::string goals_text(const DoseEvaluation& e) {
+  Table table({"goal", "bound", "value", "", "citation"});
+  for (const JudgedGoal& g : e.goals) {
+    const char* verdict = !g.value ? "not judged" : g.met ? "met" : "MISSED";
+    table.row({g.goal.structure + " " + g.goal.metric, fmt::format("{} {:g}", g.goal.at_least ? "≥" : "≤", g.goal.bound),
+               g.value ? value_text(*g.value, 1) : "-", verdict, g.goal.citation});
+  }
+  return table.text();
+}
+
+void print(const DoseEvaluation& e, Console& console) {
+  double strength = 0.0, time = 0.0;
+  for (const PlannedSource& s : e.plan.sources) {
+    strength += s.strength_U;
+    time += s.dwell_s;
+  }
+  const bool temporary = e.plan.implant == Implant::temporary;
+  console.say(fmt::format("{}: {} {}, {}", e.plan.file, e.plan.sources.size(),
+                          temporary ? "dwell positions" : "seeds",
+                          temporary ? fmt::format("{:.1f} s in all", time) : fmt::format("{:.3f} U in all", strength)));
+  console.say(fmt::format("Source {}, formalism {}, {}; {}", e.source.name, to_string(e.formalism),
+                          e.prescription_Gy > 0 ? fmt::format("prescription {:g} Gy", e.prescription_Gy)
+                                                : std::string("no prescription"),
+                          e.quantity));
+  if (!e.structures.empty()) console.say(figures_text(e));
+  if (!e.goals.empty() && !e.structures.empty() && e.prescription_Gy > 0) console.say(goals_text(e));
+  if (e.comparison) {
+    console.say(fmt::format("Compared with {}: median ratio {:.4f}, 1st percentile {:.4f}, 99th {:.4f} ({} points)",
+                            e.comparison->file, e.comparison->median_ratio, e.comparison->p1, e.comparison->p99,
+                            e.comparison->points));
+  }
+}
+
+Result<> run_dose(const DoseArguments& arguments, Console& console) {
+  if (Result<> writable = check_output_folder(arguments.output); !writable) return writable;
+  const Result<DosePlan> plan = read_plan(arguments.plan);
+  if (!plan) return plan.error();
+  const Result<SourceModel> source = source_of(arguments, *plan);
+  if (!source) return source.error();
+  const Result<DoseOptions> options = options_of(arguments, *plan);
+  if (!options) return options.error();
+  const Result<DoseStructures> structures = structures_of(arguments, *plan, console);
+  if (!structures) return structures.error();
+  Result<DoseEvaluation> e =
+      evaluate_dose(*plan, *source, structures->structures, *options, console.progress());
+  if (!e) return e.error();
+  e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
+  e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
+  if (arguments.ignore_frame) e->assumptions.emplace_back("Frames of reference were not compared, as asked.");
+  if (!arguments.compare.empty()) {
+    const Result<DoseGrid> grid = read_rtdose(arguments.compare);
+    if (!grid) return grid.error();
+    Vec3 shift = Vec3::Zero();
+    for (std::size_t k = 0; k < arguments.compare_shift_mm.size(); ++k)
+      shift[static_cast<Eigen::Index>(k)] = arguments.compare_shift_mm[k];
+    if (Result<> done = compare_with_grid(*e, *grid, structures->structures, *options, shift); !done) return done;
+    if (!shift.isZero())
+      e->assumptions.push_back(fmt::format("The compared dose grid was moved by ({:g}, {:g}, {:g}) mm.", shift.x(),
+                                           shift.y(), shift.z()));
+    e->warnings.insert(e->warnings.end(), grid->notes.begin(), grid->notes.end());
+  }
+  for (const std::string& warning : e->warnings) console.warn(warning);
+  if (Result<> written = write_dose_results(*e, arguments.output, console.progress()); !written) return written;
+  if (Result<> written = write_rtplan(e->plan, e->source, fs::path(arguments.output) / "plan.dcm"); !written)
+    return written;
+  if (Result<> written =
+          write_rtdose(e->grid, rtplan_uid(e->plan, e->source), fs::path(arguments.output) / "dose.dcm");
+      !written)
+    return written;
+  print(*e, console);
+  console.say(fmt::format("{} → {}", arguments.plan, (fs::path(arguments.output) / "report.html").string()));
+  return console.write_json(Json::parse(dose_json(*e)));
+}
+
+}  // namespace
+
+Command add_dose_command(CLI::App& program) {
+  auto arguments = std::make_shared<DoseArguments>();
+  CLI::App* app = program.add_subcommand(
+      "dose", "Compute the TG-43 dose of a plan, the dose to its structures, and compare it with a dose grid");
+  app->add_option("PLAN", arguments->plan, "Plan: DICOM RTPLAN, plan JSON, or CSV of seeds")->required();
+  app->add_option("--structures", arguments->structures,
+                  "Structures: contours (DICOM RTSTRUCT, contour JSON), label mask or tetrahedral mesh")
+      ->type_name("FILE");
+  app->add_option("--source", arguments->source,
+                  "Source model: a name such as i125_6711, or a JSON file with TG-43 data; no DICOM plan names it")
+      ->type_name("NAME|FILE");
+  app->add_option("-o,--output", arguments->output,
+                  "Folder for report.html, dose.json, dvh.csv, dose.nrrd, plan.dcm and dose.dcm")
+      ->type_name("OUT")
+      ->required();
+  app->add_option("--formalism", arguments->formalism,
+                  "line2d (default): line source with 2D anisotropy; line1d: line source with 1D anisotropy; point: "
+                  "point source with 1D anisotropy")
+      ->type_name("NAME")
+      ->check(one_of({"line2d", "line1d", "point"}));
+  app->add_option("--phi-an", arguments->phi_an, "Constant 1D anisotropy in place of the source model's")
+      ->type_name("X")
+      ->check(number_between(0.5, 1.5));
+  app->add_option("--prescription", arguments->prescription_Gy, "Prescribed dose in Gy (default: the plan's)")
+      ->type_name("GY")
+      ->check(number_between(0.01, 10000, "Gy"));
+  app->add_option("--quantity", arguments->quantity,
+                  "total (default): dose until the sources have decayed; rate: initial dose rate in Gy/h")
+      ->type_name("NAME")
+      ->check(one_of({"total", "rate"}));
+  app->add_option("--days", arguments->days, "Dose within this number of days after the implantation")
+      ->type_name("D")
+      ->check(number_between(0.001, 100000, "d"));
+  app->add_option("--decay-days", arguments->decay_days,
+                  "Days from the date of the strengths to the implantation, during which the sources decay (default: 0)")
+      ->type_name("D")
+      ->check(number_between(-10000, 10000, "d"));
+  app->add_option("--compare", arguments->compare, "DICOM RTDOSE to compare with")->type_name("RTDOSE");
+  app->add_option("--compare-shift", arguments->compare_shift_mm,
+                  "Move the compared grid by this many mm along x, y and z (LPS)")
+      ->type_name("X Y Z")
+      ->expected(3);
+  app->add_option("--points", arguments->points, "CSV with the columns x_mm, y_mm, z_mm: points whose dose is computed")
+      ->type_name("FILE");
+  app->add_option("--goals", arguments->goals,
+                  "CSV with the columns structure, metric, bound, citation in place of the program's own goals")
+      ->type_name("FILE");
+  app->add_option("--region", arguments->regions,
+                  "Take the structure NAME as CANONICAL, e.g. 'PTV 1=prostate'; may be repeated")
+      ->type_name("NAME=CANONICAL")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_option("--skip", arguments->skip, "Leave out the structure NAME; may be repeated")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_option("--step", arguments->step_mm,
+                  "Distance of the samples of structures in mm (default: 0.5, or 0.25 below 2 cc)")
+      ->type_name("MM")
+      ->check(number_between(0.05, 5, "mm"));
+  app->add_option("--grid", arguments->grid_mm, "Distance of the points of the dose grid in mm (default: 1)")
+      ->type_name("MM")
+      ->check(number_between(0.2, 10, "mm"));
+  app->add_flag("--ignore-frame-of-reference", arguments->ignore_frame,
+                "Take plan and structures to have the same coordinates although their frames of reference differ");
+  return {app, [arguments](Console& console) { return run_dose(*arguments, console); }};
+}
+
+}  // namespace stylet::cli
