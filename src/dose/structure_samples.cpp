@@ -31,8 +31,8 @@ struct Slab {
 
 /// Axes of the planes: two in the plane, and the normal.
 struct PlaneAxes {
-  Vec3 across, up, normal;
-  [[nodiscard]] Vec3 point(double u, double v, double h) const { return u * across + v * up + h * normal; }
+  Vec3 origin = Vec3::Zero(), across = Vec3::UnitX(), up = Vec3::UnitY(), normal = Vec3::UnitZ();
+  [[nodiscard]] Vec3 point(double u, double v, double h) const { return origin + u * across + v * up + h * normal; }
 };
 
 /// Twice the area of a contour times its normal.
@@ -44,18 +44,25 @@ Vec3 area_vector(const Contour& contour) {
   return sum;
 }
 
+/// Axes that belong to the structure: from the centre of its largest contour towards the first point of that contour. A
+/// structure that is turned and moved has the same samples, turned and moved.
 PlaneAxes axes_of(const Roi& roi) {
-  Vec3 largest = Vec3::Zero();
+  const Contour* largest = nullptr;
+  Vec3 area = Vec3::Zero();
   for (const Contour& contour : roi.contours) {
     if (contour.points.size() < 3) continue;
-    const Vec3 area = area_vector(contour);
-    if (area.norm() > largest.norm()) largest = area;
+    const Vec3 its_area = area_vector(contour);
+    if (largest != nullptr && its_area.norm() <= area.norm()) continue;
+    largest = &contour;
+    area = its_area;
   }
   PlaneAxes axes;
-  axes.normal = largest.isZero() ? Vec3::UnitZ() : Vec3(largest.normalized());
-  if (axes.normal.sum() < 0.0) axes.normal = -axes.normal;
-  const Vec3 start = std::abs(axes.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-  axes.across = (start - start.dot(axes.normal) * axes.normal).normalized();
+  if (largest == nullptr) return axes;
+  if (!area.isZero()) axes.normal = area.normalized();
+  for (const Vec3& x : largest->points) axes.origin += x / static_cast<double>(largest->points.size());
+  Vec3 start = largest->points.front() - axes.origin;
+  start -= start.dot(axes.normal) * axes.normal;
+  axes.across = start.isZero() ? axes.normal.unitOrthogonal() : Vec3(start.normalized());
   axes.up = axes.normal.cross(axes.across);
   return axes;
 }
@@ -67,8 +74,9 @@ std::vector<Slab> slabs_of(const Roi& roi, const PlaneAxes& axes) {
     Polygon polygon;
     double height = 0.0;
     for (const Vec3& x : contour.points) {
-      polygon.emplace_back(x.dot(axes.across), x.dot(axes.up));
-      height += x.dot(axes.normal) / static_cast<double>(contour.points.size());
+      const Vec3 from = x - axes.origin;
+      polygon.emplace_back(from.dot(axes.across), from.dot(axes.up));
+      height += from.dot(axes.normal) / static_cast<double>(contour.points.size());
     }
     auto slab = std::find_if(slabs.begin(), slabs.end(),
                              [&](const Slab& s) { return std::abs(s.height - height) < kSamePlane_mm; });
