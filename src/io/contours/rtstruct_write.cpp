@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of DICOM RT Structure Sets (DICOM PS3.3 A.19). It uses implicit VR little endian, because explicit VR limits
 // ContourData (VR DS) to 64 KiB, which a body outline exceeds.
+#include "detail/dicom_write.hpp"
 #include "detail/text.hpp"
 #include "detail/whole_file.hpp"
 #include "stylet/io/contours_io.hpp"
@@ -9,8 +10,6 @@
 #include <dcmtk/dcmdata/dctk.h>
 #include <fmt/format.h>
 
-#include <boost/multiprecision/cpp_int.hpp>
-#include <boost/uuid/name_generator_sha1.hpp>
 #include <cmath>
 #include <set>
 
@@ -19,17 +18,12 @@ namespace stylet {
 namespace {
 
 namespace fs = std::filesystem;
+using detail::decimal_string;
+using detail::derived_uid;
+using detail::Filler;
 
 constexpr double max_coordinate_mm = 1e6;  // DS holds 16 characters: 1e6 with four decimals is safe
 constexpr std::size_t max_name = 64;       // length of VR LO
-
-/// A number as text of VR DS: four decimals without trailing zeros.
-std::string decimal_string(double value) {
-  std::string text = fmt::format("{:.4f}", value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
-}
 
 std::string contour_data(const Contour& contour) {
   std::string text;
@@ -41,17 +35,6 @@ std::string contour_data(const Contour& contour) {
     }
   }
   return text;
-}
-
-/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2). The same contours
-/// give the same file, and the identifier contains nothing about this computer.
-std::string derived_uid(const std::string& content, std::string_view role) {
-  static const boost::uuids::uuid name_space{
-      {0x8f, 0x14, 0xe4, 0x5f, 0xce, 0xea, 0x46, 0x7a, 0x9b, 0x30, 0x51, 0x0c, 0x6a, 0x2d, 0x77, 0x19}};
-  const boost::uuids::uuid id = boost::uuids::name_generator_sha1(name_space)(std::string(role) + '\n' + content);
-  boost::multiprecision::uint128_t number = 0;
-  for (const std::uint8_t byte : id) number = (number << 8) | byte;
-  return "2.25." + number.str();
 }
 
 /// Text with all data of a structure set, from which its identifiers are derived.
@@ -96,42 +79,9 @@ std::vector<int> roi_numbers(const ContourSet& set) {
   return numbers;
 }
 
-/// Writes attributes into an item and keeps the first failure.
-class Filler {
- public:
-  void text(DcmItem& item, const DcmTagKey& tag, const std::string& value) {
-    keep(item.putAndInsertOFStringArray(tag, OFString(value.data(), value.size())));
-  }
-  DcmItem& new_item(DcmItem& parent, const DcmTagKey& sequence) {
-    DcmItem* item = nullptr;
-    keep(parent.findOrCreateSequenceItem(sequence, item, -2));  // -2 appends
-    return item == nullptr ? spare_ : *item;
-  }
-  [[nodiscard]] const OFCondition& status() const { return status_; }
-
- private:
-  void keep(const OFCondition& condition) {
-    if (status_.good()) status_ = condition;
-  }
-  OFCondition status_ = EC_Normal;
-  DcmItem spare_;
-};
-
 void fill_header(Filler& fill, DcmDataset& data, const ContourSet& set, const std::string& print) {
-  fill.text(data, DCM_SpecificCharacterSet, "ISO_IR 192");
-  fill.text(data, DCM_SOPClassUID, UID_RTStructureSetStorage);
-  fill.text(data, DCM_SOPInstanceUID, derived_uid(print, "instance"));
-  fill.text(data, DCM_StudyInstanceUID, derived_uid(print, "study"));
-  fill.text(data, DCM_SeriesInstanceUID, derived_uid(print, "series"));
-  fill.text(data, DCM_Modality, "RTSTRUCT");
-  fill.text(data, DCM_Manufacturer, "Stylet");
-  fill.text(data, DCM_PatientName, "STYLET^PHANTOM");
-  fill.text(data, DCM_PatientID, "STYLET");
-  for (const DcmTagKey& empty : {DCM_PatientBirthDate, DCM_PatientSex, DCM_StudyDate, DCM_StudyTime,
-                                 DCM_AccessionNumber, DCM_ReferringPhysicianName, DCM_StudyID, DCM_SeriesNumber,
-                                 DCM_OperatorsName, DCM_StructureSetDate, DCM_StructureSetTime}) {
-    fill.text(data, empty, "");
-  }
+  detail::fill_common(fill, data, UID_RTStructureSetStorage, "RTSTRUCT", print);
+  for (const DcmTagKey& empty : {DCM_StructureSetDate, DCM_StructureSetTime}) fill.text(data, empty, "");
   // SH holds 16 characters.
   fill.text(data, DCM_StructureSetLabel, set.label.empty() ? "Stylet" : set.label.substr(0, 16));
 }

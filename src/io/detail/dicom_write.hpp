@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What all writers of DICOM files share.
+namespace stylet::detail {
+
+/// A number as text of VR DS: four decimals without trailing zeros.
+std::string decimal_string(double value);
+
+/// A number as text of VR DS with as many digits as its 16 characters hold.
+std::string precise_decimal_string(double value);
+
+/// A unique identifier derived from the content (UUID version 5 under DICOM's root 2.25, PS3.5 B.2). The same content
+/// gives the same identifier, which contains nothing about this computer.
+std::string derived_uid(const std::string& content, std::string_view role);
+
+/// Writes attributes into an item and keeps the first failure.
+class Filler {
+ public:
+  void text(DcmItem& item, const DcmTagKey& tag, const std::string& value) {
+    keep(item.putAndInsertOFStringArray(tag, OFString(value.data(), value.size())));
+  }
+  void floats(DcmItem& item, const DcmTagKey& tag, const std::vector<Float32>& values) {
+    keep(item.putAndInsertFloat32Array(tag, values.data(), static_cast<unsigned long>(values.size())));
+  }
+  DcmItem& new_item(DcmItem& parent, const DcmTagKey& sequence) {
+    DcmItem* item = nullptr;
+    keep(parent.findOrCreateSequenceItem(sequence, item, -2));  // -2 appends
+    return item == nullptr ? spare_ : *item;
+  }
+  [[nodiscard]] const OFCondition& status() const { return status_; }
+
+ private:
+  void keep(const OFCondition& condition) {
+    if (status_.good()) status_ = condition;
+  }
+  OFCondition status_ = EC_Normal;
+  DcmItem spare_;
+};
+
+/// Writes the attributes that every file has: character set, SOP class and instance, study, series, modality, and a
+/// patient without identity.
+/// @param print text with all data of the file, from which its identifiers are derived
+void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality, const std::string& print);
+
+}  // namespace stylet::detail

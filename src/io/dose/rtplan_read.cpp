@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reader of brachytherapy plans in DICOM RTPLAN (DICOM PS3.3 A.20, C.8.8.10 to C.8.8.15).
+#include "detail/dicom.hpp"
+#include "detail/reach.hpp"
+#include "detail/text.hpp"
+#include "dose/dose_parsers.hpp"
+#include "dose/rtplan_channel.hpp"
+
+#include <dcmtk/oflog/oflog.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace stylet::detail {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExportPlanAgain = "The file is damaged; export the plan again";
+constexpr double kSameSeed_mm = 0.01;
+constexpr double kSeconds_per_day = 86400.0;
+
+const DcmTagKey kControlPointOrientation(0x300a, 0x0412);
+const DcmTagKey kSourceStrengthUnits(0x300a, 0x0229);
+
+std::optional<double> number_of(DcmItem& item, const DcmTagKey& tag) {
+  const auto numbers = numbers_of(item, tag);
+  return numbers.size() == 1 ? std::optional(numbers.front()) : std::nullopt;
+}
+
+std::optional<Vec3> vector_of(DcmItem& item, const DcmTagKey& tag) {
+  const auto numbers = numbers_of(item, tag);
+  if (numbers.size() != 3) return std::nullopt;
+  return Vec3(numbers[0], numbers[1], numbers[2]);
+}
+
+/// One item of the source sequence (300A,0210).
+struct PlanSource {
+  std::string isotope, strength_text, date, units;
+  double half_life_days = 0.0, length_mm = 0.0, diameter_mm = 0.0;
+};
+
+/// Reads one plan; holds what its parts share.
+class RtplanReader {
+ public:
+  RtplanReader(DcmDataset& data, const std::string& file) : data_(data) { plan_.file = file; }
+
+  Result<DosePlan> run() {
+    plan_.label = text_of(data_, DCM_RTPlanLabel);
+    plan_.frame_of_reference = text_of(data_, DCM_FrameOfReferenceUID);
+    read_sources();
+    const auto setups = items_of(data_, DCM_ApplicationSetupSequence);
+    if (setups.empty()) {
+      return input_error(plan_.file, "the plan has no brachytherapy application setups (300A,0230)",
+                         items_of(data_, DCM_BeamSequence).empty()
+                             ? "Export the plan with its sources"
+                             : "Name a brachytherapy plan; this one has external beams");
+    }
+    if (Result<> known = choose_implant(setups); !known) return known.error();
+    int number = 0;
+    for (DcmItem* setup : setups) {
+      if (Result<> read = read_setup(*setup, ++number); !read) return read.error();
+    }
+    if (repeated_ > 0) {
+      plan_.notes.push_back(
+          fmt::format("{} seed{} stand{} twice or more in the plan at the same place, as in plans whose setups repeat a "
+                      "common one; each counts once.",
+                      repeated_, repeated_ == 1 ? "" : "s", repeated_ == 1 ? "s" : ""));
+    }
+    if (plan_.sources.empty()) {
+      return input_error(plan_.file, "no channel of the plan has a source that stays anywhere",
+                         "Export the plan with its seeds or dwell times");
+    }
+    if (turned_by_channel_ > 0) {
+      plan_.notes.push_back(fmt::format(
+          "{} dwell positions have no orientation (300A,0412); it is taken from the line through their neighbours in the "
+          "channel.",
+          turned_by_channel_));
+    }
+    read_prescription();
+    read_fractions();
+    return std::move(plan_);
+  }
+
+ private:
+  void read_sources() {
+    for (DcmItem* item : items_of(data_, DCM_SourceSequence)) {
+      PlanSource source;
+      source.isotope = text_of(*item, DCM_SourceIsotopeName);
+      source.strength_text = text_of(*item, DCM_ReferenceAirKermaRate);
+      source.units = text_of(*item, kSourceStrengthUnits);
+      source.half_life_days = number_of(*item, DCM_SourceIsotopeHalfLife).value_or(0.0);
+      source.length_mm = number_of(*item, DCM_ActiveSourceLength).value_or(0.0);
+      source.diameter_mm = number_of(*item, DCM_ActiveSourceDiameter).value_or(0.0);
+      source.date = trimmed(text_of(*item, DCM_SourceStrengthReferenceDate) + " " +
+                            text_of(*item, DCM_SourceStrengthReferenceTime));
+      sources_[integer_of(*item, DCM_SourceNumber).value_or(static_cast<int>(sources_.size()))] = source;
+    }
+  }
+
+  /// Whether the seeds stay: the technique says it, or the type, or the times of the channels.
+  Result<> choose_implant(const std::vector<DcmItem*>& setups) {
+    const std::string technique = text_of(data_, DCM_BrachyTreatmentTechnique);
+    const std::string type = text_of(data_, DCM_BrachyTreatmentType);
+    if (technique == "PERMANENT") return Ok{};
+    if (type == "HDR" || type == "PDR" || type == "MDR") {
+      plan_.implant = Implant::temporary;
+      if (type == "PDR")
+        plan_.notes.emplace_back("The plan is pulsed (PDR); the dose is that of all dwell times in the plan, in one go.");
+      return Ok{};
+    }
+    double longest_s = 0.0;
+    for (DcmItem* setup : setups) {
+      for (DcmItem* channel : items_of(*setup, DCM_ChannelSequence))
+        longest_s = std::max(longest_s, number_of(*channel, DCM_ChannelTotalTime).value_or(0.0));
+    }
+    double half_life = 0.0;
+    for (const auto& [number, source] : sources_) half_life = std::max(half_life, source.half_life_days);
+    const bool stays = longest_s <= 0.0 || (half_life > 0.0 && longest_s > 0.9 * half_life * kSeconds_per_day / std::numbers::ln2);
+    if (type == "LDR" || type == "MANUAL") {
+      if (!stays) {
+        plan_.implant = Implant::temporary;
+        plan_.notes.push_back(fmt::format(
+            "The plan is {} with sources that are taken out after at most {:.4g} h; it is computed as temporary.", type,
+            longest_s / 3600.0));
+      }
+      return Ok{};
+    }
+    if (type.empty() && stays && half_life > 0.0) {
+      plan_.notes.emplace_back(
+          "The plan does not say its type (300A,0202); its times are those of seeds that stay, so it is computed as "
+          "permanent.");
+      return Ok{};
+    }
+    return input_error(plan_.file,
+                       fmt::format("the brachytherapy type (300A,0202) is '{}'; LDR, HDR, PDR, MDR or MANUAL is expected",
+                                   type.empty() ? "(missing)" : type),
+                       "Export the plan with its type");
+  }
+
+  Result<> read_setup(DcmItem& setup, int number) {
+    for (DcmItem* channel : items_of(setup, DCM_ChannelSequence)) {
+      ++channels_;
+      const std::string where =
+          fmt::format("{}, application setup {}, channel {}", plan_.file, number,
+                      integer_of(*channel, DCM_ChannelNumber).value_or(channels_));
+      if (Result<> read = read_channel(*channel, where); !read) return read;
+    }
+    return Ok{};
+  }
+
+  Result<double> strength_of(const PlanSource& source, int number, const std::string& where) {
+    if (!source.units.empty() && source.units != "AIR_KERMA_RATE") {
+      return input_error(where, fmt::format("the strength of source {} is given as {} (300A,0229)", number, source.units),
+                         "Export the plan with the air-kerma strength of its sources");
+    }
+    const auto strength = to_number(source.strength_text);
+    if (strength && std::isfinite(*strength) && *strength > 0.0) return *strength;
+    return input_error(where,
+                       fmt::format("source {} has the strength '{}' (ReferenceAirKermaRate, 300A,022A); a number above 0 "
+                                   "in µGy/h at 1 m is expected",
+                                   number, source.strength_text.empty() ? "(missing)" : source.strength_text),
+                       "Enter the air-kerma strength in the planning system and export the plan again");
+  }
+
+  Result<> read_channel(DcmItem& channel, const std::string& where) {
+    std::vector<ControlPoint> points;
+    for (DcmItem* item : items_of(channel, DCM_BrachyControlPointSequence)) {
+      ControlPoint point;
+      point.weight = number_of(*item, DCM_CumulativeTimeWeight).value_or(0.0);
+      if (const auto at = vector_of(*item, DCM_ControlPoint3DPosition)) {
+        point.at_mm = *at;
+        point.has_place = true;
+        if (Result<> reach = check_reach(where, *at, fmt::format("control point {}", points.size() + 1)); !reach)
+          return reach;
+      }
+      const auto axis = vector_of(*item, kControlPointOrientation);
+      if (axis && axis->norm() > 1e-6) point.axis = axis->normalized();
+      points.push_back(point);
+    }
+    if (points.empty()) return Ok{};
+    const bool seeds = plan_.implant == Implant::permanent;
+    Result<std::vector<RestingPlace>> places = resting_places(points, seeds, where);
+    if (!places) return places.error();
+    if (places->empty()) return Ok{};
+    const auto number = source_number(channel, where);
+    if (!number) return number.error();
+    const PlanSource& source = sources_.at(*number);
+    const Result<double> strength = strength_of(source, *number, where);
+    if (!strength) return strength.error();
+    take_source(source, where);
+    double seconds_per_weight = 0.0;
+    if (!seeds) {
+      const double total_s = number_of(channel, DCM_ChannelTotalTime).value_or(0.0);
+      const double last = number_of(channel, DCM_FinalCumulativeTimeWeight).value_or(points.back().weight);
+      if (total_s < 0.0 || (total_s > 0.0 && last <= 0.0)) {
+        return input_error(where,
+                           fmt::format("the channel lasts {:g} s and its final cumulative time weight is {:g}", total_s,
+                                       last),
+                           kExportPlanAgain);
+      }
+      if (total_s <= 0.0) return Ok{};
+      seconds_per_weight = total_s / last;
+      turn_by_neighbours(*places);
+    }
+    add_places(*places, *strength, seconds_per_weight, needle_of(channel));
+    return Ok{};
+  }
+
+  /// Number of the source of a channel.
+  Result<int> source_number(DcmItem& channel, const std::string& where) {
+    const auto number = integer_of(channel, DCM_ReferencedSourceNumber);
+    if (number && sources_.contains(*number)) return *number;
+    if (!number && sources_.size() == 1) return sources_.begin()->first;
+    return input_error(where,
+                       number ? fmt::format("it refers to source {}, which the plan does not have (300A,0210)", *number)
+                              : fmt::format("it does not say which of the plan's {} sources it has (300C,000E)",
+                                            sources_.size()),
+                       kExportPlanAgain);
+  }
+
+  /// Remembers what the plan says about the source that is used.
+  void take_source(const PlanSource& source, const std::string& where) {
+    if (plan_.sources.empty()) {
+      plan_.isotope = source.isotope;
+      plan_.half_life_days = source.half_life_days;
+      plan_.source_length_mm = source.length_mm;
+      plan_.source_diameter_mm = source.diameter_mm;
+      plan_.strength_date = source.date;
+    } else if (source.isotope != plan_.isotope && !mixed_) {
+      mixed_ = true;
+      plan_.notes.push_back(fmt::format("{}: the source is {}, earlier ones are {}; all are computed with one model.", where,
+                                        source.isotope, plan_.isotope));
+    }
+  }
+
+  /// Directions of dwell positions without orientation, from the line through their neighbours.
+  void turn_by_neighbours(std::vector<RestingPlace>& places) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (places[k].axis || places.size() < 2) continue;
+      const Vec3 along = places[std::min(k + 1, places.size() - 1)].at_mm - places[k == 0 ? 0 : k - 1].at_mm;
+      if (along.norm() < kSameSeed_mm) continue;
+      places[k].axis = along.normalized();
+      ++turned_by_channel_;
+    }
+  }
+
+  /// Hole of the template or name of the channel.
+  static std::string needle_of(DcmItem& channel) {
+    const std::string id = text_of(channel, DCM_SourceApplicatorID);
+    if (!id.empty()) return id;
+    const std::string name = text_of(channel, DCM_SourceApplicatorName);
+    if (!name.empty()) return name;
+    const auto number = integer_of(channel, DCM_ChannelNumber);
+    return number ? std::to_string(*number) : std::string();
+  }
+
+  void add_places(const std::vector<RestingPlace>& places, double strength, double seconds_per_weight,
+                  const std::string& needle) {
+    for (const RestingPlace& place : places) {
+      PlannedSource source;
+      source.at_mm = place.at_mm;
+      source.axis = place.axis.value_or(Vec3::UnitZ());
+      source.has_axis = place.axis.has_value();
+      source.strength_U = strength;
+      source.dwell_s = place.weight * seconds_per_weight;
+      source.needle = needle;
+      if (plan_.implant == Implant::permanent && is_repeated(source)) continue;
+      plan_.sources.push_back(source);
+    }
+  }
+
+  /// Whether a seed stands in the plan already; a direction that only the repetition has is taken over.
+  bool is_repeated(const PlannedSource& seed) {
+    const auto found = std::find_if(plan_.sources.begin(), plan_.sources.end(), [&](const PlannedSource& other) {
+      return (other.at_mm - seed.at_mm).norm() < kSameSeed_mm;
+    });
+    if (found == plan_.sources.end()) return false;
+    ++repeated_;
+    if (!found->has_axis && seed.has_axis) {
+      found->axis = seed.axis;
+      found->has_axis = true;
+    }
+    return true;
+  }
+
+  void read_prescription() {
+    for (DcmItem* reference : items_of(data_, DCM_DoseReferenceSequence)) {
+      const auto dose = number_of(*reference, DCM_TargetPrescriptionDose);
+      if (dose && *dose > 0.0) {
+        plan_.prescription_Gy = *dose;
+        return;
+      }
+    }
+    for (DcmItem* group : items_of(data_, DCM_FractionGroupSequence)) {
+      for (DcmItem* setup : items_of(*group, DCM_ReferencedBrachyApplicationSetupSequence)) {
+        const auto dose = number_of(*setup, DCM_BrachyApplicationSetupDose);
+        if (dose && *dose > 0.0) plan_.prescription_Gy = std::max(plan_.prescription_Gy, *dose);
+      }
+    }
+    if (plan_.prescription_Gy > 0.0) {
+      plan_.notes.push_back(
+          fmt::format("The plan has no target prescription dose (300A,0026); the dose of its setups, {:g} Gy, stands in.",
+                      plan_.prescription_Gy));
+    }
+  }
+
+  void read_fractions() {
+    if (plan_.implant == Implant::permanent) return;
+    for (DcmItem* group : items_of(data_, DCM_FractionGroupSequence)) {
+      const int fractions = integer_of(*group, DCM_NumberOfFractionsPlanned).value_or(1);
+      if (fractions > 1) {
+        plan_.notes.push_back(
+            fmt::format("The plan has {} fractions; the dose is that of the dwell times in the file, once.", fractions));
+      }
+    }
+  }
+
+  DcmDataset& data_;
+  DosePlan plan_;
+  std::map<int, PlanSource> sources_;
+  int channels_ = 0;
+  int repeated_ = 0;
+  int turned_by_channel_ = 0;
+  bool mixed_ = false;
+};
+
+Result<> check_is_plan(DcmDataset& data, const std::string& file) {
+  const std::string sop_class = text_of(data, DCM_SOPClassUID);
+  const std::string modality = text_of(data, DCM_Modality);
+  if (modality == "RTPLAN" || sop_class == UID_RTPlanStorage || sop_class == UID_RTBrachyTreatmentRecordStorage)
+    return Ok{};
+  return input_error(file, fmt::format("this DICOM file has modality '{}', RTPLAN is expected", modality),
+                     "Name the RT Plan; structures go to --structures and doses to --compare");
+}
+
+}  // namespace
+
+Result<DosePlan> parse_rtplan(const fs::path& path) {
+  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+  const std::string file = path.string();
+  DcmFileFormat format;
+  OFCondition status = format.loadFile(path.c_str());
+  if (status.good()) status = format.loadAllDataIntoMemory();
+  DcmDataset& data = *format.getDataset();
+  if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
+    if (Result<> kind = check_is_plan(data, file); !kind) return kind.error();
+  }
+  if (status.bad()) {
+    return input_error(file, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
+                       "The file is truncated or damaged; copy or export it again");
+  }
+  data.convertToUTF8();  // on failure the bytes stay unchanged
+  return RtplanReader(data, file).run();
+}
+
+}  // namespace stylet::detail
