@@ -30,6 +30,11 @@ class Filler {
   void floats(DcmItem& item, const DcmTagKey& tag, const std::vector<Float32>& values) {
     keep(item.putAndInsertFloat32Array(tag, values.data(), static_cast<unsigned long>(values.size())));
   }
+  void number(DcmItem& item, const DcmTagKey& tag, Uint16 value) { keep(item.putAndInsertUint16(tag, value)); }
+  void words(DcmItem& item, const DcmTagKey& tag, const std::vector<Uint16>& values) {
+    keep(item.putAndInsertUint16Array(tag, values.data(), static_cast<unsigned long>(values.size())));
+  }
+  void tag(DcmItem& item, const DcmTagKey& tag, const DcmTagKey& value) { keep(item.putAndInsertTagKey(tag, value)); }
   DcmItem& new_item(DcmItem& parent, const DcmTagKey& sequence) {
     DcmItem* item = nullptr;
     keep(parent.findOrCreateSequenceItem(sequence, item, -2));  // -2 appends

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dose/csv_table.hpp"
+
+#include "detail/input_file.hpp"
+#include "detail/text.hpp"
+#include "stylet/core/nearest_name.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/tokenizer.hpp>
+#include <cmath>
+#include <fstream>
+
+namespace stylet::detail {
+
+namespace {
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields;
+  const boost::tokenizer<boost::escaped_list_separator<char>> tokens(line);
+  for (const std::string& token : tokens) fields.push_back(trimmed(token));
+  return fields;
+}
+
+}  // namespace
+
+bool CsvTable::has(const std::string& column) const {
+  return std::find(columns.begin(), columns.end(), column) != columns.end();
+}
+
+std::string CsvTable::text(std::size_t row, const std::string& column) const {
+  const auto found = std::find(columns.begin(), columns.end(), column);
+  return found == columns.end() ? std::string() : rows[row][static_cast<std::size_t>(found - columns.begin())];
+}
+
+Result<double> CsvTable::number(std::size_t row, const std::string& column) const {
+  const std::string value = text(row, column);
+  const auto number = to_number(value);
+  if (number && std::isfinite(*number)) return *number;
+  return input_error(fmt::format("{}, column {}", where(row), column),
+                     fmt::format("'{}' is not a finite number", value), "Correct this field");
+}
+
+std::string CsvTable::where(std::size_t row) const { return fmt::format("{}, line {}", file, lines[row]); }
+
+Result<CsvTable> read_csv_table(const std::filesystem::path& path, std::span<const std::string> known) {
+  if (Result<> file = check_input_file(path); !file) return file.error();
+  CsvTable table;
+  table.file = path.string();
+  std::ifstream stream(path);
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    line = trimmed(line);
+    if (line.empty()) continue;
+    if (line.front() == '#') {
+      const auto colon = line.find(':');
+      if (colon != std::string::npos) table.keys[trimmed(line.substr(1, colon - 1))] = trimmed(line.substr(colon + 1));
+      continue;
+    }
+    std::vector<std::string> fields;
+    try {
+      fields = fields_of(line);
+    } catch (const std::exception& error) {
+      return input_error(fmt::format("{}, line {}", table.file, number),
+                         fmt::format("the line is not comma-separated values ({})", error.what()),
+                         "Check quotes and backslashes in this line");
+    }
+    if (table.columns.empty()) {
+      table.columns = fields;
+      for (const std::string& column : fields) {
+        if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+        const std::string near = nearest_name(column, known);
+        return input_error(fmt::format("{}, line {}", table.file, number),
+                           fmt::format("the column '{}' is not known; the columns are {}", column, fmt::join(known, ", ")),
+                           near.empty() ? std::string("Use one of these names") : fmt::format("Did you mean '{}'?", near));
+      }
+      continue;
+    }
+    if (fields.size() != table.columns.size()) {
+      return input_error(fmt::format("{}, line {}", table.file, number),
+                         fmt::format("the line has {} fields, the header has {}", fields.size(), table.columns.size()),
+                         "Give each line one field for each column");
+    }
+    table.rows.push_back(std::move(fields));
+    table.lines.push_back(number);
+  }
+  if (table.rows.empty())
+    return input_error(table.file, "the table has no rows", "Write a header line and at least one row");
+  return table;
+}
+
+}  // namespace stylet::detail

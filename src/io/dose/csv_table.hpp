@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/result.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stylet::detail {
+
+/// A table of comma-separated values with a header line. Lines "# key: value" give keys; other lines with '#' are
+/// comments. Quoted fields are allowed.
+struct CsvTable {
+  std::string file;
+  std::map<std::string, std::string> keys;  ///< of the lines "# key: value"
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
+  std::vector<int> lines;                      ///< line of the file of each row, from 1
+
+  [[nodiscard]] bool has(const std::string& column) const;
+  /// Text of a field; empty if the table has no such column.
+  [[nodiscard]] std::string text(std::size_t row, const std::string& column) const;
+  /// Number of a field. Error: it is not a finite number; the message names file, line and column.
+  [[nodiscard]] Result<double> number(std::size_t row, const std::string& column) const;
+  [[nodiscard]] std::string where(std::size_t row) const;  ///< file and line for messages
+};
+
+/// Reads a table. Errors: the file cannot be read, a column that is not among `known` (with the nearest name), a row
+/// with another number of fields, no rows.
+Result<CsvTable> read_csv_table(const std::filesystem::path& path, std::span<const std::string> known);
+
+}  // namespace stylet::detail

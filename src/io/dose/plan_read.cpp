@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The public readers of dose_io.hpp: they recognise the kind of file and run its parser.
+#include "detail/dicom.hpp"
+#include "detail/file_kind.hpp"
+#include "detail/guard.hpp"
+#include "detail/text.hpp"
+#include "dose/csv_table.hpp"
+#include "dose/dose_parsers.hpp"
+#include "dose/plan_words.hpp"
+
+#include <dcmtk/oflog/oflog.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+namespace stylet {
+
+namespace {
+
+namespace fs = std::filesystem;
+using detail::FileKind;
+
+/// Modality of a DICOM file; to be called in a child process.
+std::string modality_of(const fs::path& path) {
+  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+  DcmFileFormat file;
+  if (file.loadFileUntilTag(path.c_str(), EXS_Unknown, EGL_noChange, 4096, ERM_autoDetect, DCM_Manufacturer).bad())
+    return {};
+  return detail::text_of(*file.getDataset(), DCM_Modality);
+}
+
+/// First line of a text file that is neither empty nor a comment.
+std::string header_line(const fs::path& path) {
+  std::ifstream stream(path);
+  std::string line;
+  for (int k = 0; k < 200 && std::getline(stream, line); ++k) {
+    line = detail::trimmed(line);
+    if (!line.empty() && line.front() != '#') return line;
+  }
+  return {};
+}
+
+bool has_words(const std::string& line, std::initializer_list<const char*> words) {
+  return std::all_of(words.begin(), words.end(), [&](const char* word) { return line.find(word) != std::string::npos; });
+}
+
+/// The value of "format" of a JSON file; empty if it has none.
+std::string json_format(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+  return json.is_object() && json.contains("format") && json["format"].is_string() ? json["format"].get<std::string>()
+                                                                                   : std::string();
+}
+
+}  // namespace
+
+DoseFileKind dose_file_kind(const fs::path& path) {
+  std::error_code code;
+  if (!fs::is_regular_file(path, code)) return DoseFileKind::none;
+  const Result<FileKind> kind = detail::identify(path);
+  if (!kind) return DoseFileKind::none;
+  if (*kind == FileKind::dicom) {
+    const Result<std::string> modality =
+        detail::guarded<std::string>(path, [&]() -> Result<std::string> { return modality_of(path); });
+    if (!modality) return DoseFileKind::none;
+    if (*modality == "RTPLAN") return DoseFileKind::plan;
+    return *modality == "RTDOSE" ? DoseFileKind::dose_grid : DoseFileKind::none;
+  }
+  if (*kind == FileKind::contour_json) {
+    const std::string format = json_format(path);
+    if (format == "stylet-plan") return DoseFileKind::plan;
+    return format == "stylet-source" ? DoseFileKind::source_model : DoseFileKind::none;
+  }
+  const std::string line = header_line(path);
+  const bool plan = has_words(line, {"x_mm", "y_mm", "z_mm"}) || has_words(line, {"hole", "retraction_mm", "train"});
+  return *kind == FileKind::unknown && plan ? DoseFileKind::plan : DoseFileKind::none;
+}
+
+Result<DosePlan> detail::parse_plan_text(const fs::path& path) {
+  const Result<FileKind> kind = identify(path);
+  if (!kind) return kind.error();
+  return *kind == FileKind::contour_json ? parse_plan_json(path) : parse_plan_csv(path);
+}
+
+Result<DosePlan> read_plan(const fs::path& path) {
+  const Result<FileKind> kind = detail::identify(path);
+  if (!kind) return kind.error();
+  if (*kind == FileKind::dicom) return detail::guarded<DosePlan>(path, [&] { return detail::parse_rtplan(path); });
+  if (*kind != FileKind::contour_json && *kind != FileKind::unknown) {
+    return input_error(path.string(), "this is " + detail::name_of(*kind) + ", a plan is expected",
+                       "Give a DICOM RTPLAN, plan JSON or CSV of seeds");
+  }
+  return detail::guarded<DosePlan>(path, [&] { return detail::parse_plan_text(path); });
+}
+
+Result<DoseGrid> read_rtdose(const fs::path& path) {
+  const Result<FileKind> kind = detail::identify(path);
+  if (!kind) return kind.error();
+  if (*kind != FileKind::dicom) {
+    return input_error(path.string(), "this is " + detail::name_of(*kind) + ", a DICOM RTDOSE is expected",
+                       "Export the dose as DICOM RTDOSE");
+  }
+  return detail::guarded<DoseGrid>(path, [&] { return detail::parse_rtdose(path); });
+}
+
+Result<std::vector<Vec3>> read_points(const fs::path& path) {
+  const std::vector<std::string> columns{"x_mm", "y_mm", "z_mm", "name"};
+  const Result<detail::CsvTable> table = detail::read_csv_table(path, columns);
+  if (!table) return table.error();
+  std::vector<Vec3> points(table->rows.size());
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const std::string& column = columns[static_cast<std::size_t>(axis)];
+      if (!table->has(column))
+        return input_error(table->file, "the column " + column + " is missing", "Write x_mm,y_mm,z_mm in the first line");
+      const Result<double> number = table->number(row, column);
+      if (!number) return number.error();
+      points[row][axis] = *number;
+    }
+  }
+  return points;
+}
+
+Result<std::vector<DoseGoal>> read_goals(const fs::path& path) {
+  const std::vector<std::string> columns{"structure", "metric", "bound", "citation"};
+  const Result<detail::CsvTable> table = detail::read_csv_table(path, columns);
+  if (!table) return table.error();
+  for (const char* column : {"structure", "metric", "bound", "citation"}) {
+    if (!table->has(column))
+      return input_error(table->file, std::string("the column ") + column + " is missing",
+                         "Write structure,metric,bound,citation in the first line");
+  }
+  std::vector<DoseGoal> goals;
+  for (std::size_t row = 0; row < table->rows.size(); ++row) {
+    DoseGoal goal{table->text(row, "structure"), table->text(row, "metric"), true, 0.0, table->text(row, "citation")};
+    if (const auto metric = parse_metric(goal.metric, table->where(row)); !metric) return metric.error();
+    std::string bound = table->text(row, "bound");
+    goal.at_least = bound.starts_with('>');
+    if (!bound.starts_with('>') && !bound.starts_with('<'))
+      return input_error(table->where(row), "the bound '" + bound + "' does not begin with > or <",
+                         "Write e.g. >=90 or <150");
+    bound.erase(0, bound.size() > 1 && bound[1] == '=' ? 2 : 1);
+    const auto number = detail::to_number(bound);
+    if (!number)
+      return input_error(table->where(row), "the bound has no number", "Write e.g. >=90 or <150");
+    goal.bound = *number;
+    goals.push_back(goal);
+  }
+  return goals;
+}
+
+}  // namespace stylet
