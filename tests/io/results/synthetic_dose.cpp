@@ -54,27 +54,25 @@ std::vector<Contour> rectum() {
       [](double z) { return Vec3(kCentre.x(), kCentre.y() + 30.0, z); });
 }
 
-/// Seeds on a grid of 10 mm within the ellipsoid, the 44 that are most peripheral, away from the urethra.
+/// The 44 places of a grid of 10 mm that are nearest the centre, in the measure of the ellipsoid.
 std::vector<PlannedSource> seeds() {
   const auto depth = [](const Vec3& x) { return (x - kCentre).cwiseQuotient(kHalfAxes).norm(); };
   std::vector<PlannedSource> sources;
   for (int k = -2; k <= 2; ++k) {
-    for (int j = -2; j <= 2; ++j) {
-      for (int i = -3; i <= 3; ++i) {
-        const Vec3 at = kCentre + Vec3(10.0 * i + 5.0 * (j & 1), 9.0 * j, 9.0 * k);
-        if (depth(at) > 1.03 || std::hypot(at.x() - kCentre.x(), at.y() - kCentre.y() + 2.0) < 5.0) continue;
+    for (int j = -2; j <= 1; ++j) {
+      for (int i = -3; i <= 2; ++i) {
         PlannedSource seed;
-        seed.at_mm = at;
+        seed.at_mm = kCentre + 10.0 * Vec3(i + 0.5, j + 0.5, k);
         seed.has_axis = true;
         seed.strength_U = 0.5;
-        seed.needle = std::string(1, static_cast<char>('D' + i)) + std::to_string(3 + j);
+        seed.needle = std::string(1, static_cast<char>('D' + i)) + std::to_string(3 - j);
         sources.push_back(seed);
       }
     }
   }
   std::stable_sort(sources.begin(), sources.end(),
-                   [&](const PlannedSource& a, const PlannedSource& b) { return depth(a.at_mm) > depth(b.at_mm); });
-  sources.resize(std::min<std::size_t>(sources.size(), 44));
+                   [&](const PlannedSource& a, const PlannedSource& b) { return depth(a.at_mm) < depth(b.at_mm); });
+  sources.resize(44);
   return sources;
 }
 

@@ -78,7 +78,7 @@ DoseView dose_view(const DoseEvaluation& evaluation) {
 
 std::vector<IsodoseLevel> isodose_levels(const DoseEvaluation& evaluation) {
   // From cold to hot as clinics have it; Okabe & Ito's colours differ with every kind of colour vision.
-  constexpr std::array kColours{"#0072b2", "#00805d", "#e69f00", "#c8102e"};
+  constexpr std::array kColours{"#0072b2", "#00805d", "#d98200", "#c8102e"};
   std::vector<IsodoseLevel> levels;
   const bool prescribed = evaluation.prescription_Gy > 0.0;
   const double usual = prescribed ? evaluation.prescription_Gy : usual_dose(evaluation);

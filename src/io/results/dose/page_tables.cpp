@@ -5,6 +5,7 @@
 #include "dose/structure_look.hpp"
 #include "fixed_number.hpp"
 #include "report/text.hpp"
+#include "stylet/geom/structure_names.hpp"
 
 #include <fmt/format.h>
 
@@ -17,19 +18,20 @@ namespace {
 std::string text_cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
 std::string figure_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(text) + "</td>"; }
 
+/// @param value HTML
 std::string figure_tile(const std::string& value, const std::string& caption) {
-  return "<li><b>" + html_prose(value) + "</b><span>" + html_escaped(caption) + "</span></li>";
+  return "<li><b>" + value + "</b><span>" + html_escaped(caption) + "</span></li>";
 }
 
 /// A dose with one decimal below 100 Gy.
-std::string gray(double dose_Gy) { return fixed(dose_Gy, std::abs(dose_Gy) < 99.95 ? 1 : 0) + " Gy"; }
+std::string gray(double dose_Gy) { return fixed(dose_Gy, std::abs(dose_Gy) < 99.95 ? 1 : 0) + "&nbsp;Gy"; }
 
-std::string percent(double value) { return fixed(value, 1) + " %"; }
+std::string percent(double value) { return fixed(value, 1) + "&nbsp;%"; }
 
-/// A dose, with its share of the prescribed dose where there is one.
+/// A dose, with its share of the prescribed dose where there is one, as HTML.
 std::string gray_of(double dose_Gy, double prescription_Gy) {
   if (prescription_Gy <= 0.0) return gray(dose_Gy);
-  return gray(dose_Gy) + " · " + fixed(100.0 * dose_Gy / prescription_Gy, 0) + " %";
+  return gray(dose_Gy) + "<small>" + fixed(100.0 * dose_Gy / prescription_Gy, 0) + "&nbsp;%</small>";
 }
 
 std::string source_tiles(const DosePlan& plan) {
@@ -40,10 +42,10 @@ std::string source_tiles(const DosePlan& plan) {
   }
   if (plan.implant == Implant::permanent) {
     return figure_tile(fmt::format("{}", plan.sources.size()), "seeds") +
-           figure_tile(fixed(strength, 2) + " U", "total air-kerma strength");
+           figure_tile(fixed(strength, 2) + "&nbsp;U", "total air-kerma strength");
   }
   return figure_tile(fmt::format("{}", plan.sources.size()), "dwell places") +
-         figure_tile(fixed(time, 1) + " s", "total dwell time");
+         figure_tile(fixed(time, 1) + "&nbsp;s", "total dwell time");
 }
 
 /// The verdict as word, sign and colour, each of which is sufficient by itself.
@@ -62,6 +64,14 @@ std::string with_figure_unit(const std::string& value, const DoseGoal& goal) {
 
 std::string definition(const std::string& name, const std::string& value) {
   return value.empty() ? std::string() : "<dt>" + html_escaped(name) + "</dt><dd>" + html_prose(value) + "</dd>";
+}
+
+/// The region that a structure is taken as, unless its name says it.
+std::string taken_as(const StructureDose& structure) {
+  const std::string region = structure.region == "prostate" ? "target" : structure.region;
+  const std::array<std::string, 1> names{structure.name};
+  if (region.empty() || !find_named(names, region).empty()) return {};
+  return " <span class=\"taken\">" + html_escaped(region) + "</span>";
 }
 
 std::string formalism_text(DoseFormalism formalism) {
@@ -129,11 +139,8 @@ std::string dvh_figures(const DoseEvaluation& evaluation, const std::vector<std:
   for (std::size_t k = 0; k < evaluation.structures.size(); ++k) {
     const StructureDose& s = evaluation.structures[k];
     const DoseVolume& dvh = s.dvh;
-    rows += fmt::format(
-        "<tr><td><span class=\"swatch\" style=\"background:{}\"></span> {}{}</td>", colours[k], html_escaped(s.name),
-        s.region.empty() || s.region == s.name
-            ? std::string()
-            : " <span class=\"taken\">" + html_escaped(s.region == "prostate" ? "target" : s.region) + "</span>");
+    rows += fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span> {}{}</td>", colours[k],
+                        html_escaped(s.name), taken_as(s));
     rows += figure_cell(fixed(dvh.volume_cc(), 2));
     for (const double dose : {dvh.dose_of_percent(90.0), dvh.dose_of_percent(30.0), dvh.dose_of_percent(10.0),
                               dvh.dose_of_volume(2.0), dvh.dose_of_volume(0.1), dvh.mean_Gy()})

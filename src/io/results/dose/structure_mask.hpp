@@ -16,7 +16,7 @@ struct StructureMask {
   std::array<int, 3> size{0, 0, 0};
   Vec3 origin_mm = Vec3::Zero();    ///< centre of the first cube, LPS
   double spacing_mm = 1.0;          ///< edge of a cube
-  std::vector<std::uint8_t> share;  ///< (size) 0 … 255: empty … full; x varies fastest
+  std::vector<std::uint8_t> share;  ///< (size) 0 … 255: empty … full, about; x varies fastest
 };
 
 /// The mask of a structure with contours, from the slabs for which its planes stand (sample_structure()). Empty for a

@@ -45,11 +45,11 @@ function buildDvhLegend(box: HTMLElement, data: DoseData, plot: uPlot): void {
   });
 }
 
-/** Where the plot ends at first: behind 200 % of the prescribed dose, or where the last structure fades out. */
+/** Where the plot ends at first: behind 200 % of the prescribed dose; without one, where the last structure fades out. */
 function firstEnd({ dvh, prescription }: DoseData): number {
   const last = dvh.dose[dvh.dose.length - 1];
-  const fades = Math.max(...dvh.percent.map((curve) => dvh.dose[Math.max(0, curve.findIndex((v) => v < 1))] || last), 0) || last;
-  return Math.min(last, Math.max(1.03 * fades, prescription ? 2.2 * prescription : 0));
+  if (prescription) return Math.min(last, 2.5 * prescription);
+  return Math.max(...dvh.percent.map((curve) => dvh.dose[curve.findIndex((v) => v < 1)] ?? last));
 }
 
 export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElement): void {
@@ -62,6 +62,7 @@ export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElem
   const end = firstEnd(data);
   const percentAxis: uPlot.Axis[] = prescription ? [{
     ...axis('Dose [% of the prescribed dose]', fontSize() * 2),
+    scale: 'x',
     side: 0,
     grid: { show: false },
     splits: (_u, _a, low, high) => {

@@ -61,7 +61,7 @@ function farthest(lines: Line[], [dx, dy]: [number, number], { left, top, size }
   let best: [number, number] | null = null;
   for (const line of lines) {
     for (const [x, y] of line) {
-      if (x < left + 5 || x > left + size - 5 || y < top + 6 || y > top + size - 6) continue;
+      if (x < left + 10 || x > left + size - 10 || y < top + 6 || y > top + size - 6) continue;
       if (!best || x * dx + y * dy > best[0] * dx + best[1] * dy) best = [x, y];
     }
   }
@@ -74,16 +74,19 @@ const DIRECTIONS: [number, number][] = [[0.75, -0.66], [-0.75, -0.66], [0.75, 0.
 function drawDose(svg: SVGElement, data: DoseData, plane: Plane, height: number, frame: Frame): void {
   const cut = slice(data.dose, plane, height);
   if (!cut) return;
-  const labels: { at: [number, number]; level: Level }[] = [];
+  const labels: { at: [number, number]; toward: [number, number]; level: Level }[] = [];
   data.levels.forEach((level, k) => {
     const lines = isolines(cut, level.dose);
     const g = add(svg, 'g', { class: level.main ? 'isodose main' : 'isodose', stroke: level.color });
     add(g, 'path', { d: linePath(lines), 'stroke-dasharray': dashOf(k) });
-    const at = farthest(lines, DIRECTIONS[k % DIRECTIONS.length], frame);
-    if (at) labels.push({ at, level });
+    const toward = DIRECTIONS[k % DIRECTIONS.length];
+    const at = farthest(lines, toward, frame);
+    if (at) labels.push({ at, toward, level });
   });
   const names = add(svg, 'g', { class: 'isodose-names' });
-  for (const { at, level } of labels) add(names, 'text', { x: at[0], y: at[1] + 1, fill: level.color }, level.label);
+  for (const { at: [x, y], toward: [dx, dy], level } of labels) {
+    add(names, 'text', { x: x + 1.6 * dx, y: y + 1 + 2 * dy, fill: level.color, 'text-anchor': dx > 0 ? 'start' : 'end' }, level.label);
+  }
 }
 
 function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: number): void {
@@ -106,7 +109,7 @@ function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: n
 /** Sources near the plane: capsules of their true size, seen along the plane's normal. */
 function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, height: number): number {
   const g = add(svg, 'g', { class: sources.temporary ? 'dwells' : 'seeds' });
-  const thick = Math.max(sources.diameter, 0.8);
+  const thick = Math.max(sources.diameter, 1.1);
   let shown = 0;
   for (let s = 0; s < sources.count; s++) {
     if (Math.abs(sources.places[3 * s + plane.normal] - height) > NEAR_MM) continue;
@@ -115,7 +118,7 @@ function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, heigh
     const [ax, ay] = inPicture(plane, sources.axes, 3 * s);
     const half = sources.temporary ? 0 : Math.max(0, (sources.length - thick) / 2);
     const d = `M${(x - half * ax).toFixed(3)} ${(y - half * ay).toFixed(3)}L${(x + half * ax + 1e-3).toFixed(3)} ${(y + half * ay).toFixed(3)}`;
-    add(g, 'path', { d, class: 'rim', 'stroke-width': thick + 0.7 });
+    add(g, 'path', { d, class: 'rim', 'stroke-width': thick + 0.6 });
     add(g, 'path', { d, 'stroke-width': thick });
   }
   return shown;
