@@ -41,7 +41,7 @@ std::string facts_of(const DoseEvaluation& evaluation) {
                                   permanent ? "seeds" : "dwell places", evaluation.source.title);
   if (evaluation.prescription_Gy > 0.0) facts += fmt::format(", {:g} Gy prescribed", evaluation.prescription_Gy);
   const std::string name = std::filesystem::path(plan.file).filename().string();
-  return name.empty() ? facts : name + ": " + facts;
+  return name.empty() || plan.label.empty() ? facts : name + ": " + facts;
 }
 
 }  // namespace

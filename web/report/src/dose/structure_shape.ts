@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import { densenRim } from '../../../shared/rim';
 import type { Structure } from './data';
 
-const OPACITY = { target: 0.22, other: 0.4, background: 0.08 };
+const OPACITY = { target: 0.22, other: 0.4, background: 0.08, points: 0.9 };
 
 export class StructureShape {
   readonly object: THREE.Object3D;
@@ -30,7 +30,7 @@ export class StructureShape {
     this.box = geometry.boundingBox ?? new THREE.Box3();
     if (!this.box.isEmpty()) this.box.getCenter(this.centre);
     this.object.frustumCulled = false;
-    this.opacity = structure.background ? OPACITY.background : structure.region === 'prostate' ? OPACITY.target : OPACITY.other;
+    this.opacity = !surface ? OPACITY.points : structure.background ? OPACITY.background : structure.region === 'prostate' ? OPACITY.target : OPACITY.other;
     this.visible = !structure.background;
   }
 
