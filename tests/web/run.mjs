@@ -16,7 +16,7 @@ mkdirSync(bundles, { recursive: true });
 esbuild.buildSync({
   entryPoints: tests.map((name) => path.join(here, name)),
   outdir: bundles, outExtension: { '.js': '.mjs' }, bundle: true, platform: 'node', format: 'esm', target: 'node18', sourcemap: 'inline',
-  alias: { live: path.join(web, 'live'), shared: path.join(web, 'shared') }, logLevel: 'error',
+  alias: { live: path.join(web, 'live'), report: path.join(web, 'report'), shared: path.join(web, 'shared') }, logLevel: 'error',
 });
 const run = spawnSync(process.execPath, ['--enable-source-maps', '--test', ...tests.map((name) => path.join(bundles, name))], { stdio: 'inherit' });
 process.exit(run.status ?? 1);

@@ -21,12 +21,12 @@ namespace stylet {
 
 /// A structure whose dose is asked for.
 struct DoseStructure {
-  std::string name;           ///< as in the file
-  std::string region;         ///< region that it is taken as: "prostate" (the target), "urethra", …; empty: another one
-  std::string type;           ///< DICOM interpreted type, such as "PTV"; may be empty
-  StructureSamples samples;   ///< points that stand for its volume
-  std::array<int, 3> colour{128, 128, 128};  ///< display colour, 0 … 255
-  std::vector<Contour> contours;             ///< its contours; empty for masks and meshes
+  std::string name;    ///< as in the file
+  std::string region;  ///< region that it is taken as: "prostate" (the target), "urethra", …; empty: another one
+  std::string type;    ///< DICOM interpreted type, such as "PTV"; may be empty
+  StructureSamples samples;                  ///< points that stand for its volume
+  std::array<int, 3> colour{128, 128, 128};  ///< display colour, 0 … 255; grey (128, 128, 128): the file gives none
+  std::vector<Contour> contours;  ///< [mm] LPS, closed polygons in parallel planes; empty for masks and meshes
 };
 
 /// The dose to one structure.
@@ -35,8 +35,8 @@ struct StructureDose {
   std::array<int, 3> colour{128, 128, 128};  ///< as in DoseStructure
   DoseVolume dvh;                            ///< of its samples
   double covered_by_grid_percent = 100.0;    ///< share of its volume within the grid that is compared or written
-  std::vector<Contour> contours;             ///< as in DoseStructure
-  std::vector<Vec3> cloud;                   ///< [mm] at most 4000 of its samples, to draw it
+  std::vector<Contour> contours;             ///< as in DoseStructure, for pictures of the structure
+  std::vector<Vec3> cloud;  ///< [mm] LPS, at most 4000 of its samples, for pictures of a structure without contours
 };
 
 /// A goal with what the plan reaches.
@@ -60,13 +60,13 @@ struct DoseEvaluation {
   DosePlan plan;
   SourceModel source;
   DoseFormalism formalism = DoseFormalism::line2d;
-  std::string quantity;             ///< "total dose", "initial dose rate …", what dose_Gy means
-  double prescription_Gy = 0.0;     ///< 0: none is known
+  std::string quantity;          ///< "total dose", "initial dose rate …", what dose_Gy means
+  double prescription_Gy = 0.0;  ///< 0: none is known
   std::vector<StructureDose> structures;
   std::vector<JudgedGoal> goals;
-  std::vector<Vec3> points;         ///< [mm] LPS
-  std::vector<double> point_Gy;     ///< dose at `points`
-  DoseGrid grid;                    ///< dose around sources and structures
+  std::vector<Vec3> points;      ///< [mm] LPS
+  std::vector<double> point_Gy;  ///< dose at `points`
+  DoseGrid grid;                 ///< dose around sources and structures
   std::optional<DoseComparison> comparison;
   std::vector<std::string> assumptions;  ///< sentences: formalism, source, orientations, slabs at the ends
   std::vector<std::string> warnings;     ///< sentences about what the user should look at

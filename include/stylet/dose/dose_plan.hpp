@@ -27,19 +27,19 @@ struct PlannedSource {
 
 /// A plan of brachytherapy sources, as a file describes it.
 struct DosePlan {
-  std::string file;                           ///< file from which the plan was read
-  std::string label;                          ///< the plan's label; may be empty
-  Implant implant = Implant::permanent;       ///< permanent or temporary
-  std::string frame_of_reference;             ///< UID of the DICOM frame of reference; may be empty
-  std::string source_model;                   ///< name of a source model (known_sources()); empty: the plan names none
-  std::string isotope;                        ///< such as "I-125"; may be empty
-  double half_life_days = 0.0;                ///< [d] as the plan says; 0: it does not say
-  double source_length_mm = 0.0;              ///< length of the active part [mm] as the plan says; 0: it does not say
-  double source_diameter_mm = 0.0;            ///< diameter of the active part [mm]; 0: the plan does not say
-  std::string strength_date;                  ///< date, and time where there is one, of the strength, as in the file
-  double prescription_Gy = 0.0;               ///< prescribed dose [Gy]; 0: the plan does not say
-  std::vector<PlannedSource> sources;         ///< at least one
-  std::vector<std::string> notes;             ///< sentences for the user: what the reader decided or left out
+  std::string file;                      ///< file from which the plan was read
+  std::string label;                     ///< the plan's label; may be empty
+  Implant implant = Implant::permanent;  ///< permanent or temporary
+  std::string frame_of_reference;        ///< UID of the DICOM frame of reference; may be empty
+  std::string source_model;              ///< name of a source model (known_sources()); empty: the plan names none
+  std::string isotope;                   ///< such as "I-125"; may be empty
+  double half_life_days = 0.0;           ///< [d] as the plan says; 0: it does not say
+  double source_length_mm = 0.0;         ///< length of the active part [mm] as the plan says; 0: it does not say
+  double source_diameter_mm = 0.0;       ///< diameter of the active part [mm]; 0: the plan does not say
+  std::string strength_date;             ///< date, and time where there is one, of the strength, as in the file
+  double prescription_Gy = 0.0;          ///< prescribed dose [Gy]; 0: the plan does not say
+  std::vector<PlannedSource> sources;    ///< at least one
+  std::vector<std::string> notes;        ///< sentences for the user: what the reader decided or left out
 };
 
 }  // namespace stylet

@@ -11,18 +11,18 @@ namespace stylet {
 
 /// One goal of planning: a figure of a structure's dose–volume histogram and the bound that it should keep.
 struct DoseGoal {
-  std::string structure;   ///< region, such as "prostate" (the target), "urethra", "rectum", "bladder"
-  std::string metric;      ///< figure with its unit, such as "D90_percent", "V150_percent", "D2cc_Gy", "V100_cc"
-  bool at_least = true;    ///< whether the figure should be at least the bound, or at most
-  double bound = 0.0;      ///< [unit of the metric]
-  std::string citation;    ///< publication or protocol of the goal
+  std::string structure;  ///< region, such as "prostate" (the target), "urethra", "rectum", "bladder"
+  std::string metric;     ///< figure with its unit, such as "D90_percent", "V150_percent", "D2cc_Gy", "V100_cc"
+  bool at_least = true;   ///< whether the figure should be at least the bound, or at most
+  double bound = 0.0;     ///< [unit of the metric]
+  std::string citation;   ///< publication or protocol of the goal
 };
 
 /// A figure of a dose–volume histogram, parsed from its name: D90_Gy, D90_percent, D2cc_Gy, D0.1cc_percent,
 /// V100_percent, V150_cc. "D…_percent" is in percent of the prescribed dose.
 struct DoseMetric {
   enum class Kind { dose_of_percent, dose_of_cc, volume } kind = Kind::dose_of_percent;
-  double amount = 0.0;            ///< D90: 90 %; D2cc: 2 cc; V150: 150 % of the prescribed dose
+  double amount = 0.0;  ///< D90: 90 %; D2cc: 2 cc; V150: 150 % of the prescribed dose
   enum class Unit { Gy, percent, cc } unit = Unit::Gy;
 };
 

@@ -110,8 +110,10 @@ function aligned(options: LinePlot, drawn: (value: number) => number | null): uP
   return uPlot.join(lines.map((line) => [Array.from(line.x ?? options.x ?? []), values(line)] as uPlot.AlignedData));
 }
 
-/** A small box that shows all values at the pointer. */
-function readout(plot: uPlot, options: LinePlot): void {
+/** A small box that shows all values of the shown lines at the pointer. */
+export function showValues(plot: uPlot, options: {
+  lines: { label: string; color: string }[]; text(value: number): string; xText(value: number): string;
+}): void {
   const box = document.createElement('div');
   box.className = 'readout';
   box.hidden = true;
@@ -126,7 +128,7 @@ function readout(plot: uPlot, options: LinePlot): void {
     box.append(head);
     for (const [k, line] of options.lines.entries()) {
       const value = plot.data[k + 1][i];
-      if (value === null || value === undefined) continue;
+      if (value === null || value === undefined || plot.series[k + 1].show === false) continue;
       const row = document.createElement('div');
       const name = document.createElement('span');
       name.style.color = line.color;
@@ -205,5 +207,5 @@ export function buildLinePlot(box: HTMLElement, options: LinePlot): void {
     box,
   );
   followWidth(box, plot);
-  readout(plot, options);
+  showValues(plot, options);
 }

@@ -2,6 +2,7 @@
 // The plots of the rows of stylet validate. The program writes the data in validation_data.cpp.
 import 'uplot/dist/uPlot.min.css';
 import '../style.css';
+import '../verdict.css';
 import './style.css';
 import { buildLinePlot, type Line } from '../plots/line_plot';
 import { INK } from '../../../shared/plot_style';

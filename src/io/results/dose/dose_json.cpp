@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dose/goal_text.hpp"
+#include "stylet/io/dose_results.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace stylet {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+OrderedJson vector_list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+OrderedJson dvh_row(const StructureDose& structure, double prescription_Gy) {
+  const DoseVolume& dvh = structure.dvh;
+  const auto percent_of = [&](double times) {
+    return prescription_Gy > 0.0 ? OrderedJson(dvh.percent_above(times * prescription_Gy)) : OrderedJson(nullptr);
+  };
+  return {{"structure", structure.name},
+          {"region", structure.region},
+          {"type", structure.type},
+          {"volume_cc", dvh.volume_cc()},
+          {"D90_Gy", dvh.dose_of_percent(90.0)},
+          {"D30_Gy", dvh.dose_of_percent(30.0)},
+          {"D10_Gy", dvh.dose_of_percent(10.0)},
+          {"D5_Gy", dvh.dose_of_percent(5.0)},
+          {"D2cc_Gy", dvh.dose_of_volume(2.0)},
+          {"D1cc_Gy", dvh.dose_of_volume(1.0)},
+          {"D01cc_Gy", dvh.dose_of_volume(0.1)},
+          {"V100_percent", percent_of(1.0)},
+          {"V150_percent", percent_of(1.5)},
+          {"V200_percent", percent_of(2.0)},
+          {"V100_cc", prescription_Gy > 0.0 ? OrderedJson(dvh.volume_above_cc(prescription_Gy)) : OrderedJson(nullptr)},
+          {"mean_Gy", dvh.mean_Gy()},
+          {"covered_by_grid_percent", structure.covered_by_grid_percent}};
+}
+
+OrderedJson goal_row(const JudgedGoal& judged) {
+  return {{"structure", judged.goal.structure},
+          {"metric", judged.goal.metric},
+          {"bound", results::bound_text(judged.goal)},
+          {"value", judged.value ? OrderedJson(*judged.value) : OrderedJson(nullptr)},
+          {"met", judged.value ? OrderedJson(judged.met) : OrderedJson(nullptr)},
+          {"citation", judged.goal.citation}};
+}
+
+OrderedJson point_row(const Vec3& x, double dose_Gy) {
+  return {{"x_mm", x.x()}, {"y_mm", x.y()}, {"z_mm", x.z()}, {"dose_Gy", dose_Gy}};
+}
+
+OrderedJson comparison_json(const std::optional<DoseComparison>& comparison) {
+  if (!comparison) return nullptr;
+  return {{"median_ratio", comparison->median_ratio},
+          {"p1", comparison->p1},
+          {"p99", comparison->p99},
+          {"points", comparison->points},
+          {"file", comparison->file}};
+}
+
+OrderedJson seed_row(const PlannedSource& seed) {
+  return {{"position_mm", vector_list(seed.at_mm)},
+          {"axis", vector_list(seed.axis)},
+          {"strength_U", seed.strength_U},
+          {"needle", seed.needle},
+          {"dwell_s", seed.dwell_s}};
+}
+
+}  // namespace
+
+std::string dose_json(const DoseEvaluation& evaluation) {
+  OrderedJson dvh = OrderedJson::array(), goals = OrderedJson::array(), points = OrderedJson::array(),
+              seeds = OrderedJson::array();
+  for (const StructureDose& s : evaluation.structures) dvh.push_back(dvh_row(s, evaluation.prescription_Gy));
+  for (const JudgedGoal& goal : evaluation.goals) goals.push_back(goal_row(goal));
+  for (std::size_t k = 0; k < evaluation.points.size() && k < evaluation.point_Gy.size(); ++k)
+    points.push_back(point_row(evaluation.points[k], evaluation.point_Gy[k]));
+  for (const PlannedSource& seed : evaluation.plan.sources) seeds.push_back(seed_row(seed));
+  const OrderedJson json = {
+      {"seeds", evaluation.plan.sources.size()},
+      {"source", evaluation.source.name},
+      {"formalism", to_string(evaluation.formalism)},
+      {"prescription_Gy",
+       evaluation.prescription_Gy > 0.0 ? OrderedJson(evaluation.prescription_Gy) : OrderedJson(nullptr)},
+      {"quantity", evaluation.quantity},
+      {"implant", to_string(evaluation.plan.implant)},
+      {"dvh", dvh},
+      {"goals", goals},
+      {"points", points},
+      {"compare", comparison_json(evaluation.comparison)},
+      {"seed_list", seeds},
+      {"assumptions", evaluation.assumptions},
+      {"warnings", evaluation.warnings},
+  };
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+}  // namespace stylet

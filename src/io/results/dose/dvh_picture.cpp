@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dose/dvh_picture.hpp"
+
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace stylet::results {
+namespace {
+
+// Sizes of the picture in its own units.
+constexpr double kLeft = 60, kTop = 20, kWide = 720, kHigh = 360, kKeyLine = 22;
+
+/// The plot's frame, its lines at every 20 % and its ticks of dose.
+std::string frame_of_picture(double most_Gy) {
+  std::string svg;
+  for (int percent = 0; percent <= 100; percent += 20) {
+    const double y = kTop + kHigh * (1.0 - percent / 100.0);
+    svg += fmt::format(
+        "<path d=\"M{0} {1:.1f}h{2}\" stroke=\"#d9dce0\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+        "text-anchor=\"end\">{5}</text>",
+        kLeft, y, kWide, kLeft - 8, y + 5, percent);
+  }
+  constexpr int kTicks = 5;
+  for (int tick = 0; tick <= kTicks; ++tick) {
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.0f}</text>",
+                       kLeft + kWide * tick / kTicks, kTop + kHigh + 20, most_Gy * tick / kTicks);
+  }
+  return svg + fmt::format(
+                   "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">Dose [Gy]</text><text transform=\"translate(16 {}) "
+                   "rotate(-90)\" text-anchor=\"middle\">Volume [%]</text>",
+                   kLeft + kWide / 2, kTop + kHigh + 42, kTop + kHigh / 2);
+}
+
+}  // namespace
+
+std::string dvh_picture(const DoseEvaluation& evaluation, const DvhTable& dvh,
+                        const std::vector<std::string>& colours) {
+  const double most = std::max(dvh.dose_Gy.back(), 1e-9);
+  const double keys = kTop + kHigh + 62;
+  const auto count = static_cast<double>(evaluation.structures.size());
+  std::string svg = fmt::format(
+      "<svg class=\"dvh-picture\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Dose–volume histograms\" "
+      "font-size=\"14\">{}",
+      kLeft + kWide + 20, keys + kKeyLine * count, frame_of_picture(most));
+  for (std::size_t s = 0; s < evaluation.structures.size(); ++s) {
+    std::string path;
+    for (std::size_t k = 0; k < dvh.dose_Gy.size(); ++k) {
+      path += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", kLeft + kWide * dvh.dose_Gy[k] / most,
+                          kTop + kHigh * (1.0 - dvh.percent[s][k] / 100.0));
+    }
+    const double y = keys + kKeyLine * static_cast<double>(s);
+    svg += fmt::format(
+        "<path d=\"{0}\" fill=\"none\" stroke=\"{1}\" stroke-width=\"2\"/><path d=\"M{2} {3:.1f}h30\" stroke=\"{1}\" "
+        "stroke-width=\"3\"/><text x=\"{4}\" y=\"{5:.1f}\">{6}</text>",
+        path, colours[s], kLeft, y, kLeft + 40, y + 5, html_escaped(evaluation.structures[s].name));
+  }
+  return svg + "</svg>";
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/dose/dose_evaluation.hpp"
+
+#include <string>
+#include <vector>
+
+/// The parts of the page of `stylet dose` that need no script, as HTML.
+namespace stylet::results {
+
+/// The figures that everybody asks for first, as items of a list.
+std::string dose_tiles(const DoseEvaluation& evaluation);
+
+/// The goals with what the plan reaches, or a sentence where there are none.
+std::string goal_table(const DoseEvaluation& evaluation);
+
+/// The figures of the histograms, one structure in each row. @param colours (structures) structure_colours()
+std::string dvh_figures(const DoseEvaluation& evaluation, const std::vector<std::string>& colours);
+
+/// Doses at points and the comparison with a dose grid of a file, as far as there are any.
+std::string points_and_comparison(const DoseEvaluation& evaluation);
+
+/// All seeds or dwell places.
+std::string seed_table(const DoseEvaluation& evaluation);
+
+/// Plan and source as pairs of name and value.
+std::string plan_facts(const DoseEvaluation& evaluation);
+
+}  // namespace stylet::results

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One section: isodose lines, outlines of structures and sources near the plane, as an SVG picture in millimetres.
+import { element } from '../../../shared/dom';
+import type { DoseData, Level } from './data';
+import { isolines, linePath, shapePath, slice, type Line } from './isolines';
+import { dashOf } from './level_look';
+import { inPicture, type Plane } from './planes';
+
+export const NEAR_MM = 2.5;
+const EDGE = 7;          // [mm] room around the picture for the scale
+const TEXT = 3;          // [mm] height of letters
+const SVG = 'http://www.w3.org/2000/svg';
+
+function add(parent: SVGElement, tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
+  const node = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
+  if (text) node.textContent = text;
+  parent.append(node);
+  return node;
+}
+
+/** The window of the picture [mm]. */
+interface Frame {
+  left: number; top: number; size: number;
+}
+
+function frameOf(data: DoseData, plane: Plane): Frame {
+  const [x, y] = inPicture(plane, data.centre);
+  return { left: x - data.half, top: y - data.half, size: 2 * data.half };
+}
+
+/** Numbers every 10 or 20 mm along both edges, and the patient's directions. */
+function drawScale(svg: SVGElement, plane: Plane, frame: Frame): void {
+  const { left, top, size } = frame;
+  const g = add(svg, 'g', { class: 'scale' });
+  add(g, 'rect', { x: left, y: top, width: size, height: size });
+  const every = size > 130 ? 20 : 10;
+  for (let v = Math.ceil(left / every) * every; v <= left + size; v += every) {
+    add(g, 'path', { d: `M${v} ${top + size}v1.2` });
+    if (v > left + 3 && v < left + size - 3) add(g, 'text', { x: v, y: top + size + 4.6, 'text-anchor': 'middle' }, label(v));
+  }
+  for (let v = Math.ceil(top / every) * every; v <= top + size; v += every) {
+    add(g, 'path', { d: `M${left} ${v}h-1.2` });
+    add(g, 'text', { x: left - 2, y: v + 1, 'text-anchor': 'end' }, label(plane.up ? -v : v));
+  }
+  const { ends } = plane;
+  const middle = [left + size / 2, top + size / 2];
+  const letters = add(svg, 'g', { class: 'ends' });
+  add(letters, 'text', { x: left + 2.6, y: middle[1] + 1.4 }, ends.left);
+  add(letters, 'text', { x: left + size - 2.6, y: middle[1] + 1.4 }, ends.right);
+  add(letters, 'text', { x: middle[0], y: top + 4.4 }, ends.top);
+  add(letters, 'text', { x: middle[0], y: top + size - 2 }, ends.bottom);
+}
+
+function label(value: number): string {
+  return value === 0 ? '0' : String(value).replace('-', '−');
+}
+
+/** The point of lines that lies farthest in a direction, well within the frame. */
+function farthest(lines: Line[], [dx, dy]: [number, number], { left, top, size }: Frame): [number, number] | null {
+  let best: [number, number] | null = null;
+  for (const line of lines) {
+    for (const [x, y] of line) {
+      if (x < left + 10 || x > left + size - 10 || y < top + 6 || y > top + size - 6) continue;
+      if (!best || x * dx + y * dy > best[0] * dx + best[1] * dy) best = [x, y];
+    }
+  }
+  return best;
+}
+
+// Labels of different doses lie in different directions from the middle, so that they do not meet.
+const DIRECTIONS: [number, number][] = [[0.75, -0.66], [-0.75, -0.66], [0.75, 0.66], [-0.75, 0.66]];
+
+function drawDose(svg: SVGElement, data: DoseData, plane: Plane, height: number, frame: Frame): void {
+  const cut = slice(data.dose, plane, height);
+  if (!cut) return;
+  const labels: { at: [number, number]; toward: [number, number]; level: Level }[] = [];
+  data.levels.forEach((level, k) => {
+    const lines = isolines(cut, level.dose);
+    const g = add(svg, 'g', { class: level.main ? 'isodose main' : 'isodose', stroke: level.color });
+    add(g, 'path', { d: linePath(lines), 'stroke-dasharray': dashOf(k) });
+    const toward = DIRECTIONS[k % DIRECTIONS.length];
+    const at = farthest(lines, toward, frame);
+    if (at) labels.push({ at, toward, level });
+  });
+  const names = add(svg, 'g', { class: 'isodose-names' });
+  for (const { at: [x, y], toward: [dx, dy], level } of labels) {
+    add(names, 'text', { x: x + 1.6 * dx, y: y + 1 + 2 * dy, fill: level.color, 'text-anchor': dx > 0 ? 'start' : 'end' }, level.label);
+  }
+}
+
+function drawStructures(svg: SVGElement, data: DoseData, plane: Plane, height: number): void {
+  for (const structure of data.structures) {
+    const g = add(svg, 'g', { class: structure.background ? 'structure background' : 'structure', fill: structure.color, stroke: structure.color });
+    if (structure.mask) {
+      const cut = slice(structure.mask, plane, height);
+      if (cut) add(g, 'path', { d: shapePath(cut, 0.5) });
+      continue;
+    }
+    const { cloud } = structure;
+    for (let k = 0; k < cloud.length; k += 3) {
+      if (Math.abs(cloud[k + plane.normal] - height) > 1) continue;
+      const [x, y] = inPicture(plane, cloud, k);
+      add(g, 'circle', { cx: x.toFixed(2), cy: y.toFixed(2), r: 0.35, stroke: 'none' });
+    }
+  }
+}
+
+/** Sources near the plane: capsules of their true size, seen along the plane's normal. */
+function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, height: number): number {
+  const g = add(svg, 'g', { class: sources.temporary ? 'dwells' : 'seeds' });
+  const thick = Math.max(sources.diameter, 1.1);
+  let shown = 0;
+  for (let s = 0; s < sources.count; s++) {
+    if (Math.abs(sources.places[3 * s + plane.normal] - height) > NEAR_MM) continue;
+    shown++;
+    const [x, y] = inPicture(plane, sources.places, 3 * s);
+    const [ax, ay] = inPicture(plane, sources.axes, 3 * s);
+    const half = sources.temporary ? 0 : Math.max(0, (sources.length - thick) / 2);
+    const d = `M${(x - half * ax).toFixed(3)} ${(y - half * ay).toFixed(3)}L${(x + half * ax + 1e-3).toFixed(3)} ${(y + half * ay).toFixed(3)}`;
+    add(g, 'path', { d, class: 'rim', 'stroke-width': thick + 0.6 });
+    add(g, 'path', { d, 'stroke-width': thick });
+  }
+  return shown;
+}
+
+export function buildSection(data: DoseData, plane: Plane): HTMLElement {
+  const figure = element('figure', 'section-picture');
+  const caption = element('figcaption');
+  const frame = frameOf(data, plane);
+  const { left, top, size } = frame;
+  const svg = document.createElementNS(SVG, 'svg');
+  svg.setAttribute('viewBox', `${left - EDGE} ${top - 1} ${size + EDGE + 1} ${size + EDGE}`);
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('font-size', String(TEXT));
+  const slider = element('input');
+  slider.type = 'range';
+  const middle = data.centre[plane.normal];
+  slider.min = String(Math.round(middle - data.half + 1));
+  slider.max = String(Math.round(middle + data.half - 1));
+  slider.step = '0.5';
+  slider.value = String(middle);
+  slider.setAttribute('aria-label', `Position of the ${plane.name.toLowerCase()} section`);
+  const clip = `clip-${plane.normal}`;
+  let pending = false;
+  const draw = (height: number) => {
+    pending = false;
+    svg.replaceChildren();
+    add(add(svg, 'clipPath', { id: clip }), 'rect', { x: left, y: top, width: size, height: size });
+    const inside = add(svg, 'g', { 'clip-path': `url(#${clip})` });
+    drawStructures(inside, data, plane, height);
+    drawDose(inside, data, plane, height, frame);
+    const shown = drawSources(inside, data, plane, height);
+    const names = inside.querySelector('.isodose-names');
+    if (names) inside.append(names);
+    drawScale(svg, plane, frame);
+    const kind = data.sources.temporary ? 'dwell place' : 'seed';
+    const where = `${plane.moves} = ${label(Math.round(10 * height) / 10)} mm`;
+    caption.replaceChildren(element('b', '', plane.name), element('span', '', `${where} · ${shown} ${kind}${shown === 1 ? '' : 's'} near`));
+    svg.setAttribute('aria-label', `${plane.name} section at ${where}`);
+  };
+  slider.addEventListener('input', () => {
+    if (pending) return;
+    pending = true;
+    requestAnimationFrame(() => draw(slider.valueAsNumber));
+  });
+  draw(middle);
+  figure.append(caption, svg, slider);
+  return figure;
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The 3D view of a plan with the controls of its appearance.
+import { button, element } from '../../../shared/dom';
+import { VIEWS } from '../../../shared/views';
+import type { DoseData } from './data';
+import { DoseStage } from './stage';
+import type { StructureShape } from './structure_shape';
+
+function switchOf(text: string, on: boolean, color: string, set: (on: boolean) => void): HTMLElement {
+  const label = element('label');
+  const box = element('input');
+  box.type = 'checkbox';
+  box.checked = on;
+  box.addEventListener('change', () => set(box.checked));
+  const swatch = element('span', 'swatch');
+  swatch.style.background = color;
+  label.append(box, swatch, text);
+  return label;
+}
+
+function structureRow(shape: StructureShape, draw: () => void): HTMLElement {
+  const row = element('div', 'region');
+  const slider = element('input');
+  slider.type = 'range';
+  slider.min = '0';
+  slider.max = '1';
+  slider.step = '0.01';
+  slider.value = String(shape.opacity);
+  slider.setAttribute('aria-label', `Opacity of ${shape.structure.name}`);
+  slider.addEventListener('input', () => {
+    shape.opacity = slider.valueAsNumber;
+    draw();
+  });
+  row.append(switchOf(shape.structure.name, shape.visible, shape.structure.color, (on) => {
+    shape.visible = on;
+    draw();
+  }), slider);
+  return row;
+}
+
+export function buildDoseViewer(data: DoseData, root: HTMLElement): void {
+  const picture = element('div', 'picture');
+  const canvas = element('div', 'canvas');
+  const bar = element('div', 'scale-bar');
+  picture.append(canvas, bar);
+  root.append(picture);
+  let stage: DoseStage;
+  try {
+    stage = new DoseStage(data, canvas, (mm, px) => {
+      bar.textContent = `${mm} mm`;
+      bar.style.width = `${px}px`;
+    });
+  } catch {
+    root.replaceChildren(element('p', 'note', 'This browser offers no WebGL, which the 3D view needs.'));
+    return;
+  }
+  const draw = () => stage.draw();
+  const side = element('div', 'side');
+  const views = element('div', 'views');
+  for (const view of VIEWS) views.append(button(view.name === 'Oblique' ? 'Reset view' : view.name, () => stage.look(view.from)));
+  side.append(element('h3', '', 'Shown'), ...stage.structures.map((s) => structureRow(s, draw)),
+    switchOf(data.sources.temporary ? 'Dwell places' : 'Seeds', true, '#3b4452', (on) => {
+      stage.sources.visible = on;
+      draw();
+    }),
+    element('h3', '', 'View'), views, element('p', 'hint', 'Drag to turn, wheel to zoom, right button to move.'));
+  root.append(side);
+}
