@@ -44,7 +44,7 @@ Result<> PlanBuilder::add(PlannedSource source, const std::string& where) {
 
 Result<> PlanBuilder::add(const PlanNeedle& needle, const PlanTemplate& grid, const std::string& where) {
   const auto offset = grid.grid.offset_mm(needle.hole);
-  if (!offset) return input_error(where, offset.error().what, offset.error().cure);
+  if (!offset) return input_error(fmt::format("{}, hole '{}'", where, needle.hole), offset.error().what, offset.error().cure);
   const Result<std::vector<double>> seeds = seeds_of_train(needle.train, grid.lengths, where);
   if (!seeds) return seeds.error();
   if (!std::isfinite(needle.retraction_mm))

@@ -67,7 +67,8 @@ Result<std::vector<RestingPlace>> resting_places(const std::vector<ControlPoint>
                          "Export the plan again with the positions of its sources");
     }
     const bool moved = before != nullptr && !same_place(before->at_mm, point.at_mm);
-    if (gain < -1e-9 && !(seeds && moved)) {
+    const bool starts_again = moved && point.weight == 0.0;
+    if (gain < -1e-9 && !starts_again && !(seeds && moved)) {
       return input_error(fmt::format("{}, control point {}", where, k + 1),
                          fmt::format("its cumulative time weight {:g} is less than the one before, {:g}", point.weight,
                                      before->weight),

@@ -26,7 +26,8 @@ struct RestingPlace {
 };
 
 /// Finds the places where the source of a channel rests. The weight between two points at one place belongs to that
-/// place; the weight between two places is shared by them, because the source moves. Points without any weight that lie
+/// place; the weight between two places is shared by them, because the source moves. Some systems let the weight start
+/// at 0 again at each place; then each place has its own. Points without any weight that lie
 /// about 1 mm from a seed say its direction where the file has no orientation.
 /// @param seeds whether each place holds a seed of its own: then weights only say whether there is one, and a channel
 ///   without any weight has a seed at its first place and at each place that is not next to one

@@ -204,7 +204,15 @@ class RtplanReader {
                            kExportPlanAgain);
       }
       if (total_s <= 0.0) return Ok{};
-      seconds_per_weight = total_s / last;
+      double weights = 0.0;
+      for (const RestingPlace& place : *places) weights += place.weight;
+      seconds_per_weight = total_s / weights;
+      if (std::abs(weights / last - 1.0) > 0.005) {
+        plan_.notes.push_back(fmt::format(
+            "{}: the weights of its places add up to {:g}, the final cumulative time weight is {:g}; the channel's time of "
+            "{:g} s is divided by the sum of the weights.",
+            where, weights, last, total_s));
+      }
       turn_by_neighbours(*places);
     }
     add_places(*places, *strength, seconds_per_weight, needle_of(channel));

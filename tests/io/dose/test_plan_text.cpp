@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plans in JSON and CSV.
+#include "io/dose/dose_folder.hpp"
+#include "stylet/io/dose_io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace stylet {
+namespace {
+
+class PlanText : public testing_files::InFolder {
+ protected:
+  void expect_error(const std::string& name, const std::string& text, const std::string& part) const {
+    const Result<DosePlan> plan = read_plan(file(name, text));
+    ASSERT_FALSE(plan.ok()) << text;
+    EXPECT_EQ(plan.error().kind, ErrorKind::input);
+    EXPECT_NE(plan.error().message().find(part), std::string::npos) << plan.error().message();
+  }
+  [[nodiscard]] static std::string json(const std::string& rest) {
+    return R"({"format": "stylet-plan", "version": 1, "units": "mm", "frame": "LPS", )" + rest + "}";
+  }
+};
+
+TEST_F(PlanText, in_json_has_seeds_with_one_strength_or_their_own) {
+  const DosePlan plan =
+      read_plan(file("plan.json", json(R"("strength_U": 0.5, "source": "i125_6711", "prescription_Gy": 145,
+        "seeds": [{"position_mm": [1, 2, 3]}, {"position_mm": [4, 5, 6], "axis": [0, 3, 4], "strength_U": 0.6}])")))
+          .value();
+  ASSERT_EQ(plan.sources.size(), 2U);
+  EXPECT_EQ(plan.sources[0].strength_U, 0.5);
+  EXPECT_FALSE(plan.sources[0].has_axis);
+  EXPECT_EQ(plan.sources[1].strength_U, 0.6);
+  EXPECT_LT((plan.sources[1].axis - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(plan.source_model, "i125_6711");
+  EXPECT_EQ(plan.prescription_Gy, 145.0);
+}
+
+// From the tip: a seed on the retraction plane, two spacers, a seed, and a seed end to end with it.
+TEST_F(PlanText, places_the_seeds_of_a_train_behind_the_retraction_plane) {
+  const DosePlan plan = read_plan(file("plan.json", json(R"("strength_U": 0.5,
+        "template": {"origin_mm": [10, 20, 30]},
+        "needles": [{"hole": "e4.5", "retraction_mm": 5, "train": "S-2-S-S"}])")))
+                            .value();
+  ASSERT_EQ(plan.sources.size(), 3U);
+  const Vec3 first(10 + 15, 20 - 5, 25);  // three columns to the left of D, one row to anterior, 5 mm inferior
+  EXPECT_LT((plan.sources[0].at_mm - first).norm(), 1e-12) << plan.sources[0].at_mm.transpose();
+  EXPECT_LT((plan.sources[1].at_mm - (first - Vec3(0, 0, 4.5 + 11.0))).norm(), 1e-12);
+  EXPECT_LT((plan.sources[2].at_mm - (first - Vec3(0, 0, 9.0 + 11.0))).norm(), 1e-12);
+  EXPECT_TRUE(plan.sources[0].has_axis);
+  EXPECT_EQ(plan.sources[2].needle, "e4.5");
+}
+
+TEST_F(PlanText, in_csv_says_the_same_as_in_json) {
+  const DosePlan seeds = read_plan(file("seeds.csv", "# strength_U: 0.5\n# prescription_Gy: 145\n# any comment\n"
+                                                     "x_mm,y_mm,z_mm,ax,ay,az,needle\n1,2,3,0,0,1,D4\n4,5,6,,,,d3.5\n"))
+                             .value();
+  ASSERT_EQ(seeds.sources.size(), 2U);
+  EXPECT_EQ(seeds.sources[1].at_mm, Vec3(4, 5, 6));
+  EXPECT_TRUE(seeds.sources[0].has_axis);
+  EXPECT_FALSE(seeds.sources[1].has_axis);
+  EXPECT_EQ(seeds.sources[1].needle, "d3.5");
+  EXPECT_EQ(seeds.prescription_Gy, 145.0);
+  const DosePlan needles = read_plan(file("needles.csv", "# strength_U: 0.5\n# template_origin_mm: 10 20 30\n"
+                                                         "hole,retraction_mm,train\nD4,0,S-1-S\nd4,5,1-S\n"))
+                               .value();
+  ASSERT_EQ(needles.sources.size(), 3U);
+  EXPECT_LT((needles.sources[0].at_mm - Vec3(10, 20, 30)).norm(), 1e-12);
+  EXPECT_LT((needles.sources[1].at_mm - Vec3(10, 20, 20)).norm(), 1e-12);
+  EXPECT_LT((needles.sources[2].at_mm - Vec3(15, 20, 25 + 2.25 - 5.5 - 2.25)).norm(), 1e-12);
+}
+
+TEST_F(PlanText, that_is_written_is_read_again_exactly) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> place(-60.0, 60.0);
+  for (const Implant implant : {Implant::permanent, Implant::temporary}) {
+    DosePlan plan;
+    plan.label = "a \"plan\"";
+    plan.implant = implant;
+    for (int k = 0; k < 20; ++k) {
+      PlannedSource s;
+      s.at_mm = Vec3(place(random), place(random), place(random));
+      s.axis = Vec3(place(random), place(random), place(random)).normalized();
+      s.has_axis = k % 2 == 0;
+      s.strength_U = std::abs(place(random)) + 0.1;
+      if (implant == Implant::temporary) s.dwell_s = std::abs(place(random));
+      plan.sources.push_back(s);
+    }
+    const auto path = folder / "plan.json";
+    ASSERT_TRUE(write_plan_json(plan, path).ok());
+    const DosePlan back = read_plan(path).value();
+    ASSERT_EQ(back.sources.size(), plan.sources.size());
+    EXPECT_EQ(back.label, plan.label);
+    EXPECT_EQ(back.implant, implant);
+    for (std::size_t k = 0; k < plan.sources.size(); ++k) {
+      EXPECT_EQ(back.sources[k].at_mm, plan.sources[k].at_mm);
+      EXPECT_EQ(back.sources[k].strength_U, plan.sources[k].strength_U);
+      EXPECT_EQ(back.sources[k].dwell_s, plan.sources[k].dwell_s);
+      EXPECT_EQ(back.sources[k].has_axis, plan.sources[k].has_axis);
+      if (plan.sources[k].has_axis) EXPECT_LT((back.sources[k].axis - plan.sources[k].axis).norm(), 1e-15);
+    }
+  }
+}
+
+TEST_F(PlanText, names_the_place_and_the_cure_of_each_fault) {
+  const std::string seed = R"("seeds": [{"position_mm": [1, 2, 3]}])";
+  expect_error("a.json", json(seed), "strength is missing");
+  expect_error("b.json", json("\"strength_U\": -1, " + seed), "-1 U");
+  expect_error("c.json", json("\"strength_U\": 40000, " + seed), "40000 U");
+  expect_error("d.json", json(R"("strength_U": 0.5, "seed": [])"), "Did you mean 'seeds'");
+  expect_error("e.json", json(R"("strength_U": 0.5, "seeds": [{"position_mm": [1, 2]}])"), "three numbers");
+  expect_error("f.json", json(R"("strength_U": 0.5, "seeds": [{"axis": [0, 0, 1]}])"), "no position_mm");
+  expect_error("g.json", json(R"("strength_U": 0.5)"), "no seed");
+  expect_error("h.json", json(R"("strength_U": 0.5, "seeds": [{"position_mm": [1, 2, 3], "axis": [0, 0, 0]}])"), "axis");
+  expect_error("i.json", json(R"("strength_U": 0.5, "needles": [{"hole": "D4", "train": "S"}])"), "no template");
+  const std::string grid = R"("strength_U": 0.5, "template": {"origin_mm": [0, 0, 0]}, )";
+  expect_error("j.json", json(grid + R"("needles": [{"hole": "Q9", "train": "S"}])"), "no such hole");
+  expect_error("k.json", json(grid + R"("needles": [{"hole": "D4", "train": "S-x-S"}])"), "element 2");
+  expect_error("l.json", json(grid + R"("needles": [{"hole": "D4", "train": "2-2"}])"), "no seed");
+  expect_error("m.json", R"({"format": "stylet-plan", "version": 1, "units": "cm", "frame": "LPS"})", "'cm'");
+  expect_error("n.json", R"({"format": "stylet-plan", "version": 1, )", "not valid JSON");
+  expect_error("o.csv", "x_mm,y_mm,z_mm\n1,2,nan\n", "column z_mm");
+  expect_error("p.csv", "x_mm,y_mm,z_mm,strength_U\n1,2,3\n", "3 fields");
+  expect_error("q.csv", "x_mm,y_mm,z_mn\n1,2,3\n", "Did you mean 'z_mm'");
+  expect_error("r.csv", "hole,retraction_mm,train\nD4,0,S\n", "template_origin_mm");
+}
+
+TEST_F(PlanText, notes_seeds_that_stand_at_the_same_place) {
+  const DosePlan plan = read_plan(file("plan.csv", "x_mm,y_mm,z_mm,strength_U\n1,2,3,0.5\n1,2,3.001,0.5\n")).value();
+  EXPECT_EQ(plan.sources.size(), 2U);
+  ASSERT_EQ(plan.notes.size(), 1U);
+}
+
+TEST_F(PlanText, is_recognised_by_its_content) {
+  EXPECT_EQ(dose_file_kind(file("a", json("\"seeds\": []"))), DoseFileKind::plan);
+  EXPECT_EQ(dose_file_kind(file("b.csv", "# hello\nx_mm,y_mm,z_mm\n1,2,3\n")), DoseFileKind::plan);
+  EXPECT_EQ(dose_file_kind(file("c.json", R"({"format": "stylet-source"})")), DoseFileKind::source_model);
+  EXPECT_EQ(dose_file_kind(file("d.json", R"({"format": "stylet-contours"})")), DoseFileKind::none);
+  EXPECT_EQ(dose_file_kind(folder / "absent"), DoseFileKind::none);
+}
+
+}  // namespace
+}  // namespace stylet
