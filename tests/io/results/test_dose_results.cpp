@@ -241,6 +241,28 @@ TEST(DosePage, stays_below_8_MB_with_a_large_grid_and_many_structures) {
   fs::remove_all(folder);
 }
 
+TEST(DosePage, shows_a_plan_of_one_seed_without_anything_else) {
+  DoseEvaluation e = implant();
+  e.plan.sources.resize(1);
+  e.structures.clear();
+  e.goals.clear();
+  e.points.clear();
+  e.comparison.reset();
+  e.prescription_Gy = 0.0;
+  const fs::path folder = fresh_folder("one");
+  const auto done = write_dose_results(e, folder);
+  ASSERT_TRUE(done) << done.error().message();
+  const std::string page = text_of(folder / "report.html");
+  EXPECT_EQ(count(page, "No structures were given."),
+            1 + count(between(page, "<script>", "</script>"), "No structures were given."));
+  EXPECT_EQ(count(markup(page), "{{"), 0);
+  EXPECT_EQ(text_of(folder / "dvh.csv"), "dose_Gy\n0.000\n");
+  const auto data = nlohmann::json::parse(between(page, "id=\"dose-data\">", "</script>"));
+  EXPECT_EQ(data["centre_mm"][2], e.plan.sources[0].at_mm.z()) << "without a target the view is about the sources";
+  EXPECT_GT(data["dose"]["values"].get<std::string>().size(), 100U);
+  fs::remove_all(folder);
+}
+
 TEST(StructureMask, is_half_full_at_a_surface_with_the_volume_of_the_samples) {
   for (const StructureDose& structure : implant().structures) {
     const auto mask = results::structure_mask(structure, 2e5);

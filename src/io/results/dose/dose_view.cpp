@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/dose_view.hpp"
 
+#include "dose/round_number.hpp"
 #include "dose/structure_look.hpp"
 
 #include <fmt/format.h>
@@ -35,13 +36,6 @@ Eigen::AlignedBox3d box_of(const DoseGrid& grid) {
     box.extend(Vec3(grid.origin_mm + grid.direction * steps));
   }
   return box;
-}
-
-/// A number with one leading digit 1, 2 or 5 that is nearest below.
-double round_below(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  const double leading = value / power;
-  return power * (leading >= 5.0 ? 5.0 : leading >= 2.0 ? 2.0 : 1.0);
 }
 
 /// A dose that stands for all: the median of the target, or of the hottest structure, or of the grid.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/dvh_picture.hpp"
 
+#include "dose/round_number.hpp"
 #include "report/text.hpp"
 
 #include <fmt/format.h>
@@ -23,10 +24,10 @@ std::string frame_of_picture(double most_Gy) {
         "text-anchor=\"end\">{5}</text>",
         kLeft, y, kWide, kLeft - 8, y + 5, percent);
   }
-  constexpr int kTicks = 5;
-  for (int tick = 0; tick <= kTicks; ++tick) {
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.0f}</text>",
-                       kLeft + kWide * tick / kTicks, kTop + kHigh + 20, most_Gy * tick / kTicks);
+  const double every = round_below(most_Gy / 4.0);
+  for (double dose = 0.0; dose <= most_Gy; dose += every) {
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>", kLeft + kWide * dose / most_Gy,
+                       kTop + kHigh + 20, dose);
   }
   return svg + fmt::format(
                    "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">Dose [Gy]</text><text transform=\"translate(16 {}) "
@@ -38,7 +39,8 @@ std::string frame_of_picture(double most_Gy) {
 
 std::string dvh_picture(const DoseEvaluation& evaluation, const DvhTable& dvh,
                         const std::vector<std::string>& colours) {
-  const double most = std::max(dvh.dose_Gy.back(), 1e-9);
+  if (evaluation.structures.empty() || dvh.dose_Gy.size() < 2) return {};
+  const double most = dvh.dose_Gy.back();
   const double keys = kTop + kHigh + 62;
   const auto count = static_cast<double>(evaluation.structures.size());
   std::string svg = fmt::format(

@@ -8,7 +8,7 @@
 
 namespace stylet::results {
 
-/// The histograms as an SVG picture, for readers without a script.
+/// The histograms as an SVG picture, for readers without a script; empty without a structure.
 /// @param colours (structures) structure_colours()
 std::string dvh_picture(const DoseEvaluation& evaluation, const DvhTable& dvh, const std::vector<std::string>& colours);
 

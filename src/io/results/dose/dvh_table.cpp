@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/dvh_table.hpp"
 
+#include "dose/round_number.hpp"
 #include "fixed_number.hpp"
 #include "output_folder.hpp"
 #include "stylet/io/dose_results.hpp"
@@ -16,20 +17,11 @@ namespace {
 
 constexpr int kMostSteps = 400;
 
-/// The least number not below `value` that is 1, 2, 2.5 or 5 times a power of ten.
-double round_up(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double leading : {1.0, 2.0, 2.5, 5.0}) {
-    if (leading * power >= value * (1.0 - 1e-9)) return leading * power;
-  }
-  return 10.0 * power;
-}
-
 double step_of(const DoseEvaluation& evaluation) {
   if (evaluation.prescription_Gy > 0.0) return 0.01 * evaluation.prescription_Gy;
   double hottest = 0.0;
   for (const StructureDose& s : evaluation.structures) hottest = std::max(hottest, s.dvh.dose_of_percent(1.0));
-  return std::isfinite(hottest) && hottest > 0.0 ? round_up(hottest / kMostSteps) : 1.0;
+  return std::isfinite(hottest) && hottest > 0.0 ? round_above(hottest / kMostSteps) : 1.0;
 }
 
 }  // namespace
