@@ -174,6 +174,42 @@ Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const st
   return judged;
 }
 
+double median_of(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Leaves the first and the last frame of a grid out of the comparison where their ratios differ by more than 5 % from
+/// all others, while those of the frame beside them do not: some planning systems write an end frame without meaning.
+void drop_strange_ends(std::vector<double>& ratio, std::vector<Index>& frames, const DoseGrid& grid,
+                       std::vector<std::string>& warnings) {
+  constexpr double strange = 0.05, usual = 0.01;
+  const double all = median_of(ratio);
+  const auto of_frame = [&](Index frame) {
+    std::vector<double> values;
+    for (std::size_t p = 0; p < ratio.size(); ++p) {
+      if (frames[p] == frame) values.push_back(ratio[p]);
+    }
+    return median_of(std::move(values)) / all;
+  };
+  const Index last = grid.size[2] - 1;
+  for (const auto& [frame, beside] : {std::pair<Index, Index>(0, 1), std::pair<Index, Index>(last, last - 1)}) {
+    if (last < 2 || !(std::abs(of_frame(frame) - 1.0) > strange) || !(std::abs(of_frame(beside) - 1.0) < usual)) continue;
+    warnings.push_back(fmt::format(
+        "The {} frame of {} (z = {:.1f} mm) does not fit the frames beside it; it is left out of the comparison.",
+        frame == 0 ? "lowest" : "highest", grid.file, grid.point(0, 0, frame).z()));
+    std::size_t kept = 0;
+    for (std::size_t p = 0; p < ratio.size(); ++p) {
+      if (frames[p] == frame) continue;
+      ratio[kept] = ratio[p];
+      frames[kept++] = frames[p];
+    }
+    ratio.resize(kept);
+    frames.resize(kept);
+  }
+}
+
 void assume(DoseEvaluation& e, const DoseOptions& options) {
   e.assumptions.push_back(fmt::format("Source model: {} ({}); {}.", e.source.name, e.source.title, e.source.citation));
   const char* formalisms[] = {"line2d, a line source with the 2D anisotropy function",
@@ -293,6 +329,7 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
   const double most = grid.largest_Gy > 0.0 ? grid.largest_Gy * (1.0 - 1e-6) : INFINITY;
   std::vector<Vec3> points;
   std::vector<double> theirs;
+  std::vector<Index> frames;
   std::size_t n = 0;
   for (Index k = 0; k < grid.size[2]; ++k) {
     for (Index j = 0; j < grid.size[1]; ++j) {
@@ -306,6 +343,7 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
         if (near) continue;
         points.push_back(x);
         theirs.push_back(dose);
+        frames.push_back(k);
       }
     }
   }
@@ -316,6 +354,7 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
   std::vector<double> ratio(points.size());
   sum_rates(table, weighted.sources, points, ratio);
   for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] *= weighted.factor / theirs[p];
+  drop_strange_ends(ratio, frames, grid, e.warnings);
   std::sort(ratio.begin(), ratio.end());
   const auto at = [&](double share) {
     return ratio[static_cast<std::size_t>(share * static_cast<double>(ratio.size() - 1))];

@@ -16,10 +16,22 @@ namespace stylet {
 namespace {
 
 constexpr double kSameLength_mm = 0.5;
+constexpr double kSameHalfLife = 0.02;  // relative
 
 bool fits_length(const DosePlan& plan, const SourceModel& source) {
   return plan.source_length_mm <= 0.0 || std::abs(plan.source_length_mm - source.active_length_mm) <= kSameLength_mm ||
          std::abs(plan.source_length_mm - source.outer_length_mm) <= kSameLength_mm;
+}
+
+/// The isotope of a plan: by its name, or where that is none (in files without identities, for example), by the
+/// half-life. Empty: unknown.
+std::string isotope_of(const DosePlan& plan) {
+  const std::string name = isotope_name(plan.isotope);
+  if (name != plan.isotope || name.find('-') != std::string::npos) return name;
+  for (const SourceModel& source : known_sources()) {
+    if (std::abs(plan.half_life_days / source.half_life_days - 1.0) < kSameHalfLife) return source.isotope;
+  }
+  return {};
 }
 
 }  // namespace
@@ -49,7 +61,7 @@ std::string isotope_name(std::string_view text) {
 }
 
 std::vector<SourceModel> fitting_sources(const DosePlan& plan) {
-  const std::string isotope = isotope_name(plan.isotope);
+  const std::string isotope = isotope_of(plan);
   std::vector<SourceModel> of_isotope, of_length;
   for (const SourceModel& source : known_sources()) {
     if (!isotope.empty() && source.isotope != isotope) continue;
@@ -61,7 +73,8 @@ std::vector<SourceModel> fitting_sources(const DosePlan& plan) {
 
 Error unnamed_source(const DosePlan& plan) {
   std::string says;
-  if (!plan.isotope.empty()) says += " " + plan.isotope;
+  const std::string isotope = isotope_of(plan);
+  if (!isotope.empty()) says += " " + isotope;
   if (plan.source_length_mm > 0.0) says += fmt::format(" of {:g} mm length", plan.source_length_mm);
   std::string list;
   for (const SourceModel& source : fitting_sources(plan)) {
@@ -77,7 +90,7 @@ Error unnamed_source(const DosePlan& plan) {
 }
 
 Result<std::vector<std::string>> compare_source(const DosePlan& plan, const SourceModel& source) {
-  const std::string isotope = isotope_name(plan.isotope);
+  const std::string isotope = isotope_of(plan);
   if (!isotope.empty() && !source.isotope.empty() && isotope != isotope_name(source.isotope)) {
     return input_error(
         plan.file, fmt::format("the plan's sources are {}, and the source model {} is {}", isotope, source.name, source.isotope),

@@ -247,6 +247,11 @@ TEST(FittingSources, are_those_of_isotope_and_length_however_the_isotope_is_writ
   EXPECT_EQ(fitting_sources(plan).size(), 4U);
   plan.source_length_mm = 4.5;
   for (const SourceModel& fit : fitting_sources(plan)) EXPECT_EQ(fit.isotope, "I-125");
+  plan.isotope = "isotope";
+  plan.half_life_days = 74.0;
+  plan.source_length_mm = 3.5;
+  for (const SourceModel& fit : fitting_sources(plan)) EXPECT_EQ(fit.isotope, "Ir-192") << "by its half-life";
+  plan.isotope = "I-125";
   EXPECT_NE(unnamed_source(plan).message().find("i125_6711"), std::string::npos);
 }
 

@@ -13,7 +13,8 @@ namespace stylet {
 /// An isotope's name in one form: "I-125" for "I125", "125I", "Iodine-125" or "i 125". Text that is none stays.
 std::string isotope_name(std::string_view text);
 
-/// The known source models that fit what a plan says about its sources: the isotope, and the length of the active part
+/// The known source models that fit what a plan says about its sources: the isotope (by its half-life where the plan
+/// does not name it), and the length of the active part
 /// within 0.5 mm where a plan gives one. Models of another length are left out only if one with the right length
 /// exists. All models, where the plan says nothing.
 std::vector<SourceModel> fitting_sources(const DosePlan& plan);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/round_number.hpp"
 
+#include <initializer_list>
 #include <cmath>
 
 namespace stylet::results {
