@@ -164,6 +164,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "loop") return bench_loop_command(arguments, console);
   if (arguments.what == "supply") return bench_supply_command(arguments, console);
   if (arguments.what == "display") return bench_display_command(arguments, console);
+  if (arguments.what == "dose") return bench_dose_command(arguments, console);
   if (arguments.what == "viewers") return bench_viewers_command(arguments, console);
   return bench_remesh_command(arguments, console);
 }
@@ -206,9 +207,10 @@ Command add_bench_command(CLI::App& program) {
          "and lateness of the steps of the real-time loop; supply: speeds that a needle can have where no compliance "
          "was precomputed; display: time and error of a picture of the deformed patient; viewers: time of the steps of "
          "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
-         "cost")
+         "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table")
       ->required()
-      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle"}));
+      ->check(
+          one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle", "dose"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
                               "(default {}), scale, supply and display 570 or more (default {}). Nodes of the only "

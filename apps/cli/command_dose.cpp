@@ -100,7 +100,9 @@ Result<DoseStructures> structures_of(const DoseArguments& arguments, const DoseP
   return structures;
 }
 
-std::string value_text(double value, int digits) { return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-"; }
+std::string value_text(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
 
 std::string figures_text(const DoseEvaluation& e) {
   Table table({"structure", "taken as", "volume [cc]", "D90 [Gy]", "D30 [Gy]", "D10 [Gy]", "D2cc [Gy]", "D0.1cc [Gy]",
@@ -120,7 +122,8 @@ std::string goals_text(const DoseEvaluation& e) {
   Table table({"goal", "bound", "value", "", "citation"});
   for (const JudgedGoal& g : e.goals) {
     const char* verdict = !g.value ? "not judged" : g.met ? "met" : "MISSED";
-    table.row({g.goal.structure + " " + g.goal.metric, fmt::format("{} {:g}", g.goal.at_least ? "≥" : "≤", g.goal.bound),
+    table.row({g.goal.structure + " " + g.goal.metric,
+               fmt::format("{} {:g}", g.goal.at_least ? "≥" : "≤", g.goal.bound),
                g.value ? value_text(*g.value, 1) : "-", verdict, g.goal.citation});
   }
   return table.text();
@@ -133,13 +136,12 @@ void print(const DoseEvaluation& e, Console& console) {
     time += s.dwell_s;
   }
   const bool temporary = e.plan.implant == Implant::temporary;
-  console.say(fmt::format("{}: {} {}, {}", e.plan.file, e.plan.sources.size(),
-                          temporary ? "dwell positions" : "seeds",
+  console.say(fmt::format("{}: {} {}, {}", e.plan.file, e.plan.sources.size(), temporary ? "dwell positions" : "seeds",
                           temporary ? fmt::format("{:.1f} s in all", time) : fmt::format("{:.3f} U in all", strength)));
-  console.say(fmt::format("Source {}, formalism {}, {}; {}", e.source.name, to_string(e.formalism),
-                          e.prescription_Gy > 0 ? fmt::format("prescription {:g} Gy", e.prescription_Gy)
-                                                : std::string("no prescription"),
-                          e.quantity));
+  console.say(fmt::format(
+      "Source {}, formalism {}, {}; {}", e.source.name, to_string(e.formalism),
+      e.prescription_Gy > 0 ? fmt::format("prescription {:g} Gy", e.prescription_Gy) : std::string("no prescription"),
+      e.quantity));
   if (!e.structures.empty()) console.say(figures_text(e));
   if (!e.goals.empty() && !e.structures.empty() && e.prescription_Gy > 0) console.say(goals_text(e));
   if (e.comparison) {
@@ -159,8 +161,7 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   if (!options) return options.error();
   const Result<DoseStructures> structures = structures_of(arguments, *plan, console);
   if (!structures) return structures.error();
-  Result<DoseEvaluation> e =
-      evaluate_dose(*plan, *source, structures->structures, *options, console.progress());
+  Result<DoseEvaluation> e = evaluate_dose(*plan, *source, structures->structures, *options, console.progress());
   if (!e) return e.error();
   e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
   e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
@@ -173,16 +174,15 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
       shift[static_cast<Eigen::Index>(k)] = arguments.compare_shift_mm[k];
     if (Result<> done = compare_with_grid(*e, *grid, structures->structures, *options, shift); !done) return done;
     if (!shift.isZero())
-      e->assumptions.push_back(fmt::format("The compared dose grid was moved by ({:g}, {:g}, {:g}) mm.", shift.x(),
-                                           shift.y(), shift.z()));
+      e->assumptions.push_back(
+          fmt::format("The compared dose grid was moved by ({:g}, {:g}, {:g}) mm.", shift.x(), shift.y(), shift.z()));
     e->warnings.insert(e->warnings.end(), grid->notes.begin(), grid->notes.end());
   }
   for (const std::string& warning : e->warnings) console.warn(warning);
   if (Result<> written = write_dose_results(*e, arguments.output, console.progress()); !written) return written;
   if (Result<> written = write_rtplan(e->plan, e->source, fs::path(arguments.output) / "plan.dcm"); !written)
     return written;
-  if (Result<> written =
-          write_rtdose(e->grid, rtplan_uid(e->plan, e->source), fs::path(arguments.output) / "dose.dcm");
+  if (Result<> written = write_rtdose(e->grid, rtplan_uid(e->plan, e->source), fs::path(arguments.output) / "dose.dcm");
       !written)
     return written;
   print(*e, console);
@@ -225,8 +225,9 @@ Command add_dose_command(CLI::App& program) {
   app->add_option("--days", arguments->days, "Dose within this number of days after the implantation")
       ->type_name("D")
       ->check(number_between(0.001, 100000, "d"));
-  app->add_option("--decay-days", arguments->decay_days,
-                  "Days from the date of the strengths to the implantation, during which the sources decay (default: 0)")
+  app->add_option(
+         "--decay-days", arguments->decay_days,
+         "Days from the date of the strengths to the implantation, during which the sources decay (default: 0)")
       ->type_name("D")
       ->check(number_between(-10000, 10000, "d"));
   app->add_option("--compare", arguments->compare, "DICOM RTDOSE to compare with")->type_name("RTDOSE");

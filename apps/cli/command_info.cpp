@@ -5,6 +5,8 @@
 #include "scenario_draft.hpp"
 #include "validators.hpp"
 
+#include "stylet/dose/known_sources.hpp"
+#include "stylet/io/dose_io.hpp"
 #include "stylet/io/input.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +24,26 @@ struct InfoArguments {
   std::string output;
 };
 
+/// Describes what Result holds, or passes its error on.
+template <class T>
+Result<Description> described(const Result<T>& read) {
+  if (!read) return read.error();
+  return describe(*read);
+}
+
 Result<Description> description_of(const InfoArguments& arguments) {
+  if (arguments.file == "sources") return describe_known_sources();
+  if (const Result<SourceModel> known = find_source(arguments.file); known) return describe(*known);
+  switch (dose_file_kind(arguments.file)) {
+    case DoseFileKind::plan:
+      return described(read_plan(arguments.file));
+    case DoseFileKind::dose_grid:
+      return described(read_rtdose(arguments.file));
+    case DoseFileKind::source_model:
+      return described(read_source_model(arguments.file));
+    case DoseFileKind::none:
+      break;
+  }
   if (is_meant_as_model(arguments.file)) {
     const Result<ModelFile> model = read_model_file(arguments.file);
     if (!model) return model.error();
@@ -87,9 +108,13 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
 
 Command add_info_command(CLI::App& program) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* app =
-      program.add_subcommand("info", "Describe a contour set, mask, mesh, surface, saved model or recording");
-  app->add_option("FILE", arguments->file, "File, or folder that contains one DICOM RTSTRUCT or SEG")->required();
+  CLI::App* app = program.add_subcommand(
+      "info", "Describe contours, a mask, mesh, surface, plan, dose, source model, saved model or recording");
+  app->add_option("FILE", arguments->file,
+                  "File, or folder that contains one DICOM RTSTRUCT or SEG; or the name of a source model, or "
+                  "'sources' for a list of those "
+                  "that the program has")
+      ->required();
   app->add_option("--scale", arguments->scale,
                   "Unit of a mesh file in mm, e.g. 1000 for metres (default: as the file says)")
       ->type_name("S")

@@ -3,6 +3,9 @@
 
 #include "console.hpp"
 
+#include "stylet/dose/dose_grid.hpp"
+#include "stylet/dose/dose_plan.hpp"
+#include "stylet/dose/source_model.hpp"
 #include "stylet/geom/contours.hpp"
 #include "stylet/geom/label_image.hpp"
 #include "stylet/geom/quality.hpp"
@@ -31,6 +34,11 @@ Description describe(const TetMesh& mesh);
 Description describe(const std::vector<Surface>& surfaces);
 Description describe(const RunRecording& run);
 Description describe(const ModelFile& file);
+Description describe(const DosePlan& plan);
+Description describe(const DoseGrid& grid);
+Description describe(const SourceModel& source);
+/// The source models that the program has.
+Description describe_known_sources();
 
 /// The JSON keys common to all descriptions of a mesh: nodes, tets, dihedral_deg, edge_mm, radius_ratio_min, …
 Json quality_json(const MeshQuality& quality);

@@ -4,8 +4,8 @@
 #include "stylet/dose/fitting_sources.hpp"
 #include "stylet/dose/rate_table.hpp"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -152,7 +152,7 @@ std::optional<double> value_of(const DoseMetric& metric, const DoseVolume& dvh, 
     return relative ? dvh.percent_above(dose) : dvh.volume_above_cc(dose);
   }
   const double dose = metric.kind == DoseMetric::Kind::dose_of_percent ? dvh.dose_of_percent(metric.amount)
-                                                                        : dvh.dose_of_volume(metric.amount);
+                                                                       : dvh.dose_of_volume(metric.amount);
   if (!relative) return dose;
   return prescription > 0.0 ? std::optional(100.0 * dose / prescription) : std::nullopt;
 }
@@ -195,7 +195,8 @@ void drop_strange_ends(std::vector<double>& ratio, std::vector<Index>& frames, c
   };
   const Index last = grid.size[2] - 1;
   for (const auto& [frame, beside] : {std::pair<Index, Index>(0, 1), std::pair<Index, Index>(last, last - 1)}) {
-    if (last < 2 || !(std::abs(of_frame(frame) - 1.0) > strange) || !(std::abs(of_frame(beside) - 1.0) < usual)) continue;
+    if (last < 2 || !(std::abs(of_frame(frame) - 1.0) > strange) || !(std::abs(of_frame(beside) - 1.0) < usual))
+      continue;
     warnings.push_back(fmt::format(
         "The {} frame of {} (z = {:.1f} mm) does not fit the frames beside it; it is left out of the comparison.",
         frame == 0 ? "lowest" : "highest", grid.file, grid.point(0, 0, frame).z()));
@@ -215,10 +216,11 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
   const char* formalisms[] = {"line2d, a line source with the 2D anisotropy function",
                               "line1d, a line source with the 1D anisotropy function and no direction",
                               "point, a point source with the 1D anisotropy function and no direction"};
-  e.assumptions.push_back(fmt::format("Formalism: {} (AAPM TG-43U1). All is water: no attenuation by other seeds, no bone.",
-                                      formalisms[static_cast<int>(options.formalism)]));
-  const auto without = std::count_if(e.plan.sources.begin(), e.plan.sources.end(),
-                                     [](const PlannedSource& s) { return !s.has_axis; });
+  e.assumptions.push_back(
+      fmt::format("Formalism: {} (AAPM TG-43U1). All is water: no attenuation by other seeds, no bone.",
+                  formalisms[static_cast<int>(options.formalism)]));
+  const auto without =
+      std::count_if(e.plan.sources.begin(), e.plan.sources.end(), [](const PlannedSource& s) { return !s.has_axis; });
   if (without > 0 && options.formalism == DoseFormalism::line2d) {
     e.assumptions.push_back(
         fmt::format("{} of {} sources have no direction in the plan; they are taken along z, inferior to superior.",
@@ -348,7 +350,8 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
     }
   }
   if (points.empty()) {
-    return input_error(grid.file, "no point of the dose grid can be compared: all lie near a source or have hardly any dose",
+    return input_error(grid.file,
+                       "no point of the dose grid can be compared: all lie near a source or have hardly any dose",
                        "Give the dose grid that belongs to this plan");
   }
   std::vector<double> ratio(points.size());
@@ -362,8 +365,8 @@ Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<co
   e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99)};
   if (std::abs(at(0.5) - 1.0) > 0.02) {
     e.warnings.push_back(fmt::format(
-        "The computed dose is {:.3f} times that of {} (median). Formalism, source model or strength may differ.", at(0.5),
-        grid.file));
+        "The computed dose is {:.3f} times that of {} (median). Formalism, source model or strength may differ.",
+        at(0.5), grid.file));
   }
   for (std::size_t k = 0; k < structures.size() && k < e.structures.size(); ++k) {
     const double covered = covered_percent(structures[k].samples, grid, shift_mm);

@@ -55,7 +55,8 @@ std::string isotope_name(std::string_view text) {
     if (std::isalpha(u) != 0) letters += static_cast<char>(std::tolower(u));
     if (std::isdigit(u) != 0) digits += c;
   }
-  const auto element = std::find_if(elements.begin(), elements.end(), [&](const auto& e) { return e.first == letters; });
+  const auto element =
+      std::find_if(elements.begin(), elements.end(), [&](const auto& e) { return e.first == letters; });
   if (element == elements.end() || digits.empty()) return std::string(text);
   return fmt::format("{}-{}", element->second, digits);
 }
@@ -81,8 +82,8 @@ Error unnamed_source(const DosePlan& plan) {
     list += fmt::format("{}{} ({}, {}, active length {:g} mm)", list.empty() ? "" : "; ", source.name, source.title,
                         source.isotope, source.active_length_mm);
   }
-  const std::string what =
-      fmt::format("the plan does not name the model of its sources; it says{}", says.empty() ? " nothing about them" : says);
+  const std::string what = fmt::format("the plan does not name the model of its sources; it says{}",
+                                       says.empty() ? " nothing about them" : says);
   if (list.empty())
     return input_error(plan.file, what + ", and the program knows no such source",
                        "Give a file with the source's TG-43 data (--source FILE.json)");
@@ -93,14 +94,15 @@ Result<std::vector<std::string>> compare_source(const DosePlan& plan, const Sour
   const std::string isotope = isotope_of(plan);
   if (!isotope.empty() && !source.isotope.empty() && isotope != isotope_name(source.isotope)) {
     return input_error(
-        plan.file, fmt::format("the plan's sources are {}, and the source model {} is {}", isotope, source.name, source.isotope),
+        plan.file,
+        fmt::format("the plan's sources are {}, and the source model {} is {}", isotope, source.name, source.isotope),
         fmt::format("Name a source model of {} (--source)", isotope));
   }
   std::vector<std::string> sentences;
   if (plan.half_life_days > 0.0 && std::abs(plan.half_life_days / source.half_life_days - 1.0) > 0.002) {
-    sentences.push_back(fmt::format(
-        "The plan says a half-life of {:.6g} d, the source model {} has {:.6g} d; the model's is used.",
-        plan.half_life_days, source.name, source.half_life_days));
+    sentences.push_back(
+        fmt::format("The plan says a half-life of {:.6g} d, the source model {} has {:.6g} d; the model's is used.",
+                    plan.half_life_days, source.name, source.half_life_days));
   }
   if (!fits_length(plan, source)) {
     sentences.push_back(fmt::format(

@@ -54,14 +54,11 @@ std::span<const DoseGoal> permanent_prostate_goals() {
   static const std::vector<DoseGoal> goals = [] {
     const std::string abs = "Davis et al. 2012 (American Brachytherapy Society), Brachytherapy 11:6";
     const std::string estro = "Salembier et al. 2007 (GEC-ESTRO), Radiother Oncol 83:3";
-    return std::vector<DoseGoal>{{"prostate", "D90_percent", true, 100.0, abs},
-                                 {"prostate", "V100_percent", true, 95.0, estro},
-                                 {"prostate", "V150_percent", false, 60.0, abs},
-                                 {"prostate", "V200_percent", false, 20.0, abs},
-                                 {"urethra", "D10_percent", false, 150.0, estro},
-                                 {"urethra", "D30_percent", false, 130.0, estro},
-                                 {"rectum", "D2cc_percent", false, 100.0, estro},
-                                 {"rectum", "D0.1cc_Gy", false, 200.0, estro}};
+    return std::vector<DoseGoal>{
+        {"prostate", "D90_percent", true, 100.0, abs},   {"prostate", "V100_percent", true, 95.0, estro},
+        {"prostate", "V150_percent", false, 60.0, abs},  {"prostate", "V200_percent", false, 20.0, abs},
+        {"urethra", "D10_percent", false, 150.0, estro}, {"urethra", "D30_percent", false, 130.0, estro},
+        {"rectum", "D2cc_percent", false, 100.0, estro}, {"rectum", "D0.1cc_Gy", false, 200.0, estro}};
   }();
   return goals;
 }

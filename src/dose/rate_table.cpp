@@ -22,16 +22,16 @@ constexpr std::size_t kBlock = 128;  // points that are computed together, so th
 // loaded. Sanitizers do not support this choice.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define STYLET_FOR_VECTORS                                                                       \
-  __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#define STYLET_FOR_VECTORS __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
 #else
 #define STYLET_FOR_VECTORS
 #endif
 
 /// Points of one block, relative to a source.
 struct Block {
-  std::array<double, kBlock> x{}, y{}, z{};             // [mm]
-  std::array<double, kBlock> radius{}, cosine{}, turn{}, rate{};  // [mm], cosine of the angle to the axis, dose rate by the table
+  std::array<double, kBlock> x{}, y{}, z{};  // [mm]
+  std::array<double, kBlock> radius{}, cosine{}, turn{},
+      rate{};  // [mm], cosine of the angle to the axis, dose rate by the table
 };
 
 /// The table's numbers that the loop needs.
@@ -57,8 +57,8 @@ STYLET_FOR_VECTORS void read_table(Block& block, const TableView& table, double 
     const double c = std::abs(cosine) < 1.0 ? std::abs(cosine) : 1.0;
     const double root = std::sqrt(1.0 - c);
     const double acute =
-        root *
-        (((((-0.004258281 * c + 0.019150963) * c - 0.044784508) * c + 0.087813916) * c - 0.214504546) * c + 1.570795051);
+        root * (((((-0.004258281 * c + 0.019150963) * c - 0.044784508) * c + 0.087813916) * c - 0.214504546) * c +
+                1.570795051);
     const double turn = (cosine < 0.0 ? half_turn - acute : acute) * table.steps_per_rad;
     block.turn[p] = turn;
     block.rate[p] = inverse * inverse;

@@ -107,8 +107,8 @@ Result<DoseStructures> dose_structures(const PatientInput& input, const DoseStru
   DoseStructures out;
   if (const auto* contours = std::get_if<ContourSet>(&input)) out.notes = contours->notes;
   if (const auto* image = std::get_if<LabelImage>(&input)) out.notes = image->notes;
-  const Result<> added = std::visit(
-      [&](const auto& content) { return add_structures(content, options, progress, out); }, input);
+  const Result<> added =
+      std::visit([&](const auto& content) { return add_structures(content, options, progress, out); }, input);
   if (!added) return added.error();
   if (!out.structures.empty()) return out;
   std::string why;

@@ -263,7 +263,8 @@ TEST(VolumeSamples, of_a_mesh_and_of_a_mask_have_the_volume_and_the_centre_of_th
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const double part = tet_volume(mesh, t);
     volume += part;
-    for (const Index n : mesh.tets[static_cast<std::size_t>(t)]) centre += 0.25 * part * mesh.nodes[static_cast<std::size_t>(n)];
+    for (const Index n : mesh.tets[static_cast<std::size_t>(t)])
+      centre += 0.25 * part * mesh.nodes[static_cast<std::size_t>(n)];
   }
   const StructureSamples samples = sample_structure(mesh, 0, 1.0).value();
   Vec3 mean = Vec3::Zero();

@@ -9,8 +9,8 @@
 namespace stylet {
 
 /// The dose rate around a source as a table, for many points: some ten times faster than Tg43::rate(). The table holds
-/// r² times the dose rate, on equal steps of the radius and of the angle, and is read linearly between them; nearer than
-/// kNear_mm and beyond the table the formula itself is used. The difference from the formula is below 0.03 % (test
+/// r² times the dose rate, on equal steps of the radius and of the angle, and is read linearly between them; nearer
+/// than kNear_mm and beyond the table the formula itself is used. The difference from the formula is below 0.03 % (test
 /// RateTable.*). Immutable: any number of threads may use it.
 class RateTable {
  public:
@@ -31,8 +31,8 @@ class RateTable {
 
  private:
   Tg43 tg43_;
-  bool isotropic_;             // the formalism needs no angle
-  int angles_;                 // entries for each radius
+  bool isotropic_;  // the formalism needs no angle
+  int angles_;      // entries for each radius
   double steps_per_rad_ = 0.0;
   std::vector<float> scaled_;  // (radii × angles_) r² times the dose rate; the angles of one radius lie together
 };

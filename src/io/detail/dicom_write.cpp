@@ -42,9 +42,9 @@ void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const ch
   fill.text(data, DCM_Manufacturer, "Stylet");
   fill.text(data, DCM_PatientName, "STYLET^PHANTOM");
   fill.text(data, DCM_PatientID, "STYLET");
-  for (const DcmTagKey& empty : {DCM_PatientBirthDate, DCM_PatientSex, DCM_StudyDate, DCM_StudyTime,
-                                 DCM_AccessionNumber, DCM_ReferringPhysicianName, DCM_StudyID, DCM_SeriesNumber,
-                                 DCM_OperatorsName}) {
+  for (const DcmTagKey& empty :
+       {DCM_PatientBirthDate, DCM_PatientSex, DCM_StudyDate, DCM_StudyTime, DCM_AccessionNumber,
+        DCM_ReferringPhysicianName, DCM_StudyID, DCM_SeriesNumber, DCM_OperatorsName}) {
     fill.text(data, empty, "");
   }
 }

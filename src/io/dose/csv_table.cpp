@@ -73,9 +73,10 @@ Result<CsvTable> read_csv_table(const std::filesystem::path& path, std::span<con
       for (const std::string& column : fields) {
         if (std::find(known.begin(), known.end(), column) != known.end()) continue;
         const std::string near = nearest_name(column, known);
-        return input_error(fmt::format("{}, line {}", table.file, number),
-                           fmt::format("the column '{}' is not known; the columns are {}", column, fmt::join(known, ", ")),
-                           near.empty() ? std::string("Use one of these names") : fmt::format("Did you mean '{}'?", near));
+        return input_error(
+            fmt::format("{}, line {}", table.file, number),
+            fmt::format("the column '{}' is not known; the columns are {}", column, fmt::join(known, ", ")),
+            near.empty() ? std::string("Use one of these names") : fmt::format("Did you mean '{}'?", near));
       }
       continue;
     }

@@ -3,8 +3,8 @@
 
 #include "stylet/io/dose_io.hpp"
 
-/// The parsers behind the readers of dose_io.hpp. Those of DICOM files give untrusted bytes to third-party code and must
-/// only be called in a child process (detail/guard.hpp).
+/// The parsers behind the readers of dose_io.hpp. Those of DICOM files give untrusted bytes to third-party code and
+/// must only be called in a child process (detail/guard.hpp).
 namespace stylet::detail {
 
 Result<DosePlan> parse_rtplan(const std::filesystem::path& path);

@@ -26,7 +26,8 @@ class JsonObject {
   [[nodiscard]] std::string place(const std::string& key) const { return where_ + ", '" + key + "'"; }
   [[nodiscard]] const std::string& where() const { return where_; }
 
-  /// Sets `value` if the object has the key. Error: the value is not text, or not a finite number, or not three of them.
+  /// Sets `value` if the object has the key. Error: the value is not text, or not a finite number, or not three of
+  /// them.
   [[nodiscard]] Result<> take(const std::string& key, std::string& value) const;
   [[nodiscard]] Result<> take(const std::string& key, double& value) const;
   [[nodiscard]] Result<> take(const std::string& key, Vec3& value) const;

@@ -14,8 +14,8 @@ struct TrainLengths {
   double spacer_mm = 5.5;
 };
 
-/// Distances [mm] of the seeds' centres from the superior end of a train. The train is written from the needle's tip on,
-/// its elements separated by '-': S is a seed, a whole number that many spacers. "S-1-S" has its seeds 10 mm apart.
+/// Distances [mm] of the seeds' centres from the superior end of a train. The train is written from the needle's tip
+/// on, its elements separated by '-': S is a seed, a whole number that many spacers. "S-1-S" has its seeds 10 mm apart.
 /// Errors: an element that is neither, with its position; no seed.
 /// @param where file and needle, for messages
 Result<std::vector<double>> seeds_of_train(const std::string& train, const TrainLengths& lengths,

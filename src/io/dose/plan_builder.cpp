@@ -18,15 +18,17 @@ constexpr double kSamePoint_mm = 0.01;
 
 Result<> PlanBuilder::add(PlannedSource source, const std::string& where) {
   if (!std::isfinite(source.strength_U) || source.strength_U <= 0.0) {
-    return input_error(where,
-                       source.strength_U == 0.0
-                           ? std::string("the air-kerma strength is missing")
-                           : fmt::format("the air-kerma strength is {} U, a number above 0 is expected", source.strength_U),
-                       "Give strength_U for each seed, or once for all");
+    return input_error(
+        where,
+        source.strength_U == 0.0
+            ? std::string("the air-kerma strength is missing")
+            : fmt::format("the air-kerma strength is {} U, a number above 0 is expected", source.strength_U),
+        "Give strength_U for each seed, or once for all");
   }
   if (plan.implant == Implant::permanent && source.strength_U > kStrongestSeed_U) {
-    return input_error(where, fmt::format("the air-kerma strength is {:g} U, at most {:g} U is expected of a seed",
-                                          source.strength_U, kStrongestSeed_U),
+    return input_error(where,
+                       fmt::format("the air-kerma strength is {:g} U, at most {:g} U is expected of a seed",
+                                   source.strength_U, kStrongestSeed_U),
                        "Give the strength in U = µGy m²/h, or write \"implant\": \"temporary\"");
   }
   if (!std::isfinite(source.dwell_s) || source.dwell_s < 0.0)
@@ -44,7 +46,8 @@ Result<> PlanBuilder::add(PlannedSource source, const std::string& where) {
 
 Result<> PlanBuilder::add(const PlanNeedle& needle, const PlanTemplate& grid, const std::string& where) {
   const auto offset = grid.grid.offset_mm(needle.hole);
-  if (!offset) return input_error(fmt::format("{}, hole '{}'", where, needle.hole), offset.error().what, offset.error().cure);
+  if (!offset)
+    return input_error(fmt::format("{}, hole '{}'", where, needle.hole), offset.error().what, offset.error().cure);
   const Result<std::vector<double>> seeds = seeds_of_train(needle.train, grid.lengths, where);
   if (!seeds) return seeds.error();
   if (!std::isfinite(needle.retraction_mm))
@@ -76,7 +79,8 @@ Result<DosePlan> PlanBuilder::finish() {
     }
   }
   if (twins > 0 && plan.implant == Implant::permanent) {
-    plan.notes.push_back(fmt::format("{} seeds of {} stand at the place of another one; all are counted.", twins, plan.file));
+    plan.notes.push_back(
+        fmt::format("{} seeds of {} stand at the place of another one; all are counted.", twins, plan.file));
   }
   return std::move(plan);
 }

@@ -13,10 +13,10 @@ namespace stylet::detail {
 /// Where the holes of the template are, for needles with trains.
 struct PlanTemplate {
   TemplateGrid grid;
-  Vec3 origin_mm = Vec3::Zero();     ///< [mm] LPS, where the axis of hole D4 meets the base plane (retraction 0)
-  Vec3 direction = Vec3::UnitZ();    ///< from the template to the base: superior
-  Vec3 left = Vec3::UnitX();         ///< towards the patient's left
-  Vec3 anterior = -Vec3::UnitY();    ///< towards anterior
+  Vec3 origin_mm = Vec3::Zero();   ///< [mm] LPS, where the axis of hole D4 meets the base plane (retraction 0)
+  Vec3 direction = Vec3::UnitZ();  ///< from the template to the base: superior
+  Vec3 left = Vec3::UnitX();       ///< towards the patient's left
+  Vec3 anterior = -Vec3::UnitY();  ///< towards anterior
   TrainLengths lengths;
   std::optional<double> tip_offset_mm;  ///< superior end of a train beyond the retraction plane; half a seed if unset
 };

@@ -13,8 +13,8 @@ namespace stylet::detail {
 
 namespace {
 
-const std::vector<std::string> kPlanColumns{"x_mm",   "y_mm",    "z_mm", "ax",            "ay",   "az", "strength_U",
-                                            "needle", "dwell_s", "hole", "retraction_mm", "train"};
+const std::vector<std::string> kPlanColumns{
+    "x_mm", "y_mm", "z_mm", "ax", "ay", "az", "strength_U", "needle", "dwell_s", "hole", "retraction_mm", "train"};
 
 /// The number of a line "# key: value"; `usual` where there is none.
 Result<double> key_number(const CsvTable& table, const std::string& key, double usual) {
@@ -73,7 +73,8 @@ Result<PlanTemplate> template_of(const CsvTable& table) {
     numbers.push_back(to_number(part).value_or(NAN));
   }
   if (numbers.size() != 3 || !std::isfinite(numbers[0] + numbers[1] + numbers[2])) {
-    return input_error(table.file, fmt::format("the line '# template_origin_mm: x y z' is missing or wrong ('{}')", origin),
+    return input_error(table.file,
+                       fmt::format("the line '# template_origin_mm: x y z' is missing or wrong ('{}')", origin),
                        "Give the place where the axis of hole D4 meets the base plane, in mm");
   }
   grid.origin_mm = Vec3(numbers[0], numbers[1], numbers[2]);

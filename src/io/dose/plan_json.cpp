@@ -19,12 +19,12 @@ using detail::JsonObject;
 using detail::PlanBuilder;
 using detail::PlanTemplate;
 
-const std::vector<std::string> kPlanKeys{"format",       "version", "units",      "frame",         "frame_of_reference",
-                                         "label",        "implant", "source",     "strength_U",    "strength_date",
-                                         "prescription_Gy", "seeds", "template",  "needles"};
+const std::vector<std::string> kPlanKeys{"format",          "version", "units",    "frame",      "frame_of_reference",
+                                         "label",           "implant", "source",   "strength_U", "strength_date",
+                                         "prescription_Gy", "seeds",   "template", "needles"};
 const std::vector<std::string> kSeedKeys{"position_mm", "axis", "strength_U", "needle", "dwell_s"};
-const std::vector<std::string> kTemplateKeys{"origin_mm", "pitch_mm",       "columns",          "rows",
-                                             "direction", "left",           "anterior",         "seed_length_mm",
+const std::vector<std::string> kTemplateKeys{"origin_mm",        "pitch_mm",     "columns",  "rows",
+                                             "direction",        "left",         "anterior", "seed_length_mm",
                                              "spacer_length_mm", "tip_offset_mm"};
 const std::vector<std::string> kNeedleKeys{"hole", "retraction_mm", "train", "strength_U"};
 
@@ -55,11 +55,11 @@ Result<> read_header(const JsonObject& object, PlanBuilder& builder, double& str
   if (Result<> keys = object.check_keys(kPlanKeys); !keys) return keys;
   std::string units, frame, implant = "permanent";
   DosePlan& plan = builder.plan;
-  Result<> taken = all_of(object.take("units", units), object.take("frame", frame), object.take("implant", implant),
-                          object.take("frame_of_reference", plan.frame_of_reference), object.take("label", plan.label),
-                          object.take("source", plan.source_model), object.take("strength_U", strength_U),
-                          object.take("strength_date", plan.strength_date),
-                          object.take("prescription_Gy", plan.prescription_Gy));
+  Result<> taken =
+      all_of(object.take("units", units), object.take("frame", frame), object.take("implant", implant),
+             object.take("frame_of_reference", plan.frame_of_reference), object.take("label", plan.label),
+             object.take("source", plan.source_model), object.take("strength_U", strength_U),
+             object.take("strength_date", plan.strength_date), object.take("prescription_Gy", plan.prescription_Gy));
   if (!taken) return taken;
   if (units != "mm")
     return input_error(object.place("units"), fmt::format("the units are '{}', 'mm' is expected", units),
@@ -89,12 +89,11 @@ Result<> read_template(const JsonObject& object, PlanTemplate& grid) {
     return input_error(object.where(), "the template has no origin_mm",
                        "Give the place where the axis of hole D4 meets the base plane, [x, y, z] in mm");
   double tip = NAN;
-  Result<> taken = all_of(
-      object.take("origin_mm", grid.origin_mm), object.take("pitch_mm", grid.grid.pitch_mm),
-      take_words(object, "columns", grid.grid.columns), take_words(object, "rows", grid.grid.rows),
-      object.take("direction", grid.direction), object.take("left", grid.left), object.take("anterior", grid.anterior),
-      object.take("seed_length_mm", grid.lengths.seed_mm), object.take("spacer_length_mm", grid.lengths.spacer_mm),
-      object.take("tip_offset_mm", tip));
+  Result<> taken = all_of(object.take("origin_mm", grid.origin_mm), object.take("pitch_mm", grid.grid.pitch_mm),
+                          take_words(object, "columns", grid.grid.columns), take_words(object, "rows", grid.grid.rows),
+                          object.take("direction", grid.direction), object.take("left", grid.left),
+                          object.take("anterior", grid.anterior), object.take("seed_length_mm", grid.lengths.seed_mm),
+                          object.take("spacer_length_mm", grid.lengths.spacer_mm), object.take("tip_offset_mm", tip));
   if (!taken) return taken;
   if (std::isfinite(tip)) grid.tip_offset_mm = tip;
   return detail::check_template(grid, object.where());
@@ -104,9 +103,9 @@ Result<> read_needle(const JsonObject& object, double strength_U, const PlanTemp
   if (Result<> keys = object.check_keys(kNeedleKeys); !keys) return keys;
   detail::PlanNeedle needle;
   needle.strength_U = strength_U;
-  Result<> taken = all_of(object.take("hole", needle.hole), object.take("train", needle.train),
-                          object.take("retraction_mm", needle.retraction_mm),
-                          object.take("strength_U", needle.strength_U));
+  Result<> taken =
+      all_of(object.take("hole", needle.hole), object.take("train", needle.train),
+             object.take("retraction_mm", needle.retraction_mm), object.take("strength_U", needle.strength_U));
   return taken ? builder.add(needle, grid, object.where()) : taken;
 }
 

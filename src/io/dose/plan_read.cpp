@@ -42,7 +42,8 @@ std::string header_line(const fs::path& path) {
 }
 
 bool has_words(const std::string& line, std::initializer_list<const char*> words) {
-  return std::all_of(words.begin(), words.end(), [&](const char* word) { return line.find(word) != std::string::npos; });
+  return std::all_of(words.begin(), words.end(),
+                     [&](const char* word) { return line.find(word) != std::string::npos; });
 }
 
 /// The value of "format" of a JSON file; empty if it has none.
@@ -113,7 +114,8 @@ Result<std::vector<Vec3>> read_points(const fs::path& path) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const std::string& column = columns[static_cast<std::size_t>(axis)];
       if (!table->has(column))
-        return input_error(table->file, "the column " + column + " is missing", "Write x_mm,y_mm,z_mm in the first line");
+        return input_error(table->file, "the column " + column + " is missing",
+                           "Write x_mm,y_mm,z_mm in the first line");
       const Result<double> number = table->number(row, column);
       if (!number) return number.error();
       points[row][axis] = *number;
@@ -142,8 +144,7 @@ Result<std::vector<DoseGoal>> read_goals(const fs::path& path) {
                          "Write e.g. >=90 or <150");
     bound.erase(0, bound.size() > 1 && bound[1] == '=' ? 2 : 1);
     const auto number = detail::to_number(bound);
-    if (!number)
-      return input_error(table->where(row), "the bound has no number", "Write e.g. >=90 or <150");
+    if (!number) return input_error(table->where(row), "the bound has no number", "Write e.g. >=90 or <150");
     goal.bound = *number;
     goals.push_back(goal);
   }

@@ -33,8 +33,9 @@ struct StoredNumbers {
 Result<int> count_of(DcmItem& data, const DcmTagKey& tag, const char* name, const std::string& file) {
   const auto value = integer_of(data, tag);
   if (value && *value > 0) return *value;
-  return input_error(file, fmt::format("{} {} is '{}', a whole number above 0 is expected", name,
-                                       DcmTag(tag).getXTag().toString().c_str(), text_of(data, tag)),
+  return input_error(file,
+                     fmt::format("{} {} is '{}', a whole number above 0 is expected", name,
+                                 DcmTag(tag).getXTag().toString().c_str(), text_of(data, tag)),
                      kExportDoseAgain);
 }
 
@@ -81,8 +82,8 @@ Result<std::vector<double>> read_offsets(DcmItem& data, int frames, const Vec3& 
   if (frames == 1) return std::vector<double>{0.0};
   if (offsets.size() != static_cast<std::size_t>(frames)) {
     return input_error(file,
-                       fmt::format("the grid has {} frames, and GridFrameOffsetVector (3004,000C) has {} numbers", frames,
-                                   offsets.size()),
+                       fmt::format("the grid has {} frames, and GridFrameOffsetVector (3004,000C) has {} numbers",
+                                   frames, offsets.size()),
                        kExportDoseAgain);
   }
   // The vector may also hold the frames' own z; PS3.3 C.8.8.3.2.
@@ -160,9 +161,10 @@ void note_oddities(const StoredNumbers& n, const std::vector<std::size_t>& order
                                   [&](float dose) { return static_cast<double>(dose) > most * (1.0 - 1e-6); });
   if (full > 0) {
     grid.largest_Gy = most;
-    grid.notes.push_back(fmt::format("{} doses of {} are the largest that the file can store, {:.4g} Gy; the true ones may "
-                                     "be higher.",
-                                     full, grid.file, most));
+    grid.notes.push_back(
+        fmt::format("{} doses of {} are the largest that the file can store, {:.4g} Gy; the true ones may "
+                    "be higher.",
+                    full, grid.file, most));
   }
   const auto layer = static_cast<std::ptrdiff_t>(n.rows) * n.columns;
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -201,7 +203,8 @@ Result<DoseGrid> parse_rtdose(const fs::path& path) {
   const auto spacing = numbers_of(data, DCM_PixelSpacing);
   auto orientation = numbers_of(data, DCM_ImageOrientationPatient);
   if (position.size() != 3 || spacing.size() != 2 || spacing[0] <= 0.0 || spacing[1] <= 0.0) {
-    return input_error(file, "the place of the grid is missing (ImagePositionPatient or PixelSpacing)", kExportDoseAgain);
+    return input_error(file, "the place of the grid is missing (ImagePositionPatient or PixelSpacing)",
+                       kExportDoseAgain);
   }
   DoseGrid grid;
   grid.file = file;
@@ -230,17 +233,16 @@ Result<DoseGrid> parse_rtdose(const fs::path& path) {
   grid.direction.col(1) = along_column.normalized();
   grid.direction.col(2) = normal;
   grid.origin_mm = origin + (*offsets)[order->front()] * normal;
-  const double step = numbers->frames > 1
-                          ? ((*offsets)[order->back()] - (*offsets)[order->front()]) / (numbers->frames - 1)
-                          : 1.0;
+  const double step =
+      numbers->frames > 1 ? ((*offsets)[order->back()] - (*offsets)[order->front()]) / (numbers->frames - 1) : 1.0;
   grid.spacing_mm = Vec3(spacing[1], spacing[0], step);  // PixelSpacing: distance of rows first
   grid.quantum_Gy = numbers->scaling_Gy;
   if (Result<> read = read_doses(data, *numbers, *order, grid); !read) return read.error();
   note_oddities(*numbers, *order, grid);
   const std::string sum = text_of(data, DCM_DoseSummationType);
   if (!sum.empty() && sum != "PLAN" && sum != "BRACHY") {
-    grid.notes.push_back(fmt::format("{} holds the dose of '{}' (3004,000A), which may not be that of the whole plan.",
-                                     file, sum));
+    grid.notes.push_back(
+        fmt::format("{} holds the dose of '{}' (3004,000A), which may not be that of the whole plan.", file, sum));
   }
   return grid;
 }

@@ -32,7 +32,8 @@ std::string print_of_grid(const DoseGrid& grid, const std::string& plan) {
   std::string text = fmt::format("{}\n{} {} {}\n{} {} {}\n", plan, grid.size[0], grid.size[1], grid.size[2],
                                  grid.origin_mm.x(), grid.origin_mm.y(), grid.origin_mm.z());
   double sum = 0.0;
-  for (std::size_t p = 0; p < grid.dose_Gy.size(); ++p) sum += static_cast<double>(grid.dose_Gy[p]) * static_cast<double>(p + 1);
+  for (std::size_t p = 0; p < grid.dose_Gy.size(); ++p)
+    sum += static_cast<double>(grid.dose_Gy[p]) * static_cast<double>(p + 1);
   return text + fmt::format("{}", sum);
 }
 

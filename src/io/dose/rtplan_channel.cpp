@@ -43,9 +43,8 @@ void use_marks(std::vector<RestingPlace>& places) {
 /// Weights for a channel that has none: a seed at the first place, and at each place that is not a mark of it.
 void give_weights(std::vector<RestingPlace>& places) {
   for (RestingPlace& place : places) {
-    const bool mark = std::any_of(places.begin(), places.end(), [&](const RestingPlace& seed) {
-      return seed.weight > 0.0 && is_mark(place, seed);
-    });
+    const bool mark = std::any_of(places.begin(), places.end(),
+                                  [&](const RestingPlace& seed) { return seed.weight > 0.0 && is_mark(place, seed); });
     if (!mark) place.weight = 1.0;
   }
 }

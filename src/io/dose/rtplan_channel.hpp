@@ -12,10 +12,10 @@ namespace stylet::detail {
 
 /// One point of a channel's control point sequence (300A,02D0).
 struct ControlPoint {
-  Vec3 at_mm = Vec3::Zero();    ///< ControlPoint3DPosition (300A,02D4)
-  bool has_place = false;       ///< whether the file gives the position
-  double weight = 0.0;          ///< CumulativeTimeWeight (300A,02D6); 0 where it is missing
-  std::optional<Vec3> axis;     ///< ControlPointOrientation (300A,0412), a unit vector
+  Vec3 at_mm = Vec3::Zero();  ///< ControlPoint3DPosition (300A,02D4)
+  bool has_place = false;     ///< whether the file gives the position
+  double weight = 0.0;        ///< CumulativeTimeWeight (300A,02D6); 0 where it is missing
+  std::optional<Vec3> axis;   ///< ControlPointOrientation (300A,0412), a unit vector
 };
 
 /// A place where a source rests, from the control points of one channel.

@@ -66,20 +66,21 @@ class RtplanReader {
       if (Result<> read = read_setup(*setup, ++number); !read) return read.error();
     }
     if (repeated_ > 0) {
-      plan_.notes.push_back(
-          fmt::format("{} seed{} stand{} twice or more in the plan at the same place, as in plans whose setups repeat a "
-                      "common one; each counts once.",
-                      repeated_, repeated_ == 1 ? "" : "s", repeated_ == 1 ? "s" : ""));
+      plan_.notes.push_back(fmt::format(
+          "{} seed{} stand{} twice or more in the plan at the same place, as in plans whose setups repeat a "
+          "common one; each counts once.",
+          repeated_, repeated_ == 1 ? "" : "s", repeated_ == 1 ? "s" : ""));
     }
     if (plan_.sources.empty()) {
       return input_error(plan_.file, "no channel of the plan has a source that stays anywhere",
                          "Export the plan with its seeds or dwell times");
     }
     if (turned_by_channel_ > 0) {
-      plan_.notes.push_back(fmt::format(
-          "{} dwell positions have no orientation (300A,0412); it is taken from the line through their neighbours in the "
-          "channel.",
-          turned_by_channel_));
+      plan_.notes.push_back(
+          fmt::format("{} dwell positions have no orientation (300A,0412); it is taken from the line through their "
+                      "neighbours in the "
+                      "channel.",
+                      turned_by_channel_));
     }
     read_prescription();
     read_fractions();
@@ -110,7 +111,8 @@ class RtplanReader {
     if (type == "HDR" || type == "PDR" || type == "MDR") {
       plan_.implant = Implant::temporary;
       if (type == "PDR")
-        plan_.notes.emplace_back("The plan is pulsed (PDR); the dose is that of all dwell times in the plan, in one go.");
+        plan_.notes.emplace_back(
+            "The plan is pulsed (PDR); the dose is that of all dwell times in the plan, in one go.");
       return Ok{};
     }
     double longest_s = 0.0;
@@ -120,7 +122,8 @@ class RtplanReader {
     }
     double half_life = 0.0;
     for (const auto& [number, source] : sources_) half_life = std::max(half_life, source.half_life_days);
-    const bool stays = longest_s <= 0.0 || (half_life > 0.0 && longest_s > 0.9 * half_life * kSeconds_per_day / std::numbers::ln2);
+    const bool stays =
+        longest_s <= 0.0 || (half_life > 0.0 && longest_s > 0.9 * half_life * kSeconds_per_day / std::numbers::ln2);
     if (type == "LDR" || type == "MANUAL") {
       if (!stays) {
         plan_.implant = Implant::temporary;
@@ -136,18 +139,18 @@ class RtplanReader {
           "permanent.");
       return Ok{};
     }
-    return input_error(plan_.file,
-                       fmt::format("the brachytherapy type (300A,0202) is '{}'; LDR, HDR, PDR, MDR or MANUAL is expected",
-                                   type.empty() ? "(missing)" : type),
-                       "Export the plan with its type");
+    return input_error(
+        plan_.file,
+        fmt::format("the brachytherapy type (300A,0202) is '{}'; LDR, HDR, PDR, MDR or MANUAL is expected",
+                    type.empty() ? "(missing)" : type),
+        "Export the plan with its type");
   }
 
   Result<> read_setup(DcmItem& setup, int number) {
     for (DcmItem* channel : items_of(setup, DCM_ChannelSequence)) {
       ++channels_;
-      const std::string where =
-          fmt::format("{}, application setup {}, channel {}", plan_.file, number,
-                      integer_of(*channel, DCM_ChannelNumber).value_or(channels_));
+      const std::string where = fmt::format("{}, application setup {}, channel {}", plan_.file, number,
+                                            integer_of(*channel, DCM_ChannelNumber).value_or(channels_));
       if (Result<> read = read_channel(*channel, where); !read) return read;
     }
     return Ok{};
@@ -155,16 +158,18 @@ class RtplanReader {
 
   Result<double> strength_of(const PlanSource& source, int number, const std::string& where) {
     if (!source.units.empty() && source.units != "AIR_KERMA_RATE") {
-      return input_error(where, fmt::format("the strength of source {} is given as {} (300A,0229)", number, source.units),
+      return input_error(where,
+                         fmt::format("the strength of source {} is given as {} (300A,0229)", number, source.units),
                          "Export the plan with the air-kerma strength of its sources");
     }
     const auto strength = to_number(source.strength_text);
     if (strength && std::isfinite(*strength) && *strength > 0.0) return *strength;
-    return input_error(where,
-                       fmt::format("source {} has the strength '{}' (ReferenceAirKermaRate, 300A,022A); a number above 0 "
-                                   "in µGy/h at 1 m is expected",
-                                   number, source.strength_text.empty() ? "(missing)" : source.strength_text),
-                       "Enter the air-kerma strength in the planning system and export the plan again");
+    return input_error(
+        where,
+        fmt::format("source {} has the strength '{}' (ReferenceAirKermaRate, 300A,022A); a number above 0 "
+                    "in µGy/h at 1 m is expected",
+                    number, source.strength_text.empty() ? "(missing)" : source.strength_text),
+        "Enter the air-kerma strength in the planning system and export the plan again");
   }
 
   Result<> read_channel(DcmItem& channel, const std::string& where) {
@@ -198,20 +203,20 @@ class RtplanReader {
       const double total_s = number_of(channel, DCM_ChannelTotalTime).value_or(0.0);
       const double last = number_of(channel, DCM_FinalCumulativeTimeWeight).value_or(points.back().weight);
       if (total_s < 0.0 || (total_s > 0.0 && last <= 0.0)) {
-        return input_error(where,
-                           fmt::format("the channel lasts {:g} s and its final cumulative time weight is {:g}", total_s,
-                                       last),
-                           kExportPlanAgain);
+        return input_error(
+            where, fmt::format("the channel lasts {:g} s and its final cumulative time weight is {:g}", total_s, last),
+            kExportPlanAgain);
       }
       if (total_s <= 0.0) return Ok{};
       double weights = 0.0;
       for (const RestingPlace& place : *places) weights += place.weight;
       seconds_per_weight = total_s / weights;
       if (std::abs(weights / last - 1.0) > 0.005) {
-        plan_.notes.push_back(fmt::format(
-            "{}: the weights of its places add up to {:g}, the final cumulative time weight is {:g}; the channel's time of "
-            "{:g} s is divided by the sum of the weights.",
-            where, weights, last, total_s));
+        plan_.notes.push_back(
+            fmt::format("{}: the weights of its places add up to {:g}, the final cumulative time weight is {:g}; the "
+                        "channel's time of "
+                        "{:g} s is divided by the sum of the weights.",
+                        where, weights, last, total_s));
       }
       turn_by_neighbours(*places);
     }
@@ -224,11 +229,11 @@ class RtplanReader {
     const auto number = integer_of(channel, DCM_ReferencedSourceNumber);
     if (number && sources_.contains(*number)) return *number;
     if (!number && sources_.size() == 1) return sources_.begin()->first;
-    return input_error(where,
-                       number ? fmt::format("it refers to source {}, which the plan does not have (300A,0210)", *number)
-                              : fmt::format("it does not say which of the plan's {} sources it has (300C,000E)",
-                                            sources_.size()),
-                       kExportPlanAgain);
+    return input_error(
+        where,
+        number ? fmt::format("it refers to source {}, which the plan does not have (300A,0210)", *number)
+               : fmt::format("it does not say which of the plan's {} sources it has (300C,000E)", sources_.size()),
+        kExportPlanAgain);
   }
 
   /// Remembers what the plan says about the source that is used.
@@ -241,8 +246,8 @@ class RtplanReader {
       plan_.strength_date = source.date;
     } else if (source.isotope != plan_.isotope && !mixed_) {
       mixed_ = true;
-      plan_.notes.push_back(fmt::format("{}: the source is {}, earlier ones are {}; all are computed with one model.", where,
-                                        source.isotope, plan_.isotope));
+      plan_.notes.push_back(fmt::format("{}: the source is {}, earlier ones are {}; all are computed with one model.",
+                                        where, source.isotope, plan_.isotope));
     }
   }
 
@@ -311,9 +316,9 @@ class RtplanReader {
       }
     }
     if (plan_.prescription_Gy > 0.0) {
-      plan_.notes.push_back(
-          fmt::format("The plan has no target prescription dose (300A,0026); the dose of its setups, {:g} Gy, stands in.",
-                      plan_.prescription_Gy));
+      plan_.notes.push_back(fmt::format(
+          "The plan has no target prescription dose (300A,0026); the dose of its setups, {:g} Gy, stands in.",
+          plan_.prescription_Gy));
     }
   }
 
@@ -322,8 +327,8 @@ class RtplanReader {
     for (DcmItem* group : items_of(data_, DCM_FractionGroupSequence)) {
       const int fractions = integer_of(*group, DCM_NumberOfFractionsPlanned).value_or(1);
       if (fractions > 1) {
-        plan_.notes.push_back(
-            fmt::format("The plan has {} fractions; the dose is that of the dwell times in the file, once.", fractions));
+        plan_.notes.push_back(fmt::format(
+            "The plan has {} fractions; the dose is that of the dwell times in the file, once.", fractions));
       }
     }
   }

@@ -27,9 +27,11 @@ std::string vector_text(const Vec3& x) {
 
 /// Text with all data of a plan, from which its identifiers are derived.
 std::string print_of(const DosePlan& plan, const SourceModel& source) {
-  std::string text = fmt::format("{}\n{}\n{}\n{}\n", plan.label, plan.frame_of_reference, source.name, plan.prescription_Gy);
+  std::string text =
+      fmt::format("{}\n{}\n{}\n{}\n", plan.label, plan.frame_of_reference, source.name, plan.prescription_Gy);
   for (const PlannedSource& s : plan.sources)
-    text += fmt::format("{} {} {} {} {}\n", vector_text(s.at_mm), vector_text(s.axis), s.strength_U, s.dwell_s, s.needle);
+    text +=
+        fmt::format("{} {} {} {} {}\n", vector_text(s.at_mm), vector_text(s.axis), s.strength_U, s.dwell_s, s.needle);
   return text;
 }
 

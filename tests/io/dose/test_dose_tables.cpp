@@ -18,7 +18,8 @@ Json json_of(const SourceModel& s) {
   Json values = Json::array();
   for (Eigen::Index i = 0; i < s.F.rows(); ++i) {
     Json row = Json::array();
-    for (Eigen::Index j = 0; j < s.F.cols(); ++j) row.push_back(std::isnan(s.F(i, j)) ? Json(nullptr) : Json(s.F(i, j)));
+    for (Eigen::Index j = 0; j < s.F.cols(); ++j)
+      row.push_back(std::isnan(s.F(i, j)) ? Json(nullptr) : Json(s.F(i, j)));
     values.push_back(row);
   }
   return {{"format", "stylet-source"},
@@ -97,8 +98,9 @@ TEST_F(DoseTables, have_points_in_their_order) {
 }
 
 TEST_F(DoseTables, have_goals_with_bounds_and_citations) {
-  const auto goals = read_goals(file("goals.csv", "structure,metric,bound,citation\nprostate,D90_percent,>=90,ours\n"
-                                                  "rectum,D2cc_Gy,<145,\"a, b\"\n"))
+  const auto goals = read_goals(file("goals.csv",
+                                     "structure,metric,bound,citation\nprostate,D90_percent,>=90,ours\n"
+                                     "rectum,D2cc_Gy,<145,\"a, b\"\n"))
                          .value();
   ASSERT_EQ(goals.size(), 2U);
   EXPECT_TRUE(goals[0].at_least);

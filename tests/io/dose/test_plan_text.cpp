@@ -53,8 +53,9 @@ TEST_F(PlanText, places_the_seeds_of_a_train_behind_the_retraction_plane) {
 }
 
 TEST_F(PlanText, in_csv_says_the_same_as_in_json) {
-  const DosePlan seeds = read_plan(file("seeds.csv", "# strength_U: 0.5\n# prescription_Gy: 145\n# any comment\n"
-                                                     "x_mm,y_mm,z_mm,ax,ay,az,needle\n1,2,3,0,0,1,D4\n4,5,6,,,,d3.5\n"))
+  const DosePlan seeds = read_plan(file("seeds.csv",
+                                        "# strength_U: 0.5\n# prescription_Gy: 145\n# any comment\n"
+                                        "x_mm,y_mm,z_mm,ax,ay,az,needle\n1,2,3,0,0,1,D4\n4,5,6,,,,d3.5\n"))
                              .value();
   ASSERT_EQ(seeds.sources.size(), 2U);
   EXPECT_EQ(seeds.sources[1].at_mm, Vec3(4, 5, 6));
@@ -62,8 +63,9 @@ TEST_F(PlanText, in_csv_says_the_same_as_in_json) {
   EXPECT_FALSE(seeds.sources[1].has_axis);
   EXPECT_EQ(seeds.sources[1].needle, "d3.5");
   EXPECT_EQ(seeds.prescription_Gy, 145.0);
-  const DosePlan needles = read_plan(file("needles.csv", "# strength_U: 0.5\n# template_origin_mm: 10 20 30\n"
-                                                         "hole,retraction_mm,train\nD4,0,S-1-S\nd4,5,1-S\n"))
+  const DosePlan needles = read_plan(file("needles.csv",
+                                          "# strength_U: 0.5\n# template_origin_mm: 10 20 30\n"
+                                          "hole,retraction_mm,train\nD4,0,S-1-S\nd4,5,1-S\n"))
                                .value();
   ASSERT_EQ(needles.sources.size(), 3U);
   EXPECT_LT((needles.sources[0].at_mm - Vec3(10, 20, 30)).norm(), 1e-12);
@@ -112,7 +114,8 @@ TEST_F(PlanText, names_the_place_and_the_cure_of_each_fault) {
   expect_error("e.json", json(R"("strength_U": 0.5, "seeds": [{"position_mm": [1, 2]}])"), "three numbers");
   expect_error("f.json", json(R"("strength_U": 0.5, "seeds": [{"axis": [0, 0, 1]}])"), "no position_mm");
   expect_error("g.json", json(R"("strength_U": 0.5)"), "no seed");
-  expect_error("h.json", json(R"("strength_U": 0.5, "seeds": [{"position_mm": [1, 2, 3], "axis": [0, 0, 0]}])"), "axis");
+  expect_error("h.json", json(R"("strength_U": 0.5, "seeds": [{"position_mm": [1, 2, 3], "axis": [0, 0, 0]}])"),
+               "axis");
   expect_error("i.json", json(R"("strength_U": 0.5, "needles": [{"hole": "D4", "train": "S"}])"), "no template");
   const std::string grid = R"("strength_U": 0.5, "template": {"origin_mm": [0, 0, 0]}, )";
   expect_error("j.json", json(grid + R"("needles": [{"hole": "Q9", "train": "S"}])"), "no such hole");

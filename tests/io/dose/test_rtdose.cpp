@@ -142,8 +142,7 @@ TEST_F(Rtdose, that_is_written_is_read_again_with_the_same_doses) {
     grid.origin_mm = Vec3(-12.25, 3.5, 88.125);
     grid.spacing_mm = Vec3(1.0, 1.25, 2.5);
     grid.frame_of_reference = "1.2.3.4";
-    if (round % 2 == 1)
-      grid.direction = Eigen::AngleAxisd(0.3 * round, Vec3(1, -1, 2).normalized()).toRotationMatrix();
+    if (round % 2 == 1) grid.direction = Eigen::AngleAxisd(0.3 * round, Vec3(1, -1, 2).normalized()).toRotationMatrix();
     grid.dose_Gy.resize(grid.count());
     for (float& d : grid.dose_Gy) d = dose(random);
     ASSERT_TRUE(write_rtdose(grid, "1.2.3.5", folder / "dose.dcm").ok());

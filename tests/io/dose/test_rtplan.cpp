@@ -100,9 +100,10 @@ TEST_F(Rtplan, gives_the_same_seeds_if_the_marks_come_before_or_if_no_point_has_
   for (const int variant : {0, 1, 2}) {
     RtplanFile plan = seeds();
     const Vec3 at(4, 5, 6), mark = at + Vec3::UnitY();
-    const std::vector<Point> points = variant == 0   ? std::vector<Point>{{mark, 0.0}, {at, 0.0}, {at, 1.0}}
-                                      : variant == 1 ? std::vector<Point>{{at, 0.0}, {at, 0.0}, {mark, 0.0}, {mark, 0.0}}
-                                                     : std::vector<Point>{{at, 0.0}};
+    const std::vector<Point> points = variant == 0 ? std::vector<Point>{{mark, 0.0}, {at, 0.0}, {at, 1.0}}
+                                      : variant == 1
+                                          ? std::vector<Point>{{at, 0.0}, {at, 0.0}, {mark, 0.0}, {mark, 0.0}}
+                                          : std::vector<Point>{{at, 0.0}};
     RtplanFile::channel(plan.setup("UNDEFINED", 1), 1, kPermanent_s, 1.0, points);
     const DosePlan read_back = read(plan).value();
     ASSERT_EQ(read_back.sources.size(), 1U) << variant;
@@ -158,7 +159,8 @@ TEST_F(Rtplan, takes_the_dose_of_the_setup_where_no_prescription_is_given) {
   RtplanFile plan = seeds();
   DcmItem& group = testing_files::new_item(*plan.file.getDataset(), DCM_FractionGroupSequence);
   for (int k = 0; k < 2; ++k)
-    put(testing_files::new_item(group, DCM_ReferencedBrachyApplicationSetupSequence), DCM_BrachyApplicationSetupDose, "145");
+    put(testing_files::new_item(group, DCM_ReferencedBrachyApplicationSetupSequence), DCM_BrachyApplicationSetupDose,
+        "145");
   RtplanFile::channel(plan.setup("UNDEFINED", 1), 1, kPermanent_s, 1.0, {{Vec3::Zero(), 0.0}, {Vec3::Zero(), 1.0}});
   EXPECT_EQ(read(plan).value().prescription_Gy, 145.0);
   put(testing_files::new_item(*plan.file.getDataset(), DCM_DoseReferenceSequence), DCM_TargetPrescriptionDose, "160");
@@ -169,8 +171,12 @@ TEST_F(Rtplan, of_dwell_times_has_the_time_of_each_place) {
   RtplanFile plan = hdr();
   // 30 s in the channel for a final weight of 100: weights 0, 40, 40, 100.
   RtplanFile::channel(plan.setup("TEMPLATE", 1), 1, 30.0, 100.0,
-                      {{Vec3(0, 0, 0), 0.0}, {Vec3(0, 0, 0), 40.0}, {Vec3(0, 3, 4), 40.0}, {Vec3(0, 3, 4), 100.0},
-                       {Vec3(0, 6, 8), 100.0}, {Vec3(0, 6, 8), 100.0}});
+                      {{Vec3(0, 0, 0), 0.0},
+                       {Vec3(0, 0, 0), 40.0},
+                       {Vec3(0, 3, 4), 40.0},
+                       {Vec3(0, 3, 4), 100.0},
+                       {Vec3(0, 6, 8), 100.0},
+                       {Vec3(0, 6, 8), 100.0}});
   const DosePlan read_back = read(plan).value();
   EXPECT_EQ(read_back.implant, Implant::temporary);
   ASSERT_EQ(read_back.sources.size(), 2U) << "places without time are left out";
@@ -226,7 +232,8 @@ TEST_F(Rtplan, refuses_a_seed_without_place_or_out_of_reach) {
   point->findAndDeleteElement(DCM_ControlPoint3DPosition);
   expect_error(lost, "300A,02D4");
   RtplanFile far = seeds();
-  RtplanFile::channel(far.setup("UNDEFINED", 1), 1, kPermanent_s, 1.0, {{Vec3(1e7, 0, 0), 0.0}, {Vec3(1e7, 0, 0), 1.0}});
+  RtplanFile::channel(far.setup("UNDEFINED", 1), 1, kPermanent_s, 1.0,
+                      {{Vec3(1e7, 0, 0), 0.0}, {Vec3(1e7, 0, 0), 1.0}});
   EXPECT_FALSE(read(far).ok());
 }
 
@@ -261,7 +268,8 @@ TEST_F(Rtplan, that_is_cut_off_is_refused_in_words) {
   for (const double share : {0.3, 0.6, 0.95}) {
     const fs::path part = folder / "part.dcm";
     const std::string text = bytes.str();
-    std::ofstream(part, std::ios::binary) << text.substr(0, static_cast<std::size_t>(share * static_cast<double>(text.size())));
+    std::ofstream(part, std::ios::binary)
+        << text.substr(0, static_cast<std::size_t>(share * static_cast<double>(text.size())));
     const Result<DosePlan> result = read_plan(part);
     ASSERT_FALSE(result.ok()) << share;
     EXPECT_EQ(result.error().kind, ErrorKind::input);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/round_number.hpp"
 
-#include <initializer_list>
 #include <cmath>
+#include <initializer_list>
 
 namespace stylet::results {
 
