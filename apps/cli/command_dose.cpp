@@ -151,6 +151,14 @@ void print(const DoseEvaluation& e, Console& console) {
   }
 }
 
+/// Writes plan and dose as DICOM files, in one frame of reference.
+Result<> write_dicom(const DoseEvaluation& e, const fs::path& folder) {
+  if (Result<> written = write_rtplan(e.plan, e.source, folder / "plan.dcm"); !written) return written;
+  DoseGrid grid = e.grid;
+  grid.frame_of_reference = rtplan_frame(e.plan, e.source);
+  return write_rtdose(grid, rtplan_uid(e.plan, e.source), folder / "dose.dcm");
+}
+
 Result<> run_dose(const DoseArguments& arguments, Console& console) {
   if (Result<> writable = check_output_folder(arguments.output); !writable) return writable;
   const Result<DosePlan> plan = read_plan(arguments.plan);
@@ -180,11 +188,7 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   }
   for (const std::string& warning : e->warnings) console.warn(warning);
   if (Result<> written = write_dose_results(*e, arguments.output, console.progress()); !written) return written;
-  if (Result<> written = write_rtplan(e->plan, e->source, fs::path(arguments.output) / "plan.dcm"); !written)
-    return written;
-  if (Result<> written = write_rtdose(e->grid, rtplan_uid(e->plan, e->source), fs::path(arguments.output) / "dose.dcm");
-      !written)
-    return written;
+  if (Result<> written = write_dicom(*e, arguments.output); !written) return written;
   print(*e, console);
   console.say(fmt::format("{} → {}", arguments.plan, (fs::path(arguments.output) / "report.html").string()));
   return console.write_json(Json::parse(dose_json(*e)));

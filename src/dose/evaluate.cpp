@@ -232,7 +232,7 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
             ? fmt::format("The strengths have decayed for {:g} days before the implantation.", options.decay_days)
             : "The strengths are taken as those at the implantation, without decay since their date.");
   }
-  e.assumptions.push_back(
+  e.assumptions.emplace_back(
       "Contours stand for slabs that reach half-way to the neighbouring planes; the first and the last slab are as "
       "thick outside as inside.");
 }

@@ -26,7 +26,7 @@ bool fits_length(const DosePlan& plan, const SourceModel& source) {
 /// The isotope of a plan: by its name, or where that is none (in files without identities, for example), by the
 /// half-life. Empty: unknown.
 std::string isotope_of(const DosePlan& plan) {
-  const std::string name = isotope_name(plan.isotope);
+  std::string name = isotope_name(plan.isotope);
   if (name != plan.isotope || name.find('-') != std::string::npos) return name;
   for (const SourceModel& source : known_sources()) {
     if (std::abs(plan.half_life_days / source.half_life_days - 1.0) < kSameHalfLife) return source.isotope;

@@ -18,20 +18,24 @@ constexpr int kStepsOfAngle = 180;    // from 0° to 180°, so that knots at who
 constexpr int kRadii = static_cast<int>(RateTable::kFar_mm * kStepsPer_mm) + 2;
 constexpr std::size_t kBlock = 128;  // points that are computed together, so that their numbers stay in the cache
 
-// GCC compiles the loop for processors with AVX-512, with AVX2 and for all others, and chooses when the program is
+// GCC compiles the loop for processors with AVX2 and for all others, and chooses when the program is
 // loaded. Sanitizers do not support this choice.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define STYLET_FOR_VECTORS __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#define STYLET_FOR_VECTORS __attribute__((target_clones("arch=haswell", "default")))
 #else
 #define STYLET_FOR_VECTORS
 #endif
 
 /// Points of one block, relative to a source.
 struct Block {
-  std::array<double, kBlock> x{}, y{}, z{};  // [mm]
-  std::array<double, kBlock> radius{}, cosine{}, turn{},
-      rate{};  // [mm], cosine of the angle to the axis, dose rate by the table
+  std::array<double, kBlock> x{}, y{}, z{};     // [mm] from the source
+  std::array<double, kBlock> radius{};          // [mm]
+  std::array<double, kBlock> cosine{}, turn{};  // of the angle to the axis; this angle in steps of the table
+  std::array<double, kBlock> rate{};            // dose rate by the table
+};                                              // [mm]
+std::array<double, kBlock> radius{}, cosine{}, turn{},
+    rate{};  // [mm], cosine of the angle to the axis, dose rate by the table
 };
 
 /// The table's numbers that the loop needs.
@@ -39,6 +43,7 @@ struct TableView {
   const float* scaled;
   int angles;            // entries for each radius
   double steps_per_rad;  // 0: the angle does not matter
+  bool folds;            // whether angles beyond 90° have the values of those below
   int last_radius;       // largest radius with a neighbour
 };
 
@@ -47,6 +52,8 @@ struct TableView {
 /// expansion of arccos(x) / √(1 − x) up to the fifth degree, within 2e-6 rad.
 STYLET_FOR_VECTORS void read_table(Block& block, const TableView& table, double ax, double ay, double az) {
   constexpr double half_turn = std::numbers::pi;
+  const double beyond = table.folds ? 0.0 : 1.0;
+  const double steps_per_rad = table.steps_per_rad;
   for (std::size_t p = 0; p < kBlock; ++p) {
     const double x = block.x[p], y = block.y[p], z = block.z[p];
     const double radius = std::sqrt(std::max(x * x + y * y + z * z, 1e-12));
@@ -59,7 +66,7 @@ STYLET_FOR_VECTORS void read_table(Block& block, const TableView& table, double 
     const double acute =
         root * (((((-0.004258281 * c + 0.019150963) * c - 0.044784508) * c + 0.087813916) * c - 0.214504546) * c +
                 1.570795051);
-    const double turn = (cosine < 0.0 ? half_turn - acute : acute) * table.steps_per_rad;
+    const double turn = (acute + (cosine < 0.0 ? beyond : 0.0) * (half_turn - 2.0 * acute)) * steps_per_rad;
     block.turn[p] = turn;
     block.rate[p] = inverse * inverse;
   }
@@ -85,7 +92,8 @@ STYLET_FOR_VECTORS void read_table(Block& block, const TableView& table, double 
 RateTable::RateTable(Tg43 tg43)
     : tg43_(std::move(tg43)),
       isotropic_(tg43_.formalism() != DoseFormalism::line2d),
-      angles_(isotropic_ ? 2 : kStepsOfAngle + 2),
+      folds_(isotropic_ || tg43_.source().F_theta_deg.back() <= 90.0),
+      angles_(isotropic_ ? 2 : (folds_ ? kStepsOfAngle / 2 : kStepsOfAngle) + 2),
       steps_per_rad_(isotropic_ ? 0.0 : kStepsOfAngle / std::numbers::pi) {
   scaled_.resize(static_cast<std::size_t>(kRadii) * static_cast<std::size_t>(angles_));
   // The last entries in both directions are read with weight 0 only, or not at all.
@@ -108,7 +116,7 @@ double RateTable::rate(double r, double cos_theta) const {
 
 void RateTable::add(const PlacedSource& source, std::span<const Vec3> points, std::span<double> rates) const {
   Block block;
-  const TableView table{scaled_.data(), angles_, steps_per_rad_, kRadii - 2};
+  const TableView table{scaled_.data(), angles_, steps_per_rad_, folds_, kRadii - 2};
   for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, points.size() - begin);
     for (std::size_t p = 0; p < kBlock; ++p) {

@@ -41,7 +41,8 @@ void add_parts(const std::array<Vec3, 4>& corner, int parts, double volume, Stru
         for (const auto& centroid : centroids) {
           const double a = i + centroid[0], b = j + centroid[1], c = k + centroid[2];
           if (a < b || b < c) continue;
-          samples.points.push_back(corner[0] + (a * along + b * across + c * up) / parts);
+          const Vec3 centroid_mm = corner[0] + (a * along + b * across + c * up) / parts;
+          samples.points.push_back(centroid_mm);
           samples.volume_mm3.push_back(volume);
         }
       }

@@ -28,6 +28,18 @@ double median_seconds(int repeats, const Work& work) {
   return times[times.size() / 2];
 }
 
+/// Sums by the table in pieces of points that stay in the cache, as sum_rates() does, but on one core.
+void sum_in_pieces(const RateTable& table, std::span<const PlacedSource> sources, std::span<const Vec3> points,
+                   std::span<double> rates) {
+  constexpr std::size_t piece = 8192;
+  std::fill(rates.begin(), rates.end(), 0.0);
+  for (std::size_t begin = 0; begin < points.size(); begin += piece) {
+    const std::size_t count = std::min(piece, points.size() - begin);
+    for (const PlacedSource& source : sources)
+      table.add(source, points.subspan(begin, count), rates.subspan(begin, count));
+  }
+}
+
 }  // namespace
 
 Result<std::vector<DoseRow>> bench_dose(const DoseBenchOptions& options, const Progress& progress) {
@@ -54,10 +66,7 @@ Result<std::vector<DoseRow>> bench_dose(const DoseBenchOptions& options, const P
     row.make_table_s = median_seconds(options.repeats, [&] { const RateTable made(*tg43); });
     const RateTable table(*tg43);
     row.exact_s = seconds_of([&] { sum_rates(*tg43, sources, points, exact); });
-    row.table_s = median_seconds(options.repeats, [&] {
-      std::fill(quick.begin(), quick.end(), 0.0);
-      for (const PlacedSource& source : sources) table.add(source, points, quick);
-    });
+    row.table_s = median_seconds(options.repeats, [&] { sum_in_pieces(table, sources, points, quick); });
     for (std::size_t p = 0; p < points.size(); ++p)
       row.worst_percent = std::max(row.worst_percent, 100.0 * std::abs(quick[p] / exact[p] - 1.0));
     row.one_more_s = median_seconds(options.repeats, [&] { table.add(sources.front(), points, quick); });

@@ -32,6 +32,7 @@ class RateTable {
  private:
   Tg43 tg43_;
   bool isotropic_;  // the formalism needs no angle
+  bool folds_;      // whether angles beyond 90° have the values of those below
   int angles_;      // entries for each radius
   double steps_per_rad_ = 0.0;
   std::vector<float> scaled_;  // (radii × angles_) r² times the dose rate; the angles of one radius lie together

@@ -43,6 +43,9 @@ Result<> write_dose_nrrd(const DoseGrid& grid, const std::filesystem::path& path
 /// The SOP instance UID that write_rtplan() gives a plan: it follows from the plan's content.
 std::string rtplan_uid(const DosePlan& plan, const SourceModel& source);
 
+/// The frame of reference that write_rtplan() gives a plan: its own, or one that follows from its content.
+std::string rtplan_frame(const DosePlan& plan, const SourceModel& source);
+
 /// Reads a source model from JSON (docs/formats.md). Errors: those of the format and of check_source().
 Result<SourceModel> read_source_model(const std::filesystem::path& path);
 

@@ -127,7 +127,7 @@ Result<> write_dose_nrrd(const DoseGrid& grid, const fs::path& path) {
          nrrdSpaceOriginSet(volume.get(), origin) == 0;
   nrrdAxisInfoSet_nva(volume.get(), nrrdAxisInfoSpaceDirection, directions);
   good = good && nrrdKeyValueAdd(volume.get(), "quantity", "dose [Gy]") == 0;
-  const Result<> written = detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
+  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
     const std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)> io(nrrdIoStateNew(), nrrdIoStateNix);
     io->encoding = nrrdEncodingGzip;
     io->format = nrrdFormatNRRD;
@@ -136,7 +136,6 @@ Result<> write_dose_nrrd(const DoseGrid& grid, const fs::path& path) {
     return failure(path.string(), fmt::format("the dose grid cannot be written ({})", why ? why.get() : "NRRD"),
                    "Check the folder's permissions and space");
   });
-  return written;
 }
 
 }  // namespace stylet

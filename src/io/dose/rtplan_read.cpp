@@ -264,9 +264,9 @@ class RtplanReader {
 
   /// Hole of the template or name of the channel.
   static std::string needle_of(DcmItem& channel) {
-    const std::string id = text_of(channel, DCM_SourceApplicatorID);
+    std::string id = text_of(channel, DCM_SourceApplicatorID);
     if (!id.empty()) return id;
-    const std::string name = text_of(channel, DCM_SourceApplicatorName);
+    std::string name = text_of(channel, DCM_SourceApplicatorName);
     if (!name.empty()) return name;
     const auto number = integer_of(channel, DCM_ChannelNumber);
     return number ? std::to_string(*number) : std::string();

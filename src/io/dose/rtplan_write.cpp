@@ -44,11 +44,11 @@ std::map<double, int> numbers_of_strengths(const DosePlan& plan) {
   return numbers;
 }
 
-void fill_plan(Filler& fill, DcmDataset& data, const DosePlan& plan, const std::string& print) {
+void fill_plan(Filler& fill, DcmDataset& data, const DosePlan& plan, const std::string& print,
+               const std::string& frame) {
   const bool permanent = plan.implant == Implant::permanent;
   detail::fill_common(fill, data, UID_RTPlanStorage, "RTPLAN", print);
-  fill.text(data, DCM_FrameOfReferenceUID,
-            plan.frame_of_reference.empty() ? detail::derived_uid(print, "frame") : plan.frame_of_reference);
+  fill.text(data, DCM_FrameOfReferenceUID, frame);
   fill.text(data, DCM_PositionReferenceIndicator, "");
   fill.text(data, DCM_RTPlanLabel, plan.label.empty() ? "Stylet" : plan.label.substr(0, 16));  // SH: 16 characters
   fill.text(data, DCM_RTPlanDate, "");
@@ -174,6 +174,11 @@ std::string rtplan_uid(const DosePlan& plan, const SourceModel& source) {
   return detail::derived_uid(print_of(plan, source), "instance");
 }
 
+std::string rtplan_frame(const DosePlan& plan, const SourceModel& source) {
+  return plan.frame_of_reference.empty() ? detail::derived_uid(print_of(plan, source), "frame")
+                                         : plan.frame_of_reference;
+}
+
 Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const fs::path& path) {
   for (const PlannedSource& s : plan.sources) {
     if (!s.at_mm.allFinite() || !s.axis.allFinite() || !std::isfinite(s.strength_U) || !std::isfinite(s.dwell_s))
@@ -181,7 +186,7 @@ Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const fs:
   }
   DcmFileFormat file;
   Filler fill;
-  fill_plan(fill, *file.getDataset(), plan, print_of(plan, source));
+  fill_plan(fill, *file.getDataset(), plan, print_of(plan, source), rtplan_frame(plan, source));
   fill_sources(fill, *file.getDataset(), plan, source);
   fill_channels(fill, *file.getDataset(), plan, source);
   const auto refused = [&](const OFCondition& why) {
