@@ -33,9 +33,6 @@ struct Block {
   std::array<double, kBlock> radius{};          // [mm]
   std::array<double, kBlock> cosine{}, turn{};  // of the angle to the axis; this angle in steps of the table
   std::array<double, kBlock> rate{};            // dose rate by the table
-};                                              // [mm]
-std::array<double, kBlock> radius{}, cosine{}, turn{},
-    rate{};  // [mm], cosine of the angle to the axis, dose rate by the table
 };
 
 /// The table's numbers that the loop needs.
