@@ -3,6 +3,7 @@
 // without them the tests are skipped.
 #include "stylet/dose/dose_volume.hpp"
 #include "stylet/dose/known_sources.hpp"
+#include "stylet/dose/rate_table.hpp"
 #include "stylet/dose/structure_samples.hpp"
 #include "stylet/dose/tg43.hpp"
 
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <random>
 
 namespace stylet {
 namespace {
@@ -68,10 +70,8 @@ TEST_F(SyntheticPlan, has_it_without_directions_as_well) {
   EXPECT_LT(worst(DoseFormalism::line1d, "1d_line", 2.5), 5e-4);
 }
 
-// The ellipsoid, drawn on planes 1 mm apart and sampled every 0.5 mm.
-TEST_F(SyntheticPlan, has_the_dose_volume_figures_of_an_independent_calculator) {
-  const auto& axes = plan.at("ellipsoid_semi_axes_mm");
-  const Vec3 half(axes[0], axes[1], axes[2]);
+/// The ellipsoid of the plan, drawn on planes 1 mm apart.
+Roi ellipsoid(const Vec3& half) {
   Roi roi;
   roi.name = "prostate";
   const double last = std::floor(half.z() - 0.5) + 0.5;
@@ -84,7 +84,13 @@ TEST_F(SyntheticPlan, has_the_dose_volume_figures_of_an_independent_calculator) 
     }
     roi.contours.push_back(contour);
   }
-  const StructureSamples samples = sample_structure(roi, 0.5).value();
+  return roi;
+}
+
+// Sampled every 0.5 mm.
+TEST_F(SyntheticPlan, has_the_dose_volume_figures_of_an_independent_calculator) {
+  const auto& axes = plan.at("ellipsoid_semi_axes_mm");
+  const StructureSamples samples = sample_structure(ellipsoid(Vec3(axes[0], axes[1], axes[2])), 0.5).value();
   const Tg43 tg43 = Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line2d).value();
   std::vector<double> dose(samples.points.size());
   sum_rates(tg43, seeds, samples.points, dose);
@@ -97,6 +103,39 @@ TEST_F(SyntheticPlan, has_the_dose_volume_figures_of_an_independent_calculator) 
   EXPECT_NEAR(dvh.percent_above(145.0), expected.at("V100_pct").get<double>(), 0.3);
   EXPECT_NEAR(dvh.percent_above(1.5 * 145.0), expected.at("V150_pct").get<double>(), 0.3);
   EXPECT_NEAR(dvh.percent_above(2.0 * 145.0), expected.at("V200_pct").get<double>(), 0.3);
+}
+
+// Seeds that land beside their places at random, as D90 over that of the plan: means of 200 draws.
+TEST_F(SyntheticPlan, loses_D90_with_random_errors_of_placement_as_an_independent_calculator_says) {
+  const auto& axes = plan.at("ellipsoid_semi_axes_mm");
+  const StructureSamples samples = sample_structure(ellipsoid(Vec3(axes[0], axes[1], axes[2])), 1.5).value();
+  const RateTable table(Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line1d).value());
+  std::vector<double> dose(samples.points.size());
+  const auto D90 = [&](const std::vector<PlacedSource>& placed) {
+    sum_rates(table, placed, samples.points, dose);
+    return DoseVolume(dose, samples.volume_mm3).dose_of_percent(90.0);
+  };
+  const double planned = D90(seeds);
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  int compared = 0;
+  for (const auto& [name, expected] : plan.at("placement_error_to_D90").items()) {
+    if (!expected.contains("sigma_xyz_mm")) continue;
+    const auto& sigma = expected.at("sigma_xyz_mm");
+    constexpr int draws = 200;
+    double sum = 0.0;
+    for (int draw = 0; draw < draws; ++draw) {
+      std::vector<PlacedSource> placed = seeds;
+      for (PlacedSource& seed : placed) {
+        for (int axis = 0; axis < 3; ++axis)
+          seed.at_mm[axis] += sigma[static_cast<std::size_t>(axis)].get<double>() * normal(random);
+      }
+      sum += D90(placed) / planned;
+    }
+    EXPECT_NEAR(sum / draws, expected.at("D90_ratio_mean").get<double>(), 0.01) << name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 8);
 }
 
 TEST_F(SyntheticPlan, one_seed_without_direction_has_its_isodose_where_it_was_computed) {
