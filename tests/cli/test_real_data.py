@@ -42,9 +42,11 @@ class RealData(InFolder):
         self.check_structures("robustbrachy_hdr_phantom/SS001.dcm", {
             "Prostate": ("prostate", 61, 49.7), "Urethra": ("urethra", 69, 1.4), "Rectum": ("rectum", 69, 6.3)})
 
-    def test_plan_and_dose_are_refused_as_what_they_are(self):
+    def test_plan_and_dose_are_described_and_refused_as_patients(self):
         for file, modality in (("PL001.dcm", "RTPLAN"), ("DO001.dcm", "RTDOSE")):
-            self.refuse("info", DATA / "robustbrachy_hdr_phantom" / file, says=[file, modality, "RTSTRUCT"])
+            path = DATA / "robustbrachy_hdr_phantom" / file
+            self.assertEqual(self.json_of("info", path)["kind"], {"RTPLAN": "plan", "RTDOSE": "dose"}[modality])
+            self.refuse("mesh", path, "-o", "model.vtu", says=[file, modality, "RTSTRUCT"])
 
     def test_meshes_of_other_programs_load_once_their_unit_is_told(self):
         for file, scale, nodes, tets in (("tetmesh_thirdparty/liver.msh", 25, 181, 596),
