@@ -151,14 +151,6 @@ void print(const DoseEvaluation& e, Console& console) {
   }
 }
 
-/// Writes plan and dose as DICOM files, in one frame of reference.
-Result<> write_dicom(const DoseEvaluation& e, const fs::path& folder) {
-  if (Result<> written = write_rtplan(e.plan, e.source, folder / "plan.dcm"); !written) return written;
-  DoseGrid grid = e.grid;
-  grid.frame_of_reference = rtplan_frame(e.plan, e.source);
-  return write_rtdose(grid, rtplan_uid(e.plan, e.source), folder / "dose.dcm");
-}
-
 Result<> run_dose(const DoseArguments& arguments, Console& console) {
   if (Result<> writable = check_output_folder(arguments.output); !writable) return writable;
   const Result<DosePlan> plan = read_plan(arguments.plan);
@@ -174,6 +166,12 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   e->warnings.insert(e->warnings.end(), structures->notes.begin(), structures->notes.end());
   e->warnings.insert(e->warnings.end(), plan->notes.begin(), plan->notes.end());
   if (arguments.ignore_frame) e->assumptions.emplace_back("Frames of reference were not compared, as asked.");
+  if (arguments.goals.empty() && !options->goals.empty()) {
+    e->assumptions.emplace_back(
+        "The goals are common ones for permanent prostate implants. Which publication each bound comes from has not "
+        "been "
+        "checked against its text; give the goals of your own protocol with --goals.");
+  }
   if (!arguments.compare.empty()) {
     const Result<DoseGrid> grid = read_rtdose(arguments.compare);
     if (!grid) return grid.error();
@@ -188,7 +186,6 @@ Result<> run_dose(const DoseArguments& arguments, Console& console) {
   }
   for (const std::string& warning : e->warnings) console.warn(warning);
   if (Result<> written = write_dose_results(*e, arguments.output, console.progress()); !written) return written;
-  if (Result<> written = write_dicom(*e, arguments.output); !written) return written;
   print(*e, console);
   console.say(fmt::format("{} → {}", arguments.plan, (fs::path(arguments.output) / "report.html").string()));
   return console.write_json(Json::parse(dose_json(*e)));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-/// What all ways of sampling a structure share.
+/// Checks and limits that every way of sampling a structure uses.
 namespace stylet::dose {
 
 inline constexpr double kMostSamples = 1e8;

@@ -7,7 +7,7 @@
 
 namespace stylet {
 
-/// What the computed numbers of a permanent implant mean. A temporary implant always has its total dose.
+/// The quantity that is computed for a permanent implant. For a temporary implant it is always the total dose.
 enum class DoseQuantity {
   total,         ///< dose [Gy] until the sources have decayed
   initial_rate,  ///< dose rate [Gy/h] when the sources are implanted

@@ -12,7 +12,7 @@
 
 namespace stylet {
 
-/// What a file of brachytherapy contains, as far as its first bytes and its header say.
+/// Kind of a file of brachytherapy, as its first bytes and its header tell it.
 enum class DoseFileKind { plan, dose_grid, source_model, none };
 
 /// Recognises plans (DICOM RTPLAN, plan JSON, seed CSV), dose grids (DICOM RTDOSE) and source models (source JSON).

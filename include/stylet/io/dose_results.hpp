@@ -10,9 +10,10 @@
 
 namespace stylet {
 
-/// Writes the result folder of `stylet dose` (docs/results.md): report.html, dvh.csv, dose.nrrd, dose.json. A new
-/// folder appears only when it is complete. In an existing folder the files are replaced one by one; dose.json is
-/// removed first and written last. Errors: the folder cannot be created or written; a dose grid without points.
+/// Writes the result folder of `stylet dose` (docs/results.md): report.html, dvh.csv, dose.nrrd, plan.dcm,
+/// dose.dcm, dose.json. A new folder appears only when it is complete. In an existing folder the files are replaced one
+/// by one; dose.json is removed first and written last. Errors: the folder cannot be created or written; a dose grid
+/// without points.
 Result<> write_dose_results(const DoseEvaluation& evaluation, const std::filesystem::path& folder,
                             const Progress& progress = {});
 

@@ -5,13 +5,10 @@
 #include "detail/text.hpp"
 #include "stylet/geom/structure_names.hpp"
 
-#include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 
 namespace stylet::detail {
@@ -19,13 +16,6 @@ namespace stylet::detail {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Whether a file has the mark "DICM" after a preamble of 128 bytes (DICOM PS3.10 7.1).
-bool has_dicom_mark(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 132> head{};
-  return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
-}
 
 /// The points of one ContourData value (3006,0050): x\y\z\x\y\z… [mm] LPS.
 Result<Contour> parse_points(DcmItem& item, const std::string& where) {
@@ -125,26 +115,13 @@ Result<> in_the_sets_frame(const Roi& roi, const RoiHeader& header, ContourSet& 
 }  // namespace
 
 Result<ContourSet> parse_rtstruct(const fs::path& path, std::span<const std::string> skip) {
-  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   const std::string source = path.string();
-
   DcmFileFormat file;
-  OFCondition status = file.loadFile(path.c_str());
-  if (status.good()) status = file.loadAllDataIntoMemory();
+  const auto check_kind = [&](DcmDataset& data) { return check_is_structure_set(data, source); };
+  if (Result<> loaded = load_dicom(file, path, check_kind, "Name a DICOM RT Structure Set (modality RTSTRUCT)");
+      !loaded)
+    return loaded.error();
   DcmDataset& data = *file.getDataset();
-  // Check the kind of file first, because that error is more helpful than one about where the file is truncated.
-  if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
-    Result<> right_kind = check_is_structure_set(data, source);
-    if (!right_kind) return right_kind.error();
-  }
-  if (status.bad() && !has_dicom_mark(path) && text_of(data, DCM_SOPClassUID).empty()) {
-    return input_error(source, "this is not a DICOM file", "Name a DICOM RT Structure Set (modality RTSTRUCT)");
-  }
-  if (status.bad()) {
-    return input_error(source, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "The file is truncated or damaged; copy or export it again");
-  }
-  data.convertToUTF8();  // on failure the bytes stay unchanged
 
   ContourSet set;
   set.source = source;

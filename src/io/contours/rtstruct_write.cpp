@@ -3,7 +3,6 @@
 // ContourData (VR DS) to 64 KiB, which a body outline exceeds.
 #include "detail/dicom_write.hpp"
 #include "detail/text.hpp"
-#include "detail/whole_file.hpp"
 #include "stylet/io/contours_io.hpp"
 
 #include <dcmtk/config/osconfig.h>
@@ -127,16 +126,7 @@ Result<> write_rtstruct(const ContourSet& contours, const fs::path& path) {
   fill_header(fill, *file.getDataset(), contours, print);
   fill_structures(fill, *file.getDataset(), contours,
                   contours.frame_of_reference.empty() ? derived_uid(print, "frame") : contours.frame_of_reference);
-  const auto refused = [&](const OFCondition& why) {
-    return failure(path.string(), fmt::format("the RT Structure Set cannot be written ({})", why.text()),
-                   "Check the folder's permissions and space");
-  };
-  if (fill.status().bad()) return refused(fill.status());
-  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const OFCondition saved = file.saveFile(temporary.c_str(), EXS_LittleEndianImplicit);
-    if (saved.bad()) return refused(saved);
-    return Ok{};
-  });
+  return detail::save_dicom(file, fill, path, EXS_LittleEndianImplicit, "RT Structure Set");
 }
 
 }  // namespace stylet

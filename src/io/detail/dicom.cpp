@@ -9,7 +9,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 
 namespace stylet::detail {
 
@@ -50,10 +52,14 @@ std::vector<DcmItem*> items_of(DcmItem& parent, const DcmTagKey& tag) {
 
 namespace {
 
-/// SOP class and modality of a file, read without its other data, which is fast even for a folder of a thousand slices.
-struct DicomKind {
-  std::string sop_class, modality;
-};
+/// Whether a file has the mark "DICM" after a preamble of 128 bytes (DICOM PS3.10 7.1).
+bool has_dicom_mark(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 132> head{};
+  return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
+}
+
+}  // namespace
 
 DicomKind kind_of_dicom(const fs::path& path) {
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
@@ -64,7 +70,25 @@ DicomKind kind_of_dicom(const fs::path& path) {
   return {text_of(*file.getDataset(), DCM_SOPClassUID), text_of(*file.getDataset(), DCM_Modality)};
 }
 
-}  // namespace
+Result<> load_dicom(DcmFileFormat& file, const fs::path& path, const std::function<Result<>(DcmDataset&)>& check_kind,
+                    const std::string& name_another) {
+  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+  OFCondition status = file.loadFile(path.c_str());
+  if (status.good()) status = file.loadAllDataIntoMemory();
+  DcmDataset& data = *file.getDataset();
+  const bool has_header = !text_of(data, DCM_SOPClassUID).empty();
+  if (status.good() || has_header) {
+    if (Result<> kind = check_kind(data); !kind) return kind;
+  }
+  if (status.bad() && !has_header && !has_dicom_mark(path))
+    return input_error(path.string(), "this is not a DICOM file", name_another);
+  if (status.bad()) {
+    return input_error(path.string(), fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
+                       "The file is truncated or damaged; copy or export it again");
+  }
+  data.convertToUTF8();  // on failure the bytes stay unchanged
+  return Ok{};
+}
 
 bool is_dicom_seg(const fs::path& path) {
   const DicomKind kind = kind_of_dicom(path);

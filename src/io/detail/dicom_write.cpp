@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "detail/dicom_write.hpp"
 
+#include "detail/whole_file.hpp"
+
 #include <fmt/format.h>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -47,6 +49,20 @@ void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const ch
         DCM_ReferringPhysicianName, DCM_StudyID, DCM_SeriesNumber, DCM_OperatorsName}) {
     fill.text(data, empty, "");
   }
+}
+
+Result<> save_dicom(DcmFileFormat& file, const Filler& fill, const std::filesystem::path& path, E_TransferSyntax syntax,
+                    const char* name) {
+  const auto refused = [&](const OFCondition& why) {
+    return failure(path.string(), fmt::format("the {} cannot be written ({})", name, why.text()),
+                   "Check the folder's permissions and space");
+  };
+  if (fill.status().bad()) return refused(fill.status());
+  return write_whole(path, [&](const std::filesystem::path& temporary) -> Result<> {
+    const OFCondition saved = file.saveFile(temporary.c_str(), syntax);
+    if (saved.bad()) return refused(saved);
+    return Ok{};
+  });
 }
 
 }  // namespace stylet::detail

@@ -4,11 +4,14 @@
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 
+#include "stylet/core/result.hpp"
+
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// What all writers of DICOM files share.
+/// Numbers, identifiers and attributes for the writers of DICOM files.
 namespace stylet::detail {
 
 /// A number as text of VR DS: four decimals without trailing zeros.
@@ -54,5 +57,10 @@ class Filler {
 /// patient without identity.
 /// @param print text with all data of the file, from which its identifiers are derived
 void fill_common(Filler& fill, DcmDataset& data, const char* sop_class, const char* modality, const std::string& print);
+
+/// Saves a file that was filled; it appears whole or not at all.
+/// @param name of the kind of file in messages, such as "RT Plan"
+Result<> save_dicom(DcmFileFormat& file, const Filler& fill, const std::filesystem::path& path, E_TransferSyntax syntax,
+                    const char* name);
 
 }  // namespace stylet::detail

@@ -8,7 +8,6 @@
 #include "dose/dose_parsers.hpp"
 #include "dose/plan_words.hpp"
 
-#include <dcmtk/oflog/oflog.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -20,15 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using detail::FileKind;
-
-/// Modality of a DICOM file; to be called in a child process.
-std::string modality_of(const fs::path& path) {
-  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-  DcmFileFormat file;
-  if (file.loadFileUntilTag(path.c_str(), EXS_Unknown, EGL_noChange, 4096, ERM_autoDetect, DCM_Manufacturer).bad())
-    return {};
-  return detail::text_of(*file.getDataset(), DCM_Modality);
-}
 
 /// First line of a text file that is neither empty nor a comment.
 std::string header_line(const fs::path& path) {
@@ -62,8 +52,8 @@ DoseFileKind dose_file_kind(const fs::path& path) {
   const Result<FileKind> kind = detail::identify(path);
   if (!kind) return DoseFileKind::none;
   if (*kind == FileKind::dicom) {
-    const Result<std::string> modality =
-        detail::guarded<std::string>(path, [&]() -> Result<std::string> { return modality_of(path); });
+    const Result<std::string> modality = detail::guarded<std::string>(
+        path, [&]() -> Result<std::string> { return detail::kind_of_dicom(path).modality; });
     if (!modality) return DoseFileKind::none;
     if (*modality == "RTPLAN") return DoseFileKind::plan;
     return *modality == "RTDOSE" ? DoseFileKind::dose_grid : DoseFileKind::none;

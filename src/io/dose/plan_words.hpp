@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-/// What plans in JSON and CSV share.
+/// Words and checks that plans in JSON and in CSV have in common.
 namespace stylet::detail {
 
 Result<DosePlan> parse_plan_json(const std::filesystem::path& path);

@@ -4,7 +4,6 @@
 #include "detail/reach.hpp"
 #include "dose/dose_parsers.hpp"
 
-#include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -22,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kExportDoseAgain = "The file is damaged; export the dose again";
 constexpr double kMostDosePoints = 2e8;
 
-/// What the header says about the stored numbers.
+/// How the numbers of the dose grid are stored, from the header of the file.
 struct StoredNumbers {
   int rows = 0, columns = 0, frames = 0, bits_allocated = 0, bits_stored = 0;
   bool has_sign = false;
@@ -184,19 +183,12 @@ Result<> check_is_dose(DcmDataset& data, const std::string& file) {
 }  // namespace
 
 Result<DoseGrid> parse_rtdose(const fs::path& path) {
-  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   const std::string file = path.string();
   DcmFileFormat format;
-  OFCondition status = format.loadFile(path.c_str());
-  if (status.good()) status = format.loadAllDataIntoMemory();
+  const auto check_kind = [&](DcmDataset& data) { return check_is_dose(data, file); };
+  if (Result<> loaded = load_dicom(format, path, check_kind, "Name a DICOM RT Dose (modality RTDOSE)"); !loaded)
+    return loaded.error();
   DcmDataset& data = *format.getDataset();
-  if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
-    if (Result<> kind = check_is_dose(data, file); !kind) return kind.error();
-  }
-  if (status.bad()) {
-    return input_error(file, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "The file is truncated or damaged; copy or export it again");
-  }
   const Result<StoredNumbers> numbers = read_numbers(data, file);
   if (!numbers) return numbers.error();
   const auto position = numbers_of(data, DCM_ImagePositionPatient);

@@ -98,16 +98,7 @@ Result<> write_rtdose(const DoseGrid& grid, const std::string& plan_sop_instance
   DcmFileFormat file;
   Filler fill;
   fill_dose(fill, *file.getDataset(), grid, plan_sop_instance, scaling);
-  const auto refused = [&](const OFCondition& why) {
-    return failure(path.string(), fmt::format("the RT Dose cannot be written ({})", why.text()),
-                   "Check the folder's permissions and space");
-  };
-  if (fill.status().bad()) return refused(fill.status());
-  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const OFCondition saved = file.saveFile(temporary.c_str(), EXS_LittleEndianExplicit);
-    if (saved.bad()) return refused(saved);
-    return Ok{};
-  });
+  return detail::save_dicom(file, fill, path, EXS_LittleEndianExplicit, "RT Dose");
 }
 
 Result<> write_dose_nrrd(const DoseGrid& grid, const fs::path& path) {

@@ -6,7 +6,6 @@
 #include "dose/dose_parsers.hpp"
 #include "dose/rtplan_channel.hpp"
 
-#include <dcmtk/oflog/oflog.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -354,21 +353,12 @@ Result<> check_is_plan(DcmDataset& data, const std::string& file) {
 }  // namespace
 
 Result<DosePlan> parse_rtplan(const fs::path& path) {
-  OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   const std::string file = path.string();
   DcmFileFormat format;
-  OFCondition status = format.loadFile(path.c_str());
-  if (status.good()) status = format.loadAllDataIntoMemory();
-  DcmDataset& data = *format.getDataset();
-  if (status.good() || !text_of(data, DCM_SOPClassUID).empty()) {
-    if (Result<> kind = check_is_plan(data, file); !kind) return kind.error();
-  }
-  if (status.bad()) {
-    return input_error(file, fmt::format("the DICOM file cannot be read to its end ({})", status.text()),
-                       "The file is truncated or damaged; copy or export it again");
-  }
-  data.convertToUTF8();  // on failure the bytes stay unchanged
-  return RtplanReader(data, file).run();
+  const auto check_kind = [&](DcmDataset& data) { return check_is_plan(data, file); };
+  if (Result<> loaded = load_dicom(format, path, check_kind, "Name a DICOM RT Plan (modality RTPLAN)"); !loaded)
+    return loaded.error();
+  return RtplanReader(*format.getDataset(), file).run();
 }
 
 }  // namespace stylet::detail

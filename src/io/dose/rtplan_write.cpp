@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer of brachytherapy plans in DICOM RTPLAN (DICOM PS3.3 A.20), without patient-identifying data.
 #include "detail/dicom_write.hpp"
-#include "detail/whole_file.hpp"
 #include "stylet/io/dose_io.hpp"
 
 #include <fmt/format.h>
@@ -76,7 +75,7 @@ void fill_plan(Filler& fill, DcmDataset& data, const DosePlan& plan, const std::
   fill.text(fill.new_item(data, DCM_TreatmentMachineSequence), DCM_TreatmentMachineName, "");
 }
 
-/// The start of the strengths' date: DICOM has eight digits for a date.
+/// One source for each strength. DICOM asks for a date of the strength; 1900-01-01 stands for one that is not known.
 void fill_sources(Filler& fill, DcmDataset& data, const DosePlan& plan, const SourceModel& source) {
   for (const auto& [strength, number] : numbers_of_strengths(plan)) {
     DcmItem& item = fill.new_item(data, DCM_SourceSequence);
@@ -84,7 +83,6 @@ void fill_sources(Filler& fill, DcmDataset& data, const DosePlan& plan, const So
     fill.text(item, DCM_SourceType, "LINE");
     fill.text(item, DCM_SourceManufacturer, "");
     fill.text(item, DCM_SourceDescription, source.name);
-    fill.text(item, DCM_ActiveSourceDiameter, precise_decimal_string(source.outer_diameter_mm));
     fill.text(item, DCM_ActiveSourceLength, precise_decimal_string(source.active_length_mm));
     fill.text(item, DCM_SourceIsotopeName, source.isotope);
     fill.text(item, DCM_SourceIsotopeHalfLife, precise_decimal_string(source.half_life_days));
@@ -103,10 +101,9 @@ void fill_point(Filler& fill, DcmItem& channel, int index, double weight, const 
   fill.text(point, DCM_ControlPointRelativePosition, std::to_string(index / 2));
   fill.text(point, DCM_ControlPoint3DPosition, vector_text(s.at_mm));
   if (!s.has_axis) return;
-  DcmItem& item = point;
   const std::vector<Float32> axis{static_cast<Float32>(s.axis.x()), static_cast<Float32>(s.axis.y()),
                                   static_cast<Float32>(s.axis.z())};
-  fill.floats(item, kOrientation, axis);
+  fill.floats(point, kOrientation, axis);
 }
 
 /// Sources of one channel: one seed, or all dwell positions of a needle with one strength, in the order of the plan.
@@ -189,16 +186,7 @@ Result<> write_rtplan(const DosePlan& plan, const SourceModel& source, const fs:
   fill_plan(fill, *file.getDataset(), plan, print_of(plan, source), rtplan_frame(plan, source));
   fill_sources(fill, *file.getDataset(), plan, source);
   fill_channels(fill, *file.getDataset(), plan, source);
-  const auto refused = [&](const OFCondition& why) {
-    return failure(path.string(), fmt::format("the RT Plan cannot be written ({})", why.text()),
-                   "Check the folder's permissions and space");
-  };
-  if (fill.status().bad()) return refused(fill.status());
-  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
-    const OFCondition saved = file.saveFile(temporary.c_str(), EXS_LittleEndianExplicit);
-    if (saved.bad()) return refused(saved);
-    return Ok{};
-  });
+  return detail::save_dicom(file, fill, path, EXS_LittleEndianExplicit, "RT Plan");
 }
 
 }  // namespace stylet

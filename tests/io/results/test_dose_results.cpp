@@ -162,7 +162,8 @@ TEST(DoseFolder, holds_all_files_and_nothing_else) {
   const fs::path folder = fresh_folder("whole");
   const auto done = write_dose_results(implant(), folder);
   ASSERT_TRUE(done) << done.error().message();
-  EXPECT_EQ(names_in(folder), (std::set<std::string>{"dose.json", "dose.nrrd", "dvh.csv", "report.html"}));
+  EXPECT_EQ(names_in(folder),
+            (std::set<std::string>{"dose.dcm", "dose.json", "dose.nrrd", "dvh.csv", "plan.dcm", "report.html"}));
   EXPECT_EQ(text_of(folder / "dose.json"), dose_json(implant()));
   EXPECT_EQ(text_of(folder / "dvh.csv"), dvh_csv(implant()));
   EXPECT_TRUE(text_of(folder / "dose.nrrd").starts_with("NRRD"));

@@ -10,19 +10,22 @@
 
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 namespace stylet {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// The bytes of dose.nrrd: they are written into a hidden file beside the results, which is removed again.
-Result<std::string> nrrd_bytes(const DoseGrid& grid, const fs::path& beside) {
-  const fs::path hidden = beside / fmt::format(".dose.{}.nrrd", ::getpid());
+/// The bytes of a file whose writer needs a path: it is written under a hidden name beside the results, and removed.
+Result<std::string> bytes_of(const std::string& name, const fs::path& beside,
+                             const std::function<Result<>(const fs::path&)>& write) {
+  const fs::path hidden = beside / fmt::format(".{}.{}", ::getpid(), name);
   std::error_code ignored;
-  auto done = write_dose_nrrd(grid, hidden);
-  if (!done) {
+  if (auto done = write(hidden); !done) {
     fs::remove(hidden, ignored);
     return done.error();
   }
@@ -34,6 +37,23 @@ Result<std::string> nrrd_bytes(const DoseGrid& grid, const fs::path& beside) {
   return bytes;
 }
 
+/// plan.dcm, dose.dcm and dose.nrrd. Both DICOM files have one frame of reference.
+Result<std::vector<results::File>> files_of_grid_and_plan(const DoseEvaluation& e, const fs::path& beside) {
+  DoseGrid grid = e.grid;
+  grid.frame_of_reference = rtplan_frame(e.plan, e.source);
+  const std::vector<std::pair<std::string, std::function<Result<>(const fs::path&)>>> writers{
+      {"plan.dcm", [&](const fs::path& path) { return write_rtplan(e.plan, e.source, path); }},
+      {"dose.dcm", [&](const fs::path& path) { return write_rtdose(grid, rtplan_uid(e.plan, e.source), path); }},
+      {"dose.nrrd", [&](const fs::path& path) { return write_dose_nrrd(grid, path); }}};
+  std::vector<results::File> files;
+  for (const auto& [name, write] : writers) {
+    auto bytes = bytes_of(name, beside, write);
+    if (!bytes) return bytes.error();
+    files.push_back({name, std::move(*bytes)});
+  }
+  return files;
+}
+
 Result<> write_all_results(const DoseEvaluation& evaluation, const fs::path& folder, const Progress& progress) {
   const fs::path place = folder.has_filename() ? folder : folder.parent_path();
   std::error_code code;
@@ -42,16 +62,15 @@ Result<> write_all_results(const DoseEvaluation& evaluation, const fs::path& fol
                                                     : fs::path(".");
   if (auto ready = results::prepare_folder(beside); !ready) return ready;
   report(progress, "dose grid", 0.0);
-  auto nrrd = nrrd_bytes(evaluation.grid, beside);
-  if (!nrrd) return nrrd.error();
+  auto files = files_of_grid_and_plan(evaluation, beside);
+  if (!files) return files.error();
   report(progress, "report", 0.0);
   auto page = results::dose_page(evaluation);
   if (!page) return page.error();
-  auto done = results::write_folder({{"report.html", std::move(*page)},
-                                     {"dvh.csv", dvh_csv(evaluation)},
-                                     {"dose.nrrd", std::move(*nrrd)},
-                                     {"dose.json", dose_json(evaluation)}},
-                                    place);
+  files->push_back({"report.html", std::move(*page)});
+  files->push_back({"dvh.csv", dvh_csv(evaluation)});
+  files->push_back({"dose.json", dose_json(evaluation)});
+  auto done = results::write_folder(*files, place);
   if (done) report(progress, "report", 1.0);
   return done;
 }

@@ -9,7 +9,7 @@
 
 namespace stylet::results {
 
-/// What the program hands over to the scripts of the page (web/report/src/dose/data.ts), as JSON. The size is bounded,
+/// The data for the scripts of the page (web/report/src/dose/data.ts), as JSON. The size is bounded,
 /// so that the page keeps below 8 MB: masks, surfaces and the dose are thinned where necessary.
 /// @param colours (structures) structure_colours()
 std::string dose_page_data(const DoseEvaluation& evaluation, const DvhTable& dvh,

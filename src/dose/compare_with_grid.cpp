@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dose/covered_percent.hpp"
+#include "stylet/dose/evaluate.hpp"
+#include "stylet/dose/rate_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace stylet {
+
+namespace {
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Leaves the first and the last frame of a grid out of the comparison where their ratios differ by more than 5 % from
+/// all others, while those of the frame beside them do not: some planning systems write an end frame without meaning.
+void drop_strange_ends(std::vector<double>& ratio, std::vector<Index>& frames, const DoseGrid& grid,
+                       std::vector<std::string>& warnings) {
+  constexpr double strange = 0.05, usual = 0.01;
+  const double all = median_of(ratio);
+  const auto of_frame = [&](Index frame) {
+    std::vector<double> values;
+    for (std::size_t p = 0; p < ratio.size(); ++p) {
+      if (frames[p] == frame) values.push_back(ratio[p]);
+    }
+    return median_of(std::move(values)) / all;
+  };
+  const Index last = grid.size[2] - 1;
+  for (const auto& [frame, beside] : {std::pair<Index, Index>(0, 1), std::pair<Index, Index>(last, last - 1)}) {
+    if (last < 2 || !(std::abs(of_frame(frame) - 1.0) > strange) || !(std::abs(of_frame(beside) - 1.0) < usual))
+      continue;
+    warnings.push_back(fmt::format(
+        "The {} frame of {} (z = {:.1f} mm) does not fit the frames beside it; it is left out of the comparison.",
+        frame == 0 ? "lowest" : "highest", grid.file, grid.point(0, 0, frame).z()));
+    std::size_t kept = 0;
+    for (std::size_t p = 0; p < ratio.size(); ++p) {
+      if (frames[p] == frame) continue;
+      ratio[kept] = ratio[p];
+      frames[kept++] = frames[p];
+    }
+    ratio.resize(kept);
+    frames.resize(kept);
+  }
+}
+
+}  // namespace
+
+Result<> compare_with_grid(DoseEvaluation& e, const DoseGrid& grid, std::span<const DoseStructure> structures,
+                           const DoseOptions& options, const Vec3& shift_mm) {
+  constexpr double near_mm = 4.0, least_share = 0.1, least_steps = 50.0;
+  if (!grid.frame_of_reference.empty() && !e.plan.frame_of_reference.empty() &&
+      grid.frame_of_reference != e.plan.frame_of_reference) {
+    return input_error(grid.file, "the dose grid has another frame of reference than the plan",
+                       "Give the dose grid that belongs to this plan");
+  }
+  const Result<Tg43> tg43 = Tg43::create(e.source, e.formalism);
+  if (!tg43) return tg43.error();
+  const RateTable table(*tg43);
+  const WeightedSources weighted = weighted_sources(e.plan, e.source, options);
+  double least = least_share * e.prescription_Gy;
+  if (least <= 0.0) {
+    std::vector<double> doses;
+    std::copy_if(grid.dose_Gy.begin(), grid.dose_Gy.end(), std::back_inserter(doses), [](float d) { return d > 0.0F; });
+    if (!doses.empty()) least = least_share * median_of(std::move(doses));
+  }
+  least = std::max(least, least_steps * grid.quantum_Gy);
+  const double most = grid.largest_Gy > 0.0 ? grid.largest_Gy * (1.0 - 1e-6) : INFINITY;
+  std::vector<Vec3> points;
+  std::vector<double> theirs;
+  std::vector<Index> frames;
+  std::size_t n = 0;
+  for (Index k = 0; k < grid.size[2]; ++k) {
+    for (Index j = 0; j < grid.size[1]; ++j) {
+      for (Index i = 0; i < grid.size[0]; ++i, ++n) {
+        const auto dose = static_cast<double>(grid.dose_Gy[n]);
+        if (dose < least || dose <= 0.0 || dose >= most) continue;
+        const Vec3 x = grid.point(i, j, k) + shift_mm;
+        const bool near = std::any_of(weighted.sources.begin(), weighted.sources.end(), [&](const PlacedSource& s) {
+          return (x - s.at_mm).squaredNorm() < near_mm * near_mm;
+        });
+        if (near) continue;
+        points.push_back(x);
+        theirs.push_back(dose);
+        frames.push_back(k);
+      }
+    }
+  }
+  if (points.empty()) {
+    return input_error(grid.file,
+                       "no point of the dose grid can be compared: all lie near a source or have hardly any dose",
+                       "Give the dose grid that belongs to this plan");
+  }
+  std::vector<double> ratio(points.size());
+  sum_rates(table, weighted.sources, points, ratio);
+  for (std::size_t p = 0; p < ratio.size(); ++p) ratio[p] *= weighted.factor / theirs[p];
+  drop_strange_ends(ratio, frames, grid, e.warnings);
+  std::sort(ratio.begin(), ratio.end());
+  const auto at = [&](double share) {
+    return ratio[static_cast<std::size_t>(share * static_cast<double>(ratio.size() - 1))];
+  };
+  e.comparison = DoseComparison{grid.file, ratio.size(), at(0.5), at(0.01), at(0.99)};
+  if (std::abs(at(0.5) - 1.0) > 0.02) {
+    e.warnings.push_back(fmt::format(
+        "The computed dose is {:.3f} times that of {} (median). Formalism, source model or strength may differ.",
+        at(0.5), grid.file));
+  }
+  for (std::size_t k = 0; k < structures.size() && k < e.structures.size(); ++k) {
+    const double covered = dose::covered_percent(structures[k].samples, grid, shift_mm);
+    e.structures[k].covered_by_grid_percent = covered;
+    if (covered < 99.5) {
+      e.warnings.push_back(fmt::format(
+          "The dose grid {} holds only {:.1f} % of '{}'; figures that a planning system reads from it miss the rest.",
+          grid.file, covered, structures[k].name));
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace stylet
