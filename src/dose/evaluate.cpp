@@ -253,7 +253,7 @@ Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& so
                             DoseVolume(dose, structure.samples.volume_mm3),
                             dose::covered_percent(structure.samples, e.grid, Vec3::Zero()), structure.contours,
                             cloud_of(structure.samples)});
-    report(progress, "dose to structures", (k + 1.0) / static_cast<double>(structures.size()));
+    report(progress, "dose to structures", static_cast<double>(k + 1) / static_cast<double>(structures.size()));
   }
   Result<std::vector<JudgedGoal>> goals = judge(e, options.goals);
   if (!goals) return goals.error();

@@ -35,6 +35,19 @@ struct Block {
   std::array<double, kBlock> rate{};            // dose rate by the table
 };
 
+/// Asks for the points and rates of a later block, so that they are in the cache when their turn comes: for one source
+/// and many points, waiting for memory would take as long as the computation.
+void fetch_ahead(std::span<const Vec3> points, std::span<const double> rates, std::size_t begin) {
+#if defined(__GNUC__)
+  constexpr std::size_t kLine = 64;  // bytes of a line of the cache
+  if (begin + kBlock > points.size()) return;
+  const auto* point = reinterpret_cast<const char*>(points.data() + begin);
+  const auto* rate = reinterpret_cast<const char*>(rates.data() + begin);
+  for (std::size_t byte = 0; byte < kBlock * sizeof(Vec3); byte += kLine) __builtin_prefetch(point + byte);
+  for (std::size_t byte = 0; byte < kBlock * sizeof(double); byte += kLine) __builtin_prefetch(rate + byte, 1);
+#endif
+}
+
 /// The table's numbers that the loop needs.
 struct TableView {
   const float* scaled;
@@ -116,6 +129,7 @@ void RateTable::add(const PlacedSource& source, std::span<const Vec3> points, st
   const TableView table{scaled_.data(), angles_, steps_per_rad_, folds_, kRadii - 2};
   for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, points.size() - begin);
+    fetch_ahead(points, rates, begin + 2 * kBlock);
     for (std::size_t p = 0; p < kBlock; ++p) {
       // The last block is filled up with its last point.
       const Vec3 to = points[begin + std::min(p, count - 1)] - source.at_mm;

@@ -17,6 +17,8 @@
 #include <fstream>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 
 namespace stylet {
 namespace {
@@ -27,8 +29,8 @@ class SyntheticPlan : public testing::Test {
  protected:
   void SetUp() override {
     const char* chosen = std::getenv("STYLET_SHARED_DATA");
-    const fs::path file =
-        fs::path(chosen != nullptr ? chosen : STYLET_SHARED_DATA_DEFAULT) / "dose_synthetic/expected_synthetic.json";
+    data = fs::path(chosen != nullptr ? chosen : STYLET_SHARED_DATA_DEFAULT) / "dose_synthetic";
+    const fs::path file = data / "expected_synthetic.json";
     if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
     plan = nlohmann::json::parse(std::ifstream(file));
     for (const auto& at : plan.at("seeds_xyz_mm"))
@@ -57,6 +59,7 @@ class SyntheticPlan : public testing::Test {
     return found;
   }
 
+  fs::path data;
   nlohmann::json plan;
   std::vector<PlacedSource> seeds;
 };
@@ -105,37 +108,96 @@ TEST_F(SyntheticPlan, has_the_dose_volume_figures_of_an_independent_calculator) 
   EXPECT_NEAR(dvh.percent_above(2.0 * 145.0), expected.at("V200_pct").get<double>(), 0.3);
 }
 
-// Seeds that land beside their places at random, as D90 over that of the plan: means of 200 draws.
-TEST_F(SyntheticPlan, loses_D90_with_random_errors_of_placement_as_an_independent_calculator_says) {
-  const auto& axes = plan.at("ellipsoid_semi_axes_mm");
-  const StructureSamples samples = sample_structure(ellipsoid(Vec3(axes[0], axes[1], axes[2])), 1.5).value();
-  const RateTable table(Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line1d).value());
-  std::vector<double> dose(samples.points.size());
-  const auto D90 = [&](const std::vector<PlacedSource>& placed) {
-    sum_rates(table, placed, samples.points, dose);
-    return DoseVolume(dose, samples.volume_mm3).dose_of_percent(90.0);
-  };
-  const double planned = D90(seeds);
-  std::mt19937 random(12);
-  std::normal_distribution<double> normal;
+/// D90 over that of the plan when seeds land beside their places.
+class Misplaced {
+ public:
+  /// @param step distance of the samples [mm]
+  Misplaced(const nlohmann::json& plan, std::vector<PlacedSource> planned, double step)
+      : samples_(sample_structure(ellipsoid(semi_axes(plan)), step).value()),
+        table_(Tg43::create(find_source(plan.at("source")).value(), DoseFormalism::line1d).value()),
+        seeds_(std::move(planned)),
+        dose_(samples_.points.size()),
+        planned_(D90(seeds_)) {}
+
+  /// Mean of 200 draws with normally distributed errors. @param sigma standard deviations [mm]
+  double random(const Vec3& sigma) {
+    std::mt19937 engine(12);
+    std::normal_distribution<double> normal;
+    constexpr int draws = 200;
+    double sum = 0.0;
+    for (int draw = 0; draw < draws; ++draw) {
+      std::vector<PlacedSource> placed = seeds_;
+      for (PlacedSource& seed : placed) {
+        for (int axis = 0; axis < 3; ++axis) seed.at_mm[axis] += sigma[axis] * normal(engine);
+      }
+      sum += D90(placed) / planned_;
+    }
+    return sum / draws;
+  }
+
+  /// All seeds beside their places by the same vector [mm].
+  double shifted(const Vec3& by) {
+    std::vector<PlacedSource> placed = seeds_;
+    for (PlacedSource& seed : placed) seed.at_mm += by;
+    return D90(placed) / planned_;
+  }
+
+ private:
+  static Vec3 semi_axes(const nlohmann::json& plan) {
+    const auto& axes = plan.at("ellipsoid_semi_axes_mm");
+    return Vec3(axes[0], axes[1], axes[2]);
+  }
+
+  double D90(const std::vector<PlacedSource>& placed) {
+    sum_rates(table_, placed, samples_.points, dose_);
+    return DoseVolume(dose_, samples_.volume_mm3).dose_of_percent(90.0);
+  }
+
+  StructureSamples samples_;
+  RateTable table_;
+  std::vector<PlacedSource> seeds_;
+  std::vector<double> dose_;
+  double planned_;
+};
+
+TEST_F(SyntheticPlan, loses_D90_with_errors_of_placement_as_an_independent_calculator_says) {
+  Misplaced misplaced(plan, seeds, 1.5);
   int compared = 0;
   for (const auto& [name, expected] : plan.at("placement_error_to_D90").items()) {
     if (!expected.contains("sigma_xyz_mm")) continue;
     const auto& sigma = expected.at("sigma_xyz_mm");
-    constexpr int draws = 200;
-    double sum = 0.0;
-    for (int draw = 0; draw < draws; ++draw) {
-      std::vector<PlacedSource> placed = seeds;
-      for (PlacedSource& seed : placed) {
-        for (int axis = 0; axis < 3; ++axis)
-          seed.at_mm[axis] += sigma[static_cast<std::size_t>(axis)].get<double>() * normal(random);
-      }
-      sum += D90(placed) / planned;
-    }
-    EXPECT_NEAR(sum / draws, expected.at("D90_ratio_mean").get<double>(), 0.01) << name;
+    EXPECT_NEAR(misplaced.random(Vec3(sigma[0], sigma[1], sigma[2])), expected.at("D90_ratio_mean").get<double>(), 0.01)
+        << name;
     ++compared;
   }
   EXPECT_EQ(compared, 8);
+  const auto& table = plan.at("placement_error_to_D90");
+  EXPECT_NEAR(misplaced.shifted(Vec3(0, 0, 5)), table.at("shift_z_+5mm").at("D90_ratio").get<double>(), 0.01);
+  EXPECT_NEAR(misplaced.shifted(Vec3(0, 0, -5)), table.at("shift_z_-5mm").at("D90_ratio").get<double>(), 0.01);
+  EXPECT_NEAR(misplaced.shifted(Vec3(0, 0, 10)), table.at("shift_z_10mm").at("D90_ratio").get<double>(), 0.01);
+  EXPECT_NEAR(misplaced.shifted(Vec3(0, 5, 0)), table.at("shift_y_5mm").at("D90_ratio").get<double>(), 0.01);
+}
+
+// A plan whose 92 seeds reach 3 mm beyond the gland.
+TEST_F(SyntheticPlan, with_a_margin_loses_less_D90_by_shifts_and_as_much_by_random_errors) {
+  const fs::path file = data / "margin_plan.json";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
+  const auto margin = nlohmann::json::parse(std::ifstream(file));
+  std::vector<PlacedSource> placed;
+  for (const auto& at : margin.at("seeds"))
+    placed.push_back({.at_mm = Vec3(at[0], at[1], at[2]), .axis = Vec3::UnitZ(), .weight = margin.at("S_K")});
+  Misplaced misplaced(plan, placed, 1.5);
+  const auto& curve = margin.at("curve");
+  for (int sigma = 1; sigma <= 6; ++sigma)
+    EXPECT_NEAR(misplaced.random(Vec3::Constant(sigma)), curve.at(std::to_string(sigma) + "mm")[0].get<double>(), 0.01)
+        << sigma;
+  EXPECT_NEAR(misplaced.random(Vec3(1.3, 1.5, 3.8)), curve.at("1.3/1.5/3.8")[0].get<double>(), 0.01);
+  // The border of the gland lies where the dose falls steeply, so shifts are sampled more finely.
+  Misplaced finely(plan, placed, 0.5);
+  EXPECT_NEAR(finely.shifted(Vec3(0, 0, 5)), curve.at("z5")[0].get<double>(), 0.01);
+  EXPECT_NEAR(finely.shifted(Vec3(0, 0, 10)), curve.at("z10")[0].get<double>(), 0.01);
+  EXPECT_NEAR(finely.shifted(Vec3(0, 0, 15)), curve.at("z15")[0].get<double>(), 0.01);
+  EXPECT_NEAR(finely.shifted(Vec3(0, 5, 0)), curve.at("y5")[0].get<double>(), 0.01);
 }
 
 TEST_F(SyntheticPlan, one_seed_without_direction_has_its_isodose_where_it_was_computed) {

@@ -10,7 +10,7 @@ namespace stylet {
 
 /// The dose rate around a source as a table, for many points: some ten times faster than Tg43::rate(). The table holds
 /// r² times the dose rate, on equal steps of the radius and of the angle, and is read linearly between them; nearer
-/// than kNear_mm and beyond the table the formula itself is used. The difference from the formula is below 0.03 % (test
+/// than kNear_mm and beyond the table the formula itself is used. The difference from the formula is below 0.05 % (test
 /// RateTable.*). Immutable: any number of threads may use it.
 class RateTable {
  public:

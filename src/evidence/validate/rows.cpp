@@ -11,13 +11,28 @@ namespace {
 
 std::vector<RowSpec> collect() {
   std::vector<RowSpec> rows;
-  for (const auto& more :
-       {elasticity_rows(),         manufactured_rows(),      locking_rows(),      node_addition_rows(),
-        condensed_system_rows(),   needle_line_rows(),       free_surface_rows(), viscosity_rows(),
-        needle_theory_rows(),      insertion_law_rows(),     closed_loop_rows(),  insertion_over_meshes_rows(),
-        step_and_tolerance_rows(), other_software_rows(),    large_motion_rows(), published_force_rows(),
-        liver_curve_rows(),        okamura_recording_rows(), tip_tracking_rows(), prostate_motion_rows(),
-        in_patients_rows()})
+  for (const auto& more : {elasticity_rows(),
+                           manufactured_rows(),
+                           locking_rows(),
+                           node_addition_rows(),
+                           condensed_system_rows(),
+                           needle_line_rows(),
+                           free_surface_rows(),
+                           viscosity_rows(),
+                           needle_theory_rows(),
+                           insertion_law_rows(),
+                           closed_loop_rows(),
+                           insertion_over_meshes_rows(),
+                           step_and_tolerance_rows(),
+                           other_software_rows(),
+                           large_motion_rows(),
+                           published_force_rows(),
+                           liver_curve_rows(),
+                           okamura_recording_rows(),
+                           tip_tracking_rows(),
+                           prostate_motion_rows(),
+                           in_patients_rows(),
+                           dose_rows()})
     rows.insert(rows.end(), more.begin(), more.end());
   std::stable_sort(rows.begin(), rows.end(), [](const RowSpec& a, const RowSpec& b) { return a.group < b.group; });
   return rows;

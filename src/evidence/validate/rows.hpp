@@ -30,5 +30,6 @@ std::vector<RowSpec> okamura_recording_rows();
 std::vector<RowSpec> tip_tracking_rows();
 std::vector<RowSpec> prostate_motion_rows();
 std::vector<RowSpec> in_patients_rows();
+std::vector<RowSpec> dose_rows();
 
 }  // namespace stylet::validate

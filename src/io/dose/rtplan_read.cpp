@@ -5,6 +5,7 @@
 #include "detail/text.hpp"
 #include "dose/dose_parsers.hpp"
 #include "dose/rtplan_channel.hpp"
+#include "stylet/dose/known_sources.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace stylet::detail {
 
@@ -20,8 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kExportPlanAgain = "The file is damaged; export the plan again";
+constexpr const char* kNoDate = "19000101";  // stands for no date, also in our own files
 constexpr double kSameSeed_mm = 0.01;
 constexpr double kSeconds_per_day = 86400.0;
+constexpr double kStays_days = 30.0;          // sources that are left for longer are not taken out
+constexpr double kLeast_low_rate_s = 3600.0;  // shortest implant of low dose rate
 
 const DcmTagKey kControlPointOrientation(0x300a, 0x0412);
 const DcmTagKey kSourceStrengthUnits(0x300a, 0x0229);
@@ -39,7 +44,7 @@ std::optional<Vec3> vector_of(DcmItem& item, const DcmTagKey& tag) {
 
 /// One item of the source sequence (300A,0210).
 struct PlanSource {
-  std::string isotope, strength_text, date, units;
+  std::string isotope, model, strength_text, date, units;
   double half_life_days = 0.0, length_mm = 0.0, diameter_mm = 0.0;
 };
 
@@ -64,6 +69,11 @@ class RtplanReader {
     for (DcmItem* setup : setups) {
       if (Result<> read = read_setup(*setup, ++number); !read) return read.error();
     }
+    if (other_strengths_ > 0) {
+      plan_.notes.push_back(
+          fmt::format("{} of the seeds that stand in the plan again have another strength there; the first one counts.",
+                      other_strengths_));
+    }
     if (repeated_ > 0) {
       plan_.notes.push_back(fmt::format(
           "{} seed{} stand{} twice or more in the plan at the same place, as in plans whose setups repeat a "
@@ -82,7 +92,6 @@ class RtplanReader {
                       turned_by_channel_));
     }
     read_prescription();
-    read_fractions();
     return std::move(plan_);
   }
 
@@ -91,6 +100,7 @@ class RtplanReader {
     for (DcmItem* item : items_of(data_, DCM_SourceSequence)) {
       PlanSource source;
       source.isotope = text_of(*item, DCM_SourceIsotopeName);
+      source.model = text_of(*item, DCM_SourceDescription);
       source.strength_text = text_of(*item, DCM_ReferenceAirKermaRate);
       source.units = text_of(*item, kSourceStrengthUnits);
       source.half_life_days = number_of(*item, DCM_SourceIsotopeHalfLife).value_or(0.0);
@@ -98,6 +108,7 @@ class RtplanReader {
       source.diameter_mm = number_of(*item, DCM_ActiveSourceDiameter).value_or(0.0);
       source.date = trimmed(text_of(*item, DCM_SourceStrengthReferenceDate) + " " +
                             text_of(*item, DCM_SourceStrengthReferenceTime));
+      if (source.date.starts_with(kNoDate)) source.date.clear();
       sources_[integer_of(*item, DCM_SourceNumber).value_or(static_cast<int>(sources_.size()))] = source;
     }
   }
@@ -109,9 +120,13 @@ class RtplanReader {
     if (technique == "PERMANENT") return Ok{};
     if (type == "HDR" || type == "PDR" || type == "MDR") {
       plan_.implant = Implant::temporary;
-      if (type == "PDR")
+      if (type == "PDR") {
+        pulsed_ = true;
         plan_.notes.emplace_back(
-            "The plan is pulsed (PDR); the dose is that of all dwell times in the plan, in one go.");
+            "The plan is pulsed (PDR); the times of each channel are multiplied by its number of pulses (300A,028A), "
+            "and "
+            "the dose is that of all pulses together.");
+      }
       return Ok{};
     }
     double longest_s = 0.0;
@@ -121,10 +136,11 @@ class RtplanReader {
     }
     double half_life = 0.0;
     for (const auto& [number, source] : sources_) half_life = std::max(half_life, source.half_life_days);
-    const bool stays =
-        longest_s <= 0.0 || (half_life > 0.0 && longest_s > 0.9 * half_life * kSeconds_per_day / std::numbers::ln2);
+    const double mean_life_days = half_life > 0.0 ? half_life / std::numbers::ln2 : 1e9;
+    const bool stays = longest_s <= 0.0 || longest_s > kSeconds_per_day * std::min(kStays_days, 0.9 * mean_life_days);
     if (type == "LDR" || type == "MANUAL") {
-      if (!stays) {
+      // Some programs give seeds that stay a time of a second or so, which no implant of low dose rate has.
+      if (!stays && longest_s > kLeast_low_rate_s) {
         plan_.implant = Implant::temporary;
         plan_.notes.push_back(fmt::format(
             "The plan is {} with sources that are taken out after at most {:.4g} h; it is computed as temporary.", type,
@@ -209,7 +225,8 @@ class RtplanReader {
       if (total_s <= 0.0) return Ok{};
       double weights = 0.0;
       for (const RestingPlace& place : *places) weights += place.weight;
-      seconds_per_weight = total_s / weights;
+      const int pulses = pulsed_ ? std::max(1, integer_of(channel, DCM_NumberOfPulses).value_or(1)) : 1;
+      seconds_per_weight = pulses * total_s / weights;
       if (std::abs(weights / last - 1.0) > 0.005) {
         plan_.notes.push_back(
             fmt::format("{}: the weights of its places add up to {:g}, the final cumulative time weight is {:g}; the "
@@ -217,9 +234,9 @@ class RtplanReader {
                         "{:g} s is divided by the sum of the weights.",
                         where, weights, last, total_s));
       }
-      turn_by_neighbours(*places);
+      turn_by_neighbours(*places, begins_at_tip(channel));
     }
-    add_places(*places, *strength, seconds_per_weight, needle_of(channel));
+    add_places(*places, *strength, seconds_per_weight, needle_of(channel, places->size()));
     return Ok{};
   }
 
@@ -239,6 +256,8 @@ class RtplanReader {
   void take_source(const PlanSource& source, const std::string& where) {
     if (plan_.sources.empty()) {
       plan_.isotope = source.isotope;
+      // Planning systems leave the model out or have names of their own; this program writes the name that it knows.
+      if (find_source(source.model).ok()) plan_.source_model = source.model;
       plan_.half_life_days = source.half_life_days;
       plan_.source_length_mm = source.length_mm;
       plan_.source_diameter_mm = source.diameter_mm;
@@ -250,24 +269,35 @@ class RtplanReader {
     }
   }
 
-  /// Directions of dwell positions without orientation, from the line through their neighbours.
-  void turn_by_neighbours(std::vector<RestingPlace>& places) {
+  /// Directions of dwell positions without orientation: along the line through their neighbours, towards the tip.
+  /// @param tip_first whether the channel begins at its tip
+  void turn_by_neighbours(std::vector<RestingPlace>& places, bool tip_first) {
     for (std::size_t k = 0; k < places.size(); ++k) {
       if (places[k].axis || places.size() < 2) continue;
       const Vec3 along = places[std::min(k + 1, places.size() - 1)].at_mm - places[k == 0 ? 0 : k - 1].at_mm;
       if (along.norm() < kSameSeed_mm) continue;
-      places[k].axis = along.normalized();
+      places[k].axis = (tip_first ? -1.0 : 1.0) * along.normalized();
       ++turned_by_channel_;
     }
   }
 
-  /// Hole of the template or name of the channel.
-  static std::string needle_of(DcmItem& channel) {
+  /// Whether a channel begins at its tip: its points' distances from the place nearest the tip (300A,02D2) increase, or
+  /// it has none.
+  static bool begins_at_tip(DcmItem& channel) {
+    std::vector<double> distances;
+    for (DcmItem* item : items_of(channel, DCM_BrachyControlPointSequence)) {
+      if (const auto distance = number_of(*item, DCM_ControlPointRelativePosition)) distances.push_back(*distance);
+    }
+    return distances.empty() || distances.front() <= distances.back();
+  }
+
+  /// Hole of the template, name of the applicator, or the channel's number where it has several places.
+  static std::string needle_of(DcmItem& channel, std::size_t places) {
     std::string id = text_of(channel, DCM_SourceApplicatorID);
     if (!id.empty()) return id;
     std::string name = text_of(channel, DCM_SourceApplicatorName);
     if (!name.empty()) return name;
-    const auto number = integer_of(channel, DCM_ChannelNumber);
+    const auto number = places > 1 ? integer_of(channel, DCM_ChannelNumber) : std::nullopt;
     return number ? std::to_string(*number) : std::string();
   }
 
@@ -293,6 +323,7 @@ class RtplanReader {
     });
     if (found == plan_.sources.end()) return false;
     ++repeated_;
+    if (std::abs(found->strength_U - seed.strength_U) > 1e-6 * seed.strength_U) ++other_strengths_;
     if (!found->has_axis && seed.has_axis) {
       found->axis = seed.axis;
       found->has_axis = true;
@@ -300,36 +331,38 @@ class RtplanReader {
     return true;
   }
 
+  /// The prescription for what the file describes, which of several fractions is one.
   void read_prescription() {
+    double of_target = 0.0;
     for (DcmItem* reference : items_of(data_, DCM_DoseReferenceSequence)) {
-      const auto dose = number_of(*reference, DCM_TargetPrescriptionDose);
-      if (dose && *dose > 0.0) {
-        plan_.prescription_Gy = *dose;
-        return;
-      }
+      if (of_target <= 0.0) of_target = number_of(*reference, DCM_TargetPrescriptionDose).value_or(0.0);
     }
+    std::set<double> of_setups;
+    int fractions = 1;
     for (DcmItem* group : items_of(data_, DCM_FractionGroupSequence)) {
+      fractions = std::max(fractions, integer_of(*group, DCM_NumberOfFractionsPlanned).value_or(1));
       for (DcmItem* setup : items_of(*group, DCM_ReferencedBrachyApplicationSetupSequence)) {
         const auto dose = number_of(*setup, DCM_BrachyApplicationSetupDose);
-        if (dose && *dose > 0.0) plan_.prescription_Gy = std::max(plan_.prescription_Gy, *dose);
+        if (dose && *dose > 0.0) of_setups.insert(*dose);
       }
     }
-    if (plan_.prescription_Gy > 0.0) {
+    const double of_setup = of_setups.size() == 1 ? *of_setups.begin() : 0.0;
+    plan_.prescription_Gy = std::max(0.0, of_target);
+    if (of_target <= 0.0 && of_setup > 0.0) {
+      plan_.prescription_Gy = of_setup;
       plan_.notes.push_back(fmt::format(
           "The plan has no target prescription dose (300A,0026); the dose of its setups, {:g} Gy, stands in.",
-          plan_.prescription_Gy));
+          of_setup));
+    } else if (of_target <= 0.0 && of_setups.size() > 1) {
+      plan_.notes.emplace_back(
+          "The plan has no target prescription dose (300A,0026), and the doses of its setups (300A,00A4) differ; it is "
+          "read without a prescription.");
     }
-  }
-
-  void read_fractions() {
-    if (plan_.implant == Implant::permanent) return;
-    for (DcmItem* group : items_of(data_, DCM_FractionGroupSequence)) {
-      const int fractions = integer_of(*group, DCM_NumberOfFractionsPlanned).value_or(1);
-      if (fractions > 1) {
-        plan_.notes.push_back(fmt::format(
-            "The plan has {} fractions; the dose is that of the dwell times in the file, once.", fractions));
-      }
-    }
+    if (plan_.implant == Implant::permanent || fractions < 2) return;
+    const bool is_sum = of_setup > 0.0 && std::abs(of_target - fractions * of_setup) < 0.01 * of_target;
+    if (is_sum) plan_.prescription_Gy = of_setup;
+    plan_.notes.push_back(fmt::format("The plan has {} fractions; the dose is that of one{}.", fractions,
+                                      is_sum ? fmt::format(", and so is the prescription of {:g} Gy", of_setup) : ""));
   }
 
   DcmDataset& data_;
@@ -337,8 +370,10 @@ class RtplanReader {
   std::map<int, PlanSource> sources_;
   int channels_ = 0;
   int repeated_ = 0;
+  int other_strengths_ = 0;
   int turned_by_channel_ = 0;
   bool mixed_ = false;
+  bool pulsed_ = false;
 };
 
 Result<> check_is_plan(DcmDataset& data, const std::string& file) {

@@ -18,6 +18,7 @@ using detail::Filler;
 using detail::precise_decimal_string;
 
 const DcmTagKey kOrientation(0x300a, 0x0412);
+constexpr const char* kNoDate = "19000101";
 constexpr double kSeconds_per_day = 86400.0;
 
 std::string vector_text(const Vec3& x) {
@@ -75,6 +76,17 @@ void fill_plan(Filler& fill, DcmDataset& data, const DosePlan& plan, const std::
   fill.text(fill.new_item(data, DCM_TreatmentMachineSequence), DCM_TreatmentMachineName, "");
 }
 
+/// Date and time of DICOM from "20240102 101500"; midnight where there is no time.
+std::pair<std::string, std::string> date_and_time(const std::string& text) {
+  const auto digits = [&](std::size_t from, std::size_t count) {
+    const std::string part = text.size() < from + count ? "" : text.substr(from, count);
+    return part.find_first_not_of("0123456789") == std::string::npos ? part : "";
+  };
+  const std::string date = digits(0, 8);
+  const std::string time = digits(9, 6);
+  return {date.empty() ? kNoDate : date, date.empty() || time.empty() ? "000000" : time};
+}
+
 /// One source for each strength. DICOM asks for a date of the strength; 1900-01-01 stands for one that is not known.
 void fill_sources(Filler& fill, DcmDataset& data, const DosePlan& plan, const SourceModel& source) {
   for (const auto& [strength, number] : numbers_of_strengths(plan)) {
@@ -87,10 +99,9 @@ void fill_sources(Filler& fill, DcmDataset& data, const DosePlan& plan, const So
     fill.text(item, DCM_SourceIsotopeName, source.isotope);
     fill.text(item, DCM_SourceIsotopeHalfLife, precise_decimal_string(source.half_life_days));
     fill.text(item, DCM_ReferenceAirKermaRate, precise_decimal_string(strength));
-    const std::string date = plan.strength_date.substr(0, 8);
-    const bool is_date = date.size() == 8 && date.find_first_not_of("0123456789") == std::string::npos;
-    fill.text(item, DCM_SourceStrengthReferenceDate, is_date ? date : "19000101");
-    fill.text(item, DCM_SourceStrengthReferenceTime, "000000");
+    const auto [date, time] = date_and_time(plan.strength_date);
+    fill.text(item, DCM_SourceStrengthReferenceDate, date);
+    fill.text(item, DCM_SourceStrengthReferenceTime, time);
   }
 }
 

@@ -163,6 +163,10 @@ TEST_F(Rtplan, takes_the_dose_of_the_setup_where_no_prescription_is_given) {
         "145");
   RtplanFile::channel(plan.setup("UNDEFINED", 1), 1, kPermanent_s, 1.0, {{Vec3::Zero(), 0.0}, {Vec3::Zero(), 1.0}});
   EXPECT_EQ(read(plan).value().prescription_Gy, 145.0);
+  put(testing_files::new_item(group, DCM_ReferencedBrachyApplicationSetupSequence), DCM_BrachyApplicationSetupDose,
+      "20");
+  EXPECT_EQ(read(plan).value().prescription_Gy, 0.0) << "setups that differ say nothing";
+  EXPECT_TRUE(says(read(plan).value(), "without a prescription"));
   put(testing_files::new_item(*plan.file.getDataset(), DCM_DoseReferenceSequence), DCM_TargetPrescriptionDose, "160");
   EXPECT_EQ(read(plan).value().prescription_Gy, 160.0);
 }
@@ -182,8 +186,70 @@ TEST_F(Rtplan, of_dwell_times_has_the_time_of_each_place) {
   ASSERT_EQ(read_back.sources.size(), 2U) << "places without time are left out";
   EXPECT_NEAR(read_back.sources[0].dwell_s, 12.0, 1e-9);
   EXPECT_NEAR(read_back.sources[1].dwell_s, 18.0, 1e-9);
-  EXPECT_LT((read_back.sources[0].axis.cwiseAbs() - Vec3(0, 0.6, 0.8)).norm(), 1e-9) << "along the channel";
+  EXPECT_LT((read_back.sources[0].axis - Vec3(0, -0.6, -0.8)).norm(), 1e-9) << "towards the tip, where it begins";
   EXPECT_TRUE(says(read_back, "orientation"));
+}
+
+TEST_F(Rtplan, has_directions_towards_the_tip_also_where_a_channel_ends_there) {
+  RtplanFile plan = hdr();
+  DcmItem& channel =
+      RtplanFile::channel(plan.setup("TEMPLATE", 1), 1, 30.0, 30.0,
+                          {{Vec3(0, 0, 0), 0.0}, {Vec3(0, 0, 0), 10.0}, {Vec3(0, 0, 5), 10.0}, {Vec3(0, 0, 5), 30.0}});
+  const std::vector<const char*> from_tip{"5", "5", "0", "0"};
+  for (unsigned k = 0; k < 4; ++k) {
+    DcmItem* point = nullptr;
+    ASSERT_TRUE(channel.findOrCreateSequenceItem(DCM_BrachyControlPointSequence, point, static_cast<long>(k)).good());
+    put(*point, DCM_ControlPointRelativePosition, from_tip[k]);
+  }
+  for (const PlannedSource& dwell : read(plan).value().sources) EXPECT_LT((dwell.axis - Vec3::UnitZ()).norm(), 1e-9);
+}
+
+TEST_F(Rtplan, of_pulses_has_the_times_of_all_pulses) {
+  RtplanFile plan("PDR", "INTERSTITIAL", "Ir-192", 73.83, "4000");
+  DcmItem& channel =
+      RtplanFile::channel(plan.setup("TEMPLATE", 1), 1, 20.0, 20.0, {{Vec3::Zero(), 0.0}, {Vec3::Zero(), 20.0}});
+  put(channel, DCM_NumberOfPulses, "24");
+  const DosePlan read_back = read(plan).value();
+  ASSERT_EQ(read_back.sources.size(), 1U);
+  EXPECT_NEAR(read_back.sources[0].dwell_s, 480.0, 1e-9);
+  EXPECT_TRUE(says(read_back, "pulses"));
+}
+
+TEST_F(Rtplan, of_several_fractions_has_the_prescription_of_one) {
+  RtplanFile plan = hdr();
+  RtplanFile::channel(plan.setup("TEMPLATE", 1), 1, 20.0, 20.0, {{Vec3::Zero(), 0.0}, {Vec3::Zero(), 20.0}});
+  put(testing_files::new_item(*plan.file.getDataset(), DCM_DoseReferenceSequence), DCM_TargetPrescriptionDose, "27");
+  DcmItem& group = testing_files::new_item(*plan.file.getDataset(), DCM_FractionGroupSequence);
+  put(group, DCM_NumberOfFractionsPlanned, "2");
+  EXPECT_EQ(read(plan).value().prescription_Gy, 27.0) << "nothing says that 27 Gy are the sum";
+  EXPECT_TRUE(says(read(plan).value(), "2 fractions"));
+  put(testing_files::new_item(group, DCM_ReferencedBrachyApplicationSetupSequence), DCM_BrachyApplicationSetupDose,
+      "13.5");
+  EXPECT_EQ(read(plan).value().prescription_Gy, 13.5);
+}
+
+TEST_F(Rtplan, of_low_dose_rate_has_seeds_that_stay_also_where_their_time_means_nothing) {
+  for (const double seconds : {0.0, 1.0, 60.0, 40 * 86400.0, 1e9}) {
+    RtplanFile plan("LDR", "", "I-125", 59.4, "0.5");
+    RtplanFile::channel(plan.setup("UNDEFINED", 1), 1, seconds, 1.0, {{Vec3::Zero(), 0.0}, {Vec3::Zero(), 1.0}});
+    EXPECT_EQ(read(plan).value().implant, Implant::permanent) << seconds;
+  }
+  RtplanFile plaque("LDR", "", "I-125", 59.4, "4.5");
+  RtplanFile::channel(plaque.setup("UNDEFINED", 1), 1, 5 * 86400.0, 1.0, {{Vec3::Zero(), 0.0}, {Vec3::Zero(), 1.0}});
+  const DosePlan removed = read(plaque).value();
+  EXPECT_EQ(removed.implant, Implant::temporary);
+  EXPECT_NEAR(removed.sources.at(0).dwell_s, 5 * 86400.0, 1e-3);
+}
+
+TEST_F(Rtplan, says_that_a_seed_comes_again_with_another_strength) {
+  RtplanFile plan = seeds();
+  plan.source(2, "I-125", 59.4, "0.7");
+  const std::vector<testing_files::Point> there{{Vec3::Zero(), 0.0}, {Vec3::Zero(), 1.0}};
+  RtplanFile::channel(plan.setup("UNDEFINED", 1), 1, kPermanent_s, 1.0, there, 1);
+  RtplanFile::channel(plan.setup("UNDEFINED", 2), 1, kPermanent_s, 1.0, there, 2);
+  const DosePlan read_back = read(plan).value();
+  EXPECT_EQ(read_back.sources.size(), 1U);
+  EXPECT_TRUE(says(read_back, "another strength"));
 }
 
 TEST_F(Rtplan, may_let_the_weights_start_again_at_each_place) {
@@ -300,13 +366,14 @@ TEST_F(Rtplan, that_is_written_is_read_again_as_the_same_plan) {
     plan.prescription_Gy = 145.0;
     plan.frame_of_reference = "1.2.840.5";
     plan.label = "random";
+    plan.strength_date = round % 4 < 2 ? "" : "20240102 101500";
     for (int k = 0; k < 30; ++k) {
       PlannedSource s;
       s.at_mm = Vec3(place(random), place(random), place(random));
       s.axis = Vec3(part(random), part(random), part(random)).normalized();
       s.has_axis = true;
       s.strength_U = k % 3 == 0 ? 0.4371 : 0.52;
-      s.needle = "n" + std::to_string(k / 6);
+      if (round % 3 > 0) s.needle = "n" + std::to_string(k / 6);
       if (plan.implant == Implant::temporary) {
         s.strength_U = 41234.5;
         s.dwell_s = 0.1 + std::abs(place(random));
@@ -323,6 +390,9 @@ TEST_F(Rtplan, that_is_written_is_read_again_as_the_same_plan) {
     EXPECT_EQ(back.implant, plan.implant);
     EXPECT_EQ(back.frame_of_reference, plan.frame_of_reference);
     EXPECT_EQ(back.prescription_Gy, 145.0);
+    EXPECT_EQ(back.source_model, source.name);
+    EXPECT_EQ(back.strength_date, plan.strength_date);
+    EXPECT_EQ(back.sources.at(7).needle.empty(), plan.sources.at(7).needle.empty());
     EXPECT_EQ(back.half_life_days, source.half_life_days);
     EXPECT_TRUE(back.notes.empty()) << back.notes.front();
   }
