@@ -12,9 +12,9 @@ endforeach()
 # The component `files`: from a patient's file to a result folder. Its libraries are static, so who links them needs
 # the libraries of the formats (VTK, DCMTK, CGAL, HDF5, …) as well; stylet-config.cmake finds them.
 if(TARGET stylet_patient)
-  install(TARGETS stylet_patient stylet_io stylet_model_file stylet_mesher stylet_phantom stylet_report_assets
+  install(TARGETS stylet_patient stylet_implant stylet_io stylet_model_file stylet_mesher stylet_phantom stylet_report_assets
           EXPORT stylet-files-targets)
-  foreach(module io mesher patient phantom)
+  foreach(module implant io mesher patient phantom)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/stylet/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stylet)
   endforeach()
   install(EXPORT stylet-files-targets NAMESPACE stylet:: DESTINATION ${STYLET_CMAKE_DIR})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 #include "output_path.hpp"
-#include "source_choice.hpp"
+
 #include "table.hpp"
 #include "validators.hpp"
 
@@ -10,6 +10,7 @@
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/dose_results.hpp"
 #include "stylet/patient/dose_structures.hpp"
+#include "stylet/patient/source_choice.hpp"
 
 #include <fmt/format.h>
 

@@ -414,6 +414,17 @@ VecX Insertion::mesh_displacement() const {
   return compliance().mesh_displacement(parts_->tissue.all_forces(parts_->forces()));
 }
 
+std::optional<Insertion::PointDisplacement> Insertion::displacement_at(const MaterialPoint& at, const Vec3& x) {
+  TissueResponse& tissue = parts_->tissue;
+  // A point without force, which is taken away again, is displaced as the material is.
+  const ContactCompliance::Added added = tissue.compliance().add(at, x, Placement::embedded);
+  if (added.point < 0) return std::nullopt;
+  const ContactForces forces = parts_->forces();
+  const PointDisplacement u{tissue.displacement(added.point, forces), tissue.lasting_displacement(added.point, forces)};
+  tissue.compliance().remove_last_embedded();
+  return u;
+}
+
 std::vector<TissueForce> Insertion::tissue_forces() const {
   std::vector<TissueForce> result(static_cast<std::size_t>(compliance().points()));
   result.resize(tissue_forces(result));

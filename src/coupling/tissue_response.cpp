@@ -11,6 +11,17 @@ namespace {
 /// Length of cut, in needle radii, over which the track takes over the tip's memory. Raised, the tip carries more
 /// memory along; lowered, the tissue moves more abruptly where the first point of a track takes over.
 constexpr double kHandOver = 2.5;
+
+/// Displacement of a point by the present forces [mm] LPS. @param compliance A, or its wide part [mm/N]
+Vec3 by_present(const MatX& compliance, int point, const ContactForces& contacts) {
+  Vec3 u = Vec3::Zero();
+  const auto columns = compliance.middleCols<3>(3 * point);  // or rows: compliances are symmetric
+  u.noalias() += columns.topRows<3>().transpose() * contacts.tip;
+  for (const ShaftContact& contact : contacts.shaft)
+    u.noalias() += columns.middleRows<3>(3 * contact.point).transpose() * contact.force;
+  return u;
+}
+
 }  // namespace
 
 TissueResponse::TissueResponse(std::unique_ptr<ContactCompliance> compliance, const Creep& creep,
@@ -30,17 +41,13 @@ TipRelief TissueResponse::relief(const ContactForces& contacts) const {
   return {*compliance_, contacts.tip, of_others};
 }
 
+Vec3 TissueResponse::lasting_displacement(int point, const ContactForces& contacts) const {
+  if (!memory_.on()) return Vec3::Zero();
+  return memory_.share() * by_present(compliance_->wide(), point, contacts) + past_displacement(point);
+}
+
 Vec3 TissueResponse::displacement(int point, const ContactForces& contacts) const {
-  const auto by_present = [&](const MatX& compliance) {
-    Vec3 u = Vec3::Zero();
-    const auto columns = compliance.middleCols<3>(3 * point);  // or rows: compliances are symmetric
-    u.noalias() += columns.topRows<3>().transpose() * contacts.tip;
-    for (const ShaftContact& contact : contacts.shaft)
-      u.noalias() += columns.middleRows<3>(3 * contact.point).transpose() * contact.force;
-    return u;
-  };
-  Vec3 u = by_present(compliance_->matrix());
-  if (memory_.on()) u += memory_.share() * by_present(compliance_->wide()) + past_displacement(point);
+  Vec3 u = by_present(compliance_->matrix(), point, contacts) + lasting_displacement(point, contacts);
   if (compliance_->stiffens()) u -= relief(contacts).of(point);
   return u;
 }

@@ -44,6 +44,8 @@ class TissueResponse {
   [[nodiscard]] Vec3 past_displacement(int point) const { return memory_.displacement(*compliance_, point); }
   /// [mm] LPS, displacement of a point by all forces.
   [[nodiscard]] Vec3 displacement(int point, const ContactForces& contacts) const;
+  /// [mm] LPS, the part of displacement() to which the tissue has crept, the creep of this sub-step included.
+  [[nodiscard]] Vec3 lasting_displacement(int point, const ContactForces& contacts) const;
   /// The relief, by which stiffening under the tip reduces the linear displacement; it is already subtracted in
   /// displacement().
   [[nodiscard]] TipRelief relief(const ContactForces& contacts) const;

@@ -112,19 +112,70 @@ DoseGrid empty_grid(const DosePlan& plan, std::span<const DoseStructure> structu
   return grid;
 }
 
-void fill(DoseGrid& grid, const RateTable& table, const WeightedSources& weighted, const Progress& progress) {
+/// The sources at one part of an implant's time.
+struct SourcesInTime {
+  SwollenTime time;
+  std::vector<PlacedSource> sources;
+};
+
+/// The dose of all parts of an implant's time.
+class Dose {
+ public:
+  Dose(const Tg43& tg43, const DosePlan& plan, const SourceModel& source, const DoseOptions& options)
+      : tg43_(tg43), table_(tg43), swelling_(options.swelling) {
+    const WeightedSources weighted = weighted_sources(plan, source, options);
+    factor_ = weighted.factor;
+    for (const SwollenTime& time : times(plan, source, options)) {
+      SourcesInTime& part = parts_.emplace_back(time, weighted.sources);
+      for (PlacedSource& placed : part.sources) {
+        placed.at_mm = swelling_.moved(placed.at_mm, time.factors);
+        placed.axis = time.factors.cwiseProduct(placed.axis).normalized();
+      }
+    }
+  }
+
+  /// Dose [Gy] at points, by the formula itself or by the table.
+  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points, bool by_formula) const {
+    std::vector<double> dose(points.size(), 0.0), rates(points.size());
+    std::vector<Vec3> moved = points;
+    for (const SourcesInTime& part : parts_) {
+      for (std::size_t p = 0; p < points.size(); ++p) moved[p] = swelling_.moved(points[p], part.time.factors);
+      if (by_formula) {
+        sum_rates(tg43_, part.sources, moved, rates);
+      } else {
+        sum_rates(table_, part.sources, moved, rates);
+      }
+      for (std::size_t p = 0; p < points.size(); ++p) dose[p] += part.time.share * factor_ * rates[p];
+    }
+    return dose;
+  }
+
+ private:
+  static std::vector<SwollenTime> times(const DosePlan& plan, const SourceModel& source, const DoseOptions& options) {
+    if (plan.implant == Implant::temporary || !options.swelling.is_any()) return {SwollenTime{}};
+    if (options.quantity == DoseQuantity::initial_rate) return {{1.0, options.swelling.factors(0.0)}};
+    return swollen_times(options.swelling, source.half_life_days,
+                         options.quantity == DoseQuantity::until ? options.days : INFINITY);
+  }
+
+  const Tg43& tg43_;
+  RateTable table_;
+  Swelling swelling_;
+  double factor_ = 1.0;
+  std::vector<SourcesInTime> parts_;
+};
+
+void fill(DoseGrid& grid, const Dose& dose, const Progress& progress) {
   const auto layer = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
   grid.dose_Gy.resize(layer * static_cast<std::size_t>(grid.size[2]));
   std::vector<Vec3> points(layer);
-  std::vector<double> rates(layer);
   for (Index k = 0; k < grid.size[2]; ++k) {
     std::size_t p = 0;
     for (Index j = 0; j < grid.size[1]; ++j) {
       for (Index i = 0; i < grid.size[0]; ++i) points[p++] = grid.point(i, j, k);
     }
-    sum_rates(table, weighted.sources, points, rates);
-    for (p = 0; p < layer; ++p)
-      grid.dose_Gy[static_cast<std::size_t>(k) * layer + p] = static_cast<float>(rates[p] * weighted.factor);
+    const std::vector<double> here = dose.at(points, false);
+    for (p = 0; p < layer; ++p) grid.dose_Gy[static_cast<std::size_t>(k) * layer + p] = static_cast<float>(here[p]);
     report(progress, "dose grid", (k + 1.0) / grid.size[2]);
   }
 }
@@ -188,6 +239,14 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
             ? fmt::format("The strengths have decayed for {:g} days before the implantation.", options.decay_days)
             : "The strengths are taken as those at the implantation, without decay since their date.");
   }
+  if (options.swelling.is_any()) {
+    e.assumptions.push_back(fmt::format(
+        "The gland swells by {:.0f}, {:.0f} and {:.0f} % (left, posterior, superior) and shrinks again with a "
+        "half-life of "
+        "{:g} days; sources and tissue move with it, and each part of the tissue has the dose of its own way.",
+        100.0 * options.swelling.at_start.x(), 100.0 * options.swelling.at_start.y(),
+        100.0 * options.swelling.at_start.z(), options.swelling.half_life_days));
+  }
   e.assumptions.emplace_back(
       "Contours stand for slabs that reach half-way to the neighbouring planes; the first and the last slab are as "
       "thick outside as inside.");
@@ -235,22 +294,15 @@ Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& so
   e.prescription_Gy = options.prescription_Gy > 0.0 ? options.prescription_Gy : plan.prescription_Gy;
   e.warnings = std::move(*differences);
 
-  const WeightedSources weighted = weighted_sources(plan, source, options);
-  const RateTable table(*tg43);
+  const Dose dose(*tg43, plan, source, options);
   e.points = options.points;
-  e.point_Gy.resize(e.points.size());
-  sum_rates(*tg43, weighted.sources, e.points, e.point_Gy);
-  for (double& dose : e.point_Gy) dose *= weighted.factor;
-
+  e.point_Gy = dose.at(e.points, true);
   e.grid = empty_grid(plan, structures, options.grid_step_mm);
-  fill(e.grid, table, weighted, progress);
+  fill(e.grid, dose, progress);
   for (std::size_t k = 0; k < structures.size(); ++k) {
     const DoseStructure& structure = structures[k];
-    std::vector<double> dose(structure.samples.points.size());
-    sum_rates(table, weighted.sources, structure.samples.points, dose);
-    for (double& d : dose) d *= weighted.factor;
     e.structures.push_back({structure.name, structure.region, structure.type, structure.colour,
-                            DoseVolume(dose, structure.samples.volume_mm3),
+                            DoseVolume(dose.at(structure.samples.points, false), structure.samples.volume_mm3),
                             dose::covered_percent(structure.samples, e.grid, Vec3::Zero()), structure.contours,
                             cloud_of(structure.samples)});
     report(progress, "dose to structures", static_cast<double>(k + 1) / static_cast<double>(structures.size()));

@@ -140,7 +140,7 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
         "is \"coupled\"",
         "Set solver = \"staggered\", or leave projection = \"exact\"");
   }
-  if (s.insertions.empty()) {
+  if (s.insertions.empty() && s.plan.file.empty()) {
     return input_error(place(""), "there is no needle: no [[insertion]]",
                        "Add [[insertion]] and below it, for example, hole = \"D4\"");
   }

@@ -279,6 +279,64 @@ void describe_template(ScenarioEntries& keys) {
               [](auto& s, const Slot&) { return &s.grid.distance_mm; });
 }
 
+void describe_implant(ScenarioEntries& keys) {
+  keys.text(
+      "plan.file",
+      "plan of seeds for stylet implant: DICOM RTPLAN, JSON or CSV; a relative path starts at the scenario file's "
+      "folder",
+      [](auto& s, const Slot&) { return &s.plan.file; }, {.example = "\"demo_plan.csv\""});
+  keys.text("plan.source",
+            "source model of the seeds (stylet info sources), or a file with one; none = the plan names it",
+            [](auto& s, const Slot&) { return &s.plan.source; }, {.example = "\"i125_6711\""});
+  keys.text("plan.goals", "table of goals for the dose (CSV); none = goals for permanent implants of the prostate",
+            [](auto& s, const Slot&) { return &s.plan.goals; }, {.example = "\"goals.csv\""});
+  keys.choice(
+      "procedure.technique",
+      "how seeds leave a needle; preloaded = the cannula is drawn back over a stylet that stays, and each seed "
+      "rests in space until the cannula has passed it; pushed = the needle stops where a seed is wanted, and the "
+      "seed is pushed out in front of its tip",
+      [](auto& s, const Slot&) { return &s.procedure.technique; });
+  keys.choice("procedure.order", "order in which the needles go in",
+              [](auto& s, const Slot&) { return &s.procedure.order; });
+  keys.number("procedure.speed_mm_per_s", "mm/s", 0.1, 1000, "speed of a needle's base on the way in",
+              [](auto& s, const Slot&) { return &s.procedure.speed_mm_per_s; });
+  keys.number("procedure.pause_s", "s", 0, 3600,
+              "pause at full depth before the first seed is dropped, and before each seed with technique = \"pushed\"",
+              [](auto& s, const Slot&) { return &s.procedure.pause_s; });
+  keys.number("procedure.drop_speed_mm_per_s", "mm/s", 0.1, 1000,
+              "speed of the base on the way out while seeds are dropped",
+              [](auto& s, const Slot&) { return &s.procedure.drop_speed_mm_per_s; });
+  keys.number("procedure.retract_speed_mm_per_s", "mm/s", 0.1, 1000,
+              "speed of the base on the way out behind the last seed",
+              [](auto& s, const Slot&) { return &s.procedure.retract_speed_mm_per_s; });
+  keys.number("procedure.plug_mm", "mm", 0, 30,
+              "length of the plug, of bone wax for instance, between the needle's tip and the first seed",
+              [](auto& s, const Slot&) { return &s.procedure.plug_mm; });
+  keys.boolean("seed.stranded",
+               "whether the seeds of a needle are a strand, which keeps its spacing along its own, flexible line",
+               [](auto& s, const Slot&) { return &s.seed.stranded; });
+  keys.number(
+      "seed.release_mm", "mm", -20, 20,
+      "mean distance by which a seed jumps along its track when it is let go, positive towards the needle's tip; "
+      "there is no published law",
+      [](auto& s, const Slot&) { return &s.seed.release_mm; });
+  keys.number("seed.release_sd_mm", "mm", 0, 20, "standard deviation of this distance",
+              [](auto& s, const Slot&) { return &s.seed.release_sd_mm; });
+  keys.number("seed.loss_percent", "%", 0, 100,
+              "share of the seeds that are lost, to the lungs or with the urine; 0.5 to 1.1 % are published",
+              [](auto& s, const Slot&) { return &s.seed.loss_percent; });
+  keys.integer("seed.random", 0, 1000000000, "start of the random numbers for jumps and losses",
+               [](auto& s, const Slot&) { return &s.seed.random; });
+  keys.vector<3>(
+      "oedema.swelling_percent", "%", 0, 200,
+      "swelling of the gland after the implantation to the left, to posterior and to superior, as increase of "
+      "its width; it carries seeds and tissue away from the gland's centre",
+      [](auto& s, const Slot&) { return &s.oedema.swelling_percent; });
+  keys.number("oedema.half_life_days", "d", 0.1, 1000,
+              "half-life of the swelling; 9.3 d on average of 10 patients (Waterman et al. 1998)",
+              [](auto& s, const Slot&) { return &s.oedema.half_life_days; });
+}
+
 void describe_insertion(ScenarioEntries& keys) {
   keys.text("insertion[].hole", "template hole; the needle then goes along +z (superior)",
             [](auto& s, const Slot& i) { return &plan(s, i).hole; }, {.example = "\"D4\""});
@@ -338,6 +396,7 @@ const std::vector<ScenarioEntry>& scenario_table() {
     describe_coupling(keys);
     describe_template(keys);
     describe_insertion(keys);
+    describe_implant(keys);
     describe_run_and_output(keys);
     return std::move(keys).take();
   }();

@@ -16,6 +16,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace stylet {
@@ -108,6 +109,17 @@ class Insertion {
   /// displacement() without the near field of the needle: the displacement that the mesh represents, which has the same
   /// meaning at all nodes, near the needle or not.
   [[nodiscard]] VecX mesh_displacement() const;
+
+  /// The displacement of a material point of the tissue [mm] LPS: of a seed, for instance.
+  struct PointDisplacement {
+    Vec3 whole = Vec3::Zero();    ///< all of it, the near field of the needle included
+    Vec3 lasting = Vec3::Zero();  ///< the part to which the tissue has crept; it goes back only slowly
+  };
+  /// The displacement of any material point under the present forces, exactly as that of a contact. Call it between
+  /// steps; it does not allocate, and the next step takes up its equations anew.
+  /// @param x [mm] LPS, the undeformed place, which lies in element at.tet
+  /// @return empty where the compliance has not been computed, or where there is no room for another point
+  std::optional<PointDisplacement> displacement_at(const MaterialPoint& at, const Vec3& x);
 
   /// Forces on material points that hold the tissue in its present shape: those of the contacts, and in viscous tissue
   /// the lasting forces of earlier contacts. Allocates.

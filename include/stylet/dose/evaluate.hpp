@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/dose/dose_evaluation.hpp"
+#include "stylet/dose/swelling.hpp"
 
 #include <span>
 
@@ -22,8 +23,11 @@ struct DoseOptions {
   double decay_days = 0.0;       ///< [d] from the date of the strengths to the implantation; 0: no decay in between
   double prescription_Gy = 0.0;  ///< prescribed dose [Gy]; 0: the plan's own
   double grid_step_mm = 1.0;     ///< distance of the grid's points [mm], > 0
-  std::vector<DoseGoal> goals;   ///< goals to judge
-  std::vector<Vec3> points;      ///< [mm] LPS, points whose dose is asked for
+  /// Swelling of a permanent implant. All places are those without swelling; each sample stands for its tissue, which
+  /// moves with the swelling.
+  Swelling swelling;
+  std::vector<DoseGoal> goals;  ///< goals to judge
+  std::vector<Vec3> points;     ///< [mm] LPS, points whose dose is asked for
 };
 
 /// Factor from the sum of Tg43::rate() over PlacedSource to the quantity that is asked for, and the sources with their

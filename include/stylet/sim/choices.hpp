@@ -24,6 +24,12 @@ enum class OuterSupport { automatic, none, sides, all };
 enum class NeedleModel { beam, springs, tet };
 /// Whether the stylet, the wire inside the needle, is in the lumen; it makes the needle stiffer.
 enum class StyletPlace { out, in };
+/// How seeds leave a needle. `preloaded`: the cannula is drawn back over a stylet that stays, and the seeds rest in
+/// space until the cannula has passed them. `pushed`: the needle stops where a seed is wanted, and the seed is pushed
+/// out in front of its tip.
+enum class SeedTechnique { preloaded, pushed };
+/// Order in which the needles of a plan go in: that of the plan, or by their height in the patient.
+enum class NeedleOrder { plan, anterior_first, posterior_first };
 /// Where the staggered solver applies a contact force to the needle: at the contact's exact place, or at the nearest
 /// node of the needle.
 enum class Projection { exact, nearest_node };
@@ -55,6 +61,14 @@ struct Words<NeedleModel> {
 template <>
 struct Words<StyletPlace> {
   static constexpr std::array<std::string_view, 2> all{"out", "in"};
+};
+template <>
+struct Words<SeedTechnique> {
+  static constexpr std::array<std::string_view, 2> all{"preloaded", "pushed"};
+};
+template <>
+struct Words<NeedleOrder> {
+  static constexpr std::array<std::string_view, 3> all{"plan", "anterior-first", "posterior-first"};
 };
 template <>
 struct Words<Projection> {

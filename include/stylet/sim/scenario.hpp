@@ -157,6 +157,39 @@ struct Scenario {
   } coupling;
   TemplateGrid grid;
   std::vector<InsertionPlan> insertions;
+  /// The plan of an implant, for `stylet implant`; without a file the scenario has none.
+  struct ImplantPlan {
+    std::string file;    ///< DICOM RTPLAN, JSON or CSV; relative to the scenario file
+    std::string source;  ///< source model, or the file of one; empty: the plan names it
+    std::string goals;   ///< table of goals; empty: those of the program
+    bool operator==(const ImplantPlan&) const = default;
+  } plan;
+  /// How the needles of the plan go in and out.
+  struct Procedure {
+    SeedTechnique technique = SeedTechnique::preloaded;
+    NeedleOrder order = NeedleOrder::plan;
+    double speed_mm_per_s = 20.0;
+    double pause_s = 2.0;
+    double drop_speed_mm_per_s = 5.0;
+    double retract_speed_mm_per_s = 20.0;
+    double plug_mm = 0.0;
+    bool operator==(const Procedure&) const = default;
+  } procedure;
+  /// What becomes of a seed beside the motion of the tissue.
+  struct Seed {
+    bool stranded = false;
+    double release_mm = 0.0;
+    double release_sd_mm = 0.0;
+    double loss_percent = 0.0;
+    int random = 1;
+    bool operator==(const Seed&) const = default;
+  } seed;
+  /// Swelling of the gland after the implantation.
+  struct Oedema {
+    std::array<double, 3> swelling_percent{0.0, 0.0, 0.0};
+    double half_life_days = 9.3;
+    bool operator==(const Oedema&) const = default;
+  } oedema;
   struct Run {
     double dt_ms = 1.0;
     bool operator==(const Run&) const = default;

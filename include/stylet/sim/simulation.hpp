@@ -30,6 +30,11 @@ class Simulation {
   /// Makes the compliance near the tip available; call between steps. Allocates when the tip has left the corridor.
   void prepare();
 
+  /// Insertion::displacement_at() after the last step.
+  std::optional<Insertion::PointDisplacement> displacement_at(const MaterialPoint& at, const Vec3& x) {
+    return insertion_.displacement_at(at, x);
+  }
+
   /// The last step, or the state after place() if there has been none. If the last step was refused, this is the step
   /// before it with Step::invalid_input as its only flag.
   [[nodiscard]] const Step& last_step() const { return step_; }

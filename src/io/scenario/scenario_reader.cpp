@@ -213,6 +213,9 @@ void ScenarioReader::resolve_paths(bool current_folder_first) {
   };
   if (scenario_.patient.source != "phantom") resolve(scenario_.patient.source);
   for (InsertionPlan& plan : scenario_.insertions) resolve(plan.motion);
+  resolve(scenario_.plan.file);
+  resolve(scenario_.plan.goals);
+  if (fs::path(scenario_.plan.source).extension() == ".json") resolve(scenario_.plan.source);
 }
 
 std::string ScenarioReader::place(std::string path) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "source_choice.hpp"
+#include "stylet/patient/source_choice.hpp"
 
 #include "stylet/dose/fitting_sources.hpp"
 #include "stylet/dose/known_sources.hpp"
@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-namespace stylet::cli {
+namespace stylet {
 
 Result<SourceModel> choose_source(const std::string& wanted, const DosePlan& plan) {
   const std::string& name = wanted.empty() ? plan.source_model : wanted;
@@ -17,4 +17,4 @@ Result<SourceModel> choose_source(const std::string& wanted, const DosePlan& pla
   return find_source(name);
 }
 
-}  // namespace stylet::cli
+}  // namespace stylet

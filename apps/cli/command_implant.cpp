@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+#include "output_path.hpp"
+#include "table.hpp"
+
+#include "stylet/io/scenario_io.hpp"
+#include "stylet/patient/implant.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace stylet::cli {
+
+namespace {
+
+struct ImplantArguments {
+  std::string scenario;
+  std::string output;
+  std::vector<std::string> settings;
+};
+
+std::string errors_text(const ImplantOutcome& outcome) {
+  Table table({"seeds", "number", "mean [mm]", "95 % [mm]", "left [mm]", "posterior [mm]", "superior [mm]"});
+  const auto row = [&](const std::string& name, const SeedErrors& e) {
+    const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
+    table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
+               axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
+  };
+  row("all", seed_errors(outcome.history.seeds));
+  for (const PartErrors& third : errors_by_third(outcome.history)) row(third.name, third.errors);
+  return table.text();
+}
+
+std::string causes_text(const ImplantOutcome& outcome) {
+  Table table({"cause", "mean size [mm]", "left [mm]", "posterior [mm]", "superior [mm]"});
+  for (const CauseOfErrors& cause : causes_of_errors(outcome.history.seeds)) {
+    const Vec3& mean = cause.mean_vector_mm;
+    table.row({to_string(cause.cause), fmt::format("{:.2f}", cause.mean_mm), fmt::format("{:.2f}", mean.x()),
+               fmt::format("{:.2f}", mean.y()), fmt::format("{:.2f}", mean.z())});
+  }
+  return table.text();
+}
+
+std::string dose_text(const ImplantOutcome& outcome) {
+  Table table({"goal", "bound", "planned", "delivered", ""});
+  for (std::size_t k = 0; k < outcome.delivered.goals.size(); ++k) {
+    const JudgedGoal& planned = outcome.planned.goals[k];
+    const JudgedGoal& delivered = outcome.delivered.goals[k];
+    const auto value = [](const JudgedGoal& goal) { return goal.value ? fmt::format("{:.1f}", *goal.value) : "-"; };
+    table.row({delivered.goal.structure + " " + delivered.goal.metric,
+               fmt::format("{} {:g}", delivered.goal.at_least ? "≥" : "≤", delivered.goal.bound), value(planned),
+               value(delivered),
+               !delivered.value ? "not judged"
+               : delivered.met  ? "met"
+                                : "MISSED"});
+  }
+  return table.text();
+}
+
+Result<> run_implant(const ImplantArguments& arguments, Console& console) {
+  const Result<Scenario> scenario = read_scenario(arguments.scenario, arguments.settings);
+  if (!scenario) return scenario.error();
+  const std::filesystem::path folder =
+      arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
+                               : std::filesystem::path(arguments.output);
+  if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  const Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario, console.progress());
+  if (!outcome) return outcome.error();
+  for (const std::string& warning : outcome->warnings) console.warn(warning);
+  if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
+  double seconds = 0.0;
+  long steps = 0;
+  for (const NeedleHistory& needle : outcome->history.needles) {
+    seconds += needle.seconds;
+    steps += needle.steps;
+  }
+  console.say(fmt::format("{}: {} needles, {} seeds, {} nodes; {} steps in {:.1f} s of processor time", scenario->name,
+                          outcome->history.needles.size(), outcome->history.seeds.size(), outcome->history.nodes, steps,
+                          seconds));
+  console.say("Distance of the seeds from where they were planned (mean ± standard deviation along the axes)\n" +
+              errors_text(*outcome));
+  console.say("Why\n" + causes_text(*outcome));
+  console.say(dose_text(*outcome));
+  console.say(fmt::format("Report: {}", (folder / "report.html").string()));
+  const Json json = Json::parse(implant_json(*outcome));
+  return console.write_json(json);
+}
+
+}  // namespace
+
+Command add_implant_command(CLI::App& program) {
+  auto arguments = std::make_shared<ImplantArguments>();
+  CLI::App* app = program.add_subcommand(
+      "implant", "Implant the seeds of a plan: where they come to rest, why, and the dose that they give");
+  app->add_option("SCENARIO", arguments->scenario,
+                  "Scenario file with a plan (TOML; stylet insert --print-schema lists its keys)")
+      ->type_name("SCENARIO.toml")
+      ->required();
+  app->add_option("-o,--output", arguments->output, "Folder for the results (default: out/NAME)")->type_name("OUT/");
+  app->add_option("--set", arguments->settings,
+                  "Set a key of the scenario, e.g. --set procedure.drop_speed_mm_per_s=10; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return {app, [arguments](Console& console) { return run_implant(*arguments, console); }};
+}
+
+}  // namespace stylet::cli

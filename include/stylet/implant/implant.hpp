@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/implant/needle_load.hpp"
+#include "stylet/implant/seed_history.hpp"
+#include "stylet/sim/gland_motion.hpp"
+#include "stylet/sim/model.hpp"
+
+#include <string>
+#include <vector>
+
+namespace stylet {
+
+/// What happened to one needle of an implant.
+struct NeedleHistory {
+  std::string name;                    ///< as in NeedleLoad
+  Vec3 entry_mm = Vec3::Zero();        ///< [mm] LPS, skin point on its line
+  Vec3 direction = Vec3::UnitZ();      ///< unit vector LPS
+  double depth_mm = 0.0;               ///< largest base depth, from the skin
+  double peak_force_N = 0.0;           ///< largest axial force on the hand
+  double deflection_mm = 0.0;          ///< largest distance of the tip from the straight line
+  Vec3 gland_shift_mm = Vec3::Zero();  ///< LPS, the gland's largest mean shift; NaN without a gland
+  std::vector<Event> events;
+  long steps = 0;
+  double seconds = 0.0;  ///< processor time of the steps
+};
+
+/// A simulated implant.
+struct ImplantHistory {
+  std::vector<NeedleHistory> needles;  ///< in the order in which they were inserted
+  std::vector<SeedHistory> seeds;      ///< in the order of the plan
+  std::vector<std::string> warnings;   ///< sentences for the user: harms, seeds that could not be followed
+  int nodes = 0;                       ///< of the mesh
+  double compile_s = 0.0;              ///< wall-clock time to compile the models of all needles, summed over threads
+};
+
+/// Simulates an implant: each needle goes in, drops its seeds and comes out, one after the other. Needles do not feel
+/// each other's earlier tracks. A seed belongs to the material point of the tissue at the place where it was dropped,
+/// found with the needle's near field; with the needle out this point goes back to where it was, and takes the seed
+/// along (docs/theory/implant.md).
+/// @param scenario tissue, needle and procedure; its insertions are not used
+/// @param mesh the patient's tetrahedra
+/// @param seed_length_mm length of a seed's capsule
+/// @param where name of the scenario in messages
+/// Errors: those of Model::compile(); a needle that misses the patient or is too short.
+Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh& mesh,
+                                        const std::vector<NeedleLoad>& needles, double seed_length_mm,
+                                        const std::string& where, const Progress& progress = {});
+
+}  // namespace stylet

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/dose/dose_plan.hpp"
+#include "stylet/implant/implant.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stylet {
+
+/// How far seeds lie from where they were planned. Lost seeds do not count.
+struct SeedErrors {
+  std::size_t seeds = 0;
+  double mean_mm = 0.0;  ///< of the distances
+  double p95_mm = 0.0;   ///< 95th percentile of the distances
+  double largest_mm = 0.0;
+  struct Axis {
+    double mean_mm = 0.0;  ///< of the signed errors: to the left, to posterior, to superior
+    double sd_mm = 0.0;    ///< their standard deviation
+  };
+  std::array<Axis, 3> axes{};  ///< x, y, z in LPS
+};
+SeedErrors seed_errors(std::span<const SeedHistory> seeds);
+
+/// The errors of a part of the seeds.
+struct PartErrors {
+  std::string name;  ///< of a needle; or "base", "mid", "apex"
+  SeedErrors errors;
+};
+/// One for each needle, in the order of the implant.
+std::vector<PartErrors> errors_by_needle(const ImplantHistory& history);
+/// Of the superior, middle and inferior third of the planned seeds' extent in z. Parts without a seed are left out.
+std::vector<PartErrors> errors_by_third(const ImplantHistory& history);
+
+/// The share of one cause in the errors of all seeds.
+struct CauseOfErrors {
+  SeedCause cause{};
+  double mean_mm = 0.0;  ///< mean length of its part of the error
+  Vec3 mean_vector_mm = Vec3::Zero();
+};
+std::vector<CauseOfErrors> causes_of_errors(std::span<const SeedHistory> seeds);
+
+/// The plan with the seeds where they have come to rest. Lost seeds are left out.
+DosePlan delivered_plan(const DosePlan& plan, const ImplantHistory& history);
+
+}  // namespace stylet

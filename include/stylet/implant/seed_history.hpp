@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/core/types.hpp"
+
+#include <array>
+#include <string>
+
+namespace stylet {
+
+/// Why a seed does not lie where it was planned. The causes add up to its error.
+enum class SeedCause {
+  bend,        ///< the needle was bent, or did not reach its depth
+  motion,      ///< the tissue was displaced when the seed was dropped, and has gone back since
+  relaxation,  ///< the tissue had crept under the needle when the seed was dropped, and has gone back since
+  strand,      ///< the strand holds the seed at its distance from the others
+  release      ///< the seed jumped along its track when it was let go
+};
+inline constexpr std::size_t kSeedCauses = 5;
+/// "needle bend", "tissue motion", "tissue relaxation", "strand", "release"
+const char* to_string(SeedCause cause);
+
+/// What became of one seed: where it was planned, dropped, and comes to rest. All places are of its centre, in LPS
+/// [mm].
+struct SeedHistory {
+  std::size_t number = 0;  ///< its position in DosePlan::sources
+  std::size_t needle = 0;  ///< number of its needle, in the order in which needles were inserted
+  Vec3 planned_mm = Vec3::Zero();
+  Vec3 dropped_mm = Vec3::Zero();  ///< place in the room where the cannula, or the tip, left it
+  Vec3 rest_mm = Vec3::Zero();     ///< place in the tissue at rest, with all needles out
+  Vec3 axis = Vec3::UnitZ();       ///< unit vector at rest, towards the tip of its needle
+  double dropped_s = 0.0;          ///< [s] since the start of its needle
+  bool lost = false;               ///< it has left the patient and gives no dose
+  bool in_tissue = true;           ///< whether the tissue point where it was dropped could be found
+  std::array<Vec3, kSeedCauses> cause_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+
+  [[nodiscard]] Vec3 error_mm() const { return rest_mm - planned_mm; }
+  [[nodiscard]] Vec3& by(SeedCause cause) { return cause_mm[static_cast<std::size_t>(cause)]; }
+  [[nodiscard]] const Vec3& by(SeedCause cause) const { return cause_mm[static_cast<std::size_t>(cause)]; }
+};
+
+}  // namespace stylet

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/core/version.hpp"
+#include "stylet/io/dose_results.hpp"
+#include "stylet/io/implant_results.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace stylet {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+OrderedJson list_of(const Vec3& v) {
+  OrderedJson list = OrderedJson::array();
+  for (int axis = 0; axis < 3; ++axis)
+    list.push_back(std::isfinite(v[axis]) ? OrderedJson(v[axis]) : OrderedJson(nullptr));
+  return list;
+}
+
+OrderedJson errors_json(const SeedErrors& errors) {
+  OrderedJson json{{"seeds", errors.seeds},
+                   {"mean_mm", errors.mean_mm},
+                   {"p95_mm", errors.p95_mm},
+                   {"largest_mm", errors.largest_mm}};
+  const char* names[] = {"x_mm", "y_mm", "z_mm"};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    json[names[axis]] = {{"mean", errors.axes[axis].mean_mm}, {"sd", errors.axes[axis].sd_mm}};
+  return json;
+}
+
+OrderedJson parts_json(const std::vector<PartErrors>& parts) {
+  OrderedJson rows = OrderedJson::array();
+  for (const PartErrors& part : parts) {
+    OrderedJson row{{"name", part.name}};
+    row.update(errors_json(part.errors));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+OrderedJson seed_json(const SeedHistory& seed, const ImplantHistory& history) {
+  OrderedJson why;
+  for (std::size_t k = 0; k < kSeedCauses; ++k) why[to_string(static_cast<SeedCause>(k))] = list_of(seed.cause_mm[k]);
+  return {{"number", seed.number + 1},
+          {"needle", history.needles[seed.needle].name},
+          {"planned_mm", list_of(seed.planned_mm)},
+          {"dropped_mm", list_of(seed.dropped_mm)},
+          {"rest_mm", list_of(seed.rest_mm)},
+          {"axis", list_of(seed.axis)},
+          {"error_mm", seed.error_mm().norm()},
+          {"error_xyz_mm", list_of(seed.error_mm())},
+          {"dropped_s", seed.dropped_s},
+          {"lost", seed.lost},
+          {"in_tissue", seed.in_tissue},
+          {"why", why}};
+}
+
+OrderedJson needle_json(const NeedleHistory& needle) {
+  return {{"name", needle.name},
+          {"entry_mm", list_of(needle.entry_mm)},
+          {"direction", list_of(needle.direction)},
+          {"depth_mm", needle.depth_mm},
+          {"peak_force_N", needle.peak_force_N},
+          {"deflection_mm", needle.deflection_mm},
+          {"gland_shift_mm", list_of(needle.gland_shift_mm)},
+          {"steps", needle.steps},
+          {"seconds", needle.seconds}};
+}
+
+/// The goals of the plan beside those of the implant.
+OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered) {
+  OrderedJson rows = OrderedJson::array();
+  for (std::size_t k = 0; k < delivered.size(); ++k) {
+    OrderedJson row = delivered[k];
+    row["planned_value"] = planned[k]["value"];
+    row["planned_met"] = planned[k]["met"];
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string implant_json(const ImplantOutcome& outcome) {
+  const ImplantHistory& history = outcome.history;
+  const OrderedJson planned = OrderedJson::parse(dose_json(outcome.planned));
+  const OrderedJson delivered = OrderedJson::parse(dose_json(outcome.delivered));
+  OrderedJson seeds = OrderedJson::array(), needles = OrderedJson::array(), why = OrderedJson::array();
+  for (const SeedHistory& seed : history.seeds) seeds.push_back(seed_json(seed, history));
+  for (const NeedleHistory& needle : history.needles) needles.push_back(needle_json(needle));
+  for (const CauseOfErrors& cause : causes_of_errors(history.seeds)) {
+    why.push_back({{"cause", to_string(cause.cause)},
+                   {"mean_mm", cause.mean_mm},
+                   {"mean_xyz_mm", list_of(cause.mean_vector_mm)}});
+  }
+  const OrderedJson json = {{"version", version()},
+                            {"scenario", outcome.scenario.name},
+                            {"nodes", history.nodes},
+                            {"implant",
+                             {{"source", outcome.delivered.source.name},
+                              {"prescription_Gy", delivered["prescription_Gy"]},
+                              {"seeds", seeds},
+                              {"needles", needles},
+                              {"error", errors_json(seed_errors(history.seeds))},
+                              {"error_by_needle", parts_json(errors_by_needle(history))},
+                              {"error_by_third", parts_json(errors_by_third(history))},
+                              {"why", why},
+                              {"planned_dvh", planned["dvh"]},
+                              {"delivered_dvh", delivered["dvh"]},
+                              {"goals", goals_json(planned["goals"], delivered["goals"])},
+                              {"assumptions", delivered["assumptions"]}}},
+                            {"warnings", outcome.warnings}};
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+}  // namespace stylet
