@@ -50,7 +50,8 @@ void SeedWatch::add(Simulation& simulation, double since_start_s) {
   const Needle& needle = simulation.insertion().needle();
   for (std::size_t k = 0; k < seeds_.size(); ++k) {
     Seed& seed = seeds_[k];
-    if (seed.is_left || since_start_s < motion_.drops[k].time_s - 1e-9) continue;
+    // The last step before the base moves on.
+    if (seed.is_left || since_start_s + simulation.last_step().dt_s <= motion_.drops[k].time_s + 1e-9) continue;
     if (technique_ == SeedTechnique::pushed) {
       place(seed, needle, needle.length() + 0.5 * seed_length_mm_);
       leave(seed, simulation, since_start_s);
