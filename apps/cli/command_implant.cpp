@@ -18,6 +18,8 @@ struct ImplantArguments {
   std::string scenario;
   std::string output;
   std::vector<std::string> settings;
+  int compensate = 0;
+  bool span = false;
 };
 
 std::string errors_text(const ImplantOutcome& outcome) {
@@ -27,8 +29,10 @@ std::string errors_text(const ImplantOutcome& outcome) {
     table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
                axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
   };
-  row("all", seed_errors(outcome.history.seeds));
+  if (outcome.before) row(outcome.before->name, seed_errors(outcome.before->history.seeds));
+  row(outcome.before ? "after compensation" : "all", seed_errors(outcome.history.seeds));
   for (const PartErrors& third : errors_by_third(outcome.history)) row(third.name, third.errors);
+  for (const OtherImplant& other : outcome.spans) row(other.name, seed_errors(other.history.seeds));
   return table.text();
 }
 
@@ -42,18 +46,27 @@ std::string causes_text(const ImplantOutcome& outcome) {
   return table.text();
 }
 
+std::string value_of(const JudgedGoal& goal) { return goal.value ? fmt::format("{:.1f}", *goal.value) : "-"; }
+
+/// The goals, as planned and delivered, and with the other choices.
 std::string dose_text(const ImplantOutcome& outcome) {
-  Table table({"goal", "bound", "planned", "delivered", ""});
+  std::vector<std::string> head{"goal", "bound", "planned"};
+  std::vector<const OtherImplant*> others;
+  if (outcome.before) others.push_back(&*outcome.before);
+  for (const OtherImplant& other : outcome.spans) others.push_back(&other);
+  for (const OtherImplant* other : others) head.push_back(other->name);
+  head.insert(head.end(), {"delivered", ""});
+  Table table(head);
   for (std::size_t k = 0; k < outcome.delivered.goals.size(); ++k) {
     const JudgedGoal& planned = outcome.planned.goals[k];
     const JudgedGoal& delivered = outcome.delivered.goals[k];
-    const auto value = [](const JudgedGoal& goal) { return goal.value ? fmt::format("{:.1f}", *goal.value) : "-"; };
-    table.row({delivered.goal.structure + " " + delivered.goal.metric,
-               fmt::format("{} {:g}", delivered.goal.at_least ? "≥" : "≤", delivered.goal.bound), value(planned),
-               value(delivered),
-               !delivered.value ? "not judged"
-               : delivered.met  ? "met"
-                                : "MISSED"});
+    std::vector<std::string> row{delivered.goal.structure + " " + delivered.goal.metric,
+                                 fmt::format("{} {:g}", delivered.goal.at_least ? "≥" : "≤", delivered.goal.bound),
+                                 value_of(planned)};
+    for (const OtherImplant* other : others) row.push_back(value_of(other->delivered.goals[k]));
+    row.push_back(value_of(delivered));
+    row.emplace_back(!delivered.value ? "not judged" : delivered.met ? "met" : "MISSED");
+    table.row(row);
   }
   return table.text();
 }
@@ -65,7 +78,8 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
       arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
-  const Result<ImplantOutcome> outcome = implant(*scenario, arguments.scenario, console.progress());
+  const Result<ImplantOutcome> outcome = implant(
+      *scenario, arguments.scenario, {.compensate = arguments.compensate, .span = arguments.span}, console.progress());
   if (!outcome) return outcome.error();
   for (const std::string& warning : outcome->warnings) console.warn(warning);
   if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
@@ -103,6 +117,14 @@ Command add_implant_command(CLI::App& program) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_option(
+         "--compensate", arguments->compensate,
+         "Aim the needles beside the plan so that their seeds come to rest where they were planned, correcting the "
+         "aim this many times, and show before and after")
+      ->type_name("ROUNDS")
+      ->check(CLI::Range(0, 20));
+  app->add_flag("--span", arguments->span,
+                "Also implant in firm and in soft tissue, to show how sure the figures are; takes three times as long");
   return {app, [arguments](Console& console) { return run_implant(*arguments, console); }};
 }
 

@@ -174,6 +174,8 @@ const char* to_string(SeedCause cause) {
       return "strand";
     case SeedCause::release:
       return "release";
+    case SeedCause::aim:
+      return "aim";
   }
   return "";
 }

@@ -120,6 +120,11 @@ Result<std::vector<NeedleLoad>> load_needles(const DosePlan& plan, double seed_l
   return needles;
 }
 
+void aim(NeedleLoad& needle, const Vec3& shift) {
+  needle.aim_mm += shift;
+  needle.tip_mm += shift;
+}
+
 void order_needles(std::vector<NeedleLoad>& needles, NeedleOrder order) {
   if (order == NeedleOrder::plan) return;
   const double sign = order == NeedleOrder::anterior_first ? 1.0 : -1.0;  // anterior is −y

@@ -37,7 +37,8 @@ void SeedWatch::leave(Seed& seed, Simulation& simulation, double since_start_s) 
   const auto centre = material_at(h.dropped_mm, displacement);
   h.in_tissue = centre.has_value();
   h.rest_mm = centre ? centre->x : h.dropped_mm;
-  h.by(SeedCause::bend) = h.dropped_mm - h.planned_mm;
+  h.by(SeedCause::aim) = load_.aim_mm;
+  h.by(SeedCause::bend) = h.dropped_mm - h.planned_mm - load_.aim_mm;
   h.by(SeedCause::relaxation) = centre ? Vec3(-centre->moved.lasting) : Vec3::Zero();
   h.by(SeedCause::motion) = h.rest_mm - h.dropped_mm - h.by(SeedCause::relaxation);
   const Vec3 half = 0.5 * seed_length_mm_ * seed.axis;

@@ -2,6 +2,7 @@
 #include "stylet/patient/implant.hpp"
 
 #include "stylet/dose/evaluate.hpp"
+#include "stylet/implant/compensation.hpp"
 #include "stylet/io/dose_io.hpp"
 #include "stylet/io/input.hpp"
 #include "stylet/patient/dose_structures.hpp"
@@ -76,10 +77,16 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
 
 }  // namespace
 
-Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& where, const Progress& progress) {
+Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& where, const ImplantSettings& settings,
+                               const Progress& progress) {
   if (scenario.plan.file.empty()) {
     return input_error(where, "the scenario has no plan",
                        "Name a plan of seeds in it: [plan] and below it file = \"plan.csv\"");
+  }
+  if (settings.span && scenario.tissue_model.preset != TissuePreset::typical) {
+    return input_error(where,
+                       "a span is from firm over typical to soft tissue, and the scenario has another tissue.preset",
+                       "Leave tissue.preset out, or do not ask for a span");
   }
   const Result<DosePlan> plan = read_plan(scenario.plan.file);
   if (!plan) return plan.error();
@@ -95,6 +102,12 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   if (!structures) return structures.error();
   const Result<DoseOptions> options = dose_options(scenario, *structures, *plan);
   if (!options) return options.error();
+  const auto dose_of = [&](const ImplantHistory& history) -> Result<DoseEvaluation> {
+    const DosePlan delivered = delivered_plan(*plan, history);
+    if (delivered.sources.empty())
+      return failure(where, "all seeds are lost, so there is no dose", "Lower seed.loss_percent");
+    return evaluate_dose(delivered, *source, structures->structures, *options, progress);
+  };
   // The dose of the plan comes first: a plan of another patient is found out before minutes are spent on needles.
   DoseOptions without_swelling = *options;
   without_swelling.swelling = {};
@@ -104,16 +117,37 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
 
   Result<MeshedAnatomy> patient = mesh_patient(scenario, progress);
   if (!patient) return patient.error();
-  Result<ImplantHistory> history =
-      simulate_implant(scenario, patient->mesh, *needles, outcome.seed_length_mm, where, progress);
-  if (!history) return history.error();
-  outcome.history = *std::move(history);
-  const DosePlan delivered = delivered_plan(*plan, outcome.history);
-  if (delivered.sources.empty())
-    return failure(where, "all seeds are lost, so there is no dose", "Lower seed.loss_percent");
-  Result<DoseEvaluation> dose = evaluate_dose(delivered, *source, structures->structures, *options, progress);
+  const auto simulate = [&](const Scenario& s, const std::vector<NeedleLoad>& loads) {
+    return simulate_implant(s, patient->mesh, loads, outcome.seed_length_mm, where, progress);
+  };
+  std::vector<NeedleLoad> aimed = *needles;
+  if (settings.compensate > 0) {
+    auto done = compensate(*needles, settings.compensate,
+                           [&](const std::vector<NeedleLoad>& loads) { return simulate(scenario, loads); });
+    if (!done) return done.error();
+    auto before = dose_of(done->before);
+    if (!before) return before.error();
+    outcome.before = OtherImplant{"before compensation", std::move(done->before), *std::move(before)};
+    outcome.history = std::move(done->after);
+    aimed = std::move(done->needles);
+  } else {
+    Result<ImplantHistory> history = simulate(scenario, aimed);
+    if (!history) return history.error();
+    outcome.history = *std::move(history);
+  }
+  Result<DoseEvaluation> dose = dose_of(outcome.history);
   if (!dose) return dose.error();
   outcome.delivered = *std::move(dose);
+  for (const TissuePreset preset : {TissuePreset::firm, TissuePreset::soft}) {
+    if (!settings.span) break;
+    Scenario other = scenario;
+    other.tissue_model.preset = preset;
+    Result<ImplantHistory> history = simulate(other, aimed);
+    if (!history) return history.error();
+    Result<DoseEvaluation> delivered = dose_of(*history);
+    if (!delivered) return delivered.error();
+    outcome.spans.push_back({"tissue " + word(preset), *std::move(history), *std::move(delivered)});
+  }
 
   append(outcome.warnings, plan->notes);
   append(outcome.warnings, structures->notes);

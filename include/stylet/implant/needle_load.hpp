@@ -24,6 +24,7 @@ struct NeedleLoad {
   Vec3 tip_mm = Vec3::Zero();      ///< [mm] LPS, place of the tip while the needle is at its depth
   Vec3 direction = Vec3::UnitZ();  ///< unit vector LPS, towards the tip
   std::vector<LoadedSeed> seeds;   ///< from the tip on
+  Vec3 aim_mm = Vec3::Zero();      ///< [mm] LPS, by which tip and seeds are aimed beside their plan on purpose
   double beside_line_mm = 0.0;     ///< largest distance of a planned seed from the needle's line
 };
 
@@ -34,6 +35,9 @@ struct NeedleLoad {
 /// Errors: no seeds; a temporary implant; seeds of one needle that lie further than 5 mm beside a straight line, or
 /// nearer to each other along it than half a seed.
 Result<std::vector<NeedleLoad>> load_needles(const DosePlan& plan, double seed_length_mm, double plug_mm);
+
+/// Aims a needle further beside its plan: its line and its retraction plane move by `shift` [mm] LPS.
+void aim(NeedleLoad& needle, const Vec3& shift);
 
 /// Sorts needles as a procedure wants them.
 void order_needles(std::vector<NeedleLoad>& needles, NeedleOrder order);

@@ -14,10 +14,11 @@ enum class SeedCause {
   motion,      ///< the tissue was displaced when the seed was dropped, and has gone back since
   relaxation,  ///< the tissue had crept under the needle when the seed was dropped, and has gone back since
   strand,      ///< the strand holds the seed at its distance from the others
-  release      ///< the seed jumped along its track when it was let go
+  release,     ///< the seed jumped along its track when it was let go
+  aim          ///< its needle was aimed beside the plan on purpose, to make up for the others
 };
-inline constexpr std::size_t kSeedCauses = 5;
-/// "needle bend", "tissue motion", "tissue relaxation", "strand", "release"
+inline constexpr std::size_t kSeedCauses = 6;
+/// "needle bend", "tissue motion", "tissue relaxation", "strand", "release", "aim"
 const char* to_string(SeedCause cause);
 
 /// What became of one seed: where it was planned, dropped, and comes to rest. All places are of its centre, in LPS
@@ -32,7 +33,8 @@ struct SeedHistory {
   double dropped_s = 0.0;          ///< [s] since the start of its needle
   bool lost = false;               ///< it has left the patient and gives no dose
   bool in_tissue = true;           ///< whether the tissue point where it was dropped could be found
-  std::array<Vec3, kSeedCauses> cause_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  std::array<Vec3, kSeedCauses> cause_mm{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(),
+                                         Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 
   [[nodiscard]] Vec3 error_mm() const { return rest_mm - planned_mm; }
   [[nodiscard]] Vec3& by(SeedCause cause) { return cause_mm[static_cast<std::size_t>(cause)]; }

@@ -6,10 +6,18 @@
 #include "stylet/implant/seed_errors.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace stylet {
+
+/// An implant that another choice would have given, for comparison.
+struct OtherImplant {
+  std::string name;  ///< "before compensation", "tissue firm", …
+  ImplantHistory history;
+  DoseEvaluation delivered;
+};
 
 /// An implant as it was planned and as it was delivered: everything that the result folder of `stylet implant` says.
 struct ImplantOutcome {
@@ -18,7 +26,9 @@ struct ImplantOutcome {
   DoseEvaluation planned;    ///< dose of the plan
   DoseEvaluation delivered;  ///< dose of the seeds where they have come to rest
   double seed_length_mm = 0.0;
-  std::vector<std::string> warnings;  ///< of reader, mesher, plan and simulation
+  std::optional<OtherImplant> before;  ///< without compensation, where the needles were aimed to make up for the errors
+  std::vector<OtherImplant> spans;     ///< with firmer and softer tissue, where they were asked for
+  std::vector<std::string> warnings;   ///< of reader, mesher, plan and simulation
 };
 
 /// Writes the result folder of `stylet implant` (docs/results.md): report.html, seeds.csv, the folders planned and

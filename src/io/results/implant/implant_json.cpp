@@ -81,6 +81,14 @@ OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered)
   return rows;
 }
 
+OrderedJson other_json(const OtherImplant& other) {
+  const OrderedJson dose = OrderedJson::parse(dose_json(other.delivered));
+  return {{"name", other.name},
+          {"error", errors_json(seed_errors(other.history.seeds))},
+          {"delivered_dvh", dose["dvh"]},
+          {"goals", dose["goals"]}};
+}
+
 }  // namespace
 
 std::string implant_json(const ImplantOutcome& outcome) {
@@ -95,23 +103,28 @@ std::string implant_json(const ImplantOutcome& outcome) {
                    {"mean_mm", cause.mean_mm},
                    {"mean_xyz_mm", list_of(cause.mean_vector_mm)}});
   }
-  const OrderedJson json = {{"version", version()},
-                            {"scenario", outcome.scenario.name},
-                            {"nodes", history.nodes},
-                            {"implant",
-                             {{"source", outcome.delivered.source.name},
-                              {"prescription_Gy", delivered["prescription_Gy"]},
-                              {"seeds", seeds},
-                              {"needles", needles},
-                              {"error", errors_json(seed_errors(history.seeds))},
-                              {"error_by_needle", parts_json(errors_by_needle(history))},
-                              {"error_by_third", parts_json(errors_by_third(history))},
-                              {"why", why},
-                              {"planned_dvh", planned["dvh"]},
-                              {"delivered_dvh", delivered["dvh"]},
-                              {"goals", goals_json(planned["goals"], delivered["goals"])},
-                              {"assumptions", delivered["assumptions"]}}},
-                            {"warnings", outcome.warnings}};
+  OrderedJson spans = OrderedJson::array();
+  for (const OtherImplant& other : outcome.spans) spans.push_back(other_json(other));
+  const OrderedJson json = {
+      {"version", version()},
+      {"scenario", outcome.scenario.name},
+      {"nodes", history.nodes},
+      {"implant",
+       {{"source", outcome.delivered.source.name},
+        {"prescription_Gy", delivered["prescription_Gy"]},
+        {"seeds", seeds},
+        {"needles", needles},
+        {"error", errors_json(seed_errors(history.seeds))},
+        {"error_by_needle", parts_json(errors_by_needle(history))},
+        {"error_by_third", parts_json(errors_by_third(history))},
+        {"why", why},
+        {"planned_dvh", planned["dvh"]},
+        {"delivered_dvh", delivered["dvh"]},
+        {"goals", goals_json(planned["goals"], delivered["goals"])},
+        {"before_compensation", outcome.before ? other_json(*outcome.before) : OrderedJson(nullptr)},
+        {"spans", spans},
+        {"assumptions", delivered["assumptions"]}}},
+      {"warnings", outcome.warnings}};
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 

@@ -16,7 +16,7 @@ std::string seeds_csv(const ImplantOutcome& outcome) {
   std::string text = "seed,needle";
   for (const char* what : {"planned", "dropped", "rest"}) text += fmt::format(",{0}_x_mm,{0}_y_mm,{0}_z_mm", what);
   text += ",ax,ay,az,error_mm,lost,in_tissue";
-  for (const char* cause : {"bend", "motion", "relaxation", "strand", "release"})
+  for (const char* cause : {"bend", "motion", "relaxation", "strand", "release", "aim"})
     text += fmt::format(",{0}_x_mm,{0}_y_mm,{0}_z_mm", cause);
   text += "\n";
   for (const SeedHistory& seed : outcome.history.seeds) {
