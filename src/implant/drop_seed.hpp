@@ -19,7 +19,8 @@ using DisplacementAt = std::function<std::optional<Insertion::PointDisplacement>
 
 /// Finds the material point that the displacement brings to a place in the room: X with X + u(X) = place. The iteration
 /// X ← place − u(X) converges as long as the tissue is not strained by more than its own length.
-/// @return empty where the displacement is not known, or where the iteration does not converge
+/// Where the displacement jumps, so that no point is there, it is the point that comes nearest.
+/// @return empty where the displacement is not known, or where no point comes nearer than 0.2 mm
 std::optional<FoundMaterial> material_at(const Vec3& place, const DisplacementAt& displacement);
 
 /// The displacement in a simulation after its last step, with the needle's near field.

@@ -36,7 +36,8 @@ void SeedWatch::leave(Seed& seed, Simulation& simulation, double since_start_s) 
   const DisplacementAt displacement = displacement_in(simulation);
   const auto centre = material_at(h.dropped_mm, displacement);
   h.in_tissue = centre.has_value();
-  h.rest_mm = centre ? centre->x : h.dropped_mm;
+  // What the nearest material point misses of the place counts as motion of the tissue.
+  h.rest_mm = centre ? Vec3(h.dropped_mm - centre->moved.whole) : h.dropped_mm;
   h.by(SeedCause::aim) = load_.aim_mm;
   h.by(SeedCause::bend) = h.dropped_mm - h.planned_mm - load_.aim_mm;
   h.by(SeedCause::relaxation) = centre ? Vec3(-centre->moved.lasting) : Vec3::Zero();

@@ -36,6 +36,7 @@ std::vector<std::string> PreparedModel::warnings() const {
 }
 
 Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& progress, const std::string& where) {
+  if (Result<> checked = check_has_insertion(scenario, where); !checked) return checked.error();
   std::vector<std::vector<MotionSample>> motions;
   for (const InsertionPlan& plan : scenario.insertions) {
     motions.emplace_back();

@@ -150,6 +150,13 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
   return Ok{};
 }
 
+Result<> check_has_insertion(const Scenario& scenario, const std::string& where) {
+  if (!scenario.insertions.empty()) return Ok{};
+  return input_error(
+      where, "the scenario has a plan of seeds, but no needle to insert: no [[insertion]]",
+      "Carry out its plan with stylet implant, or add [[insertion]] and below it, for example, hole = \"D4\"");
+}
+
 Result<> check_scenario(const Scenario& scenario, const std::string& where) {
   return check_scenario(scenario, [&](const std::string&) { return where; });
 }

@@ -236,6 +236,7 @@ Result<std::shared_ptr<const Model>> Model::compile(const Scenario& scenario, Te
                                                     const std::vector<std::vector<MotionSample>>& motions,
                                                     const Progress& progress, std::optional<ModelCompliance> known) {
   if (auto checked = check_scenario(scenario, where); !checked) return checked.error();
+  if (auto checked = check_has_insertion(scenario, where); !checked) return checked.error();
   if (auto checked = check_mesh(mesh, scenario.patient.source); !checked) return checked.error();
   for (const auto& [name, parameters] : scenario.tissue) {
     if (mesh.region_index(name) >= 0) continue;

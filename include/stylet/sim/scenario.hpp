@@ -264,4 +264,7 @@ Result<> check_scenario(const Scenario& scenario, const ScenarioPlace& place);
 /// @param where name of the scenario in messages
 Result<> check_scenario(const Scenario& scenario, const std::string& where);
 
+/// Checks that a scenario has an insertion; one with a plan of seeds need not. @param where as above
+Result<> check_has_insertion(const Scenario& scenario, const std::string& where);
+
 }  // namespace stylet
