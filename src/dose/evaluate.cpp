@@ -126,7 +126,8 @@ class Dose {
     const WeightedSources weighted = weighted_sources(plan, source, options);
     factor_ = weighted.factor;
     for (const SwollenTime& time : times(plan, source, options)) {
-      SourcesInTime& part = parts_.emplace_back(time, weighted.sources);
+      parts_.push_back({time, weighted.sources});
+      SourcesInTime& part = parts_.back();
       for (PlacedSource& placed : part.sources) {
         placed.at_mm = swelling_.moved(placed.at_mm, time.factors);
         placed.axis = time.factors.cwiseProduct(placed.axis).normalized();

@@ -35,6 +35,7 @@ class Polyline {
 void keep_spacing(std::vector<SeedHistory>& seeds) {
   if (seeds.size() < 2) return;
   std::vector<Vec3> points;
+  points.reserve(seeds.size());
   for (const SeedHistory& seed : seeds) points.push_back(seed.rest_mm);
   const Polyline line(points);
   std::vector<double> planned(1, 0.0);
