@@ -242,7 +242,7 @@ void assume(DoseEvaluation& e, const DoseOptions& options) {
   }
   if (options.swelling.is_any()) {
     e.assumptions.push_back(fmt::format(
-        "The gland swells by {:.0f}, {:.0f} and {:.0f} % (left, posterior, superior) and shrinks again with a "
+        "The gland swells by {:g}, {:g} and {:g} % (left, posterior, superior) and shrinks again with a "
         "half-life of "
         "{:g} days; sources and tissue move with it, and each part of the tissue has the dose of its own way.",
         100.0 * options.swelling.at_start.x(), 100.0 * options.swelling.at_start.y(),

@@ -100,7 +100,8 @@ class Dose(InFolder):
     def test_a_plan_without_a_source_model_is_told_which_fit(self):
         self.case()
         self.json_of("dose", "plan.json", "-o", "out")
-        self.refuse("dose", "out/plan.dcm", "-o", "new", says=["does not name the model", "i125_6711", "i125_agx100"])
+        self.write("unnamed.json", plan(GRID))
+        self.refuse("dose", "unnamed.json", "-o", "new", says=["does not name the model", "i125_6711", "i125_agx100"])
         self.refuse("dose", "out/plan.dcm", "--source", "pd103_theraseed200", "-o", "new", says=["I-125", "Pd-103"])
         self.refuse("dose", "out/plan.dcm", "--source", "i125_6712", "-o", "new", says=["i125_6711"])
 
