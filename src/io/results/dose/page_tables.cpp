@@ -98,7 +98,7 @@ std::string goal_table(const std::vector<NamedDose>& doses) {
 namespace {
 
 /// The figures of one structure's histogram, as cells.
-std::string figures_of(const StructureDose& structure, double prescription_Gy) {
+std::string figures_of(const StructureDose& structure, double prescription_Gy, bool with_grid) {
   const DoseVolume& dvh = structure.dvh;
   std::string cells = figure_cell(fixed(dvh.volume_cc(), 2));
   for (const double dose : {dvh.dose_of_percent(90.0), dvh.dose_of_percent(30.0), dvh.dose_of_percent(10.0),
@@ -108,7 +108,7 @@ std::string figures_of(const StructureDose& structure, double prescription_Gy) {
     for (const double times : {1.0, 1.5, 2.0})
       cells += figure_cell(fixed(dvh.percent_above(times * prescription_Gy), 1));
   }
-  return cells + figure_cell(fixed(structure.covered_by_grid_percent, 0));
+  return with_grid ? cells + figure_cell(fixed(structure.covered_by_grid_percent, 0)) : cells;
 }
 
 }  // namespace
@@ -123,7 +123,8 @@ std::string dvh_figures(const std::vector<NamedDose>& doses, const std::vector<s
   if (first.prescription_Gy > 0.0) {
     for (const char* name : {"V100 [%]", "V150 [%]", "V200 [%]"}) head += figure_heading(name);
   }
-  head += figure_heading("In the dose grid [%]");
+  const bool alone = doses.size() == 1;  // reports of one dose say how much of a structure its grid holds
+  if (alone) head += figure_heading("In the dose grid [%]");
   std::string rows;
   for (std::size_t k = 0; k < first.structures.size(); ++k) {
     rows += fmt::format("<tr><td{}><span class=\"swatch\" style=\"background:{}\"></span> {}{}</td>",
@@ -132,7 +133,7 @@ std::string dvh_figures(const std::vector<NamedDose>& doses, const std::vector<s
     for (const NamedDose& dose : doses) {
       if (&dose != &doses.front()) rows += "<tr>";
       if (doses.size() > 1) rows += text_cell(dose.name);
-      rows += figures_of(dose.evaluation->structures[k], first.prescription_Gy) + "</tr>";
+      rows += figures_of(dose.evaluation->structures[k], first.prescription_Gy, alone) + "</tr>";
     }
   }
   return scrolled_table("scroll", "figures", head, rows);
@@ -154,8 +155,7 @@ std::string points_and_comparison(const DoseEvaluation& evaluation) {
     rows += "<tr>" + figure_cell(fixed(x.x(), 2)) + figure_cell(fixed(x.y(), 2)) + figure_cell(fixed(x.z(), 2)) +
             figure_cell(fixed(evaluation.point_Gy[k], 3)) + "</tr>";
   }
-  return html +
-         "<h3>Dose at points</h3>" +
+  return html + "<h3>Dose at points</h3>" +
          scrolled_table("scroll tall-table", "figures",
                         figure_heading("x [mm]") + figure_heading("y [mm]") + figure_heading("z [mm]") +
                             figure_heading("Dose [Gy]"),

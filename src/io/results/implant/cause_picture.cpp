@@ -14,7 +14,8 @@ namespace stylet::results {
 namespace {
 
 // Sizes of the picture in its own units.
-constexpr double kCauseLeft = 92, kCauseWide = 306, kCauseRight = 62, kCauseTop = 8, kCauseBar = 15, kCauseLine = 19, kCauseHead = 24, kCauseGap = 10;
+constexpr double kCauseLeft = 92, kCauseWide = 306, kCauseRight = 62, kCauseTop = 8, kCauseBar = 15, kCauseLine = 19,
+                 kCauseHead = 24, kCauseGap = 10;
 constexpr const char* kCauseSizeColour = "#5b6169";
 constexpr const char* kCauseAxisColour = "#0072b2";
 
@@ -74,8 +75,9 @@ std::string cause_bar(const CauseScale& scale, double top, const std::string& na
   return fmt::format(
       "<text class=\"name\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text><rect x=\"{:.1f}\" y=\"{:.1f}\" "
       "width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/><text class=\"figure\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
-      kCauseLeft - 8, top + 12, name, from, top, std::max(to - from, 0.6), kCauseBar, size ? kCauseSizeColour : kCauseAxisColour, to + 6,
-      top + 12, size ? fmt::format("{:.2f}", mm) : signed_number(mm, 2));
+      kCauseLeft - 8, top + 12, name, from, top, std::max(to - from, 0.6), kCauseBar,
+      size ? kCauseSizeColour : kCauseAxisColour, to + 6, top + 12,
+      size ? fmt::format("{:.2f}", mm) : signed_number(mm, 2));
 }
 
 }  // namespace
@@ -97,7 +99,7 @@ std::string cause_picture(const ImplantHistory& history) {
     svg += cause_bar(scale, top, "mean size", group.size_mm, true);
     for (std::size_t axis = 0; axis < 3; ++axis)
       svg += cause_bar(scale, top + kCauseLine * static_cast<double>(axis + 1), kToward[axis],
-                 group.mean_mm[static_cast<Index>(axis)], false);
+                       group.mean_mm[static_cast<Index>(axis)], false);
     top += 4 * kCauseLine + kCauseGap;
   }
   return svg + fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"middle\">Mean over all seeds [mm]</text></svg>",

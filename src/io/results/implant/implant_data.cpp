@@ -33,7 +33,8 @@ std::string implant_page_data(const ImplantHistory& history, const DvhTable& pla
                      {"rest_mm", seed.lost ? PageJson(nullptr) : seed_place_json(seed.rest_mm)},
                      {"third", third_of[k]}});
   }
-  for (std::size_t k = 0; k < kThirds.size(); ++k) thirds.push_back({{"name", kThirds[k]}, {"color", kThirdColours[k]}});
+  for (std::size_t k = 0; k < kThirds.size(); ++k)
+    thirds.push_back({{"name", kThirds[k]}, {"color", kThirdColours[k]}});
   const PageJson json = {{"planned_percent", percent}, {"thirds", thirds}, {"seeds", seeds}};
   return json.dump(-1, ' ', false, PageJson::error_handler_t::replace);
 }

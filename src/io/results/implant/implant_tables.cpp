@@ -28,11 +28,11 @@ std::string target_tiles(const ImplantOutcome& outcome) {
   if (!planned || !delivered) return {};
   const double prescription = outcome.delivered.prescription_Gy;
   const double before = planned->dvh.dose_of_percent(90.0), after = delivered->dvh.dose_of_percent(90.0);
-  const std::string share = prescription > 0.0 ? "<small>" + fixed(100.0 * before / prescription, 0) + " → " +
-                                                     fixed(100.0 * after / prescription, 0) + "&nbsp;%</small>"
-                                               : std::string();
-  std::string html = figure_tile(becomes(fixed(before, 0), fixed(after, 0) + "&nbsp;Gy") + share,
-                                 "target D90, planned → delivered");
+  std::string html = figure_tile(
+      becomes(fixed(before, 0), fixed(after, 0) + "&nbsp;Gy"),
+      prescription > 0.0 ? fmt::format("target D90, planned → delivered ({} → {} %)",
+                                       fixed(100.0 * before / prescription, 0), fixed(100.0 * after / prescription, 0))
+                         : "target D90, planned → delivered");
   if (prescription > 0.0) {
     html += figure_tile(becomes(fixed(planned->dvh.percent_above(prescription), 1),
                                 percent(delivered->dvh.percent_above(prescription))),
@@ -73,7 +73,8 @@ std::string error_table(const ImplantHistory& history) {
   std::string rows = error_cells("all seeds", seed_errors(history.seeds));
   for (const PartErrors& third : errors_by_third(history)) rows += error_cells(third.name, third.errors);
   std::string head = text_heading("Part of the gland");
-  for (const char* name : {"Seeds", "Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
+  for (const char* name :
+       {"Seeds", "Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
     head += figure_heading(name);
   return scrolled_table("scroll", "figures errors", head, rows);
 }
@@ -90,8 +91,8 @@ std::string cause_meanings(const ImplantHistory& history) {
 std::string needle_table(const ImplantHistory& history) {
   const std::vector<PartErrors> errors = errors_by_needle(history);
   std::string head = figure_heading("Order") + text_heading("Needle");
-  for (const char* name : {"Seeds", "Mean error [mm]", "Largest gland shift [mm]", "Peak force [N]", "Deflection [mm]",
-                           "Depth [mm]"})
+  for (const char* name :
+       {"Seeds", "Mean error [mm]", "Largest gland shift [mm]", "Peak force [N]", "Deflection [mm]", "Depth [mm]"})
     head += figure_heading(name);
   std::string rows;
   for (std::size_t k = 0; k < history.needles.size(); ++k) {

@@ -19,15 +19,23 @@ std::string count_of(std::size_t number, const std::string& thing) {
   return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
 }
 
-/// The mean shift along the axes where it is more than a tenth of a millimetre.
+/// "a", "a and b", "a, b and c".
+std::string list_in_words(const std::vector<std::string>& parts) {
+  std::string list;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    list += (k == 0 ? "" : k + 1 == parts.size() ? " and " : ", ") + parts[k];
+  return list;
+}
+
+/// The mean shift along the axes where it is at least a tenth of a millimetre.
 std::string mean_shift(const SeedErrors& errors) {
-  std::string parts;
+  std::vector<std::string> parts;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double mean = errors.axes[axis].mean_mm;
-    if (std::abs(mean) >= 0.1) parts += (parts.empty() ? "" : ", ") + toward_text(mean, axis);
+    if (std::abs(mean) >= 0.1) parts.push_back(toward_text(mean, axis));
   }
   if (parts.empty()) return "Their mean shift is less than 0.1 mm along each axis.";
-  return "As a whole they are shifted: " + parts + ".";
+  return "Their mean shift is " + list_in_words(parts) + ".";
 }
 
 std::string seed_sentences(const ImplantOutcome& outcome) {
@@ -42,9 +50,10 @@ std::string seed_sentences(const ImplantOutcome& outcome) {
   }
   if (errors.seeds == 0) return text;
   return text +
-         fmt::format("With all needles out, the seeds lie {} mm from their planned places on average; 95 % of them lie "
-                     "within {} mm. ",
-                     fixed(errors.mean_mm, 1), fixed(errors.p95_mm, 1)) +
+         fmt::format(
+             "With all needles out, the seeds lie {} mm from their planned places on average; 95 % of them lie "
+             "within {} mm. ",
+             fixed(errors.mean_mm, 1), fixed(errors.p95_mm, 1)) +
          mean_shift(errors);
 }
 
@@ -54,7 +63,7 @@ std::string cause_sentence(const ImplantHistory& history) {
       std::max_element(causes.begin(), causes.end(),
                        [](const CauseOfErrors& a, const CauseOfErrors& b) { return a.mean_mm < b.mean_mm; });
   if (largest == causes.end()) return "No cause moved a seed.";
-  return fmt::format("The largest cause is {} with {} mm on average: {}", to_string(largest->cause),
+  return fmt::format("The largest cause is {} ({} mm on average). {}", to_string(largest->cause),
                      fixed(largest->mean_mm, 1), meaning_of(largest->cause));
 }
 
@@ -69,7 +78,8 @@ std::string dose_sentences(const ImplantOutcome& outcome) {
   const StructureDose* delivered = find_region(outcome.delivered, "prostate");
   std::string text;
   if (planned && delivered) {
-    text = changed("The target’s D90", planned->dvh.dose_of_percent(90.0), delivered->dvh.dose_of_percent(90.0), "Gy", 0);
+    text =
+        changed("The target’s D90", planned->dvh.dose_of_percent(90.0), delivered->dvh.dose_of_percent(90.0), "Gy", 0);
     if (const double prescription = outcome.delivered.prescription_Gy; prescription > 0.0) {
       text += "; " + changed("its V100", planned->dvh.percent_above(prescription),
                              delivered->dvh.percent_above(prescription), "%", 1);
@@ -99,7 +109,8 @@ std::string signed_number(double value, int digits) {
 }
 
 std::string toward_text(double value_mm, std::size_t axis) {
-  return fixed(std::abs(value_mm), 1) + " mm " + (value_mm < 0.0 ? kAgainst[axis] : kToward[axis]);
+  return fixed(std::abs(value_mm), 1) + " mm to " + (axis == 0 ? "the " : "") +
+         (value_mm < 0.0 ? kAgainst[axis] : kToward[axis]);
 }
 
 const char* meaning_of(SeedCause cause) {
@@ -136,9 +147,7 @@ std::string causes_left_out(const ImplantHistory& history) {
       names.emplace_back(to_string(cause));
   }
   if (names.empty()) return {};
-  std::string list = names.front();
-  for (std::size_t k = 1; k < names.size(); ++k) list += (k + 1 == names.size() ? " and " : ", ") + names[k];
-  return fmt::format("The picture leaves out {}, which moved no seed in this implant.", list);
+  return fmt::format("The picture leaves out {}, which moved no seed in this implant.", list_in_words(names));
 }
 
 std::string implant_story(const ImplantOutcome& outcome) {

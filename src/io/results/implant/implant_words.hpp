@@ -20,7 +20,7 @@ inline constexpr std::array<const char*, 3> kThirdColours{"#0072b2", "#00805d", 
 /// A signed number with a decimal minus sign that is as wide as the plus sign; zero has no sign.
 std::string signed_number(double value, int digits);
 
-/// A signed length with its direction instead of a sign: "1.2 mm inferior". @param axis 0 … 2
+/// A signed length with its direction instead of a sign: "1.2 mm to inferior". @param axis 0 … 2
 std::string toward_text(double value_mm, std::size_t axis);
 
 /// What a cause means, as a sentence.

@@ -65,9 +65,9 @@ std::string seed_facts(const Scenario& scenario) {
   return definition("Seeds", seed.stranded ? "stranded: the seeds of a needle keep their distances"
                                            : "loose: each seed moves with the tissue around it") +
          definition("Release", release_text(seed)) +
-         definition("Loss", seed.loss_percent > 0.0 ? fmt::format("each seed is lost with a probability of {:g} %",
-                                                                  seed.loss_percent)
-                                                    : "no seed is lost") +
+         definition("Loss", seed.loss_percent > 0.0
+                                ? fmt::format("each seed is lost with a probability of {:g} %", seed.loss_percent)
+                                : "no seed is lost") +
          definition("Oedema", oedema_text(scenario));
 }
 

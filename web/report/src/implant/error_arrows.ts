@@ -16,11 +16,13 @@ export class ErrorArrows {
 
   constructor({ seeds, thirds }: ImplantData) {
     this.moved = seeds.filter((seed) => seed.rest_mm);
-    const material = new THREE.MeshStandardMaterial({ roughness: 0.6 });
+    // Arrows are shorter than seeds, which would hide them: they are drawn over everything else.
+    const material = new THREE.MeshStandardMaterial({ roughness: 0.6, depthTest: false, transparent: true });
     const many = (shape: THREE.BufferGeometry, of: Seed[]) => {
       const mesh = new THREE.InstancedMesh(shape, material, of.length);
       of.forEach((seed, k) => mesh.setColorAt(k, new THREE.Color(thirds[seed.third].color)));
       mesh.frustumCulled = false;
+      mesh.renderOrder = 1000;
       this.object.add(mesh);
       return mesh;
     };

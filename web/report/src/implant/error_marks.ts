@@ -4,7 +4,7 @@ import { inPicture } from '../dose/planes';
 import { add, NEAR_MM, type MoreMarks } from '../dose/section_picture';
 import type { ImplantData } from './data';
 
-const RADIUS = 0.85;  // [mm] of an open mark
+const RADIUS = 1.05;  // [mm] of an open mark, so that a seed seen from its end lies inside
 
 /** The open mark for the legend, as SVG. */
 export const PLANNED_KEY = '<svg width="14" height="14" viewBox="0 0 3.5 3.5" aria-hidden="true"><circle cx="1.75" cy="1.75" r="1.15" fill="#fff" stroke="#23262b" stroke-width="0.4"/></svg>';
