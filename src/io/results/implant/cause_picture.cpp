@@ -48,7 +48,7 @@ class CauseScale {
       least = std::min(least, group.mean_mm.minCoeff());
     }
     step_ = round_below((most - least) / 3.0);
-    low_ = step_ * std::floor(least / step_);
+    low_ = 1.1 * least;
     high_ = step_ * std::ceil(most / step_);
   }
   [[nodiscard]] double at(double mm) const { return kCauseLeft + kCauseWide * (mm - low_) / (high_ - low_); }
@@ -56,7 +56,7 @@ class CauseScale {
   /// Vertical lines with numbers below, over the height of the picture.
   [[nodiscard]] std::string lines(double bottom) const {
     std::string svg;
-    for (double k = std::round(low_ / step_); k <= high_ / step_ + 1e-6; ++k) {
+    for (double k = std::ceil(low_ / step_); k <= high_ / step_ + 1e-6; ++k) {
       svg += fmt::format(
           "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"{3}\"/><text class=\"tick\" x=\"{0:.1f}\" y=\"{4}\" "
           "text-anchor=\"middle\">{5}</text>",

@@ -38,6 +38,15 @@ std::string mean_shift(const SeedErrors& errors) {
   return "Their mean shift is " + list_in_words(parts) + ".";
 }
 
+/// The mean shift of each third along the needles, which single numbers for all seeds do not show.
+std::string shift_by_third(const ImplantHistory& history) {
+  std::vector<std::string> parts;
+  for (const PartErrors& third : errors_by_third(history)) {
+    if (third.errors.seeds > 0) parts.push_back(toward_text(third.errors.axes[2].mean_mm, 2) + " in the " + third.name);
+  }
+  return parts.size() < 2 ? std::string() : " From base to apex, the mean shift is " + list_in_words(parts) + ".";
+}
+
 std::string seed_sentences(const ImplantOutcome& outcome) {
   const ImplantHistory& history = outcome.history;
   const SeedErrors errors = seed_errors(history.seeds);
@@ -54,7 +63,7 @@ std::string seed_sentences(const ImplantOutcome& outcome) {
              "With all needles out, the seeds lie {} mm from their planned places on average; 95 % of them lie "
              "within {} mm. ",
              fixed(errors.mean_mm, 1), fixed(errors.p95_mm, 1)) +
-         mean_shift(errors);
+         mean_shift(errors) + shift_by_third(history);
 }
 
 std::string cause_sentence(const ImplantHistory& history) {

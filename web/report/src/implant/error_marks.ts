@@ -26,7 +26,7 @@ export function errorMarks({ seeds }: ImplantData): MoreMarks {
         const length = Math.hypot(u - x, v - y);
         const share = Math.min(1, RADIUS / Math.max(length, 1e-9));
         const d = `M${(x + share * (u - x)).toFixed(2)} ${(y + share * (v - y)).toFixed(2)}L${u.toFixed(2)} ${v.toFixed(2)}`;
-        if (length > RADIUS) for (const kind of ['rim', 'line']) add(mark, 'path', { d, class: kind });
+        if (length > RADIUS) add(mark, 'path', { d, class: 'line' });
       }
       for (const kind of ['rim', 'line']) add(mark, 'circle', { cx: x.toFixed(2), cy: y.toFixed(2), r: RADIUS, class: kind });
     }
