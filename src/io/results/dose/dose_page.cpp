@@ -5,15 +5,12 @@
 #include "dose/dvh_picture.hpp"
 #include "dose/dvh_table.hpp"
 #include "dose/page_data.hpp"
+#include "dose/page_shell.hpp"
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
 #include "report/assets.hpp"
 #include "report/html_parts.hpp"
-#include "report/page_template.hpp"
 #include "report/text.hpp"
-#include "stylet/core/version.hpp"
-
-#include <fmt/format.h>
 
 #include <filesystem>
 
@@ -32,7 +29,9 @@ Result<std::string> dose_page(const DoseEvaluation& evaluation) {
   const std::vector<std::string> colours = structure_colours(evaluation.structures);
   const DvhTable dvh = dvh_table(evaluation);
   const Slots slots{
-      {"version", html_escaped(version())},
+      {"report", "dose report"},
+      {"kicker", "Dose of a brachytherapy plan"},
+      {"kind", "computation"},
       {"title", html_escaped(title_of(evaluation.plan))},
       {"facts", html_prose(plan_line(evaluation))},
       {"css", std::string(dose_css())},
@@ -48,11 +47,11 @@ Result<std::string> dose_page(const DoseEvaluation& evaluation) {
       {"notes", evaluation.plan.notes.empty() ? std::string()
                                               : "<h3>What the reader of the plan decided</h3><ul>" +
                                                     sentence_list(evaluation.plan.notes) + "</ul>"},
-      {"versions", html_escaped(fmt::format("Stylet {}", version()))},
       {"data", json_script_safe(dose_page_data(evaluation, dvh, colours))},
+      {"more_data", std::string()},
       {"js", script_safe(dose_js())},
   };
-  return fill_page(dose_template(), slots, "report.html");
+  return page_about_dose(dose_template(), slots);
 }
 
 }  // namespace stylet::results

@@ -5,6 +5,7 @@
 #include "dose/dvh_picture.hpp"
 #include "dose/dvh_table.hpp"
 #include "dose/page_data.hpp"
+#include "dose/page_shell.hpp"
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
 #include "implant/cause_picture.hpp"
@@ -15,11 +16,7 @@
 #include "implant/procedure_facts.hpp"
 #include "report/assets.hpp"
 #include "report/html_parts.hpp"
-#include "report/page_template.hpp"
 #include "report/text.hpp"
-#include "stylet/core/version.hpp"
-
-#include <fmt/format.h>
 
 namespace stylet::results {
 namespace {
@@ -44,7 +41,9 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
   const std::vector<std::string> colours = structure_colours(outcome.delivered.structures);
   const BothDvh dvh = both_dvh(outcome);
   const Slots slots{
-      {"version", html_escaped(version())},
+      {"report", "implant report"},
+      {"kicker", "Simulation of a seed implant"},
+      {"kind", "simulation"},
       {"title", html_escaped(outcome.scenario.name)},
       {"facts", html_prose(plan_line(outcome.planned))},
       {"css", std::string(implant_css())},
@@ -67,12 +66,12 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"tissue", tissue_facts(outcome.scenario, history.nodes)},
       {"plan", plan_facts(outcome.planned)},
       {"assumptions", sentence_list(outcome.delivered.assumptions)},
-      {"versions", html_escaped(fmt::format("Stylet {}", version()))},
       {"data", json_script_safe(dose_page_data(outcome.delivered, dvh.delivered, colours))},
-      {"implant_data", json_script_safe(implant_page_data(history, dvh.planned))},
+      {"more_data", "<script type=\"application/json\" id=\"implant-data\">" +
+                        json_script_safe(implant_page_data(history, dvh.planned)) + "</script>\n"},
       {"js", script_safe(implant_js())},
   };
-  return fill_page(implant_template(), slots, "report.html");
+  return page_about_dose(implant_template(), slots);
 }
 
 }  // namespace stylet::results

@@ -11,11 +11,13 @@ std::string_view report_template();  ///< HTML with {{slots}}
 std::string_view report_css();
 std::string_view report_js();
 
-std::string_view dose_template();  ///< HTML with {{slots}}
+std::string_view dose_shell();  ///< HTML with {{slots}}, around the bodies of dose and implant
+
+std::string_view dose_template();  ///< HTML with {{slots}}, the body of the page
 std::string_view dose_css();
 std::string_view dose_js();
 
-std::string_view implant_template();  ///< HTML with {{slots}}
+std::string_view implant_template();  ///< HTML with {{slots}}, the body of the page
 std::string_view implant_css();
 std::string_view implant_js();
 
