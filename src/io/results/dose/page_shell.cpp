@@ -9,8 +9,22 @@
 
 namespace stylet::results {
 
+namespace {
+
+// The places where scripts put histograms and sections (web/report/src/dose/page.ts).
+constexpr const char* kDvhPlot =
+    "<div class=\"needs-script\"><div class=\"legend\" id=\"dvh-legend\"></div><div class=\"plot\" id=\"dvh-plot\">"
+    "</div></div>";
+constexpr const char* kSectionPictures =
+    "<div class=\"needs-script\"><div class=\"iso-key\" id=\"iso-key\"></div><div class=\"sections\" "
+    "id=\"section-pictures\"></div></div>";
+
+}  // namespace
+
 Result<std::string> page_about_dose(std::string_view body, Slots slots) {
   constexpr const char* kName = "report.html";
+  slots["dvh_plot"] = kDvhPlot + ("<noscript>" + slots["dvh_picture"] + "</noscript>");
+  slots["section_pictures"] = kSectionPictures;
   Result<std::string> filled = fill_page(body, slots, kName);
   if (!filled) return filled;
   slots["body"] = *std::move(filled);

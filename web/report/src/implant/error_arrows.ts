@@ -34,7 +34,7 @@ export class ErrorArrows {
     this.stretch(1);
   }
 
-  /** Draws the arrows so many times as long as the errors are. */
+  /** Draws each arrow with the length of its error, multiplied by a factor. */
   stretch(times: number): void {
     const along = new THREE.Vector3(0, 1, 0);
     this.moved.forEach((seed, k) => {
