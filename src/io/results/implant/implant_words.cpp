@@ -42,9 +42,12 @@ std::string mean_shift(const SeedErrors& errors) {
 std::string shift_by_third(const ImplantHistory& history) {
   std::vector<std::string> parts;
   for (const PartErrors& third : errors_by_third(history)) {
-    if (third.errors.seeds > 0) parts.push_back(toward_text(third.errors.axes[2].mean_mm, 2) + " in the " + third.name);
+    if (third.errors.seeds > 0)
+      parts.push_back(toward_text(third.errors.axes[2].mean_mm, 2) + " in the " +
+                      (third.name == "mid" ? "mid-gland" : third.name));
   }
-  return parts.size() < 2 ? std::string() : " From base to apex, the mean shift is " + list_in_words(parts) + ".";
+  return parts.size() < 2 ? std::string()
+                          : " Along the axis from inferior to superior it is " + list_in_words(parts) + ".";
 }
 
 std::string seed_sentences(const ImplantOutcome& outcome) {
