@@ -4,6 +4,7 @@
 //   vite build --mode live-fake     the same, with a made-up server inside: open it with ?fake
 //   vite build --mode report        the report of an insertion
 //   vite build --mode dose          the report of stylet dose
+//   vite build --mode implant       the report of stylet implant
 //   vite build --mode reproduce     the page of stylet reproduce
 //   vite build --mode validate      the page of stylet validate
 import { defineConfig } from 'vite';
@@ -13,6 +14,7 @@ const ENTRIES: Record<string, string> = {
   'live-fake': 'live/src/main.ts',
   report: 'report/src/main.ts',
   dose: 'report/src/dose/main.ts',
+  implant: 'report/src/implant/main.ts',
   reproduce: 'report/src/reproduce/main.ts',
   validate: 'report/src/validate/main.ts',
 };

@@ -47,21 +47,27 @@ std::vector<PartErrors> errors_by_needle(const ImplantHistory& history) {
   return parts;
 }
 
-std::vector<PartErrors> errors_by_third(const ImplantHistory& history) {
+std::vector<std::size_t> thirds_of(const ImplantHistory& history) {
   double low = INFINITY, high = -INFINITY;
   for (const SeedHistory& seed : history.seeds) {
     low = std::min(low, seed.planned_mm.z());
     high = std::max(high, seed.planned_mm.z());
   }
-  const char* names[] = {"base", "mid", "apex"};
-  std::array<std::vector<SeedHistory>, 3> thirds;
+  std::vector<std::size_t> thirds;
   for (const SeedHistory& seed : history.seeds) {
     const double from_base = high > low ? (high - seed.planned_mm.z()) / (high - low) : 0.5;
-    thirds[static_cast<std::size_t>(std::min(2.0, std::floor(3.0 * from_base)))].push_back(seed);
+    thirds.push_back(static_cast<std::size_t>(std::min(2.0, std::floor(3.0 * from_base))));
   }
+  return thirds;
+}
+
+std::vector<PartErrors> errors_by_third(const ImplantHistory& history) {
+  const std::vector<std::size_t> third_of = thirds_of(history);
+  std::array<std::vector<SeedHistory>, kThirds.size()> thirds;
+  for (std::size_t k = 0; k < third_of.size(); ++k) thirds[third_of[k]].push_back(history.seeds[k]);
   std::vector<PartErrors> parts;
   for (std::size_t k = 0; k < thirds.size(); ++k) {
-    if (!thirds[k].empty()) parts.push_back({names[k], seed_errors(thirds[k])});
+    if (!thirds[k].empty()) parts.push_back({kThirds[k], seed_errors(thirds[k])});
   }
   return parts;
 }

@@ -32,6 +32,10 @@ struct PartErrors {
 };
 /// One for each needle, in the order of the implant.
 std::vector<PartErrors> errors_by_needle(const ImplantHistory& history);
+/// The third of the planned seeds' extent in z in which each seed was planned: 0 superior ("base"), 1 middle ("mid"),
+/// 2 inferior ("apex").
+std::vector<std::size_t> thirds_of(const ImplantHistory& history);
+inline constexpr std::array<const char*, 3> kThirds{"base", "mid", "apex"};
 /// Of the superior, middle and inferior third of the planned seeds' extent in z. Parts without a seed are left out.
 std::vector<PartErrors> errors_by_third(const ImplantHistory& history);
 

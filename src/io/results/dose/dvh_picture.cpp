@@ -35,29 +35,38 @@ std::string frame_of_picture(double most_Gy) {
                    kLeft + kWide / 2, kTop + kHigh + 42, kTop + kHigh / 2);
 }
 
+/// One histogram as a line. @param look further attributes of the line
+std::string histogram_line(const std::vector<double>& dose_Gy, const std::vector<double>& percent,
+                           const std::string& look) {
+  std::string path;
+  for (std::size_t k = 0; k < dose_Gy.size(); ++k) {
+    path += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", kLeft + kWide * dose_Gy[k] / dose_Gy.back(),
+                        kTop + kHigh * (1.0 - percent[k] / 100.0));
+  }
+  return fmt::format("<path d=\"{}\" fill=\"none\" {}/>", path, look);
+}
+
 }  // namespace
 
-std::string dvh_picture(const DoseEvaluation& evaluation, const DvhTable& dvh,
-                        const std::vector<std::string>& colours) {
-  if (evaluation.structures.empty() || dvh.dose_Gy.size() < 2) return {};
-  const double most = dvh.dose_Gy.back();
+std::string dvh_picture(const std::vector<StructureDose>& structures, const DvhTable& dvh,
+                        const std::vector<std::string>& colours, const DvhTable* planned) {
+  if (structures.empty() || dvh.dose_Gy.size() < 2) return {};
   const double keys = kTop + kHigh + 62;
-  const auto count = static_cast<double>(evaluation.structures.size());
   std::string svg = fmt::format(
       "<svg class=\"dvh-picture\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Dose–volume histograms\" "
       "font-size=\"14\">{}",
-      kLeft + kWide + 20, keys + kKeyLine * count, frame_of_picture(most));
-  for (std::size_t s = 0; s < evaluation.structures.size(); ++s) {
-    std::string path;
-    for (std::size_t k = 0; k < dvh.dose_Gy.size(); ++k) {
-      path += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", kLeft + kWide * dvh.dose_Gy[k] / most,
-                          kTop + kHigh * (1.0 - dvh.percent[s][k] / 100.0));
+      kLeft + kWide + 20, keys + kKeyLine * static_cast<double>(structures.size()),
+      frame_of_picture(dvh.dose_Gy.back()));
+  for (std::size_t s = 0; s < structures.size(); ++s) {
+    svg += histogram_line(dvh.dose_Gy, dvh.percent[s], fmt::format("stroke=\"{}\" stroke-width=\"2\"", colours[s]));
+    if (planned) {
+      svg += histogram_line(planned->dose_Gy, planned->percent[s],
+                            fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"7 5\"", colours[s]));
     }
     const double y = keys + kKeyLine * static_cast<double>(s);
     svg += fmt::format(
-        "<path d=\"{0}\" fill=\"none\" stroke=\"{1}\" stroke-width=\"2\"/><path d=\"M{2} {3:.1f}h30\" stroke=\"{1}\" "
-        "stroke-width=\"3\"/><text x=\"{4}\" y=\"{5:.1f}\">{6}</text>",
-        path, colours[s], kLeft, y, kLeft + 40, y + 5, html_escaped(evaluation.structures[s].name));
+        "<path d=\"M{1} {2:.1f}h30\" stroke=\"{0}\" stroke-width=\"3\"/><text x=\"{3}\" y=\"{4:.1f}\">{5}</text>",
+        colours[s], kLeft, y, kLeft + 40, y + 5, html_escaped(structures[s].name));
   }
   return svg + "</svg>";
 }

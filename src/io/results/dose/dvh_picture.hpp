@@ -9,7 +9,9 @@
 namespace stylet::results {
 
 /// The histograms as an SVG picture, for readers without a script; empty without a structure.
-/// @param colours (structures) structure_colours()
-std::string dvh_picture(const DoseEvaluation& evaluation, const DvhTable& dvh, const std::vector<std::string>& colours);
+/// @param colours (structures) structure_colours() @param planned histograms at the same doses, drawn with dashes;
+/// nullptr: none
+std::string dvh_picture(const std::vector<StructureDose>& structures, const DvhTable& dvh,
+                        const std::vector<std::string>& colours, const DvhTable* planned = nullptr);
 
 }  // namespace stylet::results

@@ -43,6 +43,15 @@ DvhTable dvh_table(const DoseEvaluation& evaluation) {
   return table;
 }
 
+DvhTable dvh_at(const DoseEvaluation& evaluation, const std::vector<double>& dose_Gy) {
+  DvhTable table{.dose_Gy = dose_Gy, .percent = {}};
+  for (const StructureDose& structure : evaluation.structures) {
+    std::vector<double>& curve = table.percent.emplace_back();
+    for (const double dose : dose_Gy) curve.push_back(structure.dvh.percent_above(dose));
+  }
+  return table;
+}
+
 }  // namespace results
 
 std::string dvh_csv(const DoseEvaluation& evaluation) {

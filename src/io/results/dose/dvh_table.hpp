@@ -18,4 +18,7 @@ struct DvhTable {
 /// dose that no structure receives.
 DvhTable dvh_table(const DoseEvaluation& evaluation);
 
+/// The histograms at given doses.
+DvhTable dvh_at(const DoseEvaluation& evaluation, const std::vector<double>& dose_Gy);
+
 }  // namespace stylet::results

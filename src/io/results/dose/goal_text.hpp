@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "stylet/dose/goals.hpp"
+#include "stylet/dose/dose_evaluation.hpp"
 
 #include <string>
 
@@ -15,5 +15,14 @@ std::string figure_name(const DoseGoal& goal);
 
 /// The unit of a goal for display: "%" for "D90_percent", "Gy", "cc".
 std::string figure_unit(const DoseGoal& goal);
+
+/// A number with the unit of a goal.
+std::string with_figure_unit(const std::string& value, const DoseGoal& goal);
+
+/// What a plan reaches, with its unit; a dash where there is nothing.
+std::string reached_text(const JudgedGoal& judged);
+
+/// The verdict as word, sign and colour, each of which is sufficient by itself, as HTML.
+std::string verdict_badge(const JudgedGoal& judged);
 
 }  // namespace stylet::results

@@ -1,37 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dose/page_tables.hpp"
 
+#include "dose/dose_text.hpp"
 #include "dose/goal_text.hpp"
 #include "dose/structure_look.hpp"
 #include "fixed_number.hpp"
+#include "report/html_parts.hpp"
 #include "report/text.hpp"
 #include "stylet/geom/structure_names.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 
 namespace stylet::results {
 namespace {
 
-std::string text_cell(const std::string& text) { return "<td>" + html_escaped(text) + "</td>"; }
-std::string figure_cell(const std::string& text) { return "<td class=\"number\">" + html_escaped(text) + "</td>"; }
-
-/// @param value HTML
-std::string figure_tile(const std::string& value, const std::string& caption) {
-  return "<li><b>" + value + "</b><span>" + html_escaped(caption) + "</span></li>";
-}
-
-/// A dose with one decimal below 100 Gy.
-std::string gray(double dose_Gy) { return fixed(dose_Gy, std::abs(dose_Gy) < 99.95 ? 1 : 0) + "&nbsp;Gy"; }
-
-std::string percent(double value) { return fixed(value, 1) + "&nbsp;%"; }
-
 /// A dose, with its share of the prescribed dose where there is one, as HTML.
 std::string gray_of(double dose_Gy, double prescription_Gy) {
-  if (prescription_Gy <= 0.0) return gray(dose_Gy);
-  return gray(dose_Gy) + "<small>" + fixed(100.0 * dose_Gy / prescription_Gy, 0) + "&nbsp;%</small>";
+  return gray(dose_Gy) + small_share(dose_Gy, prescription_Gy);
 }
 
 std::string source_tiles(const DosePlan& plan) {
@@ -46,24 +33,6 @@ std::string source_tiles(const DosePlan& plan) {
   }
   return figure_tile(fmt::format("{}", plan.sources.size()), "dwell places") +
          figure_tile(fixed(time, 1) + "&nbsp;s", "total dwell time");
-}
-
-/// The verdict as word, sign and colour, each of which is sufficient by itself.
-std::string verdict_badge(const JudgedGoal& judged) {
-  const auto make = [](const char* style, const char* sign, const char* word) {
-    return fmt::format("<span class=\"verdict {}\"><i>{}</i>{}</span>", style, sign, word);
-  };
-  if (!judged.value) return make("skipped", "–", "not judged");
-  return judged.met ? make("pass", "✓", "met") : make("missed", "✗", "missed");
-}
-
-std::string with_figure_unit(const std::string& value, const DoseGoal& goal) {
-  const std::string unit = figure_unit(goal);
-  return unit.empty() ? value : value + " " + unit;
-}
-
-std::string definition(const std::string& name, const std::string& value) {
-  return value.empty() ? std::string() : "<dt>" + html_escaped(name) + "</dt><dd>" + html_prose(value) + "</dd>";
 }
 
 /// The region that a structure is taken as, unless its name says it.
@@ -107,51 +76,67 @@ std::string dose_tiles(const DoseEvaluation& evaluation) {
   return html + source_tiles(evaluation.plan);
 }
 
-std::string goal_table(const DoseEvaluation& evaluation) {
-  if (evaluation.goals.empty()) return "<p>No goals were given, so the plan was not judged.</p>";
+std::string goal_table(const std::vector<NamedDose>& doses) {
+  const std::vector<JudgedGoal>& goals = doses.front().evaluation->goals;
+  if (goals.empty()) return "<p>No goals were given, so the plan was not judged.</p>";
+  std::string head = text_heading("Structure") + text_heading("Figure") + figure_heading("Goal");
+  for (const NamedDose& dose : doses) head += figure_heading(dose.name) + text_heading("Verdict");
   std::string rows;
-  for (const JudgedGoal& judged : evaluation.goals) {
-    const DoseGoal& goal = judged.goal;
-    rows +=
-        "<tr>" + text_cell(goal.structure) + text_cell(figure_name(goal)) +
-        figure_cell(with_figure_unit(fmt::format("{} {:g}", goal.at_least ? "≥" : "≤", goal.bound), goal)) +
-        figure_cell(judged.value ? with_figure_unit(fixed(*judged.value, goal.metric.ends_with("_cc") ? 2 : 1), goal)
-                                 : "–") +
-        "<td>" + verdict_badge(judged) + "</td><td class=\"source\">" + html_escaped(goal.citation) + "</td></tr>";
+  for (std::size_t k = 0; k < goals.size(); ++k) {
+    const DoseGoal& goal = goals[k].goal;
+    rows += "<tr>" + text_cell(goal.structure) + text_cell(figure_name(goal)) +
+            figure_cell(with_figure_unit(fmt::format("{} {:g}", goal.at_least ? "≥" : "≤", goal.bound), goal));
+    for (const NamedDose& dose : doses) {
+      const JudgedGoal& judged = dose.evaluation->goals[k];
+      rows += figure_cell(reached_text(judged)) + "<td>" + verdict_badge(judged) + "</td>";
+    }
+    rows += "<td class=\"source\">" + html_escaped(goal.citation) + "</td></tr>";
   }
-  return "<div class=\"scroll\"><table class=\"goals\"><thead><tr><th>Structure</th><th>Figure</th><th "
-         "class=\"number\">Goal</th><th class=\"number\">Plan</th><th>Verdict</th><th>From</th></tr></thead><tbody>" +
-         rows + "</tbody></table></div>";
+  return scrolled_table("scroll", "goals", head + text_heading("From"), rows);
 }
 
-std::string dvh_figures(const DoseEvaluation& evaluation, const std::vector<std::string>& colours) {
-  if (evaluation.structures.empty()) return "<p>No structures were given.</p>";
-  const double prescription = evaluation.prescription_Gy;
-  std::string head =
-      "<th>Structure</th><th class=\"number\">Volume [cc]</th><th class=\"number\">D90 [Gy]</th><th "
-      "class=\"number\">D30 [Gy]</th><th class=\"number\">D10 [Gy]</th><th class=\"number\">D2cc [Gy]</th><th "
-      "class=\"number\">D0.1cc [Gy]</th><th class=\"number\">Mean [Gy]</th>";
-  if (prescription > 0.0) {
-    for (const char* name : {"V100", "V150", "V200"}) head += fmt::format("<th class=\"number\">{} [%]</th>", name);
+namespace {
+
+/// The figures of one structure's histogram, as cells.
+std::string figures_of(const StructureDose& structure, double prescription_Gy, bool with_grid) {
+  const DoseVolume& dvh = structure.dvh;
+  std::string cells = figure_cell(fixed(dvh.volume_cc(), 2));
+  for (const double dose : {dvh.dose_of_percent(90.0), dvh.dose_of_percent(30.0), dvh.dose_of_percent(10.0),
+                            dvh.dose_of_volume(2.0), dvh.dose_of_volume(0.1), dvh.mean_Gy()})
+    cells += figure_cell(fixed(dose, 1));
+  if (prescription_Gy > 0.0) {
+    for (const double times : {1.0, 1.5, 2.0})
+      cells += figure_cell(fixed(dvh.percent_above(times * prescription_Gy), 1));
   }
-  head += "<th class=\"number\">In the dose grid [%]</th>";
+  return with_grid ? cells + figure_cell(fixed(structure.covered_by_grid_percent, 0)) : cells;
+}
+
+}  // namespace
+
+std::string dvh_figures(const std::vector<NamedDose>& doses, const std::vector<std::string>& colours) {
+  const DoseEvaluation& first = *doses.front().evaluation;
+  if (first.structures.empty()) return "<p>No structures were given.</p>";
+  std::string head = text_heading("Structure");
+  if (doses.size() > 1) head += text_heading("Dose");
+  for (const char* name : {"Volume [cc]", "D90 [Gy]", "D30 [Gy]", "D10 [Gy]", "D2cc [Gy]", "D0.1cc [Gy]", "Mean [Gy]"})
+    head += figure_heading(name);
+  if (first.prescription_Gy > 0.0) {
+    for (const char* name : {"V100 [%]", "V150 [%]", "V200 [%]"}) head += figure_heading(name);
+  }
+  const bool alone = doses.size() == 1;  // reports of one dose say how much of a structure its grid holds
+  if (alone) head += figure_heading("In the dose grid [%]");
   std::string rows;
-  for (std::size_t k = 0; k < evaluation.structures.size(); ++k) {
-    const StructureDose& s = evaluation.structures[k];
-    const DoseVolume& dvh = s.dvh;
-    rows += fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span> {}{}</td>", colours[k],
-                        html_escaped(s.name), taken_as(s));
-    rows += figure_cell(fixed(dvh.volume_cc(), 2));
-    for (const double dose : {dvh.dose_of_percent(90.0), dvh.dose_of_percent(30.0), dvh.dose_of_percent(10.0),
-                              dvh.dose_of_volume(2.0), dvh.dose_of_volume(0.1), dvh.mean_Gy()})
-      rows += figure_cell(fixed(dose, 1));
-    if (prescription > 0.0) {
-      for (const double times : {1.0, 1.5, 2.0}) rows += figure_cell(fixed(dvh.percent_above(times * prescription), 1));
+  for (std::size_t k = 0; k < first.structures.size(); ++k) {
+    rows += fmt::format("<tr><td{}><span class=\"swatch\" style=\"background:{}\"></span> {}{}</td>",
+                        doses.size() > 1 ? fmt::format(" rowspan=\"{}\"", doses.size()) : "", colours[k],
+                        html_escaped(first.structures[k].name), taken_as(first.structures[k]));
+    for (const NamedDose& dose : doses) {
+      if (&dose != &doses.front()) rows += "<tr>";
+      if (doses.size() > 1) rows += text_cell(dose.name);
+      rows += figures_of(dose.evaluation->structures[k], first.prescription_Gy, alone) + "</tr>";
     }
-    rows += figure_cell(fixed(s.covered_by_grid_percent, 0)) + "</tr>";
   }
-  return "<div class=\"scroll\"><table class=\"figures\"><thead><tr>" + head + "</tr></thead><tbody>" + rows +
-         "</tbody></table></div>";
+  return scrolled_table("scroll", "figures", head, rows);
 }
 
 std::string points_and_comparison(const DoseEvaluation& evaluation) {
@@ -170,11 +155,11 @@ std::string points_and_comparison(const DoseEvaluation& evaluation) {
     rows += "<tr>" + figure_cell(fixed(x.x(), 2)) + figure_cell(fixed(x.y(), 2)) + figure_cell(fixed(x.z(), 2)) +
             figure_cell(fixed(evaluation.point_Gy[k], 3)) + "</tr>";
   }
-  return html +
-         "<h3>Dose at points</h3><div class=\"scroll tall-table\"><table class=\"figures\"><thead><tr><th "
-         "class=\"number\">x [mm]</th><th class=\"number\">y [mm]</th><th class=\"number\">z [mm]</th><th "
-         "class=\"number\">Dose [Gy]</th></tr></thead><tbody>" +
-         rows + "</tbody></table></div>";
+  return html + "<h3>Dose at points</h3>" +
+         scrolled_table("scroll tall-table", "figures",
+                        figure_heading("x [mm]") + figure_heading("y [mm]") + figure_heading("z [mm]") +
+                            figure_heading("Dose [Gy]"),
+                        rows);
 }
 
 std::string seed_table(const DoseEvaluation& evaluation) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dose–volume histograms with the dose in Gy below and in percent of the prescribed dose above.
+// Dose–volume histograms with the dose in Gy below and in percent of the prescribed dose above. A second set of
+// histograms, that of the plan, is drawn with dashes.
 import uPlot from 'uplot';
 import { element } from '../../../shared/dom';
-import { axis, fontSize, followWidth, lineScale, PALE } from '../../../shared/plot_style';
+import { axis, fontSize, followWidth, lineScale, PALE, SOFT } from '../../../shared/plot_style';
 import { showValues } from '../plots/line_plot';
 import type { DoseData } from './data';
 
 // Lines differ in dashes too, since the colours are those of the file.
 const CURVE_DASHES = [[], [9, 4], [3, 3], [12, 3, 2, 3], [16, 4]];
 
-const dashOfCurve = (k: number) => CURVE_DASHES[k % CURVE_DASHES.length].map((d) => d * lineScale());
+const PLANNED_DASHES = [7, 5];
 
 /** Vertical lines at 100, 150 and 200 % of the prescribed dose. */
 function drawMarks(plot: uPlot, prescription: number): void {
@@ -29,20 +30,48 @@ function drawMarks(plot: uPlot, prescription: number): void {
   ctx.restore();
 }
 
-function buildDvhLegend(box: HTMLElement, data: DoseData, plot: uPlot): void {
-  data.structures.forEach(({ name, color }, k) => {
+/** A curve of the plot. */
+interface Curve {
+  structure: number;
+  label: string;
+  color: string;
+  percent: number[];
+  dashes: number[];
+}
+
+function curvesOf({ dvh, structures }: DoseData, planned?: number[][]): Curve[] {
+  return structures.flatMap(({ name, color }, structure) => {
+    const own = { structure, color, label: name, percent: dvh.percent[structure], dashes: CURVE_DASHES[structure % CURVE_DASHES.length] };
+    if (!planned) return [own];
+    return [
+      { ...own, label: `${name}, delivered`, dashes: [] },
+      { ...own, label: `${name}, planned`, percent: planned[structure], dashes: PLANNED_DASHES },
+    ];
+  });
+}
+
+const strokeSample = (color: string, dashes: number[]) =>
+  `<svg width="40" height="10" aria-hidden="true"><path d="M1 5H39" stroke="${color}" stroke-width="2.5" stroke-dasharray="${dashes.join(' ') || 'none'}" fill="none"/></svg>`;
+
+function buildDvhLegend(box: HTMLElement, data: DoseData, curves: Curve[], plot: uPlot): void {
+  data.structures.forEach(({ name, color }, structure) => {
+    const own = curves.flatMap((curve, k) => (curve.structure === structure ? [k] : []));
     const toggle = element('button');
     toggle.type = 'button';
     toggle.setAttribute('aria-pressed', 'true');
-    toggle.innerHTML = `<svg width="40" height="10" aria-hidden="true"><path d="M1 5H39" stroke="${color}" stroke-width="2.5" stroke-dasharray="${CURVE_DASHES[k % CURVE_DASHES.length].join(' ') || 'none'}" fill="none"/></svg>`;
+    toggle.innerHTML = strokeSample(color, curves[own[0]].dashes);
     toggle.append(name);
     toggle.addEventListener('click', () => {
-      const show = !plot.series[k + 1].show;
-      plot.setSeries(k + 1, { show });
+      const show = !plot.series[own[0] + 1].show;
+      for (const k of own) plot.setSeries(k + 1, { show });
       toggle.setAttribute('aria-pressed', String(show));
     });
     box.append(toggle);
   });
+  if (curves.length === data.structures.length) return;
+  const key = element('span', 'key');
+  key.innerHTML = `${strokeSample(SOFT, [])}delivered${strokeSample(SOFT, PLANNED_DASHES)}planned`;
+  box.append(key);
 }
 
 /** Where the plot ends at first: behind 200 % of the prescribed dose; without one, where the last structure fades out. */
@@ -52,7 +81,8 @@ function firstEnd({ dvh, prescription }: DoseData): number {
   return Math.max(...dvh.percent.map((curve) => dvh.dose[curve.findIndex((v) => v < 1)] ?? last));
 }
 
-export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElement): void {
+/** @param planned (structures × doses) shares of the plan [%], at the doses of the histograms */
+export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElement, planned?: number[][]): void {
   const { dvh, structures, prescription } = data;
   if (structures.length === 0) {
     box.textContent = 'No structures were given.';
@@ -60,6 +90,7 @@ export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElem
     return;
   }
   const end = firstEnd(data);
+  const curves = curvesOf(data, planned);
   const percentAxis: uPlot.Axis[] = prescription ? [{
     ...axis('Dose [% of the prescribed dose]', fontSize() * 2),
     scale: 'x',
@@ -85,19 +116,19 @@ export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElem
         y: { range: () => [0, 102] },
       },
       axes: [axis('Dose [Gy]', fontSize() * 2), axis('Volume [%]', fontSize() * 3.2), ...percentAxis],
-      series: [{}, ...structures.map(({ name, color }, k) => ({
-        label: name, stroke: color, width: 2.2 * lineScale(), dash: dashOfCurve(k), points: { show: false },
+      series: [{}, ...curves.map(({ label, color, dashes }) => ({
+        label, stroke: color, width: 2.2 * lineScale(), dash: dashes.map((d) => d * lineScale()), points: { show: false },
       }))],
       hooks: { drawClear: [(u: uPlot) => (prescription ? drawMarks(u, prescription) : undefined)] },
     } as uPlot.Options,
-    [dvh.dose, ...dvh.percent] as uPlot.AlignedData,
+    [dvh.dose, ...curves.map((curve) => curve.percent)] as uPlot.AlignedData,
     box,
   );
   followWidth(box, plot);
   showValues(plot, {
-    lines: structures.map(({ name, color }) => ({ label: name, color })),
+    lines: curves,
     text: (v) => `${v.toFixed(1)} %`,
     xText: (v) => `${v.toFixed(1)} Gy${prescription ? ` = ${((100 * v) / prescription).toFixed(0)} %` : ''}`,
   });
-  buildDvhLegend(legend, data, plot);
+  buildDvhLegend(legend, data, curves, plot);
 }

@@ -14,8 +14,8 @@ function keySample(color: string, dash: string, width: number): string {
   return `<svg width="36" height="12" viewBox="0 0 9 3" aria-hidden="true"><path d="M0.3 1.5H8.7" stroke="${color}" stroke-width="${width}" stroke-dasharray="${dash}" fill="none"/></svg>`;
 }
 
-/** The legend of the sections. */
-export function buildLevelKey(data: DoseData, box: HTMLElement): void {
+/** The legend of the sections. @param marks further marks as SVG, with their names */
+export function buildLevelKey(data: DoseData, box: HTMLElement, marks: [string, string][] = []): void {
   const item = (mark: string, text: string) => {
     const part = element('span');
     part.innerHTML = mark;
@@ -35,4 +35,5 @@ export function buildLevelKey(data: DoseData, box: HTMLElement): void {
   }
   item('<svg width="30" height="12" viewBox="0 0 7.5 3" aria-hidden="true"><path d="M1.5 1.5H6" stroke="#23262b" stroke-width="1.3" stroke-linecap="round"/></svg>',
     data.sources.temporary ? 'dwell place' : 'seed');
+  for (const [mark, name] of marks) item(mark, name);
 }

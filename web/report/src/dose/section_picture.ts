@@ -11,7 +11,10 @@ const EDGE = 7;          // [mm] room around the picture for the scale
 const TEXT = 3;          // [mm] height of letters
 const SVG = 'http://www.w3.org/2000/svg';
 
-function add(parent: SVGElement, tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
+/** Draws more over the sources of a section at a height [mm] along the plane's normal. */
+export type MoreMarks = (inside: SVGElement, plane: Plane, height: number) => void;
+
+export function add(parent: SVGElement, tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
   const node = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
   if (text) node.textContent = text;
@@ -124,7 +127,7 @@ function drawSources(svg: SVGElement, { sources }: DoseData, plane: Plane, heigh
   return shown;
 }
 
-export function buildSection(data: DoseData, plane: Plane): HTMLElement {
+export function buildSection(data: DoseData, plane: Plane, more: MoreMarks = () => undefined): HTMLElement {
   const figure = element('figure', 'section-picture');
   const caption = element('figcaption');
   const frame = frameOf(data, plane);
@@ -151,6 +154,7 @@ export function buildSection(data: DoseData, plane: Plane): HTMLElement {
     drawStructures(inside, data, plane, height);
     drawDose(inside, data, plane, height, frame);
     const shown = drawSources(inside, data, plane, height);
+    more(inside, plane, height);
     const names = inside.querySelector('.isodose-names');
     if (names) inside.append(names);
     drawScale(svg, plane, frame);

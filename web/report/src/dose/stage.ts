@@ -46,6 +46,12 @@ export class DoseStage {
     this.resize();
   }
 
+  /** Adds something else to the picture. */
+  add(object: THREE.Object3D): void {
+    this.scene.add(object);
+    this.draw();
+  }
+
   /** Puts the camera in a standard position. @param from direction from the anatomy to the observer, LPS */
   look(from: [number, number, number]): void {
     lookFrom(this.camera, this.controls, from, this.centre, this.halfSize);

@@ -6,15 +6,19 @@ import type { DoseData } from './data';
 import { DoseStage } from './stage';
 import type { StructureShape } from './structure_shape';
 
-function switchOf(text: string, on: boolean, color: string, set: (on: boolean) => void): HTMLElement {
+export function switchOf(text: string, on: boolean, color: string | null, set: (on: boolean) => void): HTMLElement {
   const label = element('label');
   const box = element('input');
   box.type = 'checkbox';
   box.checked = on;
   box.addEventListener('change', () => set(box.checked));
-  const swatch = element('span', 'swatch');
-  swatch.style.background = color;
-  label.append(box, swatch, text);
+  label.append(box);
+  if (color) {
+    const swatch = element('span', 'swatch');
+    swatch.style.background = color;
+    label.append(swatch);
+  }
+  label.append(text);
   return label;
 }
 
@@ -38,7 +42,8 @@ function structureRow(shape: StructureShape, draw: () => void): HTMLElement {
   return row;
 }
 
-export function buildDoseViewer(data: DoseData, root: HTMLElement): void {
+/** @param more adds to the picture and returns the controls of what it added */
+export function buildDoseViewer(data: DoseData, root: HTMLElement, more?: (stage: DoseStage, picture: HTMLElement) => HTMLElement[]): void {
   const picture = element('div', 'picture');
   const canvas = element('div', 'canvas');
   const bar = element('div', 'scale-bar');
@@ -63,6 +68,7 @@ export function buildDoseViewer(data: DoseData, root: HTMLElement): void {
       stage.sources.visible = on;
       draw();
     }),
+    ...(more?.(stage, picture) ?? []),
     element('h3', '', 'View'), views, element('p', 'hint', 'Drag to turn, wheel to zoom, right button to move.'));
   root.append(side);
 }

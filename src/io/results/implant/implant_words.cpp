@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/implant_words.hpp"
+
+#include "dose/structure_look.hpp"
+#include "fixed_number.hpp"
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::results {
+namespace {
+
+std::string paragraph(const std::string& text) { return "<p>" + html_prose(text) + "</p>"; }
+
+std::string count_of(std::size_t number, const std::string& thing) {
+  return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
+}
+
+/// "a", "a and b", "a, b and c".
+std::string list_in_words(const std::vector<std::string>& parts) {
+  std::string list;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    list += (k == 0 ? "" : k + 1 == parts.size() ? " and " : ", ") + parts[k];
+  return list;
+}
+
+/// The mean shift along the axes where it is at least a tenth of a millimetre.
+std::string mean_shift(const SeedErrors& errors) {
+  std::vector<std::string> parts;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double mean = errors.axes[axis].mean_mm;
+    if (std::abs(mean) >= 0.1) parts.push_back(toward_text(mean, axis));
+  }
+  if (parts.empty()) return "Their mean shift is less than 0.1 mm along each axis.";
+  return "Their mean shift is " + list_in_words(parts) + ".";
+}
+
+/// The mean shift of each third along the needles, which single numbers for all seeds do not show.
+std::string shift_by_third(const ImplantHistory& history) {
+  std::vector<std::string> parts;
+  for (const PartErrors& third : errors_by_third(history)) {
+    if (third.errors.seeds > 0)
+      parts.push_back(toward_text(third.errors.axes[2].mean_mm, 2) + " in the " +
+                      (third.name == "mid" ? "mid-gland" : third.name));
+  }
+  return parts.size() < 2 ? std::string()
+                          : " Along the axis from inferior to superior it is " + list_in_words(parts) + ".";
+}
+
+std::string seed_sentences(const ImplantOutcome& outcome) {
+  const ImplantHistory& history = outcome.history;
+  const SeedErrors errors = seed_errors(history.seeds);
+  const std::size_t lost = history.seeds.size() - errors.seeds;
+  std::string text = fmt::format("The plan places {} with {}. ", count_of(history.seeds.size(), "seed"),
+                                 count_of(history.needles.size(), "needle"));
+  if (lost > 0) {
+    text += fmt::format("Of them {} lost and {} no dose. ", lost == 1 ? "1 is" : fmt::format("{} are", lost),
+                        lost == 1 ? "gives" : "give");
+  }
+  if (errors.seeds == 0) return text;
+  return text +
+         fmt::format(
+             "With all needles out, the seeds lie {} mm from their planned places on average; 95 % of them lie "
+             "within {} mm. ",
+             fixed(errors.mean_mm, 1), fixed(errors.p95_mm, 1)) +
+         mean_shift(errors) + shift_by_third(history);
+}
+
+std::string cause_sentence(const ImplantHistory& history) {
+  const std::vector<CauseOfErrors> causes = causes_that_moved(history);
+  const auto largest =
+      std::max_element(causes.begin(), causes.end(),
+                       [](const CauseOfErrors& a, const CauseOfErrors& b) { return a.mean_mm < b.mean_mm; });
+  if (largest == causes.end()) return "No cause moved a seed.";
+  return fmt::format("The largest cause is {} ({} mm on average). {}", to_string(largest->cause),
+                     fixed(largest->mean_mm, 1), meaning_of(largest->cause));
+}
+
+/// A figure of the target in both doses.
+std::string changed(const char* name, double planned, double delivered, const char* unit, int digits) {
+  return fmt::format("{} is {} {} in the plan and {} {} as delivered", name, fixed(planned, digits), unit,
+                     fixed(delivered, digits), unit);
+}
+
+std::string dose_sentences(const ImplantOutcome& outcome) {
+  const StructureDose* planned = find_region(outcome.planned, "prostate");
+  const StructureDose* delivered = find_region(outcome.delivered, "prostate");
+  std::string text;
+  if (planned && delivered) {
+    text =
+        changed("The target’s D90", planned->dvh.dose_of_percent(90.0), delivered->dvh.dose_of_percent(90.0), "Gy", 0);
+    if (const double prescription = outcome.delivered.prescription_Gy; prescription > 0.0) {
+      text += "; " + changed("its V100", planned->dvh.percent_above(prescription),
+                             delivered->dvh.percent_above(prescription), "%", 1);
+    }
+    text += ". ";
+  }
+  const auto met = [](const DoseEvaluation& dose) {
+    return std::count_if(dose.goals.begin(), dose.goals.end(), [](const JudgedGoal& goal) { return goal.met; });
+  };
+  const auto judged = std::count_if(outcome.delivered.goals.begin(), outcome.delivered.goals.end(),
+                                    [](const JudgedGoal& goal) { return goal.value.has_value(); });
+  if (judged > 0) {
+    text += fmt::format("Of {} goals that can be judged, the plan meets {} and the implant as delivered {}. ", judged,
+                        met(outcome.planned), met(outcome.delivered));
+  }
+  if (has_oedema(outcome.scenario))
+    text += "The delivered dose includes the swelling of the gland, which the plan does not know.";
+  return text;
+}
+
+}  // namespace
+
+std::string signed_number(double value, int digits) {
+  const std::string size = fixed(std::abs(value), digits);
+  if (size.find_first_not_of("0.") == std::string::npos) return size;
+  return (value < 0.0 ? "−" : "+") + size;
+}
+
+std::string toward_text(double value_mm, std::size_t axis) {
+  return fixed(std::abs(value_mm), 1) + " mm to " + (axis == 0 ? "the " : "") +
+         (value_mm < 0.0 ? kAgainst[axis] : kToward[axis]);
+}
+
+const char* meaning_of(SeedCause cause) {
+  switch (cause) {
+    case SeedCause::bend:
+      return "The needle was bent, or did not reach its depth, when the seed left it.";
+    case SeedCause::motion:
+      return "The needle held the tissue displaced when the seed was dropped; the tissue has gone back since and has "
+             "taken the seed along.";
+    case SeedCause::relaxation:
+      return "The tissue had crept under the needle when the seed was dropped; it has gone back since and has taken "
+             "the seed along.";
+    case SeedCause::strand:
+      return "The strand holds the seed at its distance from the other seeds of the needle.";
+    case SeedCause::release:
+      return "The seed jumped along its track when it was let go.";
+  }
+  return "";
+}
+
+std::vector<CauseOfErrors> causes_that_moved(const ImplantHistory& history) {
+  constexpr double kNothing_mm = 5e-4;
+  std::vector<CauseOfErrors> causes = causes_of_errors(history.seeds);
+  std::erase_if(causes, [](const CauseOfErrors& cause) { return !(cause.mean_mm > kNothing_mm); });
+  return causes;
+}
+
+std::string causes_left_out(const ImplantHistory& history) {
+  const std::vector<CauseOfErrors> moved = causes_that_moved(history);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < kSeedCauses; ++k) {
+    const auto cause = static_cast<SeedCause>(k);
+    if (std::none_of(moved.begin(), moved.end(), [&](const CauseOfErrors& c) { return c.cause == cause; }))
+      names.emplace_back(to_string(cause));
+  }
+  if (names.empty()) return {};
+  return fmt::format("The picture leaves out {}, which moved no seed in this implant.", list_in_words(names));
+}
+
+std::string implant_story(const ImplantOutcome& outcome) {
+  std::string story = paragraph(seed_sentences(outcome) + " " + cause_sentence(outcome.history));
+  const std::string dose = dose_sentences(outcome);
+  return dose.empty() ? story : story + paragraph(dose);
+}
+
+bool has_oedema(const Scenario& scenario) {
+  const auto& percent = scenario.oedema.swelling_percent;
+  return std::any_of(percent.begin(), percent.end(), [](double p) { return p != 0.0; });
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/procedure_facts.hpp"
+
+#include "implant/implant_words.hpp"
+#include "report/html_parts.hpp"
+
+#include <fmt/format.h>
+
+namespace stylet::results {
+namespace {
+
+std::string technique_text(SeedTechnique technique) {
+  switch (technique) {
+    case SeedTechnique::preloaded:
+      return "preloaded: the cannula is drawn back over a stylet that stays";
+    case SeedTechnique::pushed:
+      return "pushed: the needle stops at each seed, which the stylet pushes out";
+  }
+  return {};
+}
+
+std::string order_text(NeedleOrder order) {
+  switch (order) {
+    case NeedleOrder::plan:
+      return "as in the plan";
+    case NeedleOrder::anterior_first:
+      return "the most anterior needle first";
+    case NeedleOrder::posterior_first:
+      return "the most posterior needle first";
+  }
+  return {};
+}
+
+std::string release_text(const Scenario::Seed& seed) {
+  if (seed.release_mm == 0.0 && seed.release_sd_mm == 0.0) return "a seed stays where it is let go";
+  return fmt::format("a jump of {:g} ± {:g} mm along the track (mean ± standard deviation)", seed.release_mm,
+                     seed.release_sd_mm);
+}
+
+std::string oedema_text(const Scenario& scenario) {
+  if (!has_oedema(scenario)) return "none: the gland does not swell";
+  const auto& percent = scenario.oedema.swelling_percent;
+  return fmt::format(
+      "the gland swells by {:g}, {:g} and {:g} % along left, posterior and superior, and shrinks with a half-life of "
+      "{:g} days",
+      percent[0], percent[1], percent[2], scenario.oedema.half_life_days);
+}
+
+}  // namespace
+
+std::string procedure_facts(const Scenario& scenario) {
+  const Scenario::Procedure& procedure = scenario.procedure;
+  return definition("Technique", technique_text(procedure.technique)) +
+         definition("Order of the needles", order_text(procedure.order)) +
+         definition("Speed of insertion", fmt::format("{:g} mm/s", procedure.speed_mm_per_s)) +
+         definition("Pause at full depth", fmt::format("{:g} s", procedure.pause_s)) +
+         definition("Speed of withdrawal over the seeds", fmt::format("{:g} mm/s", procedure.drop_speed_mm_per_s)) +
+         definition("Speed of withdrawal after them", fmt::format("{:g} mm/s", procedure.retract_speed_mm_per_s)) +
+         definition("Plug between tip and first seed",
+                    procedure.plug_mm > 0.0 ? fmt::format("{:g} mm", procedure.plug_mm) : "none");
+}
+
+std::string seed_facts(const Scenario& scenario) {
+  const Scenario::Seed& seed = scenario.seed;
+  return definition("Seeds", seed.stranded ? "stranded: the seeds of a needle keep their distances"
+                                           : "loose: each seed moves with the tissue around it") +
+         definition("Release", release_text(seed)) +
+         definition("Loss", seed.loss_percent > 0.0
+                                ? fmt::format("each seed is lost with a probability of {:g} %", seed.loss_percent)
+                                : "no seed is lost") +
+         definition("Oedema", oedema_text(scenario));
+}
+
+std::string tissue_facts(const Scenario& scenario, int nodes) {
+  return definition("Tissue", fmt::format("preset “{}”{}", word(scenario.tissue_model.preset),
+                                          scenario.tissue.empty() ? "" : ", with values of the scenario")) +
+         definition("Creep of the tissue", fmt::format("final to immediate displacement {:.3g}, time constant {:g} s",
+                                                       creep_of(scenario), scenario.tissue_model.creep_s)) +
+         definition("Needle", fmt::format("{}, {:g} mm in diameter, {:g} mm long", word(scenario.needle.model),
+                                          scenario.needle.diameter_mm, scenario.needle.length_mm)) +
+         definition("Mesh", fmt::format("{} nodes", nodes)) +
+         definition("Time step", fmt::format("{:g} ms", scenario.run.dt_ms));
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/sim/scenario.hpp"
+
+#include <string>
+
+/// What a simulated implant takes for granted, as pairs of name and value.
+namespace stylet::results {
+
+/// Technique, speeds, pause, order and plug.
+std::string procedure_facts(const Scenario& scenario);
+
+/// Stranding, release and loss of seeds, and the swelling of the gland.
+std::string seed_facts(const Scenario& scenario);
+
+/// Tissue, needle and mesh. @param nodes of the mesh
+std::string tissue_facts(const Scenario& scenario, int nodes);
+
+}  // namespace stylet::results

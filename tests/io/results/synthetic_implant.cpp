@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "synthetic_implant.hpp"
+
+#include "synthetic_dose.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stylet::testing {
+namespace {
+
+/// The number of a needle with this name, which is added where it is new.
+std::size_t needle_of(ImplantHistory& history, const PlannedSource& source) {
+  const auto found = std::find_if(history.needles.begin(), history.needles.end(),
+                                  [&](const NeedleHistory& needle) { return needle.name == source.needle; });
+  if (found != history.needles.end()) return static_cast<std::size_t>(found - history.needles.begin());
+  NeedleHistory needle;
+  needle.name = source.needle;
+  needle.entry_mm = Vec3(source.at_mm.x(), source.at_mm.y(), -60.0);
+  needle.depth_mm = 85.0;
+  needle.peak_force_N = 5.5 + 0.25 * static_cast<double>(history.needles.size());
+  needle.deflection_mm = 0.4;
+  needle.gland_shift_mm = Vec3(0.1, -0.2, 1.9);
+  history.needles.push_back(needle);
+  return history.needles.size() - 1;
+}
+
+SeedHistory seed_of(const PlannedSource& source, std::size_t number, std::size_t needle) {
+  SeedHistory seed;
+  seed.number = number;
+  seed.needle = needle;
+  seed.planned_mm = source.at_mm;
+  const double turn = 0.7 * static_cast<double>(number);
+  seed.by(SeedCause::bend) = Vec3(0.4 * std::cos(turn), 0.4 * std::sin(turn), -0.1);
+  seed.by(SeedCause::motion) = Vec3(0.0, 0.05, 0.6);
+  seed.by(SeedCause::relaxation) = Vec3(0.1 * std::sin(turn), 0.1, 1.2 + 0.03 * (source.at_mm.z() - 15.0));
+  seed.dropped_mm = seed.planned_mm + seed.by(SeedCause::bend);
+  seed.rest_mm = seed.dropped_mm + seed.by(SeedCause::motion) + seed.by(SeedCause::relaxation);
+  return seed;
+}
+
+}  // namespace
+
+ImplantOutcome synthetic_implant(double grid_mm, double step_mm) {
+  ImplantOutcome outcome;
+  outcome.scenario.name = "Invented implant of seeds";
+  outcome.planned = synthetic_dose(grid_mm, step_mm);
+  outcome.delivered = outcome.planned;
+  outcome.seed_length_mm = outcome.planned.source.outer_length_mm;
+  ImplantHistory& history = outcome.history;
+  history.nodes = 3000;
+  const std::vector<PlannedSource>& sources = outcome.planned.plan.sources;
+  for (std::size_t k = 0; k < sources.size(); ++k)
+    history.seeds.push_back(seed_of(sources[k], k, needle_of(history, sources[k])));
+  history.seeds.back().lost = true;
+  outcome.delivered.plan = delivered_plan(outcome.planned.plan, history);
+  outcome.warnings = {"Needle G3: In 2 of 1900 steps no balance of needle and tissue was found."};
+  return outcome;
+}
+
+}  // namespace stylet::testing

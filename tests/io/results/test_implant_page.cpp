@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tests of the page report.html of an implant.
+#include "report_page.hpp"
+#include "results/implant/cause_picture.hpp"
+#include "results/implant/error_pictures.hpp"
+#include "results/implant/implant_page.hpp"
+#include "results/implant/implant_tables.hpp"
+#include "results/implant/implant_words.hpp"
+#include "synthetic_implant.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+using namespace stylet;
+using namespace stylet::testing;
+
+namespace {
+
+/// The outcome with coarse samples, which is computed once.
+const ImplantOutcome& outcome() {
+  static const ImplantOutcome invented = synthetic_implant(4.0, 1.5);
+  return invented;
+}
+
+std::string page_of(const ImplantOutcome& implant) {
+  const Result<std::string> page = results::implant_page(implant);
+  return page ? *page : page.error().message();
+}
+
+}  // namespace
+
+TEST(ImplantPage, has_the_figures_of_errors_and_doses_and_no_slot_left) {
+  const std::string page = page_of(outcome());
+  const std::string text = markup(page);
+  EXPECT_EQ(count(text, "{{"), 0U);
+  const SeedErrors errors = seed_errors(outcome().history.seeds);
+  EXPECT_EQ(errors.seeds, 43U);
+  const std::string tiles = between(text, "<ul class=\"tiles\">", "</ul>");
+  EXPECT_EQ(count(tiles, fmt::format("<b>{:.1f}&nbsp;mm</b>", errors.mean_mm)), 1U);
+  EXPECT_EQ(count(tiles, fmt::format("<b>{:.1f}&nbsp;mm</b>", errors.p95_mm)), 1U);
+  EXPECT_EQ(count(tiles, "44<small>1 lost</small>"), 1U);
+  EXPECT_EQ(count(tiles, fmt::format("<b>{}</b>", outcome().history.needles.size())), 1U);
+  const double d90 = outcome().planned.structures[0].dvh.dose_of_percent(90.0);
+  EXPECT_EQ(count(tiles, fmt::format("{:.0f}&nbsp;Gy", d90)), 1U);
+  const std::string table = between(text, "<table class=\"figures errors\">", "</table>");
+  EXPECT_EQ(count(table, "<tr>"), 5U) << "a heading, all seeds, base, mid and apex";
+  EXPECT_EQ(count(table, fmt::format("+{:.2f} ± {:.2f}", errors.axes[2].mean_mm, errors.axes[2].sd_mm)), 1U);
+}
+
+TEST(ImplantPage, links_to_the_reports_of_both_doses_and_names_the_files_beside_it) {
+  const std::string text = markup(page_of(outcome()));
+  for (const char* part :
+       {"href=\"planned/report.html\"", "href=\"delivered/report.html\"", "seeds.csv", "summary.json"})
+    EXPECT_EQ(count(text, part), 1U) << part;
+  EXPECT_EQ(count(text, "src=\"http") + count(text, "href=\"http"), 0U) << "all assets are in the page";
+}
+
+TEST(ImplantPage, judges_the_goals_of_both_doses) {
+  ImplantOutcome implant = outcome();
+  implant.planned.goals[0].met = true;
+  implant.delivered.goals[0].met = false;
+  const std::string table = between(page_of(implant), "<table class=\"goals\">", "</table>");
+  EXPECT_EQ(count(table, "Planned"), 1U);
+  EXPECT_EQ(count(table, "Delivered"), 1U);
+  EXPECT_EQ(count(table, "class=\"verdict"), 2 * implant.delivered.goals.size());
+  const std::string row = between(table, "<td>D90</td>", "</tr>");
+  EXPECT_LT(row.find("</i>met<"), row.find("</i>missed<"));
+}
+
+TEST(ImplantPage, escapes_names_and_sentences) {
+  ImplantOutcome implant = outcome();
+  const std::string name = "<script>alert(1)</script>";
+  implant.scenario.name = name;
+  implant.history.needles[0].name = name;
+  implant.warnings = {name};
+  implant.planned.plan.label = name;
+  implant.planned.structures[0].name = name;
+  implant.delivered.structures[0].name = name;
+  implant.delivered.assumptions = {name};
+  const std::string page = page_of(implant);
+  EXPECT_EQ(count(page, "<script>alert"), 0U);
+  EXPECT_GE(count(page, "&lt;script&gt;alert(1)&lt;/script&gt;"), 8U);
+  const auto data = nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
+  EXPECT_EQ(data["seeds"][0]["needle"], name);
+}
+
+TEST(ImplantPage, gives_the_scripts_planned_histograms_at_the_doses_of_the_delivered_ones) {
+  const std::string page = page_of(outcome());
+  const auto dose = nlohmann::json::parse(between(page, "id=\"dose-data\">", "</script>"));
+  const auto data = nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
+  ASSERT_EQ(data["planned_percent"].size(), outcome().planned.structures.size());
+  for (const auto& curve : data["planned_percent"]) EXPECT_EQ(curve.size(), dose["dvh"]["dose_Gy"].size());
+  EXPECT_EQ(data["seeds"].size(), 44U);
+  EXPECT_TRUE(data["seeds"][43]["rest_mm"].is_null()) << "the last seed is lost";
+  EXPECT_EQ(data["thirds"].size(), 3U);
+}
+
+TEST(ImplantPage, can_be_made_when_every_seed_is_lost) {
+  ImplantOutcome implant = outcome();
+  for (SeedHistory& seed : implant.history.seeds) seed.lost = true;
+  const std::string text = markup(page_of(implant));
+  EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
+  EXPECT_EQ(count(text, "No seed is left in the patient."), 1U);
+}
+
+TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) {
+  ImplantHistory history = outcome().history;
+  std::string picture = results::cause_picture(history);
+  EXPECT_EQ(count(picture, "class=\"group\""), 4U) << "three causes and all together";
+  EXPECT_EQ(count(picture, ">strand<") + count(picture, ">release<"), 0U);
+  EXPECT_EQ(count(results::causes_left_out(history), "strand and release"), 1U);
+  for (SeedHistory& seed : history.seeds) seed.by(SeedCause::strand) = seed.by(SeedCause::release) = Vec3(0, 0, 0.2);
+  picture = results::cause_picture(history);
+  EXPECT_EQ(count(picture, "class=\"group\""), 6U);
+  EXPECT_EQ(results::causes_left_out(history), "");
+}
+
+TEST(ErrorPictures, have_a_mark_for_each_seed_that_is_left) {
+  ImplantHistory history = outcome().history;
+  std::string pictures = results::error_pictures(history);
+  EXPECT_EQ(count(pictures, "<figure>"), 3U);
+  EXPECT_EQ(count(pictures, "<title>"), 3U * 43U);
+  EXPECT_EQ(count(pictures, "beyond the scale"), 0U);
+  history.seeds[0].rest_mm.z() -= 40.0;
+  pictures = results::error_pictures(history);
+  EXPECT_EQ(count(pictures, "<title>"), 3U * 43U);
+  EXPECT_EQ(count(pictures, "fill=\"none\" stroke-width"), 1U) << "an open mark at the edge";
+  EXPECT_EQ(count(pictures, "1 seed has such one."), 1U);
+}
+
+TEST(NeedleTable, has_a_dash_where_there_is_no_gland) {
+  ImplantHistory history = outcome().history;
+  const std::size_t dashes = count(results::needle_table(history), ">–<");
+  history.needles[0].gland_shift_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  const std::string table = results::needle_table(history);
+  EXPECT_EQ(count(table, ">–<"), dashes + 1);
+  EXPECT_EQ(count(table, "nan"), 0U);
+  EXPECT_EQ(count(table, "<tr>"), history.needles.size() + 1);
+}
+
+TEST(SeedTable, says_which_seeds_are_lost) {
+  const std::string table = results::seed_error_table(outcome().history);
+  EXPECT_EQ(count(table, "<td>lost</td>"), 1U);
+  EXPECT_EQ(count(table, "<tr>"), 45U);
+}
+
+TEST(SignedNumber, has_no_sign_at_zero) {
+  EXPECT_EQ(results::signed_number(0.004, 2), "0.00");
+  EXPECT_EQ(results::signed_number(-0.004, 2), "0.00");
+  EXPECT_EQ(results::signed_number(-1.5, 1), "−1.5");
+  EXPECT_EQ(results::signed_number(1.5, 1), "+1.5");
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The data of an implant beside those of its dose (src/io/results/implant/implant_data.cpp).
+import type { Triple } from '../dose/data';
+
+export interface Seed {
+  number: number;          // from 1, in the order of the plan
+  needle: string;
+  planned_mm: Triple;      // LPS
+  rest_mm: Triple | null;  // LPS; null: the seed is lost
+  third: number;           // number in `thirds`
+}
+
+export interface ImplantData {
+  planned_percent: number[][];  // (structures × doses) histograms of the plan, at the doses of the delivered ones
+  thirds: { name: string; color: string }[];
+  seeds: Seed[];
+}
+
+export function decodeImplant(json: string): ImplantData {
+  return JSON.parse(json) as ImplantData;
+}
