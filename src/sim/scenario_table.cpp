@@ -304,10 +304,10 @@ void describe_implant(ScenarioEntries& keys) {
               "pause at full depth before the first seed is dropped, and before each seed with technique = \"pushed\"",
               [](auto& s, const Slot&) { return &s.procedure.pause_s; });
   keys.number("procedure.drop_speed_mm_per_s", "mm/s", 0.1, 1000,
-              "speed of the base on the way out while seeds are dropped",
+              "speed of a needle's base on its way out while seeds are dropped",
               [](auto& s, const Slot&) { return &s.procedure.drop_speed_mm_per_s; });
   keys.number("procedure.retract_speed_mm_per_s", "mm/s", 0.1, 1000,
-              "speed of the base on the way out behind the last seed",
+              "speed of a needle's base on the rest of its way out",
               [](auto& s, const Slot&) { return &s.procedure.retract_speed_mm_per_s; });
   keys.number("procedure.plug_mm", "mm", 0, 30,
               "length of the plug, of bone wax for instance, between the needle's tip and the first seed",

@@ -42,6 +42,11 @@ constexpr std::array kTables{
         "insertion[]", "[[insertion]]",
         "One needle going in and out: through a template hole, through a point in a direction or towards a target, or "
         "along a recorded motion. Repeat the table for further needles, which follow one after the other."},
+    TableText{"plan", "[plan]",
+              "A plan of permanent seeds, for stylet implant. A scenario with a plan needs no [[insertion]]."},
+    TableText{"procedure", "[procedure]", "How the needles of the plan go in and out."},
+    TableText{"seed", "[seed]", "What becomes of a seed, beside the motion of the tissue."},
+    TableText{"oedema", "[oedema]", "Swelling of the gland after the implantation, for the dose."},
     TableText{"run", "[run]", "The simulation."},
     TableText{"output", "[output]", "The frames and pictures that are kept."},
 };

@@ -127,6 +127,17 @@ TEST(ToToml, keeps_every_number_to_its_last_bit) {
   EXPECT_EQ(read_back(to_toml(s)), s);
 }
 
+TEST(ToToml, keeps_a_plan_of_seeds_and_its_procedure) {
+  Scenario s = minimal();
+  s.insertions.clear();
+  s.plan = {.file = "/plans/plan.csv", .source = "i125_6711", .goals = "/plans/goals.csv"};
+  s.procedure.technique = SeedTechnique::pushed;
+  s.procedure.order = NeedleOrder::posterior_first;
+  s.seed = {.stranded = true, .release_mm = -1.0, .release_sd_mm = 0.5, .loss_percent = 1.0, .random = 9};
+  s.oedema.swelling_percent = {10.0, 20.0, 30.0};
+  EXPECT_EQ(read_back(to_toml(s)), s);
+}
+
 TEST(ToToml, writes_every_key_that_has_a_value_with_its_unit) {
   Scenario s = minimal();
   s.tissue["prostate"] = default_tissue("prostate");
