@@ -139,6 +139,8 @@ const char* meaning_of(SeedCause cause) {
       return "The strand holds the seed at its distance from the other seeds of the needle.";
     case SeedCause::release:
       return "The seed jumped along its track when it was let go.";
+    case SeedCause::aim:
+      return "The needle was aimed beside the plan on purpose, to make up for the other causes.";
   }
   return "";
 }
