@@ -189,19 +189,6 @@ std::vector<Vec3> cloud_of(const StructureSamples& samples) {
   return cloud;
 }
 
-std::optional<double> value_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription) {
-  const bool relative = metric.unit == DoseMetric::Unit::percent;
-  if (metric.kind == DoseMetric::Kind::volume) {
-    if (prescription <= 0.0) return std::nullopt;
-    const double dose = metric.amount / 100.0 * prescription;
-    return relative ? dvh.percent_above(dose) : dvh.volume_above_cc(dose);
-  }
-  const double dose = metric.kind == DoseMetric::Kind::dose_of_percent ? dvh.dose_of_percent(metric.amount)
-                                                                       : dvh.dose_of_volume(metric.amount);
-  if (!relative) return dose;
-  return prescription > 0.0 ? std::optional(100.0 * dose / prescription) : std::nullopt;
-}
-
 Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const std::vector<DoseGoal>& goals) {
   std::vector<JudgedGoal> judged;
   for (const DoseGoal& goal : goals) {
@@ -212,8 +199,8 @@ Result<std::vector<JudgedGoal>> judge(const DoseEvaluation& evaluation, const st
         std::find_if(evaluation.structures.begin(), evaluation.structures.end(),
                      [&](const StructureDose& s) { return s.region == goal.structure || s.name == goal.structure; });
     if (structure != evaluation.structures.end())
-      row.value = value_of(*metric, structure->dvh, evaluation.prescription_Gy);
-    if (row.value) row.met = goal.at_least ? *row.value >= goal.bound : *row.value <= goal.bound;
+      row.value = figure_of(*metric, structure->dvh, evaluation.prescription_Gy);
+    if (row.value) row.met = meets(goal, *row.value);
     judged.push_back(row);
   }
   return judged;

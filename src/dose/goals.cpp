@@ -50,6 +50,21 @@ Result<DoseMetric> parse_metric(const std::string& text, const std::string& wher
   return metric;
 }
 
+std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription_Gy) {
+  const bool relative = metric.unit == DoseMetric::Unit::percent;
+  if (metric.kind == DoseMetric::Kind::volume) {
+    if (prescription_Gy <= 0.0) return std::nullopt;
+    const double dose = metric.amount / 100.0 * prescription_Gy;
+    return relative ? dvh.percent_above(dose) : dvh.volume_above_cc(dose);
+  }
+  const double dose = metric.kind == DoseMetric::Kind::dose_of_percent ? dvh.dose_of_percent(metric.amount)
+                                                                       : dvh.dose_of_volume(metric.amount);
+  if (!relative) return dose;
+  return prescription_Gy > 0.0 ? std::optional(100.0 * dose / prescription_Gy) : std::nullopt;
+}
+
+bool meets(const DoseGoal& goal, double value) { return goal.at_least ? value >= goal.bound : value <= goal.bound; }
+
 std::span<const DoseGoal> permanent_prostate_goals() {
   static const std::vector<DoseGoal> goals = [] {
     const std::string abs = "Davis et al. 2012 (American Brachytherapy Society), Brachytherapy 11:6";

@@ -8,8 +8,8 @@
 #include "stylet/core/flush_denormals.hpp"
 #include "stylet/core/parallel.hpp"
 #include "stylet/geom/topology.hpp"
+#include "stylet/implant/needle_insertion.hpp"
 #include "stylet/sim/harms.hpp"
-#include "stylet/sim/plan.hpp"
 #include "stylet/sim/prediction.hpp"
 #include "stylet/sim/target_motion.hpp"
 #include "stylet/sim/unbroken_surface.hpp"
@@ -40,39 +40,6 @@ double thread_cpu_s() {
 
 double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Where a needle's line enters the patient. Errors: it misses the patient; the needle is too short.
-Result<Vec3> entry_of(const NeedleLoad& load, const Scenario& scenario, const Locator& locator,
-                      const std::string& where) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : locator.mesh().nodes) box.extend(x);
-  const std::string place = fmt::format("{}, needle {}", where, load.name);
-  const double far = (box.center() - load.tip_mm).norm() + box.diagonal().norm();
-  const Vec3 from = load.tip_mm - far * load.direction;
-  const Vec3 to = load.tip_mm + far * load.direction;
-  const auto crossing = locator.first_entry(from, to);
-  if (!crossing) {
-    return input_error(place,
-                       fmt::format("its line through ({:.1f}, {:.1f}, {:.1f}) mm misses the patient", load.tip_mm.x(),
-                                   load.tip_mm.y(), load.tip_mm.z()),
-                       "Give a plan of this patient, in the same coordinates");
-  }
-  const Vec3 entry = from + crossing->t * (to - from);
-  const double depth = (load.tip_mm - entry).dot(load.direction);
-  if (depth > deepest_mm(scenario)) {
-    return input_error(
-        place,
-        fmt::format("its tip has to go {:.0f} mm deep, but the needle is {:.0f} mm long and reaches only "
-                    "{:.0f} mm",
-                    depth, scenario.needle.length_mm, deepest_mm(scenario)),
-        "Use a longer needle (needle.length_mm)");
-  }
-  if (depth < load.seeds.back().behind_tip_mm) {
-    return input_error(place, fmt::format("its tip would be {:.1f} mm deep, and its train does not fit in", depth),
-                       "Give a plan of this patient, in the same coordinates");
-  }
-  return entry;
-}
-
 struct OneNeedle {
   NeedleHistory needle;
   std::vector<SeedHistory> seeds;
@@ -81,14 +48,12 @@ struct OneNeedle {
 };
 
 /// Compiles the model of one needle and carries out its procedure.
-Result<OneNeedle> insert_needle(const NeedleLoad& load, const Vec3& entry, Scenario scenario, const TetMesh& mesh,
-                                double seed_length_mm, KnownTargets& targets, const std::string& where) {
+Result<OneNeedle> insert_needle(const NeedleLoad& load, const InsertionPlan& plan, Scenario scenario,
+                                const TetMesh& mesh, double seed_length_mm, KnownTargets& targets,
+                                const std::string& where) {
   OneNeedle out;
+  const Vec3 entry(plan.entry_mm->data());
   const NeedleMotion motion = plan_needle_motion(load, entry, scenario, seed_length_mm);
-  InsertionPlan plan;
-  plan.entry_mm = std::array<double, 3>{entry.x(), entry.y(), entry.z()};
-  plan.direction = std::array<double, 3>{load.direction.x(), load.direction.y(), load.direction.z()};
-  plan.depth_mm = motion.insertion.depth_mm;
   scenario.insertions = {plan};
   const double start = wall_s();
   auto compiled = Model::compile(scenario, mesh, fmt::format("{}, needle {}", where, load.name));
@@ -185,11 +150,11 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
                                         const std::string& where, const Progress& progress) {
   const Topology topology(mesh);
   const Locator locator(mesh, topology);
-  std::vector<Vec3> entries;
+  std::vector<InsertionPlan> plans;
   for (const NeedleLoad& load : needles) {
-    const Result<Vec3> entry = entry_of(load, scenario, locator, where);
-    if (!entry) return entry.error();
-    entries.push_back(*entry);
+    Result<InsertionPlan> plan = needle_insertion(load, scenario, locator, where);
+    if (!plan) return plan.error();
+    plans.push_back(*std::move(plan));
   }
   KnownTargets targets;
   std::vector<std::optional<Result<OneNeedle>>> done(needles.size());
@@ -204,7 +169,7 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
         report(progress, fmt::format("needle {} of {}, {}", k + 1, needles.size(), needles[k].name),
                static_cast<double>(finished) / static_cast<double>(needles.size()));
       }
-      done[k] = insert_needle(needles[k], entries[k], scenario, mesh, seed_length_mm, targets, where);
+      done[k] = insert_needle(needles[k], plans[k], scenario, mesh, seed_length_mm, targets, where);
       if (!done[k]->ok()) failed = true;
       ++finished;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "needle_motion.hpp"
 
+#include "stylet/implant/needle_insertion.hpp"
+
 #include <algorithm>
 
 namespace stylet {
@@ -59,7 +61,7 @@ NeedleMotion plan_needle_motion(const NeedleLoad& load, const Vec3& entry, const
     way.go_to(insertion.depth_mm - train, procedure.drop_speed_mm_per_s);
   } else {
     for (const LoadedSeed& seed : load.seeds) {
-      way.go_to(insertion.depth_mm - seed.behind_tip_mm - 0.5 * seed_length_mm, procedure.drop_speed_mm_per_s);
+      way.go_to(drop_depth_mm(insertion.depth_mm, seed, seed_length_mm), procedure.drop_speed_mm_per_s);
       way.wait(procedure.pause_s);
       result.drops.push_back({way.now()});
     }

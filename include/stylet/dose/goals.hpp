@@ -2,7 +2,9 @@
 #pragma once
 
 #include "stylet/core/result.hpp"
+#include "stylet/dose/dose_volume.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +31,13 @@ struct DoseMetric {
 /// Parses the name of a figure. Error: the text is none; the message lists examples.
 /// @param where place of the text for the message
 Result<DoseMetric> parse_metric(const std::string& text, const std::string& where);
+
+/// The value of a figure of a histogram [unit of the figure]; empty if it needs a prescribed dose and there is none.
+/// @param prescription_Gy prescribed dose [Gy]; 0: none is known
+[[nodiscard]] std::optional<double> figure_of(const DoseMetric& metric, const DoseVolume& dvh, double prescription_Gy);
+
+/// Whether a value keeps the bound of a goal.
+[[nodiscard]] bool meets(const DoseGoal& goal, double value);
 
 /// The program's own goals for permanent prostate implants (American Brachytherapy Society, GEC-ESTRO/ACROP).
 [[nodiscard]] std::span<const DoseGoal> permanent_prostate_goals();

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stylet/patient/implant_plan.hpp"
+
+#include "stylet/io/dose_io.hpp"
+#include "stylet/io/input.hpp"
+#include "stylet/patient/source_choice.hpp"
+#include "stylet/phantom/phantom.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stylet {
+
+namespace {
+
+Result<PatientInput> patient_input(const Scenario& scenario) {
+  if (scenario.patient.source == "phantom") return PatientInput(demo_patient());
+  return read_input(scenario.patient.source, {.scale = scenario.patient.scale}, {.volume = scenario.patient.volume},
+                    scenario.patient.skip);
+}
+
+Result<DoseStructures> structures_of(const Scenario& scenario, const DosePlan& plan, const Progress& progress) {
+  const Result<PatientInput> input = patient_input(scenario);
+  if (!input) return input.error();
+  DoseStructureOptions options;
+  options.regions = scenario.patient.regions;
+  options.skip = scenario.patient.skip;
+  Result<DoseStructures> structures = dose_structures(*input, options, progress);
+  if (!structures) return structures;
+  if (!structures->frame_of_reference.empty() && !plan.frame_of_reference.empty() &&
+      structures->frame_of_reference != plan.frame_of_reference) {
+    return input_error(plan.file,
+                       fmt::format("the plan has the frame of reference {}, the patient's structures have {}",
+                                   plan.frame_of_reference, structures->frame_of_reference),
+                       "Give the plan of this patient");
+  }
+  return structures;
+}
+
+/// The point about which the gland swells: the centre of the target's samples; without a target, of the seeds.
+Vec3 centre_of(const DoseStructures& structures, const DosePlan& plan) {
+  Vec3 sum = Vec3::Zero();
+  for (const DoseStructure& structure : structures.structures) {
+    if (structure.region != "prostate") continue;
+    for (const Vec3& x : structure.samples.points) sum += x;
+    return sum / static_cast<double>(std::max<std::size_t>(1, structure.samples.points.size()));
+  }
+  for (const PlannedSource& source : plan.sources) sum += source.at_mm;
+  return sum / static_cast<double>(plan.sources.size());
+}
+
+Result<DoseOptions> dose_options(const Scenario& scenario, const DoseStructures& structures, const DosePlan& plan) {
+  DoseOptions options;
+  if (scenario.plan.goals.empty()) {
+    const auto own = permanent_prostate_goals();
+    options.goals.assign(own.begin(), own.end());
+  } else {
+    Result<std::vector<DoseGoal>> goals = read_goals(scenario.plan.goals);
+    if (!goals) return goals.error();
+    options.goals = *std::move(goals);
+  }
+  const auto& percent = scenario.oedema.swelling_percent;
+  options.swelling = {.centre_mm = centre_of(structures, plan),
+                      .at_start = Vec3(percent[0], percent[1], percent[2]) / 100.0,
+                      .half_life_days = scenario.oedema.half_life_days};
+  return options;
+}
+
+}  // namespace
+
+Result<ImplantPlan> read_implant_plan(const Scenario& scenario, const std::string& where, const Progress& progress) {
+  if (scenario.plan.file.empty()) {
+    return input_error(where, "the scenario has no plan",
+                       "Name a plan of seeds in it: [plan] and below it file = \"plan.csv\"");
+  }
+  ImplantPlan out;
+  Result<DosePlan> plan = read_plan(scenario.plan.file);
+  if (!plan) return plan.error();
+  out.plan = *std::move(plan);
+  Result<SourceModel> source = choose_source(scenario.plan.source, out.plan);
+  if (!source) return source.error();
+  out.source = *std::move(source);
+  Result<std::vector<NeedleLoad>> needles =
+      load_needles(out.plan, out.source.outer_length_mm, scenario.procedure.plug_mm);
+  if (!needles) return needles.error();
+  out.needles = *std::move(needles);
+  order_needles(out.needles, scenario.procedure.order);
+  Result<DoseStructures> structures = structures_of(scenario, out.plan, progress);
+  if (!structures) return structures.error();
+  out.structures = *std::move(structures);
+  Result<DoseOptions> options = dose_options(scenario, out.structures, out.plan);
+  if (!options) return options.error();
+  out.options = *std::move(options);
+  return out;
+}
+
+}  // namespace stylet
