@@ -14,10 +14,12 @@ std::span<const TissueForce> tissue_forces(const Snapshot& snapshot, std::span<T
   return out.first(count);
 }
 
-SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion)
+SimulationSteppable::SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion,
+                                         std::shared_ptr<TissueProbe> probe)
     : simulation_(model),
       contacts_(static_cast<std::size_t>(model->coupling().capacity) + 1),
-      forces_(Snapshot::kForces) {
+      forces_(Snapshot::kForces),
+      probe_(std::move(probe)) {
   const PlannedInsertion& plan = model->insertions()[insertion];
   simulation_.place(plan);
   simulation_.prepare();
@@ -62,6 +64,7 @@ void SimulationSteppable::describe(Snapshot& out) noexcept {
   out.region_count = static_cast<int>(
       regions_.now(simulation_.insertion(), out.step.tip_state, std::span(contacts_).first(found), out.regions));
   out.tip_error = tip_.deepest();
+  if (probe_) probe_->serve(simulation_);  // after the step's force has been passed on
 }
 
 bool SimulationSteppable::record(Step& out) noexcept {

@@ -4,9 +4,11 @@
 #include "stylet/realtime/compliance_worker.hpp"
 #include "stylet/realtime/needle_regions.hpp"
 #include "stylet/realtime/snapshot.hpp"
+#include "stylet/realtime/tissue_probe.hpp"
 #include "stylet/sim/simulation.hpp"
 #include "stylet/sim/tip_watch.hpp"
 
+#include <memory>
 #include <span>
 
 namespace stylet {
@@ -47,7 +49,9 @@ class SimulationSteppable final : public Steppable {
  public:
   /// Places the needle at the start of one of the model's insertions, and makes the compliance for the first steps
   /// available, solving for it if necessary.
-  explicit SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion = 0);
+  /// @param probe is answered after each step; may be null
+  explicit SimulationSteppable(const std::shared_ptr<const Model>& model, std::size_t insertion = 0,
+                               std::shared_ptr<TissueProbe> probe = nullptr);
 
   /// The simulation; must not be used while the loop runs.
   [[nodiscard]] Simulation& simulation() { return simulation_; }
@@ -65,6 +69,7 @@ class SimulationSteppable final : public Steppable {
   std::vector<TissueForce> forces_;     ///< scratch
   NeedleRegions regions_;
   TipWatch tip_;
+  std::shared_ptr<TissueProbe> probe_;
 };
 
 }  // namespace stylet
