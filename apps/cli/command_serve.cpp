@@ -5,6 +5,7 @@
 
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
+#include "stylet/patient/implant_plan.hpp"
 #include "stylet/patient/prepared_model.hpp"
 #include "stylet/serve/server.hpp"
 
@@ -41,19 +42,42 @@ fs::path models_beside_program() {
   return program.parent_path().parent_path() / "share" / "stylet" / "models";
 }
 
+/// Opens a scenario with a plan of seeds and no insertion: its needles are those of the plan.
+Result<serve::LoadedCase> load_implant(const fs::path& file, const std::vector<std::string>& settings,
+                                       const ModelCache& cache, Console& console, const Progress& progress) {
+  const Result<Scenario> scenario = read_scenario(file, settings);
+  if (!scenario) return scenario.error();
+  Result<ImplantPlan> plan = read_implant_plan(*scenario, file.string(), progress);
+  if (!plan) return plan.error();
+  auto prepared = prepare_needle_of_file(file.string(), settings, plan->needles.front(), progress, &cache);
+  if (!prepared) return prepared.error();
+  serve::LoadedCase loaded{prepared->model, prepared->notes};
+  for (const auto* notes : {&plan->plan.notes, &plan->structures.notes})
+    loaded.notes.insert(loaded.notes.end(), notes->begin(), notes->end());
+  for (const std::string& warning : loaded.notes) console.warn(warning);
+  loaded.implant = std::make_shared<serve::ImplantCase>(
+      serve::ImplantCase{std::move(plan->plan), std::move(plan->source), std::move(plan->needles),
+                         std::move(plan->structures.structures), std::move(plan->options)});
+  return loaded;
+}
+
 /// Makes a case of the page from a scenario or a saved model. A scenario is read here, so that its errors are reported
 /// before the server starts.
 Result<serve::CaseSource> case_of(const fs::path& file, const ServeArguments& arguments, Console& console) {
   std::string title = file.stem().string();
+  bool has_plan = false;
   if (!is_hdf5_file(file) && !is_meant_as_model(file)) {
     const Result<Scenario> scenario = read_scenario(file, arguments.settings);
     if (!scenario) return scenario.error();
     title = scenario->name;
+    has_plan = scenario->insertions.empty() && !scenario->plan.file.empty();
   }
   return serve::CaseSource{
       title,
-      [file, &console, settings = arguments.settings, cache = ModelCache(arguments.models, {models_beside_program()})](
+      [file, has_plan, &console, settings = arguments.settings,
+       cache = ModelCache(arguments.models, {models_beside_program()})](
           const Progress& progress) -> Result<serve::LoadedCase> {
+        if (has_plan) return load_implant(file, settings, cache, console, progress);
         auto prepared = prepare_model_file(file.string(), settings, progress, &cache);
         if (!prepared) return prepared.error();
         if (!prepared->not_kept.empty())

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stylet/patient/prepared_model.hpp"
 
+#include "stylet/geom/topology.hpp"
+#include "stylet/implant/needle_insertion.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/patient/patient_mesh.hpp"
 
 #include <chrono>
+#include <functional>
 
 namespace stylet {
 
@@ -24,6 +27,25 @@ Result<PreparedModel> saved(const std::string& file, const std::vector<std::stri
   if (!model) return model.error();
   prepared.model = std::move(*model);
   prepared.model_s = now_s() - start;
+  return prepared;
+}
+
+/// The model of a scenario from the cache, or a new one, which the cache then keeps.
+Result<PreparedModel> found_or_made(const Scenario& scenario, const std::function<Result<PreparedModel>()>& make,
+                                    const Progress& progress, const ModelCache* cache) {
+  if (cache == nullptr) return make();
+  report(progress, "looking for a cached model", -1.0);
+  const Result<std::string> key = model_key(scenario);
+  if (!key) return make();  // its error about an unreadable file is more precise
+  if (const auto kept = cache->find(*key)) {
+    if (auto prepared = saved(kept->string(), {}, progress)) return prepared;
+  }
+  auto prepared = make();
+  if (!prepared) return prepared;
+  const Result<std::string> now = model_key(scenario);
+  if (!now || *now != *key) return prepared;  // a file has changed in the meantime
+  if (auto done = cache->keep(*prepared->model, *key, prepared->notes, progress); !done)
+    prepared->not_kept = done.error().message();
   return prepared;
 }
 
@@ -64,20 +86,37 @@ Result<PreparedModel> prepare_model_file(const std::string& file, const std::vec
   if (is_hdf5_file(file) || is_meant_as_model(file)) return saved(file, settings, progress);
   const Result<Scenario> scenario = read_scenario(file, settings);
   if (!scenario) return scenario.error();
-  if (cache == nullptr) return prepare_model(*scenario, progress, file);
-  report(progress, "looking for a cached model", -1.0);
-  const Result<std::string> key = model_key(*scenario);
-  if (!key) return prepare_model(*scenario, progress, file);  // its error about an unreadable file is more precise
-  if (const auto kept = cache->find(*key)) {
-    if (auto prepared = saved(kept->string(), {}, progress)) return prepared;
-  }
-  auto prepared = prepare_model(*scenario, progress, file);
-  if (!prepared) return prepared;
-  const Result<std::string> now = model_key(*scenario);
-  if (!now || *now != *key) return prepared;  // a file has changed in the meantime
-  if (auto done = cache->keep(*prepared->model, *key, prepared->notes, progress); !done)
-    prepared->not_kept = done.error().message();
-  return prepared;
+  return found_or_made(
+      *scenario, [&] { return prepare_model(*scenario, progress, file); }, progress, cache);
+}
+
+Result<PreparedModel> prepare_needle_of_file(const std::string& file, const std::vector<std::string>& settings,
+                                             const NeedleLoad& first, const Progress& progress,
+                                             const ModelCache* cache) {
+  const Result<Scenario> scenario = read_scenario(file, settings);
+  if (!scenario) return scenario.error();
+  const auto make = [&]() -> Result<PreparedModel> {
+    PreparedModel prepared;
+    const double start = now_s();
+    Result<MeshedAnatomy> patient = mesh_patient(*scenario, progress);
+    if (!patient) return patient.error();
+    prepared.notes = patient->report.notes;
+    const double meshed = now_s();
+    prepared.mesh_s = meshed - start;
+    Scenario with_needle = *scenario;
+    {
+      const Topology topology(patient->mesh);
+      Result<InsertionPlan> insertion = needle_insertion(first, *scenario, Locator(patient->mesh, topology), file);
+      if (!insertion) return insertion.error();
+      with_needle.insertions = {*std::move(insertion)};
+    }
+    auto model = Model::compile(with_needle, std::move(patient->mesh), file, {}, progress);
+    if (!model) return model.error();
+    prepared.model = std::move(*model);
+    prepared.model_s = now_s() - meshed;
+    return prepared;
+  };
+  return found_or_made(*scenario, make, progress, cache);
 }
 
 }  // namespace stylet

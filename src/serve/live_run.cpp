@@ -36,6 +36,7 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 LiveRun::LiveRun(const OpenModel& open, std::size_t insertion, double recorded_frames_per_s)
     : open_(open),
       plan_(open.model->insertions()[insertion]),
+      seeds_(open.model),
       near_(open.model, open.points.on_mesh()),
       near_nodes_(open.model, nodes_as_points(open.model->mesh())),
       shown_(Eigen::Matrix3Xf::Zero(3, open.points.count())),
@@ -68,8 +69,9 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const OpenModel& open, std::size
   }
   RunnerSettings kept = settings;
   kept.keep_steps = true;
-  auto runner = RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion),
-                                       std::make_unique<SharedDevice>(std::move(device)), kept);
+  auto runner =
+      RealtimeRunner::create(std::make_unique<SimulationSteppable>(open.model, insertion, run->seeds_.probe()),
+                             std::make_unique<SharedDevice>(std::move(device)), kept);
   if (!runner) return runner.error();
   run->runner_ = std::move(*runner);
 
@@ -147,6 +149,7 @@ void LiveRun::compute_displacement() {
   points.carry_along(shown_);
   near_.set(tissue_forces(runner_->snapshot(), room_));
   near_.add(shown_);
+  seeds_.follow(*open_.field, *load_);
   owed_ = false;
   shown_anew_ = true;
   const double after = now_s();

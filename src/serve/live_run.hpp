@@ -6,6 +6,7 @@
 #include "pick_up.hpp"
 #include "rests.hpp"
 #include "scene_points.hpp"
+#include "seed_follower.hpp"
 #include "stylet/io/run_recorder.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
@@ -67,6 +68,9 @@ class LiveRun {
   void show_to(Companion& companion);
 
   [[nodiscard]] RealtimeRunner& runner() { return *runner_; }
+  /// Drops and follows the seeds of an implant.
+  [[nodiscard]] SeedFollower& seeds() { return seeds_; }
+
   /// The hand at a page; null if another device moves the needle.
   [[nodiscard]] const std::shared_ptr<PageDevice>& hand() const { return hand_; }
   /// Why the companion's device did not move the needle at the last show_to(); empty if it did, or if a page moves it.
@@ -91,6 +95,7 @@ class LiveRun {
   const PlannedInsertion& plan_;  ///< part of the model
   std::shared_ptr<PageDevice> hand_;
   std::shared_ptr<PickUp> other_;  ///< either hand_ or other_ is set; it moves the needle
+  SeedFollower seeds_;
   std::unique_ptr<RealtimeRunner> runner_;
   FolderLock in_use_;  ///< locks the folder of the recording
   std::unique_ptr<RunRecorder> recorder_;

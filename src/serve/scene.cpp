@@ -112,14 +112,13 @@ Json regions_json(const TetMesh& mesh, const std::vector<int>& targets) {
   return regions;
 }
 
-/// Centre of the template [mm] LPS x and y: from the scenario, else the target's centroid.
+}  // namespace
+
 std::array<double, 2> template_centre(const TetMesh& mesh, const std::vector<int>& targets, const TemplateGrid& grid) {
   if (grid.centre_mm) return *grid.centre_mm;
   const Vec3 centre = centroid(mesh, targets);
   return {centre.x(), centre.y()};
 }
-
-}  // namespace
 
 MadeScene make_scene(const TetMesh& mesh, const std::vector<int>& targets, const Scenario& scenario,
                      const std::vector<PlannedInsertion>& insertions, const std::vector<std::string>& warnings,

@@ -5,6 +5,7 @@
 #include "stylet/serve/picture.hpp"
 #include "stylet/sim/model.hpp"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct CaseList {
   std::size_t open = 0;  ///< index of the open case
   double dt_ms = 1.0;    ///< period of the real-time loop
 };
+
+/// Centre of the template [mm] LPS x and y: from the scenario, else the target's centroid.
+std::array<double, 2> template_centre(const TetMesh& mesh, const std::vector<int>& targets, const TemplateGrid& grid);
 
 /// Makes the scene: all surfaces between regions and around the patient, each once, and the text that a page needs.
 /// @param targets indices of the target regions

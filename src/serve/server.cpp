@@ -4,6 +4,7 @@
 #include "access.hpp"
 #include "hand.hpp"
 #include "holding.hpp"
+#include "implant_text.hpp"
 #include "kept_token.hpp"
 #include "pages.hpp"
 #include "stylet/io/hole_map_io.hpp"
@@ -91,6 +92,14 @@ std::optional<Request::Kind> request_kind(wire::Command::Do what) {
       return Request::Kind::play;
     case drawn:
       return Request::Kind::drawn;
+    case needle:
+      return Request::Kind::needle;
+    case drop:
+      return Request::Kind::drop;
+    case undo:
+      return Request::Kind::undo;
+    case clear:
+      return Request::Kind::clear;
     case predict:
       return Request::Kind::predict;
     case take:
@@ -123,6 +132,9 @@ struct Server::Parts final : public Audience, public ViewerDesk {
   std::uint64_t last_id = 0;
   std::shared_ptr<const Scene> scene;
   std::string map;  ///< JSON text of the map; empty until there is a map
+  /// JSON texts of the plan, what has been carried out of it, and where its seeds are; empty until there is one.
+  std::map<wire::Kind, std::string> implant;
+  std::shared_ptr<const LiveDose> dose;
   SessionStatus status;
   std::deque<std::string> events;  ///< JSON texts of the events since the start of the insertion
   Session session;
@@ -146,6 +158,21 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     asio::post(io, [this, text = map_text(now)] {
       map = text;
       for (const auto& [id, viewer] : each()) viewer->send(wire::Kind::map, map);
+    });
+  }
+  void show(const LivePlan& now) override { show_text(wire::Kind::plan, plan_text(now)); }
+  void show(const LiveImplant& now) override { show_text(wire::Kind::implant, implant_text(now)); }
+  void show(const LiveSeeds& now) override { show_text(wire::Kind::seeds, seeds_text(now)); }
+  void show(std::shared_ptr<const LiveDose> now) override {
+    asio::post(io, [this, now = std::move(now)] {
+      dose = now;
+      for (const auto& [id, viewer] : each()) viewer->send(dose);
+    });
+  }
+  void show_text(wire::Kind kind, std::string text) {
+    asio::post(io, [this, kind, text = std::move(text)] {
+      implant[kind] = text;
+      for (const auto& [id, viewer] : each()) viewer->send(kind, text);
     });
   }
   void tell(const SessionStatus& now) override {
@@ -179,6 +206,8 @@ struct Server::Parts final : public Audience, public ViewerDesk {
     viewers[viewer->id()] = viewer;
     if (scene) viewer->send(scene);
     if (!map.empty()) viewer->send(wire::Kind::map, map);
+    for (const auto& [kind, text] : implant) viewer->send(kind, text);
+    if (dose) viewer->send(dose);
     for (const std::string& event : events) viewer->send(wire::Kind::event, event);
     say_status();
     (void)session.ask({.kind = Request::Kind::greet, .viewer = viewer->id(), .text = {}, .number = 0.0});

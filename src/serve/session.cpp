@@ -3,6 +3,7 @@
 
 #include "field_maker.hpp"
 #include "folder_lock.hpp"
+#include "implant_desk.hpp"
 #include "live_run.hpp"
 #include "map_maker.hpp"
 #include "replay.hpp"
@@ -55,6 +56,12 @@ InsertionPlan plan_for(const std::vector<InsertionPlan>& plans, const std::strin
   return plan;
 }
 
+/// Whether a request puts another needle into the open case, instead of opening a case.
+bool is_other_needle(const Request& request) {
+  using Kind = Request::Kind;
+  return request.kind == Kind::hole || request.kind == Kind::insertion || request.kind == Kind::needle;
+}
+
 }  // namespace
 
 struct Session::Parts {
@@ -89,6 +96,9 @@ struct Session::Parts {
     Scenario scenario;
     std::vector<PlannedInsertion> insertions;
   } planned;
+  std::unique_ptr<ImplantDesk> implant;                       ///< of the open case, if it has a plan of seeds
+  std::vector<std::unique_ptr<ImplantDesk>> former_implants;  ///< of earlier cases; their threads have not ended
+  std::uint64_t dropper = 0;                                  ///< viewer that has asked for the drop that is under way
   std::size_t insertion = 0;
   bool page_has_drawn = false;  ///< some page has drawn its first picture; then a FieldMaker does not wait
   std::unique_ptr<LiveRun> live;
@@ -132,6 +142,11 @@ struct Session::Parts {
   void take_field();
   void abandon_field();
   void begin_map();
+  void begin_case(std::unique_ptr<ImplantDesk> plan);
+  void follow_implant();
+  void choose_needle(const Request& request, std::size_t which);
+  void use_model(const Request& request, const NeedleModels::Ready& ready);
+  void drop_seed(const Request& request);
   void show_map();
   void choose_hole(const Request& request);
   void choose_plan(const Request& request, const InsertionPlan& plan, const std::string& where);
@@ -285,7 +300,9 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   insertion = which;
   if (open.way != which) show_model(which);
   const PlannedInsertion& plan = open.model->insertions()[which];
-  const std::string name = shelf.new_name(plan.name);
+  const std::optional<std::size_t> needle = implant ? implant->needle_of(*open.model) : std::nullopt;
+  const std::string plan_name = needle ? implant->plan().needles[*needle].name : plan.name;
+  const std::string name = shelf.new_name(plan_name);
   std::unique_ptr<Device> other = settings.companion ? settings.companion->device() : nullptr;
   status.device = other ? settings.companion->name() : "page";
   auto run = LiveRun::start(open, which, shelf.folder(name), settings.runner, settings.recorded_frames_per_s,
@@ -301,12 +318,17 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   status.stage = field_maker ? kFieldStage : open.field ? "" : kNoField;
   status.fraction = -1.0;
   status.paused = false;
-  status.insertion = plan.name;
-  status.hole = open.model->scenario().insertions[which].hole.value_or("");
+  status.insertion = plan_name;
+  status.hole =
+      needle ? implant->plan().needles[*needle].hole : open.model->scenario().insertions[which].hole.value_or("");
   status.recording.name = name;
   whole_curve = true;
-  happened = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan.name}};
+  happened = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan_name}};
   audience.tell(happened.front());
+  if (!implant) return;
+  if (needle) implant->models().keep(*needle, {open.model, open.field});
+  implant->set_current(needle);
+  live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
 }
 
 /// Shows the scene of the open model, with finer surfaces along the planned path of one of its insertions.
@@ -332,6 +354,9 @@ void Session::Parts::take_field() {
   status.fraction = -1.0;
   next_status = {};
   if (!open.field) return;
+  if (implant) {
+    if (const auto needle = implant->needle_of(*open.model)) implant->models().keep(*needle, {open.model, open.field});
+  }
   if (live) live->set_field(open.field);
   if (aside) aside->run->set_field(open.field);
 }
@@ -350,7 +375,10 @@ void Session::Parts::begin_map() {
     former_maps.push_back(std::move(map_maker));
   }
   map_maker = std::make_unique<MapMaker>(
-      open.model, [plans = planned.scenario.insertions](const std::string& hole) { return plan_for(plans, hole); });
+      open.model, [plans = planned.scenario.insertions, has_plan = implant != nullptr](const std::string& hole) {
+        const InsertionPlan plan = plan_for(plans, hole);
+        return has_plan ? plan_through(plan, hole) : plan;
+      });
   map = {};
   map_is_shown = false;
 }
@@ -367,6 +395,95 @@ void Session::Parts::show_map() {
   audience.show(is_to_be_shown ? map : LiveMap{});
 }
 
+/// Takes over what the newly opened model plans, or the plan of seeds that its case has.
+void Session::Parts::begin_case(std::unique_ptr<ImplantDesk> plan) {
+  if (implant) {
+    implant->models().give_up();
+    former_implants.push_back(std::move(implant));
+    if (!plan) audience.show(LivePlan{});
+  }
+  implant = std::move(plan);
+  planned = {open.model->scenario(), open.model->insertions()};
+  if (!implant) return;
+  planned.scenario.insertions.clear();
+  planned.insertions.clear();
+  for (std::size_t k = 0; k < implant->insertions().size(); ++k) {
+    const PlannedNeedle& needle = implant->plan().needles[k];
+    InsertionPlan& of = planned.scenario.insertions.emplace_back(implant->insertions()[k]);
+    if (!needle.hole.empty()) of.hole = needle.hole;
+    PlannedInsertion& shown = planned.insertions.emplace_back();
+    shown.name = needle.name;
+    shown.entry = needle.entry_mm;
+    shown.direction = needle.direction;
+    shown.depth_mm = needle.depth_mm;
+  }
+}
+
+/// Takes up finished drops, and tells the viewers what has changed of the implant.
+void Session::Parts::follow_implant() {
+  std::erase_if(former_implants, [](const auto& former) { return former->models().done(); });
+  if (!implant) return;
+  if (live) {
+    if (const auto drop = live->seeds().take_drop()) {
+      if (const Result<> added = implant->add(*drop); !added) {
+        audience.refuse(dropper, {added.error().where + ": " + added.error().what, added.error().cure});
+      } else {
+        live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
+        if (!drop->found) {
+          audience.refuse(dropper, {"The motion of the tissue is not known where this seed was dropped; it is counted "
+                                    "as resting there.",
+                                    "Take it back, and drop it nearer to the planned path of the needle."});
+        }
+      }
+    }
+  }
+  ImplantDesk::Changes changes = implant->take_changes();
+  if (changes.plan) audience.show(implant->plan());
+  if (changes.state) audience.show(implant->state());
+  if (changes.dose) audience.show(std::move(changes.dose));
+  if (!live) return;
+  if (auto places = live->seeds().news()) audience.show(LiveSeeds{std::move(*places)});
+}
+
+void Session::Parts::drop_seed(const Request& request) {
+  const auto no = [&](const std::string& why, const std::string& cure) {
+    audience.refuse(request.viewer, {why, cure});
+  };
+  if (!implant) return no("this case has no plan of seeds", "Open a scenario with [plan]");
+  if (!live) return no("no needle is in your hand now, so no seed can be dropped", "Return to the live needle");
+  if (status.paused) return no("the simulation is paused, so no seed can be dropped", "Resume it, then drop the seed");
+  if (live->seeds().is_dropping()) return;  // the key was pressed twice within some hundredths of a second
+  if (const auto seed = implant->next_seed(); !seed) return refuse(request, seed.error());
+  dropper = request.viewer;
+  live->seeds().order_drop(0.5 * implant->seed_length_mm());
+}
+
+/// Puts a needle of the plan in front of the patient: at once if its model is compiled.
+void Session::Parts::choose_needle(const Request& request, std::size_t which) {
+  if (const auto ready = implant->models().find(which)) return use_model(request, *ready);
+  const std::string where = "needle " + implant->plan().needles[which].name;
+  Scenario scenario = planned.scenario;
+  scenario.insertions = {implant->insertions()[which]};
+  open_model(request, open_case, [this, &scenario, &where](const Progress& progress) -> Result<LoadedCase> {
+    auto model = Model::compile(scenario, open.model->mesh(), where, {}, progress);
+    if (model && open.model->own_parts().is_any()) model = (*model)->with(open.model->own_parts());
+    if (!model) return model.error();
+    return LoadedCase{*model, open.notes};
+  });
+}
+
+void Session::Parts::use_model(const Request& request, const NeedleModels::Ready& ready) {
+  end_live();
+  abandon_field();
+  open = {.model = ready.model, .notes = std::move(open.notes), .field = ready.field, .points = {}, .way = 0};
+  show_model(0);
+  if (!open.field) {
+    field_maker = std::make_unique<FieldMaker>(
+        open.model, std::chrono::duration<double>(page_has_drawn ? 0.0 : settings.field_waits_s));
+  }
+  place(request, 0);
+}
+
 /// Opens a model in place of the open one. If that fails, the open model continues.
 void Session::Parts::open_model(const Request& request, std::size_t case_number,
                                 const std::function<Result<LoadedCase>(const Progress&)>& load) {
@@ -377,16 +494,21 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
   status.stage = "reading";
   say_status();
   auto loaded = load(progress());
-  const Result<> usable = loaded ? DisplayField::check(*loaded->model) : Result<>(loaded.error());
+  Result<> usable = loaded ? DisplayField::check(*loaded->model) : Result<>(loaded.error());
+  std::unique_ptr<ImplantDesk> plan;
+  if (usable.ok() && loaded->implant && !is_other_needle(request)) {
+    auto desk = ImplantDesk::open(loaded->implant, loaded->model, settings.cases[case_number].title);
+    if (desk) plan = std::move(*desk);
+    if (!desk) usable = desk.error();
+  }
   if (usable.ok()) {
     end_live();
     abandon_field();
     open = {.model = loaded->model, .notes = std::move(loaded->notes), .field = nullptr, .points = {}, .way = 0};
-    if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion)
-      planned = {open.model->scenario(), open.model->insertions()};
+    if (!is_other_needle(request)) begin_case(std::move(plan));
     open_case = case_number;
     show_model(0);
-    if (request.kind != Request::Kind::hole && request.kind != Request::Kind::insertion) begin_map();
+    if (!is_other_needle(request)) begin_map();
     field_maker = std::make_unique<FieldMaker>(
         open.model, std::chrono::duration<double>(page_has_drawn ? 0.0 : settings.field_waits_s));
     return place(request, 0);
@@ -404,6 +526,9 @@ void Session::Parts::open_model(const Request& request, std::size_t case_number,
 }
 
 void Session::Parts::choose_hole(const Request& request) {
+  if (implant) {
+    if (const auto needle = implant->needle_through(request.text)) return choose_needle(request, *needle);
+  }
   choose_plan(request, plan_for(planned.scenario.insertions, request.text), "hole " + request.text);
 }
 
@@ -511,7 +636,29 @@ void Session::Parts::carry_out(const Request& request) {
     case Kind::insertion:
       if (!live) break;
       if (number >= planned.insertions.size()) return missing("insertion", planned.insertions.size());
+      if (implant) {
+        choose_needle(request, number);
+        break;
+      }
       choose_plan(request, planned.scenario.insertions[number], planned.insertions[number].name);
+      break;
+    case Kind::needle:
+      if (!live) break;
+      if (!implant || number >= implant->plan().needles.size())
+        return missing("needle of the plan", implant ? implant->plan().needles.size() : 0);
+      choose_needle(request, number);
+      break;
+    case Kind::drop:
+      drop_seed(request);
+      break;
+    case Kind::undo:
+    case Kind::clear:
+      if (!implant) break;
+      if (request.kind == Kind::clear) implant->clear();
+      if (request.kind == Kind::undo) {
+        if (const auto taken = implant->take_back(); !taken) return refuse(request, taken.error());
+      }
+      if (live) live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
       break;
     case Kind::reset:
       if (live) place(request, insertion);
@@ -565,6 +712,7 @@ void Session::Parts::show_inside() {
 void Session::Parts::tick(double dt_s) {
   take_field();
   show_map();
+  follow_implant();
   std::shared_ptr<const LiveFrame> frame;
   if (live) {
     pump();

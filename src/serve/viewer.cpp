@@ -97,14 +97,21 @@ void Viewer::hear(std::span<const std::byte> message) {
 void Viewer::send(std::shared_ptr<const Scene> scene) {
   frame_.reset();  // it belongs to the previous scene
   curve_.clear();
-  waiting_.push_back({wire::Kind::scene, std::move(scene), {}});
+  waiting_.push_back({wire::Kind::scene, std::move(scene), {}, nullptr});
   write();
 }
 
 void Viewer::send(wire::Kind kind, std::string json) {
-  if (kind == wire::Kind::map) std::erase_if(waiting_, [](const Waiting& w) { return w.kind == wire::Kind::map; });
+  if (kind != wire::Kind::event && kind != wire::Kind::notice)
+    std::erase_if(waiting_, [kind](const Waiting& w) { return w.kind == kind; });
   if (waiting_.size() >= kMostWaiting) return close();  // the page does not read its messages
-  waiting_.push_back({kind, nullptr, std::move(json)});
+  waiting_.push_back({kind, nullptr, std::move(json), nullptr});
+  write();
+}
+
+void Viewer::send(std::shared_ptr<const LiveDose> dose) {
+  std::erase_if(waiting_, [](const Waiting& w) { return w.kind == wire::Kind::dose; });
+  waiting_.push_back({wire::Kind::dose, nullptr, {}, std::move(dose)});
   write();
 }
 
@@ -131,7 +138,9 @@ bool Viewer::next_message() {
   if (!waiting_.empty()) {
     const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    outgoing_ = next.scene ? wire::encode(*next.scene, sent_++) : wire::encode(next.kind, next.json, sent_++);
+    outgoing_ = next.scene  ? wire::encode(*next.scene, sent_++)
+                : next.dose ? wire::encode(*next.dose, sent_++)
+                            : wire::encode(next.kind, next.json, sent_++);
     return true;
   }
   if (status_) {

@@ -38,7 +38,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
   void send(std::shared_ptr<const Scene> scene);
   void send(std::shared_ptr<const LiveFrame> frame);
-  /// @param kind event, notice or map; of maps only the newest waits
+  void send(std::shared_ptr<const LiveDose> dose);
+  /// @param kind a kind with JSON, except status; of maps, plans, implants and places of seeds only the newest waits
   void send(wire::Kind kind, std::string json);
   void send_status(std::string json);
 
@@ -69,6 +70,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     wire::Kind kind{};
     std::shared_ptr<const Scene> scene;
     std::string json;
+    std::shared_ptr<const LiveDose> dose{};
   };
   std::deque<Waiting> waiting_;
   std::optional<std::string> status_;

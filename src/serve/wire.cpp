@@ -89,7 +89,9 @@ const std::map<std::string, Need>& commands() {
       {"case", {open_case, "index", false}}, {"replay", {replay, "name", true}},
       {"live", {live, "", false}},           {"seek", {seek, "time_s", false}},
       {"play", {play, "rate", false}},       {"predict", {predict, "on", false}},
-      {"drawn", {drawn, "", false}}};
+      {"drawn", {drawn, "", false}},         {"needle", {needle, "index", false}},
+      {"drop", {drop, "", false}},           {"undo", {undo, "", false}},
+      {"clear", {clear, "", false}}};
   return all;
 }
 
@@ -158,6 +160,14 @@ Bytes encode(const LiveFrame& f, std::span<const Step> curve, bool whole_curve, 
                    s.step_us, static_cast<int>(s.tip_state), s.flags);
   }
   out.put_all(std::span<const std::int16_t>(f.displacement));
+  return out.take();
+}
+
+Bytes encode(const LiveDose& dose, std::uint32_t number) {
+  Writer out(Kind::dose, number, kHeader + 32 + 2 * dose.values.size());
+  for (const std::uint32_t size : dose.size) out.put(size);
+  out.put_floats(dose.origin_mm.x(), dose.origin_mm.y(), dose.origin_mm.z(), dose.spacing_mm, dose.unit_percent);
+  out.put_all(std::span<const std::uint16_t>(dose.values));
   return out.take();
 }
 

@@ -3,6 +3,7 @@
 
 #include "hand.hpp"
 #include "stylet/core/result.hpp"
+#include "stylet/serve/implant_picture.hpp"
 #include "stylet/serve/picture.hpp"
 
 #include <cstddef>
@@ -28,6 +29,10 @@ enum class Kind : std::uint32_t {
   event = 4,
   notice = 5,
   map = 6,
+  plan = 7,
+  implant = 8,
+  seeds = 9,
+  dose = 10,
   hand = 16,
   command = 17
 };
@@ -39,7 +44,8 @@ Bytes encode(const Scene& scene, std::uint32_t number);
 /// @param curve samples that this connection has not received; they replace the samples of the frame
 /// @param whole_curve whether `curve` starts at the beginning of the insertion
 Bytes encode(const LiveFrame& frame, std::span<const Step> curve, bool whole_curve, std::uint32_t number);
-/// Encodes a message of kind status, event, notice or map.
+Bytes encode(const LiveDose& dose, std::uint32_t number);
+/// Encodes a message that is JSON: of any other kind.
 Bytes encode(Kind kind, std::string_view json, std::uint32_t number);
 
 /// A command of a page, named as in the protocol.
@@ -59,11 +65,15 @@ struct Command {
     seek,
     play,
     predict,
-    drawn
+    drawn,
+    needle,
+    drop,
+    undo,
+    clear
   };
   Do what{};
   std::string text;     ///< argument of hole and replay
-  double number = 0.0;  ///< argument of insertion, step, case, seek, play and predict
+  double number = 0.0;  ///< argument of insertion, needle, step, case, seek, play and predict
 };
 
 /// Decodes a message of a page. Empty if it is malformed: wrong length, unknown kind or command, numbers that are not

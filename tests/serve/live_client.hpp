@@ -110,6 +110,15 @@ class LiveClient {
       notices.push_back(nlohmann::json::parse(bytes + 8, bytes + size));
     } else if (kind == 6) {
       map = nlohmann::json::parse(bytes + 8, bytes + size);
+    } else if (kind == 7) {
+      plan = nlohmann::json::parse(bytes + 8, bytes + size);
+    } else if (kind == 8) {
+      implant = nlohmann::json::parse(bytes + 8, bytes + size);
+    } else if (kind == 9) {
+      seeds = nlohmann::json::parse(bytes + 8, bytes + size);
+    } else if (kind == 10) {
+      dose_points = at<std::uint32_t>(bytes, 8) * at<std::uint32_t>(bytes, 12) * at<std::uint32_t>(bytes, 16);
+      EXPECT_EQ(size, 40u + 2u * dose_points);
     }
   }
   [[nodiscard]] bool ready() const { return status.value("state", "") == "ready" && frames > 0; }
@@ -120,8 +129,12 @@ class LiveClient {
   nlohmann::json scene = nlohmann::json::object();
   nlohmann::json status = nlohmann::json::object();
   nlohmann::json map = nlohmann::json::object();
+  nlohmann::json plan = nlohmann::json::object();
+  nlohmann::json implant = nlohmann::json::object();
+  nlohmann::json seeds = nlohmann::json::object();
   std::vector<nlohmann::json> events, notices;
-  std::uint32_t received = 0, scenes = 0, frames = 0, bits = 0, samples = 0, displaced_nodes = 0, scene_nodes = 0;
+  std::uint32_t received = 0, scenes = 0, frames = 0, bits = 0, samples = 0, displaced_nodes = 0, scene_nodes = 0,
+                dose_points = 0;
   double time_s = 0.0;
   float depth_mm = 0.0F, force_N = 0.0F, most_N = 0.0F;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/core/progress.hpp"
+#include "stylet/implant/needle_load.hpp"
 #include "stylet/io/model_cache.hpp"
 #include "stylet/sim/model.hpp"
 
@@ -37,5 +38,13 @@ Result<PreparedModel> prepare_model(const Scenario& scenario, const Progress& pr
 ///   cannot be written is not an error (PreparedModel::not_kept).
 Result<PreparedModel> prepare_model_file(const std::string& file, const std::vector<std::string>& settings = {},
                                          const Progress& progress = {}, const ModelCache* cache = nullptr);
+
+/// Prepares the model of a scenario file for the first needle of its plan of seeds, which stands in for the insertion
+/// that such a scenario does not have.
+/// @param first the first needle of the plan
+/// Errors: those of prepare_model() and of needle_insertion().
+Result<PreparedModel> prepare_needle_of_file(const std::string& file, const std::vector<std::string>& settings,
+                                             const NeedleLoad& first, const Progress& progress = {},
+                                             const ModelCache* cache = nullptr);
 
 }  // namespace stylet

@@ -4,6 +4,8 @@
 #include "stylet/core/progress.hpp"
 #include "stylet/realtime/runner.hpp"
 #include "stylet/serve/companion.hpp"
+#include "stylet/serve/implant_case.hpp"
+#include "stylet/serve/implant_picture.hpp"
 #include "stylet/serve/picture.hpp"
 
 #include <cstdint>
@@ -21,6 +23,8 @@ struct HandTarget;
 struct LoadedCase {
   std::shared_ptr<const Model> model;
   std::vector<std::string> notes;  ///< what was left out, added or corrected when the model was made
+  /// A plan of seeds to carry out; null: the case has none. The model may have any needle.
+  std::shared_ptr<const ImplantCase> implant{};
 };
 
 /// A case that can be opened: a scenario file or a saved model.
@@ -55,6 +59,11 @@ class Audience {
   virtual void show(std::shared_ptr<const Scene> scene) = 0;
   virtual void show(std::shared_ptr<const LiveFrame> frame) = 0;
   virtual void show(const LiveMap& map) = 0;
+  // Of a case with a plan of seeds; a plan without needles ends it.
+  virtual void show(const LivePlan& /*plan*/) {}
+  virtual void show(const LiveImplant& /*implant*/) {}
+  virtual void show(const LiveSeeds& /*seeds*/) {}
+  virtual void show(std::shared_ptr<const LiveDose> /*dose*/) {}
   virtual void tell(const SessionStatus& status) = 0;
   virtual void tell(const LiveEvent& event) = 0;
   /// Reports that a request was refused.
@@ -76,6 +85,10 @@ struct Request {
     live,       ///< ends the replay and continues the live insertion
     seek,       ///< moves the replay to a time; number [s]
     play,       ///< number: speed of the replay, 1 is real time, 0 stops it
+    needle,     ///< starts the insertion of a needle of the plan; number: its index
+    drop,       ///< drops the next seed of the needle
+    undo,       ///< takes the last seed back
+    clear,      ///< takes all seeds back
     predict,    ///< number: 1 simulates an insertion through each hole for the map, in the background; 0 stops this
     greet,      ///< a viewer has connected and needs the whole force curve
     drawn       ///< a page has drawn its first complete picture

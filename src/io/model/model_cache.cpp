@@ -92,6 +92,7 @@ Result<std::string> model_key(const Scenario& scenario) {
   for (const InsertionPlan& plan : scenario.insertions) {
     if (!plan.motion.empty()) inputs.emplace_back(plan.motion);
   }
+  if (scenario.insertions.empty() && !scenario.plan.file.empty()) inputs.emplace_back(scenario.plan.file);
   for (const fs::path& input : inputs) {
     if (has_other_parts(input))
       return failure(input.string(), "its data are in several files, which the cache does not support",

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "stylet/dose/evaluate.hpp"
+#include "stylet/implant/needle_load.hpp"
+
+#include <vector>
+
+namespace stylet::serve {
+
+/// The plan of a case whose needles the user carries out in the live page, and everything that its dose depends on.
+struct ImplantCase {
+  DosePlan plan;
+  SourceModel source;
+  std::vector<NeedleLoad> needles;  ///< in the order of the procedure
+  /// The structures of the patient, sampled. The live page takes at most 40,000 samples of each.
+  std::vector<DoseStructure> structures;
+  DoseOptions options;  ///< goals and swelling
+};
+
+}  // namespace stylet::serve

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant_desk.hpp"
+
+#include "scene.hpp"
+#include "stylet/implant/needle_insertion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stylet::serve {
+
+namespace {
+
+constexpr double kSameHole_mm = 1.5;  // a needle whose line passes a hole's middle this near is put through this hole
+
+/// The hole of the template on a needle's line, where the line passes the template; empty if there is none.
+std::string hole_on(const InsertionPlan& plan, const Model& model) {
+  const TemplateGrid& grid = model.scenario().grid;
+  const std::array<double, 2> centre = template_centre(model.mesh(), model.target_regions(), grid);
+  const Vec3 entry(plan.entry_mm->data()), direction(plan.direction->data());
+  const Vec3 at = entry - grid.distance_mm * direction;
+  std::string nearest;
+  double least = kSameHole_mm;
+  for (const std::string& column : grid.columns) {
+    for (const std::string& row : grid.rows) {
+      const auto offset = grid.offset_mm(column + row);
+      if (!offset) continue;
+      const double off = std::hypot(at.x() - centre[0] - (*offset)[0], at.y() - centre[1] + (*offset)[1]);
+      if (off >= least) continue;
+      least = off;
+      nearest = column + row;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ImplantDesk>> ImplantDesk::open(std::shared_ptr<const ImplantCase> implant,
+                                                       const std::shared_ptr<const Model>& model,
+                                                       const std::string& where) {
+  std::unique_ptr<ImplantDesk> desk(new ImplantDesk());
+  desk->implant_ = implant;
+  LivePlan& plan = desk->plan_;
+  plan.seed_length_mm = implant->source.outer_length_mm;
+  plan.seed_diameter_mm = implant->source.outer_diameter_mm;
+  plan.prescription_Gy =
+      implant->options.prescription_Gy > 0.0 ? implant->options.prescription_Gy : implant->plan.prescription_Gy;
+  plan.source = implant->source.name;
+  std::vector<std::string> names;
+  for (const NeedleLoad& load : implant->needles) {
+    Result<InsertionPlan> insertion = needle_insertion(load, model->scenario(), model->locator(), where);
+    if (!insertion) return insertion.error();
+    PlannedNeedle& needle = plan.needles.emplace_back();
+    needle.name = load.name;
+    needle.hole = hole_on(*insertion, *model);
+    needle.entry_mm = Vec3(insertion->entry_mm->data());
+    needle.direction = load.direction;
+    needle.depth_mm = insertion->depth_mm;
+    for (const LoadedSeed& seed : load.seeds) {
+      needle.seeds.push_back(
+          {seed.number, seed.planned_mm, seed.axis, drop_depth_mm(needle.depth_mm, seed, plan.seed_length_mm)});
+    }
+    desk->state_.planned_seeds += load.seeds.size();
+    desk->insertions_.push_back(*std::move(insertion));
+    names.push_back(fmt::format("{}, needle {}", where, load.name));
+  }
+  auto dose = ImplantDose::open(std::move(implant));
+  if (!dose) return dose.error();
+  desk->dose_ = *std::move(dose);
+  desk->models_ = std::make_unique<NeedleModels>(model, desk->insertions_, std::move(names));
+  desk->seeds_have_changed();
+  return desk;
+}
+
+std::optional<std::size_t> ImplantDesk::needle_through(const std::string& hole) const {
+  const auto found = std::find_if(plan_.needles.begin(), plan_.needles.end(),
+                                  [&](const PlannedNeedle& needle) { return needle.hole == hole; });
+  if (hole.empty() || found == plan_.needles.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - plan_.needles.begin());
+}
+
+std::optional<std::size_t> ImplantDesk::needle_of(const Model& model) const {
+  const auto& insertions = model.scenario().insertions;
+  if (insertions.size() != 1) return std::nullopt;
+  const auto found = std::find(insertions_.begin(), insertions_.end(), insertions.front());
+  if (found == insertions_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - insertions_.begin());
+}
+
+void ImplantDesk::set_current(std::optional<std::size_t> needle) {
+  plan_.current = needle ? static_cast<int>(*needle) : -1;
+  plan_changed_ = true;
+  if (needle) models_->begin_after(*needle);
+}
+
+std::vector<std::size_t> ImplantDesk::seeds_of_current() const {
+  std::vector<std::size_t> own;
+  for (std::size_t k = 0; k < state_.seeds.size(); ++k) {
+    if (static_cast<int>(state_.seeds[k].needle) == plan_.current) own.push_back(k);
+  }
+  return own;
+}
+
+Result<PlannedSeed> ImplantDesk::next_seed() const {
+  if (plan_.current < 0) {
+    return input_error("the needle", "the plan has no seeds for this hole, so there is none to drop",
+                       "Choose a needle of the plan");
+  }
+  const PlannedNeedle& needle = plan_.needles[static_cast<std::size_t>(plan_.current)];
+  const std::size_t dropped = seeds_of_current().size();
+  if (dropped >= needle.seeds.size()) {
+    return input_error("needle " + needle.name, fmt::format("all its {} seeds have been dropped", needle.seeds.size()),
+                       "Choose the next needle of the plan, or take the last seed back");
+  }
+  return needle.seeds[dropped];
+}
+
+Result<> ImplantDesk::add(const ProbedDrop& drop) {
+  const Result<PlannedSeed> seed = next_seed();
+  if (!seed) return seed.error();
+  if (!drop.tip_in_tissue) {
+    return input_error("needle " + plan_.needles[static_cast<std::size_t>(plan_.current)].name,
+                       "its tip is not in the tissue, so no seed was dropped", "Push the needle in first");
+  }
+  SeedHistory h;
+  h.number = seed->number;
+  h.needle = static_cast<std::size_t>(plan_.current);
+  h.planned_mm = seed->planned_mm;
+  h.dropped_mm = vec3(drop.place);
+  h.rest_mm = vec3(drop.rest);
+  h.axis = vec3(drop.axis);
+  h.dropped_s = drop.time_s;
+  h.in_tissue = drop.found;
+  h.by(SeedCause::aim) = vec3(drop.straight) - h.planned_mm;
+  h.by(SeedCause::bend) = h.dropped_mm - vec3(drop.straight);
+  h.by(SeedCause::relaxation) = -vec3(drop.lasting);
+  h.by(SeedCause::motion) = h.rest_mm - h.dropped_mm - h.by(SeedCause::relaxation);
+  state_.seeds.push_back(h);
+  seeds_have_changed();
+  return Ok{};
+}
+
+Result<> ImplantDesk::take_back() {
+  if (state_.seeds.empty()) return input_error("the last seed", "no seed has been dropped yet", "Drop one first");
+  state_.seeds.pop_back();
+  seeds_have_changed();
+  return Ok{};
+}
+
+void ImplantDesk::clear() {
+  state_.seeds.clear();
+  seeds_have_changed();
+}
+
+void ImplantDesk::seeds_have_changed() {
+  std::vector<PlacedSource> placed;
+  for (const SeedHistory& seed : state_.seeds)
+    placed.push_back({seed.rest_mm, seed.axis, implant_->plan.sources[seed.number].strength_U});
+  dose_version_ = dose_->set(std::move(placed));
+  state_.is_computing = true;
+  state_changed_ = true;
+}
+
+std::vector<Vec3> ImplantDesk::rest_mm() const {
+  std::vector<Vec3> places;
+  for (const SeedHistory& seed : state_.seeds) places.push_back(seed.rest_mm);
+  return places;
+}
+
+ImplantDesk::Changes ImplantDesk::take_changes() {
+  if (const auto ready = models_->news()) {
+    for (std::size_t k = 0; k < ready->size(); ++k) plan_.needles[k].is_ready = (*ready)[k];
+    plan_changed_ = true;
+  }
+  ImplantDose::News news = dose_->news();
+  state_changed_ = state_changed_ || news.is_any();
+  if (news.planned) state_.planned = std::move(news.planned);
+  if (news.now) {
+    state_.is_computing = news.version != dose_version_ || news.now->goals.empty();
+    state_.now = std::move(news.now);
+  }
+  return {std::exchange(plan_changed_, false), std::exchange(state_changed_, false), std::move(news.grid)};
+}
+
+}  // namespace stylet::serve

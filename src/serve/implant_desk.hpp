@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "implant_dose.hpp"
+#include "needle_models.hpp"
+#include "stylet/realtime/tissue_probe.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace stylet::serve {
+
+/// An implant that a user carries out needle by needle: the plan to follow, the seeds that have been dropped, and their
+/// dose. A dropped seed belongs to a point of the tissue and stays there, whichever needle comes next. For one thread.
+class ImplantDesk {
+ public:
+  /// @param model of the patient with any needle @param where name of the case in messages
+  /// Errors: those of needle_insertion() and ImplantDose::open().
+  static Result<std::unique_ptr<ImplantDesk>> open(std::shared_ptr<const ImplantCase> implant,
+                                                   const std::shared_ptr<const Model>& model, const std::string& where);
+
+  [[nodiscard]] const LivePlan& plan() const { return plan_; }
+  [[nodiscard]] const LiveImplant& state() const { return state_; }
+  [[nodiscard]] NeedleModels& models() { return *models_; }
+  /// The insertions of the plan's needles, in the order of the procedure.
+  [[nodiscard]] const std::vector<InsertionPlan>& insertions() const { return insertions_; }
+  /// The needle of the plan through a hole of the template; empty if the plan has none there.
+  [[nodiscard]] std::optional<std::size_t> needle_through(const std::string& hole) const;
+  /// The needle of the plan that a model was compiled for; empty if it is none.
+  [[nodiscard]] std::optional<std::size_t> needle_of(const Model& model) const;
+
+  /// Sets the needle that is in front of the patient; empty: one beside the plan.
+  void set_current(std::optional<std::size_t> needle);
+  /// The seed that the present needle drops next. Errors: the needle is beside the plan, or it is empty.
+  [[nodiscard]] Result<PlannedSeed> next_seed() const;
+  [[nodiscard]] double seed_length_mm() const { return plan_.seed_length_mm; }
+
+  /// Adds the seed that the present needle has left; SeedHistory::in_tissue says whether the point of the tissue was
+  /// found. Error: the tip was not in the tissue, and nothing was dropped.
+  Result<> add(const ProbedDrop& drop);
+  /// Takes the last seed back. Error: there is none.
+  Result<> take_back();
+  void clear();
+
+  /// Places [mm] LPS in the tissue at rest of all dropped seeds.
+  [[nodiscard]] std::vector<Vec3> rest_mm() const;
+  /// Indices in LiveImplant::seeds of the seeds that the present needle has dropped.
+  [[nodiscard]] std::vector<std::size_t> seeds_of_current() const;
+
+  /// What has changed since the last call.
+  struct Changes {
+    bool plan = false;
+    bool state = false;
+    std::shared_ptr<const LiveDose> dose;  ///< null: the dose has not changed
+  };
+  /// Takes over what the workers have done.
+  [[nodiscard]] Changes take_changes();
+
+ private:
+  ImplantDesk() = default;
+  void seeds_have_changed();
+
+  std::shared_ptr<const ImplantCase> implant_;
+  std::vector<InsertionPlan> insertions_;
+  LivePlan plan_;
+  LiveImplant state_;
+  bool plan_changed_ = true;
+  bool state_changed_ = true;
+  std::unique_ptr<NeedleModels> models_;
+  std::unique_ptr<ImplantDose> dose_;
+  std::uint64_t dose_version_ = 0;  ///< of the seeds that `dose_` was given last
+};
+
+}  // namespace stylet::serve

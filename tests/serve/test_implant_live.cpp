@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An implant carried out over the live protocol.
+#include "small_implant.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace stylet;
+using namespace stylet::test;
+
+namespace {
+
+/// A page that holds the needle of a case with a plan.
+struct Implanting {
+  Serving serving{[](serve::ServerSettings& s) { s.session.cases = {implant_case(), box_case("without")}; }};
+  std::unique_ptr<LiveClient> page = ready_client(serving);
+
+  Implanting() {
+    page->command(R"({"do":"take"})");
+    EXPECT_TRUE(page->until([&] { return page->status.value("you_hold", false) && page->plan.contains("needles"); }));
+  }
+  [[nodiscard]] std::size_t dropped() const {
+    return page->implant.contains("seeds") ? page->implant["seeds"].size() : 0;
+  }
+  [[nodiscard]] bool is_computed() const {
+    return page->implant.contains("now") && !page->implant["now"].is_null() && !page->implant.value("computing", true);
+  }
+  bool go_to(double depth_mm) {
+    page->hand(static_cast<float>(depth_mm), 80.0F);
+    return page->until([&] { return std::abs(page->depth_mm - depth_mm) < 0.05; });
+  }
+  bool drop() {
+    const std::size_t before = dropped();
+    page->command(R"({"do":"drop"})");
+    return page->until([&] { return dropped() == before + 1; });
+  }
+  [[nodiscard]] double drop_depth(std::size_t needle, std::size_t seed) const {
+    return page->plan["needles"][needle]["seeds"][seed]["drop_depth_mm"];
+  }
+};
+
+}  // namespace
+
+TEST(LiveImplant, a_row_of_seeds_is_dropped_and_has_a_dose) {
+  Implanting at;
+  LiveClient& page = *at.page;
+  EXPECT_EQ(page.plan["needles"].size(), 2u);
+  EXPECT_EQ(page.plan["current"], 0);
+  EXPECT_EQ(page.scene["insertions"].size(), 2u) << "the plan's needles are shown";
+  EXPECT_EQ(page.status["insertion"], "left");
+  for (std::size_t seed = 0; seed < 3; ++seed) {
+    ASSERT_TRUE(at.go_to(at.drop_depth(0, seed)));
+    ASSERT_TRUE(at.drop());
+    const auto& last = page.implant["seeds"].back();
+    EXPECT_TRUE(last["in_tissue"]);
+    EXPECT_LT(last["error_mm"], 8.0);
+    // The causes add up to the error.
+    for (int axis = 0; axis < 3; ++axis) {
+      double sum = 0.0;
+      for (const auto& [cause, part] : last["why"].items()) sum += part[axis].get<double>();
+      EXPECT_NEAR(sum, last["rest_mm"][axis].get<double>() - last["planned_mm"][axis].get<double>(), 0.01);
+    }
+    EXPECT_LT(std::abs(last["why"]["hand"][2].get<double>()), 0.3) << "the hand was at the planned depth";
+  }
+  ASSERT_TRUE(page.until([&] { return at.is_computed(); }));
+  EXPECT_EQ(page.implant["now"]["seeds"], 3);
+  EXPECT_GT(page.implant["now"]["d90_Gy"], 0.0);
+  EXPECT_GT(page.implant["planned"]["d90_Gy"], page.implant["now"]["d90_Gy"]);
+  ASSERT_TRUE(page.until([&] { return page.dose_points > 0; }));
+
+  // Drawn out, the tissue goes back and takes the seeds along.
+  ASSERT_TRUE(at.go_to(-5.0));
+  ASSERT_TRUE(page.until([&] {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double rest = page.implant["seeds"][k]["rest_mm"][axis];
+        if (std::abs(page.seeds["now_mm"][k][axis].get<double>() - rest) > 0.5) return false;
+      }
+    }
+    return true;
+  })) << page.seeds;
+
+  // A fourth seed is not in this needle.
+  page.command(R"({"do":"drop"})");
+  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
+  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("all its 3 seeds"), std::string::npos);
+}
+
+TEST(LiveImplant, a_drop_in_air_is_refused_with_words) {
+  Implanting at;
+  at.page->command(R"({"do":"drop"})");
+  ASSERT_TRUE(at.page->until([&] { return !at.page->notices.empty(); }));
+  EXPECT_NE(at.page->notices.back()["text"].get<std::string>().find("not in the tissue"), std::string::npos);
+  EXPECT_EQ(at.dropped(), 0u);
+}
+
+TEST(LiveImplant, the_last_seed_can_be_taken_back) {
+  Implanting at;
+  LiveClient& page = *at.page;
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 0)));
+  ASSERT_TRUE(at.drop());
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return at.dropped() == 0 && at.is_computed(); }));
+  EXPECT_EQ(page.implant["now"]["d90_Gy"], 0.0);
+  page.command(R"({"do":"undo"})");
+  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
+  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("no seed"), std::string::npos);
+}
+
+TEST(LiveImplant, another_needle_comes_at_once_and_the_seeds_stay) {
+  Implanting at;
+  LiveClient& page = *at.page;
+  ASSERT_TRUE(at.go_to(at.drop_depth(0, 0)));
+  ASSERT_TRUE(at.drop());
+  const auto rest = page.implant["seeds"][0]["rest_mm"];
+  ASSERT_TRUE(page.until([&] { return page.plan["needles"][1]["ready"].get<bool>(); })) << "compiled in the background";
+  const auto asked = std::chrono::steady_clock::now();
+  page.command(R"({"do":"needle","index":1})");
+  bool was_loading = false;
+  ASSERT_TRUE(page.until([&] {
+    was_loading = was_loading || page.status.value("state", "") == "loading";
+    return page.plan["current"] == 1 && page.status.value("insertion", "") == "right" && page.depth_mm < 0.0F;
+  }));
+  EXPECT_FALSE(was_loading);
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(5)) << "also under a sanitizer";
+  EXPECT_EQ(page.implant["seeds"][0]["rest_mm"], rest);
+  ASSERT_TRUE(at.go_to(at.drop_depth(1, 0)));
+  ASSERT_TRUE(page.until([&] {  // the first seed is moved by the second needle
+    const auto& now = page.seeds["now_mm"];
+    return now.size() == 1 && std::abs(now[0][2].get<double>() - rest[2].get<double>()) > 0.05;
+  }));
+  ASSERT_TRUE(at.drop());
+  EXPECT_EQ(page.implant["seeds"][1]["needle"], 1);
+}
+
+TEST(LiveImplant, a_case_without_a_plan_has_none) {
+  Implanting at;
+  LiveClient& page = *at.page;
+  page.command(R"({"do":"case","index":1})");
+  ASSERT_TRUE(page.until([&] {
+    return page.plan["needles"].empty() && page.status.value("insertion", "") == "hole D4";
+  })) << page.status;
+  page.command(R"({"do":"drop"})");
+  ASSERT_TRUE(page.until([&] { return !page.notices.empty(); }));
+  EXPECT_NE(page.notices.back()["text"].get<std::string>().find("no plan"), std::string::npos);
+}
