@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A made-up server inside the page: enough behaviour to look at every part of it. Its forces are invented.
-// ?fake opens it; ?fake&watch as a viewer without the needle, &failed, &loading, &lost for these states.
+// ?fake opens it; ?fake&watch as a viewer without the needle, &failed, &loading, &lost for these states; &plan with a
+// plan of seeds, of which &plan=2 leaves two to be dropped.
 import type { Transport, TransportListener } from '../src/connection';
 import { holes } from '../src/scene';
 import { Kind, type Command, type Frame, type Hand } from '../src/wire';
 import { encodeFrame, encodeScene, encodeText } from './encode';
+import { FakeImplant } from './fake_implant';
 import { BODIES, makePatient, SKIN_Z } from './fake_patient';
 
 const POINTS = 40;
@@ -27,6 +29,8 @@ export class FakeServer implements Transport {
   private touched = false;
   private whole = true;
   private replay: { time: number; rate: number } | null = null;
+  private readonly implant = this.options.has('plan') ? new FakeImplant(this.patient) : null;
+  private toldShift = NaN;
   private holds = !this.options.has('watch');
 
   open(listener: TransportListener): void {
@@ -42,7 +46,9 @@ export class FakeServer implements Transport {
     this.say(Kind.status, { state: 'loading', stage: 'optimising elements', fraction: 0.4 });
     if (this.options.has('loading')) return;
     this.listener?.message(encodeScene(this.patient));
-    this.start();
+    if (this.implant && this.options.get('plan')) this.implant.dropMost(Number(this.options.get('plan')));
+    if (this.implant) this.takeNeedle(this.implant.plan.current);
+    else this.start();
     setInterval(() => this.turn(), 16);
     setInterval(() => this.tellStatus(), 400);
     if (this.options.has('lost')) setTimeout(() => this.listener?.closed(5000), 2500);
@@ -58,6 +64,7 @@ export class FakeServer implements Transport {
   }
 
   private obey(command: Command): void {
+    if (this.implant && this.obeyImplant(this.implant, command)) return;
     if (command.do === 'hole') {
       const template = this.patient.text.template;
       const hole = template && holes(template).find((h) => h.name === command.hole);
@@ -81,6 +88,36 @@ export class FakeServer implements Transport {
     else if (command.do === 'take') this.holds = true;
     else if (command.do === 'release') this.holds = false;
     this.tellStatus();
+  }
+
+  private obeyImplant(implant: FakeImplant, command: Command): boolean {
+    if (command.do === 'needle') this.takeNeedle(command.index);
+    else if (command.do === 'drop') {
+      const tip = [this.entry[0] + 0.0006 * Math.max(0, this.depth) ** 2, this.entry[1], SKIN_Z + this.depth];
+      const why = this.depth > 0 ? implant.drop(tip, 1.6 * this.force) : 'needle: its tip is not in the tissue, so no seed was dropped';
+      if (why) this.say(Kind.notice, { text: why, cure: 'Choose the next needle of the plan, or push the needle in.' });
+    } else if (command.do === 'undo') implant.seeds.pop();
+    else if (command.do === 'clear') implant.seeds.length = 0;
+    else return false;
+    this.tellImplant(implant);
+    return true;
+  }
+
+  private tellImplant(implant: FakeImplant): void {
+    this.say(Kind.plan, implant.plan);
+    this.say(Kind.implant, implant.state());
+    this.listener?.message(implant.dose());
+    this.toldShift = NaN;
+  }
+
+  private takeNeedle(index: number): void {
+    if (!this.implant) return;
+    this.implant.plan.current = index;
+    const needle = this.implant.plan.needles[index];
+    this.hole = needle.hole;
+    this.entry = [needle.entry_mm[0], needle.entry_mm[1]];
+    this.start();
+    this.tellImplant(this.implant);
   }
 
   private start(): void {
@@ -118,6 +155,11 @@ export class FakeServer implements Transport {
       for (let i = 0; i < samples.length; i += 8) samples[i] -= this.time;
     }
     this.listener?.message(encodeFrame(this.frame(Float32Array.from(samples))));
+    const shift = 1.6 * this.force;
+    if (this.implant && !(Math.abs(shift - this.toldShift) < 0.01)) {
+      this.toldShift = shift;
+      this.say(Kind.seeds, this.implant.now(shift));
+    }
     this.whole = false;
   }
 

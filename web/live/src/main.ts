@@ -19,6 +19,8 @@ import { Steering } from './controls/steering';
 import { TemplatePicker } from './controls/template_picker';
 import { nameRegions } from './event_names';
 import { HandControl } from './hand';
+import { EndCard } from './implant/end_card';
+import { ImplantActions, ImplantPanel } from './implant/panel';
 import { compose, save } from './picture';
 import { Plane } from './sections/plane';
 import { SectionPanel } from './sections/section_panel';
@@ -38,6 +40,7 @@ const session = new Session(fake ? new FakeServer() : new WebSocketTransport(ser
 session.start();  // first, so that the server answers while the page is built
 const hand = new HandControl(session);
 const help = makeHelp(session);
+const implant = new ImplantActions(session, hand);
 
 // Listeners are called in the order in which they were added, so the anatomy moves before anything draws it.
 let anatomy: Anatomy | null = null;
@@ -62,7 +65,9 @@ new TemplatePicker(part('picker'), session, hand);
 new Steering(part('steering'), session, hand);
 new PushBar(part('push'), session, hand);
 new ReplayBar(part('replay'), part('push'), session);
-bindKeys(session, hand, help);
+const endCard = new EndCard(session);
+new ImplantPanel(part('implant'), session, implant, () => endCard.show());
+bindKeys(session, hand, implant, help);
 bindGamepad(hand);
 
 session.on('scene', () => {

@@ -3,3 +3,4 @@ export { INK, PALE, SOFT } from '../../shared/plot_style';
 export const ACCENT = '#0072b2';
 export const HARM = '#b3261e';
 export const WARN = '#b34700';
+export const SEED = '#d55e00';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the simulation, as this page has received it. Parts of the page listen to the topics that they need.
 import { understood, type Transport, type TransportListener } from './connection';
+import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene } from './scene';
 import { encodeCommand, encodeHand, Kind, type Command, type Event, type Frame, type Hand, type LiveMap, type Notice, type Status } from './wire';
 
@@ -11,6 +12,10 @@ interface Topics {
   frame: Frame;
   event: Event;
   notice: Notice;
+  plan: Plan;       // the plan of seeds to follow
+  implant: Implant; // what has been carried out of it
+  seeds: Seeds;     // where the dropped seeds are now
+  dose: Dose;       // the dose around the target
   map: LiveMap;     // the map of the template's holes
   restart: void;    // the needle is at a start; earlier events do not count
 }
@@ -25,10 +30,14 @@ export class Session implements TransportListener {
   scene: Scene | null = null;
   frame: Frame | null = null;
   map: LiveMap | null = null;
+  plan: Plan | null = null;        // null: this case has no plan
+  implant: Implant | null = null;
+  seeds: Seeds | null = null;
+  dose: Dose | null = null;
   events: Event[] = [];           // since the start of the insertion
   private letGo = false;          // the user has handed the needle over, so the page does not take it on its own
   private readonly listeners: { [K in keyof Topics]: ((what: Topics[K]) => void)[] } = {
-    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], restart: [],
+    link: [], status: [], scene: [], frame: [], event: [], notice: [], map: [], plan: [], implant: [], seeds: [], dose: [], restart: [],
   };
 
   constructor(private readonly transport: Transport) {}
@@ -102,10 +111,26 @@ export class Session implements TransportListener {
         if (this.events.length > MOST_EVENTS) this.events.shift();
         return this.tell('event', message.event);
       case Kind.notice: return this.tell('notice', message.notice);
+      case Kind.plan: return this.takePlan(message.plan);
+      case Kind.implant:
+        this.implant = message.implant;
+        return this.tell('implant', message.implant);
+      case Kind.seeds:
+        this.seeds = message.seeds;
+        return this.tell('seeds', message.seeds);
+      case Kind.dose:
+        this.dose = message.dose;
+        return this.tell('dose', message.dose);
       case Kind.map:
         this.map = message.map;
         return this.tell('map', message.map);
     }
+  }
+
+  private takePlan(plan: Plan): void {
+    this.plan = plan.needles.length > 0 ? plan : null;
+    if (!this.plan) this.implant = this.seeds = this.dose = null;
+    this.tell('plan', plan);
   }
 
   private takeStatus(status: Status): void {

@@ -2,12 +2,13 @@
 // Encodes and decodes the messages of docs/live_protocol.md. Decoding checks every length before it reads; a WireError
 // says what is wrong.
 import type { HoleMap } from '../../shared/hole_map';
+import type { Dose, Implant, Plan, Seeds } from './implant/implant';
 import type { Scene, SceneText } from './scene';
 
 export const SUBPROTOCOL = 'stylet-live-2';
 export const PROTOCOL = 2;
 
-export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, hand = 16, command = 17 }
+export const enum Kind { scene = 1, frame = 2, status = 3, event = 4, notice = 5, map = 6, plan = 7, implant = 8, seeds = 9, dose = 10, hand = 16, command = 17 }
 export const TIP_STATES = ['in air', 'pressing', 'cutting', 'in its track', 'on bone', 'through'] as const;
 export const SAMPLE_WORDS = 8;  // time, depth, axial, sagittal, lateral force, CPU time [µs], tip state, flags
 
@@ -61,8 +62,8 @@ export interface LiveMap { map: HoleMap | null; why_not: string; predicted: numb
 export interface Notice { text: string; cure: string }
 
 export type Command =
-  | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' | 'drawn' }
-  | { do: 'hole'; hole: string } | { do: 'insertion' | 'case'; index: number } | { do: 'step'; count: number }
+  | { do: 'take' | 'release' | 'reset' | 'pause' | 'resume' | 'live' | 'drawn' | 'drop' | 'undo' | 'clear' }
+  | { do: 'hole'; hole: string } | { do: 'insertion' | 'needle' | 'case'; index: number } | { do: 'step'; count: number }
   | { do: 'replay'; name: string } | { do: 'seek'; time_s: number } | { do: 'play'; rate: number }
   | { do: 'predict'; on: 0 | 1 };
 
@@ -71,7 +72,8 @@ export interface Hand { depth: number; speed: number; roll: number; tiltLeft: nu
 export type Message =
   | { kind: Kind.scene; scene: Scene } | { kind: Kind.frame; frame: Frame } | { kind: Kind.status; status: Status }
   | { kind: Kind.event; event: Event } | { kind: Kind.notice; notice: Notice }
-  | { kind: Kind.map; map: LiveMap };
+  | { kind: Kind.map; map: LiveMap } | { kind: Kind.plan; plan: Plan } | { kind: Kind.implant; implant: Implant }
+  | { kind: Kind.seeds; seeds: Seeds } | { kind: Kind.dose; dose: Dose };
 
 export class WireError extends Error {}
 
@@ -79,7 +81,8 @@ const COMPLIANCE_MISSING = 1 << 2;  // as in Step::Flag
 const NO_CONTACT_INSIDE = 1 << 6;
 const HEADER = 8;
 const FRAME_HEADER = 164;
-const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000 };
+const DOSE_HEADER = HEADER + 32;
+const LIMITS = { points: 4096, contacts: 8192, samples: 4096, nodes: 4_000_000, triangles: 8_000_000, dose: 1_000_000 };
 
 function must(holds: boolean, what: string): asserts holds {
   if (!holds) throw new WireError(what);
@@ -150,6 +153,16 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
   };
 }
 
+function decodeDose(buffer: ArrayBuffer, view: DataView): Dose {
+  must(buffer.byteLength >= DOSE_HEADER, 'a dose without its header');
+  const size = [0, 1, 2].map((i) => view.getUint32(HEADER + 4 * i, true)) as [number, number, number];
+  const points = size[0] * size[1] * size[2];
+  must(points <= LIMITS.dose && buffer.byteLength === DOSE_HEADER + 2 * points, 'a dose of the wrong length');
+  const [x, y, z, spacing, unit] = new Float32Array(buffer, HEADER + 12, 5);
+  must([x, y, z].every(Number.isFinite) && spacing > 0 && unit > 0, 'a dose at an impossible place');
+  return { size, origin: [x, y, z], spacing, unit, values: new Uint16Array(buffer, DOSE_HEADER, points) };
+}
+
 /** Decodes a message; null for an unknown kind. Throws a WireError if the message is malformed. */
 export function decode(buffer: ArrayBuffer): Message | null {
   must(buffer.byteLength >= HEADER, 'a message without its header');
@@ -161,6 +174,10 @@ export function decode(buffer: ArrayBuffer): Message | null {
     case Kind.status: return { kind: Kind.status, status: rest() as Status };
     case Kind.event: return { kind: Kind.event, event: rest() as Event };
     case Kind.notice: return { kind: Kind.notice, notice: rest() as Notice };
+    case Kind.plan: return { kind: Kind.plan, plan: rest() as Plan };
+    case Kind.implant: return { kind: Kind.implant, implant: rest() as Implant };
+    case Kind.seeds: return { kind: Kind.seeds, seeds: rest() as Seeds };
+    case Kind.dose: return { kind: Kind.dose, dose: decodeDose(buffer, view) };
     case Kind.map: return { kind: Kind.map, map: rest() as LiveMap };
     default: return null;
   }

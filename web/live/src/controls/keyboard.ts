@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keys. A focused control gets the keys that it uses; all other keys move the needle.
 import { SPEEDS, type HandControl } from '../hand';
+import type { ImplantActions } from '../implant/panel';
 import type { Session } from '../session';
 
 export const KEYS: [string, string][] = [
@@ -9,9 +10,11 @@ export const KEYS: [string, string][] = [
   ['Wheel', 'push or pull by 1 mm, with Shift by 0.1 mm; with Ctrl zoom the 3D view'],
   ['1, 2, 3', `set the speed to ${SPEEDS.join(', ')} mm/s`],
   ['Q, E', 'turn the bevel'],
-  ['A, D or Shift ← →', 'tilt the hub to the patient’s right, left'],
+  ['A, D or Shift ← →', 'tilt the hub to the patient’s right, left (with a plan of seeds, D drops a seed)'],
   ['Shift ↑ ↓', 'tilt the hub to anterior, posterior'],
   ['Home', 'make the hub straight again'],
+  ['D; U or Ctrl Z', 'with a plan of seeds: drop the next seed; take the last seed back'],
+  ['G; N', 'with a plan of seeds: go to the depth of the next seed; take the next needle'],
   ['Space', 'pause, resume'],
   ['.', 'make a single step while paused'],
   ['R', 'go back to the start of this insertion'],
@@ -33,7 +36,7 @@ const HELD: Record<string, Held> = {
 };
 const PUSHES = new Set(['KeyW', 'KeyS', 'ArrowUp', 'ArrowDown']);
 
-export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => void): void {
+export function bindKeys(session: Session, hand: HandControl, implant: ImplantActions, toggleHelp: () => void): void {
   const held = new Map<string, Held>();  // actions of the held keys, by the key's code
   let last = 0;
   const turn = (now: number) => {
@@ -52,10 +55,24 @@ export function bindKeys(session: Session, hand: HandControl, toggleHelp: () => 
     Space: () => togglePause(session), Period: () => session.command({ do: 'step', count: 1 }), KeyR: () => reset(session, hand),
   };
 
+  const ofImplant: Record<string, () => void> = {
+    KeyD: () => implant.drop(), KeyU: () => implant.undo(), KeyG: () => implant.go(), KeyN: () => implant.next(),
+  };
+
   document.addEventListener('keydown', (e) => {
+    const isUndo = (e.ctrlKey || e.metaKey) && !e.shiftKey && !e.altKey && e.code === 'KeyZ';
+    if (isUndo && implant.isThere && !document.querySelector('dialog[open]')) {
+      e.preventDefault();
+      return implant.undo();
+    }
     if (e.ctrlKey || e.altKey || e.metaKey || e.defaultPrevented) return;
     if (e.key === '?') return toggleHelp();
     if (usesKey(e.target as HTMLElement, e.code) || document.querySelector('dialog[open]')) return;
+    if (implant.isThere && e.code in ofImplant && !e.shiftKey) {
+      e.preventDefault();
+      if (!e.repeat) ofImplant[e.code]();
+      return;
+    }
     const action = HELD[`${e.shiftKey ? 'Shift+' : ''}${e.code}`] ?? (e.shiftKey && e.code.startsWith('Key') ? HELD[e.code] : undefined);
     if (action) {
       e.preventDefault();

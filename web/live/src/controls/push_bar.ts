@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The needle's depth as a long track with a handle to drag, with marks of events and of the planned depth, and two
 // buttons that push and pull while they are held.
-import { ACCENT, HARM, INK, SOFT } from '../palette';
+import { ACCENT, HARM, INK, SEED, SOFT } from '../palette';
 import { element } from '../../../shared/dom';
 import { CanvasBox } from '../canvas_box';
 import { eventLabel, isHarm } from '../event_names';
 import { clamp, type HandControl } from '../hand';
+import { currentNeedle, droppedOf } from '../implant/implant';
 import type { Session } from '../session';
 import { wheelNotches } from '../wheel';
 
@@ -38,7 +39,7 @@ export class PushBar {
       e.preventDefault();
       hand.push(wheelNotches(e));
     }, { passive: false });
-    for (const topic of ['frame', 'event', 'restart', 'scene'] as const) session.on(topic, this.box.request);
+    for (const topic of ['frame', 'event', 'restart', 'scene', 'plan', 'implant'] as const) session.on(topic, this.box.request);
     for (const topic of ['status', 'link'] as const) session.on(topic, () => this.update());
     hand.onChange(this.box.request);
   }
@@ -159,7 +160,9 @@ export class PushBar {
     if (!frame || !scene) return;
     const planned = scene.insertions.find((i) => i.name === status?.insertion)?.depth_mm;
     this.labelled.length = 0;
-    if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
+    const seeds = status?.mode === 'replay' ? null : currentNeedle(this.session.plan)?.seeds;
+    if (seeds) this.drawSeeds(seeds.map((seed) => seed.drop_depth_mm), middle, text);
+    else if (planned !== undefined) this.flag(planned, middle, 'planned depth', SOFT, text);
     for (const event of this.session.events) {
       if (event.depth_mm > high) continue;
       if (isHarm(event)) this.flag(event.depth_mm, middle, eventLabel(event), HARM, text);
@@ -176,6 +179,24 @@ export class PushBar {
       this.track.setAttribute('aria-valuemax', high.toFixed(0));
       this.track.setAttribute('aria-valuetext', `${now} mm`);
     }
+  }
+
+  /** Marks the depths at which the needle's seeds are to be dropped: filled once they have been. */
+  private drawSeeds(depths: number[], middle: number, text: number): void {
+    const { context } = this.box;
+    const { plan, implant } = this.session;
+    const dropped = droppedOf(implant, plan?.current ?? -1);
+    if (depths[dropped] !== undefined) this.flag(depths[dropped], middle, `seed ${dropped + 1} of ${depths.length}`, SEED, text);
+    depths.forEach((depth, i) => {
+      const x = this.toPixels(depth);
+      context.beginPath();
+      context.arc(x, middle, 0.3 * text, 0, 2 * Math.PI);
+      context.fillStyle = i < dropped ? SEED : '#fff';
+      context.fill();
+      context.strokeStyle = i <= dropped ? SEED : SOFT;
+      context.lineWidth = 1.6;
+      context.stroke();
+    });
   }
 
   private flag(depth: number, middle: number, label: string, color: string, text: number): void {

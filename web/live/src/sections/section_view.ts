@@ -14,6 +14,7 @@ import { drawCross, drawLine, drawRing } from '../tip_error_shapes';
 import { ContourCutter } from './contour_cutter';
 import { crossing, tipOf } from './needle_crossing';
 import type { Plane } from './plane';
+import { SeedMarks } from './seed_marks';
 import { drawTemplate, drawTemplateEdge } from './template_overlay';
 
 interface Section {
@@ -37,9 +38,12 @@ export class SectionView {
   private focus = this.window;  // the part of it that does not depend on the needle
   private pixels = 1;       // CSS px per mm
   readonly hidden = new Set<number>();
+  private readonly seedMarks: SeedMarks;
 
   constructor(box: HTMLElement, private readonly session: Session, readonly plane: Plane, private readonly other: Plane) {
     this.box = new CanvasBox(box, () => this.draw());
+    this.seedMarks = new SeedMarks(this.box, session, plane.axis);
+    for (const topic of ['plan', 'implant', 'seeds', 'dose'] as const) session.on(topic, this.box.request);
     // A drag in one section moves the plane of the other section.
     box.addEventListener('pointerdown', (e) => {
       if (e.button !== 0 || !this.anatomy) return;
@@ -122,12 +126,14 @@ export class SectionView {
     }
     for (const s of this.sections) s.now.cut(anatomy.position, plane.axis, plane.value);
     this.drawTissue(scene);
+    const place = { u: (x: number, z: number) => this.u(x, z), v: (y: number) => this.v(y), pixels: this.pixels };
+    this.seedMarks.drawDose(plane.value, place);
     if (scene.template) {
-      const place = { u: (x: number, z: number) => this.u(x, z), v: (y: number) => this.v(y), pixels: this.pixels };
       if (plane.axis === 2) drawTemplate(box, scene, this.holes, this.session.status?.hole ?? '', place);
       else drawTemplateEdge(box, scene, place);
     }
     this.drawOtherPlane();
+    this.seedMarks.drawSeeds(plane.value, place);
     this.drawNeedle();
     this.drawLetters();
     this.drawScale();

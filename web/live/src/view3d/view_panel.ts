@@ -49,6 +49,9 @@ export class ViewPanel {
   private readonly bar = element('div', 'scale-bar');
   private cutControl: CutControl | null = null;
   private opening = false;
+  private mode: string | undefined;
+  private seedsWanted = true;
+  private readonly seedsBox = element('label');
 
   constructor(private readonly root: HTMLElement, private readonly session: Session, hand: HandControl) {
     root.append(this.picture, this.bar, this.scale, this.note);
@@ -64,9 +67,12 @@ export class ViewPanel {
       hand.push(wheelNotches(e));
     }, { capture: true, passive: false });
     session.on('frame', () => this.update());
+    for (const topic of ['plan', 'implant', 'seeds'] as const) session.on(topic, () => this.showSeeds());
     session.on('restart', () => this.setScale(SMALLEST_SCALE_MM));
     session.on('status', (status) => {
       this.stage?.template.mark(status.hole ?? '');
+      if (this.mode !== status.mode) this.showSeeds();
+      this.mode = status.mode;
       this.openSoon();
     });
   }
@@ -102,6 +108,7 @@ export class ViewPanel {
     this.buildSettings(this.stage);
     if (!this.anatomy) return;
     this.showAnatomy(this.stage, this.anatomy, false);
+    this.showSeeds();
     this.stage.template.mark(this.session.status?.hole ?? '');
     const { frame } = this.session;
     if (!frame) return;
@@ -116,6 +123,12 @@ export class ViewPanel {
     this.list.replaceChildren(...stage.surfaces.map((surface, i) => this.rowOf(stage, surface, i)));
     for (const surface of stage.surfaces) surface.colorByDisplacement(this.byDisplacement);
     stage.showTissue(this.most);
+  }
+
+  private showSeeds(): void {
+    this.seedsBox.hidden = this.session.plan === null;
+    this.stage?.seeds.show(this.session, this.seedsWanted);
+    this.stage?.draw();
   }
 
   private makeStage(): Stage | null {
@@ -200,10 +213,18 @@ export class ViewPanel {
     const contacts = visibilityBox(stage, stage.contacts, 'Contact points');
     const ghost = visibilityBox(stage, stage.ghost, 'Gland before the insertion');
     const tipError = visibilityBox(stage, stage.tipError, 'Tip error, drawn in the patient at rest');
+    const seeds = element('input');
+    seeds.type = 'checkbox';
+    seeds.checked = this.seedsWanted;
+    seeds.addEventListener('change', () => {
+      this.seedsWanted = seeds.checked;
+      this.showSeeds();
+    });
+    this.seedsBox.append(seeds, 'Seeds, planned and dropped');
     this.cutControl = new CutControl(stage);
     const body = element('div', 'settings-body');
     body.append(element('h3', '', 'Colours'), colors, element('h3', '', 'Cut open'), this.cutControl.element,
-                element('h3', '', 'Shown'), this.list, ghost, tipError, tipErrorKey(), contacts, contactKey());
+                element('h3', '', 'Shown'), this.list, this.seedsBox, ghost, tipError, tipErrorKey(), contacts, contactKey());
     this.settings.append(summary, body);
     const views = element('div', 'views');
     const names = ['Oblique', 'Left', 'Front', 'Feet'];

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The result of an implant: dose and goals beside the plan, errors of the seeds, and their reasons. It opens by itself
+// when the last seed has been dropped and its dose is known.
+import { button, element } from '../../../shared/dom';
+import { dialog } from '../controls/dialogs';
+import type { Session } from '../session';
+import { isFinished, type Goal, type Implant, type Score } from './implant';
+
+const REASONS: Record<string, [string, string]> = {
+  hand: ['Your hand', 'where a straight needle held as you held it would have left the seed, less its planned place'],
+  'needle bend': ['Needle bend', 'the needle was bent when it left the seed'],
+  'tissue motion': ['Tissue motion', 'the needle had displaced the tissue, which has gone back since and taken the seed along'],
+  'tissue relaxation': ['Tissue relaxation', 'the tissue had crept under the needle, which goes back slowly'],
+};
+const AXES: [string, string, string][] = [['Left–right', 'left', 'right'], ['Anterior–posterior', 'posterior', 'anterior'], ['Superior–inferior', 'superior', 'inferior']];
+
+function signedWords(value: number, positive: string, negative: string): string {
+  return Math.abs(value) < 0.05 ? '0.0 mm' : `${Math.abs(value).toFixed(1)} mm ${value > 0 ? positive : negative}`;
+}
+
+function row(...cells: (string | HTMLElement)[]): HTMLTableRowElement {
+  const tr = element('tr');
+  cells.forEach((cell, i) => {
+    const td = element('td', i > 0 ? 'number' : '');
+    td.append(cell);
+    tr.append(td);
+  });
+  return tr;
+}
+
+function head(...cells: string[]): HTMLTableRowElement {
+  const tr = element('tr');
+  cells.forEach((cell, i) => tr.append(element('th', i > 0 ? 'number' : '', cell)));
+  return tr;
+}
+
+const STRUCTURES: Record<string, string> = { prostate: 'Prostate', urethra: 'Urethra', rectum: 'Rectum', bladder: 'Bladder' };
+
+/** The words of a goal: "Prostate D90 ≥ 100 %". */
+export function goalWords({ structure, metric, at_least, bound }: Goal): string {
+  const [figure, unit] = metric.split('_');
+  return `${STRUCTURES[structure] ?? structure} ${figure} ${at_least ? '≥' : '≤'} ${bound} ${unitWords(unit)}`;
+}
+
+function unitWords(unit: string): string {
+  return unit === 'percent' ? '%' : unit;
+}
+
+function goalValue(goal: Goal | undefined): string {
+  if (goal?.value == null) return '–';
+  return `${goal.value.toFixed(goal.value < 10 ? 1 : 0)} ${unitWords(goal.metric.split('_')[1])}`;
+}
+
+export class EndCard {
+  private readonly dialog: HTMLDialogElement;
+  private readonly body: HTMLElement;
+  private finished: boolean | null = null;  // null: not known since the page was opened
+
+  constructor(private readonly session: Session) {
+    ({ dialog: this.dialog, body: this.body } = dialog('The implant'));
+    this.dialog.classList.add('end-card');
+    session.on('plan', () => {
+      if (session.plan) return;
+      this.finished = null;
+      this.dialog.close();
+    });
+    session.on('implant', (implant) => {
+      const finished = isFinished(implant);
+      const known = !implant.computing && implant.now !== null;
+      if (finished && known && this.finished === false) this.show();
+      else if (this.dialog.open && known) this.fill(implant);
+      // A page that is opened after the end does not show the card by itself.
+      if (!finished) this.finished = false;
+      else if (known) this.finished = true;
+    });
+  }
+
+  show(): void {
+    const { implant } = this.session;
+    if (!implant) return;
+    this.fill(implant);
+    if (!this.dialog.open) this.dialog.showModal();
+  }
+
+  private fill(implant: Implant): void {
+    const { now, planned, seeds } = implant;
+    const finished = isFinished(implant);
+    const met = now?.goals.filter((g) => g.met).length ?? 0;
+    const of = now?.goals.filter((g) => g.value !== null).length ?? 0;
+    const could = planned?.goals.filter((g) => g.met).length ?? 0;
+    const lead = element('p', 'lead');
+    lead.append(element('b', '', finished ? 'The implant is finished. ' : `${seeds.length} of ${implant.planned_seeds} seeds have been dropped. `),
+      of > 0 ? `It keeps ${met} of ${of} goals; the plan keeps ${could}.` : '');
+    const columns = element('div', 'card-columns');
+    const left = element('div');
+    const right = element('div');
+    columns.append(left, right);
+    left.append(this.figures(now, planned), this.goals(now, planned));
+    right.append(...this.errors(implant), ...this.reasons(implant));
+    const foot = element('div', 'card-foot');
+    const again = button('Begin again with all seeds', () => {
+      this.session.command({ do: 'clear' });
+      this.dialog.close();
+    });
+    again.disabled = !this.session.steering;
+    const close = button(finished ? 'Close' : 'Go on', () => this.dialog.close());
+    close.classList.add('primary');
+    foot.append(element('strong', 'not-medical', 'Not a medical device. A simulation for research and teaching.'), again, close);
+    this.body.replaceChildren(lead, columns, foot);
+    if (seeds.some((seed) => !seed.in_tissue)) {
+      lead.append(element('span', 'cure', ' Seeds that were dropped where the motion of the tissue is not known count as resting there.'));
+    }
+  }
+
+  private figures(now: Score | null, planned: Score | null): HTMLElement {
+    const box = element('div', 'card-figures');
+    const one = (name: string, value: number | null | undefined, plan: number | null | undefined) => {
+      const figure = element('div', 'figure');
+      const number = element('div');
+      number.append(element('b', '', value == null ? '–' : value.toFixed(1)), element('span', 'unit', '%'));
+      figure.append(element('span', 'name', name), number, element('span', 'name', plan == null ? '' : `plan ${plan.toFixed(1)} %`));
+      return figure;
+    };
+    box.append(one('D90', now?.d90_percent, planned?.d90_percent), one('V100', now?.v100_percent, planned?.v100_percent));
+    return box;
+  }
+
+  private goals(now: Score | null, planned: Score | null): HTMLElement {
+    const table = element('table', 'goals');
+    table.append(head('Goal', 'Plan', 'Yours', ''));
+    now?.goals.forEach((goal, k) => {
+      if (goal.value === null) return;
+      const mark = element('span', goal.met ? 'met' : 'missed', goal.met ? '✓ met' : '✗ missed');
+      table.append(row(goalWords(goal), goalValue(planned?.goals[k]), goalValue(goal), mark));
+    });
+    return table;
+  }
+
+  private errors({ error }: Implant): HTMLElement[] {
+    const table = element('table');
+    table.append(row('Mean error', `${error.mean_mm.toFixed(1)} mm`), row('95 of 100 seeds within', `${error.p95_mm.toFixed(1)} mm`),
+      row('Largest error', `${error.largest_mm.toFixed(1)} mm`));
+    AXES.forEach(([name, positive, negative], k) => {
+      const { mean, sd } = error.axes_mm[k];
+      table.append(row(name, `${signedWords(mean, positive, negative)} ± ${sd.toFixed(1)}`));
+    });
+    return [element('h3', '', 'How far the seeds rest from their plan'), table];
+  }
+
+  /** The mean length of each cause's part of the error, as bars. */
+  private reasons({ why }: Implant): HTMLElement[] {
+    const largest = Math.max(1e-9, ...why.map((cause) => cause.mean_mm ?? 0));
+    const list = element('div', 'reasons');
+    for (const cause of [...why].sort((a, b) => (b.mean_mm ?? 0) - (a.mean_mm ?? 0))) {
+      const [name, explained] = REASONS[cause.cause] ?? [cause.cause, ''];
+      const line = element('div', 'reason');
+      line.title = explained;
+      const bar = element('i');
+      bar.style.width = `${(100 * (cause.mean_mm ?? 0)) / largest}%`;
+      const track = element('span', 'reason-track');
+      track.append(bar);
+      const mean = cause.mean_xyz_mm[2];
+      line.append(element('span', '', name), track, element('b', '', `${(cause.mean_mm ?? 0).toFixed(1)} mm`),
+        element('span', 'name', `on average ${signedWords(mean, 'superior', 'inferior')}`));
+      list.append(line);
+    }
+    return [element('h3', '', 'Why'), list];
+  }
+}

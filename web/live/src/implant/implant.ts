@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An implant that is carried out needle by needle, as the server describes it, and what follows from it. Lengths are in
+// mm, places in LPS.
+type Place = [number, number, number];
+
+export interface PlanSeed { number: number; planned_mm: Place; axis: Place; drop_depth_mm: number }
+export interface PlanNeedle {
+  name: string; hole: string; entry_mm: Place; direction: Place; depth_mm: number; ready: boolean; seeds: PlanSeed[];
+}
+export interface Plan {
+  needles: PlanNeedle[]; current: number; seed_length_mm: number; seed_diameter_mm: number; prescription_Gy: number;
+  source: string;
+}
+
+export interface Goal { structure: string; metric: string; at_least: boolean; bound: number; value: number | null; met: boolean }
+export interface Score {
+  seeds: number; d90_Gy: number | null; d90_percent: number | null; v100_percent: number | null; took_ms: number; goals: Goal[];
+}
+export interface DroppedSeed {
+  number: number; needle: number; planned_mm: Place; dropped_mm: Place; rest_mm: Place; axis: Place; error_mm: number;
+  in_tissue: boolean; why: Record<string, Place>;
+}
+export interface Errors { seeds: number; mean_mm: number; p95_mm: number; largest_mm: number; axes_mm: { mean: number; sd: number }[] }
+export interface Cause { cause: string; mean_mm: number | null; mean_xyz_mm: Place }
+export interface Implant {
+  planned_seeds: number; seeds: DroppedSeed[]; computing: boolean; now: Score | null; planned: Score | null; error: Errors; why: Cause[];
+}
+export interface Seeds { now_mm: Place[] }
+
+/** The dose around the target, in the tissue at rest. */
+export interface Dose {
+  size: [number, number, number]; origin: Place; spacing: number;
+  unit: number;         // percent of the prescribed dose for each unit of `values`
+  values: Uint16Array;  // x varies fastest
+}
+
+export const IN_PLACE_MM = 0.5;  // a needle this near to the planned depth of a seed counts as being there
+
+/** The needle of the plan that is in front of or in the patient; null: one beside the plan. */
+export function currentNeedle(plan: Plan | null): PlanNeedle | null {
+  return plan?.needles[plan.current] ?? null;
+}
+
+/** How many seeds of a needle have been dropped. */
+export function droppedOf(implant: Implant | null, needle: number): number {
+  return implant?.seeds.filter((seed) => seed.needle === needle).length ?? 0;
+}
+
+/** The seed that the needle drops next; null: it is empty, or beside the plan. */
+export function nextSeed(plan: Plan | null, implant: Implant | null): PlanSeed | null {
+  return plan ? currentNeedle(plan)?.seeds[droppedOf(implant, plan.current)] ?? null : null;
+}
+
+/** The needle after the present one that still has seeds; −1: all are empty. */
+export function nextNeedle(plan: Plan, implant: Implant | null): number {
+  const { needles, current } = plan;
+  for (let k = 1; k <= needles.length; k++) {
+    const needle = (Math.max(-1, current) + k) % needles.length;
+    if (droppedOf(implant, needle) < needles[needle].seeds.length) return needle;
+  }
+  return -1;
+}
+
+/** Whether all seeds of the plan have been dropped. */
+export function isFinished(implant: Implant | null): boolean {
+  return implant !== null && implant.seeds.length > 0 && implant.seeds.length >= implant.planned_seeds;
+}
+
+/** What the hand has to do before the next seed: a sentence, and whether the needle is in place. */
+export function whatToDo(plan: Plan, implant: Implant | null, depth: number): { text: string; inPlace: boolean } {
+  const needle = currentNeedle(plan);
+  if (!needle) return { text: 'This hole is not in the plan. Choose a needle below.', inPlace: false };
+  if (isFinished(implant)) return { text: 'All seeds of the plan have been dropped.', inPlace: false };
+  const seed = nextSeed(plan, implant);
+  if (!seed) return { text: `Needle ${needle.name} is empty. Draw it out and take the next one.`, inPlace: false };
+  const number = needle.seeds.indexOf(seed) + 1;
+  const togo = seed.drop_depth_mm - depth;
+  const which = `Seed ${number} of ${needle.seeds.length}`;
+  if (Math.abs(togo) <= IN_PLACE_MM) return { text: `${which}: the needle is in place. Drop it.`, inPlace: true };
+  return { text: `${which}: ${togo > 0 ? 'push in' : 'pull back'} ${Math.abs(togo).toFixed(1)} mm`, inPlace: false };
+}
+
+/** The mean motion [mm] of the dropped seeds from where they rest; zero without seeds. */
+export function meanMotion(implant: Implant | null, seeds: Seeds | null): Place {
+  const sum: Place = [0, 0, 0];
+  const count = Math.min(implant?.seeds.length ?? 0, seeds?.now_mm.length ?? 0);
+  for (let i = 0; i < count; i++) {
+    for (let k = 0; k < 3; k++) sum[k] += (seeds!.now_mm[i][k] - implant!.seeds[i].rest_mm[k]) / count;
+  }
+  return sum;
+}
+
+/** Where the dropped seeds are now; those whose place has not been told yet where they rest. */
+export function placesNow(implant: Implant | null, seeds: Seeds | null): Place[] {
+  return implant?.seeds.map((seed, i) => seeds?.now_mm[i] ?? seed.rest_mm) ?? [];
+}
