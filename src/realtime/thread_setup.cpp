@@ -23,13 +23,14 @@ namespace {
 
 std::mutex mutex;
 int holders = 0;
+bool is_future_locked = false;  // what is allocated from now on is locked, too
 
 }  // namespace
 
 LockedMemory::LockedMemory(bool wanted) {
   if (!wanted) return;
   const std::scoped_lock lock(mutex);
-  if (holders == 0) {
+  if (holders == 0 || !is_future_locked) {
     // Future allocations are locked only if there is no limit on locked memory: beyond a limit, allocations would fail
     // anywhere in the process.
     rlimit limit{};
@@ -38,6 +39,7 @@ LockedMemory::LockedMemory(bool wanted) {
       error_ = errno;
       return;
     }
+    is_future_locked = unlimited;
   }
   ++holders;
   held_ = true;

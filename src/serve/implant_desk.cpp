@@ -94,7 +94,6 @@ std::optional<std::size_t> ImplantDesk::needle_of(const Model& model) const {
 void ImplantDesk::set_current(std::optional<std::size_t> needle) {
   plan_.current = needle ? static_cast<int>(*needle) : -1;
   plan_changed_ = true;
-  if (needle) models_->begin_after(*needle);
 }
 
 std::vector<std::size_t> ImplantDesk::seeds_of_current() const {

@@ -20,9 +20,16 @@ double megabytes_of(const NeedleModels::Ready& ready) {
   constexpr double per_number = 8e-6;
   const double nodes = ready.model->mesh().node_count();
   const double stored = ready.model->store() ? static_cast<double>(ready.model->store()->stored().size()) : 0.0;
-  // The factor of the stiffness has some hundred numbers for each degree of freedom on meshes of a few thousand nodes.
-  return per_number * (9.0 * stored * stored + 3.0 * nodes * 400.0) +
+  // Mesh, factor of the stiffness and near field together, measured on some thousand nodes.
+  constexpr double numbers_per_dof = 1000.0;
+  return per_number * (9.0 * stored * stored + 3.0 * nodes * numbers_per_dof) +
          (ready.field ? ready.field->statistics().megabytes : 0.0);
+}
+
+double megabytes_for_models() {
+  const double machine =
+      1e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::min(NeedleModels::kMostMegabytes, 0.25 * machine);
 }
 
 }  // namespace
@@ -102,7 +109,7 @@ std::optional<std::size_t> NeedleModels::next() {
 void NeedleModels::drop_farthest(std::size_t but) {
   double sum = 0.0;
   for (const auto& ready : ready_) sum += ready ? megabytes_of(*ready) : 0.0;
-  while (sum > kMostMegabytes) {
+  while (sum > megabytes_for_models()) {
     std::size_t farthest = current_;
     for (std::size_t k = 0; k < ready_.size(); ++k) {
       if (ready_[k] && distance(k) > distance(farthest)) farthest = k;

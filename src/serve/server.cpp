@@ -160,7 +160,15 @@ struct Server::Parts final : public Audience, public ViewerDesk {
       for (const auto& [id, viewer] : each()) viewer->send(wire::Kind::map, map);
     });
   }
-  void show(const LivePlan& now) override { show_text(wire::Kind::plan, plan_text(now)); }
+  void show(const LivePlan& now) override {
+    if (now.needles.empty()) {
+      asio::post(io, [this] {
+        implant.clear();
+        dose.reset();
+      });
+    }
+    show_text(wire::Kind::plan, plan_text(now));
+  }
   void show(const LiveImplant& now) override { show_text(wire::Kind::implant, implant_text(now)); }
   void show(const LiveSeeds& now) override { show_text(wire::Kind::seeds, seeds_text(now)); }
   void show(std::shared_ptr<const LiveDose> now) override {

@@ -36,6 +36,7 @@ constexpr std::size_t kRequests = 256;
 constexpr std::size_t kMostEvents = 1000;
 constexpr auto kStatusEvery = std::chrono::milliseconds(500);
 constexpr auto kProgressEvery = std::chrono::milliseconds(50);
+constexpr auto kImplantEvery = std::chrono::milliseconds(3);
 // SessionStatus::stage while the session is ready and a part of the picture is missing.
 constexpr const char* kFieldStage = "the picture of the tissue's motion";
 constexpr const char* kNoField = "there is too little memory to show how the tissue moves";
@@ -143,6 +144,11 @@ struct Session::Parts {
   void abandon_field();
   void begin_map();
   void begin_case(std::unique_ptr<ImplantDesk> plan);
+  void keep_needle();
+  /// Whether a seed is being dropped or its dose computed; then the session looks for the result more often.
+  [[nodiscard]] bool is_implant_busy() const {
+    return implant && (implant->state().is_computing || (live && live->seeds().is_dropping()));
+  }
   void follow_implant();
   void choose_needle(const Request& request, std::size_t which);
   void use_model(const Request& request, const NeedleModels::Ready& ready);
@@ -326,8 +332,8 @@ void Session::Parts::place(const Request& request, std::size_t which) {
   happened = {{.kind = "started", .time_s = 0.0, .depth_mm = 0.0, .force_N = 0.0, .region = plan_name}};
   audience.tell(happened.front());
   if (!implant) return;
-  if (needle) implant->models().keep(*needle, {open.model, open.field});
   implant->set_current(needle);
+  keep_needle();
   live->seeds().set(implant->rest_mm(), implant->seeds_of_current());
 }
 
@@ -353,10 +359,8 @@ void Session::Parts::take_field() {
   status.stage = open.field ? "" : kNoField;
   status.fraction = -1.0;
   next_status = {};
+  keep_needle();
   if (!open.field) return;
-  if (implant) {
-    if (const auto needle = implant->needle_of(*open.model)) implant->models().keep(*needle, {open.model, open.field});
-  }
   if (live) live->set_field(open.field);
   if (aside) aside->run->set_field(open.field);
 }
@@ -419,6 +423,15 @@ void Session::Parts::begin_case(std::unique_ptr<ImplantDesk> plan) {
   }
 }
 
+/// Keeps the open model if it is that of a needle of the plan. Once its displacement field is complete, the models of
+/// the other needles are compiled.
+void Session::Parts::keep_needle() {
+  const auto needle = implant ? implant->needle_of(*open.model) : std::nullopt;
+  if (!needle) return;
+  implant->models().keep(*needle, {open.model, open.field});
+  if (!field_maker) implant->models().begin_after(*needle);
+}
+
 /// Takes up finished drops, and tells the viewers what has changed of the implant.
 void Session::Parts::follow_implant() {
   std::erase_if(former_implants, [](const auto& former) { return former->models().done(); });
@@ -473,7 +486,9 @@ void Session::Parts::choose_needle(const Request& request, std::size_t which) {
 }
 
 void Session::Parts::use_model(const Request& request, const NeedleModels::Ready& ready) {
-  end_live();
+  // The former run ends after the next one has started: locking the memory of all models anew would take a second.
+  hold_live();
+  const std::unique_ptr<LiveRun> former = std::move(live);
   abandon_field();
   open = {.model = ready.model, .notes = std::move(open.notes), .field = ready.field, .points = {}, .way = 0};
   show_model(0);
@@ -748,7 +763,8 @@ void Session::Parts::run(const std::stop_token& stop) {
     std::deque<Request> waiting;
     {
       std::unique_lock lock(mutex);
-      wake.wait_until(lock, stop, before + period, [&] { return !requests.empty(); });
+      const auto next = is_implant_busy() ? std::min(before + period, Clock::now() + kImplantEvery) : before + period;
+      wake.wait_until(lock, stop, next, [&] { return !requests.empty(); });
       waiting.swap(requests);
     }
     const auto begun = Clock::now();
@@ -757,7 +773,10 @@ void Session::Parts::run(const std::stop_token& stop) {
     }
     const auto now = Clock::now();
     before += now - begun;  // a replay does not advance while requests are carried out
-    if (now < before + period) continue;
+    if (now < before + period) {
+      if (is_implant_busy()) follow_implant();
+      continue;
+    }
     tick(std::chrono::duration<double>(now - before).count());
     before = now;
   }

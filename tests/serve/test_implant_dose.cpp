@@ -33,7 +33,7 @@ ImplantDose::News complete(ImplantDose& dose, std::uint64_t version) {
       all.now = news.now;
       all.version = news.version;
     }
-    if (all.planned && all.now && all.version == version && !all.now->goals.empty()) return all;
+    if (all.now && all.version == version && !all.now->goals.empty()) return all;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ADD_FAILURE() << "the dose was not computed";
@@ -49,7 +49,8 @@ std::unique_ptr<ImplantDose> opened(std::shared_ptr<const ImplantCase> implant) 
 }  // namespace
 
 TEST(ImplantDose, of_all_seeds_is_that_of_stylet_dose_within_half_a_percent) {
-  const auto implant = small_implant(0.5);
+  const auto implant = std::make_shared<ImplantCase>(*small_implant(0.5));
+  implant->options.grid_step_mm = 5.0;  // the grid is not looked at
   ASSERT_GT(implant->structures[0].samples.points.size(), 3 * ImplantDose::kMostSamples) << "samples are left out";
   const auto dose = opened(implant);
   const auto news = complete(*dose, dose->set(placed(implant->plan, 5)));
@@ -73,7 +74,7 @@ TEST(ImplantDose, of_all_seeds_is_that_of_stylet_dose_within_half_a_percent) {
   ASSERT_TRUE(planned);
   const double d90 = planned->structures[0].dvh.dose_of_percent(90.0);
   EXPECT_NEAR(news.planned->d90_Gy, d90, 0.005 * d90);
-  EXPECT_GT(d90, 1.05 * news.now->d90_Gy);
+  EXPECT_GT(d90, 1.02 * news.now->d90_Gy);
 }
 
 TEST(ImplantDose, a_seed_taken_back_leaves_the_dose_as_it_was) {
@@ -92,6 +93,7 @@ TEST(ImplantDose, a_seed_taken_back_leaves_the_dose_as_it_was) {
 TEST(ImplantDose, the_grid_has_the_dose_in_percent_of_the_prescribed_dose) {
   auto implant = std::make_shared<ImplantCase>(*small_implant());
   implant->options.swelling = {};
+  implant->options.grid_step_mm = 5.0;
   const auto dose = opened(implant);
   const auto news = complete(*dose, dose->set(placed(implant->plan, 5)));
   ASSERT_TRUE(news.grid);

@@ -23,8 +23,8 @@ test('the next seed is the one behind those that were dropped', () => {
 });
 
 test('what to do is said in words', () => {
-  assert.deepEqual(whatToDo(plan(0), null, 20), { text: 'Seed 1 of 2: push in 30.0 mm', inPlace: false });
-  assert.deepEqual(whatToDo(plan(0), implant(0), 43), { text: 'Seed 2 of 2: pull back 3.0 mm', inPlace: false });
+  assert.deepEqual(whatToDo(plan(0), null, 20), { text: 'Needle A, seed 1 of 2: push in 30.0 mm', inPlace: false });
+  assert.deepEqual(whatToDo(plan(0), implant(0), 43), { text: 'Needle A, seed 2 of 2: pull back 3.0 mm', inPlace: false });
   assert.ok(whatToDo(plan(0), implant(0), 40.3).inPlace);
   assert.match(whatToDo(plan(0), implant(0, 0), 40).text, /Needle A is empty/);
   assert.match(whatToDo(plan(-1), implant(), 40).text, /not in the plan/);

@@ -45,7 +45,7 @@ async function goToSeed() {
 test('the plan is shown with its first needle', async () => {
   await waitUntilReady(page);
   assert.equal(await page.locator('.plan-needle').count(), 22);
-  assert.match(await page.locator('.todo').textContent(), /^Needle \S+\. Seed 1 of \d: push in/);
+  assert.match(await page.locator('.todo').textContent(), /^Needle \S+, seed 1 of \d: push in/);
   assert.match(await page.locator('#implant').textContent(), /of 84/);
   await keepPicture(page, 'implant-start');
 });

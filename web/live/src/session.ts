@@ -12,7 +12,7 @@ interface Topics {
   frame: Frame;
   event: Event;
   notice: Notice;
-  plan: Plan;       // the plan of seeds to follow
+  plan: Plan | null; // the plan of seeds to follow; null: there is none
   implant: Implant; // what has been carried out of it
   seeds: Seeds;     // where the dropped seeds are now
   dose: Dose;       // the dose around the target
@@ -81,6 +81,7 @@ export class Session implements TransportListener {
     this.connected = true;
     this.attempts = 0;
     this.lostAt = 0;
+    this.takePlan(null);
     this.restart();
     this.tell('link', undefined);
   }
@@ -127,10 +128,10 @@ export class Session implements TransportListener {
     }
   }
 
-  private takePlan(plan: Plan): void {
-    this.plan = plan.needles.length > 0 ? plan : null;
+  private takePlan(plan: Plan | null): void {
+    this.plan = plan && plan.needles.length > 0 ? plan : null;
     if (!this.plan) this.implant = this.seeds = this.dose = null;
-    this.tell('plan', plan);
+    this.tell('plan', this.plan);
   }
 
   private takeStatus(status: Status): void {

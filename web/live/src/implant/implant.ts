@@ -72,10 +72,10 @@ export function whatToDo(plan: Plan, implant: Implant | null, depth: number): { 
   if (!needle) return { text: 'This hole is not in the plan. Choose a needle below.', inPlace: false };
   if (isFinished(implant)) return { text: 'All seeds of the plan have been dropped.', inPlace: false };
   const seed = nextSeed(plan, implant);
-  if (!seed) return { text: `Needle ${needle.name} is empty. Draw it out and take the next one.`, inPlace: false };
+  if (!seed) return { text: `Needle ${needle.name} is empty. Take the next one.`, inPlace: false };
   const number = needle.seeds.indexOf(seed) + 1;
   const togo = seed.drop_depth_mm - depth;
-  const which = `Seed ${number} of ${needle.seeds.length}`;
+  const which = `Needle ${needle.name}, seed ${number} of ${needle.seeds.length}`;
   if (Math.abs(togo) <= IN_PLACE_MM) return { text: `${which}: the needle is in place. Drop it.`, inPlace: true };
   return { text: `${which}: ${togo > 0 ? 'push in' : 'pull back'} ${Math.abs(togo).toFixed(1)} mm`, inPlace: false };
 }

@@ -4,7 +4,7 @@ import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
-import { currentNeedle, droppedOf, isFinished, nextNeedle, nextSeed, whatToDo, type Plan } from './implant';
+import { droppedOf, nextNeedle, nextSeed, whatToDo, type Plan } from './implant';
 
 const WRITE_EVERY_MS = 60;
 
@@ -109,9 +109,8 @@ export class ImplantPanel {
     if (this.listed === null || this.listed.length !== plan.needles.length || this.listed.some((n, k) => n.name !== plan.needles[k].name)) this.build(plan);
     this.figures();
     const { text, inPlace } = whatToDo(plan, implant, frame?.depth ?? 0);
-    const needle = currentNeedle(plan);
-    const words = needle && !isFinished(implant) ? `Needle ${needle.name}. ${text}` : text;
-    if (this.todo.textContent !== words) this.todo.textContent = words;
+    if (this.todo.textContent !== text) this.todo.textContent = text;
+    if (this.todo.title !== text) this.todo.title = text;
     this.todo.classList.toggle('in-place', inPlace);
     const seed = nextSeed(plan, implant);
     const can = session.steering && status?.paused !== true;

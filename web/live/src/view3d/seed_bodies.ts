@@ -7,6 +7,8 @@ import type { Session } from '../session';
 
 const LEAST_RADIUS_MM = 0.55;  // drawn thicker than they are, so that they can be seen
 const UP = new THREE.Vector3(0, 1, 0);
+const PALE = new THREE.Color('#ffffff');
+const NEXT = new THREE.Color(SEED);
 const HIDDEN = new THREE.Matrix4().makeScale(0, 0, 0);
 
 function bodies(count: number, length: number, radius: number, material: THREE.Material): THREE.InstancedMesh {
@@ -48,6 +50,8 @@ export class SeedBodies {
     if (key !== this.key) this.build(key, all.length, plan.seed_length_mm, Math.max(LEAST_RADIUS_MM, plan.seed_diameter_mm / 2));
     const done = new Set(implant?.seeds.map((seed) => seed.number));
     const next = nextSeed(plan, implant);
+    all.forEach((seed, i) => this.planned!.setColorAt(i, seed === next ? NEXT : PALE));
+    this.planned!.instanceColor!.needsUpdate = true;
     all.forEach((seed, i) => this.place(this.planned!, i, done.has(seed.number) ? null : seed.planned_mm, seed.axis, seed === next ? 1.6 : 1));
     const now = placesNow(implant, seeds);
     const lines = new Float32Array(6 * now.length);
