@@ -143,6 +143,22 @@ TEST(Wire, displacements_of_any_size_fit_and_those_that_are_no_numbers_are_not_s
   EXPECT_TRUE(f.displacement.empty());
 }
 
+TEST(Wire, a_dose_has_its_grid_and_its_values) {
+  serve::LiveDose dose;
+  dose.size = {2, 1, 3};
+  dose.origin_mm = Vec3(1, 2, 3);
+  dose.spacing_mm = 1.5;
+  dose.values = {1, 2, 3, 4, 5, 65535};
+  const wire::Bytes bytes = wire::encode(dose, 7);
+  Reader read{bytes};
+  EXPECT_EQ(read.count(), 10u);
+  EXPECT_EQ(read.count(), 7u);
+  for (const std::uint32_t size : {2u, 1u, 3u}) EXPECT_EQ(read.count(), size);
+  for (const float number : {1.0F, 2.0F, 3.0F, 1.5F, 0.1F}) EXPECT_EQ(read.number(), number);
+  for (const std::uint16_t value : dose.values) EXPECT_EQ(read.take<std::uint16_t>(), value);
+  EXPECT_TRUE(read.at_end());
+}
+
 TEST(Wire, a_hand_is_taken_as_it_is_said) {
   const auto decoded = wire::decode(hand({12.5F, 20.F, 90.F, -1.F, 2.F}));
   ASSERT_TRUE(decoded);
@@ -168,7 +184,11 @@ TEST(Wire, commands_carry_what_they_need) {
   ASSERT_NE(as_command(predict), nullptr);
   EXPECT_EQ(as_command(predict)->what, wire::Command::Do::predict);
   EXPECT_EQ(as_command(predict)->number, 1.0);
-  for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn"})
+  const auto needle = wire::decode(command(R"({"do":"needle","index":3})"));
+  ASSERT_NE(as_command(needle), nullptr);
+  EXPECT_EQ(as_command(needle)->what, wire::Command::Do::needle);
+  EXPECT_EQ(as_command(needle)->number, 3.0);
+  for (const char* name : {"take", "release", "reset", "pause", "resume", "live", "drawn", "drop", "undo", "clear"})
     EXPECT_NE(as_command(wire::decode(command(std::string(R"({"do":")") + name + "\"}"))), nullptr) << name;
 }
 
@@ -186,9 +206,10 @@ TEST(Wire, what_is_malformed_is_nothing) {
   wire::Bytes longer = hand({1, 20, 0, 0, 0});
   longer.push_back(std::byte{0});
   EXPECT_FALSE(wire::decode(longer));
-  for (const char* text : {"", "{", "[]", "null", "{}", R"({"do":1})", R"({"do":"fly"})", R"({"do":"hole"})",
-                           R"({"do":"hole","hole":4})", R"({"do":"seek","time_s":"now"})", R"({"do":"step"})",
-                           R"({"do":"predict"})", R"({"do":"seek","time_s":1e300})", R"({"do":"take")"})
+  for (const char* text :
+       {"", "{", "[]", "null", "{}", R"({"do":1})", R"({"do":"fly"})", R"({"do":"hole"})", R"({"do":"hole","hole":4})",
+        R"({"do":"seek","time_s":"now"})", R"({"do":"step"})", R"({"do":"predict"})", R"({"do":"needle"})",
+        R"({"do":"seek","time_s":1e300})", R"({"do":"take")"})
     EXPECT_FALSE(wire::decode(command(text))) << text;
   EXPECT_FALSE(wire::decode(command(R"({"do":"hole","hole":")" + std::string(2000, 'x') + "\"}")));
 }
