@@ -60,9 +60,10 @@ export class EndCard {
     ({ dialog: this.dialog, body: this.body } = dialog('The implant'));
     this.dialog.classList.add('end-card');
     session.on('plan', () => {
-      if (session.plan) return;
-      this.finished = null;
-      this.dialog.close();
+      if (!session.plan) this.finished = null;  // also while the connection is opened again
+    });
+    session.on('scene', () => {
+      if (!session.plan) this.dialog.close();  // another case
     });
     session.on('implant', (implant) => {
       const finished = isFinished(implant);
