@@ -2,13 +2,15 @@
 #include "stylet/coupling/insertion.hpp"
 
 #include "coupling/balance/coupled_balance.hpp"
-#include "coupling/balance/needle_damping.hpp"
+#include "coupling/balance/needle_bundle.hpp"
+#include "coupling/needle_in_tissue.hpp"
 #include "coupling/paper/staggered_balance.hpp"
 #include "coupling/room_watch.hpp"
 #include "stylet/coupling/near_field/near_field_compliance.hpp"
 #include "stylet/coupling/paper/inverse_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -31,6 +33,9 @@ constexpr double kBent_mm = 10.0;
 constexpr int kMostInAir = 50;
 /// [N] Out-of-balance moment over the needle's length below which a needle in the air has settled.
 constexpr double kSettled_N = 1e-10;
+/// Softness of the lateral hold of a tip whose hold the shaft has taken over, over the tissue's own compliance. Raised
+/// much further, its equations lose digits.
+constexpr double kNotHeld = 1e6;
 
 std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, const CouplingSettings& settings,
                                              int capacity) {
@@ -47,7 +52,7 @@ std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, cons
 /// Largest number of points with a contact or a memory: an insertion may begin while the tissue still has the memory of
 /// the one before.
 int most_points(const CouplingSettings& settings) {
-  return settings.creep.is_any() ? 2 * settings.capacity : settings.capacity;
+  return settings.creep.is_any() ? most_shaft_contacts(settings) + settings.capacity : most_shaft_contacts(settings);
 }
 
 /// Without a mesh kernel, the near-field method starts with an empty one, which prepare() fills.
@@ -76,6 +81,8 @@ std::unique_ptr<ContactCompliance> make_compliance(const InsertionTissue& tissue
 struct Insertion::Parts {
   Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_);
 
+  Result<int> add_needle(std::unique_ptr<Needle> needle);
+  Result<> take_up(int number);
   void place(const Pose& pose);
   Step step(const Pose& pose, double dt);
   void sub_step(const Pose& pose, double h, Step& step);
@@ -86,24 +93,30 @@ struct Insertion::Parts {
   void finish_insertion(Step& step);
   void settle_in_air(Step& step);
   void summarise(Step& step) const;
-  void share_length() { path.tip.hand_over(shaft.share_length(path.tracks.now)); }
+  void share_length() { held->path.tip.hand_over(held->shaft.share_length(held->path.tracks.now)); }
+  void make_balance();
+  [[nodiscard]] bool rest_tip();
+  void raise_tip();
 
-  [[nodiscard]] ContactForces forces() const { return {path.tip.force, shaft.all()}; }
+  /// The forces of all contacts, and those of the held needle alone.
+  [[nodiscard]] ContactForces forces() const { return {held->path.tip.force, held->shaft.all()}; }
+  [[nodiscard]] ContactForces own_forces() const { return {held->path.tip.force, std::as_const(held->shaft).own()}; }
+  /// Whether another needle is in the tissue.
+  [[nodiscard]] bool others_rest() const;
   [[nodiscard]] bool contact_waits() const;
   [[nodiscard]] NeedleWhereabouts whereabouts() const;
+  /// The held needle, together with the needles at rest that have contacts.
+  [[nodiscard]] Needle& needles_in_balance() const { return bundle ? *bundle : *held->needle; }
 
   InsertionTissue mesh;
   CouplingSettings settings;
-  std::unique_ptr<Needle> needle;
-  Pose base;  ///< as the hand gives it
   PhaseObserver* phases = nullptr;
   TissueResponse tissue;
   ComplianceSupply supply;
-  TipPath path;
-  ShaftContacts shaft;
-  HandForce hand;
-  Predictor predictor;
-  NeedleDamping damping;
+  std::vector<std::unique_ptr<NeedleInTissue>> needles;
+  NeedleInTissue* held = nullptr;  ///< the needle that the hand moves
+  std::unique_ptr<NeedleBundle> bundle;
+  std::unique_ptr<Predictor> predictor;
   std::unique_ptr<BalanceSolver> balance;
   RoomWatch room;
 };
@@ -116,83 +129,183 @@ Pose between(const Pose& from, const Pose& to, int part, int parts) {
   return {.origin = from.origin + fraction * (to.origin - from.origin),
           .rotation = from.rotation.slerp(fraction, to.rotation)};
 }
-
-std::unique_ptr<BalanceSolver> make_balance(const BalanceParts& parts) {
-  if (parts.settings.solver == CouplingSettings::Solver::staggered)
-    return std::make_unique<paper::StaggeredBalance>(parts);
-  return std::make_unique<CoupledBalance>(parts);
-}
 }  // namespace
 
 Insertion::Parts::Parts(InsertionTissue mesh_, std::unique_ptr<Needle> needle_, const CouplingSettings& settings_)
     : mesh(with_kernel(std::move(mesh_), settings_)),
       settings(settings_),
-      needle(std::move(needle_)),
       tissue(make_compliance(mesh, settings, most_points(settings)), settings.creep, settings.needle_radius_mm,
              most_points(settings)),
       supply(mesh.store->shared_tissue(), settings.engine == CouplingSettings::Engine::condensed ? mesh.store : nullptr,
              settings.method == CouplingSettings::Method::near_field ? mesh.kernel : nullptr, *mesh.locator),
-      path(mesh, settings, base, *needle, tissue),
-      shaft(mesh, settings, *needle, tissue),
-      hand(base, *needle),
-      predictor(needle->state().size()),
-      damping(settings.bone_damping_s),
-      balance(make_balance({settings, {*needle, tissue, path.tip, shaft}, path, hand, predictor, phases})),
-      room(settings, *mesh.store) {}
+      room(settings, *mesh.store) {
+  needles.push_back(std::make_unique<NeedleInTissue>(mesh, settings, std::move(needle_), tissue));
+  held = needles.front().get();
+  make_balance();
+}
+
+bool Insertion::Parts::others_rest() const {
+  return std::any_of(needles.begin(), needles.end(),
+                     [&](const auto& needle) { return needle.get() != held && !needle->in_air(); });
+}
+
+/// Makes predictor and solver anew for the held needle and the contacts of those at rest.
+void Insertion::Parts::make_balance() {
+  std::vector<NeedleBundle::AtRest> at_rest;
+  for (const ShaftContact& contact : held->shaft.all().first(held->shaft.others())) {
+    const auto of = std::find_if(needles.begin(), needles.end(),
+                                 [&](const auto& needle) { return needle->needle.get() == contact.needle; });
+    if (at_rest.empty() || at_rest.back().needle != contact.needle) at_rest.push_back({(*of)->needle.get(), 0});
+    ++at_rest.back().contacts;
+  }
+  balance.reset();
+  bundle.reset();
+  if (!at_rest.empty()) bundle = std::make_unique<NeedleBundle>(*held->needle, at_rest, settings.capacity + 1);
+  predictor = std::make_unique<Predictor>(needles_in_balance().state().size());
+  const BalanceParts parts{settings,   {needles_in_balance(), tissue, held->path.tip, held->shaft},
+                           held->path, held->hand,
+                           *predictor, phases};
+  if (settings.solver == CouplingSettings::Solver::staggered) {
+    balance = std::make_unique<paper::StaggeredBalance>(parts);
+  } else {
+    balance = std::make_unique<CoupledBalance>(parts);
+  }
+}
+
+Result<int> Insertion::Parts::add_needle(std::unique_ptr<Needle> needle) {
+  const auto there = static_cast<int>(needles.size());
+  if (there >= settings.needles)
+    return failure("Insertion::add_needle", fmt::format("the tissue has room for {} needle(s)", there),
+                   "Raise CouplingSettings::needles");
+  if (settings.solver != CouplingSettings::Solver::coupled || settings.engine != CouplingSettings::Engine::condensed)
+    return failure("Insertion::add_needle", "several needles in one tissue are not possible with these settings",
+                   "Choose the coupled solver and the condensed engine");
+  needles.push_back(std::make_unique<NeedleInTissue>(mesh, settings, std::move(needle), tissue));
+  return there;
+}
+
+/// The held needle is about to rest: a contact of its own stands for its tip, if the tip presses.
+/// @return false where there is no room for that contact
+bool Insertion::Parts::rest_tip() {
+  TipContact& tip = held->path.tip;
+  held->tip_point = -1;
+  if (!tip.holds()) return true;
+  const ContactCompliance::Added added = tissue.compliance().add(tip.cut.at(), tip.cut.x(), Placement::embedded);
+  if (added.point < 0) return false;
+  held->tip_point = added.point;
+  tissue.set_place(added.point, {tip.cut.at(), Vec3::Zero()});
+  tissue.lay_tip_down(added.point);
+  const Needle& needle = *held->needle;
+  ShaftContact contact;
+  contact.needle = &needle;
+  contact.point = added.point;
+  contact.xi = held->path.tracks.now.end_xi;
+  contact.s = contact.s_start = needle.length();
+  contact.length = 1.0;
+  contact.presses_only = true;
+  contact.law = {.static_N_per_mm = tip.ahead.limit(),
+                 .coulomb_N_per_mm = tip.ahead.cutting(),
+                 .viscous_Ns_per_mm2 = settings.tip_viscosity_Ns_per_mm};
+  contact.force = tip.force;
+  contact.softness = tip.has_lateral_rows() ? tip.lateral_softness() : kNotHeld * tissue.own_yield(added.point);
+  tip.force.setZero();
+  held->shaft.add(contact);
+  // The point's own compliance differs a little from the tip's. Its material place is chosen such that it lies where
+  // the tip is.
+  ShaftContact& laid = held->shaft.all().back();
+  laid.x = needle.point(needle.length()) - tissue.displacement(laid.point, forces());
+  return true;
+}
+
+/// The held needle has been taken up: its tip presses the tissue again.
+void Insertion::Parts::raise_tip() {
+  held->path.take_up();
+  if (held->tip_point < 0) return;
+  const ShaftContact contact = held->shaft.all().back();
+  held->shaft.remove_last();
+  tissue.take_tip_up(held->tip_point, held->path.tracks.now.end_xi);
+  held->tip_point = -1;
+  TipContact& tip = held->path.tip;
+  using State = ShaftContact::State;
+  if (contact.state == State::backward) {
+    tip.set_state(TipContact::State::open);
+    return;
+  }
+  tip.force = contact.force;
+  tip.set_state(contact.state == State::forward ? TipContact::State::cut : TipContact::State::stick);
+}
+
+Result<> Insertion::Parts::take_up(int number) {
+  if (number < 0 || number >= static_cast<int>(needles.size()))
+    return failure("Insertion::take_up", fmt::format("there is no needle {}", number),
+                   fmt::format("Give a number from 0 to {}", needles.size() - 1));
+  NeedleInTissue* const next = needles[static_cast<std::size_t>(number)].get();
+  if (next == held) return Ok{};
+  if (!rest_tip())
+    return failure("Insertion::take_up", "there is no room for the contact of a tip that comes to rest",
+                   "Raise CouplingSettings::capacity");
+  balance.reset();  // it refers to the needle that comes to rest
+  next->shaft.take_over(held->shaft);
+  held = next;
+  raise_tip();
+  make_balance();
+  room.forget();
+  return Ok{};
+}
 
 /// Solves for the needle's shape in the air, where only the guide bends it.
 void Insertion::Parts::settle_in_air(Step& step) {
   MatX no_compliance(0, 0);
   VecX no_motion(0);
-  for (int iteration = 0; needle->residual({}) > kSettled_N * needle->length(); ++iteration) {
+  for (int iteration = 0; held->needle->residual({}) > kSettled_N * held->needle->length(); ++iteration) {
     if (iteration == kMostInAir) {
       step.flags |= Step::not_converged;
       return;
     }
     balance->forget_tangent();
-    needle->linearise({}, no_compliance, no_motion);
-    needle->advance({});
+    held->needle->linearise({}, no_compliance, no_motion);
+    held->needle->advance({});
   }
 }
 
 /// The needle is out: the tissue is reset, or recovers from creep over time. The tracks are kept.
 void Insertion::Parts::finish_insertion(Step& step) {
-  path.finish();
-  shaft.clear();
+  held->path.finish();
+  held->shaft.clear();
   balance->release();
-  damping.forget();
+  held->damping.forget();
   balance->damp(0.0);
-  tissue.let_go();
-  needle->straighten();
+  if (!others_rest()) tissue.let_go();
+  held->needle->straighten();
   settle_in_air(step);
-  path.come_out();
+  held->path.come_out();
 }
 
 void Insertion::Parts::place(const Pose& pose) {
   Step unused;
-  if (!path.in_air()) finish_insertion(unused);
+  if (!held->path.in_air()) finish_insertion(unused);
   if (tissue.is_relaxing()) tissue.reset();
   room.forget();
   balance->forget_tangent();
-  predictor.forget();
-  base = pose;
-  needle->set_base(pose);
+  predictor->forget();
+  held->base = pose;
+  held->needle->set_base(pose);
   settle_in_air(unused);
-  path.place_in_air(path.tip_now());
-  path.forget_events();
+  held->path.place_in_air(held->path.tip_now());
+  held->path.forget_events();
 }
 
 /// Moves a needle in the air, and tests whether it meets the patient.
 bool Insertion::Parts::enter(Step& step) {
-  predictor.interrupt();
+  predictor->interrupt();
   settle_in_air(step);
-  const bool arrived = path.move_through_air(step);
-  if (!path.in_air()) {
+  const bool arrived = held->path.move_through_air(step);
+  if (!held->path.in_air()) {
     share_length();
     return true;
   }
-  tissue.relax(forces());
-  if (arrived) path.arrive(path.tip_now());
+  if (!others_rest()) tissue.relax(forces());
+  if (arrived) held->path.arrive(held->path.tip_now());
   return false;
 }
 
@@ -200,14 +313,14 @@ bool Insertion::Parts::enter(Step& step) {
 /// @return false where there is no balance, the tip cuts and the sub-step may be given up; everything is then restored
 /// to the start of the sub-step
 bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
-  Effort effort(1 + static_cast<int>(shaft.count()));
-  TipContact& tip = path.tip;
+  Effort effort(1 + static_cast<int>(held->shaft.count()));
+  TipContact& tip = held->path.tip;
   const unsigned flags_before = std::exchange(step.flags, 0u);
   const bool steady = balance->solve(h, effort, step);
   const bool found = (step.flags & Step::not_converged) == 0;
   if (!found && may_give_up && tip.cuts()) {
-    predictor.go_back(*needle, tip, shaft.all());
-    predictor.interrupt();
+    predictor->go_back(needles_in_balance(), tip, held->shaft.all());
+    predictor->interrupt();
     step.flags = flags_before;
     return false;
   }
@@ -215,67 +328,69 @@ bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
   tip.cut_mm_per_s = cut / h;
   {
     const InPhase in_phase(phases, StepPhase::tip);
-    path.commit(step);
+    held->path.commit(step);
   }
-  damping.end(found);
+  held->damping.end(found);
   step.flags |= flags_before;
-  predictor.end(cut, steady, *needle, tip, shaft.all());
+  predictor->end(cut, steady, needles_in_balance(), tip, held->shaft.all());
   return true;
 }
 
 /// Carries out h seconds after the base has moved from one pose to another. @return as find_balance()
 bool Insertion::Parts::move_on(const Pose& from, const Pose& to, double h, bool may_give_up, Step& step) {
   tissue.begin(h);
-  balance->damp(damping.begin(h, path.tip.is_on_bone()) / h);
-  predictor.begin(from, to, *needle, path.tip, shaft.all());
-  balance->base_moved(predictor.last_motion());
+  balance->damp(held->damping.begin(h, held->path.tip.is_on_bone()) / h);
+  predictor->begin(from, to, needles_in_balance(), held->path.tip, held->shaft.all());
+  balance->base_moved(predictor->last_motion());
   if (!find_balance(h, may_give_up, step)) return false;
-  ContactStates::stick_where_slow(shaft.all(), h, settings.zero_band_mm_per_s);
+  ContactStates::stick_where_slow(held->shaft.all(), h, settings.zero_band_mm_per_s);
   {
     const InPhase in_phase(phases, StepPhase::contacts);
-    shaft.wake_and_drop(path.tracks.now, path.marks, path.tip.force, step);
+    held->shaft.wake_and_drop(held->path.tracks.now, held->path.marks, held->path.tip.force, step);
     share_length();
   }
-  path.pass_open_end(forces(), step);
-  tissue.end(forces(), path.tracks.now);
+  held->path.pass_open_end(forces(), step);
+  tissue.end(forces(), held->path.tracks.now);
   return true;
 }
 
 void Insertion::Parts::sub_step(const Pose& pose, double h, Step& step) {
-  const Pose before = needle->base();
-  hand.begin(forces(), damping.balanced());
-  base = pose;
-  needle->set_base(pose);
+  const Pose before = held->needle->base();
+  held->hand.begin(own_forces(), held->damping.balanced());
+  held->base = pose;
+  held->needle->set_base(pose);
   tissue.begin(h);
-  if (path.in_air() && !enter(step)) return;
-  const bool may_give_up = damping.balanced();
+  // Needles at rest have to be balanced even while the held needle is in the air: the tissue may have lost a needle, or
+  // creep.
+  if (held->in_air() && !enter(step) && !others_rest()) return;
+  const bool may_give_up = held->damping.balanced();
   if (!move_on(before, pose, h, may_give_up, step)) {
     Pose from = before;
     for (int part = 1; part <= kParts; ++part) {
-      base = between(before, pose, part, kParts);
-      needle->set_base(base);
-      move_on(from, base, h / kParts, false, step);
-      from = base;
+      held->base = between(before, pose, part, kParts);
+      held->needle->set_base(held->base);
+      move_on(from, held->base, h / kParts, false, step);
+      from = held->base;
     }
   }
   const bool drawn_out = (pose.origin - before.origin).dot(pose.rotation * Vec3::UnitZ()) < 0.0;
-  if (shaft.empty() && path.has_left(drawn_out)) finish_insertion(step);
+  if (!held->in_air() && held->shaft.empty() && held->path.has_left(drawn_out)) finish_insertion(step);
 }
 
 Step Insertion::Parts::step(const Pose& pose, double dt) {
   Step step;
-  path.forget_events();
+  held->path.forget_events();
   if (!pose.origin.allFinite() || !pose.rotation.coeffs().allFinite() || !(dt > 0.0) || !std::isfinite(dt)) {
     step.flags = Step::invalid_input;
     summarise(step);
     return step;
   }
   if (supply.awaits_step()) supply.serve(tissue.compliance(), whereabouts());
-  const Pose from = base;
+  const Pose from = held->base;
   // Motion of the shaft's points: tilting moves the whole needle, rolling moves only a bent needle.
   const double turn = 2.0 * std::acos(std::min(1.0, std::abs(from.rotation.dot(pose.rotation))));
   const double tilt = (pose.rotation * Vec3::UnitZ() - from.rotation * Vec3::UnitZ()).norm();
-  const double way = (pose.origin - from.origin).norm() + tilt * needle->length() + turn * kBent_mm;
+  const double way = (pose.origin - from.origin).norm() + tilt * held->needle->length() + turn * kBent_mm;
   int count = kMaxSubSteps;
   if (way <= kMaxSubSteps * settings.max_advance_mm) {
     count = std::max(1, static_cast<int>(std::ceil(way / settings.max_advance_mm)));
@@ -289,33 +404,33 @@ Step Insertion::Parts::step(const Pose& pose, double dt) {
     const std::size_t after = tissue.compliance().remeshing().size();
     step.remeshings = after >= before ? step.remeshings + static_cast<int>(after - before) : 0;
   }
-  room.note(shaft.count(), path.tracks.earlier().size());
-  room.note_events(path.events().size());
+  room.note(held->shaft.own().size(), held->path.tracks.earlier().size());
+  room.note_events(held->path.events().size());
   summarise(step);
   const bool explained = (step.flags & Step::compliance_missing) != 0;
-  if (path.is_outside() && step.contacts == 0 && !explained && path.in_tissue(step.tip_mm))
+  if (held->path.is_outside() && step.contacts == 0 && !explained && held->path.in_tissue(step.tip_mm))
     step.flags |= Step::no_contact_inside;
   return step;
 }
 
 void Insertion::Parts::summarise(Step& step) const {
-  const TipContact& tip = path.tip;
-  const Vec3& at_base = base.origin;
-  const double length = needle->length();
-  step.base = base;
-  step.tip_state = path.phase();
-  step.tip_mm = needle->point(length);
-  step.contacts = static_cast<int>(shaft.count()) + (tip.holds() ? 1 : 0);
-  const PointLoad guide = needle->guide_load();
+  const TipContact& tip = held->path.tip;
+  const Vec3& at_base = held->base.origin;
+  const double length = held->needle->length();
+  step.base = held->base;
+  step.tip_state = held->path.phase();
+  step.tip_mm = held->needle->point(length);
+  step.contacts = static_cast<int>(held->shaft.own().size()) + (tip.holds() ? 1 : 0);
+  const PointLoad guide = held->needle->guide_load();
   step.guide_force_N = guide.force;
-  step.hand_force_N = hand.now(forces());
-  step.torque_Nmm =
-      (needle->point(length) - at_base).cross(tip.force) - (needle->point(guide.s) - at_base).cross(guide.force);
+  step.hand_force_N = held->hand.now(own_forces());
+  step.torque_Nmm = (held->needle->point(length) - at_base).cross(tip.force) -
+                    (held->needle->point(guide.s) - at_base).cross(guide.force);
   double sliding = 0.0;
   double sliding_out = 0.0;
-  for (const ShaftContact& contact : shaft.all()) {
+  for (const ShaftContact& contact : own_forces().shaft) {
     const double arc = paper::loaded_arc(settings, length, std::clamp(contact.s, 0.0, length));
-    step.torque_Nmm += (needle->point(arc) - at_base).cross(contact.force);
+    step.torque_Nmm += (held->needle->point(arc) - at_base).cross(contact.force);
     step.inserted_mm += contact.length;
     if (contact.sticks()) {
       ++step.sticking;
@@ -333,17 +448,17 @@ void Insertion::Parts::summarise(Step& step) const {
 
 /// Whether the next contact waits for its compliance.
 bool Insertion::Parts::contact_waits() const {
-  const std::vector<Track::Mark>& marks = path.tracks.now.marks;
-  if (shaft.count() >= marks.size()) return false;
-  const Track::Mark& next = marks[shaft.count()];
+  const std::vector<Track::Mark>& marks = held->path.tracks.now.marks;
+  if (held->shaft.own().size() >= marks.size()) return false;
+  const Track::Mark& next = marks[held->shaft.own().size()];
   return next.point < 0 && !tissue.compliance().available(next.at.tet);
 }
 
 /// Place where compliance is needed next: at the tip, then at the contact that waits behind the tip.
 NeedleWhereabouts Insertion::Parts::whereabouts() const {
-  if (path.tip.waits() || !contact_waits()) return path.whereabouts();
-  const Track::Mark& next = path.tracks.now.marks[shaft.count()];
-  return {next.x, needle->tangent(needle->length()), next.at.tet};
+  if (held->path.tip.waits() || !contact_waits()) return held->path.whereabouts();
+  const Track::Mark& next = held->path.tracks.now.marks[held->shaft.own().size()];
+  return {next.x, held->needle->tangent(held->needle->length()), next.at.tet};
 }
 
 Insertion::Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings)
@@ -352,51 +467,89 @@ Insertion::~Insertion() = default;
 Insertion::Insertion(Insertion&&) noexcept = default;
 Insertion& Insertion::operator=(Insertion&&) noexcept = default;
 
+Result<int> Insertion::add_needle(std::unique_ptr<Needle> needle) { return parts_->add_needle(std::move(needle)); }
+Result<> Insertion::take_up(int needle) { return parts_->take_up(needle); }
+int Insertion::needles() const { return static_cast<int>(parts_->needles.size()); }
+int Insertion::held() const {
+  const auto& all = parts_->needles;
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const auto& needle) { return needle.get() == parts_->held; });
+  return static_cast<int>(at - all.begin());
+}
+const Needle& Insertion::needle(int number) const { return *parts_->needles[static_cast<std::size_t>(number)]->needle; }
+const Track& Insertion::track(int number) const {
+  return parts_->needles[static_cast<std::size_t>(number)]->path.tracks.now;
+}
+bool Insertion::in_tissue(int number) const { return !parts_->needles[static_cast<std::size_t>(number)]->in_air(); }
+
 void Insertion::place(const Pose& base) { parts_->place(base); }
-void Insertion::place_guide(const Vec3& hole, const Vec3& axis) { parts_->needle->place_guide(hole, axis); }
+void Insertion::place_guide(const Vec3& hole, const Vec3& axis) { parts_->held->needle->place_guide(hole, axis); }
 Step Insertion::step(const Pose& base, double dt) { return parts_->step(base, dt); }
-std::span<const InsertionEvent> Insertion::events() const { return parts_->path.events(); }
+std::span<const InsertionEvent> Insertion::events() const { return parts_->held->path.events(); }
 
 void Insertion::prepare(double radius_mm) {
   Parts& p = *parts_;
-  const bool waits = p.path.tip.waits() || p.contact_waits() || p.path.awaits_entry();
-  if (!waits && p.room.is_complete_near(p.path.tip_now(), 0.25 * radius_mm)) return;
+  const bool waits = p.held->path.tip.waits() || p.contact_waits() || p.held->path.awaits_entry();
+  if (!waits && p.room.is_complete_near(p.held->path.tip_now(), 0.25 * radius_mm)) return;
   p.supply.work_through(p.tissue.compliance(), p.whereabouts(),
                         {.radius_mm = radius_mm, .ahead_mm = 0.0, .spare_nodes = p.settings.spare_nodes});
-  p.room.note(p.shaft.count(), p.path.tracks.earlier().size());
-  p.room.complete_at(p.path.tip_now());
+  p.room.note(p.held->shaft.own().size(), p.held->path.tracks.earlier().size());
+  p.room.complete_at(p.held->path.tip_now());
 }
 
 const ComplianceStore& Insertion::store() const { return *parts_->mesh.store; }
 ComplianceSupply& Insertion::supply() { return parts_->supply; }
-const Needle& Insertion::needle() const { return *parts_->needle; }
+const Needle& Insertion::needle() const { return *parts_->held->needle; }
 const ContactCompliance& Insertion::compliance() const { return std::as_const(parts_->tissue).compliance(); }
 const CouplingSettings& Insertion::settings() const { return parts_->settings; }
 void Insertion::observe_phases(PhaseObserver* observer) { parts_->phases = observer; }
 const CapacityUses& Insertion::capacities() const { return parts_->room.uses(); }
-const Track& Insertion::track() const { return parts_->path.tracks.now; }
-std::span<const Track> Insertion::old_tracks() const { return parts_->path.tracks.earlier(); }
+const Track& Insertion::track() const { return parts_->held->path.tracks.now; }
+std::span<const Track> Insertion::old_tracks() const { return parts_->held->path.tracks.earlier(); }
 
 std::vector<ContactState> Insertion::contacts() const {
-  std::vector<ContactState> result(parts_->shaft.count() + 1);
+  std::vector<ContactState> result(parts_->held->shaft.own().size() + 1);
   result.resize(contacts(result));
   return result;
 }
 
 std::size_t Insertion::contacts(std::span<ContactState> out) const {
   const Parts& p = *parts_;
-  const TipContact& tip = p.path.tip;
+  const TipContact& tip = p.held->path.tip;
   std::size_t count = 0;
   if (tip.holds() && !out.empty()) {
     const Vec3 at = tip.cut.x() + p.tissue.displacement(ContactCompliance::kTip, p.forces());
-    out[count++] = {at, tip.force, p.needle->length(), 0.0, tip.state() == TipContact::State::stick, true};
+    out[count++] = {at, tip.force, p.held->needle->length(), 0.0, tip.state() == TipContact::State::stick, true};
   }
-  for (const ShaftContact& contact : p.shaft.all()) {
+  for (const ShaftContact& contact : p.own_forces().shaft) {
     if (count == out.size()) break;
     const Vec3 at = contact.x + p.tissue.displacement(contact.point, p.forces());
     out[count++] = {at, contact.force, contact.s, contact.length, contact.sticks(), false};
   }
   return count;
+}
+
+std::vector<ContactState> Insertion::contacts_of(int needle) const {
+  const Parts& p = *parts_;
+  const NeedleInTissue& of = *p.needles[static_cast<std::size_t>(needle)];
+  if (&of == p.held) return contacts();
+  std::vector<ContactState> result;
+  for (const ShaftContact& contact : p.forces().shaft) {
+    if (contact.needle != of.needle.get()) continue;
+    const Vec3 at = contact.x + p.tissue.displacement(contact.point, p.forces());
+    result.push_back({at, contact.force, contact.s, contact.length, contact.sticks(), contact.presses_only});
+  }
+  return result;
+}
+
+Vec3 Insertion::hand_force_on(int needle) const {
+  const Parts& p = *parts_;
+  const NeedleInTissue& of = *p.needles[static_cast<std::size_t>(needle)];
+  Vec3 force = of.path.tip.force - of.needle->guide_load().force;
+  for (const ShaftContact& contact : p.forces().shaft) {
+    if (contact.needle == of.needle.get()) force += contact.force;
+  }
+  return force;
 }
 
 ContactCompliance::Nodes Insertion::nodes() const {
@@ -433,7 +586,7 @@ std::vector<TissueForce> Insertion::tissue_forces() const {
 
 std::size_t Insertion::tissue_forces(std::span<TissueForce> out) const {
   const Parts& p = *parts_;
-  const MaterialPoint tip = p.path.tip.cut.at();
+  const MaterialPoint tip = p.held->path.tip.cut.at();
   std::size_t count = 0;
   for (int point = 0; point < compliance().points(); ++point) {
     const Vec3 lasting = p.tissue.lasting_force(point, p.forces());
@@ -454,8 +607,8 @@ double Insertion::compliance_condition() const {
   const auto take = [&](int point) {
     for (Eigen::Index k = 0; k < 3; ++k) rows.push_back(3 * point + k);
   };
-  if (p.path.tip.holds()) take(ContactCompliance::kTip);
-  for (const ShaftContact& contact : p.shaft.all()) take(contact.point);
+  if (p.held->path.tip.holds()) take(ContactCompliance::kTip);
+  for (const ShaftContact& contact : p.held->shaft.all()) take(contact.point);
   if (rows.empty()) return 1.0;
   const MatX A = compliance().matrix()(rows, rows);
   const Eigen::SelfAdjointEigenSolver<MatX> eigen(A, Eigen::EigenvaluesOnly);

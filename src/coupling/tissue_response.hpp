@@ -81,6 +81,16 @@ class TissueResponse {
   /// Begins the memory of a tip that touches new material, at the end of a track of length xi [mm].
   void begin_tip(double xi);
 
+  /// Moves the memory of a tip that comes to rest to the point that stands for it from then on.
+  void lay_tip_down(int point) {
+    if (memory_.on()) memory_.hand_over(ContactCompliance::kTip, point, 1.0);
+  }
+  /// Moves it back: the needle is taken up again, and its track ends at the arc length xi [mm].
+  void take_tip_up(int point, double xi) {
+    if (memory_.on()) memory_.hand_over(point, ContactCompliance::kTip, 1.0);
+    tip_xi_ = xi;
+  }
+
   /// Ends a sub-step. The track takes over the memory of the material that the tip has passed.
   void end(const ContactForces& contacts, const Track& track);
   /// Moves a part of the tip's memory to the last point of the track.

@@ -26,10 +26,17 @@ InsertionTissue tissue_of(const Model& model) {
           model.spread()};
 }
 
+CouplingSettings with_needles(CouplingSettings settings, int needles) {
+  settings.needles = std::max(1, needles);
+  return settings;
+}
+
 }  // namespace
 
-Simulation::Simulation(std::shared_ptr<const Model> model)
-    : model_(std::move(model)), insertion_(tissue_of(*model_), model_->make_needle(), model_->coupling()) {
+Simulation::Simulation(std::shared_ptr<const Model> model, int needles)
+    : model_(std::move(model)),
+      insertion_(tissue_of(*model_), model_->make_needle(), with_needles(model_->coupling(), needles)),
+      resting_(static_cast<std::size_t>(std::max(1, needles))) {
   // Reserve memory for the names of regions, so that step() does not allocate.
   std::size_t longest = 0;
   for (const std::string& region : model_->mesh().regions) longest = std::max(longest, region.size());
@@ -56,6 +63,26 @@ void Simulation::place(const Pose& base, const Vec3& entry, const Vec3& directio
   placed.base_depth_mm = base_depth_mm(base);
   placed.tip_mm = insertion_.needle().point(insertion_.needle().length());
   step_ = placed;
+}
+
+Result<> Simulation::take_up(int needle) {
+  while (insertion_.needles() <= needle && needle < static_cast<int>(resting_.size())) {
+    if (const auto added = insertion_.add_needle(model_->make_needle()); !added) return added.error();
+  }
+  const int before = insertion_.held();
+  if (needle == before) return Ok{};
+  if (auto taken = insertion_.take_up(needle); !taken) return taken;
+  resting_[static_cast<std::size_t>(before)] = {entry_, direction_, step_, turns_, slipping_};
+  const Resting& now = resting_[static_cast<std::size_t>(needle)];
+  const double time_s = step_.time_s;
+  entry_ = now.entry;
+  direction_ = now.direction;
+  step_ = now.step;
+  step_.time_s = time_s;
+  turns_ = now.turns;
+  slipping_ = now.slipping;
+  event_count_ = 0;
+  return Ok{};
 }
 
 ComplianceSupply::Settings Simulation::supply_settings() const {

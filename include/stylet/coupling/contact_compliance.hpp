@@ -84,6 +84,9 @@ class ContactCompliance {
   /// the unit vector `direction`. Before the first call, and after reset(), there is no such surface.
   virtual void enter_by(double /*force*/, const Vec3& /*direction*/) {}
 
+  /// From here on, the tip and the points that are added belong to another needle.
+  virtual void change_needle() {}
+
   /// Whether the compliance of a base tetrahedron's nodes has been computed. Where it has not, no point can be added
   /// and the tip cannot be moved there.
   [[nodiscard]] virtual bool available(Index base_tet) const = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stylet/core/result.hpp"
 #include "stylet/coupling/capacity_use.hpp"
 #include "stylet/coupling/compliance_supply.hpp"
 #include "stylet/coupling/contact_compliance.hpp"
@@ -54,16 +55,30 @@ struct InsertionTissue {
   std::shared_ptr<const SpreadCompliance> spread{};
 };
 
-/// A flexible needle in tissue: moves the base, finds the balance of needle and tissue under friction and cutting,
-/// and keeps the track. The model is quasi-static; time enters through viscosity and damping. step() does not allocate,
-/// throw, lock or log, except that engines with the full inverse allocate when the mesh changes.
-/// docs/theory/coupling.md describes the model.
+/// Flexible needles in tissue: moves the base of one needle, finds the balance of needles and tissue under friction and
+/// cutting, and keeps the tracks. The hand holds one needle at a time; others rest where it left them, with their hubs
+/// locked, and take part in every balance: they hold the tissue, bend, and slip (docs/theory/several_needles.md).
+/// Unless said otherwise, a function is about the needle that the hand holds. The model is quasi-static; time enters
+/// through viscosity and damping. step() does not allocate, throw, lock or log, except that engines with the full
+/// inverse allocate when the mesh changes. docs/theory/coupling.md describes the model.
 class Insertion {
  public:
   Insertion(InsertionTissue tissue, std::unique_ptr<Needle> needle, const CouplingSettings& settings);
   ~Insertion();
   Insertion(Insertion&&) noexcept;
   Insertion& operator=(Insertion&&) noexcept;
+
+  /// Adds a needle, which is in the air and at rest. Call it between steps; it allocates.
+  /// @return the needle's number; an error where CouplingSettings::needles leaves no room, or with the staggered solver
+  /// or an engine that keeps the full inverse
+  Result<int> add_needle(std::unique_ptr<Needle> needle);
+  /// Lays the held needle to rest and takes up another. The hub of a needle at rest is locked where the hand left it.
+  /// The tip of a needle at rest presses the tissue with at most its cutting force, does not pull, and once the tissue
+  /// has left it, stays open until the needle is taken up. Call it between steps; it allocates.
+  /// @return an error, with nothing changed, where there is no such needle or no room for the tip's contact
+  Result<> take_up(int needle);
+  [[nodiscard]] int needles() const;  ///< number of needles; the first one is needle 0
+  [[nodiscard]] int held() const;     ///< number of the needle that the hand holds
 
   /// Places the needle without touching tissue; must be called before the first step. A needle that is still in the
   /// tissue is withdrawn first.
@@ -101,6 +116,15 @@ class Insertion {
   /// The same, written to `out`; does not allocate. @return number of contacts written; capacity + 1 elements are
   /// enough
   std::size_t contacts(std::span<ContactState> out) const;
+
+  /// The contacts of any needle, one at rest included. Allocates.
+  [[nodiscard]] std::vector<ContactState> contacts_of(int needle) const;
+  /// [N] LPS, force of the hand or the lock on the base of any needle.
+  [[nodiscard]] Vec3 hand_force_on(int needle) const;
+  [[nodiscard]] const Needle& needle(int number) const;
+  [[nodiscard]] const Track& track(int number) const;
+  /// Whether a needle touches the tissue or is in it.
+  [[nodiscard]] bool in_tissue(int number) const;
 
   /// Displacement of the material at the mesh's nodes [mm] (3n). Solves and allocates; for pictures, never in the
   /// real-time loop.

@@ -105,7 +105,8 @@ struct CouplingSettings {
   Bevel bevel;            ///< of the needle's tip
   std::shared_ptr<const CuttingModel> cutting;  ///< a program's own law of cutting; null: the built-in law
   Creep creep;                                  ///< of the tissue
-  int capacity = 96;                            ///< largest number of shaft contacts
+  int capacity = 96;                            ///< largest number of shaft contacts of a needle
+  int needles = 1;                              ///< largest number of needles in the tissue at the same time
   int spare_nodes = 1500;                       ///< room for nodes whose compliance is computed after the start
   /// Coupled solver: a balance has converged when the largest error, as a force, is below this part of the largest
   /// force or of 1 N.
@@ -116,6 +117,11 @@ struct CouplingSettings {
   /// is.
   double needle_node_mm = 0.0;
 };
+
+/// Largest number of shaft contacts of all needles; each needle at rest adds its tip to those of its shaft.
+[[nodiscard]] inline int most_shaft_contacts(const CouplingSettings& settings) {
+  return settings.needles * settings.capacity + settings.needles - 1;
+}
 
 /// Whether tissue stiffens under the tip by RegionLaws::stiffening_MPa. Methods other than near_field and the staggered
 /// solver take all tissue as linear.

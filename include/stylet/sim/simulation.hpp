@@ -6,12 +6,22 @@
 
 namespace stylet {
 
-/// Simulation of one needle in one patient: the mutable, preallocated state that belongs to a Model. A loop calls only
+/// Simulation of needles in one patient: the mutable, preallocated state that belongs to a Model. A loop calls only
 /// step(), which does not allocate once prepare() has made the compliance around the tip available.
+///
+/// The hand holds one needle, the first one unless another has been taken up. Needles at rest hold the tissue, bend and
+/// slip (docs/theory/several_needles.md). Unless said otherwise, a function is about the needle that the hand holds.
 class Simulation {
  public:
-  /// Places the needle at the start of the model's first insertion.
-  explicit Simulation(std::shared_ptr<const Model> model);
+  /// Places the first needle at the start of the model's first insertion.
+  /// @param needles largest number of needles at the same time
+  explicit Simulation(std::shared_ptr<const Model> model, int needles = 1);
+
+  /// Lays the held needle to rest and takes up another. A needle that has not been in the hand before is in the air:
+  /// place() has to be called next. Call it between steps; it allocates.
+  /// @param needle 0 … the number of needles given to the constructor − 1
+  /// @return an error where there is no such needle or no room for another contact
+  Result<> take_up(int needle);
 
   /// Starts an insertion with the needle straight and outside of the patient. Simulated time continues.
   /// @param base pose of the needle's base @param entry [mm] LPS, skin point on the needle's line
@@ -70,8 +80,18 @@ class Simulation {
   void notice_turn(double advance_mm, bool in_tissue);
   [[nodiscard]] double base_depth_mm(const Pose& base) const;
 
+  /// What is known of a needle while it rests.
+  struct Resting {
+    Vec3 entry = Vec3::Zero();
+    Vec3 direction = Vec3::UnitZ();
+    Step step;
+    TurnWatch turns;
+    bool slipping = true;
+  };
+
   std::shared_ptr<const Model> model_;
   Insertion insertion_;
+  std::vector<Resting> resting_;  ///< (needles)
   Vec3 entry_ = Vec3::Zero();
   Vec3 direction_ = Vec3::UnitZ();
   Step step_;

@@ -37,7 +37,7 @@ void ContactRows::take_places(const Contacts& contacts) {
   for (int c = 0; c < contacts.count(); ++c) {
     const double s = contacts.arc(c);
     const double beyond = c == 0 ? 0.0 : contacts.of_shaft(c).s - s;
-    const AxisPlace at = contacts.needle.place(s);
+    const AxisPlace at = contacts.needle_of(c).place(s);
     const Vec3& t = at.tangent;
     needle_[static_cast<std::size_t>(c)] = at.point + beyond * t;
     // Any pair of normals is valid, because both lateral directions are treated alike.
@@ -98,10 +98,12 @@ void ContactRows::soften_shaft(ShaftContact& contact, int load, double h) {
   contact.slip = h / std::max(viscosity * contact.length, kNoViscosity);
   contact.reach =
       slow > kLeastViscosity ? contact.law.viscous_to_mm_per_s * h : std::numeric_limits<double>::infinity();
+  if (contact.presses_only && contact.state == ShaftContact::State::backward) contact.coulomb = 0.0;
   Yield& own = yield[static_cast<std::size_t>(load)];
   Vec3 by_state = Vec3::Zero();
   own.along = frame[static_cast<std::size_t>(load)].col(2);
-  own.lateral = own.axial = contact.softness;
+  own.lateral = contact.softness;
+  own.axial = contact.presses_only ? settings_.axial_compliance_mm_per_N : contact.softness;
   if (!contact.sticks()) {
     own.axial += contact.slip;
     by_state[2] = contact.slip * contact.sense() * contact.coulomb + contact.s_start - contact.s;

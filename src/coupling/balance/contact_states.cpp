@@ -29,7 +29,9 @@ double ContactStates::contradiction(int load, const Trial& trial) const {
   if (load == 0) return contradiction_of_tip(trial);
   const ShaftContact& contact = contacts_.of_shaft(load);
   if (contact.toggles > most_toggles_ || is_frictionless(contact)) return 0.0;
-  if (contact.sticks()) return std::abs(trial.axial) - contact.law.static_N_per_mm * contact.length;
+  if (contact.presses_only && contact.state == ShaftContact::State::backward) return 0.0;
+  const double most = contact.law.static_N_per_mm * contact.length;
+  if (contact.sticks()) return contact.presses_only && trial.axial < 0.0 ? -trial.axial : std::abs(trial.axial) - most;
   // The contact slides against the sense of its state, or faster or slower than its state allows. The way decides,
   // because forces hardly differ where friction does not depend on speed; it is converted to the force that displaces
   // the tissue by this way.

@@ -9,27 +9,36 @@
 
 namespace stylet {
 
-/// All contacts between one needle and the tissue, numbered like the needle's loads: 0 is the tip, 1 is the shaft
-/// contact nearest to the base. A view without data of its own.
+/// All contacts between needles and tissue, numbered like the loads on them: 0 is the tip of the needle that the hand
+/// moves. The contacts of needles at rest follow, needle by needle, and then the shaft contacts of the needle that the
+/// hand moves, from the base on. A view without data of its own.
 struct Contacts {
-  Needle& needle;
+  Needle& needle;  ///< the needle that the hand moves; with needles at rest, NeedleBundle
   TissueResponse& tissue;
   TipContact& tip;
   ShaftContacts& shaft;
 
   [[nodiscard]] int count() const { return 1 + static_cast<int>(shaft.count()); }
   [[nodiscard]] ShaftContact& of_shaft(int load) const { return shaft.all()[static_cast<std::size_t>(load - 1)]; }
+  /// Number of the first shaft contact of the needle that the hand moves.
+  [[nodiscard]] int first_own() const { return 1 + static_cast<int>(shaft.others()); }
+  /// The needle of a contact.
+  [[nodiscard]] const Needle& needle_of(int load) const {
+    return load < first_own() && load > 0 ? *of_shaft(load).needle : needle;
+  }
   /// Number of a contact's point in ContactCompliance.
   [[nodiscard]] int point(int load) const { return load == 0 ? ContactCompliance::kTip : of_shaft(load).point; }
   /// [N] LPS, on the tissue.
   [[nodiscard]] Vec3& force(int load) const { return load == 0 ? tip.force : of_shaft(load).force; }
   /// [mm] LPS, undeformed place of the contact's tissue point.
   [[nodiscard]] const Vec3& material(int load) const { return load == 0 ? tip.cut.x() : of_shaft(load).x; }
-  /// [mm] Arc length of the contact on the needle, clamped to the needle's length.
+  /// [mm] Arc length of the contact on its needle, clamped to that needle's length.
   [[nodiscard]] double arc(int load) const {
-    return load == 0 ? needle.length() : std::clamp(of_shaft(load).s, 0.0, needle.length());
+    return load == 0 ? needle.length() : std::clamp(of_shaft(load).s, 0.0, needle_of(load).length());
   }
   [[nodiscard]] ContactForces forces() const { return {tip.force, shaft.all()}; }
+  /// Those of the needle that the hand moves.
+  [[nodiscard]] ContactForces own_forces() const { return {tip.force, shaft.own()}; }
   /// [mm] LPS, displacement of a point of ContactCompliance by all forces.
   [[nodiscard]] Vec3 displacement(int point) const { return tissue.displacement(point, forces()); }
   /// [N] The largest force of a contact, at least 1 N; NaN where a force is NaN.

@@ -98,12 +98,12 @@ struct CoupledBalance::Progress {
 
 CoupledBalance::CoupledBalance(const BalanceParts& parts)
     : parts_(parts),
-      rows_(parts.settings, parts.settings.capacity + 1),
-      system_(rows_, parts.settings.capacity + 1),
+      rows_(parts.settings, most_shaft_contacts(parts.settings) + 1),
+      system_(rows_, most_shaft_contacts(parts.settings) + 1),
       states_(parts_.contacts),
-      tissue_(system_, parts.settings.capacity + 1),
-      tangent_(parts_.contacts.needle, system_, rows_, parts.settings.capacity + 1, parts.phases),
-      kept_(parts_.contacts.needle.state().size(), parts.settings.capacity) {}
+      tissue_(system_, most_shaft_contacts(parts.settings) + 1),
+      tangent_(parts_.contacts.needle, system_, rows_, most_shaft_contacts(parts.settings) + 1, parts.phases),
+      kept_(parts_.contacts.needle.state().size(), most_shaft_contacts(parts.settings)) {}
 
 void CoupledBalance::march(double advance) {
   const InPhase in_phase(parts_.phases, StepPhase::tip);
@@ -140,7 +140,7 @@ void CoupledBalance::gather() {
   rows_.tip.behind = 0;
   if (!parts_.contacts.tip.touches()) return;
   tissue_.gather_drift(parts_.contacts, relief, rows_);
-  for (int c = count - 1; c > 0 && rows_.tip.behind == 0; --c) {
+  for (int c = count - 1; c >= parts_.contacts.first_own() && rows_.tip.behind == 0; --c) {
     rows_.tip.behind_mm = rows_.loads().front().s - rows_.loads()[static_cast<std::size_t>(c)].s;
     if (rows_.tip.behind_mm > kLeastTurn_mm) rows_.tip.behind = c;
   }
@@ -264,7 +264,7 @@ void CoupledBalance::slide(int load) {
     return;
   }
   const double s = parts_.contacts.arc(load);
-  const Vec3 gap = contact.x + parts_.contacts.displacement(contact.point) - parts_.contacts.needle.point(s);
+  const Vec3 gap = contact.x + parts_.contacts.displacement(contact.point) - parts_.contacts.needle_of(load).point(s);
   contact.s = s + rows_.frame[static_cast<std::size_t>(load)].col(2).dot(gap);
 }
 
@@ -338,7 +338,7 @@ bool CoupledBalance::solve(double h, Effort& effort, Step& step) {
     if (found && tip.breaks_surface()) {
       const InPhase in_phase(parts_.phases, StepPhase::tip);
       const double hand_N =
-          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.forces());
+          parts_.hand.when_tip_reached(tip.ahead.limit(), tip.history.start, parts_.contacts.own_forces());
       parts_.path.break_surface(hand_N, step);
       before_break = all;
       iteration = 0;  // the search for the next balance starts here

@@ -107,10 +107,12 @@ void NeedleTangent::wear_out() { worn_mm_ = std::numeric_limits<double>::infinit
 /// than the tissue, so the needle on them does not buckle where needle and tissue together do not. A few springs stand
 /// for all: each is as stiff as the springs of all contacts that it stands for. A tip that is held has a spring of this
 /// stiffness, too, because shaft contacts alone do not stabilise a needle that has bowed out between hand and bone.
+/// Needles at rest hardly ever need springs: they get theirs only where all contacts do.
 /// @param most largest number of springs, evenly spaced and including the last contact @param lent (contacts) written
 void NeedleTangent::lend_springs(const Contacts& contacts, int most, std::vector<LentSpring>& lent) {
   const int count = contacts.count();
-  const int every = (std::max(count - 1, 1) + most - 1) / most;
+  const int first = most < count ? contacts.first_own() : 1;
+  const int every = (std::max(count - first, 1) + most - 1) / most;
   for (int c = 0; c < count; ++c) {
     double own = system_.A.block<3, 3>(3 * c, 3 * c).trace() / 3.0;
     bool lend = true;
@@ -118,7 +120,7 @@ void NeedleTangent::lend_springs(const Contacts& contacts, int most, std::vector
       lend = contacts.tip.holds();
     } else {
       own += contacts.of_shaft(c).softness;
-      lend = (count - 1 - c) % every == 0;
+      lend = c >= first && (count - 1 - c) % every == 0;
     }
     LentSpring& spring = lent[static_cast<std::size_t>(c)];
     spring.along = c == 0 ? Vec3::Zero() : Vec3(rows_.frame[static_cast<std::size_t>(c)].col(2));

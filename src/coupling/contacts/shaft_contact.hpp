@@ -8,6 +8,8 @@
 
 namespace stylet {
 
+class Needle;
+
 /// A contact between the shaft and a tissue point.
 struct ShaftContact {
   enum class State {
@@ -17,11 +19,12 @@ struct ShaftContact {
   };
 
   // The place of the contact.
-  int point = -1;         ///< number of its point in ContactCompliance
-  double xi = 0.0;        ///< [mm] arc length along the track
-  Vec3 x = Vec3::Zero();  ///< [mm] LPS, undeformed tissue point
-  double s = 0.0;         ///< [mm] present arc length on the needle, from the base
-  double length = 0.0;    ///< [mm] tributary length: the length of shaft that it stands for
+  const Needle* needle = nullptr;  ///< the needle whose shaft it holds
+  int point = -1;                  ///< number of its point in ContactCompliance
+  double xi = 0.0;                 ///< [mm] arc length along the track
+  Vec3 x = Vec3::Zero();           ///< [mm] LPS, undeformed tissue point
+  double s = 0.0;                  ///< [mm] present arc length on the needle, from the base
+  double length = 0.0;             ///< [mm] tributary length: the length of shaft that it stands for
 
   // Its state and force.
   FrictionLaw law;
@@ -35,6 +38,10 @@ struct ShaftContact {
                               ///< growing
   int toggles = 0;            ///< changes of state in this sub-step
   Vec3 force = Vec3::Zero();  ///< [N] LPS, on the tissue
+
+  /// Whether it stands for the tip of a needle at rest. Such a tip presses the tissue with at most its cutting force,
+  /// does not pull it, and stays open once the tissue has left it.
+  bool presses_only = false;
 
   // Values for the predictor.
   double s_start = 0.0;    ///< [mm] s at the start of the sub-step

@@ -100,8 +100,9 @@ void TipPath::touch_surface(const Crossing& crossing, const Vec3& x, EventKind k
     track.open = false;
     marks.go_on_from(track, 0.5 * settings_.spacing_mm);
   }
-  tissue_.compliance().enter_by(laws(region).rigid ? 0.0 : std::max(laws(region).puncture_N, laws(region).cutting_N),
-                                t);
+  entry_N_ = laws(region).rigid ? 0.0 : std::max(laws(region).puncture_N, laws(region).cutting_N);
+  entry_direction_ = t;
+  tissue_.compliance().enter_by(entry_N_, entry_direction_);
   tissue_.begin_tip(track.end_xi);
   if (joins) {
     tip.put(track.end, track.end_at, !track.open, TipContact::State::open);
@@ -222,6 +223,13 @@ bool TipPath::has_left(bool drawn_out) const {
   const bool beside_mouth = deep < settings_.spacing_mm && beside > settings_.join_mm && phase_ != TipState::exited;
   if (beside_mouth && !drawn_out) return true;
   return (deep < 0.0 || beside_mouth) && !in_tissue(tip_now());
+}
+
+void TipPath::take_up() {
+  tissue_.compliance().change_needle();
+  if (in_air()) return;
+  tissue_.compliance().enter_by(entry_N_, entry_direction_);
+  tip.cut.take_compliance();
 }
 
 void TipPath::finish() {

@@ -58,6 +58,9 @@ class TipPath {
   /// Whether the tip has come back out of the tissue, or was moved sideways out of the mouth of its track. To be called
   /// only without shaft contacts. @param drawn_out whether the base moves back along the needle
   [[nodiscard]] bool has_left(bool drawn_out) const;
+  /// The hand takes up this needle, which was at rest: the tissue's compliance is that of its tip again.
+  void take_up();
+
   /// Ends the insertion; its track becomes an earlier track.
   void finish();
   /// Places the needle, which is straight again, in the air where it has come out.
@@ -89,6 +92,8 @@ class TipPath {
   Vec3 air_tip_ = Vec3::Zero();                     ///< [mm] LPS, undeformed: last place of the tip in the air
   std::optional<NeedleWhereabouts> awaited_entry_;  ///< place on a surface that the tip has met, and where compliance
                                                     ///< is missing
+  double entry_N_ = 0.0;                  ///< force at which the surface breaks that the tip touched from outside
+  Vec3 entry_direction_ = Vec3::UnitZ();  ///< of the needle there, LPS
   static constexpr std::size_t kMostEvents = 16;
   std::array<InsertionEvent, kMostEvents> event_;
   std::size_t event_count_ = 0;
