@@ -189,7 +189,10 @@ Result<int> Insertion::Parts::add_needle(std::unique_ptr<Needle> needle) {
 bool Insertion::Parts::rest_tip() {
   TipContact& tip = held->path.tip;
   held->tip_point = -1;
-  if (!tip.holds()) return true;
+  if (!tip.holds()) {
+    tissue.leave_behind(held->path.tracks.now, 1.0);
+    return true;
+  }
   const ContactCompliance::Added added = tissue.compliance().add(tip.cut.at(), tip.cut.x(), Placement::embedded);
   if (added.point < 0) return false;
   held->tip_point = added.point;
@@ -220,10 +223,10 @@ bool Insertion::Parts::rest_tip() {
 /// The held needle has been taken up: its tip presses the tissue again.
 void Insertion::Parts::raise_tip() {
   held->path.take_up();
+  tissue.take_tip_up(held->tip_point, held->path.tracks.now.end_xi);
   if (held->tip_point < 0) return;
   const ShaftContact contact = held->shaft.all().back();
   held->shaft.remove_last();
-  tissue.take_tip_up(held->tip_point, held->path.tracks.now.end_xi);
   held->tip_point = -1;
   TipContact& tip = held->path.tip;
   using State = ShaftContact::State;

@@ -85,9 +85,10 @@ class TissueResponse {
   void lay_tip_down(int point) {
     if (memory_.on()) memory_.hand_over(ContactCompliance::kTip, point, 1.0);
   }
-  /// Moves it back: the needle is taken up again, and its track ends at the arc length xi [mm].
+  /// Moves it back from that point, −1 for none: the needle is taken up again, and its track ends at the arc length xi
+  /// [mm].
   void take_tip_up(int point, double xi) {
-    if (memory_.on()) memory_.hand_over(point, ContactCompliance::kTip, 1.0);
+    if (memory_.on() && point >= 0) memory_.hand_over(point, ContactCompliance::kTip, 1.0);
     tip_xi_ = xi;
   }
 
