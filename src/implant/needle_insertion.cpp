@@ -33,7 +33,7 @@ Result<InsertionPlan> needle_insertion(const NeedleLoad& load, const Scenario& s
                     depth, scenario.needle.length_mm, deepest_mm(scenario)),
         "Use a longer needle (needle.length_mm)");
   }
-  if (depth < load.seeds.back().behind_tip_mm) {
+  if (!load.seeds.empty() && depth < load.seeds.back().behind_tip_mm) {
     return input_error(place, fmt::format("its tip would be {:.1f} mm deep, and its train does not fit in", depth),
                        "Give a plan of this patient, in the same coordinates");
   }

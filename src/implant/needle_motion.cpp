@@ -54,6 +54,11 @@ NeedleMotion plan_needle_motion(const NeedleLoad& load, const Vec3& entry, const
   insertion.depth_mm = (load.tip_mm - entry).dot(load.direction);
   Way way(entry, load.direction, scenario.needle.length_mm);
   way.go_to(insertion.depth_mm, procedure.speed_mm_per_s);
+  result.in_s = way.now();
+  if (load.seeds.empty()) {
+    insertion.motion = std::move(way).motion();
+    return result;
+  }
   if (procedure.technique == SeedTechnique::preloaded) {
     way.wait(procedure.pause_s);
     result.drops.assign(load.seeds.size(), {way.now()});

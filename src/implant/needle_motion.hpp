@@ -17,10 +17,11 @@ struct SeedDrop {
 struct NeedleMotion {
   PlannedInsertion insertion;
   std::vector<SeedDrop> drops;  ///< one for each seed of the load
+  double in_s = 0.0;            ///< [s] when the needle has reached its full depth
 };
 
 /// Plans the motion of one needle: in, a pause, out slowly while the seeds are dropped, out. It ends 3 mm in front of
-/// the skin.
+/// the skin. A needle without seeds goes in and stays.
 /// @param entry [mm] LPS skin point on the needle's line
 NeedleMotion plan_needle_motion(const NeedleLoad& load, const Vec3& entry, const Scenario& scenario,
                                 double seed_length_mm);

@@ -89,6 +89,20 @@ Result<> check_scenario(const Scenario& s, const ScenarioPlace& place) {
                          "Lower the sliding friction or raise the static friction");
     }
   }
+  for (const std::string& hole : s.procedure.stabilising) {
+    if (const auto offset = s.grid.offset_mm(hole); !offset) {
+      return input_error(place("procedure.stabilising"),
+                         fmt::format("procedure.stabilising names \"{}\": {}", hole, offset.error().what),
+                         offset.error().cure);
+    }
+  }
+  const bool several = !s.procedure.stabilising.empty() || s.procedure.together != NeedlesTogether::one;
+  if (several && (s.coupling.solver != Solver::coupled || s.coupling.engine != Engine::condensed)) {
+    return input_error(place("procedure.together"),
+                       "several needles in one tissue need coupling.solver = \"coupled\" and coupling.engine = "
+                       "\"condensed\"",
+                       "Leave both out, or let the needles go in one after the other without stabilising ones");
+  }
   if (s.fixed.box_mm) {
     const auto& box = *s.fixed.box_mm;
     for (std::size_t axis = 0; axis < 3; ++axis) {

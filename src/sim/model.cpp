@@ -31,28 +31,6 @@ constexpr double kBeyond_mm = 15.0;
 /// Largest number of nodes for which tissue.element = "auto" chooses elements with averaged pressure.
 constexpr Index kMostAveraged = 45000;
 
-bool is_gland(const std::string& region) {
-  return region == "prostate" || region == "peripheral_zone" || region == "transition_zone" ||
-         region == "central_zone" || region == "anterior_stroma";
-}
-
-/// The regions that form the target: the gland, or else a planning volume, or else all unnamed labels.
-std::vector<int> find_target(const TetMesh& mesh) {
-  const auto pick = [&](auto&& wanted) {
-    std::vector<int> found;
-    for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
-      if (wanted(mesh.regions[r])) found.push_back(static_cast<int>(r));
-    }
-    return found;
-  };
-  auto target = pick(is_gland);
-  for (const char* volume : {"ctv", "target", "ptv", "gtv"}) {
-    if (target.empty()) target = pick([&](const std::string& r) { return r == volume; });
-  }
-  if (target.empty()) target = pick([](const std::string& r) { return r.rfind("label_", 0) == 0; });
-  return target;
-}
-
 CouplingSettings coupling_settings(const Scenario& s) {
   CouplingSettings c;
   c.method = s.coupling.method;

@@ -49,7 +49,28 @@ OnWay nearest_way(const std::vector<std::array<Vec3, 2>>& ways, const Vec3& x) {
   return nearest;
 }
 
+bool is_gland(const std::string& region) {
+  return region == "prostate" || region == "peripheral_zone" || region == "transition_zone" ||
+         region == "central_zone" || region == "anterior_stroma";
+}
+
 }  // namespace
+
+std::vector<int> find_target(const TetMesh& mesh) {
+  const auto pick = [&](auto&& wanted) {
+    std::vector<int> found;
+    for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+      if (wanted(mesh.regions[r])) found.push_back(static_cast<int>(r));
+    }
+    return found;
+  };
+  auto target = pick(is_gland);
+  for (const char* volume : {"ctv", "target", "ptv", "gtv"}) {
+    if (target.empty()) target = pick([&](const std::string& r) { return r == volume; });
+  }
+  if (target.empty()) target = pick([](const std::string& r) { return r.rfind("label_", 0) == 0; });
+  return target;
+}
 
 double deepest_mm(const Scenario& scenario) {
   return scenario.needle.length_mm - kNeedleOutside_mm - (scenario.grid.guide ? scenario.grid.distance_mm : 0.0);

@@ -12,6 +12,9 @@ inline constexpr double kNeedleOutside_mm = 5.0;  ///< length of the needle that
 /// Direction of a needle through a hole of the template: to superior.
 inline const Vec3 kThroughTemplate = Vec3::UnitZ();
 
+/// Numbers of the regions that form the target: the gland, or else a planning volume, or else all unnamed labels.
+std::vector<int> find_target(const TetMesh& mesh);
+
 /// The point [mm] LPS on the line of a needle through a hole that is as far superior as the target's centre. Error: a
 /// hole that the template does not have.
 Result<Vec3> point_behind_hole(const TemplateGrid& grid, const std::string& hole, const Vec3& target_centre);

@@ -298,6 +298,15 @@ void describe_implant(ScenarioEntries& keys) {
       [](auto& s, const Slot&) { return &s.procedure.technique; });
   keys.choice("procedure.order", "order in which the needles go in",
               [](auto& s, const Slot&) { return &s.procedure.order; });
+  keys.choice("procedure.together",
+              "needles of the plan that are in the tissue at the same time; row = all needles at one height of the "
+              "template go in before the first of them drops its seeds; all = all needles of the plan",
+              [](auto& s, const Slot&) { return &s.procedure.together; });
+  keys.texts("procedure.stabilising", 0,
+             "template holes of needles without seeds, which go in first, as deep as the deepest needle of the plan, "
+             "and stay to hold the gland",
+             [](auto& s, const Slot&) { return &s.procedure.stabilising; },
+             {.standard = "[]", .example = "[\"C3\", \"E3\"]"});
   keys.number("procedure.speed_mm_per_s", "mm/s", 0.1, 1000, "speed of a needle's base on the way in",
               [](auto& s, const Slot&) { return &s.procedure.speed_mm_per_s; });
   keys.number("procedure.pause_s", "s", 0, 3600,

@@ -112,8 +112,9 @@ Violation violation(Row& row, const std::vector<RegionLaws>& laws) {
       worst.gap = std::max(worst.gap, gap.norm() / own / peak);
       const double axial = std::abs(contact.force.dot(t));
       const double most =
-          contact.sticking ? law.static_N_per_mm * contact.length
-                           : 1.01 * (law.coulomb_N_per_mm + law.viscous_Ns_per_mm2 * law.viscous_to_mm_per_s) * contact.length;
+          contact.sticking
+              ? law.static_N_per_mm * contact.length
+              : 1.01 * (law.coulomb_N_per_mm + law.viscous_Ns_per_mm2 * law.viscous_to_mm_per_s) * contact.length;
       worst.friction = std::max(worst.friction, (axial - most) / peak);
       if (k != insertion.held() && !contact.sticking) ++worst.sliding_at_rest;
     }

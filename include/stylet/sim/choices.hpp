@@ -30,6 +30,9 @@ enum class StyletPlace { out, in };
 enum class SeedTechnique { preloaded, pushed };
 /// Order in which the needles of a plan go in: that of the plan, or by their height in the patient.
 enum class NeedleOrder { plan, anterior_first, posterior_first };
+/// Needles of a plan that are in the tissue at the same time, beside the stabilising ones: one after the other, all
+/// needles at one height of the template, or all needles.
+enum class NeedlesTogether { one, row, all };
 /// Where the staggered solver applies a contact force to the needle: at the contact's exact place, or at the nearest
 /// node of the needle.
 enum class Projection { exact, nearest_node };
@@ -69,6 +72,10 @@ struct Words<SeedTechnique> {
 template <>
 struct Words<NeedleOrder> {
   static constexpr std::array<std::string_view, 3> all{"plan", "anterior-first", "posterior-first"};
+};
+template <>
+struct Words<NeedlesTogether> {
+  static constexpr std::array<std::string_view, 3> all{"one", "row", "all"};
 };
 template <>
 struct Words<Projection> {

@@ -168,6 +168,8 @@ struct Scenario {
   struct Procedure {
     SeedTechnique technique = SeedTechnique::preloaded;
     NeedleOrder order = NeedleOrder::plan;
+    NeedlesTogether together = NeedlesTogether::one;
+    std::vector<std::string> stabilising;  ///< template holes
     double speed_mm_per_s = 20.0;
     double pause_s = 2.0;
     double drop_speed_mm_per_s = 5.0;

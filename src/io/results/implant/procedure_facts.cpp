@@ -5,6 +5,7 @@
 #include "report/html_parts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace stylet::results {
 namespace {
@@ -31,6 +32,23 @@ std::string order_text(NeedleOrder order) {
   return {};
 }
 
+std::string together_text(NeedlesTogether together) {
+  switch (together) {
+    case NeedlesTogether::one:
+      return "one at a time";
+    case NeedlesTogether::row:
+      return "all needles at one height of the template are in the tissue before the first of them drops its seeds";
+    case NeedlesTogether::all:
+      return "all needles are in the tissue before the first of them drops its seeds";
+  }
+  return {};
+}
+
+std::string stabilising_text(const std::vector<std::string>& holes) {
+  if (holes.empty()) return "none";
+  return fmt::format("{}, from the first needle to the last", fmt::join(holes, ", "));
+}
+
 std::string release_text(const Scenario::Seed& seed) {
   if (seed.release_mm == 0.0 && seed.release_sd_mm == 0.0) return "a seed stays where it is let go";
   return fmt::format("a jump of {:g} ± {:g} mm along the track (mean ± standard deviation)", seed.release_mm,
@@ -52,6 +70,8 @@ std::string procedure_facts(const Scenario& scenario) {
   const Scenario::Procedure& procedure = scenario.procedure;
   return definition("Technique", technique_text(procedure.technique)) +
          definition("Order of the needles", order_text(procedure.order)) +
+         definition("Needles together", together_text(procedure.together)) +
+         definition("Stabilising needles", stabilising_text(procedure.stabilising)) +
          definition("Speed of insertion", fmt::format("{:g} mm/s", procedure.speed_mm_per_s)) +
          definition("Pause at full depth", fmt::format("{:g} s", procedure.pause_s)) +
          definition("Speed of withdrawal over the seeds", fmt::format("{:g} mm/s", procedure.drop_speed_mm_per_s)) +

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "needle_group.hpp"
+
+#include "needle_motion.hpp"
+#include "seed_watch.hpp"
+#include "sim/base_steps.hpp"
+#include "stylet/core/flush_denormals.hpp"
+#include "stylet/sim/harms.hpp"
+#include "stylet/sim/target_motion.hpp"
+#include "stylet/sim/unbroken_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <deque>
+#include <limits>
+#include <optional>
+
+namespace stylet {
+
+namespace {
+
+constexpr int kGlandEvery = 8;  ///< steps between two looks at the gland
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// One needle on its way through its procedure, which may rest in between.
+class NeedleOnItsWay {
+ public:
+  NeedleOnItsWay(const PlannedNeedle& planned, const Scenario& scenario, const Model& model, double seed_length_mm)
+      : load_(*planned.load),
+        entry_(planned.plan.entry_mm->data()),
+        motion_(plan_needle_motion(load_, entry_, scenario, seed_length_mm)),
+        steps_(planned_steps(model, motion_.insertion)),
+        seeds_(load_, motion_, scenario, seed_length_mm) {
+    out_.needle.name = load_.name;
+    out_.needle.entry_mm = entry_;
+    out_.needle.direction = load_.direction;
+    out_.needle.depth_mm = motion_.insertion.depth_mm;
+  }
+  NeedleOnItsWay(const NeedleOnItsWay&) = delete;  // its parts refer to each other
+  NeedleOnItsWay& operator=(const NeedleOnItsWay&) = delete;
+
+  /// Puts the needle in, to its full depth. @param gland null without a gland
+  void go_in(Simulation& simulation, TargetMotion* gland) {
+    simulation.place(motion_.insertion);
+    go_on(simulation, gland, motion_.in_s);
+  }
+  /// Carries out the rest: the seeds are dropped, and the needle comes out.
+  void finish(Simulation& simulation, TargetMotion* gland) {
+    go_on(simulation, gland, std::numeric_limits<double>::infinity());
+  }
+  NeedleOutcome outcome(bool has_gland);
+
+ private:
+  void go_on(Simulation& simulation, TargetMotion* gland, double until_s);
+
+  const NeedleLoad& load_;
+  Vec3 entry_;
+  NeedleMotion motion_;
+  BaseSteps steps_;
+  SeedWatch seeds_;
+  UnbrokenSurface unbroken_;
+  NeedleOutcome out_;
+  long taken_ = 0;       ///< number of steps so far
+  double time_s_ = 0.0;  ///< [s] of the needle's own motion
+  long without_balance_ = 0;
+};
+
+void NeedleOnItsWay::go_on(Simulation& simulation, TargetMotion* gland, double until_s) {
+  NeedleHistory& needle = out_.needle;
+  while (taken_ < steps_.count && time_s_ < until_s) {
+    ++taken_;
+    simulation.prepare();
+    const double dt = steps_.dt_s(taken_);
+    const double before = thread_cpu_s();
+    const Step& step = simulation.step(steps_.base(taken_), dt);
+    needle.seconds += thread_cpu_s() - before;
+    time_s_ += dt;
+    ++needle.steps;
+    if ((step.flags & Step::kDistrusted) != 0) ++without_balance_;
+    needle.peak_force_N = std::max(needle.peak_force_N, std::abs(step.force_axial_N));
+    if (step.tip_state != TipState::air) {
+      const Vec3 off = step.tip_mm - entry_;
+      needle.deflection_mm = std::max(needle.deflection_mm, (off - load_.direction * load_.direction.dot(off)).norm());
+    }
+    seeds_.add(simulation, time_s_);
+    unbroken_.add(simulation);
+    for (const Event& event : simulation.new_events()) needle.events.push_back(event);
+    if (gland != nullptr && taken_ % kGlandEvery == 0) {
+      const Vec3 shift = gland->now(simulation.insertion()).motion.shift_mm;
+      if (shift.norm() > needle.gland_shift_mm.norm()) needle.gland_shift_mm = shift;
+    }
+  }
+}
+
+NeedleOutcome NeedleOnItsWay::outcome(bool has_gland) {
+  NeedleOutcome out = out_;
+  NeedleHistory& needle = out.needle;
+  if (!has_gland) needle.gland_shift_mm.setConstant(std::numeric_limits<double>::quiet_NaN());
+  out.seeds = seeds_.result();
+  const auto warn = [&](const std::string& text) {
+    out.warnings.push_back(fmt::format("Needle {}: {}", load_.name, text));
+  };
+  for (const std::string& harm : harms(needle.events)) warn(harm);
+  if (auto warning = unbroken_.warning()) warn(*warning);
+  if (without_balance_ > 0) {
+    warn(fmt::format("In {} of {} steps no balance of needle and tissue was found; a smaller run.dt_ms helps.",
+                     without_balance_, needle.steps));
+  }
+  const auto astray =
+      std::count_if(out.seeds.begin(), out.seeds.end(), [](const SeedHistory& s) { return !s.in_tissue; });
+  if (astray > 0) {
+    warn(fmt::format(
+        "{} of its {} seeds were not dropped in tissue whose displacement is known; they stay where they were "
+        "dropped.",
+        astray, out.seeds.size()));
+  }
+  if (load_.beside_line_mm > 1.0) {
+    warn(fmt::format("Its planned seeds lie up to {:.1f} mm beside a straight line; the needle is straight.",
+                     load_.beside_line_mm));
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
+                                    const std::vector<PlannedNeedle>& needles, Scenario scenario, const TetMesh& mesh,
+                                    double seed_length_mm, KnownTargets& targets, const std::string& where) {
+  std::vector<PlannedNeedle> all = staying;
+  all.insert(all.end(), needles.begin(), needles.end());
+  scenario.insertions.clear();
+  for (const PlannedNeedle& needle : all) scenario.insertions.push_back(needle.plan);
+  GroupOutcome out;
+  const double start = wall_s();
+  auto compiled = Model::compile(scenario, mesh, fmt::format("{}, needle {}", where, needles.front().load->name));
+  if (!compiled) return compiled.error();
+  const std::shared_ptr<const Model> model = *std::move(compiled);
+  std::optional<TargetMotion> gland;
+  if (!model->target_regions().empty()) {
+    auto response = targets.of(model, {});
+    if (!response) return response.error();
+    gland.emplace(*std::move(response));
+  }
+  out.compile_s = wall_s() - start;
+
+  const FlushDenormals flush;  // as in run(), so that the results are equal
+  TargetMotion* const gland_now = gland ? &*gland : nullptr;
+  Simulation simulation(model, static_cast<int>(all.size()));
+  std::deque<NeedleOnItsWay> on_their_way;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (Result<> taken = simulation.take_up(static_cast<int>(k)); !taken) return taken.error();
+    on_their_way.emplace_back(all[k], scenario, *model, seed_length_mm).go_in(simulation, gland_now);
+  }
+  for (std::size_t k = staying.size(); k < all.size(); ++k) {
+    if (Result<> taken = simulation.take_up(static_cast<int>(k)); !taken) return taken.error();
+    on_their_way[k].finish(simulation, gland_now);
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    NeedleOutcome outcome = on_their_way[k].outcome(gland.has_value());
+    if (k < staying.size()) {
+      out.warnings.insert(out.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+    } else {
+      out.needles.push_back(std::move(outcome));
+    }
+  }
+  return out;
+}
+
+}  // namespace stylet
