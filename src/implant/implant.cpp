@@ -28,12 +28,12 @@ constexpr Index kNodesAtOnce = 40000;
 constexpr double kSameRow_mm = 1.0;
 
 /// Needles that are in the tissue together, by their numbers.
-using Group = std::vector<std::size_t>;
+using Together = std::vector<std::size_t>;
 
-std::vector<Group> groups_of(const std::vector<NeedleLoad>& needles, NeedlesTogether together) {
-  std::vector<Group> groups;
+std::vector<Together> groups_of(const std::vector<NeedleLoad>& needles, NeedlesTogether together) {
+  std::vector<Together> groups;
   for (std::size_t k = 0; k < needles.size(); ++k) {
-    const auto with_this = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+    const auto with_this = std::find_if(groups.begin(), groups.end(), [&](const Together& group) {
       return together == NeedlesTogether::all ||
              (together == NeedlesTogether::row &&
               std::abs(needles[group.front()].tip_mm.y() - needles[k].tip_mm.y()) < kSameRow_mm);
@@ -102,7 +102,7 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
     if (!planned) return planned.error();
     stays.push_back(*planned);
   }
-  const std::vector<Group> groups = groups_of(needles, scenario.procedure.together);
+  const std::vector<Together> groups = groups_of(needles, scenario.procedure.together);
   std::vector<std::vector<PlannedNeedle>> together(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const std::size_t k : groups[g]) {

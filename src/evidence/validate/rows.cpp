@@ -32,7 +32,8 @@ std::vector<RowSpec> collect() {
                            tip_tracking_rows(),
                            prostate_motion_rows(),
                            in_patients_rows(),
-                           dose_rows()})
+                           dose_rows(),
+                           implant_rows()})
     rows.insert(rows.end(), more.begin(), more.end());
   std::stable_sort(rows.begin(), rows.end(), [](const RowSpec& a, const RowSpec& b) { return a.group < b.group; });
   return rows;

@@ -31,5 +31,6 @@ std::vector<RowSpec> tip_tracking_rows();
 std::vector<RowSpec> prostate_motion_rows();
 std::vector<RowSpec> in_patients_rows();
 std::vector<RowSpec> dose_rows();
+std::vector<RowSpec> implant_rows();
 
 }  // namespace stylet::validate

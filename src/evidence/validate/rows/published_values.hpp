@@ -82,4 +82,10 @@ inline constexpr double kMarkerSagittal_mm = 5.0;
 inline constexpr double kMarkerAxial_mm = 12.0;
 }  // namespace prostate
 
+/// Displacement of the prostate's base with 12 to 19 needles in place. N. N. Stone and others, 2004, PubMed 15090279.
+/// Abstract.
+namespace base {
+inline constexpr double kMedian_mm = 15.0;
+}  // namespace base
+
 }  // namespace stylet::validate::published
