@@ -2,6 +2,7 @@
 // Whole implants in a cubic patient.
 #include "sim/box_patient.hpp"
 #include "stylet/implant/implant.hpp"
+#include "stylet/implant/seed_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -123,6 +124,37 @@ TEST(Implant, in_a_mirrored_patient_is_mirrored) {
 // a border belongs.
 TEST(Implant, in_a_mirrored_patient_is_mirrored_but_for_elements_chosen_by_rounding) {
   EXPECT_LT(off_mirror(scenario()), 0.05);
+}
+
+TEST(Implant, of_needles_together_drops_all_seeds_and_needles_one_by_one_are_as_before) {
+  Scenario s = scenario();
+  const ImplantHistory one = simulated(s, test::box_patient(), two_needles());
+  s.procedure.together = NeedlesTogether::all;
+  const ImplantHistory together = simulated(s, test::box_patient(), two_needles());
+  ASSERT_EQ(together.seeds.size(), one.seeds.size());
+  ASSERT_EQ(together.needles.size(), 2U);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < one.seeds.size(); ++k) {
+    EXPECT_TRUE(together.seeds[k].in_tissue);
+    EXPECT_EQ(together.seeds[k].needle, one.seeds[k].needle);
+    largest = std::max(largest, (together.seeds[k].rest_mm - one.seeds[k].rest_mm).norm());
+  }
+  EXPECT_GT(largest, 0.01) << "needles in one tissue feel each other";
+  EXPECT_LT(largest, 5.0);
+  // Needles of a row are those whose tips are at the same height: here each needle is a row by itself.
+  s.procedure.together = NeedlesTogether::row;
+  const ImplantHistory rows = simulated(s, test::box_patient(), two_needles());
+  for (std::size_t k = 0; k < one.seeds.size(); ++k) EXPECT_EQ(rows.seeds[k].rest_mm, one.seeds[k].rest_mm);
+}
+
+TEST(Implant, with_stabilising_needles_has_smaller_errors_along_the_needles) {
+  Scenario s = scenario();
+  const ImplantHistory without = simulated(s, test::box_patient(), two_needles());
+  s.procedure.stabilising = {"B4", "F4"};
+  const ImplantHistory with = simulated(s, test::box_patient(), two_needles());
+  ASSERT_EQ(with.seeds.size(), without.seeds.size());
+  EXPECT_EQ(with.needles.size(), 2U) << "stabilising needles are none of the plan";
+  EXPECT_LT(std::abs(seed_errors(with.seeds).axes[2].mean_mm), std::abs(seed_errors(without.seeds).axes[2].mean_mm));
 }
 
 TEST(Implant, refuses_a_plan_beside_the_patient_and_a_needle_that_is_too_short) {
