@@ -20,6 +20,7 @@ struct ImplantArguments {
   std::vector<std::string> settings;
   int compensate = 0;
   bool span = false;
+  std::string found;
 };
 
 std::string errors_text(const ImplantOutcome& outcome) {
@@ -56,6 +57,7 @@ std::string dose_text(const ImplantOutcome& outcome) {
   for (const OtherImplant& other : outcome.spans) others.push_back(&other);
   for (const OtherImplant* other : others) head.push_back(other->name);
   head.insert(head.end(), {"delivered", ""});
+  if (outcome.found) head.insert(head.end(), {"found", ""});
   Table table(head);
   for (std::size_t k = 0; k < outcome.delivered.goals.size(); ++k) {
     const JudgedGoal& planned = outcome.planned.goals[k];
@@ -64,11 +66,80 @@ std::string dose_text(const ImplantOutcome& outcome) {
                                  fmt::format("{} {:g}", delivered.goal.at_least ? "≥" : "≤", delivered.goal.bound),
                                  value_of(planned)};
     for (const OtherImplant* other : others) row.push_back(value_of(other->delivered.goals[k]));
-    row.push_back(value_of(delivered));
-    row.emplace_back(!delivered.value ? "not judged" : delivered.met ? "met" : "MISSED");
+    const auto judged = [&](const JudgedGoal& goal) {
+      row.push_back(value_of(goal));
+      row.emplace_back(!goal.value ? "not judged" : goal.met ? "met" : "MISSED");
+    };
+    judged(delivered);
+    if (outcome.found) judged(outcome.found->dose.goals[k]);
     table.row(row);
   }
   return table.text();
+}
+
+/// The errors of the seeds that were found, beside those of the simulation.
+std::string found_errors_text(const FoundComparison& comparison) {
+  Table table({"errors", "number", "mean [mm]", "95 % [mm]", "left [mm]", "posterior [mm]", "superior [mm]"});
+  const auto row = [&](const std::string& name, const SeedErrors& e) {
+    const auto axis = [](const SeedErrors::Axis& a) { return fmt::format("{:.2f} ± {:.2f}", a.mean_mm, a.sd_mm); };
+    table.row({name, fmt::format("{}", e.seeds), fmt::format("{:.2f}", e.mean_mm), fmt::format("{:.2f}", e.p95_mm),
+               axis(e.axes[0]), axis(e.axes[1]), axis(e.axes[2])});
+  };
+  row("found − planned", comparison.as_found.error);
+  row("found − simulated", comparison.as_found.remainder);
+  row("found − planned, without common shift", comparison.without_shift.error);
+  row("found − simulated, without common shift", comparison.without_shift.remainder);
+  return table.text();
+}
+
+/// What accounts for the mean square of the errors that were found.
+std::string found_parts_text(const FoundComparison& comparison) {
+  Table table({"part of the mean square error", "as found [mm²]", "[%]", "without common shift [mm²]", "[%]"});
+  const auto cells = [](const std::vector<ErrorPart>& parts, const std::string& name) {
+    for (const ErrorPart& part : parts) {
+      if (part.name == name)
+        return std::pair(fmt::format("{:.2f}", part.mean_mm2), fmt::format("{:.0f}", part.percent));
+    }
+    return std::pair(std::string("-"), std::string("-"));
+  };
+  for (const ErrorPart& part : comparison.as_found.parts) {
+    const auto [mm2, percent] = cells(comparison.as_found.parts, part.name);
+    const auto [other_mm2, other_percent] = cells(comparison.without_shift.parts, part.name);
+    table.row({part.name, mm2, percent, other_mm2, other_percent});
+  }
+  return table.text();
+}
+
+std::string agreement_text(const FoundComparison& comparison) {
+  Table table({"axis", "correlation", "explained [%]"});
+  const auto row = [&](const std::string& name, const Agreement& agreement) {
+    table.row({name, agreement.correlation ? fmt::format("{:.2f}", *agreement.correlation) : "-",
+               agreement.explained_percent ? fmt::format("{:.0f}", *agreement.explained_percent) : "-"});
+  };
+  row("left", comparison.axes[0]);
+  row("posterior", comparison.axes[1]);
+  row("superior", comparison.axes[2]);
+  row("all", comparison.all);
+  return table.text();
+}
+
+void say_found(const ImplantHistory& history, const FoundImplant& found, Console& console) {
+  std::string sentences = "Found on imaging";
+  for (const std::string& sentence : found_sentences(history, found)) sentences += "\n" + sentence;
+  console.say(sentences);
+  if (found.comparison.seeds.empty()) return;
+  console.say("Errors of the seeds that were found (mean ± standard deviation along the axes)\n" +
+              found_errors_text(found.comparison));
+  console.say(found_parts_text(found.comparison));
+  console.say("Simulated errors against those that were found\n" + agreement_text(found.comparison));
+}
+
+/// The results must not replace the file that they are computed from.
+Result<> check_found_is_no_result(const std::filesystem::path& found, const std::filesystem::path& folder) {
+  std::error_code code;
+  if (found.empty() || !std::filesystem::equivalent(found, folder / "found.csv", code) || code) return Ok{};
+  return input_error(found.string(), "the results in " + folder.string() + " would replace this file",
+                     "Keep the found seeds in another folder, or choose another one with -o");
 }
 
 Result<> run_implant(const ImplantArguments& arguments, Console& console) {
@@ -78,8 +149,10 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
       arguments.output.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scenario).stem()
                                : std::filesystem::path(arguments.output);
   if (Result<> writable = check_output_folder(folder); !writable) return writable;
+  if (Result<> kept = check_found_is_no_result(arguments.found, folder); !kept) return kept;
   const Result<ImplantOutcome> outcome = implant(
-      *scenario, arguments.scenario, {.compensate = arguments.compensate, .span = arguments.span}, console.progress());
+      *scenario, arguments.scenario,
+      {.compensate = arguments.compensate, .span = arguments.span, .found = arguments.found}, console.progress());
   if (!outcome) return outcome.error();
   for (const std::string& warning : outcome->warnings) console.warn(warning);
   if (Result<> written = write_implant_results(*outcome, folder, console.progress()); !written) return written;
@@ -95,6 +168,7 @@ Result<> run_implant(const ImplantArguments& arguments, Console& console) {
   console.say("Distance of the seeds from where they were planned (mean ± standard deviation along the axes)\n" +
               errors_text(*outcome));
   console.say("Why\n" + causes_text(*outcome));
+  if (outcome->found) say_found(outcome->history, *outcome->found, console);
   console.say(dose_text(*outcome));
   console.say(fmt::format("Report: {}", (folder / "report.html").string()));
   const Json json = Json::parse(implant_json(*outcome));
@@ -125,6 +199,11 @@ Command add_implant_command(CLI::App& program) {
       ->check(CLI::Range(0, 20));
   app->add_flag("--span", arguments->span,
                 "Also implant in firm and in soft tissue, to show how sure the figures are; takes three times as long");
+  app->add_option(
+         "--found", arguments->found,
+         "Seeds found on images after the implant, in the coordinates of the plan: match them with the simulated "
+         "seeds, and show how much of their errors the simulation explains")
+      ->type_name("SEEDS.csv|RTPLAN");
   return {app, [arguments](Console& console) { return run_implant(*arguments, console); }};
 }
 

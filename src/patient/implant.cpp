@@ -3,12 +3,65 @@
 
 #include "stylet/dose/evaluate.hpp"
 #include "stylet/implant/compensation.hpp"
+#include "stylet/io/found_seeds_io.hpp"
 #include "stylet/patient/implant_plan.hpp"
 #include "stylet/patient/patient_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 
 namespace stylet {
 
 namespace {
+
+/// The seeds that were found, checked; nothing where no file is named.
+Result<std::optional<FoundSeeds>> found_seeds_of(const ImplantSettings& settings, const DosePlan& plan) {
+  if (settings.found.empty()) return std::optional<FoundSeeds>();
+  if (settings.compensate > 0) {
+    return input_error(settings.found.string(),
+                       "found seeds are compared with the implant as it is planned, and compensation changes that",
+                       "Leave out either the found seeds or compensation");
+  }
+  Result<FoundSeeds> found = read_found_seeds(settings.found);
+  if (!found) return found.error();
+  if (Result<> fits = check_found_seeds(*found, plan); !fits) return fits.error();
+  if (!found->frame_of_reference.empty() && !plan.frame_of_reference.empty() &&
+      found->frame_of_reference != plan.frame_of_reference) {
+    found->notes.push_back(
+        fmt::format("{} has another frame of reference than the plan; its places are taken as they are. If they were "
+                    "not registered to the plan, the common shift is that of the frames.",
+                    found->file));
+  }
+  return std::optional<FoundSeeds>(*std::move(found));
+}
+
+/// What a user has to know about the match, before believing the figures that depend on it.
+std::vector<std::string> match_warnings(const FoundImplant& found) {
+  std::vector<std::string> warnings;
+  const SeedMatching& matching = found.comparison.matching;
+  const std::string& file = found.seeds.file;
+  if (matching.pairs.empty()) {
+    warnings.push_back(fmt::format("No seed of {} lies within {:g} mm of a simulated seed, so none is matched.", file,
+                                   kMatchLimit_mm));
+  }
+  if (matching.frame_moved) {
+    warnings.push_back(
+        fmt::format("The seeds of {} match those of the simulation only after a common shift of {:.1f} mm: their frame "
+                    "does not seem to be that of the plan. Register the images to the plan first.",
+                    file, matching.shift_mm.norm()));
+  }
+  const std::size_t matched = found.comparison.seeds.size();
+  const auto ambiguous =
+      std::count_if(matching.pairs.begin(), matching.pairs.end(), [](const SeedPair& pair) { return pair.ambiguous; });
+  if (4 * static_cast<std::size_t>(ambiguous) > matched) {
+    warnings.push_back(
+        fmt::format("{} of {} matches of found seeds are ambiguous: the found seeds scatter by {:.1f} mm along each "
+                    "axis, so errors of single seeds, and what the simulation explains, are less sure.",
+                    ambiguous, matched, matching.scatter_mm));
+  }
+  return warnings;
+}
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
@@ -26,6 +79,8 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   Result<ImplantPlan> read = read_implant_plan(scenario, where, progress);
   if (!read) return read.error();
   const ImplantPlan& of = *read;
+  Result<std::optional<FoundSeeds>> found_seeds = found_seeds_of(settings, of.plan);
+  if (!found_seeds) return found_seeds.error();
   ImplantOutcome outcome;
   outcome.scenario = scenario;
   outcome.seed_length_mm = of.source.outer_length_mm;
@@ -75,6 +130,24 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     Result<DoseEvaluation> delivered = dose_of(*history);
     if (!delivered) return delivered.error();
     outcome.spans.push_back({"tissue " + word(preset), *std::move(history), *std::move(delivered)});
+  }
+
+  if (*found_seeds) {
+    FoundImplant found{.seeds = **std::move(found_seeds)};
+    found.comparison = compare_found(outcome.history, found.seeds.seeds);
+    const auto found_dose = [&](const Vec3& shift_mm) {
+      return evaluate_dose(found_plan(of.plan, outcome.history, found.seeds.seeds, found.comparison, shift_mm),
+                           of.source, of.structures.structures, of.options, progress);
+    };
+    Result<DoseEvaluation> as_found = found_dose(Vec3::Zero());
+    if (!as_found) return as_found.error();
+    found.dose = *std::move(as_found);
+    Result<DoseEvaluation> without_shift = found_dose(found.comparison.matching.shift_mm);
+    if (!without_shift) return without_shift.error();
+    found.dose_without_shift = *std::move(without_shift);
+    append(outcome.warnings, found.seeds.notes);
+    append(outcome.warnings, match_warnings(found));
+    outcome.found = std::move(found);
   }
 
   append(outcome.warnings, of.plan.notes);

@@ -41,7 +41,7 @@ class Implant(InFolder):
         (self.folder / "case.toml").write_text(scenario)
         (self.folder / "plan.csv").write_text(plan)
 
-    def test_every_seed_has_a_place_of_rest_and_reasons_that_add_up_to_its_error(self):
+    def test_seeds_have_reasons_that_add_up_to_their_errors_and_are_matched_with_those_found_on_imaging(self):
         self.case()
         result = self.json_of("implant", "case.toml", "-o", "out")
         implant = result["implant"]
@@ -70,6 +70,83 @@ class Implant(InFolder):
         for seed, position in zip(implant["seeds"], again["seed_list"]):
             for axis in range(3):
                 self.assertAlmostEqual(position["position_mm"][axis], seed["rest_mm"][axis], places=4)
+        self.match_found_seeds(implant)
+
+    def found(self, text, name="found_seeds.csv"):
+        (self.folder / name).write_text(text)
+        return name
+
+    def match_found_seeds(self, first):
+        """Implants again, with seeds found near those that the first run has in the folder out."""
+        self.assertIsNone(first["found"])
+        self.assertIsNone(first["found_dvh"])
+        self.assertFalse((self.folder / "out/found.csv").exists())
+        # In another order, with a common shift, without the second seed, and with one that was never dropped.
+        shift = (0.5, -0.3, -1.5)
+        places = [[x + dx for x, dx in zip(seed["rest_mm"], shift)] for seed in first["seeds"]]
+        away = [places[0][0], places[0][1] + 70.0, places[0][2]]
+        rows = [places[4], places[2], away, places[0], places[3]]
+        self.found("x_mm,y_mm,z_mm\n" + "".join("{},{},{}\n".format(*row) for row in rows))
+        done = self.succeed("implant", "case.toml", "-o", "out", "--found", "found_seeds.csv", "--json", "json")
+        self.assertIn("Found on imaging", done.stdout)
+        self.assertIn("(no. 2 of the plan)", done.stdout)
+        self.assertIn("found_seeds.csv, line 4", done.stdout)
+        result = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(result, json.loads((self.folder / "json").read_text()))
+        implant, found = result["implant"], result["implant"]["found"]
+        self.assertEqual((found["found"], found["matched"], found["not_found"]), (5, 4, [2]))
+        self.assertEqual([seed["found_number"] for seed in found["not_dropped"]], [3])
+        self.assertEqual([(seed["number"], seed["found_number"]) for seed in found["seeds"]],
+                         [(1, 4), (3, 2), (4, 5), (5, 1)])
+        self.assertTrue(found["common_shift_beyond_chance"])
+        for axis in range(3):
+            self.assertAlmostEqual(found["common_shift_mm"][axis], shift[axis], places=9)
+            for seed in found["seeds"]:
+                parts = sum(part[axis] for part in seed["why"].values()) + seed["remainder_xyz_mm"][axis]
+                self.assertAlmostEqual(parts, seed["error_xyz_mm"][axis], places=9)
+                self.assertAlmostEqual(seed["remainder_without_shift_xyz_mm"][axis], 0.0, places=9)
+        self.assertAlmostEqual(found["agreement"]["all"]["correlation"], 1.0, places=9)
+        self.assertAlmostEqual(found["agreement"]["all"]["explained_percent"], 100.0, places=6)
+        for errors in (found["as_found"], found["without_shift"]):
+            self.assertAlmostEqual(sum(part["mm2"] for part in errors["parts"]), errors["mean_square_mm2"], places=9)
+        # The dose is that of five seeds where they were found; without the shift and one seed it would be the delivered.
+        self.assertEqual([row["structure"] for row in implant["found_dvh"]],
+                         [row["structure"] for row in implant["delivered_dvh"]])
+        self.assertIn("found_value", implant["goals"][0])
+        self.assertEqual(implant["goals"][0]["value"], first["goals"][0]["value"])
+        dose = json.loads((self.folder / "out/found/dose.json").read_text())
+        self.assertEqual(dose["dvh"], implant["found_dvh"])
+        self.assertEqual(dose["seeds"], 5)
+        with (self.folder / "out/found.csv").open(newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([row["found"] for row in table], ["4", "", "2", "5", "1", "3"])
+        self.assertAlmostEqual(float(table[5]["found_y_mm"]), away[1], places=3)
+        self.assertIn('id="found"', (self.folder / "out/report.html").read_text())
+
+    def test_found_seeds_that_cannot_be_right_are_refused_before_anything_is_computed(self):
+        self.case()
+
+        def refuse_found(text, *says):
+            self.refuse("implant", "case.toml", "-o", "out", "--found", self.found(text), says=says)
+
+        head = "x_mm,y_mm,z_mm\n"
+        self.refuse("implant", "case.toml", "-o", "out", "--found", "none.csv", says=["none.csv", "no such file"])
+        self.refuse("implant", "case.toml", "-o", "out", "--found", "case.toml", says=["case.toml"])
+        refuse_found("", "found_seeds.csv", "empty")
+        refuse_found(head, "found_seeds.csv", "no rows")
+        refuse_found("x_mm,y_mm\n1,2\n", "found_seeds.csv", "z_mm", "missing")
+        refuse_found("x_mm,y_mm,z_cm\n1,2,3\n", "line 1", "z_cm", "Did you mean 'z_mm'?")
+        refuse_found(head + "1,2,3\n1,nan,3\n", "line 3", "y_mm", "'nan'")
+        refuse_found(head + "1,2\n", "line 2", "2 fields")
+        refuse_found("x_mm,y_mm,z_mm,ax,ay,az\n1,2,3,0,0,0\n", "line 2", "no length")
+        refuse_found(head + "0,0,20\n0,4000,0\n5,0,20\n", "line 3", "4000.0", "every planned seed", "register")
+        refuse_found(head + "0,90,20\n0,95,20\n5,0,20\n", "line 2", "2 of 3 seeds", "30 mm", "register")
+        refuse_found(head + "0,0,20\n" * 11, "11 seeds", "5 are planned")
+        self.found(head + "0,0,20\n")
+        self.refuse("implant", "case.toml", "-o", "out", "--compensate", "1", "--found", "found_seeds.csv",
+                    says=["compensation"])
+        self.found(head + "0,0,20\n", "found.csv")
+        self.refuse("implant", "case.toml", "-o", ".", "--found", "found.csv", says=["found.csv", "replace this file"])
 
     def test_what_cannot_be_implanted_is_refused_before_anything_is_computed(self):
         self.case(scenario=SCENARIO.replace('[plan]\nfile = "plan.csv"', '[[insertion]]\nhole = "D4"'))

@@ -3,7 +3,7 @@
 
 #include "stylet/core/progress.hpp"
 #include "stylet/dose/dose_evaluation.hpp"
-#include "stylet/implant/seed_errors.hpp"
+#include "stylet/implant/found_errors.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -19,6 +19,14 @@ struct OtherImplant {
   DoseEvaluation delivered;
 };
 
+/// The seeds that were found on images after the implant, beside those of the simulation.
+struct FoundImplant {
+  FoundSeeds seeds;
+  FoundComparison comparison;
+  DoseEvaluation dose;                ///< of all seeds where they were found, otherwise as the delivered dose
+  DoseEvaluation dose_without_shift;  ///< the same, after the common shift is taken away
+};
+
 /// An implant as it was planned and as it was delivered: everything that the result folder of `stylet implant` says.
 struct ImplantOutcome {
   Scenario scenario;
@@ -28,11 +36,14 @@ struct ImplantOutcome {
   double seed_length_mm = 0.0;
   std::optional<OtherImplant> before;  ///< without compensation, where the needles were aimed to make up for the errors
   std::vector<OtherImplant> spans;     ///< with firmer and softer tissue, where they were asked for
+  std::optional<FoundImplant> found;   ///< where seeds that were found are given
   std::vector<std::string> warnings;   ///< of reader, mesher, plan and simulation
 };
 
 /// Writes the result folder of `stylet implant` (docs/results.md): report.html, seeds.csv, the folders planned and
-/// delivered with all files of `stylet dose`, and summary.json last. Errors: the folder cannot be created or written.
+/// delivered with all files of `stylet dose`, and summary.json last; with found seeds also found.csv and the folder
+/// found. Without them, a found.csv of an earlier run is removed, and so is the dose.json that marks its folder as
+/// complete. Errors: the folder cannot be created or written.
 Result<> write_implant_results(const ImplantOutcome& outcome, const std::filesystem::path& folder,
                                const Progress& progress = {});
 
@@ -41,5 +52,15 @@ std::string implant_json(const ImplantOutcome& outcome);
 
 /// The text of seeds.csv (docs/results.md): a row for each seed of the plan.
 std::string seeds_csv(const ImplantOutcome& outcome);
+
+/// The text of found.csv (docs/results.md): a row for each seed of the plan, with the place where it was found, and for
+/// each seed that was found without a match.
+/// @param history the simulated implant, of which `found` is the comparison
+std::string found_csv(const ImplantHistory& history, const FoundImplant& found);
+
+/// What the match of the found seeds says, as sentences: which seeds have no match, which matches are ambiguous, the
+/// common shift and whether it is more than chance, and how much the simulation explains.
+/// @param history the simulated implant, of which `found` is the comparison
+std::vector<std::string> found_sentences(const ImplantHistory& history, const FoundImplant& found);
 
 }  // namespace stylet

@@ -11,4 +11,9 @@ namespace stylet::testing {
 /// @param grid_mm, step_mm as for synthetic_dose()
 ImplantOutcome synthetic_implant(double grid_mm, double step_mm);
 
+/// Adds seeds that were found on images: all but two, with a common shift of (0.4, −0.9, −1.5) mm, an error of about a
+/// millimetre and half of the simulated error once more, in another order; and one that was never dropped. Their dose
+/// is the delivered one.
+void add_invented_found_seeds(ImplantOutcome& outcome);
+
 }  // namespace stylet::testing

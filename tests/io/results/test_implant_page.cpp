@@ -3,6 +3,7 @@
 #include "report_page.hpp"
 #include "results/implant/cause_picture.hpp"
 #include "results/implant/error_pictures.hpp"
+#include "results/implant/found_csv.hpp"
 #include "results/implant/implant_page.hpp"
 #include "results/implant/implant_tables.hpp"
 #include "results/implant/implant_words.hpp"
@@ -12,7 +13,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <sstream>
 
 using namespace stylet;
 using namespace stylet::testing;
@@ -22,6 +26,16 @@ namespace {
 /// The outcome with coarse samples, which is computed once.
 const ImplantOutcome& outcome() {
   static const ImplantOutcome invented = synthetic_implant(4.0, 1.5);
+  return invented;
+}
+
+/// The same with seeds that were found on images.
+const ImplantOutcome& outcome_with_found() {
+  static const ImplantOutcome invented = [] {
+    ImplantOutcome implant = outcome();
+    add_invented_found_seeds(implant);
+    return implant;
+  }();
   return invented;
 }
 
@@ -104,6 +118,89 @@ TEST(ImplantPage, can_be_made_when_every_seed_is_lost) {
   const std::string text = markup(page_of(implant));
   EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
   EXPECT_EQ(count(text, "No seed is left in the patient."), 1U);
+}
+
+TEST(ImplantPage, has_a_section_about_seeds_found_on_images_only_where_there_are_any) {
+  EXPECT_EQ(count(markup(page_of(outcome())), "Found on imaging"), 0U);
+  const std::string page = page_of(outcome_with_found());
+  const std::string text = markup(page);
+  EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
+  const std::string section = between(text, "id=\"found\"", "</section>");
+  const FoundComparison& comparison = outcome_with_found().found->comparison;
+  ASSERT_EQ(comparison.seeds.size(), 41U);
+  EXPECT_EQ(count(section, "41<small>42 found, 43 simulated</small>"), 1U);
+  EXPECT_EQ(count(section, "more than chance"), 1U);
+  EXPECT_EQ(count(section, "(no. 4, 11 of the plan)"), 1U);
+  EXPECT_EQ(count(section, "<td>matches no simulated seed</td>"), 1U);
+  EXPECT_EQ(count(section, "<title>"), 3U * (41U + 1U)) << "three pictures, and the legend of the thirds";
+  EXPECT_EQ(count(section, "<td>not found</td>"), 2U);
+  EXPECT_EQ(count(section, "<td>lost in the simulation</td>"), 1U);
+  EXPECT_EQ(count(section, "stroke-dasharray"), 4U) << "the lines of the common shift, and their legend";
+  const std::string table = between(section, "<table class=\"figures errors found-errors\">", "</table>");
+  EXPECT_EQ(count(table, fmt::format("<td class=\"number\">{:.2f}</td>", comparison.as_found.error.mean_mm)), 1U);
+  EXPECT_EQ(count(section, "not explained by the simulation"), 1U);
+  EXPECT_EQ(count(text, "href=\"found/report.html\""), 1U);
+  EXPECT_EQ(count(text, "found.csv</code> beside") + count(text, "<code>found.csv</code>."), 1U);
+  const auto data = nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
+  EXPECT_EQ(data["found"].size(), 42U);
+  EXPECT_TRUE(data["found"][41]["number"].is_null());
+  EXPECT_EQ(data["found_percent"].size(), data["planned_percent"].size());
+}
+
+TEST(ImplantPage, bears_found_seeds_that_match_nothing) {
+  ImplantOutcome implant = outcome();
+  for (SeedHistory& seed : implant.history.seeds) seed.lost = true;
+  add_invented_found_seeds(implant);
+  const std::string text = markup(page_of(implant));
+  EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
+  EXPECT_EQ(count(between(text, "id=\"found\"", "</section>"), "0 of them match."), 1U);
+}
+
+TEST(FoundSentences, say_whether_the_shift_is_chance_and_what_is_explained) {
+  ImplantOutcome implant = outcome_with_found();
+  const auto all = [&] {
+    implant.found->comparison = compare_found(implant.history, implant.found->seeds.seeds);
+    std::string text;
+    for (const std::string& sentence : found_sentences(implant.history, *implant.found)) text += sentence + " ";
+    return text;
+  };
+  EXPECT_EQ(count(all(), "This is more than chance makes it"), 1U);
+  const Vec3 shift = implant.found->comparison.matching.shift_mm;
+  for (FoundSeed& seed : implant.found->seeds.seeds) seed.at_mm -= shift;
+  EXPECT_EQ(count(all(), "Chance alone may make it so large."), 1U);
+  for (SeedHistory& seed : implant.history.seeds)
+    seed.rest_mm = seed.planned_mm + 3.0 * (seed.rest_mm - seed.planned_mm);
+  EXPECT_EQ(count(all(), "explains nothing"), 1U);
+  implant.found->seeds.seeds.resize(2);
+  EXPECT_EQ(count(all(), "too few matches"), 1U);
+}
+
+TEST(FoundCsv, of_an_earlier_run_is_removed_and_a_file_of_the_user_stays) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / "stylet_earlier_found";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "found");
+  EXPECT_TRUE(results::remove_earlier_found(folder).ok()) << "nothing is there";
+  std::ofstream(folder / "found.csv") << found_csv(outcome_with_found().history, *outcome_with_found().found);
+  std::ofstream(folder / "found" / "dose.json") << "{}";
+  EXPECT_TRUE(results::remove_earlier_found(folder).ok());
+  EXPECT_FALSE(fs::exists(folder / "found.csv") || fs::exists(folder / "found" / "dose.json"));
+  std::ofstream(folder / "found.csv") << "x_mm,y_mm,z_mm\n1,2,3\n";
+  EXPECT_TRUE(results::remove_earlier_found(folder).ok());
+  EXPECT_TRUE(fs::exists(folder / "found.csv"));
+  fs::remove_all(folder);
+}
+
+TEST(FoundCsv, has_a_row_for_each_seed_of_the_plan_and_each_found_seed_without_match) {
+  const std::string text = found_csv(outcome_with_found().history, *outcome_with_found().found);
+  std::istringstream lines(text);
+  std::string line;
+  std::size_t rows = 0;
+  while (std::getline(lines, line)) {
+    ++rows;
+    EXPECT_EQ(count(line, ","), 42U) << line;
+  }
+  EXPECT_EQ(rows, 1U + 44U + 1U);
 }
 
 TEST(CausePicture, leaves_out_causes_that_moved_no_seed_and_a_sentence_says_so) {

@@ -49,7 +49,7 @@ std::string histogram_line(const std::vector<double>& dose_Gy, const std::vector
 }  // namespace
 
 std::string dvh_picture(const std::vector<StructureDose>& structures, const DvhTable& dvh,
-                        const std::vector<std::string>& colours, const DvhTable* planned) {
+                        const std::vector<std::string>& colours, const DvhTable* planned, const DvhTable* found) {
   if (structures.empty() || dvh.dose_Gy.size() < 2) return {};
   const double keys = kTop + kHigh + 62;
   std::string svg = fmt::format(
@@ -59,9 +59,11 @@ std::string dvh_picture(const std::vector<StructureDose>& structures, const DvhT
       frame_of_picture(dvh.dose_Gy.back()));
   for (std::size_t s = 0; s < structures.size(); ++s) {
     svg += histogram_line(dvh.dose_Gy, dvh.percent[s], fmt::format("stroke=\"{}\" stroke-width=\"2\"", colours[s]));
-    if (planned) {
-      svg += histogram_line(planned->dose_Gy, planned->percent[s],
-                            fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"7 5\"", colours[s]));
+    for (const auto& [other, dashes] : {std::pair(planned, "7 5"), std::pair(found, "2 3")}) {
+      if (!other) continue;
+      svg +=
+          histogram_line(other->dose_Gy, other->percent[s],
+                         fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\"", colours[s], dashes));
     }
     const double y = keys + kKeyLine * static_cast<double>(s);
     svg += fmt::format(

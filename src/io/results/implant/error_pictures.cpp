@@ -3,6 +3,7 @@
 
 #include "dose/round_number.hpp"
 #include "implant/implant_words.hpp"
+#include "implant/third_mark.hpp"
 #include "report/text.hpp"
 
 #include <fmt/format.h>
@@ -90,20 +91,6 @@ std::string error_frame(const ErrorScales& scales, std::size_t axis) {
              "x=\"{}\" y=\"{}\">{} ↑</text><text class=\"end\" x=\"{}\" y=\"{}\">{} ↓</text>",
              kErrorLeft + kErrorWide / 2, kErrorTop + kErrorHigh + 41, kErrorTop + kErrorHigh / 2, kErrorLeft + 6,
              kErrorTop + 14, kToward[axis], kErrorLeft + 6, kErrorTop + kErrorHigh - 6, kAgainst[axis]);
-}
-
-/// A mark of a third: a circle, a square or a triangle. @param open not filled
-std::string third_mark(double x, double y, std::size_t third, const std::string& title, bool open = false) {
-  std::string shape;
-  if (third == 0) shape = fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4.5\"", x, y);
-  if (third == 1) shape = fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\"", x - 4, y - 4);
-  if (third == 2) shape = fmt::format("<path d=\"M{:.1f} {:.1f}l5 9h-10z\"", x, y - 5.5);
-  const std::string look =
-      fmt::format("{}=\"{}\"", open ? "fill=\"none\" stroke-width=\"2\" stroke" : "fill", kThirdColours[third]);
-  return shape + fmt::format(" {}><title>{}</title></{}>", look, html_escaped(title),
-                             third == 0   ? "circle"
-                             : third == 1 ? "rect"
-                                          : "path");
 }
 
 std::string error_picture(const ImplantHistory& history, const std::vector<std::size_t>& thirds,

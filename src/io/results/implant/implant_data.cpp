@@ -16,14 +16,31 @@ double hundredths(double value) { return std::round(100.0 * value) / 100.0; }
 
 PageJson seed_place_json(const Vec3& mm) { return {hundredths(mm.x()), hundredths(mm.y()), hundredths(mm.z())}; }
 
-}  // namespace
-
-std::string implant_page_data(const ImplantHistory& history, const DvhTable& planned) {
-  PageJson percent = PageJson::array(), seeds = PageJson::array(), thirds = PageJson::array();
-  for (const std::vector<double>& curve : planned.percent) {
+PageJson curves_json(const DvhTable& dvh) {
+  PageJson percent = PageJson::array();
+  for (const std::vector<double>& curve : dvh.percent) {
     PageJson& values = percent.emplace_back(PageJson::array());
     for (const double value : curve) values.push_back(hundredths(value));
   }
+  return percent;
+}
+
+/// The seeds that were found on images.
+PageJson found_seeds_json(const ImplantOutcome& outcome) {
+  PageJson list = PageJson::array();
+  const std::vector<FoundSeed>& found = outcome.found->seeds.seeds;
+  std::vector<PageJson> number_of(found.size());
+  for (const MatchedSeed& matched : outcome.found->comparison.seeds) number_of[matched.found] = matched.seed.number + 1;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    list.push_back({{"found_mm", seed_place_json(found[k].at_mm)}, {"number", number_of[k]}});
+  return list;
+}
+
+}  // namespace
+
+std::string implant_page_data(const ImplantOutcome& outcome, const DvhTable& planned, const DvhTable* found) {
+  const ImplantHistory& history = outcome.history;
+  PageJson seeds = PageJson::array(), thirds = PageJson::array();
   const std::vector<std::size_t> third_of = thirds_of(history);
   for (std::size_t k = 0; k < history.seeds.size(); ++k) {
     const SeedHistory& seed = history.seeds[k];
@@ -35,7 +52,11 @@ std::string implant_page_data(const ImplantHistory& history, const DvhTable& pla
   }
   for (std::size_t k = 0; k < kThirds.size(); ++k)
     thirds.push_back({{"name", kThirds[k]}, {"color", kThirdColours[k]}});
-  const PageJson json = {{"planned_percent", percent}, {"thirds", thirds}, {"seeds", seeds}};
+  PageJson json = {{"planned_percent", curves_json(planned)}, {"thirds", thirds}, {"seeds", seeds}};
+  if (found) {
+    json["found_percent"] = curves_json(*found);
+    json["found"] = found_seeds_json(outcome);
+  }
   return json.dump(-1, ' ', false, PageJson::error_handler_t::replace);
 }
 

@@ -1,34 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/found_json.hpp"
+#include "implant/json_parts.hpp"
 #include "stylet/core/version.hpp"
 #include "stylet/io/dose_results.hpp"
 #include "stylet/io/implant_results.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace stylet {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
-OrderedJson list_of(const Vec3& v) {
-  OrderedJson list = OrderedJson::array();
-  for (int axis = 0; axis < 3; ++axis)
-    list.push_back(std::isfinite(v[axis]) ? OrderedJson(v[axis]) : OrderedJson(nullptr));
-  return list;
-}
-
-OrderedJson errors_json(const SeedErrors& errors) {
-  OrderedJson json{{"seeds", errors.seeds},
-                   {"mean_mm", errors.mean_mm},
-                   {"p95_mm", errors.p95_mm},
-                   {"largest_mm", errors.largest_mm}};
-  const char* names[] = {"x_mm", "y_mm", "z_mm"};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    json[names[axis]] = {{"mean", errors.axes[axis].mean_mm}, {"sd", errors.axes[axis].sd_mm}};
-  return json;
-}
+using results::errors_json;
+using results::list_of;
+using results::OrderedJson;
 
 OrderedJson parts_json(const std::vector<PartErrors>& parts) {
   OrderedJson rows = OrderedJson::array();
@@ -69,24 +53,31 @@ OrderedJson needle_json(const NeedleHistory& needle) {
           {"seconds", needle.seconds}};
 }
 
-/// The goals of the plan beside those of the implant.
-OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered) {
+/// The goals of the plan beside those of the implant. @param found those of the found seeds; null: none are given
+OrderedJson goals_json(const OrderedJson& planned, const OrderedJson& delivered, const OrderedJson& found) {
   OrderedJson rows = OrderedJson::array();
   for (std::size_t k = 0; k < delivered.size(); ++k) {
     OrderedJson row = delivered[k];
     row["planned_value"] = planned[k]["value"];
     row["planned_met"] = planned[k]["met"];
+    if (!found.is_null()) {
+      row["found_value"] = found[k]["value"];
+      row["found_met"] = found[k]["met"];
+    }
     rows.push_back(row);
   }
   return rows;
 }
 
-OrderedJson other_json(const OtherImplant& other) {
+/// @param found the seeds found on images, where there are any
+OrderedJson other_json(const OtherImplant& other, const std::optional<FoundImplant>& found) {
   const OrderedJson dose = OrderedJson::parse(dose_json(other.delivered));
-  return {{"name", other.name},
-          {"error", errors_json(seed_errors(other.history.seeds))},
-          {"delivered_dvh", dose["dvh"]},
-          {"goals", dose["goals"]}};
+  OrderedJson json = {{"name", other.name},
+                      {"error", errors_json(seed_errors(other.history.seeds))},
+                      {"delivered_dvh", dose["dvh"]},
+                      {"goals", dose["goals"]}};
+  if (found) json["agreement"] = results::agreement_json(compare_found(other.history, found->seeds.seeds).all);
+  return json;
 }
 
 }  // namespace
@@ -104,7 +95,8 @@ std::string implant_json(const ImplantOutcome& outcome) {
                    {"mean_xyz_mm", list_of(cause.mean_vector_mm)}});
   }
   OrderedJson spans = OrderedJson::array();
-  for (const OtherImplant& other : outcome.spans) spans.push_back(other_json(other));
+  for (const OtherImplant& other : outcome.spans) spans.push_back(other_json(other, outcome.found));
+  const OrderedJson found = outcome.found ? OrderedJson::parse(dose_json(outcome.found->dose)) : OrderedJson(nullptr);
   const OrderedJson json = {
       {"version", version()},
       {"scenario", outcome.scenario.name},
@@ -120,8 +112,11 @@ std::string implant_json(const ImplantOutcome& outcome) {
         {"why", why},
         {"planned_dvh", planned["dvh"]},
         {"delivered_dvh", delivered["dvh"]},
-        {"goals", goals_json(planned["goals"], delivered["goals"])},
-        {"before_compensation", outcome.before ? other_json(*outcome.before) : OrderedJson(nullptr)},
+        {"found_dvh", outcome.found ? found["dvh"] : OrderedJson(nullptr)},
+        {"goals",
+         goals_json(planned["goals"], delivered["goals"], outcome.found ? found["goals"] : OrderedJson(nullptr))},
+        {"found", outcome.found ? results::found_json(history, *outcome.found) : OrderedJson(nullptr)},
+        {"before_compensation", outcome.before ? other_json(*outcome.before, outcome.found) : OrderedJson(nullptr)},
         {"spans", spans},
         {"assumptions", delivered["assumptions"]}}},
       {"warnings", outcome.warnings}};

@@ -10,6 +10,7 @@
 #include "dose/structure_look.hpp"
 #include "implant/cause_picture.hpp"
 #include "implant/error_pictures.hpp"
+#include "implant/found_section.hpp"
 #include "implant/implant_data.hpp"
 #include "implant/implant_tables.hpp"
 #include "implant/implant_words.hpp"
@@ -21,25 +22,44 @@
 namespace stylet::results {
 namespace {
 
-/// Both histograms at the same doses, which reach as far as the hotter of them does.
-struct BothDvh {
+/// All histograms at the same doses, which reach as far as the hottest of them does.
+struct AllDvh {
   DvhTable planned, delivered;
+  std::optional<DvhTable> found;
 };
 
-BothDvh both_dvh(const ImplantOutcome& outcome) {
-  const DvhTable planned = dvh_table(outcome.planned), delivered = dvh_table(outcome.delivered);
-  const std::vector<double>& dose_Gy =
-      planned.dose_Gy.back() > delivered.dose_Gy.back() ? planned.dose_Gy : delivered.dose_Gy;
-  return {.planned = dvh_at(outcome.planned, dose_Gy), .delivered = dvh_at(outcome.delivered, dose_Gy)};
+AllDvh all_dvh(const ImplantOutcome& outcome) {
+  std::vector<double> dose_Gy;
+  const auto reach = [&](const DoseEvaluation& dose) {
+    DvhTable table = dvh_table(dose);
+    if (dose_Gy.empty() || table.dose_Gy.back() > dose_Gy.back()) dose_Gy = std::move(table.dose_Gy);
+  };
+  reach(outcome.planned);
+  reach(outcome.delivered);
+  if (outcome.found) reach(outcome.found->dose);
+  AllDvh dvh{.planned = dvh_at(outcome.planned, dose_Gy), .delivered = dvh_at(outcome.delivered, dose_Gy), .found = {}};
+  if (outcome.found) dvh.found = dvh_at(outcome.found->dose, dose_Gy);
+  return dvh;
+}
+
+/// The doses of the tables of goals and figures.
+std::vector<NamedDose> doses_of(const ImplantOutcome& outcome) {
+  std::vector<NamedDose> doses{{"Planned", &outcome.planned}, {"Delivered", &outcome.delivered}};
+  if (!outcome.found) return doses;
+  doses.push_back({"Found", &outcome.found->dose});
+  if (outcome.found->comparison.matching.shift_beyond_chance())
+    doses.push_back({"Found, without common shift", &outcome.found->dose_without_shift});
+  return doses;
 }
 
 }  // namespace
 
 Result<std::string> implant_page(const ImplantOutcome& outcome) {
   const ImplantHistory& history = outcome.history;
-  const std::vector<NamedDose> doses{{"Planned", &outcome.planned}, {"Delivered", &outcome.delivered}};
+  const std::vector<NamedDose> doses = doses_of(outcome);
   const std::vector<std::string> colours = structure_colours(outcome.delivered.structures);
-  const BothDvh dvh = both_dvh(outcome);
+  const AllDvh dvh = all_dvh(outcome);
+  const DvhTable* found = dvh.found ? &*dvh.found : nullptr;
   const Slots slots{
       {"report", "implant report"},
       {"kicker", "Simulation of a seed implant"},
@@ -51,7 +71,7 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"tiles", implant_tiles(outcome)},
       {"story", implant_story(outcome)},
       {"goals", goal_table(doses)},
-      {"dvh_picture", dvh_picture(outcome.delivered.structures, dvh.delivered, colours, &dvh.planned)},
+      {"dvh_picture", dvh_picture(outcome.delivered.structures, dvh.delivered, colours, &dvh.planned, found)},
       {"figures", dvh_figures(doses, colours)},
       {"errors", error_table(history)},
       {"cause_picture", cause_picture(history)},
@@ -60,6 +80,12 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"third_key", third_key(history)},
       {"error_pictures", error_pictures(history)},
       {"needles", needle_table(history)},
+      {"found", found_section(outcome)},
+      {"dvh_of_found", found ? " Dotted lines are the dose of the seeds where they were found on imaging." : ""},
+      {"marks_of_found", found ? " Crosses are the places where seeds were found on imaging." : ""},
+      {"space_of_found", found ? " Orange marks are the places where seeds were found on imaging." : ""},
+      {"report_of_found", found ? "; <a href=\"found/report.html\">the dose of the found seeds</a>" : ""},
+      {"files_of_found", found ? " The match with the found seeds is in <code>found.csv</code>." : ""},
       {"seeds", seed_error_table(history)},
       {"procedure", procedure_facts(outcome.scenario)},
       {"seed_facts", seed_facts(outcome.scenario)},
@@ -68,7 +94,7 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"assumptions", sentence_list(outcome.delivered.assumptions)},
       {"data", json_script_safe(dose_page_data(outcome.delivered, dvh.delivered, colours))},
       {"more_data", "<script type=\"application/json\" id=\"implant-data\">" +
-                        json_script_safe(implant_page_data(history, dvh.planned)) + "</script>\n"},
+                        json_script_safe(implant_page_data(outcome, dvh.planned, found)) + "</script>\n"},
       {"js", script_safe(implant_js())},
   };
   return page_about_dose(implant_template(), slots);

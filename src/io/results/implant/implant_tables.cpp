@@ -41,14 +41,6 @@ std::string target_tiles(const ImplantOutcome& outcome) {
   return html;
 }
 
-std::string error_cells(const std::string& name, const SeedErrors& errors) {
-  std::string cells = text_cell(name) + figure_cell(fmt::format("{}", errors.seeds));
-  for (const double mm : {errors.mean_mm, errors.p95_mm}) cells += figure_cell(errors.seeds > 0 ? fixed(mm, 2) : "–");
-  for (const SeedErrors::Axis& axis : errors.axes)
-    cells += figure_cell(errors.seeds > 0 ? signed_number(axis.mean_mm, 2) + " ± " + fixed(axis.sd_mm, 2) : "–");
-  return "<tr>" + cells + "</tr>";
-}
-
 std::string place_cell(const Vec3& mm) {
   return figure_cell(fmt::format("{}, {}, {}", fixed(mm.x(), 1), fixed(mm.y(), 1), fixed(mm.z(), 1)));
 }
@@ -69,9 +61,17 @@ std::string implant_tiles(const ImplantOutcome& outcome) {
          figure_tile(fmt::format("{}", outcome.history.needles.size()), "needles");
 }
 
+std::string error_row(const std::string& name, const SeedErrors& errors) {
+  std::string cells = text_cell(name) + figure_cell(fmt::format("{}", errors.seeds));
+  for (const double mm : {errors.mean_mm, errors.p95_mm}) cells += figure_cell(errors.seeds > 0 ? fixed(mm, 2) : "–");
+  for (const SeedErrors::Axis& axis : errors.axes)
+    cells += figure_cell(errors.seeds > 0 ? signed_number(axis.mean_mm, 2) + " ± " + fixed(axis.sd_mm, 2) : "–");
+  return "<tr>" + cells + "</tr>";
+}
+
 std::string error_table(const ImplantHistory& history) {
-  std::string rows = error_cells("all seeds", seed_errors(history.seeds));
-  for (const PartErrors& third : errors_by_third(history)) rows += error_cells(third.name, third.errors);
+  std::string rows = error_row("all seeds", seed_errors(history.seeds));
+  for (const PartErrors& third : errors_by_third(history)) rows += error_row(third.name, third.errors);
   std::string head = text_heading("Part of the gland");
   for (const char* name :
        {"Seeds", "Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})

@@ -11,6 +11,9 @@ namespace stylet::results {
 /// The figures that everybody asks for first, as items of a list.
 std::string implant_tiles(const ImplantOutcome& outcome);
 
+/// A row of a table of errors: name, number of seeds, distances, and signed errors along the axes.
+std::string error_row(const std::string& name, const SeedErrors& errors);
+
 /// The errors of all seeds and of those in each third.
 std::string error_table(const ImplantHistory& history);
 

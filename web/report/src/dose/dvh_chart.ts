@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Dose–volume histograms with the dose in Gy below and in percent of the prescribed dose above. A second set of
-// histograms, that of the plan, is drawn with dashes.
+// histograms, that of the plan, is drawn with dashes, and a third one, that of seeds found on images, with dots.
 import uPlot from 'uplot';
 import { element } from '../../../shared/dom';
 import { axis, fontSize, followWidth, lineScale, PALE, SOFT } from '../../../shared/plot_style';
@@ -11,6 +11,7 @@ import type { DoseData } from './data';
 const CURVE_DASHES = [[], [9, 4], [3, 3], [12, 3, 2, 3], [16, 4]];
 
 const PLANNED_DASHES = [7, 5];
+const FOUND_DASHES = [2, 3];
 
 /** Vertical lines at 100, 150 and 200 % of the prescribed dose. */
 function drawMarks(plot: uPlot, prescription: number): void {
@@ -39,13 +40,14 @@ interface Curve {
   dashes: number[];
 }
 
-function curvesOf({ dvh, structures }: DoseData, planned?: number[][]): Curve[] {
+function curvesOf({ dvh, structures }: DoseData, planned?: number[][], found?: number[][]): Curve[] {
   return structures.flatMap(({ name, color }, structure) => {
     const own = { structure, color, label: name, percent: dvh.percent[structure], dashes: CURVE_DASHES[structure % CURVE_DASHES.length] };
     if (!planned) return [own];
     return [
       { ...own, label: `${name}, delivered`, dashes: [] },
       { ...own, label: `${name}, planned`, percent: planned[structure], dashes: PLANNED_DASHES },
+      ...(found ? [{ ...own, label: `${name}, found`, percent: found[structure], dashes: FOUND_DASHES }] : []),
     ];
   });
 }
@@ -53,7 +55,7 @@ function curvesOf({ dvh, structures }: DoseData, planned?: number[][]): Curve[] 
 const strokeSample = (color: string, dashes: number[]) =>
   `<svg width="40" height="10" aria-hidden="true"><path d="M1 5H39" stroke="${color}" stroke-width="2.5" stroke-dasharray="${dashes.join(' ') || 'none'}" fill="none"/></svg>`;
 
-function buildDvhLegend(box: HTMLElement, data: DoseData, curves: Curve[], plot: uPlot): void {
+function buildDvhLegend(box: HTMLElement, data: DoseData, curves: Curve[], plot: uPlot, found: boolean): void {
   data.structures.forEach(({ name, color }, structure) => {
     const own = curves.flatMap((curve, k) => (curve.structure === structure ? [k] : []));
     const toggle = element('button');
@@ -70,7 +72,7 @@ function buildDvhLegend(box: HTMLElement, data: DoseData, curves: Curve[], plot:
   });
   if (curves.length === data.structures.length) return;
   const key = element('span', 'key');
-  key.innerHTML = `${strokeSample(SOFT, [])}delivered${strokeSample(SOFT, PLANNED_DASHES)}planned`;
+  key.innerHTML = `${strokeSample(SOFT, [])}delivered${strokeSample(SOFT, PLANNED_DASHES)}planned${found ? `${strokeSample(SOFT, FOUND_DASHES)}found on imaging` : ''}`;
   box.append(key);
 }
 
@@ -81,8 +83,11 @@ function firstEnd({ dvh, prescription }: DoseData): number {
   return Math.max(...dvh.percent.map((curve) => dvh.dose[curve.findIndex((v) => v < 1)] ?? last));
 }
 
-/** @param planned (structures × doses) shares of the plan [%], at the doses of the histograms */
-export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElement, planned?: number[][]): void {
+/**
+ * @param planned (structures × doses) shares of the plan [%], at the doses of the histograms
+ * @param found those of the seeds that were found on images, beside a plan
+ */
+export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElement, planned?: number[][], found?: number[][]): void {
   const { dvh, structures, prescription } = data;
   if (structures.length === 0) {
     box.textContent = 'No structures were given.';
@@ -90,7 +95,7 @@ export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElem
     return;
   }
   const end = firstEnd(data);
-  const curves = curvesOf(data, planned);
+  const curves = curvesOf(data, planned, found);
   const percentAxis: uPlot.Axis[] = prescription ? [{
     ...axis('Dose [% of the prescribed dose]', fontSize() * 2),
     scale: 'x',
@@ -130,5 +135,5 @@ export function buildDvhChart(data: DoseData, box: HTMLElement, legend: HTMLElem
     text: (v) => `${v.toFixed(1)} %`,
     xText: (v) => `${v.toFixed(1)} Gy${prescription ? ` = ${((100 * v) / prescription).toFixed(0)} %` : ''}`,
   });
-  buildDvhLegend(legend, data, curves, plot);
+  buildDvhLegend(legend, data, curves, plot, found !== undefined);
 }

@@ -12,6 +12,7 @@ import { buildDoseViewer } from './viewer';
 /** What a page shows beside the dose. */
 export interface More {
   planned?: number[][];       // (structures × doses) histograms of a plan [%]
+  found?: number[][];         // those of seeds that were found on images
   keys?: [string, string][];  // further marks of the sections as SVG, with their names
   marks?: MoreMarks;
   inSpace?: (stage: DoseStage, picture: HTMLElement) => HTMLElement[];
@@ -19,7 +20,7 @@ export interface More {
 
 export function buildDosePage(data: DoseData, more: More = {}): void {
   document.documentElement.classList.add('with-script');
-  build('dvh-plot', (box) => buildDvhChart(data, box, document.getElementById('dvh-legend') as HTMLElement, more.planned));
+  build('dvh-plot', (box) => buildDvhChart(data, box, document.getElementById('dvh-legend') as HTMLElement, more.planned, more.found));
   build('iso-key', (box) => buildLevelKey(data, box, more.keys));
   build('section-pictures', (box) => box.append(...PLANES.map((plane) => buildSection(data, plane, more.marks))));
   build('viewer', (box) => buildDoseViewer(data, box, more.inSpace));

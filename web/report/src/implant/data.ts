@@ -10,8 +10,15 @@ export interface Seed {
   third: number;           // number in `thirds`
 }
 
+export interface FoundSeed {
+  found_mm: Triple;       // LPS
+  number: number | null;  // that of its seed; null: it matches none
+}
+
 export interface ImplantData {
   planned_percent: number[][];  // (structures × doses) histograms of the plan, at the doses of the delivered ones
+  found_percent?: number[][];   // those of the seeds that were found on images, where there are any
+  found?: FoundSeed[];
   thirds: { name: string; color: string }[];
   seeds: Seed[];
 }

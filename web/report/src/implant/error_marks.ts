@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The errors of seeds in a section: an open mark at the planned place, joined to the seed at rest by a line.
+// The errors of seeds in a section: an open mark at the planned place, joined to the seed at rest by a line. Seeds that
+// were found on images are crosses.
 import { inPicture } from '../dose/planes';
 import { add, NEAR_MM, type MoreMarks } from '../dose/section_picture';
 import type { ImplantData } from './data';
@@ -10,8 +11,12 @@ const RADIUS = 1.05;  // [mm] of an open mark, so that a seed seen from its end 
 export const PLANNED_KEY = '<svg width="14" height="14" viewBox="0 0 3.5 3.5" aria-hidden="true"><circle cx="1.75" cy="1.75" r="1.15" fill="#fff" stroke="#23262b" stroke-width="0.4"/></svg>';
 export const ERROR_KEY = '<svg width="30" height="12" viewBox="0 0 7.5 3" aria-hidden="true"><path d="M0.4 1.5H7.1" stroke="#23262b" stroke-width="0.4"/></svg>';
 
-/** Draws the errors of the seeds that are planned, or rest, near the plane. */
-export function errorMarks({ seeds }: ImplantData): MoreMarks {
+export const FOUND_KEY = '<svg width="14" height="14" viewBox="0 0 3.5 3.5" aria-hidden="true"><path d="M0.6 0.6L2.9 2.9M2.9 0.6L0.6 2.9" stroke="#c44601" stroke-width="0.5"/></svg>';
+
+const ARM = 0.95;  // [mm] half the width of a cross
+
+/** Draws the errors of the seeds that are planned, or rest, near the plane, and the found ones near it. */
+export function errorMarks({ seeds, found = [] }: ImplantData): MoreMarks {
   return (inside, plane, height) => {
     const g = add(inside, 'g', { class: 'errors' });
     const isNear = (x: ArrayLike<number>) => Math.abs(x[plane.normal] - height) <= NEAR_MM;
@@ -29,6 +34,14 @@ export function errorMarks({ seeds }: ImplantData): MoreMarks {
         if (length > RADIUS) add(mark, 'path', { d, class: 'line' });
       }
       for (const kind of ['rim', 'line']) add(mark, 'circle', { cx: x.toFixed(2), cy: y.toFixed(2), r: RADIUS, class: kind });
+    }
+    for (const { number, found_mm: place } of found) {
+      if (!isNear(place)) continue;
+      const [x, y] = inPicture(plane, place);
+      const mark = add(g, 'g', { class: 'found' });
+      add(mark, 'title', {}, number === null ? 'Found; matches no simulated seed' : `Seed ${number} as found`);
+      const d = `M${(x - ARM).toFixed(2)} ${(y - ARM).toFixed(2)}l${2 * ARM} ${2 * ARM}m0 ${-2 * ARM}l${-2 * ARM} ${2 * ARM}`;
+      for (const kind of ['rim', 'line']) add(mark, 'path', { d, class: kind });
     }
   };
 }

@@ -11,13 +11,18 @@ import { decode } from '../dose/data';
 import { buildDosePage } from '../dose/page';
 import { addArrows } from './arrow_controls';
 import { decodeImplant } from './data';
-import { ERROR_KEY, errorMarks, PLANNED_KEY } from './error_marks';
+import { ERROR_KEY, errorMarks, FOUND_KEY, PLANNED_KEY } from './error_marks';
 
 const text = (id: string) => document.getElementById(id)?.textContent ?? '';
 const implant = decodeImplant(text('implant-data'));
 buildDosePage(decode(text('dose-data')), {
   planned: implant.planned_percent,
-  keys: [[PLANNED_KEY, 'planned place'], [ERROR_KEY, 'error of a seed']],
+  found: implant.found_percent,
+  keys: [
+    [PLANNED_KEY, 'planned place'],
+    [ERROR_KEY, 'error of a seed'],
+    ...(implant.found ? [[FOUND_KEY, 'found on imaging'] as [string, string]] : []),
+  ],
   marks: errorMarks(implant),
   inSpace: (stage, picture) => addArrows(implant, stage, picture),
 });

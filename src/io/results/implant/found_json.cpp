@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/found_json.hpp"
+
+#include "stylet/io/dose_results.hpp"
+
+#include <algorithm>
+
+namespace stylet::results {
+namespace {
+
+OrderedJson number_or_null(const std::optional<double>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
+}
+
+OrderedJson found_errors_json(const FoundErrors& errors) {
+  OrderedJson parts = OrderedJson::array();
+  for (const ErrorPart& part : errors.parts)
+    parts.push_back({{"cause", part.name}, {"mm2", part.mean_mm2}, {"percent", part.percent}});
+  return {{"error", errors_json(errors.error)},
+          {"remainder", errors_json(errors.remainder)},
+          {"mean_square_mm2", errors.mean_square_mm2},
+          {"parts", parts}};
+}
+
+OrderedJson matched_json(const MatchedSeed& matched, const ImplantHistory& history, const FoundComparison& comparison) {
+  OrderedJson why;
+  for (std::size_t k = 0; k < kSeedCauses; ++k)
+    why[to_string(static_cast<SeedCause>(k))] = list_of(matched.seed.cause_mm[k]);
+  return {{"number", matched.seed.number + 1},
+          {"needle", history.needles[matched.seed.needle].name},
+          {"found_number", matched.found + 1},
+          {"planned_mm", list_of(matched.seed.planned_mm)},
+          {"dropped_mm", list_of(matched.seed.dropped_mm)},
+          {"rest_mm", list_of(matched.seed.rest_mm)},
+          {"found_mm", list_of(matched.found_mm)},
+          {"error_mm", matched.error_mm().norm()},
+          {"error_xyz_mm", list_of(matched.error_mm())},
+          {"why", why},
+          {"remainder_xyz_mm", list_of(matched.remainder_mm)},
+          {"remainder_without_shift_xyz_mm", list_of(matched.remainder_mm - comparison.matching.shift_mm)},
+          {"ambiguous", matched.ambiguous}};
+}
+
+}  // namespace
+
+OrderedJson agreement_json(const Agreement& agreement) {
+  return {{"correlation", number_or_null(agreement.correlation)},
+          {"explained_percent", number_or_null(agreement.explained_percent)}};
+}
+
+OrderedJson found_json(const ImplantHistory& history, const FoundImplant& found) {
+  const FoundComparison& comparison = found.comparison;
+  const SeedMatching& matching = comparison.matching;
+  OrderedJson seeds = OrderedJson::array(), not_found = OrderedJson::array(), extra = OrderedJson::array();
+  for (const MatchedSeed& matched : comparison.seeds) seeds.push_back(matched_json(matched, history, comparison));
+  for (const std::size_t k : matching.not_found) not_found.push_back(history.seeds[k].number + 1);
+  for (const std::size_t k : matching.extra) {
+    const FoundSeed& seed = found.seeds.seeds[k];
+    extra.push_back({{"found_number", k + 1}, {"found_mm", list_of(seed.at_mm)}, {"where", seed.where}});
+  }
+  const OrderedJson dose = OrderedJson::parse(dose_json(found.dose_without_shift));
+  return {{"file", found.seeds.file},
+          {"found", found.seeds.seeds.size()},
+          {"matched", comparison.seeds.size()},
+          {"not_found", not_found},
+          {"not_dropped", extra},
+          {"ambiguous", std::count_if(matching.pairs.begin(), matching.pairs.end(),
+                                      [](const SeedPair& pair) { return pair.ambiguous; })},
+          {"match_limit_mm", kMatchLimit_mm},
+          {"common_shift_mm", list_of(matching.shift_mm)},
+          {"common_shift_standard_error_mm", list_of(matching.shift_error_mm)},
+          {"common_shift_beyond_chance", matching.shift_beyond_chance()},
+          {"frame_moved", matching.frame_moved},
+          {"scatter_mm", matching.scatter_mm},
+          {"as_found", found_errors_json(comparison.as_found)},
+          {"without_shift", found_errors_json(comparison.without_shift)},
+          {"agreement",
+           {{"x", agreement_json(comparison.axes[0])},
+            {"y", agreement_json(comparison.axes[1])},
+            {"z", agreement_json(comparison.axes[2])},
+            {"all", agreement_json(comparison.all)},
+            {"correlation_by_chance", number_or_null(comparison.correlation_by_chance)}}},
+          {"seeds", seeds},
+          {"dvh_without_shift", dose["dvh"]},
+          {"goals_without_shift", dose["goals"]}};
+}
+
+}  // namespace stylet::results

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/json_parts.hpp"
+
+#include <cmath>
+
+namespace stylet::results {
+
+OrderedJson list_of(const Vec3& v) {
+  OrderedJson list = OrderedJson::array();
+  for (int axis = 0; axis < 3; ++axis)
+    list.push_back(std::isfinite(v[axis]) ? OrderedJson(v[axis]) : OrderedJson(nullptr));
+  return list;
+}
+
+OrderedJson errors_json(const SeedErrors& errors) {
+  OrderedJson json{{"seeds", errors.seeds},
+                   {"mean_mm", errors.mean_mm},
+                   {"p95_mm", errors.p95_mm},
+                   {"largest_mm", errors.largest_mm}};
+  const char* names[] = {"x_mm", "y_mm", "z_mm"};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    json[names[axis]] = {{"mean", errors.axes[axis].mean_mm}, {"sd", errors.axes[axis].sd_mm}};
+  return json;
+}
+
+}  // namespace stylet::results
