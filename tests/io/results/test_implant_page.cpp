@@ -156,6 +156,30 @@ TEST(ImplantPage, bears_found_seeds_that_match_nothing) {
   EXPECT_EQ(count(between(text, "id=\"found\"", "</section>"), "0 of them match."), 1U);
 }
 
+TEST(ImplantPage, shows_compensation_and_span_where_they_were_asked_for) {
+  const std::string without = markup(page_of(outcome()));
+  EXPECT_EQ(count(without, "id=\"compensation\"") + count(without, "id=\"span\""), 0U);
+  ImplantOutcome implant = outcome_with_found();
+  const OtherImplant other{"tissue firm", implant.history, implant.delivered};
+  implant.before = other;
+  implant.spans = {other, other};
+  implant.spans[1].name = "tissue soft";
+  const std::string text = markup(page_of(implant));
+  EXPECT_EQ(count(text, "{{") + count(text, "nan"), 0U);
+  const std::string before = between(text, "id=\"compensation\"", "</section>");
+  const double mean = seed_errors(implant.history.seeds).mean_mm;
+  EXPECT_EQ(count(before, fmt::format("{:.1f}&nbsp;mm (before compensation) and {:.1f}&nbsp;mm (after compensation)",
+                                      mean, mean)),
+            1U);
+  EXPECT_EQ(count(before, "<table class=\"goals\">"), 1U);
+  const std::string span = between(text, "id=\"span\"", "</section>");
+  EXPECT_EQ(count(span, "Firm tissue</th>") + count(span, "Soft tissue</th>"), 2U) << "columns of the goals";
+  EXPECT_EQ(count(span, "stroke-width=\"2.5\""), 6U) << "three curves, and three lines of the legend";
+  EXPECT_EQ(count(span, "errors found on imaging"), 1U);
+  const auto json = nlohmann::json::parse(implant_json(implant));
+  EXPECT_TRUE(json["implant"]["spans"][0]["agreement"]["explained_percent"].is_number());
+}
+
 TEST(FoundSentences, say_whether_the_shift_is_chance_and_what_is_explained) {
   ImplantOutcome implant = outcome_with_found();
   const auto all = [&] {

@@ -61,7 +61,7 @@ class CauseScale {
           "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"{3}\"/><text class=\"tick\" x=\"{0:.1f}\" y=\"{4}\" "
           "text-anchor=\"middle\">{5}</text>",
           at(k * step_), kCauseTop, bottom, k == 0.0 ? "#8a9099" : "#e6e8eb", bottom + 17,
-          k < 0 ? fmt::format("−{:g}", -k * step_) : fmt::format("{:g}", k * step_));
+          (k < 0.0 ? "−" : "") + fmt::format("{:g}", std::abs(k * step_)));
     }
     return svg;
   }

@@ -9,6 +9,7 @@
 #include "dose/page_tables.hpp"
 #include "dose/structure_look.hpp"
 #include "implant/cause_picture.hpp"
+#include "implant/choice_sections.hpp"
 #include "implant/error_pictures.hpp"
 #include "implant/found_section.hpp"
 #include "implant/implant_data.hpp"
@@ -81,6 +82,8 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"error_pictures", error_pictures(history)},
       {"needles", needle_table(history)},
       {"found", found_section(outcome)},
+      {"compensation", compensation_section(outcome)},
+      {"span", span_section(outcome)},
       {"dvh_of_found", found ? " Dotted lines are the dose of the seeds where they were found on imaging." : ""},
       {"marks_of_found", found ? " Crosses are the places where seeds were found on imaging." : ""},
       {"space_of_found", found ? " Orange marks are the places where seeds were found on imaging." : ""},

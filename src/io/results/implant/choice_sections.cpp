@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "implant/choice_sections.hpp"
+
+#include "dose/page_tables.hpp"
+#include "dose/structure_look.hpp"
+#include "fixed_number.hpp"
+#include "implant/distance_picture.hpp"
+#include "implant/implant_tables.hpp"
+#include "report/html_parts.hpp"
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+namespace stylet::results {
+namespace {
+
+/// The implant under one choice.
+struct ImplantChoice {
+  std::string name;  ///< as a heading, "Firm"
+  const ImplantHistory* history = nullptr;
+  const DoseEvaluation* dose = nullptr;
+  std::string colour, dashes;  ///< of its curve
+};
+
+/// "1.9 mm (firm), 2.1 mm (typical) and 2.8 mm (soft)"
+std::string figures_in_words(const std::vector<ImplantChoice>& choices, const std::vector<double>& values, int digits,
+                             const char* unit) {
+  std::string text;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    std::string name = choices[k].name;
+    name.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
+    text += fmt::format("{}{} {} ({})",
+                        k == 0                    ? ""
+                        : k + 1 == choices.size() ? " and "
+                                                  : ", ",
+                        fixed(values[k], digits), unit, name);
+  }
+  return text;
+}
+
+/// How much of the errors of found seeds each choice explains; empty where it cannot be said.
+std::string explained_sentence(const std::vector<ImplantChoice>& choices, const std::optional<FoundImplant>& found) {
+  if (!found) return {};
+  std::vector<double> explained;
+  for (const ImplantChoice& choice : choices) {
+    const Agreement all = compare_found(*choice.history, found->seeds.seeds).all;
+    if (!all.explained_percent) return {};
+    explained.push_back(*all.explained_percent);
+  }
+  return " Of the variance of the errors found on imaging, the simulation explains " +
+         figures_in_words(choices, explained, 0, "%") + "; a negative share makes it worse.";
+}
+
+std::string choice_sentence(const std::vector<ImplantChoice>& choices, const std::optional<FoundImplant>& found) {
+  std::vector<double> errors, d90;
+  for (const ImplantChoice& choice : choices) {
+    errors.push_back(seed_errors(choice.history->seeds).mean_mm);
+    const StructureDose* target = find_region(*choice.dose, "prostate");
+    if (target) d90.push_back(target->dvh.dose_of_percent(90.0));
+  }
+  std::string text = "The mean error of the seeds is " + figures_in_words(choices, errors, 1, "mm") + ".";
+  if (d90.size() == choices.size()) text += " The target’s D90 is " + figures_in_words(choices, d90, 0, "Gy") + ".";
+  return text + explained_sentence(choices, found);
+}
+
+/// @param id of the heading @param intro HTML
+std::string choice_section(const char* id, const char* heading, const char* intro,
+                           const std::vector<ImplantChoice>& choices, const ImplantOutcome& outcome) {
+  std::string head = text_heading("");
+  for (const char* name :
+       {"Seeds", "Mean distance [mm]", "95 % within [mm]", "Left [mm]", "Posterior [mm]", "Superior [mm]"})
+    head += figure_heading(name);
+  std::string rows;
+  std::vector<DistanceCurve> curves;
+  std::vector<NamedDose> doses{{"Planned", &outcome.planned}};
+  for (const ImplantChoice& choice : choices) {
+    rows += error_row(choice.name, seed_errors(choice.history->seeds));
+    curves.push_back({choice.name, &choice.history->seeds, choice.colour, choice.dashes});
+    doses.push_back({choice.name, choice.dose});
+  }
+  return fmt::format(
+      "<section aria-labelledby=\"{0}\"><h2 id=\"{0}\">{1}</h2><p>{2}</p><p>{3}</p>{4}<div "
+      "class=\"choice\">{5}</div>{6}"
+      "</section>",
+      id, heading, intro, html_prose(choice_sentence(choices, outcome.found)),
+      scrolled_table("scroll", "figures errors", head, rows), distance_picture(curves), goal_table(doses));
+}
+
+}  // namespace
+
+std::string compensation_section(const ImplantOutcome& outcome) {
+  if (!outcome.before) return {};
+  return choice_section(
+      "compensation", "Before and after compensation",
+      "The needles were aimed beside their plan by the mean error of their seeds, with the opposite sign, so that the "
+      "seeds come to rest nearer to their plan. The rest of this page is about the implant after compensation. What "
+      "differs from seed to seed of one needle cannot be aimed away.",
+      {{"Before compensation", &outcome.before->history, &outcome.before->delivered, "#b5179e", "7 5"},
+       {"After compensation", &outcome.history, &outcome.delivered, "#0072b2", ""}},
+      outcome);
+}
+
+std::string span_section(const ImplantOutcome& outcome) {
+  if (outcome.spans.size() != 2) return {};
+  const OtherImplant& firm = outcome.spans[0];
+  const OtherImplant& soft = outcome.spans[1];
+  return choice_section(
+      "span", "Firm, typical and soft tissue",
+      "The same needles in firmer and in softer tissue. Nobody has measured the tissue of this patient: "
+      "a figure is only as sure as it is alike in all three. The rest of this page is about typical "
+      "tissue.",
+      {{"Firm tissue", &firm.history, &firm.delivered, "#b5179e", "7 5"},
+       {"Typical tissue", &outcome.history, &outcome.delivered, "#23262b", ""},
+       {"Soft tissue", &soft.history, &soft.delivered, "#0072b2", "2 4"}},
+      outcome);
+}
+
+}  // namespace stylet::results
