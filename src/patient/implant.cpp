@@ -15,6 +15,9 @@ namespace stylet {
 
 namespace {
 
+/// A grid that nobody sees is this many times as coarse, so that it takes hardly any time.
+constexpr double kGridNotShown = 10.0;
+
 /// The seeds that were found, checked; nothing where no file is named.
 Result<std::optional<FoundSeeds>> found_seeds_of(const ImplantSettings& settings, const DosePlan& plan) {
   if (settings.found.empty()) return std::optional<FoundSeeds>();
@@ -135,14 +138,18 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
   if (*found_seeds) {
     FoundImplant found{.seeds = **std::move(found_seeds)};
     found.comparison = compare_found(outcome.history, found.seeds.seeds);
-    const auto found_dose = [&](const Vec3& shift_mm) {
+    const auto found_dose = [&](const Vec3& shift_mm, double grid_step_mm) {
+      DoseOptions of_found = of.options;
+      of_found.grid_step_mm = grid_step_mm;
       return evaluate_dose(found_plan(of.plan, outcome.history, found.seeds.seeds, found.comparison, shift_mm),
-                           of.source, of.structures.structures, of.options, progress);
+                           of.source, of.structures.structures, of_found, progress);
     };
-    Result<DoseEvaluation> as_found = found_dose(Vec3::Zero());
+    Result<DoseEvaluation> as_found = found_dose(Vec3::Zero(), of.options.grid_step_mm);
     if (!as_found) return as_found.error();
     found.dose = *std::move(as_found);
-    Result<DoseEvaluation> without_shift = found_dose(found.comparison.matching.shift_mm);
+    // Only histograms and goals of this dose are shown, which do not need its grid.
+    Result<DoseEvaluation> without_shift =
+        found_dose(found.comparison.matching.shift_mm, kGridNotShown * of.options.grid_step_mm);
     if (!without_shift) return without_shift.error();
     found.dose_without_shift = *std::move(without_shift);
     append(outcome.warnings, found.seeds.notes);

@@ -24,7 +24,7 @@ struct FoundImplant {
   FoundSeeds seeds;
   FoundComparison comparison;
   DoseEvaluation dose;                ///< of all seeds where they were found, otherwise as the delivered dose
-  DoseEvaluation dose_without_shift;  ///< the same, after the common shift is taken away
+  DoseEvaluation dose_without_shift;  ///< the same on a coarse grid, after the common shift is taken away
 };
 
 /// An implant as it was planned and as it was delivered: everything that the result folder of `stylet implant` says.
