@@ -23,7 +23,7 @@ namespace stylet::serve {
 /// 0.5 % (test ImplantDose.*).
 class ImplantDose {
  public:
-  static constexpr std::size_t kMostSamples = 40'000;
+  static constexpr std::size_t kMostSamples = 20'000;
 
   /// Errors: those of Tg43::create(); the case has no target.
   static Result<std::unique_ptr<ImplantDose>> open(std::shared_ptr<const ImplantCase> implant);

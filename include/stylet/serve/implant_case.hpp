@@ -13,7 +13,7 @@ struct ImplantCase {
   DosePlan plan;
   SourceModel source;
   std::vector<NeedleLoad> needles;  ///< in the order of the procedure
-  /// The structures of the patient, sampled. The live page takes at most 40,000 samples of each.
+  /// The structures of the patient, sampled. The live page takes at most 20,000 samples of each.
   std::vector<DoseStructure> structures;
   DoseOptions options;  ///< goals and swelling
 };

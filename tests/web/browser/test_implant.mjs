@@ -52,6 +52,11 @@ test('the plan is shown with its first needle', async () => {
   assert.equal(await page.locator('.plan-needle').count(), 22);
   assert.match(await page.locator('.todo').textContent(), /^Needle \S+, seed 1 of \d: push in/);
   assert.match(await page.locator('#implant').textContent(), /of 84/);
+  const room = await page.locator('#implant').evaluate((e) => ({
+    down: e.scrollHeight - e.clientHeight, across: e.scrollWidth - e.clientWidth,
+    list: e.querySelector('.needles').scrollHeight - e.querySelector('.needles').clientHeight,
+  }));
+  assert.ok(Object.values(room).every((hidden) => hidden <= 1), `nothing of the panel is hidden: ${JSON.stringify(room)}`);
   await keepPicture(page, 'implant-start');
 });
 
@@ -122,7 +127,8 @@ test('the next needle comes within a second, and the seeds stay', async () => {
   assert.equal(await dropped(), count);
   await goToSeed();
   await page.keyboard.press('d');
-  await until('a seed of the second needle', () => newest[IMPLANT].seeds.at(-1).needle, (needle) => needle === first + 1);
+  const last = () => newest[IMPLANT].seeds.at(-1).needle;
+  await until('a seed of the second needle', last, (needle) => needle === first + 1);
 });
 
 test('the result says how far the seeds are off, and why', async () => {
@@ -130,7 +136,9 @@ test('the result says how far the seeds are off, and why', async () => {
   const card = page.locator('dialog.end-card');
   await card.waitFor();
   const text = await card.textContent();
-  for (const part of ['of 84 seeds have been dropped', 'D90', 'Mean error', 'Superior–inferior', 'Tissue motion', 'Your hand', 'Not a medical device'])
+  const parts = ['of 84 seeds have been dropped', 'D90', 'Mean error', 'Superior–inferior', 'Tissue motion', 'Your hand',
+    'Not a medical device'];
+  for (const part of parts)
     assert.ok(text.includes(part), `${part} is missing in ${text}`);
   await keepPicture(page, 'implant-result');
   await page.getByRole('button', { name: 'Go on' }).click();

@@ -4,7 +4,7 @@ import { button, element } from '../../../shared/dom';
 import type { HandControl } from '../hand';
 import { onRepaintEvery } from '../repaint';
 import type { Session } from '../session';
-import { droppedOf, nextNeedle, nextSeed, whatToDo, type Plan } from './implant';
+import { droppedOf, isFinished, nextNeedle, nextSeed, whatToDo, type Plan } from './implant';
 
 const WRITE_EVERY_MS = 60;
 
@@ -121,6 +121,7 @@ export class ImplantPanel {
     const next = nextNeedle(plan, implant);
     this.next.disabled = !session.steering || next < 0 || next === plan.current;
     this.next.classList.toggle('suggested', !seed && next >= 0);
+    this.result.classList.toggle('suggested', isFinished(implant));
     this.result.disabled = !implant || implant.seeds.length === 0;
     this.chips.forEach(({ chip, fill }, k) => {
       const of = plan.needles[k];
