@@ -34,10 +34,10 @@ struct ImplantHistory {
   double compile_s = 0.0;              ///< wall-clock time to compile the models of all needles, summed over threads
 };
 
-/// Simulates an implant: stabilising needles go in and stay; those of the plan go in, drop their seeds and come out, one
-/// by one or in groups (Scenario::procedure). Groups do not feel each other's tracks. A seed belongs to the material
-/// point where it was dropped, found with the needle's near field; with all needles out this point goes back to where it
-/// was, and takes the seed along (docs/theory/implant.md).
+/// Simulates an implant: stabilising needles go in and stay; those of the plan go in, drop their seeds and come out,
+/// one by one or in groups (Scenario::procedure). Groups do not feel each other's tracks. A seed belongs to the
+/// material point where it was dropped, found with the needle's near field; with all needles out this point goes back
+/// to where it was, and takes the seed along (docs/theory/implant.md).
 /// @param scenario tissue, needle and procedure; its insertions are not used
 /// @param mesh the patient's tetrahedra
 /// @param seed_length_mm length of a seed's capsule
