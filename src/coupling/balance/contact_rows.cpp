@@ -91,14 +91,14 @@ void ContactRows::soften_tip(const Contacts& contacts, double h, bool foresees_c
 }
 
 void ContactRows::soften_shaft(ShaftContact& contact, int load, double h) {
-  const double slow = std::max(contact.law.viscous_Ns_per_mm2, kLeastViscosity);
+  const bool open = contact.presses_only && contact.state == ShaftContact::State::backward;
+  const double slow = std::max(open ? 0.0 : contact.law.viscous_Ns_per_mm2, kLeastViscosity);
   const double viscosity = contact.fast ? std::max(kFlat * slow, kLeastViscosity) : slow;
-  contact.coulomb = contact.law.coulomb_N_per_mm * contact.length;
+  contact.coulomb = open ? 0.0 : contact.law.coulomb_N_per_mm * contact.length;
   if (contact.fast) contact.coulomb += (slow - viscosity) * contact.law.viscous_to_mm_per_s * contact.length;
   contact.slip = h / std::max(viscosity * contact.length, kNoViscosity);
   contact.reach =
       slow > kLeastViscosity ? contact.law.viscous_to_mm_per_s * h : std::numeric_limits<double>::infinity();
-  if (contact.presses_only && contact.state == ShaftContact::State::backward) contact.coulomb = 0.0;
   Yield& own = yield[static_cast<std::size_t>(load)];
   Vec3 by_state = Vec3::Zero();
   own.along = frame[static_cast<std::size_t>(load)].col(2);
