@@ -143,7 +143,8 @@ TEST(Implant, of_needles_together_drops_all_seeds_and_needles_one_by_one_are_as_
   // Needles of a row are those whose tips are at the same height: here each needle is a row by itself.
   s.procedure.together = NeedlesTogether::row;
   const ImplantHistory rows = simulated(s, test::box_patient(), two_needles());
-  for (std::size_t k = 0; k < one.seeds.size(); ++k) EXPECT_EQ(rows.seeds[k].rest_mm, one.seeds[k].rest_mm);
+  for (std::size_t k = 0; k < one.seeds.size(); ++k)
+    EXPECT_LT((rows.seeds[k].rest_mm - one.seeds[k].rest_mm).norm(), 1e-6);
 }
 
 TEST(Implant, feels_its_stabilising_needles_which_are_none_of_the_plan) {
