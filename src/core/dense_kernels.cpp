@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/dense_kernels.hpp"
 
+#include "core/for_processors.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
-
-// GCC compiles these functions for several processors and chooses when the program is loaded. Sanitizers do not support
-// this choice.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define STYLET_FOR_PROCESSORS __attribute__((target_clones("fma", "default")))
-#else
-#define STYLET_FOR_PROCESSORS
-#endif
-#define STYLET_INLINE [[gnu::always_inline]] inline
 
 namespace stylet::dense {
 
@@ -22,12 +14,7 @@ namespace {
 
 using Size = Eigen::Index;
 
-/// Four numbers in one register of AVX, or two of SSE; they may lie at any address.
-using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 constexpr Size kFour = 4;
-
-STYLET_INLINE const Four& four(const double* at) { return *reinterpret_cast<const Four*>(at); }
-STYLET_INLINE Four& four(double* at) { return *reinterpret_cast<Four*>(at); }
 
 /// C (4 Rows × Columns) −= A B; b(k, j) = b[k down + j across].
 template <int Rows, int Columns>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quadratic_solve.hpp"
 
-#include "assembly.hpp"
+#include "block_product.hpp"
 #include "stylet/fem/tissue.hpp"
 
 #include <Eigen/LU>
@@ -18,11 +18,14 @@ constexpr double kTolerance = 1e-8;
 /// After this many iterations the factor of K is made instead.
 constexpr int kMostIterations = 1000;
 
-/// Several loads side by side: each has its own conjugate gradient iteration, and one pass over K serves all of them.
-using Loads = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Scalars = Eigen::Array<double, 1, Eigen::Dynamic>;
+/// Each load has its own conjugate gradient iteration.
+using Scalars = Eigen::Array<double, 1, kSideBySide>;
 
-Scalars products(const Loads& a, const Loads& b) { return a.cwiseProduct(b).colwise().sum().array(); }
+Scalars products(const Loads& a, const Loads& b) {
+  Scalars sum = Scalars::Zero();
+  for (Eigen::Index row = 0; row < a.rows(); ++row) sum += a.row(row).array() * b.row(row).array();
+  return sum;
+}
 
 class TwoLevels {
  public:
@@ -75,19 +78,13 @@ class TwoLevels {
   std::vector<Mat3> inverse_diagonal_;
 };
 
-/// The same matrix in row-major storage: K is symmetric to the last bit, so its columns are its rows.
-using Rows = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>;
-Rows rows_of(const Eigen::SparseMatrix<double>& K) {
-  return {K.rows(), K.cols(), K.nonZeros(), K.outerIndexPtr(), K.innerIndexPtr(), K.valuePtr()};
-}
-
 /// @return whether x reached the tolerance within kMostIterations
-bool iterate(const Rows& K, const TwoLevels& preconditioned, Loads r, Loads& x, const Progress& progress) {
+bool iterate(const Assembled& stiffness, const TwoLevels& preconditioned, Loads r, Loads& x, const Progress& progress) {
   const Scalars wanted = kTolerance * kTolerance * products(r, r);
-  x = Loads::Zero(r.rows(), r.cols());
+  x = Loads::Zero(r.rows(), kSideBySide);
   Loads z = preconditioned(r);
   Loads p = z;
-  Loads Kp(r.rows(), r.cols());
+  Loads Kp(r.rows(), kSideBySide);
   Scalars rz = products(r, z);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const Scalars left = products(r, r);
@@ -95,15 +92,16 @@ bool iterate(const Rows& K, const TwoLevels& preconditioned, Loads r, Loads& x, 
     const double worst = (wanted > 0.0).select(left / wanted, 1.0).maxCoeff();
     report(progress, "motion of the target",
            std::clamp(1.0 + std::log(worst) / (2.0 * std::log(kTolerance)), 0.0, 1.0));
-    Kp.noalias() = K * p;
+    multiply(stiffness, p, Kp);
     // A load of zero, or one that has converged exactly, would divide by zero.
     const auto ratio = [](const Scalars& a, const Scalars& b) -> Scalars { return (b > 0.0).select(a / b, 0.0); };
     const Scalars step = ratio(rz, products(p, Kp));
-    x += p * step.matrix().asDiagonal();
-    r -= Kp * step.matrix().asDiagonal();
+    x.array() += p.array().rowwise() * step;
+    r.array() -= Kp.array().rowwise() * step;
     z = preconditioned(r);
     const Scalars rz_before = std::exchange(rz, products(r, z));
-    p = (z + p * ratio(rz, rz_before).matrix().asDiagonal()).eval();
+    const Scalars more = ratio(rz, rz_before);
+    p.array() = z.array() + p.array().rowwise() * more;
   }
   return false;
 }
@@ -128,23 +126,27 @@ Result<MatX> solve_quadratic(const Discretisation& quadratic, const TetMesh& mes
       quadratic, mesh.tet_count(),
       [&](Index tet) { return materials[static_cast<std::size_t>(mesh.tet_region[static_cast<std::size_t>(tet)])]; },
       first_dof, free_dofs);
-  Loads load(free_dofs, f.cols());
   const auto for_each_free = [&](const auto& visit) {
     for (Index node = 0; node < quadratic.nodes(); ++node) {
       const Eigen::Index dof = first_dof[static_cast<std::size_t>(node)];
       if (dof >= 0) visit(3 * Eigen::Index{node}, dof);
     }
   };
-  for_each_free([&](Eigen::Index at, Eigen::Index dof) { load.middleRows<3>(dof) = f.middleRows<3>(at); });
-  Loads x;
-  if (!iterate(rows_of(assembled.K), TwoLevels(quadratic, *linear, first_dof, assembled.K), std::move(load), x,
-               progress)) {
-    const auto tissue = Tissue::build(mesh, materials, fixed, progress, Element::p2);
-    if (!tissue) return tissue.error();
-    return tissue->solve(f);
-  }
+  const TwoLevels preconditioned(quadratic, *linear, first_dof, assembled.K);
   MatX u = MatX::Zero(f.rows(), f.cols());
-  for_each_free([&](Eigen::Index at, Eigen::Index dof) { u.middleRows<3>(at) = x.middleRows<3>(dof); });
+  for (Eigen::Index first = 0; first < f.cols(); first += kSideBySide) {
+    const Eigen::Index count = std::min<Eigen::Index>(kSideBySide, f.cols() - first);
+    Loads load = Loads::Zero(free_dofs, kSideBySide);
+    for_each_free(
+        [&](Eigen::Index at, Eigen::Index dof) { load.block(dof, 0, 3, count) = f.block(at, first, 3, count); });
+    Loads x;
+    if (!iterate(assembled, preconditioned, std::move(load), x, progress)) {
+      const auto tissue = Tissue::build(mesh, materials, fixed, progress, Element::p2);
+      if (!tissue) return tissue.error();
+      return tissue->solve(f);
+    }
+    for_each_free([&](Eigen::Index at, Eigen::Index dof) { u.block(at, first, 3, count) = x.block(dof, 0, 3, count); });
+  }
   return u;
 }
 
