@@ -40,8 +40,11 @@ constexpr double kNotHeld = 1e6;
 std::unique_ptr<ContactCompliance> engine_of(const InsertionTissue& tissue, const CouplingSettings& settings,
                                              int capacity) {
   using Engine = CouplingSettings::Engine;
-  if (settings.engine == Engine::condensed)
-    return std::make_unique<TrackCompliance>(tissue.store, *tissue.locator, capacity);
+  if (settings.engine == Engine::condensed) {
+    using Method = CouplingSettings::Method;
+    const bool interpolates = settings.method == Method::near_field || settings.method == Method::embedded;
+    return std::make_unique<TrackCompliance>(tissue.store, *tissue.locator, capacity, interpolates ? 0 : capacity);
+  }
   const auto engine =
       settings.engine == Engine::bcs ? paper::DenseInverse::Engine::bcs : paper::DenseInverse::Engine::woodbury;
   const bool move_nodes = settings.method == CouplingSettings::Method::node_repositioning;
@@ -162,9 +165,13 @@ void Insertion::Parts::make_balance() {
   bundle.reset();
   if (!at_rest.empty()) bundle = std::make_unique<NeedleBundle>(*held->needle, at_rest, settings.capacity + 1);
   predictor = std::make_unique<Predictor>(needles_in_balance().state().size());
-  const BalanceParts parts{settings,   {needles_in_balance(), tissue, held->path.tip, held->shaft},
-                           held->path, held->hand,
-                           *predictor, phases};
+  const BalanceParts parts{.settings = settings,
+                           .contacts = {needles_in_balance(), tissue, held->path.tip, held->shaft},
+                           .path = held->path,
+                           .hand = held->hand,
+                           .predictor = *predictor,
+                           .phases = phases,
+                           .most_contacts = static_cast<int>(held->shaft.others()) + settings.capacity};
   if (settings.solver == CouplingSettings::Solver::staggered) {
     balance = std::make_unique<paper::StaggeredBalance>(parts);
   } else {
@@ -316,7 +323,7 @@ bool Insertion::Parts::enter(Step& step) {
 /// @return false where there is no balance, the tip cuts and the sub-step may be given up; everything is then restored
 /// to the start of the sub-step
 bool Insertion::Parts::find_balance(double h, bool may_give_up, Step& step) {
-  Effort effort(1 + static_cast<int>(held->shaft.count()));
+  Effort effort(1 + static_cast<int>(held->shaft.count()), held->shaft.others() > 0);
   TipContact& tip = held->path.tip;
   const unsigned flags_before = std::exchange(step.flags, 0u);
   const bool steady = balance->solve(h, effort, step);

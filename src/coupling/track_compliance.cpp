@@ -13,8 +13,9 @@ namespace {
 constexpr int kTipPlace = TrackObservables::kTip;
 constexpr int kTipNodes = TrackObservables::kTipNodes;
 
-/// Each point is an observable, and may add the vertices of a border.
-constexpr int kObservablesPerPoint = 1 + SplitBorders::kMostVertices;
+/// Largest number of observables beside the tip: each point is one, and each added node may add the vertices of its
+/// border.
+int most_observables(int capacity, int most_nodes) { return capacity + most_nodes * SplitBorders::kMostVertices; }
 
 /// Weights below this are rounding errors of 0. Raised, nodes off a face count as on it.
 constexpr double kNoWeight = 1e-12;
@@ -26,14 +27,17 @@ Mat3 symmetric_part(const Mat3& block) { return 0.5 * (block + block.transpose()
 Shape single_node(Index node) { return {.count = 1, .node = {node}, .weight = {1.0}}; }
 }  // namespace
 
-TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity)
+TrackCompliance::TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity,
+                                 int most_nodes)
     : store_(std::move(store)),
       mesh_(locator, capacity),
       capacity_(capacity),
-      observables_(
-          std::make_unique<TrackObservables>(store_, capacity * kObservablesPerPoint, SplitBorders::kMostLoads)),
-      borders_(std::make_unique<SplitBorders>(capacity)),
-      hats_(std::make_unique<AddedHats>(capacity * kObservablesPerPoint + TrackObservables::kFirstFree, capacity)),
+      most_nodes_(most_nodes < 0 ? capacity : most_nodes),
+      observables_(std::make_unique<TrackObservables>(store_, most_observables(capacity, most_nodes_),
+                                                      SplitBorders::kMostLoads)),
+      borders_(std::make_unique<SplitBorders>(most_nodes_)),
+      hats_(std::make_unique<AddedHats>(most_observables(capacity, most_nodes_) + TrackObservables::kFirstFree,
+                                        most_nodes_)),
       tip_rows_(std::make_unique<TipElementRows>(capacity)) {
   point_observable_.reserve(static_cast<std::size_t>(capacity) + 1);
   node_point_.reserve(static_cast<std::size_t>(capacity));
@@ -308,7 +312,8 @@ void TrackCompliance::write_tip_row() {
 
 TrackCompliance::Added TrackCompliance::add(const MaterialPoint& at, const Vec3& x, Placement placement,
                                             const Vec3& travel) {
-  if (points_ > capacity_ || hats_->count() == capacity_) return {-1, Refusal::capacity};
+  const bool is_node = placement != Placement::embedded;
+  if (points_ > capacity_ || (is_node && hats_->count() == most_nodes_)) return {-1, Refusal::capacity};
   if (placement == Placement::face) {
     const auto place = mesh_.place_on_face(at.tet, x, travel, kSmallestFaceWeight);
     if (!place) return {-1, Refusal::geometry};

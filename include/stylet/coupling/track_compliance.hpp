@@ -37,7 +37,10 @@ class TrackCompliance final : public ContactCompliance {
   /// @param store compliance of base nodes; must hold every node that is read
   /// @param locator of the tissue's mesh
   /// @param capacity largest number of points, the tip not counted
-  TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity);
+  /// @param most_nodes largest number of points that are added nodes, whose hats need memory for each pair of points; a
+  /// negative number stands for `capacity`
+  TrackCompliance(std::shared_ptr<const ComplianceStore> store, const Locator& locator, int capacity,
+                  int most_nodes = -1);
   TrackCompliance(const TrackCompliance&) = delete;
   TrackCompliance& operator=(const TrackCompliance&) = delete;
   ~TrackCompliance() override;
@@ -92,6 +95,7 @@ class TrackCompliance final : public ContactCompliance {
   std::shared_ptr<const ComplianceStore> store_;
   SplitMesh mesh_;
   int capacity_;
+  int most_nodes_;  ///< largest number of added nodes
   std::unique_ptr<TrackObservables> observables_;
   std::unique_ptr<SplitBorders> borders_;
   std::unique_ptr<AddedHats> hats_;

@@ -18,6 +18,7 @@ struct BalanceParts {
   const HandForce& hand;  ///< gives the hand's force at that moment
   Predictor& predictor;   ///< predicts the end of a sub-step
   PhaseObserver* const& phases;
+  int most_contacts = 0;  ///< largest number of shaft contacts of all needles
 };
 
 /// Finds the balance of needle, tissue, friction and cutting at the end of a sub-step. No call allocates.

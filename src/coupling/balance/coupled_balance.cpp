@@ -98,12 +98,12 @@ struct CoupledBalance::Progress {
 
 CoupledBalance::CoupledBalance(const BalanceParts& parts)
     : parts_(parts),
-      rows_(parts.settings, most_shaft_contacts(parts.settings) + 1),
-      system_(rows_, most_shaft_contacts(parts.settings) + 1),
+      rows_(parts.settings, parts.most_contacts + 1),
+      system_(rows_, parts.most_contacts + 1),
       states_(parts_.contacts),
-      tissue_(system_, most_shaft_contacts(parts.settings) + 1),
-      tangent_(parts_.contacts.needle, system_, rows_, most_shaft_contacts(parts.settings) + 1, parts.phases),
-      kept_(parts_.contacts.needle.state().size(), most_shaft_contacts(parts.settings)) {}
+      tissue_(system_, parts.most_contacts + 1),
+      tangent_(parts_.contacts.needle, system_, rows_, parts.most_contacts + 1, parts.phases),
+      kept_(parts_.contacts.needle.state().size(), parts.most_contacts) {}
 
 void CoupledBalance::march(double advance) {
   const InPhase in_phase(parts_.phases, StepPhase::tip);

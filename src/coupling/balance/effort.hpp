@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 namespace stylet {
 
@@ -9,12 +10,17 @@ namespace stylet {
 /// step with up to 40 contacts takes at most about a millisecond, whatever happens in it; with more contacts it takes
 /// longer. Operations are counted instead of timed, so that a step is the same on every machine. The unit is about a
 /// microsecond on the machine of docs/realtime.md, for needles of rods; docs/theory/coupling.md §4 gives the counts.
+///
+/// With needles at rest only the numbers of iterations bound a balance: many of their contacts may begin or end to slip
+/// in one step, and balances that are broken off step after step lose the motion of the gland
+/// (docs/theory/several_needles.md).
 class Effort {
  public:
-  /// @param contacts tip included
-  explicit Effort(int contacts)
+  /// @param contacts tip included @param others_rest whether some of them belong to needles at rest
+  explicit Effort(int contacts, bool others_rest = false)
       : square_(contacts * static_cast<double>(contacts)),
-        left_(std::max(kLeast, 3.0 * tangent() + 6.0 * iteration())) {}
+        left_(others_rest ? std::numeric_limits<double>::infinity()
+                          : std::max(kLeast, 3.0 * tangent() + 6.0 * iteration())) {}
 
   /// Effort of an iteration with an existing tangent.
   [[nodiscard]] double iteration() const { return 10.0 + 0.015 * square_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of the balance: states of contacts, prediction, damping, and the kept compliance of the tissue.
 #include "coupling/balance/contact_states.hpp"
+#include "coupling/balance/effort.hpp"
 #include "coupling/balance/iterate.hpp"
 #include "coupling/balance/needle_damping.hpp"
 #include "coupling/balance/needle_side.hpp"
@@ -266,6 +267,22 @@ TEST(NeedleDamping, grows_where_no_balance_is_found_and_wears_off_again) {
     before = now;
   }
   EXPECT_EQ(before, 0.0);
+}
+
+TEST(Effort, of_one_needle_allows_three_tangents_and_six_iterations_with_any_number_of_contacts) {
+  for (const int contacts : {1, 40, 200}) {
+    Effort effort(contacts);
+    for (int k = 0; k < 3; ++k) effort.spend(effort.tangent());
+    for (int k = 0; k < 5; ++k) effort.spend(effort.iteration());
+    EXPECT_TRUE(effort.allows(effort.iteration())) << contacts;
+  }
+  Effort effort(200);
+  EXPECT_FALSE(effort.allows(4.0 * effort.tangent() + 6.0 * effort.iteration()));
+}
+
+TEST(Effort, is_not_bounded_while_needles_rest_in_the_tissue) {
+  const Effort effort(200, true);
+  EXPECT_TRUE(effort.allows(1000.0 * effort.tangent()));
 }
 
 TEST(HandForce, bears_what_all_contacts_leave) {

@@ -22,6 +22,8 @@ using namespace published;
 
 constexpr double kSeedLength_mm = 4.5;
 constexpr double kSpeed_mm_per_s = 40.0;
+/// Largest part of a needle's steps that may be without a balance.
+constexpr double kMostWithoutBalance = 0.01;
 
 Scenario implant_scenario() {
   Scenario scenario = measure::demo_scenario();
@@ -141,7 +143,8 @@ class NeedlesInPlace {
     return NeedlesInPlace(*std::move(model));
   }
 
-  /// Puts the next needle in. @return the gland's motion with it in place
+  /// Puts the next needle in. @return the gland's motion with it in place, or an error where too many steps have no
+  /// balance
   Result<VolumeMotion> put_in_next(TargetMotion& gland) {
     if (Result<> taken = simulation_->take_up(next_); !taken) return taken.error();
     const PlannedInsertion& insertion = model_->insertions()[static_cast<std::size_t>(next_)];
@@ -150,14 +153,23 @@ class NeedlesInPlace {
     // The planned motion comes out again; it is left where it is deepest.
     constexpr double kStep_s = 4e-3;
     double depth = -1e9;
+    int steps = 0;
+    int without_balance = 0;
     for (double t = kStep_s;; t += kStep_s) {
       const Pose base = insertion.motion.at(t);
       const double now = base.origin.dot(insertion.direction);
       if (now < depth) break;
       depth = now;
       simulation_->prepare();
-      simulation_->step(base, kStep_s);
+      ++steps;
+      if ((simulation_->step(base, kStep_s).flags & Step::kDistrusted) != 0) ++without_balance;
       if (t > insertion.motion.duration_s()) break;
+    }
+    if (without_balance > kMostWithoutBalance * steps) {
+      return failure("validate",
+                     fmt::format("{} of {} steps of needle {} have no balance, so the gland's motion is wrong",
+                                 without_balance, steps, next_),
+                     "Use a smaller time step");
     }
     return gland.now(simulation_->insertion()).motion;
   }
