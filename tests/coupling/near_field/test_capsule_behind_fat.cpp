@@ -2,6 +2,7 @@
 // A capsule behind fat, through which the needle has cut its way (docs/theory/near_field.md §4,
 // docs/theory/stiffening.md §1).
 #include "coupling/needle_in_block.hpp"
+#include "support/sanitized.hpp"
 
 #include <iostream>
 #include <string>
@@ -125,7 +126,8 @@ TEST_P(CapsuleBehindFat, that_stiffens_breaks_as_deep_as_finite_elements_of_a_ye
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, CapsuleBehindFat, testing::Combine(testing::Values(6, 10, 16), testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(Meshes, CapsuleBehindFat,
+                         testing::Combine(testing::ValuesIn(test::meshes({6, 10, 16})), testing::Bool()));
 
 class CapsuleBehindFatInAWideBlock : public CapsuleBehindFat {};
 
@@ -143,7 +145,7 @@ TEST_P(CapsuleBehindFatInAWideBlock, breaks_as_deep_as_finite_elements_say) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Meshes, CapsuleBehindFatInAWideBlock,
-                         testing::Combine(testing::Values(6, 10, 16), testing::Bool()));
+                         testing::Combine(testing::ValuesIn(test::meshes({6, 10, 16})), testing::Bool()));
 
 }  // namespace
 }  // namespace stylet

@@ -2,6 +2,7 @@
 // A tip that has broken the skin stands in a dent that is eight times as deep as the needle is thick
 // (docs/theory/near_field.md §5).
 #include "coupling/needle_in_block.hpp"
+#include "support/sanitized.hpp"
 
 #include <tuple>
 
@@ -43,7 +44,8 @@ TEST_P(TipInTheDent, meets_a_force_that_only_falls_once_the_skin_is_broken) {
   EXPECT_EQ(run.flags, 0u);
 }
 INSTANTIATE_TEST_SUITE_P(Meshes, TipInTheDent,
-                         testing::Combine(testing::Values(5, 8, 14), testing::Values(0.0, 0.03, 0.2)));
+                         testing::Combine(testing::ValuesIn(test::meshes({5, 8, 14})),
+                                          testing::Values(0.0, 0.03, 0.2)));
 
 }  // namespace
 }  // namespace stylet

@@ -2,6 +2,7 @@
 #include "coupling/near_field/medium_block.hpp"
 
 #include "support/count_allocations.hpp"
+#include "support/sanitized.hpp"
 
 namespace stylet {
 namespace {
@@ -46,6 +47,7 @@ TEST(NearField, hardly_depends_on_where_in_an_element_the_tip_is) {
 }
 
 TEST(NearField, across_an_interface_a_coarse_mesh_agrees_with_a_fine_one) {
+  if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
   for (const double ratio : {3.0, 10.0}) {
     const auto force = [&](int cells, bool lateral) {
       MediumBlock block({.cells = cells,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/near_field/medium_block.hpp"
 #include "evidence/validate/bonded_cylinder.hpp"
+#include "support/sanitized.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -27,7 +28,7 @@ TEST_P(NeedleInUnboundedMedium, needs_the_force_of_a_bonded_rigid_cylinder) {
 }
 // At ν = 0.49 linear tetrahedra lock in the far field; the element without locking has its own tests.
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleInUnboundedMedium,
-                         testing::Combine(testing::Values(7, 10, 14), testing::Values(0.3, 0.45)));
+                         testing::Combine(testing::ValuesIn(test::meshes({7, 10, 14})), testing::Values(0.3, 0.45)));
 
 /// Smallest and largest of a number of forces.
 struct Range {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coupling/near_field/medium_block.hpp"
 #include "evidence/validate/bonded_cylinder.hpp"
+#include "support/sanitized.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -41,7 +42,7 @@ TEST_P(SpreadForces, move_an_unbounded_medium_as_a_kelvinlet_of_ten_millimetres_
   }
 }
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, SpreadForces,
-                         testing::Combine(testing::Values(10, 14), testing::Values(0.3, 0.45, 0.49)));
+                         testing::Combine(testing::ValuesIn(test::meshes({10, 14})), testing::Values(0.3, 0.45, 0.49)));
 
 TEST(SpreadCompliance, is_positive_for_any_places_on_a_way) {
   std::mt19937 random(3);
@@ -102,7 +103,7 @@ TEST_P(NeedleOnItsWay, needs_the_force_of_a_bonded_rigid_cylinder) {
 // Elements of 14, 10 and 7 mm. As without planned paths, pieces of constant force make the needle 1 % too soft along
 // its axis.
 INSTANTIATE_TEST_SUITE_P(MeshesAndMedia, NeedleOnItsWay,
-                         testing::Combine(testing::Values(7, 10, 14), testing::Values(0.3, 0.45)));
+                         testing::Combine(testing::ValuesIn(test::meshes({7, 10, 14})), testing::Values(0.3, 0.45)));
 
 TEST(TipOnItsWay, gives_way_like_a_flat_punch_on_the_skin_and_as_mindlin_says_below_it) {
   for (const int cells : {7, 12}) {
@@ -171,6 +172,7 @@ MediumBlock thin_layer(int cells) {
 }
 
 TEST(SpreadCompliance, through_a_thin_layer_hardly_depends_on_the_mesh) {
+  if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
   const MediumBlock coarse = thin_layer(12), fine = thin_layer(18);
   for (double z = -12.0; z <= 18.0; z += 1.5) {
     const Vec3 x(1.3, 0.7, z);

@@ -5,6 +5,7 @@
 #include "coupling/tissue_response.hpp"
 #include "stylet/coupling/track_compliance.hpp"
 #include "support/count_allocations.hpp"
+#include "support/sanitized.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -342,6 +343,7 @@ BlockOptions stiff_block(int cells, double puncture_N, double cutting_N) {
 }
 
 TEST(StiffDent, takes_the_force_of_a_flat_punch_that_stiffens_on_any_mesh) {
+  if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
   // A punch on a half space has k₁ = 2RE/(1−ν²). The part of its dent without the needle's scale stays linear; it is
   // the dent of the same force spread over kScale_mm, doubled by its image (docs/theory/near_field.md §2).
   constexpr double k1 = 2.0 * 0.635 * 0.06 / (1.0 - 0.45 * 0.45);

@@ -4,6 +4,7 @@
 #include "evidence/validate/solids.hpp"
 #include "stylet/coupling/near_field/near_field_compliance.hpp"
 #include "stylet/coupling/track_compliance.hpp"
+#include "support/sanitized.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -81,6 +82,7 @@ double held_line(const std::shared_ptr<const Tissue>& tissue, double length, dou
 }
 
 TEST(StuckRod, a_shaft_held_over_its_whole_length_is_as_stiff_as_one_that_is_meshed) {
+  if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
   for (const int cells : {6, 12}) {
     for (const double poisson : {0.45, 0.49}) {
       TetMesh mesh = box_mesh({-kSide_mm, -kSide_mm, 0}, {kSide_mm, kSide_mm, kHeight_mm}, {cells, cells, cells}, 0.1);
@@ -137,6 +139,7 @@ double inserted(int cells, double poisson, double length, double spacing) {
 }
 
 TEST(StuckRod, an_inserted_needle_holds_the_tissue_up_to_three_radii_behind_its_tip) {
+  if (test::kSanitized) GTEST_SKIP() << test::kTooLongSanitized;
   for (const StuckRod& rod : kRods) {
     for (const double spacing : {2.0, 4.0}) {
       SCOPED_TRACE(testing::Message() << rod.length_mm << " mm, ν = " << rod.poisson << ", spacing " << spacing
