@@ -112,42 +112,37 @@ DoseGrid empty_grid(const DosePlan& plan, std::span<const DoseStructure> structu
   return grid;
 }
 
-/// The sources at one part of an implant's time.
-struct SourcesInTime {
-  SwollenTime time;
-  std::vector<PlacedSource> sources;
-};
+/// The parts of an implant's time as stretches of all distances; one without stretch where the swelling differs from
+/// axis to axis.
+std::vector<Stretch> stretches_of(const std::vector<SwollenTime>& times, bool alike) {
+  if (!alike) return {Stretch{}};
+  std::vector<Stretch> stretches;
+  for (const SwollenTime& time : times) stretches.push_back({time.share, time.factors.x()});
+  return stretches;
+}
 
-/// The dose of all parts of an implant's time.
+/// The dose over all parts of an implant's time. Swelling that is the same in all directions only makes distances
+/// longer, so one table of the mean rate serves for all parts; otherwise the seeds are summed for each part.
 class Dose {
  public:
   Dose(const Tg43& tg43, const DosePlan& plan, const SourceModel& source, const DoseOptions& options)
-      : tg43_(tg43), table_(tg43), swelling_(options.swelling) {
-    const WeightedSources weighted = weighted_sources(plan, source, options);
-    factor_ = weighted.factor;
-    for (const SwollenTime& time : times(plan, source, options)) {
-      parts_.push_back({time, weighted.sources});
-      SourcesInTime& part = parts_.back();
-      for (PlacedSource& placed : part.sources) {
-        placed.at_mm = swelling_.moved(placed.at_mm, time.factors);
-        placed.axis = time.factors.cwiseProduct(placed.axis).normalized();
-      }
-    }
-  }
+      : tg43_(tg43),
+        swelling_(options.swelling),
+        weighted_(weighted_sources(plan, source, options)),
+        times_(times(plan, source, options)),
+        alike_((swelling_.at_start.array() == swelling_.at_start.x()).all()),
+        table_(tg43, stretches_of(times_, alike_)) {}
 
-  /// Dose [Gy] at points, by the formula itself or by the table.
-  [[nodiscard]] std::vector<double> at(const std::vector<Vec3>& points, bool by_formula) const {
-    std::vector<double> dose(points.size(), 0.0), rates(points.size());
-    std::vector<Vec3> moved = points;
-    for (const SourcesInTime& part : parts_) {
-      for (std::size_t p = 0; p < points.size(); ++p) moved[p] = swelling_.moved(points[p], part.time.factors);
-      if (by_formula) {
-        sum_rates(tg43_, part.sources, moved, rates);
-      } else {
-        sum_rates(table_, part.sources, moved, rates);
-      }
-      for (std::size_t p = 0; p < points.size(); ++p) dose[p] += part.time.share * factor_ * rates[p];
-    }
+  /// Dose [Gy] at points by the formula itself, summed over all seeds for each part of the time.
+  [[nodiscard]] std::vector<double> by_formula(const std::vector<Vec3>& points) const {
+    return by_parts(points, tg43_);
+  }
+  /// The same by the table.
+  [[nodiscard]] std::vector<double> by_table(const std::vector<Vec3>& points) const {
+    if (!alike_) return by_parts(points, table_);
+    std::vector<double> dose(points.size());
+    sum_rates(table_, weighted_.sources, points, dose);
+    for (double& value : dose) value *= weighted_.factor;
     return dose;
   }
 
@@ -159,11 +154,30 @@ class Dose {
                          options.quantity == DoseQuantity::until ? options.days : INFINITY);
   }
 
+  /// @param rates Tg43 or RateTable
+  template <class Rates>
+  [[nodiscard]] std::vector<double> by_parts(const std::vector<Vec3>& points, const Rates& rates) const {
+    std::vector<double> dose(points.size(), 0.0), of_part(points.size());
+    std::vector<Vec3> moved = points;
+    std::vector<PlacedSource> sources = weighted_.sources;
+    for (const SwollenTime& time : times_) {
+      for (std::size_t p = 0; p < points.size(); ++p) moved[p] = swelling_.moved(points[p], time.factors);
+      for (std::size_t k = 0; k < sources.size(); ++k) {
+        sources[k].at_mm = swelling_.moved(weighted_.sources[k].at_mm, time.factors);
+        sources[k].axis = time.factors.cwiseProduct(weighted_.sources[k].axis).normalized();
+      }
+      sum_rates(rates, sources, moved, of_part);
+      for (std::size_t p = 0; p < points.size(); ++p) dose[p] += time.share * weighted_.factor * of_part[p];
+    }
+    return dose;
+  }
+
   const Tg43& tg43_;
-  RateTable table_;
   Swelling swelling_;
-  double factor_ = 1.0;
-  std::vector<SourcesInTime> parts_;
+  WeightedSources weighted_;
+  std::vector<SwollenTime> times_;
+  bool alike_;  ///< whether the swelling is the same in all directions
+  RateTable table_;
 };
 
 void fill(DoseGrid& grid, const Dose& dose, const Progress& progress) {
@@ -175,7 +189,7 @@ void fill(DoseGrid& grid, const Dose& dose, const Progress& progress) {
     for (Index j = 0; j < grid.size[1]; ++j) {
       for (Index i = 0; i < grid.size[0]; ++i) points[p++] = grid.point(i, j, k);
     }
-    const std::vector<double> here = dose.at(points, false);
+    const std::vector<double> here = dose.by_table(points);
     for (p = 0; p < layer; ++p) grid.dose_Gy[static_cast<std::size_t>(k) * layer + p] = static_cast<float>(here[p]);
     report(progress, "dose grid", (k + 1.0) / grid.size[2]);
   }
@@ -284,13 +298,13 @@ Result<DoseEvaluation> evaluate_dose(const DosePlan& plan, const SourceModel& so
 
   const Dose dose(*tg43, plan, source, options);
   e.points = options.points;
-  e.point_Gy = dose.at(e.points, true);
+  e.point_Gy = dose.by_formula(e.points);
   e.grid = empty_grid(plan, structures, options.grid_step_mm);
   fill(e.grid, dose, progress);
   for (std::size_t k = 0; k < structures.size(); ++k) {
     const DoseStructure& structure = structures[k];
     e.structures.push_back({structure.name, structure.region, structure.type, structure.colour,
-                            DoseVolume(dose.at(structure.samples.points, false), structure.samples.volume_mm3),
+                            DoseVolume(dose.by_table(structure.samples.points), structure.samples.volume_mm3),
                             dose::covered_percent(structure.samples, e.grid, Vec3::Zero()), structure.contours,
                             cloud_of(structure.samples)});
     report(progress, "dose to structures", static_cast<double>(k + 1) / static_cast<double>(structures.size()));

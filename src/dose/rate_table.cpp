@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -97,10 +98,18 @@ STYLET_FOR_VECTORS void read_table(Block& block, const TableView& table, double 
   }
 }
 
+double least_factor(const std::vector<Stretch>& stretches) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Stretch& part : stretches) least = std::min(least, part.factor);
+  return least;
+}
+
 }  // namespace
 
-RateTable::RateTable(Tg43 tg43)
+RateTable::RateTable(Tg43 tg43, std::vector<Stretch> stretches)
     : tg43_(std::move(tg43)),
+      stretches_(std::move(stretches)),
+      near_mm_(kNear_mm / std::min(1.0, least_factor(stretches_))),
       isotropic_(tg43_.formalism() != DoseFormalism::line2d),
       folds_(isotropic_ || tg43_.source().F_theta_deg.back() <= 90.0),
       angles_(isotropic_ ? 2 : (folds_ ? kStepsOfAngle / 2 : kStepsOfAngle) + 2),
@@ -111,10 +120,16 @@ RateTable::RateTable(Tg43 tg43)
     const double r = i / kStepsPer_mm;
     for (int k = 0; k < angles_; ++k) {
       const double theta = std::min(k, kStepsOfAngle) * std::numbers::pi / kStepsOfAngle;
-      const double rate = r < kNear_mm - 0.5 ? 0.0 : tg43_.rate(r, isotropic_ ? 0.0 : std::cos(theta));
+      const double rate = r < kNear_mm - 0.5 ? 0.0 : formula(r, isotropic_ ? 0.0 : std::cos(theta));
       scaled_[static_cast<std::size_t>(i * angles_ + k)] = static_cast<float>(r * r * rate);
     }
   }
+}
+
+double RateTable::formula(double r, double cos_theta) const {
+  double sum = 0.0;
+  for (const Stretch& part : stretches_) sum += part.share * tg43_.rate(part.factor * r, cos_theta);
+  return sum;
 }
 
 double RateTable::rate(double r, double cos_theta) const {
@@ -140,8 +155,8 @@ void RateTable::add(const PlacedSource& source, std::span<const Vec3> points, st
     read_table(block, table, source.axis.x(), source.axis.y(), source.axis.z());
     for (std::size_t p = 0; p < count; ++p) {
       const double r = block.radius[p];
-      const bool in_table = r >= kNear_mm && r < kFar_mm;
-      rates[begin + p] += source.weight * (in_table ? block.rate[p] : tg43_.rate(r, block.cosine[p]));
+      const bool in_table = r >= near_mm_ && r < kFar_mm;
+      rates[begin + p] += source.weight * (in_table ? block.rate[p] : formula(r, block.cosine[p]));
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace stylet {
 namespace {
@@ -54,6 +55,49 @@ TEST(EvaluateDose, with_swelling_is_the_integral_of_the_rate_on_the_way_of_the_t
   // The swelling weighs more in the first month than in all.
   EXPECT_LT(dose_at_20_mm(swelling, DoseQuantity::until, 30.0) / dose_at_20_mm({}, DoseQuantity::until, 30.0),
             dose_at_20_mm(swelling, DoseQuantity::total) / dose_at_20_mm({}, DoseQuantity::total));
+}
+
+/// Seeds of random places and directions in a ball of 40 mm about the origin.
+DosePlan random_plan(std::mt19937& random, int seeds) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  DosePlan plan;
+  for (int k = 0; k < seeds; ++k) {
+    const Vec3 to = Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 axis = Vec3(normal(random), normal(random), normal(random)).normalized();
+    PlannedSource& seed = plan.sources.emplace_back();
+    seed.at_mm = 40.0 * std::cbrt(uniform(random)) * to;
+    seed.axis = axis;
+    seed.has_axis = true;
+    seed.strength_U = 0.5;
+  }
+  return plan;
+}
+
+// The grid's dose comes from a table, that of points from the formula, so that one checks the other.
+TEST(EvaluateDose, with_swelling_is_that_of_the_formula_whether_it_is_the_same_in_all_directions_or_not) {
+  std::mt19937 random(20);
+  for (const Vec3& at_start : {Vec3(0.2, 0.2, 0.2), Vec3(-0.1, -0.1, -0.1), Vec3(0.05, 0.2, 0.1)}) {
+    for (const DoseQuantity quantity : {DoseQuantity::total, DoseQuantity::initial_rate, DoseQuantity::until}) {
+      DoseOptions options;
+      options.grid_step_mm = 9.0;
+      options.days = 20.0;
+      options.quantity = quantity;
+      options.swelling = {.centre_mm = Vec3(3, -4, 5), .at_start = at_start, .half_life_days = 9.3};
+      const DosePlan plan = random_plan(random, 12);
+      const SourceModel source = find_source("i125_6711").value();
+      const DoseGrid grid = evaluate_dose(plan, source, {}, options).value().grid;
+      for (Index i = 0; i < grid.size[0]; ++i)
+        options.points.push_back(grid.point(i, grid.size[1] / 2, i % grid.size[2]));
+      const std::vector<double> by_formula = evaluate_dose(plan, source, {}, options).value().point_Gy;
+      for (Index i = 0; i < grid.size[0]; ++i) {
+        const auto at =
+            static_cast<std::size_t>(((i % grid.size[2]) * grid.size[1] + grid.size[1] / 2) * grid.size[0] + i);
+        const double right = by_formula[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(grid.dose_Gy[at] / right, 1.0, 5e-4) << "at point " << i;
+      }
+    }
+  }
 }
 
 }  // namespace

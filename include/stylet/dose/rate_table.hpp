@@ -8,18 +8,27 @@
 
 namespace stylet {
 
+/// A part of the time in which all distances are longer by the same factor: swelling that is the same in all
+/// directions.
+struct Stretch {
+  double share = 1.0;   ///< weight of this part; those of all parts sum to 1
+  double factor = 1.0;  ///< > 0, on the distances
+};
+
 /// The dose rate around a source as a table, for many points: some ten times faster than Tg43::rate(). The table holds
 /// r² times the dose rate, on equal steps of the radius and of the angle, and is read linearly between them; nearer
 /// than kNear_mm and beyond the table the formula itself is used. The difference from the formula is below 0.05 % (test
-/// RateTable.*). Immutable: any number of threads may use it.
+/// RateTable.*). Where the tissue swells alike in all directions, the table holds the mean rate over the parts of the
+/// time, at the distances without swelling. Immutable: any number of threads may use it.
 class RateTable {
  public:
   static constexpr double kNear_mm = 4.0;   ///< nearer than this the formula is used
   static constexpr double kFar_mm = 200.0;  ///< and beyond this
 
-  explicit RateTable(Tg43 tg43);
+  /// @param stretches parts of the time; at least one
+  explicit RateTable(Tg43 tg43, std::vector<Stretch> stretches = {Stretch{}});
 
-  /// Dose rate as Tg43::rate() [cGy/(h U)].
+  /// Dose rate as Tg43::rate() [cGy/(h U)], its mean over the stretches.
   /// @param r [mm] @param cos_theta −1 … 1
   [[nodiscard]] double rate(double r, double cos_theta) const;
 
@@ -30,7 +39,11 @@ class RateTable {
   [[nodiscard]] const Tg43& tg43() const { return tg43_; }
 
  private:
+  [[nodiscard]] double formula(double r, double cos_theta) const;
+
   Tg43 tg43_;
+  std::vector<Stretch> stretches_;
+  double near_mm_;  // nearer than this one of the stretched distances may be nearer than kNear_mm
   bool isotropic_;  // the formalism needs no angle
   bool folds_;      // whether angles beyond 90° have the values of those below
   int angles_;      // entries for each radius
