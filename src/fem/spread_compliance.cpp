@@ -3,6 +3,8 @@
 
 #include "stylet/core/parallel.hpp"
 
+#include <Eigen/SparseCore>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -217,7 +219,50 @@ Result<SpreadCompliance> SpreadCompliance::solve(const Tissue& tissue, const std
     if (!M) return M.error();
     result.matrix_.block(3 * line.first, 3 * line.first, M->rows(), M->cols()) = *M;
   }
+  if (result.lines_.size() > 1) result.solve_between_lines(tissue);
   return result;
+}
+
+/// M between samples of different lines, on the elements of the mesh. Elements near a line that were made quadratic yield
+/// more to the same forces, so M as a whole stays positive semidefinite.
+void SpreadCompliance::solve_between_lines(const Tissue& tissue) {
+  const Eigen::Index nodes = tissue.displacement_nodes();
+  std::vector<Eigen::SparseMatrix<double>> loads(lines_.size());  // (nodes × samples of a line) shares of a unit force
+  for_each_in_parallel(lines_.size(), [&](std::size_t l) {
+    const Line& line = lines_[l];
+    std::vector<Eigen::Triplet<double>> shares;
+    for (int k = 0; k < line.count; ++k) {
+      for (const SpreadPoint& point : spread_about(line.way.entry + kEvery_mm * k * line.way.direction, tissue)) {
+        const Shape shape = tissue.shape(point.tet, point.weights);
+        for (int i = 0; i < shape.count; ++i) {
+          const auto n = static_cast<std::size_t>(i);
+          shares.emplace_back(shape.node[n], k, point.share * shape.weight[n]);
+        }
+      }
+    }
+    loads[l].resize(nodes, line.count);
+    loads[l].setFromTriplets(shares.begin(), shares.end());
+  });
+  for (std::size_t l = 0; l + 1 < lines_.size(); ++l) {
+    const Line& on = lines_[l];
+    MatX forces = MatX::Zero(3 * nodes, 3 * Eigen::Index{on.count});
+    for (Eigen::Index k = 0; k < on.count; ++k) {
+      for (Eigen::SparseMatrix<double>::InnerIterator share(loads[l], k); share; ++share)
+        forces.block<3, 3>(3 * share.row(), 3 * k).diagonal().setConstant(share.value());
+    }
+    const MatX u = tissue.solve(forces);
+    for_each_in_parallel(lines_.size() - l - 1, [&](std::size_t further) {
+      const Line& at = lines_[l + 1 + further];
+      const Eigen::SparseMatrix<double>& weights = loads[l + 1 + further];
+      MatX between = MatX::Zero(3 * Eigen::Index{at.count}, u.cols());
+      for (Eigen::Index k = 0; k < at.count; ++k) {
+        for (Eigen::SparseMatrix<double>::InnerIterator share(weights, k); share; ++share)
+          between.middleRows<3>(3 * k) += share.value() * u.middleRows<3>(3 * share.row());
+      }
+      matrix_.block(3 * at.first, 3 * on.first, between.rows(), between.cols()) = between;
+      matrix_.block(3 * on.first, 3 * at.first, between.cols(), between.rows()) = between.transpose();
+    });
+  }
 }
 
 std::shared_ptr<const SpreadCompliance> SpreadCompliance::of(const std::vector<NeedleWay>& ways, MatX matrix) {
@@ -225,6 +270,8 @@ std::shared_ptr<const SpreadCompliance> SpreadCompliance::of(const std::vector<N
   result->lines_ = lines_of(ways);
   const Eigen::Index rows = 3 * Eigen::Index{result->lines_.back().first + result->lines_.back().count};
   if (matrix.rows() != rows || matrix.cols() != rows) return nullptr;
+  const Eigen::Index first = 3 * Eigen::Index{result->lines_.front().count};
+  if (rows > first && matrix.topRightCorner(first, rows - first).isZero(0.0)) return nullptr;
   result->matrix_ = std::move(matrix);
   return result;
 }

@@ -2,7 +2,9 @@
 // Whole implants in a cubic patient.
 #include "sim/box_patient.hpp"
 #include "stylet/implant/implant.hpp"
+#include "stylet/sim/simulation.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 namespace stylet {
@@ -161,6 +163,37 @@ TEST(Implant, feels_its_stabilising_needles_which_are_none_of_the_plan) {
   }
   EXPECT_GT(largest, 0.01);
   EXPECT_LT(largest, 5.0);
+}
+
+// Were the wide part of the compliance, which creeps, not positive for the points of all needles together, the creep
+// would feed itself, and the forces between needles at rest would grow exponentially.
+TEST(Implant, in_creeping_tissue_has_a_positive_compliance_among_the_points_of_all_needles) {
+  Scenario s = scenario();
+  for (const double x : {0.0, 5.0, 10.0}) {
+    InsertionPlan& plan = s.insertions.emplace_back();
+    plan.entry_mm = {x, 5.0, 0.0};
+    plan.direction = {0.0, 0.0, 1.0};
+    plan.depth_mm = 45.0;
+  }
+  const auto model = Model::compile(s, test::box_patient(), "case.toml").value();
+  Simulation simulation(model, 3);
+  for (int needle = 0; needle < 3; ++needle) {
+    ASSERT_TRUE(simulation.take_up(needle));
+    const PlannedInsertion& plan = model->insertions()[static_cast<std::size_t>(needle)];
+    Pose base = plan.motion.at(0.0);
+    simulation.place(base, plan.entry, plan.direction);
+    while (simulation.last_step().base_depth_mm < plan.depth_mm) {
+      base.origin += 0.16 * plan.direction;
+      simulation.prepare();
+      simulation.step(base, 4e-3);
+    }
+  }
+  const ContactCompliance& compliance = simulation.insertion().compliance();
+  const Eigen::Index of_shafts = 3 * (static_cast<Eigen::Index>(compliance.points()) - 1);
+  ASSERT_GT(of_shafts, 60);
+  const MatX wide = compliance.wide().block(3, 3, of_shafts, of_shafts);
+  const Eigen::SelfAdjointEigenSolver<MatX> eigen(wide, Eigen::EigenvaluesOnly);
+  EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-3 * eigen.eigenvalues().maxCoeff());
 }
 
 TEST(Implant, refuses_a_plan_beside_the_patient_and_a_needle_that_is_too_short) {

@@ -24,8 +24,9 @@ struct NeedleWay {
 ///
 /// With W_k the nodal loads of a unit force that is spread around sample k of a way,
 ///   F(x, y) = Σ_k Σ_l a_k(x) a_l(y) M(k,l),    M(k,l) = W_k K⁻¹ W_lᵀ,
-/// where the weights a interpolate cubically between the samples. F is therefore positive semidefinite for any places.
-/// docs/theory/near_field.md, section 3.
+/// where the weights a interpolate cubically between the samples. F is therefore positive semidefinite for any places,
+/// also for those of several needles: between different ways M is computed on the mesh itself, and along each way on
+/// elements that are more yielding. docs/theory/near_field.md, section 3.
 class SpreadCompliance {
  public:
   /// [mm] Radius ε of the Kelvinlet that F equals in a medium without surfaces. The density around each place is that
@@ -33,7 +34,7 @@ class SpreadCompliance {
   /// displacement at its centre by 105π/512.
   static constexpr double kSpread_mm = 10.0;
 
-  /// Solves for M. On meshes of up to 45,000 nodes, elements near the ways are made quadratic for this.
+  /// Solves for M. On meshes of up to 45,000 nodes, elements near a way are made quadratic for M along this way.
   /// @param tissue used only during the call
   /// @param ways at least one way
   /// @return errors are those of Tissue::build()
@@ -41,7 +42,7 @@ class SpreadCompliance {
                                         const Progress& progress = {});
 
   /// Restores a SpreadCompliance from the matrix() of another one for the same ways.
-  /// @return null when the size of the matrix does not fit the ways
+  /// @return null when the size of the matrix does not fit the ways, or it has nothing between different ways
   static std::shared_ptr<const SpreadCompliance> of(const std::vector<NeedleWay>& ways, MatX matrix);
 
   /// Interpolation weights of a place between the samples of a way.
@@ -58,12 +59,11 @@ class SpreadCompliance {
   /// Number of the way that passes nearest to x [mm] LPS.
   [[nodiscard]] int way_near(const Vec3& x) const;
 
-  /// F [mm/N] between two places on the same way: displacement at `at` per force at `on`. Does not allocate.
+  /// F [mm/N] between two places, each on a way: displacement at `at` per force at `on`. Does not allocate.
   [[nodiscard]] Mat3 operator()(const Place& at, const Place& on) const;
 
-  /// M [mm/N] (3 samples × 3 samples); samples are ordered by way, and along each way from the skin inwards. Blocks
-  /// between samples of different ways are zero: a needle goes along one way, and its result must not depend on which
-  /// others were planned.
+  /// M [mm/N] (3 samples × 3 samples); samples are ordered by way, and along each way from the skin inwards. The block
+  /// of a way does not depend on which others are planned.
   [[nodiscard]] const MatX& matrix() const { return matrix_; }
 
  private:
@@ -77,6 +77,7 @@ class SpreadCompliance {
   };
   /// M for the samples of one line.
   static Result<MatX> solve(const Tissue& tissue, const Line& line);
+  void solve_between_lines(const Tissue& tissue);
   static std::vector<Line> lines_of(const std::vector<NeedleWay>& ways);
 
   std::vector<Line> lines_;

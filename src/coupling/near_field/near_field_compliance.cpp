@@ -174,7 +174,6 @@ ContactCompliance::Added NearFieldCompliance::add(const MaterialPoint& at, const
   place.share = least_share(place.borders, place.epsilon, poisson);
   place.wide_share = least_share(place.borders, NeedleKernel::kScale_mm, poisson);
   place.spread = spread_place(x, place.edge);
-  place.way = ground_.way;
   places_.push_back(place);
   softness_.push_back(
       knows_wide() ? softness_in_mesh(*ground_.kernel, place, (*far_)(added.point, added.point), place.mesh_kernel)
@@ -201,7 +200,6 @@ bool NearFieldCompliance::move_tip(const MaterialPoint& at, const Vec3& x) {
   tip = near_place(*ground_.tissue, *ground_.kernel, at, x);
   take_tip_radii(needle_, *ground_.kernel, tip);
   tip.spread = spread_place(x, tip.edge);
-  tip.way = ground_.way;
   if (at.tet != tip_tet_) {
     for (const int number : tip_element_.enter(tip.shape)) forget_tip_node(number, 0, capacity_);
     tip_tet_ = at.tet;

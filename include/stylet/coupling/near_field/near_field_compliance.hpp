@@ -76,7 +76,7 @@ class NearFieldCompliance final : public ContactCompliance {
   void write_wide_block(int point, int other, const OfMesh& g);
   /// Share 0 … 1 of the compliance between two places that is F + ⟨G⟩ − G₁₀; the rest is Λ (K⁻¹ − g) Λᵀ + ⟨G⟩.
   [[nodiscard]] double spread_share(const NearPlace& at, const NearPlace& on) const {
-    return ground_.spread && at.way == on.way ? at.spread.known * on.spread.known : 0.0;
+    return ground_.spread ? at.spread.known * on.spread.known : 0.0;
   }
   void write_wide_of_tip();
   [[nodiscard]] std::size_t tip_node_entry(int number, int point, int medium) const {

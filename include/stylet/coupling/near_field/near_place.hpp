@@ -23,7 +23,6 @@ struct NearPlace {
   double share = 1.0;               ///< least_share() of the needle there
   double wide_share = 1.0;          ///< least_share() of a force that is spread over NeedleKernel::kScale_mm
   SpreadCompliance::Place spread;   ///< place among the samples of the planned paths, where there are any
-  int way = -1;                     ///< number of the planned path that `spread` belongs to
   int medium = 0;
   double young_MPa = 0.0;  ///< 0: the place has no medium of its own
   NearSurface skin;
