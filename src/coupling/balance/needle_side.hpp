@@ -22,7 +22,8 @@ class NeedleSide {
   MatX N;                          ///< [mm/N] compliance, both triangles; its leading rows and columns are in use
   VecX free;                       ///< [mm] motion with unchanged pushes
   std::vector<LentSpring> spring;  ///< (contacts) at the tip in all directions, with `along` zero
-  bool supported = false;          ///< whether springs are lent
+  bool supported = false;          ///< whether springs are lent to any needle
+  bool own_supported = false;      ///< whether springs are lent to the needle that the hand moves
   int count = 0;                   ///< number of contacts, tip included
 
   [[nodiscard]] Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(count); }

@@ -39,38 +39,50 @@ void NeedleTangent::forget() {
 }
 
 void NeedleTangent::release() {
-  system_.needle.supported = false;
+  system_.needle.own_supported = false;
+  if (resting_lent_ > 0) {
+    fits_ = false;  // springs of needles at rest stay
+  } else {
+    system_.needle.supported = false;
+  }
   on_springs_for_ = 0;
   stage_ = Stage::none;
 }
 
 /// Whether a tangent is made on springs from the start, like the last one; from time to time it is tried without.
-bool NeedleTangent::expects_springs() { return system_.needle.supported && ++on_springs_for_ < kTryWithout; }
+bool NeedleTangent::expects_springs() { return system_.needle.own_supported && ++on_springs_for_ < kTryWithout; }
 
 void NeedleTangent::linearise(const Contacts& contacts, bool advances, Effort& effort) {
   const InPhase in_phase(phases_, StepPhase::needle_tangent);
   const int count = contacts.count();
   NeedleSide& side = system_.needle;
   side.count = count;
-  const bool expected = advances && expects_springs();
-  if (!expected) effort.spend(effort.needle());
-  const auto linearise_on = [&](std::span<const Mat3> springs, Indefinite otherwise) {
-    return needle_.linearise(rows_.loads(), side.compliance(), side.motion(), springs, otherwise);
-  };
-  side.supported = expected || !linearise_on({}, Indefinite::give_up);
-  if (!expected) on_springs_for_ = 0;
-  if (side.supported) {
-    // Springs at a few contacts are usually enough, and cheaper; springs at all contacts always are.
-    const std::span<const Mat3> lent(springs_.data(), static_cast<std::size_t>(count));
-    lend_springs(contacts, kFewSprings, side.spring);
-    effort.spend(effort.needle());
-    const bool more = count > kFewSprings + 1;
-    if (!linearise_on(lent, more ? Indefinite::give_up : Indefinite::shift) && more) {
-      lend_springs(contacts, count, side.spring);
-      effort.spend(effort.needle() + effort.matrix_on_all_springs() - effort.matrix());
-      linearise_on(lent, Indefinite::shift);
+  const bool others_rest = contacts.first_own() > 1;
+  int own = advances && expects_springs() ? kFewSprings : 0;
+  if (own == 0) on_springs_for_ = 0;
+  // A needle at rest that has needed springs will need them again: its load hardly changes.
+  bool all = false;
+  while (true) {
+    const bool few = own > 0 && (resting_lent_ > 0 || !others_rest);
+    const bool last = all || (few && count <= kFewSprings + 1);
+    effort.spend(effort.needle() + (all ? effort.matrix_on_all_springs() - effort.matrix() : 0.0));
+    lend_springs(contacts, own, resting_lent_, side);
+    std::span<const Mat3> lent;
+    if (side.supported) lent = {springs_.data(), static_cast<std::size_t>(count)};
+    const Indefinite otherwise = last ? Indefinite::shift : Indefinite::give_up;
+    if (needle_.linearise(rows_.loads(), side.compliance(), side.motion(), lent, otherwise) || last) break;
+    // A few springs for each needle are usually enough, and cheaper; springs at all contacts always are.
+    if (own == 0) {
+      own = kFewSprings;
+    } else if (!few) {
+      resting_lent_ = kFewSprings;
+    } else {
+      all = true;
+      own = count;
+      if (others_rest) resting_lent_ = count;
     }
   }
+  resting_lent_ = std::min(resting_lent_, kFewSprings);
   fits_ = true;
   system_.outdate();
   stage_ = Stage::none;
@@ -103,30 +115,42 @@ void NeedleTangent::damp(double ratio) {
 
 void NeedleTangent::wear_out() { worn_mm_ = std::numeric_limits<double>::infinity(); }
 
-/// Writes the springs: lateral springs, each as stiff as the tissue is at that contact alone. Together they are stiffer
-/// than the tissue, so the needle on them does not buckle where needle and tissue together do not. A few springs stand
-/// for all: each is as stiff as the springs of all contacts that it stands for. A tip that is held has a spring of this
-/// stiffness, too, because shaft contacts alone do not stabilise a needle that has bowed out between hand and bone.
-/// Needles at rest hardly ever need springs: they get theirs only where all contacts do.
-/// @param most largest number of springs, evenly spaced and including the last contact @param lent (contacts) written
-void NeedleTangent::lend_springs(const Contacts& contacts, int most, std::vector<LentSpring>& lent) {
-  const int count = contacts.count();
-  const int first = most < count ? contacts.first_own() : 1;
-  const int every = (std::max(count - first, 1) + most - 1) / most;
-  for (int c = 0; c < count; ++c) {
-    double own = system_.A.block<3, 3>(3 * c, 3 * c).trace() / 3.0;
-    bool lend = true;
-    if (c == 0) {
-      lend = contacts.tip.holds();
-    } else {
-      own += contacts.of_shaft(c).softness;
-      lend = c >= first && (count - 1 - c) % every == 0;
-    }
-    LentSpring& spring = lent[static_cast<std::size_t>(c)];
-    spring.along = c == 0 ? Vec3::Zero() : Vec3(rows_.frame[static_cast<std::size_t>(c)].col(2));
-    spring.stiffness = lend ? every / std::max(own, kHardest_mm_per_N) : 0.0;
-    springs_[static_cast<std::size_t>(c)] = spring.matrix();
+/// Lends a spring at a load: a lateral one, as stiff as the tissue is there alone, times the number of contacts that it
+/// stands for. @param stands_for 0: no spring
+void NeedleTangent::lend_spring(const Contacts& contacts, int load, int stands_for, NeedleSide& side) {
+  double own = system_.A.block<3, 3>(3 * load, 3 * load).trace() / 3.0;
+  if (load > 0) own += contacts.of_shaft(load).softness;
+  const auto l = static_cast<std::size_t>(load);
+  LentSpring& spring = side.spring[l];
+  spring.along = load == 0 ? Vec3::Zero() : Vec3(rows_.frame[l].col(2));
+  spring.stiffness = stands_for > 0 ? stands_for / std::max(own, kHardest_mm_per_N) : 0.0;
+  springs_[l] = spring.matrix();
+}
+
+/// Lends springs to each needle, evenly spread over its contacts and including the last one. All springs of a needle
+/// together are stiffer than the tissue, so the needle on them does not buckle where needle and tissue together do not.
+/// A few springs stand for all. A tip that is held has a spring of this stiffness, too, because shaft contacts alone do
+/// not stabilise a needle that has bowed out between hand and bone.
+/// @param own, resting largest number of springs on the moved needle, and on each needle at rest; 0: none
+/// @param side its springs are written
+void NeedleTangent::lend_springs(const Contacts& contacts, int own, int resting, NeedleSide& side) {
+  side.own_supported = own > 0;
+  side.supported = own > 0 || (resting > 0 && contacts.first_own() > 1);
+  if (!side.supported && contacts.first_own() == 1) return;
+  const auto lend_to = [&](int first, int end, int most) {
+    const int every = most > 0 ? (std::max(end - first, 1) + most - 1) / most : 0;
+    for (int c = first; c < end; ++c)
+      lend_spring(contacts, c, every > 0 && (end - 1 - c) % every == 0 ? every : 0, side);
+    return every;
+  };
+  for (int first = 1; first < contacts.first_own();) {
+    int end = first + 1;
+    while (end < contacts.first_own() && &contacts.needle_of(end) == &contacts.needle_of(first)) ++end;
+    lend_to(first, end, resting);
+    first = end;
   }
+  const int every = lend_to(contacts.first_own(), contacts.count(), own);
+  lend_spring(contacts, 0, contacts.tip.holds() ? every : 0, side);
 }
 
 void NeedleTangent::prepare(const Contacts& contacts) {
@@ -167,22 +191,26 @@ void NeedleTangent::prepare(const Contacts& contacts) {
 }
 
 /// Begins the next tangent at the present shape, on the expected number of springs. Returns false where it needs more
-/// springs; the next attempt uses them.
+/// springs; the next attempt uses them. Needles at rest keep their tangents, and with them their springs.
 bool NeedleTangent::prepare_on_springs(const Contacts& contacts) {
   const InPhase in_phase(phases_, StepPhase::needle_tangent);
   const int count = contacts.count();
-  std::span<const Mat3> lent;
-  if (lent_ > 0) {
-    lend_springs(contacts, lent_, system_.prepared.spring);
-    lent = {springs_.data(), static_cast<std::size_t>(count)};
+  NeedleSide& side = system_.prepared;
+  const NeedleSide& now = system_.needle;
+  lend_springs(contacts, lent_, 0, side);
+  for (int c = 1; c < contacts.first_own(); ++c) {
+    const auto at = static_cast<std::size_t>(c);
+    side.spring[at] = now.supported ? now.spring[at] : LentSpring{};
+    side.supported = side.supported || side.spring[at].stiffness > 0.0;
   }
+  std::span<const Mat3> lent;
+  if (side.own_supported) lent = {springs_.data(), static_cast<std::size_t>(count)};
   const bool more = lent_ < std::max(count - 1, 1);
   if (!needle_.prepare(rows_.loads(), lent, more ? Indefinite::give_up : Indefinite::shift) && more) {
     lent_ = lent_ == 0 ? kFewSprings : count;
     return false;
   }
-  system_.prepared.count = count;
-  system_.prepared.supported = lent_ > 0;
+  side.count = count;
   points_.clear();
   for (int c = 0; c < count; ++c) points_.push_back(contacts.point(c));
   return true;

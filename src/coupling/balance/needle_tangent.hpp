@@ -17,7 +17,7 @@ namespace stylet {
 /// old, which does no harm: the tangent that it replaces belongs to a much older one.
 ///
 /// A needle under more load than it can bear by itself has no positive definite tangent. It is then lent springs at its
-/// contacts (docs/theory/coupling.md §4).
+/// contacts (docs/theory/coupling.md §4). So is each needle at rest, since the load that the hand has put on it stays.
 class NeedleTangent {
  public:
   /// All arguments outlive the tangent. @param system its needle's side is written @param rows loads on the needle
@@ -58,7 +58,8 @@ class NeedleTangent {
  private:
   enum class Stage { none, begun, tangent, compliance, filled, matrix };
 
-  void lend_springs(const Contacts& contacts, int most, std::vector<LentSpring>& lent);
+  void lend_springs(const Contacts& contacts, int own, int resting, NeedleSide& side);
+  void lend_spring(const Contacts& contacts, int load, int stands_for, NeedleSide& side);
   [[nodiscard]] bool prepare_on_springs(const Contacts& contacts);
   [[nodiscard]] bool prepared_contacts_are_there(const Contacts& contacts) const;
   [[nodiscard]] bool expects_springs();
@@ -74,7 +75,8 @@ class NeedleTangent {
   double worn_mm_ = 0.0;          ///< motion of the base since the tangent was made
   std::vector<Mat3> springs_;     ///< [N/mm] lent at each load
   Stage stage_ = Stage::none;     ///< progress of the next tangent
-  int lent_ = 0;                  ///< largest number of springs of the next tangent; 0: none
+  int lent_ = 0;                  ///< springs lent to the moved needle in the next tangent
+  int resting_lent_ = 0;          ///< springs lent to each needle at rest
   std::vector<int> points_;       ///< points of the contacts that the next tangent belongs to
 };
 
