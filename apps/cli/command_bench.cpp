@@ -9,6 +9,7 @@
 #include "stylet/measure/scale_bench.hpp"
 #include "stylet/measure/step_bench.hpp"
 #include "stylet/measure/timing.hpp"
+#include "stylet/measure/together_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -143,6 +144,7 @@ Result<> check_options(const BenchArguments& arguments) {
   const Option options[] = {
       {"--nodes", arguments.nodes > 0, {"remesh", "coupling", "scale", "step", "loop", "viewers", "supply", "display"}},
       {"--contacts", arguments.contacts > 0, {"scale", "loop", "viewers"}},
+      {"--needles", arguments.needles > 0, {"together"}},
       {"--steps", arguments.steps > 0, {"scale"}},
       {"--seconds", arguments.seconds > 0.0, {"loop", "viewers"}},
       {"--speed", arguments.speed > 0.0, {"supply"}}};
@@ -165,6 +167,7 @@ Result<> run_bench(const BenchArguments& arguments, Console& console) {
   if (arguments.what == "supply") return bench_supply_command(arguments, console);
   if (arguments.what == "display") return bench_display_command(arguments, console);
   if (arguments.what == "dose") return bench_dose_command(arguments, console);
+  if (arguments.what == "together") return bench_together_command(arguments, console);
   if (arguments.what == "viewers") return bench_viewers_command(arguments, console);
   return bench_remesh_command(arguments, console);
 }
@@ -207,10 +210,12 @@ Command add_bench_command(CLI::App& program) {
          "and lateness of the steps of the real-time loop; supply: speeds that a needle can have where no compliance "
          "was precomputed; display: time and error of a picture of the deformed patient; viewers: time of the steps of "
          "a live session without viewers and with two viewers; needle: accuracy of the needle models against their "
-         "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table")
+         "cost; dose: time of the dose rates of 100 seeds at a million points, by the formula and by a table; "
+         "together: "
+         "time of a step while other needles rest in the tissue")
       ->required()
-      ->check(
-          one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle", "dose"}));
+      ->check(one_of({"remesh", "step", "coupling", "scale", "loop", "supply", "display", "viewers", "needle", "dose",
+                      "together"}));
   app->add_option("--nodes", arguments->nodes,
                   fmt::format("Nodes of the largest mesh: remesh 125 to 4096 (default {}), coupling 500 or more "
                               "(default {}), scale, supply and display 570 or more (default {}). Nodes of the only "
@@ -224,6 +229,11 @@ Command add_bench_command(CLI::App& program) {
          "Approximate number of contacts: scale one number (default 20, 40 and 60), loop and viewers (default 40)")
       ->type_name("N")
       ->check(whole_number_between(5, measure::most_driven_contacts()));
+  app->add_option("--needles", arguments->needles,
+                  fmt::format("together: largest number of needles at rest (default {})",
+                              measure::TogetherBenchOptions{}.needles))
+      ->type_name("N")
+      ->check(whole_number_between(1, measure::kMostAtRest));
   app->add_option("--steps", arguments->steps,
                   "scale: repeat insertion and withdrawal until each row has this number of steps (default: once)")
       ->type_name("N")

@@ -223,8 +223,8 @@ Result<SpreadCompliance> SpreadCompliance::solve(const Tissue& tissue, const std
   return result;
 }
 
-/// M between samples of different lines, on the elements of the mesh. Elements near a line that were made quadratic yield
-/// more to the same forces, so M as a whole stays positive semidefinite.
+/// M between samples of different lines, on the elements of the mesh. Elements near a line that were made quadratic
+/// yield more to the same forces, so M as a whole stays positive semidefinite.
 void SpreadCompliance::solve_between_lines(const Tissue& tissue) {
   const Eigen::Index nodes = tissue.displacement_nodes();
   std::vector<Eigen::SparseMatrix<double>> loads(lines_.size());  // (nodes × samples of a line) shares of a unit force

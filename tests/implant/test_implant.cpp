@@ -4,8 +4,8 @@
 #include "stylet/implant/implant.hpp"
 #include "stylet/sim/simulation.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 namespace stylet {
 namespace {

@@ -15,6 +15,7 @@ struct BenchArguments {
   std::string what;
   int nodes = 0;
   int contacts = 0;
+  int needles = 0;
   long steps = 0;
   double seconds = 0.0;  ///< [s] wall-clock time
   double speed = 0.0;    ///< [mm/s]
@@ -29,6 +30,7 @@ Result<> bench_loop_command(const BenchArguments& arguments, Console& console);
 Result<> bench_supply_command(const BenchArguments& arguments, Console& console);
 Result<> bench_display_command(const BenchArguments& arguments, Console& console);
 Result<> bench_dose_command(const BenchArguments& arguments, Console& console);
+Result<> bench_together_command(const BenchArguments& arguments, Console& console);
 Result<> bench_viewers_command(const BenchArguments& arguments, Console& console);
 
 /// Refuses `--nodes` below `fewest`.

@@ -82,7 +82,6 @@ TEST_P(PlacesOnWays, have_a_positive_compliance_on_one_way_and_on_both) {
 INSTANTIATE_TEST_SUITE_P(Elements, PlacesOnWays,
                          testing::Values(std::tuple(Element::p1, 1e-12), std::tuple(Element::nodal_pressure, 1e-3)));
 
-
 TEST(SpreadCompliance, ends_gradually_beside_its_ways) {
   const MediumBlock block({.cells = 6, .ways = {kThrough}});
   double before = 1.0;
