@@ -139,7 +139,10 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
     if (!done[g]->ok()) return done[g]->error();
     GroupOutcome& outcome = **done[g];
     history.compile_s += outcome.compile_s;
-    if (g == 0) history.warnings = outcome.warnings;
+    if (g == 0) {
+      history.warnings = outcome.warnings;
+      history.stabilising = std::move(outcome.staying);
+    }
     for (std::size_t n = 0; n < groups[g].size(); ++n) {
       const std::size_t k = groups[g][n];
       NeedleOutcome& one = outcome.needles[n];
@@ -149,6 +152,7 @@ Result<ImplantHistory> simulate_implant(const Scenario& scenario, const TetMesh&
         history.seeds.push_back(seed);
       }
       history.needles[k] = std::move(one.needle);
+      history.needles[k].record.group = g;
       warnings[k] = std::move(one.warnings);
     }
   }

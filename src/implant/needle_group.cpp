@@ -2,6 +2,7 @@
 #include "needle_group.hpp"
 
 #include "needle_motion.hpp"
+#include "needle_recorder.hpp"
 #include "seed_watch.hpp"
 #include "sim/base_steps.hpp"
 #include "stylet/core/flush_denormals.hpp"
@@ -40,7 +41,8 @@ class NeedleOnItsWay {
         entry_(planned.plan.entry_mm->data()),
         motion_(plan_needle_motion(load_, entry_, scenario, seed_length_mm)),
         steps_(planned_steps(model, motion_.insertion)),
-        seeds_(load_, motion_, scenario, seed_length_mm) {
+        seeds_(load_, motion_, scenario, seed_length_mm),
+        recorder_(steps_.count) {
     out_.needle.name = load_.name;
     out_.needle.entry_mm = entry_;
     out_.needle.direction = load_.direction;
@@ -53,6 +55,11 @@ class NeedleOnItsWay {
   void go_in(Simulation& simulation, TargetMotion* gland) {
     simulation.place(motion_.insertion);
     go_on(simulation, gland, motion_.in_s);
+    recorder_.keep_shape(simulation, simulation.insertion().held(), "full depth");
+  }
+  /// Keeps its shape while it is at rest, with all needles of the group in the tissue. @param number in the simulation
+  void keep_shape_in_place(const Simulation& simulation, int number) {
+    recorder_.keep_shape(simulation, number, kAllInPlace);
   }
   /// Carries out the rest: the seeds are dropped, and the needle comes out.
   void finish(Simulation& simulation, TargetMotion* gland) {
@@ -68,6 +75,7 @@ class NeedleOnItsWay {
   NeedleMotion motion_;
   BaseSteps steps_;
   SeedWatch seeds_;
+  NeedleRecorder recorder_;
   UnbrokenSurface unbroken_;
   NeedleOutcome out_;
   long taken_ = 0;       ///< number of steps so far
@@ -83,7 +91,8 @@ void NeedleOnItsWay::go_on(Simulation& simulation, TargetMotion* gland, double u
     const double dt = steps_.dt_s(taken_);
     const double before = thread_cpu_s();
     const Step& step = simulation.step(steps_.base(taken_), dt);
-    needle.seconds += thread_cpu_s() - before;
+    const double seconds = thread_cpu_s() - before;
+    needle.seconds += seconds;
     time_s_ += dt;
     ++needle.steps;
     if ((step.flags & Step::kDistrusted) != 0) ++without_balance_;
@@ -93,6 +102,7 @@ void NeedleOnItsWay::go_on(Simulation& simulation, TargetMotion* gland, double u
       needle.deflection_mm = std::max(needle.deflection_mm, (off - load_.direction * load_.direction.dot(off)).norm());
     }
     seeds_.add(simulation, time_s_);
+    recorder_.add(simulation, seeds_, seconds);
     unbroken_.add(simulation);
     for (const Event& event : simulation.new_events()) needle.events.push_back(event);
     if (gland != nullptr && taken_ % kGlandEvery == 0) {
@@ -104,6 +114,7 @@ void NeedleOnItsWay::go_on(Simulation& simulation, TargetMotion* gland, double u
 
 NeedleOutcome NeedleOnItsWay::outcome(bool has_gland) {
   NeedleOutcome out = out_;
+  out.needle.record = recorder_.take();
   NeedleHistory& needle = out.needle;
   if (!has_gland) needle.gland_shift_mm.setConstant(std::numeric_limits<double>::quiet_NaN());
   out.seeds = seeds_.result();
@@ -161,6 +172,8 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
     if (Result<> taken = simulation.take_up(static_cast<int>(k)); !taken) return taken.error();
     on_their_way.emplace_back(all[k], scenario, *model, seed_length_mm).go_in(simulation, gland_now);
   }
+  for (std::size_t k = 0; k < all.size() && all.size() > 1; ++k)
+    on_their_way[k].keep_shape_in_place(simulation, static_cast<int>(k));
   for (std::size_t k = staying.size(); k < all.size(); ++k) {
     if (Result<> taken = simulation.take_up(static_cast<int>(k)); !taken) return taken.error();
     on_their_way[k].finish(simulation, gland_now);
@@ -169,6 +182,7 @@ Result<GroupOutcome> simulate_group(const std::vector<PlannedNeedle>& staying,
     NeedleOutcome outcome = on_their_way[k].outcome(gland.has_value());
     if (k < staying.size()) {
       out.warnings.insert(out.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+      out.staying.push_back(std::move(outcome.needle));
     } else {
       out.needles.push_back(std::move(outcome));
     }

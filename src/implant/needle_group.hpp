@@ -22,8 +22,9 @@ struct NeedleOutcome {
 /// What has become of needles that are in the tissue together.
 struct GroupOutcome {
   std::vector<NeedleOutcome> needles;  ///< without the staying ones
-  std::vector<std::string> warnings;   ///< about the staying needles
-  double compile_s = 0.0;              ///< wall-clock time to compile the model
+  std::vector<NeedleHistory> staying;
+  std::vector<std::string> warnings;  ///< about the staying needles
+  double compile_s = 0.0;             ///< wall-clock time to compile the model
 };
 
 /// Simulates needles in one tissue: the staying needles go in and stay; then all others go in, one after the other, and

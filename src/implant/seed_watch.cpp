@@ -31,6 +31,7 @@ void SeedWatch::place(Seed& seed, const Needle& needle, double arc_mm) {
 /// Finds the tissue at the seed: at its centre, and at its ends for its axis.
 void SeedWatch::leave(Seed& seed, Simulation& simulation, double since_start_s) {
   seed.is_left = true;
+  left_.push_back(seed.history.number);
   SeedHistory& h = seed.history;
   h.dropped_s = since_start_s;
   const DisplacementAt displacement = displacement_in(simulation);

@@ -15,6 +15,9 @@ class SeedWatch {
 
   void add(Simulation& simulation, double since_start_s);
 
+  /// Numbers in the plan of the seeds that have been left so far, in this order.
+  [[nodiscard]] const std::vector<std::size_t>& left() const { return left_; }
+
   /// The seeds in the order of the load. Seeds that have not been left count as dropped where they are in the needle.
   [[nodiscard]] std::vector<SeedHistory> result() const;
 
@@ -34,6 +37,7 @@ class SeedWatch {
   SeedTechnique technique_;
   double seed_length_mm_;
   std::vector<Seed> seeds_;
+  std::vector<std::size_t> left_;
 };
 
 }  // namespace stylet

@@ -196,6 +196,62 @@ TEST(Implant, in_creeping_tissue_has_a_positive_compliance_among_the_points_of_a
   EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-3 * eigen.eigenvalues().maxCoeff());
 }
 
+TEST(Implant, keeps_the_steps_of_each_needle_and_its_shape_where_it_leaves_seeds) {
+  const ImplantHistory history = simulated(scenario(), test::box_patient(), two_needles());
+  EXPECT_TRUE(history.stabilising.empty());
+  for (std::size_t n = 0; n < history.needles.size(); ++n) {
+    const NeedleHistory& needle = history.needles[n];
+    const NeedleRecord& record = needle.record;
+    EXPECT_EQ(record.group, n);
+    ASSERT_EQ(record.steps.size(), static_cast<std::size_t>(needle.steps));
+    double peak = 0.0, deepest = 0.0, seconds = 0.0;
+    for (std::size_t k = 0; k < record.steps.size(); ++k) {
+      peak = std::max(peak, std::abs(record.steps[k].force_axial_N));
+      deepest = std::max(deepest, record.steps[k].base_depth_mm);
+      seconds += 1e-6 * record.steps[k].step_us;
+      EXPECT_GT(record.steps[k].time_s, k > 0 ? record.steps[k - 1].time_s : 0.0);
+    }
+    EXPECT_EQ(peak, needle.peak_force_N);
+    EXPECT_NEAR(deepest, needle.depth_mm, 1e-6);
+    EXPECT_NEAR(seconds, needle.seconds, 1e-9);
+    ASSERT_EQ(record.shapes.size(), 4U);
+    EXPECT_EQ(record.shapes.front().when, "full depth");
+    EXPECT_NEAR(record.shapes.front().base_depth_mm, needle.depth_mm, 0.5);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const SeedHistory& seed = history.seeds[3 * n + k];
+      const NeedleShape& shape = record.shapes[k + 1];
+      EXPECT_EQ(shape.when, "seed " + std::to_string(seed.number + 1) + " dropped");
+      EXPECT_NEAR(shape.time_s, seed.dropped_s, 1e-6) << "one needle at a time";
+      ASSERT_EQ(shape.points_mm.size(), static_cast<std::size_t>(kNeedleShapePoints));
+      // The cannula's tip has just passed the seed that it leaves.
+      EXPECT_LT((shape.points_mm.back() - seed.dropped_mm).norm(), 5.0);
+    }
+  }
+}
+
+TEST(Implant, keeps_the_shapes_of_needles_that_are_in_place_together) {
+  Scenario s = scenario();
+  s.procedure.together = NeedlesTogether::all;
+  s.procedure.stabilising = {"B4"};
+  const ImplantHistory history = simulated(s, test::box_patient(), two_needles());
+  ASSERT_EQ(history.stabilising.size(), 1U);
+  EXPECT_EQ(history.stabilising[0].name, "stabilising B4");
+  std::vector<NeedleHistory> all = history.needles;
+  all.push_back(history.stabilising[0]);
+  double time_s = 0.0;
+  for (const NeedleHistory& needle : all) {
+    ASSERT_GE(needle.record.shapes.size(), 2U);
+    const NeedleShape &deep = needle.record.shapes[0], &together = needle.record.shapes[1];
+    EXPECT_EQ(together.when, kAllInPlace);
+    EXPECT_GE(together.time_s, deep.time_s);
+    time_s = std::max(time_s, together.time_s);
+    // The hub is locked; the tip may have been moved by the needles that went in later.
+    EXPECT_LT((together.points_mm.front() - deep.points_mm.front()).norm(), 1e-6);
+    EXPECT_LT((together.points_mm.back() - deep.points_mm.back()).norm(), 3.0);
+  }
+  for (const NeedleHistory& needle : all) EXPECT_EQ(needle.record.shapes[1].time_s, time_s) << "at one moment";
+}
+
 TEST(Implant, refuses_a_plan_beside_the_patient_and_a_needle_that_is_too_short) {
   DosePlan plan = two_needles();
   for (PlannedSource& source : plan.sources) source.at_mm.x() += 200.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stylet/implant/needle_load.hpp"
+#include "stylet/implant/needle_record.hpp"
 #include "stylet/implant/seed_history.hpp"
 #include "stylet/sim/gland_motion.hpp"
 #include "stylet/sim/model.hpp"
@@ -23,15 +24,17 @@ struct NeedleHistory {
   std::vector<Event> events;
   long steps = 0;
   double seconds = 0.0;  ///< processor time of the steps
+  NeedleRecord record;   ///< each of its steps, and its shapes
 };
 
 /// A simulated implant.
 struct ImplantHistory {
-  std::vector<NeedleHistory> needles;  ///< in the order in which they were inserted
-  std::vector<SeedHistory> seeds;      ///< in the order of the plan
-  std::vector<std::string> warnings;   ///< sentences for the user: harms, seeds that could not be followed
-  int nodes = 0;                       ///< of the mesh
-  double compile_s = 0.0;              ///< wall-clock time to compile the models of all needles, summed over threads
+  std::vector<NeedleHistory> needles;      ///< in the order in which they were inserted
+  std::vector<NeedleHistory> stabilising;  ///< in the order in which they were inserted, as in the first group
+  std::vector<SeedHistory> seeds;          ///< in the order of the plan
+  std::vector<std::string> warnings;       ///< sentences for the user: harms, seeds that could not be followed
+  int nodes = 0;                           ///< of the mesh
+  double compile_s = 0.0;  ///< wall-clock time to compile the models of all needles, summed over threads
 };
 
 /// Simulates an implant: stabilising needles go in and stay; those of the plan go in, drop their seeds and come out,
