@@ -50,6 +50,7 @@ Result<Description> description_of(const InfoArguments& arguments) {
     return describe(*model);
   }
   if (is_hdf5_file(arguments.file)) {
+    if (is_implant_record(arguments.file)) return described(read_implant_record(arguments.file));
     const Result<RunRecording> run = read_recording(arguments.file);
     if (!run) return run.error();
     return describe(*run);
@@ -64,7 +65,9 @@ Result<Description> description_of(const InfoArguments& arguments) {
 Result<> run_draft(const InfoArguments& arguments, Console& console) {
   if (is_meant_as_model(arguments.file) || is_hdf5_file(arguments.file)) {
     return input_error(arguments.file, "a saved model or a recording already contains its scenario",
-                       "Run it with stylet insert, or give the patient's file");
+                       is_implant_record(arguments.file)
+                           ? "Give the scenario to stylet implant, or give the patient's file"
+                           : "Run it with stylet insert, or give the patient's file");
   }
   std::error_code code;
   if (!arguments.output.empty() && std::filesystem::equivalent(arguments.file, arguments.output, code))
@@ -109,7 +112,7 @@ Result<> run_info(const InfoArguments& arguments, Console& console) {
 Command add_info_command(CLI::App& program) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* app = program.add_subcommand(
-      "info", "Describe contours, a mask, mesh, surface, plan, dose, source model, saved model or recording");
+      "info", "Describe contours, a mask, mesh, surface, plan, dose, source model, saved model, recording or implant");
   app->add_option("FILE", arguments->file,
                   "File, or folder that contains one DICOM RTSTRUCT or SEG; or the name of a source model, or "
                   "'sources' for a list of those "

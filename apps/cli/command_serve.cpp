@@ -3,6 +3,7 @@
 #include "igtl_companion.hpp"
 #include "validators.hpp"
 
+#include "stylet/io/implant_record_io.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/scenario_io.hpp"
 #include "stylet/patient/implant_plan.hpp"
@@ -121,6 +122,9 @@ Result<> add_inputs(const ServeArguments& arguments, serve::SessionSettings& ses
       if (file.filename() != "run.h5")
         return input_error(input, "a recording is a folder that contains a file run.h5",
                            "Give the run.h5 in its folder");
+      if (is_implant_record(file))
+        return input_error(input, "the record of an implant, which the page cannot replay",
+                           "Look at its report, or give the scenario of the implant");
       session.archive = file.parent_path().parent_path();
       session.replay = file.parent_path().filename().string();
     } else {

@@ -11,6 +11,7 @@
 #include "stylet/geom/quality.hpp"
 #include "stylet/geom/surface.hpp"
 #include "stylet/geom/tet_mesh.hpp"
+#include "stylet/io/implant_record_io.hpp"
 #include "stylet/io/model_file.hpp"
 #include "stylet/io/recording_io.hpp"
 
@@ -33,6 +34,7 @@ Description describe(const LabelImage& image);
 Description describe(const TetMesh& mesh);
 Description describe(const std::vector<Surface>& surfaces);
 Description describe(const RunRecording& run);
+Description describe(const ImplantRecord& record);
 Description describe(const ModelFile& file);
 Description describe(const DosePlan& plan);
 Description describe(const DoseGrid& grid);

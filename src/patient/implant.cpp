@@ -66,6 +66,14 @@ std::vector<std::string> match_warnings(const FoundImplant& found) {
   return warnings;
 }
 
+/// Only the implant that the results are about keeps the steps of its needles; other choices would multiply the memory.
+ImplantHistory without_records(ImplantHistory history) {
+  for (std::vector<NeedleHistory>* needles : {&history.needles, &history.stabilising}) {
+    for (NeedleHistory& needle : *needles) needle.record = {};
+  }
+  return history;
+}
+
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
@@ -113,7 +121,7 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     if (!done) return done.error();
     auto before = dose_of(done->before);
     if (!before) return before.error();
-    outcome.before = OtherImplant{"before compensation", std::move(done->before), *std::move(before)};
+    outcome.before = OtherImplant{"before compensation", without_records(std::move(done->before)), *std::move(before)};
     outcome.history = std::move(done->after);
     aimed = std::move(done->needles);
   } else {
@@ -132,7 +140,7 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     if (!history) return history.error();
     Result<DoseEvaluation> delivered = dose_of(*history);
     if (!delivered) return delivered.error();
-    outcome.spans.push_back({"tissue " + word(preset), *std::move(history), *std::move(delivered)});
+    outcome.spans.push_back({"tissue " + word(preset), without_records(*std::move(history)), *std::move(delivered)});
   }
 
   if (*found_seeds) {
@@ -157,6 +165,7 @@ Result<ImplantOutcome> implant(const Scenario& scenario, const std::string& wher
     outcome.found = std::move(found);
   }
 
+  outcome.mesh = std::move(patient->mesh);
   append(outcome.warnings, of.plan.notes);
   append(outcome.warnings, of.structures.notes);
   append(outcome.warnings, patient->report.notes);

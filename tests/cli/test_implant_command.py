@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """stylet implant: a scenario with a plan to seeds at rest, their errors, and the dose."""
+import contextlib
 import csv
+import importlib.util
+import io
 import json
 import unittest
+from pathlib import Path
 
 from program import InFolder
 
@@ -64,6 +68,7 @@ class Implant(InFolder):
         self.assertEqual([row["needle"] for row in rows], [seed["needle"] for seed in implant["seeds"]])
         self.assertAlmostEqual(float(rows[1]["rest_z_mm"]), implant["seeds"][1]["rest_mm"][2], places=3)
         self.assertIn("two needles", (self.folder / "out/report.html").read_text())
+        self.look_at_record(implant)
         # The delivered plan is a plan: stylet dose reads it and finds the same dose.
         again = self.json_of("dose", "out/delivered/plan.dcm", "-o", "again")
         self.assertEqual(again["seeds"], 5)
@@ -71,6 +76,44 @@ class Implant(InFolder):
             for axis in range(3):
                 self.assertAlmostEqual(position["position_mm"][axis], seed["rest_mm"][axis], places=4)
         self.match_found_seeds(implant)
+
+    def look_at_record(self, implant):
+        """run.h5 of the implant in the folder out is described, and refused as a recording."""
+        info = self.json_of("info", "out/run.h5")
+        self.assertEqual(info["kind"], "implant")
+        self.assertEqual([needle["name"] for needle in info["needles"]], [needle["name"] for needle in implant["needles"]])
+        self.assertEqual([needle["steps"] for needle in info["needles"]], [needle["steps"] for needle in implant["needles"]])
+        # One shape at full depth and one for each seed.
+        self.assertEqual([needle["shapes"] for needle in info["needles"]], [4, 3])
+        self.assertEqual([seed["error_mm"] for seed in info["seeds"]], [seed["error_mm"] for seed in implant["seeds"]])
+        self.assertEqual(info["error"]["mean_mm"], implant["error"]["mean_mm"])
+        text = self.succeed("info", "out/run.h5").stdout
+        self.assertIn("an implant of seeds", text)
+        self.assertIn("distance from plan", text)
+        self.refuse("insert", "out/run.h5", "-o", "again", says=["record of an implant"])
+        self.refuse("serve", "out/run.h5", says=["record of an implant"])
+        self.run_the_example_of_the_documents(implant)
+        whole = (self.folder / "out/run.h5").read_bytes()
+        (self.folder / "part.h5").write_bytes(whole[:len(whole) // 2])
+        self.refuse("info", "part.h5", says=["run.h5 that stylet wrote"])
+
+    def run_the_example_of_the_documents(self, implant):
+        """Python reads run.h5 as docs/results.md shows it; only where h5py is installed."""
+        if importlib.util.find_spec("h5py") is None:
+            return
+        page = (Path(__file__).parents[2] / "docs/results.md").read_text(encoding="utf-8")
+        code = page.split("## run.h5 of an implant")[1].split("```python\n")[1].split("```")[0]
+        code = code.replace("OUT/run.h5", str(self.folder / "out/run.h5"))
+        said = io.StringIO()
+        names = {}
+        with contextlib.redirect_stdout(said):
+            exec(code, names)  # noqa: S102: the document's own text
+        for name in ("C4", "E4"):
+            self.assertIn(name, said.getvalue())
+        for seed, error in zip(implant["seeds"], names["error"]):
+            self.assertEqual(list(error), seed["error_xyz_mm"])
+        self.assertEqual(names["dose"].ndim, 3)
+        names["run"].close()
 
     def found(self, text, name="found_seeds.csv"):
         (self.folder / name).write_text(text)

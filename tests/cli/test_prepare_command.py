@@ -99,7 +99,7 @@ class Prepare(InFolder):
 
         # refuse() checks that HDF5 itself prints nothing.
         for file, ending, cure in (("case.stylet", "stylet", "stylet prepare"),
-                                   ("out/run.h5", "h5", "run.h5 that `stylet insert` wrote")):
+                                   ("out/run.h5", "h5", "run.h5 that stylet wrote")):
             for name, content in damaged(file):
                 (self.folder / f"{name}.{ending}").write_bytes(content)
                 for command in ("insert", "info"):

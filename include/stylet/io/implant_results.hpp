@@ -30,9 +30,10 @@ struct FoundImplant {
 /// An implant as it was planned and as it was delivered: everything that the result folder of `stylet implant` says.
 struct ImplantOutcome {
   Scenario scenario;
+  TetMesh mesh;  ///< of the patient, at rest
   ImplantHistory history;
-  DoseEvaluation planned;    ///< dose of the plan
-  DoseEvaluation delivered;  ///< dose of the seeds where they have come to rest
+  DoseEvaluation planned;            ///< dose of the plan
+  DoseEvaluation delivered;          ///< dose of the seeds where they have come to rest
   double seed_length_mm = 0.0;
   std::optional<OtherImplant> before;  ///< without compensation, where the needles were aimed to make up for the errors
   std::vector<OtherImplant> spans;     ///< with firmer and softer tissue, where they were asked for
@@ -40,8 +41,8 @@ struct ImplantOutcome {
   std::vector<std::string> warnings;   ///< of reader, mesher, plan and simulation
 };
 
-/// Writes the result folder of `stylet implant` (docs/results.md): report.html, seeds.csv, the folders planned and
-/// delivered with all files of `stylet dose`, and summary.json last; with found seeds also found.csv and the folder
+/// Writes the result folder of `stylet implant` (docs/results.md): report.html, seeds.csv, run.h5, the folders planned
+/// and delivered with all files of `stylet dose`, and summary.json last; with found seeds also found.csv and the folder
 /// found. Without them, a found.csv of an earlier run is removed, and so is the dose.json that marks its folder as
 /// complete. Errors: the folder cannot be created or written.
 Result<> write_implant_results(const ImplantOutcome& outcome, const std::filesystem::path& folder,

@@ -174,6 +174,20 @@ Handle string_type(std::size_t bytes) {
   return type;
 }
 
+Handle bool_type() {
+  Handle type(check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
+  const std::int8_t no = 0, yes = 1;
+  check(H5Tenum_insert(type, "FALSE", &no), "create type");
+  check(H5Tenum_insert(type, "TRUE", &yes), "create type");
+  return type;
+}
+
+Handle compound_type(std::size_t bytes) { return {check(H5Tcreate(H5T_COMPOUND, bytes), "create type"), H5Tclose}; }
+
+void insert_member(hid_t compound, const char* name, std::size_t offset, hid_t member) {
+  check(H5Tinsert(compound, name, offset, member), name);
+}
+
 void write_attribute(hid_t object, const char* name, const std::string& text) {
   const std::size_t width = width_of({&text, 1});
   const Handle type = string_type(width);

@@ -81,6 +81,9 @@ Handle open_group(hid_t parent, const char* name);
 Handle dataset(hid_t parent, const char* name);  ///< opens a dataset
 Handle array_type(hid_t element, hsize_t count);
 Handle string_type(std::size_t bytes);  ///< fixed length, UTF-8, null-padded
+Handle bool_type();                     ///< the enumeration of one byte that h5py reads as bool
+Handle compound_type(std::size_t bytes);
+void insert_member(hid_t compound, const char* name, std::size_t offset, hid_t member);
 
 /// Attributes: texts are scalars, numbers are 1-D arrays. All texts are written with a fixed length, because HDF5
 /// stores texts of variable length without a checksum and crashes if they are damaged. Both kinds can be read.

@@ -9,4 +9,7 @@ namespace stylet::h5 {
 /// Writes the group "mesh": nodes_mm (n, 3), tets (m, 4), tet_region (m), regions.
 void write_mesh(hid_t file, const TetMesh& mesh);
 
+/// Reads the group "mesh". Throws Failure if an array has another shape. The mesh is not checked (check_mesh()).
+TetMesh read_mesh(hid_t file);
+
 }  // namespace stylet::h5

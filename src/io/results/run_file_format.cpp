@@ -10,11 +10,6 @@
 namespace stylet::results {
 namespace {
 
-h5::Handle compound(std::size_t bytes) { return {h5::check(H5Tcreate(H5T_COMPOUND, bytes), "create type"), H5Tclose}; }
-void insert(hid_t type, const char* name, std::size_t offset, hid_t member) {
-  h5::check(H5Tinsert(type, name, offset, member), name);
-}
-
 /// An 8-bit enumeration whose names are to_string() of the values 0 … last.
 template <class Enum>
 h5::Handle enum_type(Enum last) {
@@ -22,15 +17,6 @@ h5::Handle enum_type(Enum last) {
   for (std::int8_t value = 0; value <= static_cast<std::int8_t>(last); ++value) {
     h5::check(H5Tenum_insert(type, to_string(static_cast<Enum>(value)), &value), "create type");
   }
-  return type;
-}
-
-/// The enumeration type that h5py reads as bool.
-h5::Handle bool_type() {
-  h5::Handle type(h5::check(H5Tenum_create(H5T_NATIVE_INT8), "create type"), H5Tclose);
-  const std::int8_t no = 0, yes = 1;
-  h5::check(H5Tenum_insert(type, "FALSE", &no), "create type");
-  h5::check(H5Tenum_insert(type, "TRUE", &yes), "create type");
   return type;
 }
 
@@ -137,47 +123,47 @@ Step from_row(const StepRow& row) {
 }
 
 h5::Handle step_row_type() {
-  h5::Handle type = compound(sizeof(StepRow));
-  insert(type, "time_s", offsetof(StepRow, time_s), H5T_NATIVE_DOUBLE);
-  insert(type, "dt_s", offsetof(StepRow, dt_s), H5T_NATIVE_DOUBLE);
-  insert(type, "base_x_mm", offsetof(StepRow, base_x_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "base_y_mm", offsetof(StepRow, base_y_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "base_z_mm", offsetof(StepRow, base_z_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "base_qw", offsetof(StepRow, base_qw), H5T_NATIVE_DOUBLE);
-  insert(type, "base_qx", offsetof(StepRow, base_qx), H5T_NATIVE_DOUBLE);
-  insert(type, "base_qy", offsetof(StepRow, base_qy), H5T_NATIVE_DOUBLE);
-  insert(type, "base_qz", offsetof(StepRow, base_qz), H5T_NATIVE_DOUBLE);
-  insert(type, "base_depth_mm", offsetof(StepRow, base_depth_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "force_axial_N", offsetof(StepRow, force_axial_N), H5T_NATIVE_DOUBLE);
-  insert(type, "force_sagittal_N", offsetof(StepRow, force_sagittal_N), H5T_NATIVE_DOUBLE);
-  insert(type, "force_lateral_N", offsetof(StepRow, force_lateral_N), H5T_NATIVE_DOUBLE);
-  insert(type, "torque_x_Nmm", offsetof(StepRow, torque_x_Nmm), H5T_NATIVE_DOUBLE);
-  insert(type, "torque_y_Nmm", offsetof(StepRow, torque_y_Nmm), H5T_NATIVE_DOUBLE);
-  insert(type, "torque_z_Nmm", offsetof(StepRow, torque_z_Nmm), H5T_NATIVE_DOUBLE);
-  insert(type, "tip_x_mm", offsetof(StepRow, tip_x_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "tip_y_mm", offsetof(StepRow, tip_y_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "tip_z_mm", offsetof(StepRow, tip_z_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "tip_state", offsetof(StepRow, tip_state), enum_type(TipState::exited));
-  insert(type, "contacts", offsetof(StepRow, contacts), H5T_NATIVE_INT32);
-  insert(type, "sticking", offsetof(StepRow, sticking), H5T_NATIVE_INT32);
-  insert(type, "iterations", offsetof(StepRow, iterations), H5T_NATIVE_INT32);
-  insert(type, "step_us", offsetof(StepRow, step_us), H5T_NATIVE_DOUBLE);
-  insert(type, "rest_steps", offsetof(StepRow, rest_steps), H5T_NATIVE_INT64);
-  insert(type, "flags", offsetof(StepRow, flags), H5T_NATIVE_UINT32);
-  insert(type, "check", offsetof(StepRow, check), H5T_NATIVE_UINT32);
+  h5::Handle type = h5::compound_type(sizeof(StepRow));
+  h5::insert_member(type, "time_s", offsetof(StepRow, time_s), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "dt_s", offsetof(StepRow, dt_s), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_x_mm", offsetof(StepRow, base_x_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_y_mm", offsetof(StepRow, base_y_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_z_mm", offsetof(StepRow, base_z_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_qw", offsetof(StepRow, base_qw), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_qx", offsetof(StepRow, base_qx), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_qy", offsetof(StepRow, base_qy), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_qz", offsetof(StepRow, base_qz), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_depth_mm", offsetof(StepRow, base_depth_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "force_axial_N", offsetof(StepRow, force_axial_N), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "force_sagittal_N", offsetof(StepRow, force_sagittal_N), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "force_lateral_N", offsetof(StepRow, force_lateral_N), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "torque_x_Nmm", offsetof(StepRow, torque_x_Nmm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "torque_y_Nmm", offsetof(StepRow, torque_y_Nmm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "torque_z_Nmm", offsetof(StepRow, torque_z_Nmm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "tip_x_mm", offsetof(StepRow, tip_x_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "tip_y_mm", offsetof(StepRow, tip_y_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "tip_z_mm", offsetof(StepRow, tip_z_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "tip_state", offsetof(StepRow, tip_state), enum_type(TipState::exited));
+  h5::insert_member(type, "contacts", offsetof(StepRow, contacts), H5T_NATIVE_INT32);
+  h5::insert_member(type, "sticking", offsetof(StepRow, sticking), H5T_NATIVE_INT32);
+  h5::insert_member(type, "iterations", offsetof(StepRow, iterations), H5T_NATIVE_INT32);
+  h5::insert_member(type, "step_us", offsetof(StepRow, step_us), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "rest_steps", offsetof(StepRow, rest_steps), H5T_NATIVE_INT64);
+  h5::insert_member(type, "flags", offsetof(StepRow, flags), H5T_NATIVE_UINT32);
+  h5::insert_member(type, "check", offsetof(StepRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 
 h5::Handle frame_row_type() {
-  h5::Handle type = compound(sizeof(FrameRow));
-  insert(type, "time_s", offsetof(FrameRow, time_s), H5T_NATIVE_DOUBLE);
-  insert(type, "base_depth_mm", offsetof(FrameRow, base_depth_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "label", offsetof(FrameRow, label), h5::string_type(sizeof(FrameRow::label)));
-  insert(type, "needle_first", offsetof(FrameRow, needle_first), H5T_NATIVE_INT64);
-  insert(type, "needle_count", offsetof(FrameRow, needle_count), H5T_NATIVE_INT64);
-  insert(type, "contact_first", offsetof(FrameRow, contact_first), H5T_NATIVE_INT64);
-  insert(type, "contact_count", offsetof(FrameRow, contact_count), H5T_NATIVE_INT64);
-  insert(type, "check", offsetof(FrameRow, check), H5T_NATIVE_UINT32);
+  h5::Handle type = h5::compound_type(sizeof(FrameRow));
+  h5::insert_member(type, "time_s", offsetof(FrameRow, time_s), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "base_depth_mm", offsetof(FrameRow, base_depth_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "label", offsetof(FrameRow, label), h5::string_type(sizeof(FrameRow::label)));
+  h5::insert_member(type, "needle_first", offsetof(FrameRow, needle_first), H5T_NATIVE_INT64);
+  h5::insert_member(type, "needle_count", offsetof(FrameRow, needle_count), H5T_NATIVE_INT64);
+  h5::insert_member(type, "contact_first", offsetof(FrameRow, contact_first), H5T_NATIVE_INT64);
+  h5::insert_member(type, "contact_count", offsetof(FrameRow, contact_count), H5T_NATIVE_INT64);
+  h5::insert_member(type, "check", offsetof(FrameRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 
@@ -204,13 +190,13 @@ ContactView from_row(const ContactRow& row) {
 }
 
 h5::Handle contact_row_type() {
-  h5::Handle type = compound(sizeof(ContactRow));
+  h5::Handle type = h5::compound_type(sizeof(ContactRow));
   const h5::Handle vector = h5::array_type(H5T_NATIVE_DOUBLE, 3);
-  insert(type, "position_mm", offsetof(ContactRow, position_mm), vector);
-  insert(type, "force_N", offsetof(ContactRow, force_N), vector);
-  insert(type, "arc_length_mm", offsetof(ContactRow, arc_length_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "sticking", offsetof(ContactRow, sticking), bool_type());
-  insert(type, "tip", offsetof(ContactRow, tip), bool_type());
+  h5::insert_member(type, "position_mm", offsetof(ContactRow, position_mm), vector);
+  h5::insert_member(type, "force_N", offsetof(ContactRow, force_N), vector);
+  h5::insert_member(type, "arc_length_mm", offsetof(ContactRow, arc_length_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "sticking", offsetof(ContactRow, sticking), h5::bool_type());
+  h5::insert_member(type, "tip", offsetof(ContactRow, tip), h5::bool_type());
   return type;
 }
 
@@ -230,24 +216,24 @@ Event from_row(const EventRow& row) {
 }
 
 h5::Handle event_row_type() {
-  h5::Handle type = compound(sizeof(EventRow));
-  insert(type, "kind", offsetof(EventRow, kind), enum_type(EventKind::grazed));
-  insert(type, "time_s", offsetof(EventRow, time_s), H5T_NATIVE_DOUBLE);
-  insert(type, "depth_mm", offsetof(EventRow, depth_mm), H5T_NATIVE_DOUBLE);
-  insert(type, "force_N", offsetof(EventRow, force_N), H5T_NATIVE_DOUBLE);
-  insert(type, "region", offsetof(EventRow, region), h5::string_type(sizeof(EventRow::region)));
-  insert(type, "check", offsetof(EventRow, check), H5T_NATIVE_UINT32);
+  h5::Handle type = h5::compound_type(sizeof(EventRow));
+  h5::insert_member(type, "kind", offsetof(EventRow, kind), enum_type(EventKind::grazed));
+  h5::insert_member(type, "time_s", offsetof(EventRow, time_s), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "depth_mm", offsetof(EventRow, depth_mm), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "force_N", offsetof(EventRow, force_N), H5T_NATIVE_DOUBLE);
+  h5::insert_member(type, "region", offsetof(EventRow, region), h5::string_type(sizeof(EventRow::region)));
+  h5::insert_member(type, "check", offsetof(EventRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 
 h5::Handle end_row_type() {
-  h5::Handle type = compound(sizeof(EndRow));
-  insert(type, "steps", offsetof(EndRow, steps), H5T_NATIVE_INT64);
-  insert(type, "frames", offsetof(EndRow, frames), H5T_NATIVE_INT64);
-  insert(type, "events", offsetof(EndRow, events), H5T_NATIVE_INT64);
-  insert(type, "summary_bytes", offsetof(EndRow, summary_bytes), H5T_NATIVE_INT64);
-  insert(type, "summary_check", offsetof(EndRow, summary_check), H5T_NATIVE_UINT32);
-  insert(type, "check", offsetof(EndRow, check), H5T_NATIVE_UINT32);
+  h5::Handle type = h5::compound_type(sizeof(EndRow));
+  h5::insert_member(type, "steps", offsetof(EndRow, steps), H5T_NATIVE_INT64);
+  h5::insert_member(type, "frames", offsetof(EndRow, frames), H5T_NATIVE_INT64);
+  h5::insert_member(type, "events", offsetof(EndRow, events), H5T_NATIVE_INT64);
+  h5::insert_member(type, "summary_bytes", offsetof(EndRow, summary_bytes), H5T_NATIVE_INT64);
+  h5::insert_member(type, "summary_check", offsetof(EndRow, summary_check), H5T_NATIVE_UINT32);
+  h5::insert_member(type, "check", offsetof(EndRow, check), H5T_NATIVE_UINT32);
   return type;
 }
 

@@ -16,6 +16,7 @@ namespace stylet::results {
 inline constexpr int kRunFileVersion = 4;
 inline constexpr int kFirstWithChecks = 4;  ///< first version of the format with checks
 inline constexpr const char* kRunFileFormat = "stylet-run";
+inline constexpr const char* kImplantFileFormat = "stylet-implant";  ///< of the run.h5 of an implant
 /// Fill value of rows that have not reached the disk.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 

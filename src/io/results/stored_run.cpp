@@ -1,36 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stored_run.hpp"
 
+#include "h5_mesh.hpp"
+
 namespace stylet::results {
 namespace fs = std::filesystem;
 
 namespace {
 
 struct NotARun : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit NotARun(const std::string& what, const char* its_cure = kGiveARecording)
+      : std::runtime_error(what), cure(its_cure) {}
+  const char* cure;
 };
 
 void demand(bool condition, const char* what) {
   if (!condition) throw NotARun(what);
-}
-
-TetMesh read_mesh(hid_t file) {
-  const h5::Handle group = h5::open_group(file, "mesh");
-  const h5::Handle nodes = h5::dataset(group, "nodes_mm"), tets = h5::dataset(group, "tets"),
-                   region = h5::dataset(group, "tet_region");
-  const auto node_shape = h5::extents(nodes), tet_shape = h5::extents(tets);
-  demand(node_shape.size() == 2 && node_shape[1] == 3, "/mesh/nodes_mm must be (n, 3)");
-  demand(tet_shape.size() == 2 && tet_shape[1] == 4, "/mesh/tets must be (m, 4)");
-  demand(h5::extents(region) == std::vector<hsize_t>{tet_shape[0]}, "/mesh/tet_region must be (m)");
-  TetMesh mesh;
-  mesh.nodes.resize(node_shape[0]);
-  mesh.tets.resize(tet_shape[0]);
-  mesh.tet_region.resize(tet_shape[0]);
-  h5::read_rows(nodes, H5T_NATIVE_DOUBLE, 0, node_shape[0], mesh.nodes.data());
-  h5::read_rows(tets, H5T_NATIVE_INT32, 0, tet_shape[0], mesh.tets.data());
-  h5::read_rows(region, H5T_NATIVE_INT, 0, tet_shape[0], mesh.tet_region.data());
-  mesh.regions = h5::read_texts(group, "regions");
-  return mesh;
 }
 
 std::vector<double> read_numbers(hid_t file, const char* name, std::size_t count) {
@@ -99,6 +84,10 @@ StoredRun read_all(hid_t file) {
   const std::string format = h5::read_text_attribute(file, "format");
   demand(format != "stylet-model",
          "a saved model without the seal at its end: it is damaged, or an earlier version of stylet saved it");
+  if (format == kImplantFileFormat) {
+    throw NotARun("the record of an implant, which has many needles and is not a recording of an insertion",
+                  "Look at it with stylet info, or repeat it with stylet implant and its scenario");
+  }
   demand(format == kRunFileFormat, "an HDF5 file, but not a recorded run");
   const auto version = h5::read_int_attribute(file, "format_version");
   demand(version.size() == 1 && version[0] <= kRunFileVersion, "written by a newer version of stylet");
@@ -109,7 +98,7 @@ StoredRun read_all(hid_t file) {
     run.start_digest = h5::read_text_attribute(file, "start_sha256");
     run.end = read_table<EndRow>(file, "end", end_row_type());  // read first, since the writer adds it last
   }
-  run.mesh = read_mesh(file);
+  run.mesh = h5::read_mesh(file);
   run.info = read_info(file);
   run.steps = read_table<StepRow>(file, "steps", step_row_type());
   read_frames(file, run);
@@ -122,13 +111,12 @@ StoredRun read_all(hid_t file) {
 }  // namespace
 
 Result<StoredRun> parse_run_file(const fs::path& path) {
-  const auto refuse = [&](const std::string& what) { return input_error(path.string(), what, kGiveARecording); };
   try {
     return read_all(h5::open_growing_file(path.c_str()));
   } catch (const h5::Failure& e) {
-    return refuse(e.what());
+    return input_error(path.string(), e.what(), kGiveARecording);
   } catch (const NotARun& e) {
-    return refuse(e.what());
+    return input_error(path.string(), e.what(), e.cure);
   }
 }
 

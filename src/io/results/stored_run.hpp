@@ -13,7 +13,7 @@ namespace stylet::results {
 
 /// The cure in errors about a file that is not a recording or is damaged.
 inline constexpr const char* kGiveARecording =
-    "Give a run.h5 that `stylet insert` wrote; if it is damaged, use another copy or repeat the run";
+    "Give a run.h5 that stylet wrote; if it is damaged, use another copy or repeat the run";
 
 /// The content of a run.h5 as stored, before the checks.
 struct StoredRun {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stylet::testing {
 namespace {
@@ -23,6 +24,38 @@ std::size_t needle_of(ImplantHistory& history, const PlannedSource& source) {
   needle.gland_shift_mm = Vec3(0.1, -0.2, 1.9);
   history.needles.push_back(needle);
   return history.needles.size() - 1;
+}
+
+/// A shaft that bends to one side within the patient.
+NeedleShape invented_shape(const NeedleHistory& needle, const std::string& when, double time_s) {
+  NeedleShape shape{.when = when, .time_s = time_s, .base_depth_mm = needle.depth_mm, .points_mm = {}};
+  for (int k = 0; k < kNeedleShapePoints; ++k) {
+    const double along = needle.depth_mm - 200.0 + 5.0 * k;
+    const double bend = 0.0006 * std::pow(std::max(0.0, along), 2);
+    shape.points_mm.push_back(needle.entry_mm + Vec3(bend, -0.4 * bend, along));
+  }
+  return shape;
+}
+
+/// A few steps of a needle on its way in and out, its events and shapes.
+void invent_record(NeedleHistory& needle, std::size_t group) {
+  needle.record.group = group;
+  for (int k = 0; k < 40; ++k) {
+    Step& step = needle.record.steps.emplace_back();
+    step.time_s = 0.1 * (k + 1);
+    step.dt_s = 0.1;
+    step.base_depth_mm = needle.depth_mm * (1.0 - std::abs(k - 20) / 20.0);
+    step.base.origin = needle.entry_mm + Vec3(0, 0, step.base_depth_mm - 200.0);
+    step.force_axial_N = needle.peak_force_N * std::cos(0.1 * k);
+    step.tip_mm = step.base.origin + Vec3(0.01 * k, 0, 200.0);
+    step.tip_state = k < 20 ? TipState::cutting : TipState::in_track;
+    step.contacts = k;
+    step.step_us = 50.0 + k;
+  }
+  needle.steps = 40;
+  needle.events = {{EventKind::puncture, 0.3, 12.0, 4.0, "body"}, {EventKind::withdrawn, 4.0, 0.0, -0.5, ""}};
+  needle.record.shapes = {invented_shape(needle, "full depth", 2.0), invented_shape(needle, kAllInPlace, 2.5),
+                          invented_shape(needle, "seed 3 dropped", 3.0)};
 }
 
 SeedHistory seed_of(const PlannedSource& source, std::size_t number, std::size_t needle) {
@@ -78,6 +111,19 @@ ImplantOutcome synthetic_implant(double grid_mm, double step_mm) {
   for (std::size_t k = 0; k < sources.size(); ++k)
     history.seeds.push_back(seed_of(sources[k], k, needle_of(history, sources[k])));
   history.seeds.back().lost = true;
+  outcome.mesh = {.nodes = {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(0, 10, 0), Vec3(0, 0, 10)},
+                  .tets = {{0, 1, 2, 3}},
+                  .tet_region = {0},
+                  .regions = {"prostate"}};
+  for (std::size_t k = 0; k < history.needles.size(); ++k) invent_record(history.needles[k], k);
+  for (const double x : {-15.0, 15.0}) {
+    NeedleHistory& needle = history.stabilising.emplace_back();
+    needle.name = x < 0.0 ? "stabilising B4" : "stabilising F4";
+    needle.entry_mm = Vec3(x, 0.0, -60.0);
+    needle.depth_mm = 90.0;
+    needle.gland_shift_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());  // as without a gland
+    invent_record(needle, 0);
+  }
   outcome.delivered.plan = delivered_plan(outcome.planned.plan, history);
   outcome.warnings = {"Needle G3: In 2 of 1900 steps no balance of needle and tissue was found."};
   return outcome;

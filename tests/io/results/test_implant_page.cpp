@@ -17,6 +17,7 @@
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <vector>
 
 using namespace stylet;
 using namespace stylet::testing;
@@ -110,6 +111,28 @@ TEST(ImplantPage, gives_the_scripts_planned_histograms_at_the_doses_of_the_deliv
   EXPECT_EQ(data["seeds"].size(), 44U);
   EXPECT_TRUE(data["seeds"][43]["rest_mm"].is_null()) << "the last seed is lost";
   EXPECT_EQ(data["thirds"].size(), 3U);
+}
+
+TEST(ImplantPage, gives_the_scripts_the_shafts_of_needles_in_place_together_and_says_so) {
+  const auto data_of = [](const std::string& page) {
+    return nlohmann::json::parse(between(page, "id=\"implant-data\">", "</script>"));
+  };
+  const std::string page = page_of(outcome());
+  const auto needles = data_of(page)["needles"];
+  ASSERT_EQ(needles.size(), outcome().history.needles.size() + 2);
+  EXPECT_EQ(needles[0]["stabilises"], true);
+  EXPECT_EQ(needles[2]["name"], outcome().history.needles[0].name);
+  // The shaft begins not more than 25 mm in front of the skin and ends at the tip.
+  const NeedleHistory& needle = outcome().history.needles[0];
+  EXPECT_GT(needles[2]["shaft_mm"][0][2].get<double>(), needle.entry_mm.z() - 25.0);
+  EXPECT_NEAR(needles[2]["shaft_mm"].back()[2].get<double>(), needle.record.shapes[1].points_mm.back().z(), 0.006);
+  EXPECT_EQ(count(page, "Shafts are those of needles"), 1U);
+  ImplantOutcome alone = outcome();
+  alone.history.stabilising.clear();
+  for (NeedleHistory& of : alone.history.needles)
+    std::erase_if(of.record.shapes, [](const NeedleShape& shape) { return shape.when == kAllInPlace; });
+  EXPECT_TRUE(data_of(page_of(alone))["needles"].empty());
+  EXPECT_EQ(count(page_of(alone), "Shafts are those of needles"), 0U);
 }
 
 TEST(ImplantPage, can_be_made_when_every_seed_is_lost) {

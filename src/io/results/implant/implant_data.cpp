@@ -36,6 +36,26 @@ PageJson found_seeds_json(const ImplantOutcome& outcome) {
   return list;
 }
 
+/// The needles that are in the tissue with others, each at the moment at which all needles of its group are in place:
+/// the shaft from a little in front of the skin to the tip.
+PageJson needles_in_place(const ImplantHistory& history) {
+  constexpr double kInFrontOfSkin_mm = 25.0;
+  PageJson list = PageJson::array();
+  const auto add = [&](const NeedleHistory& needle, bool stabilises) {
+    for (const NeedleShape& shape : needle.record.shapes) {
+      if (shape.when != kAllInPlace) continue;
+      PageJson points = PageJson::array();
+      for (const Vec3& x : shape.points_mm) {
+        if ((x - needle.entry_mm).dot(needle.direction) > -kInFrontOfSkin_mm) points.push_back(seed_place_json(x));
+      }
+      if (points.size() >= 2) list.push_back({{"name", needle.name}, {"stabilises", stabilises}, {"shaft_mm", points}});
+    }
+  };
+  for (const NeedleHistory& needle : history.stabilising) add(needle, true);
+  for (const NeedleHistory& needle : history.needles) add(needle, false);
+  return list;
+}
+
 }  // namespace
 
 std::string implant_page_data(const ImplantOutcome& outcome, const DvhTable& planned, const DvhTable* found) {
@@ -52,7 +72,11 @@ std::string implant_page_data(const ImplantOutcome& outcome, const DvhTable& pla
   }
   for (std::size_t k = 0; k < kThirds.size(); ++k)
     thirds.push_back({{"name", kThirds[k]}, {"color", kThirdColours[k]}});
-  PageJson json = {{"planned_percent", curves_json(planned)}, {"thirds", thirds}, {"seeds", seeds}};
+  PageJson json = {{"planned_percent", curves_json(planned)},
+                   {"thirds", thirds},
+                   {"seeds", seeds},
+                   {"needle_diameter_mm", outcome.scenario.needle.diameter_mm},
+                   {"needles", needles_in_place(history)}};
   if (found) {
     json["found_percent"] = curves_json(*found);
     json["found"] = found_seeds_json(outcome);

@@ -20,6 +20,8 @@
 #include "report/html_parts.hpp"
 #include "report/text.hpp"
 
+#include <algorithm>
+
 namespace stylet::results {
 namespace {
 
@@ -51,6 +53,14 @@ std::vector<NamedDose> doses_of(const ImplantOutcome& outcome) {
   if (outcome.found->comparison.matching.shift_beyond_chance())
     doses.push_back({"Found, without common shift", &outcome.found->dose_without_shift});
   return doses;
+}
+
+/// Whether any needle is in the tissue together with another one.
+bool needles_together(const ImplantHistory& history) {
+  return std::any_of(history.needles.begin(), history.needles.end(), [](const NeedleHistory& needle) {
+    return std::any_of(needle.record.shapes.begin(), needle.record.shapes.end(),
+                       [](const NeedleShape& shape) { return shape.when == kAllInPlace; });
+  });
 }
 
 }  // namespace
@@ -87,6 +97,10 @@ Result<std::string> implant_page(const ImplantOutcome& outcome) {
       {"dvh_of_found", found ? " Dotted lines are the dose of the seeds where they were found on imaging." : ""},
       {"marks_of_found", found ? " Crosses are the places where seeds were found on imaging." : ""},
       {"space_of_found", found ? " Orange marks are the places where seeds were found on imaging." : ""},
+      {"space_of_needles", needles_together(history)
+                               ? " Shafts are those of needles that are in the tissue together, bent as they are when "
+                                 "the last of them has gone in."
+                               : ""},
       {"report_of_found", found ? "; <a href=\"found/report.html\">the dose of the found seeds</a>" : ""},
       {"files_of_found", found ? " The match with the found seeds is in <code>found.csv</code>." : ""},
       {"seeds", seed_error_table(history)},

@@ -5,6 +5,7 @@
 #include "implant/implant_page.hpp"
 #include "output_folder.hpp"
 #include "stylet/io/dose_results.hpp"
+#include "stylet/io/implant_record_io.hpp"
 
 namespace stylet {
 
@@ -24,6 +25,7 @@ Result<> write_implant_results(const ImplantOutcome& outcome, const fs::path& fo
   } else {
     if (auto removed = results::remove_earlier_found(folder); !removed) return removed;
   }
+  if (auto done = write_implant_record(implant_record(outcome), folder / "run.h5"); !done) return done;
   files.push_back({"summary.json", implant_json(outcome)});
   return results::write_folder(files, folder);
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The arrows of the seeds' errors in the 3D view, and the seeds found on images, with their controls.
+// The arrows of the seeds' errors in the 3D view, the seeds found on images, and needles that are in the tissue
+// together, with their controls.
 import { element } from '../../../shared/dom';
 import type { DoseStage } from '../dose/stage';
 import { switchOf } from '../dose/viewer';
 import type { ImplantData } from './data';
 import { ErrorArrows } from './error_arrows';
 import { FOUND_COLOR, foundMarks } from './found_marks';
+import { NEEDLE_COLOR, needleShafts, STABILISING_COLOR } from './needle_shafts';
 
 const TIMES = 3;
 
@@ -24,6 +26,26 @@ function addFound({ found }: ImplantData, stage: DoseStage): HTMLElement[] {
     switchOf('Found on imaging', true, FOUND_COLOR, (on) => {
       marks.visible = on;
       stage.draw();
+    }),
+  ];
+}
+
+/** Switches for the needles that are in the tissue together, where there are any. */
+function addNeedles({ needles, needle_diameter_mm: diameter }: ImplantData, stage: DoseStage): HTMLElement[] {
+  const kinds = [
+    { text: 'Stabilising needles', color: STABILISING_COLOR, of: needles.filter((needle) => needle.stabilises) },
+    { text: 'Needles of the plan', color: NEEDLE_COLOR, of: needles.filter((needle) => !needle.stabilises) },
+  ].filter(({ of }) => of.length > 0);
+  if (kinds.length === 0) return [];
+  return [
+    element('h3', '', 'Needles in place together'),
+    ...kinds.map(({ text, color, of }) => {
+      const shafts = needleShafts(of, diameter, color);
+      stage.add(shafts);
+      return switchOf(text, true, color, (on) => {
+        shafts.visible = on;
+        stage.draw();
+      });
     }),
   ];
 }
@@ -58,5 +80,6 @@ export function addArrows(data: ImplantData, stage: DoseStage, picture: HTMLElem
     }),
     key,
     ...addFound(data, stage),
+    ...addNeedles(data, stage),
   ];
 }

@@ -15,12 +15,21 @@ export interface FoundSeed {
   number: number | null;  // that of its seed; null: it matches none
 }
 
+/** A needle that is in the tissue together with others. */
+export interface NeedleInPlace {
+  name: string;
+  stabilises: boolean;
+  shaft_mm: Triple[];  // LPS, from outside the skin to the tip, with all needles of its group in place
+}
+
 export interface ImplantData {
   planned_percent: number[][];  // (structures × doses) histograms of the plan, at the doses of the delivered ones
   found_percent?: number[][];   // those of the seeds that were found on images, where there are any
   found?: FoundSeed[];
   thirds: { name: string; color: string }[];
   seeds: Seed[];
+  needle_diameter_mm: number;
+  needles: NeedleInPlace[];
 }
 
 export function decodeImplant(json: string): ImplantData {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From an implant to its run.h5 and back.
+#include "stylet/io/implant_record_io.hpp"
+
+#include "detail/guard.hpp"
+#include "detail/input_file.hpp"
+#include "detail/whole_file.hpp"
+#include "dose/dvh_table.hpp"
+#include "implant/stored_implant.hpp"
+#include "output_folder.hpp"
+#include "stylet/core/version.hpp"
+#include "stylet/io/scenario_io.hpp"
+
+namespace stylet {
+
+namespace fs = std::filesystem;
+using namespace results;
+
+namespace {
+
+/// Steps and events as a row of the file keeps them: long names of regions are cut.
+NeedleHistory as_kept(NeedleHistory needle) {
+  for (Event& event : needle.events) event = from_row(to_row(event));
+  for (Step& step : needle.record.steps) step = from_row(to_row(step));
+  return needle;
+}
+
+std::vector<NeedleHistory> all_as_kept(const std::vector<NeedleHistory>& needles) {
+  std::vector<NeedleHistory> kept;
+  for (const NeedleHistory& needle : needles) kept.push_back(as_kept(needle));
+  return kept;
+}
+
+RecordedDose recorded_dose(const DoseEvaluation& dose, const std::vector<double>& dose_Gy) {
+  return {dose.grid, dose_Gy, dvh_at(dose, dose_Gy).percent};
+}
+
+}  // namespace
+
+ImplantRecord implant_record(const ImplantOutcome& outcome) {
+  const Scenario& scenario = outcome.scenario;
+  ImplantRecord r;
+  r.version = version();
+  r.scenario_name = scenario.name;
+  r.scenario_text = to_toml(scenario);
+  r.source = outcome.delivered.source.name;
+  r.prescription_Gy = outcome.delivered.prescription_Gy;
+  r.needle_diameter_mm = scenario.needle.diameter_mm;
+  r.needle_length_mm = scenario.needle.length_mm;
+  r.seed_length_mm = outcome.seed_length_mm;
+  r.mesh = outcome.mesh;
+  r.needles = all_as_kept(outcome.history.needles);
+  r.stabilising = all_as_kept(outcome.history.stabilising);
+  r.seeds = outcome.history.seeds;
+  for (const StructureDose& s : outcome.delivered.structures)
+    r.structures.push_back({s.name, s.region, s.type, s.colour, s.dvh.volume_cc(), s.contours, s.cloud});
+  r.planned = recorded_dose(outcome.planned, dvh_table(outcome.planned).dose_Gy);
+  r.delivered = recorded_dose(outcome.delivered, dvh_table(outcome.delivered).dose_Gy);
+  r.warnings = outcome.warnings;
+  r.summary = implant_json(outcome);
+  return r;
+}
+
+Result<> write_implant_record(ImplantRecord record, const fs::path& path) {
+  return detail::write_whole(path, [&](const fs::path& temporary) -> Result<> {
+    const h5::LibraryTurn turn;
+    try {
+      write_stored_implant(temporary.c_str(), record);
+      return Ok{};
+    } catch (const h5::Failure& e) {
+      return write_error(path, e.what());
+    }
+  });
+}
+
+Result<ImplantRecord> read_implant_record(const fs::path& path) {
+  if (Result<> readable = detail::check_input_file(path); !readable)
+    return input_error(path.string(), readable.error().what, kGiveAnImplant);
+  Result<ImplantRecord> record = [&] {
+    const h5::LibraryTurn turn;  // no other thread may be in HDF5 when the child process is created
+    return detail::guarded<ImplantRecord>(
+        path, [&] { return parse_implant_file(path); }, kGiveAnImplant);
+  }();
+  if (!record) return record;
+  if (auto sound = check_mesh(record->mesh, path.string() + ", /mesh"); !sound) return sound.error();
+  return record;
+}
+
+bool is_implant_record(const fs::path& path) {
+  if (!detail::check_input_file(path)) return false;
+  const h5::LibraryTurn turn;
+  const Result<bool> is = detail::guarded<bool>(path, [&]() -> Result<bool> {
+    const h5::Handle file = h5::open_growing_file(path.c_str());
+    return h5::has_attribute(file, "format") && h5::read_text_attribute(file, "format") == kImplantFileFormat;
+  });
+  return is && *is;
+}
+
+}  // namespace stylet

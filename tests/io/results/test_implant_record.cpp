@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tests of the run.h5 of an implant.
+#include "stylet/io/implant_record_io.hpp"
+#include "stylet/io/recording_io.hpp"
+#include "synthetic_implant.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+using namespace stylet;
+using namespace stylet::testing;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const ImplantRecord& invented_record() {
+  static const ImplantRecord record = implant_record(synthetic_implant(6.0, 2.0));
+  return record;
+}
+
+/// A folder that is removed at the end.
+class RecordFolder {
+ public:
+  RecordFolder() {
+    std::string name = (fs::temp_directory_path() / "stylet-implant-XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~RecordFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  RecordFolder(const RecordFolder&) = delete;
+  RecordFolder& operator=(const RecordFolder&) = delete;
+  fs::path path;
+};
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void put_bytes(const fs::path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+void expect_same_vector(const Vec3& a, const Vec3& b) {
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k])));
+}
+
+void expect_same_needle(const NeedleHistory& a, const NeedleHistory& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.record.group, b.record.group);
+  expect_same_vector(a.entry_mm, b.entry_mm);
+  expect_same_vector(a.gland_shift_mm, b.gland_shift_mm);
+  EXPECT_EQ(a.peak_force_N, b.peak_force_N);
+  ASSERT_EQ(a.record.steps.size(), b.record.steps.size());
+  for (std::size_t k = 0; k < a.record.steps.size(); ++k) {
+    const Step &x = a.record.steps[k], &y = b.record.steps[k];
+    EXPECT_EQ(x.time_s, y.time_s);
+    EXPECT_EQ(x.base_depth_mm, y.base_depth_mm);
+    EXPECT_EQ(x.base.origin, y.base.origin);
+    EXPECT_EQ(x.force_axial_N, y.force_axial_N);
+    EXPECT_EQ(x.tip_mm, y.tip_mm);
+    EXPECT_EQ(x.tip_state, y.tip_state);
+    EXPECT_EQ(x.contacts, y.contacts);
+    EXPECT_EQ(x.step_us, y.step_us);
+  }
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t k = 0; k < a.events.size(); ++k) {
+    EXPECT_EQ(a.events[k].kind, b.events[k].kind);
+    EXPECT_EQ(a.events[k].force_N, b.events[k].force_N);
+    EXPECT_EQ(a.events[k].region, b.events[k].region);
+  }
+  ASSERT_EQ(a.record.shapes.size(), b.record.shapes.size());
+  for (std::size_t k = 0; k < a.record.shapes.size(); ++k) {
+    EXPECT_EQ(a.record.shapes[k].when, b.record.shapes[k].when);
+    EXPECT_EQ(a.record.shapes[k].base_depth_mm, b.record.shapes[k].base_depth_mm);
+    EXPECT_EQ(a.record.shapes[k].points_mm, b.record.shapes[k].points_mm);
+  }
+}
+
+void expect_same_dose(const RecordedDose& a, const RecordedDose& b) {
+  EXPECT_EQ(a.grid.size, b.grid.size);
+  EXPECT_EQ(a.grid.origin_mm, b.grid.origin_mm);
+  EXPECT_EQ(a.grid.spacing_mm, b.grid.spacing_mm);
+  EXPECT_EQ(a.grid.dose_Gy, b.grid.dose_Gy);
+  EXPECT_EQ(a.dose_Gy, b.dose_Gy);
+  EXPECT_EQ(a.percent, b.percent);
+}
+
+}  // namespace
+
+TEST(ImplantRecord, written_and_read_again_is_the_same) {
+  const ImplantRecord& wrote = invented_record();
+  const RecordFolder folder;
+  ASSERT_TRUE(write_implant_record(wrote, folder.path / "run.h5").ok());
+  EXPECT_TRUE(is_implant_record(folder.path / "run.h5"));
+  const auto read = read_implant_record(folder.path / "run.h5");
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  EXPECT_EQ(read->version, wrote.version);
+  EXPECT_EQ(read->scenario_text, wrote.scenario_text);
+  EXPECT_EQ(read->source, wrote.source);
+  EXPECT_EQ(read->prescription_Gy, wrote.prescription_Gy);
+  EXPECT_EQ(read->seed_length_mm, wrote.seed_length_mm);
+  EXPECT_EQ(read->mesh.nodes, wrote.mesh.nodes);
+  EXPECT_EQ(read->mesh.tets, wrote.mesh.tets);
+  EXPECT_EQ(read->mesh.regions, wrote.mesh.regions);
+  EXPECT_EQ(read->warnings, wrote.warnings);
+  EXPECT_EQ(read->summary, wrote.summary);
+  ASSERT_EQ(read->needles.size(), wrote.needles.size());
+  for (std::size_t k = 0; k < wrote.needles.size(); ++k) expect_same_needle(read->needles[k], wrote.needles[k]);
+  ASSERT_EQ(read->stabilising.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) expect_same_needle(read->stabilising[k], wrote.stabilising[k]);
+  ASSERT_EQ(read->structures.size(), wrote.structures.size());
+  for (std::size_t k = 0; k < wrote.structures.size(); ++k) {
+    EXPECT_EQ(read->structures[k].name, wrote.structures[k].name);
+    EXPECT_EQ(read->structures[k].volume_cc, wrote.structures[k].volume_cc);
+    EXPECT_EQ(read->structures[k].colour, wrote.structures[k].colour);
+    EXPECT_EQ(read->structures[k].cloud_mm, wrote.structures[k].cloud_mm);
+    ASSERT_EQ(read->structures[k].contours.size(), wrote.structures[k].contours.size());
+    for (std::size_t c = 0; c < wrote.structures[k].contours.size(); ++c)
+      EXPECT_EQ(read->structures[k].contours[c].points, wrote.structures[k].contours[c].points);
+  }
+  expect_same_dose(read->planned, wrote.planned);
+  expect_same_dose(read->delivered, wrote.delivered);
+}
+
+TEST(ImplantRecord, has_the_seeds_of_the_summary) {
+  const RecordFolder folder;
+  ASSERT_TRUE(write_implant_record(invented_record(), folder.path / "run.h5").ok());
+  const ImplantRecord read = read_implant_record(folder.path / "run.h5").value();
+  const auto summary = nlohmann::json::parse(read.summary);
+  const auto& seeds = summary["implant"]["seeds"];
+  ASSERT_EQ(read.seeds.size(), seeds.size());
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    const SeedHistory& seed = read.seeds[k];
+    EXPECT_EQ(seed.number + 1, seeds[k]["number"].get<std::size_t>());
+    EXPECT_EQ(read.needles[seed.needle].name, seeds[k]["needle"].get<std::string>());
+    EXPECT_EQ(seed.lost, seeds[k]["lost"].get<bool>());
+    EXPECT_EQ(seed.in_tissue, seeds[k]["in_tissue"].get<bool>());
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(seed.planned_mm[axis], seeds[k]["planned_mm"][static_cast<std::size_t>(axis)].get<double>());
+      EXPECT_EQ(seed.rest_mm[axis], seeds[k]["rest_mm"][static_cast<std::size_t>(axis)].get<double>());
+    }
+    for (std::size_t c = 0; c < kSeedCauses; ++c)
+      EXPECT_EQ(seed.cause_mm[c].z(), seeds[k]["why"][to_string(static_cast<SeedCause>(c))][2].get<double>());
+  }
+}
+
+TEST(ImplantRecord, is_no_recording_of_an_insertion_and_says_what_to_do) {
+  const RecordFolder folder;
+  ASSERT_TRUE(write_implant_record(invented_record(), folder.path / "run.h5").ok());
+  const auto run = read_recording(folder.path / "run.h5");
+  ASSERT_FALSE(run.ok());
+  EXPECT_EQ(run.error().kind, ErrorKind::input);
+  EXPECT_NE(run.error().what.find("record of an implant"), std::string::npos) << run.error().message();
+  EXPECT_NE(run.error().cure.find("stylet implant"), std::string::npos);
+}
+
+TEST(ImplantRecord, that_is_truncated_or_something_else_is_refused) {
+  const RecordFolder folder;
+  const fs::path file = folder.path / "run.h5";
+  ASSERT_TRUE(write_implant_record(invented_record(), file).ok());
+  const std::string whole = bytes_of(file);
+  for (const double part : {0.02, 0.3, 0.9, 0.999}) {
+    put_bytes(file, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+    const auto read = read_implant_record(file);
+    ASSERT_FALSE(read.ok()) << part;
+    EXPECT_EQ(read.error().kind, ErrorKind::input);
+    EXPECT_NE(read.error().cure.find("`stylet implant` wrote"), std::string::npos) << read.error().message();
+  }
+  put_bytes(file, "seeds");
+  EXPECT_FALSE(read_implant_record(file).ok());
+  EXPECT_FALSE(is_implant_record(file));
+  fs::remove(file);
+  EXPECT_FALSE(read_implant_record(file).ok());
+  EXPECT_FALSE(is_implant_record(file));
+}
+
+// A bit that nobody reads, such as one of the room that HDF5 leaves free, may change.
+TEST(ImplantRecord, with_a_bit_changed_is_refused_or_read_as_it_was) {
+  const RecordFolder folder;
+  const fs::path file = folder.path / "run.h5";
+  ASSERT_TRUE(write_implant_record(invented_record(), file).ok());
+  const std::string whole = bytes_of(file);
+  const ImplantRecord before = read_implant_record(file).value();
+  std::mt19937 random(7);
+  int refused = 0;
+  constexpr int kFlips = 40;
+  for (int k = 0; k < kFlips; ++k) {
+    std::string changed = whole;
+    const std::size_t at = random() % whole.size();
+    changed[at] = static_cast<char>(changed[at] ^ (1 << (random() % 8)));
+    put_bytes(file, changed);
+    const auto read = read_implant_record(file);
+    if (!read) {
+      ++refused;
+      continue;
+    }
+    EXPECT_EQ(read->summary, before.summary) << at;
+    EXPECT_EQ(read->delivered.grid.dose_Gy, before.delivered.grid.dose_Gy) << at;
+    EXPECT_EQ(read->seeds.back().rest_mm, before.seeds.back().rest_mm) << at;
+  }
+  EXPECT_GT(refused, kFlips / 2);
+}
+
+TEST(ImplantRecord, is_not_written_into_a_folder_that_does_not_exist) {
+  const RecordFolder folder;
+  const auto none = write_implant_record(invented_record(), folder.path / "missing" / "run.h5");
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.error().message().find("does not exist"), std::string::npos) << none.error().message();
+  EXPECT_TRUE(fs::is_empty(folder.path));
+}
